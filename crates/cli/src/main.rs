@@ -1,0 +1,2 @@
+//! The command `reachtube`.
+fn main() {}

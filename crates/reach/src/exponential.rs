@@ -1,0 +1,110 @@
+//! The rigorous matrix exponential over one step.
+
+use nalgebra::DMatrix;
+use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_down};
+
+use crate::LinearSystem;
+use crate::matrix::{IntervalMatrix, IntervalVector, magnitude, point};
+
+/// Norm of A h below which the Taylor series is summed; above it, h is halved and the result squared.
+const SERIES_NORM: f64 = 0.5;
+
+/// What one step of length h does to a linear system with constant input: x(h) = Φ x(0) + Γ u + γ.
+#[derive(Debug, Clone)]
+pub struct Step {
+    /// Φ = e^{Ah}, N x N.
+    pub phi: IntervalMatrix,
+    /// Γ = ∫₀ʰ e^{Aτ} dτ B, N x m.
+    pub gamma: IntervalMatrix,
+    /// γ = ∫₀ʰ e^{Aτ} dτ d, N.
+    pub drift: IntervalVector,
+}
+
+/// The step of `system` for every length in `h` (s, h >= 0).
+///
+/// # Guarantee
+///
+/// Outer, proved with directed rounding: for every real h in the interval, Φ, Γ and γ lie in the matrices returned. An entry
+/// that is zero for every h (no path through A) is the point 0.
+pub fn step(system: &LinearSystem, h: Interval) -> Step {
+    let (halvings, small) = halve(system, h);
+    let n = system.states();
+    let x = point(system.a()) * small;
+    let phi1 = phi1_series(&x, &connected(system.a()));
+    let mut phi = IntervalMatrix::identity(n, n) + &x * &phi1;
+    let integral = phi1 * small;
+    let mut gamma = &integral * point(system.b());
+    let mut drift = &integral * system.drift().map(Interval::point);
+    for _ in 0..halvings {
+        gamma = &gamma + &phi * &gamma;
+        drift = &drift + &phi * &drift;
+        phi = &phi * &phi;
+    }
+    Step { phi, gamma, drift }
+}
+
+fn halve(system: &LinearSystem, h: Interval) -> (u32, Interval) {
+    let mut small = h;
+    let mut halvings = 0;
+    let norm = norm_upper(&magnitude(&point(system.a())));
+    while norm.is_finite() && mul_up(norm, small.hi()) > SERIES_NORM && halvings < 1000 {
+        small = small * 0.5;
+        halvings += 1;
+    }
+    (halvings, small)
+}
+
+/// φ₁(X) = Σ Xⁱ/(i+1)! for a norm of X below 1, by Horner, with the truncated terms enclosed.
+fn phi1_series(x: &IntervalMatrix, connected: &DMatrix<bool>) -> IntervalMatrix {
+    let n = x.nrows();
+    let norm = norm_upper(&magnitude(x));
+    let (degree, remainder) = truncation(norm);
+    let identity = IntervalMatrix::identity(n, n);
+    let mut sum = identity.clone();
+    for i in (1..=degree).rev() {
+        let divisor = Interval::point(i as f64 + 1.0);
+        sum = &identity + (x * sum).map(|entry| entry / divisor);
+    }
+    let symmetric = Interval::centered(0.0, remainder);
+    sum.zip_map(connected, |entry, linked| if linked { entry + symmetric } else { entry })
+}
+
+/// The degree at which the series may stop, and an upper bound of what it leaves out:
+/// Σ_{i>p} xⁱ/(i+1)! <= x^{p+1}/(p+2)! / (1 - x/(p+3)).
+fn truncation(norm: f64) -> (usize, f64) {
+    let mut term = norm / 2.0;
+    for degree in 1..60 {
+        term = div_up(mul_up(term, norm), degree as f64 + 2.0);
+        let tail = div_up(term, sub_down(1.0, div_up(norm, degree as f64 + 3.0)));
+        if tail <= f64::EPSILON / 256.0 {
+            return (degree, tail);
+        }
+    }
+    (60, f64::INFINITY)
+}
+
+/// Largest row sum, rounded upward.
+pub(crate) fn norm_upper(magnitudes: &DMatrix<f64>) -> f64 {
+    let row_sum = |row: usize| magnitudes.row(row).iter().fold(0.0, |sum, &x| add_up(sum, x));
+    (0..magnitudes.nrows()).map(row_sum).fold(0.0, f64::max)
+}
+
+/// Which entries of some power of A can be non-zero: j can be reached from i through entries of A.
+fn connected(a: &DMatrix<f64>) -> DMatrix<bool> {
+    let n = a.nrows();
+    let mut linked = DMatrix::from_fn(n, n, |i, j| i == j || a[(i, j)] != 0.0);
+    for via in 0..n {
+        for i in 0..n {
+            for j in 0..n {
+                linked[(i, j)] |= linked[(i, via)] && linked[(via, j)];
+            }
+        }
+    }
+    linked
+}
+
+/// The derivative ẋ = A x + B u + d, enclosed for every x and u in the vectors given.
+pub(crate) fn derivative(system: &LinearSystem, x: &IntervalVector, u: &IntervalVector) -> IntervalVector {
+    point(system.a()) * x + point(system.b()) * u + system.drift().map(Interval::point)
+}

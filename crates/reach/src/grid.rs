@@ -1,0 +1,151 @@
+use reachtube_scalar::Interval;
+
+use crate::ReachError;
+
+/// Relative deviation from k h up to which a grid counts as uniform: far below any real jitter, far above the rounding of a
+/// printed decimal.
+const UNIFORM_TOLERANCE: f64 = 1e-6;
+
+/// Sample times t_0 = 0 < t_1 < ... in s, measured from the first sample and kept to the picosecond.
+///
+/// Where the times are those of a fixed rate, the grid is `uniform` and t_k is *exactly* k h with the step h rounded to
+/// 12 significant digits, so that 0.004, 0.008, 0.012 is the grid it was meant to be.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_reach::TimeGrid;
+///
+/// let grid = TimeGrid::from_times(&[10.0, 10.004, 10.008])?;
+/// assert_eq!(grid.step(), Some(0.004));
+/// assert_eq!(grid.times(), [0.0, 0.004, 0.008]);
+/// # Ok::<(), reachtube_reach::ReachError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeGrid {
+    times: Vec<f64>,
+    step: Option<f64>,
+}
+
+impl TimeGrid {
+    /// The grid of recorded sample times in s.
+    ///
+    /// # Errors
+    ///
+    /// [`ReachError::Times`] when a time is not after the one before it, or not finite.
+    pub fn from_times(recorded: &[f64]) -> Result<Self, ReachError> {
+        for (index, pair) in recorded.windows(2).enumerate() {
+            if !(pair[1] > pair[0] && pair[1].is_finite()) {
+                return Err(ReachError::Times { index: index + 1, time: pair[1], previous: pair[0] });
+            }
+        }
+        let origin = recorded.first().copied().unwrap_or(0.0);
+        let times: Vec<f64> = recorded.iter().map(|t| ((t - origin) * 1e12).round() / 1e12).collect();
+        Ok(match uniform_step(&times) {
+            Some(step) => Self::uniform(step, times.len()),
+            None => Self { times, step: None },
+        })
+    }
+
+    /// The grid 0, h, 2h, ... of `count` samples.
+    pub fn uniform(step: f64, count: usize) -> Self {
+        Self { times: (0..count).map(|k| k as f64 * step).collect(), step: Some(step) }
+    }
+
+    /// The sample times in s, rounded to nearest.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The step h in s of a uniform grid.
+    pub fn step(&self) -> Option<f64> {
+        self.step
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// The time between samples k and k + 1.
+    ///
+    /// # Guarantee
+    ///
+    /// Exact on a uniform grid; otherwise an outer enclosure of the difference of the two recorded times.
+    pub fn interval(&self, k: usize) -> Interval {
+        match self.step {
+            Some(h) => Interval::point(h),
+            None => Interval::point(self.times[k + 1]) - Interval::point(self.times[k]),
+        }
+    }
+
+    /// The longest time between two samples in s (0 for a single sample).
+    pub fn longest_step(&self) -> f64 {
+        (1..self.len()).map(|k| self.interval(k - 1).hi()).fold(0.0, f64::max)
+    }
+
+    /// Whether every sample of `self` is the sample of the same index of `longer`.
+    pub fn is_prefix_of(&self, longer: &Self) -> bool {
+        if self.len() > longer.len() {
+            return false;
+        }
+        match (self.step, longer.step) {
+            (Some(h), Some(g)) if self.len() > 1 => h == g,
+            _ => longer.times.starts_with(&self.times),
+        }
+    }
+
+    /// The first `count` samples.
+    pub fn prefix(&self, count: usize) -> Self {
+        Self { times: self.times[..count.min(self.len())].to_vec(), step: self.step }
+    }
+}
+
+fn uniform_step(times: &[f64]) -> Option<f64> {
+    let intervals = times.len().checked_sub(1).filter(|&n| n > 0)?;
+    let mean = times[intervals] / intervals as f64;
+    let step: f64 = format!("{mean:.11e}").parse().ok()?;
+    let tolerance = UNIFORM_TOLERANCE * step;
+    let fits = |(k, &t): (usize, &f64)| (t - k as f64 * step).abs() <= tolerance;
+    times.iter().enumerate().all(fits).then_some(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimal_times_of_a_fixed_rate_are_uniform_whatever_their_length() {
+        for count in [2, 3, 937, 1088] {
+            let times: Vec<f64> = (0..count).map(|k| format!("{:.3}", k as f64 * 0.004).parse().unwrap()).collect();
+            assert_eq!(TimeGrid::from_times(&times).unwrap().step(), Some(0.004));
+        }
+    }
+
+    #[test]
+    fn jitter_and_gaps_are_not_uniform() {
+        let grid = TimeGrid::from_times(&[0.0, 0.010, 0.021, 0.031]).unwrap();
+        assert_eq!(grid.step(), None);
+        assert!(grid.interval(1).contains(0.011));
+        assert_eq!(TimeGrid::from_times(&[0.0, 0.004, 0.012]).unwrap().step(), None);
+    }
+
+    #[test]
+    fn shorter_grids_of_the_same_rate_are_prefixes() {
+        let (short, long) = (TimeGrid::uniform(0.004, 10), TimeGrid::uniform(0.004, 20));
+        assert!(short.is_prefix_of(&long) && !long.is_prefix_of(&short));
+        assert!(!TimeGrid::uniform(0.005, 10).is_prefix_of(&long));
+    }
+
+    #[test]
+    fn times_that_do_not_increase_are_named() {
+        let error = TimeGrid::from_times(&[0.0, 0.1, 0.1]).unwrap_err();
+        assert_eq!(error, ReachError::Times { index: 2, time: 0.1, previous: 0.1 });
+        assert!(TimeGrid::from_times(&[0.0, f64::NAN]).is_err());
+    }
+}

@@ -1,0 +1,87 @@
+use nalgebra::{DMatrix, DVector};
+
+use crate::ReachError;
+
+/// The linear system ẋ = A x + B u + d with constant A (N x N), B (N x m) and drift d (N).
+///
+/// The floating-point entries *are* the system: nothing is rounded on the way into an enclosure.
+///
+/// # Examples
+///
+/// ```
+/// use nalgebra::{dmatrix, dvector};
+/// use reachtube_reach::LinearSystem;
+///
+/// // A double integrator: states (position, velocity), input acceleration.
+/// let system = LinearSystem::new(dmatrix![0.0, 1.0; 0.0, 0.0], dmatrix![0.0; 1.0], dvector![0.0, 0.0])?;
+/// assert_eq!((system.states(), system.inputs()), (2, 1));
+/// # Ok::<(), reachtube_reach::ReachError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearSystem {
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    drift: DVector<f64>,
+}
+
+impl LinearSystem {
+    /// Builds the system from A (N x N), B (N x m) and the drift d (N).
+    ///
+    /// # Errors
+    ///
+    /// [`ReachError::Shape`] when the sizes do not fit, [`ReachError::NotFinite`] for NaN or infinite entries.
+    pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, drift: DVector<f64>) -> Result<Self, ReachError> {
+        let states = a.nrows();
+        check_shape("A", &a, states, states)?;
+        check_shape("B", &b, states, b.ncols())?;
+        let drift_column = DMatrix::from_column_slice(drift.len(), 1, drift.as_slice());
+        check_shape("the drift", &drift_column, states, 1)?;
+        Ok(Self { a, b, drift })
+    }
+
+    /// A, N x N.
+    pub fn a(&self) -> &DMatrix<f64> {
+        &self.a
+    }
+
+    /// B, N x m.
+    pub fn b(&self) -> &DMatrix<f64> {
+        &self.b
+    }
+
+    /// The constant drift d, N.
+    pub fn drift(&self) -> &DVector<f64> {
+        &self.drift
+    }
+
+    /// Number of states N.
+    pub fn states(&self) -> usize {
+        self.a.nrows()
+    }
+
+    /// Number of inputs m.
+    pub fn inputs(&self) -> usize {
+        self.b.ncols()
+    }
+}
+
+fn check_shape(
+    what: &'static str,
+    matrix: &DMatrix<f64>,
+    rows: usize,
+    columns: usize,
+) -> Result<(), ReachError> {
+    let (found_rows, found_columns) = matrix.shape();
+    if (found_rows, found_columns) != (rows, columns) {
+        return Err(ReachError::Shape { what, rows, columns, found_rows, found_columns });
+    }
+    for column in 0..columns {
+        for row in 0..rows {
+            let value = matrix[(row, column)];
+            if !value.is_finite() {
+                return Err(ReachError::NotFinite { what, row, column, value });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! e^{Aτ} B within one step, by its Taylor series Σ A^m B τ^m / m!.
+
+use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_up};
+
+use crate::LinearSystem;
+use crate::exponential::norm_upper;
+use crate::matrix::{IntervalMatrix, magnitude, point};
+
+/// Terms at most.
+const MOST_TERMS: usize = 200;
+
+/// Halvings of one step at most when an entry changes sign in it.
+const DEEPEST: usize = 40;
+
+/// The terms A^m B / m!, m < M, for steps up to a given length.
+pub(crate) struct Series {
+    pub(crate) terms: Vec<IntervalMatrix>,
+    /// |A|^M |B| / M!: all terms left out are together at most twice that times τ^M.
+    remainder: f64,
+}
+
+impl Series {
+    /// As many terms as double precision needs for steps up to `longest` (s).
+    pub(crate) fn new(system: &LinearSystem, longest: f64) -> Self {
+        let a = point(system.a());
+        let a_norm = norm_upper(&magnitude(&a));
+        let b_norm = norm_upper(&magnitude(&point(system.b())));
+        let (mut remainder, mut power) = (b_norm, 1.0);
+        let mut terms = vec![point(system.b())];
+        for m in 1..MOST_TERMS {
+            remainder = div_up(mul_up(remainder, a_norm), m as f64);
+            power *= longest;
+            if remainder * power <= 1e-18 * b_norm && mul_up(2.0 * a_norm, longest) <= m as f64 + 1.0 {
+                return Self { terms, remainder };
+            }
+            let divisor = Interval::point(m as f64);
+            terms.push((&a * &terms[m - 1]).map(|x| x / divisor));
+        }
+        Self { terms, remainder: f64::INFINITY }
+    }
+
+    /// Entry (i, j) of `start` e^{Aτ} B as a polynomial in τ.
+    pub(crate) fn entry(&self, start: &IntervalMatrix, i: usize, j: usize) -> Polynomial {
+        let row = || start.row(i).into_iter();
+        let coefficient = |term: &IntervalMatrix| {
+            row().zip(term.column(j).iter()).fold(Interval::ZERO, |sum, (x, y)| sum + *x * *y)
+        };
+        let norm = row().fold(0.0, |sum, x| add_up(sum, x.mag()));
+        Polynomial {
+            coefficients: self.terms.iter().map(coefficient).collect(),
+            tail: mul_up(2.0 * norm, self.remainder),
+        }
+    }
+}
+
+/// f(τ) = Σ c_m τ^m + e(τ) with |e(τ)| <= tail τ^M, for 0 <= τ up to the length the series was made for.
+pub(crate) struct Polynomial {
+    coefficients: Vec<Interval>,
+    tail: f64,
+}
+
+impl Polynomial {
+    /// f over `tau`, by the mean value form.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub(crate) fn range(&self, tau: Interval) -> Interval {
+        let middle = Interval::point(tau.mid());
+        let terms = || self.coefficients.iter().enumerate();
+        let value = terms().rev().fold(Interval::ZERO, |sum, (_, c)| sum * middle + *c);
+        let slope = terms().skip(1).rev().fold(Interval::ZERO, |sum, (m, c)| sum * tau + *c * m as f64);
+        value + slope * (tau - middle) + self.error(tau)
+    }
+
+    /// ∫₀^σ f.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub(crate) fn integral(&self, sigma: Interval) -> Interval {
+        let antiderivative = |sum: Interval, (m, c): (usize, &Interval)| sum * sigma + *c / Interval::point(m as f64 + 1.0);
+        let sum = self.coefficients.iter().enumerate().rev().fold(Interval::ZERO, antiderivative);
+        (sum + self.error(sigma)) * sigma
+    }
+
+    /// ∫_a^b |f|, by halving where f may change sign, until a piece is `negligible`.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub(crate) fn integral_of_absolute(&self, a: Interval, b: Interval, negligible: f64, depth: usize) -> Interval {
+        let range = self.range(a.hull(b));
+        let inner = (self.integral(b) - self.integral(a)).abs();
+        if !range.contains_zero() {
+            return inner;
+        }
+        let outer = mul_up(range.mag(), sub_up(b.hi(), a.lo()));
+        if outer <= negligible || depth == DEEPEST {
+            return Interval::new(inner.lo().min(outer), outer).unwrap_or(Interval::ENTIRE);
+        }
+        let middle = (a + b) * 0.5;
+        self.integral_of_absolute(a, middle, negligible, depth + 1)
+            + self.integral_of_absolute(middle, b, negligible, depth + 1)
+    }
+
+    fn error(&self, tau: Interval) -> Interval {
+        if self.tail == 0.0 {
+            return Interval::ZERO;
+        }
+        let power = Interval::point(tau.mag()).powi(self.coefficients.len() as i32);
+        Interval::centered(0.0, mul_up(self.tail, power.hi()))
+    }
+}

@@ -1,0 +1,209 @@
+//! Whether other recordings lie in the reachable set of a model, and where not: the answer comes with a witness.
+
+use reachtube_reach::{LinearSystem, ReachSets};
+use reachtube_robot::Robot;
+use serde::Serialize;
+
+use super::deviation::{Grids, suite_deviations};
+use super::identify::state_label;
+use super::recordings::{Progress, Recordings, Suite};
+use super::verify::{Row, check_rows};
+use super::{Settings, Side, Trust, UncertaintySets};
+use crate::data::DataSet;
+use crate::error::Result;
+
+/// The answer of a check.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// Whether every recording was proved to lie in the reachable set at every sample.
+    pub conformant: bool,
+    /// Where not.
+    pub violations: Violations,
+    /// The same for each suite.
+    pub suites: Vec<SuiteCheck>,
+    /// Recordings checked.
+    pub runs: usize,
+    /// (suite, time, state) rows checked.
+    pub rows: usize,
+    /// What this says of the next motion, if these recordings were not used in the fit.
+    pub trust: Trust,
+    /// What a user should know about the data.
+    pub notes: Vec<String>,
+}
+
+/// Rows that are not enclosed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Violations {
+    /// Violated (suite, time, state) rows.
+    pub count: usize,
+    /// The row with the largest excess, rad or rad/s.
+    pub worst: Option<Place>,
+}
+
+/// The check of one suite.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SuiteCheck {
+    /// The suite.
+    pub suite: String,
+    /// Its recordings.
+    pub runs: usize,
+    /// (time, state) rows checked.
+    pub rows: usize,
+    /// Where it leaves the reachable set.
+    pub violations: Violations,
+    /// The recordings that leave it furthest in some row.
+    pub violating_runs: Vec<String>,
+}
+
+/// A row in the words of the recordings: a witness.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Place {
+    /// The suite.
+    pub suite: String,
+    /// The recording.
+    pub run: String,
+    /// Sample, from 0.
+    pub sample: usize,
+    /// Time since the first sample, s.
+    pub time: f64,
+    /// Joint, from 1.
+    pub joint: usize,
+    /// The column of the recording: q3, qd1, ...
+    pub state: String,
+    /// Above or below the set.
+    pub side: Side,
+    /// How far outside the reachable set, rad or rad/s; an upper bound.
+    pub excess: f64,
+    /// Radius of the reachable set there, rad or rad/s.
+    pub radius: f64,
+}
+
+impl Place {
+    /// The row `row` of a suite in words.
+    pub fn new(data: &DataSet, suite: &Suite, row: &Row, joints: usize) -> Self {
+        Self {
+            suite: suite.entry.name.clone(),
+            run: data.runs()[row.run as usize].file.clone(),
+            sample: row.sample,
+            time: row.time,
+            joint: row.state % joints + 1,
+            state: state_label(row.state, joints),
+            side: row.side,
+            excess: row.excess,
+            radius: row.radius,
+        }
+    }
+}
+
+impl Violations {
+    fn none() -> Self {
+        Self { count: 0, worst: None }
+    }
+
+    fn take(&mut self, place: Place) {
+        if self.worst.as_ref().is_none_or(|worst| place.excess > worst.excess) {
+            self.worst = Some(place);
+        }
+    }
+}
+
+/// Checks the suites `names` of `data` (all when none is named) against the reachable set of `system` with `sets`.
+///
+/// # Guarantee
+///
+/// When `conformant`, every recorded value was proved with directed rounding to lie in the interval hull of the reachable set, at samples. A row within rounding of the boundary
+/// (about 1e-12 relative) that could not be proved counts as violated.
+///
+/// # Errors
+///
+/// Defects of the recordings, or an unknown suite. A violation is no error.
+pub fn check(
+    robot: &Robot,
+    system: &LinearSystem,
+    sets: &UncertaintySets,
+    data: &DataSet,
+    names: &[String],
+    settings: &Settings,
+    progress: Progress,
+) -> Result<Check> {
+    let recordings = Recordings::read(data, names, robot, settings, progress)?;
+    let grids = Grids::new(&recordings, system, settings.disturbance)?;
+    let reach: Vec<ReachSets> = grids
+        .as_slice()
+        .iter()
+        .map(|grid| ReachSets::new(&grid.propagation, &grid.gains, &sets.initial_set, &sets.input_set))
+        .collect();
+    let mut suites = Vec::new();
+    for suite in &recordings.suites {
+        let mut result = SuiteCheck {
+            suite: suite.entry.name.clone(),
+            runs: suite.runs.len(),
+            rows: 0,
+            violations: Violations::none(),
+            violating_runs: Vec::new(),
+        };
+        for deviation in suite_deviations(data, robot, settings, &grids, suite)? {
+            let grid = &grids.as_slice()[deviation.grid];
+            let mut sides = Sides::default();
+            check_rows(grid, &reach[deviation.grid], sets, settings.states, &deviation, |row| {
+                sides.take(row, &mut result, data, suite, robot.joint_count());
+            });
+        }
+        suites.push(result);
+    }
+    Ok(summary(&recordings, suites))
+}
+
+/// The two sides of a (time, state) row come one after the other and count once.
+#[derive(Default)]
+struct Sides {
+    violated: bool,
+}
+
+impl Sides {
+    fn take(&mut self, row: Row, result: &mut SuiteCheck, data: &DataSet, suite: &Suite, joints: usize) {
+        if row.side == Side::Upper {
+            result.rows += 1;
+            self.violated = false;
+        }
+        if row.excess <= 0.0 {
+            return;
+        }
+        result.violations.count += usize::from(!self.violated);
+        self.violated = true;
+        let place = Place::new(data, suite, &row, joints);
+        if !result.violating_runs.contains(&place.run) {
+            result.violating_runs.push(place.run.clone());
+        }
+        result.violations.take(place);
+    }
+}
+
+fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>) -> Check {
+    let mut violations = Violations::none();
+    for suite in &suites {
+        violations.count += suite.violations.count;
+        if let Some(place) = &suite.violations.worst {
+            violations.take(place.clone());
+        }
+    }
+    let rows = suites.iter().map(|suite| suite.rows).sum();
+    let known = recordings.suites.iter().all(|suite| suite.entry.motion.is_some());
+    let motion = |name: &str| {
+        let suite = recordings.suites.iter().find(|suite| suite.entry.name == name);
+        suite.and_then(|suite| suite.entry.motion.clone()).unwrap_or_else(|| name.to_string())
+    };
+    let distinct = |violating: bool| {
+        let chosen = suites.iter().filter(|suite| !violating || suite.violations.count > 0);
+        chosen.map(|suite| motion(&suite.suite)).collect::<std::collections::BTreeSet<_>>().len()
+    };
+    Check {
+        conformant: violations.count == 0 && rows > 0,
+        trust: Trust::of_check(distinct(false), distinct(true), known),
+        runs: recordings.run_count(),
+        notes: recordings.notes.clone(),
+        violations,
+        suites,
+        rows,
+    }
+}

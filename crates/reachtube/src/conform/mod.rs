@@ -1,0 +1,44 @@
+//! Conformance: deviations -> envelope -> linear program -> sets -> verdict.
+
+mod check;
+mod deviation;
+mod envelope;
+mod identify;
+mod program;
+mod recordings;
+mod sets;
+mod settings;
+mod trust;
+mod verify;
+
+pub use check::{Check, Place, SuiteCheck, Violations, check};
+pub use deviation::{Deviation, Grid, Grids, suite_deviations};
+pub use envelope::Envelope;
+pub use identify::{Conformance, Proof, TightRow, conform};
+pub use program::{Program, Solution, SupportRow};
+pub use recordings::{Progress, Recordings, RunSummary, SharedInput, Suite};
+use serde::{Deserialize, Serialize};
+pub use sets::UncertaintySets;
+pub use settings::{Centre, Noise, NominalStart, Notion, Settings, States, Weights};
+pub use trust::{Trust, clopper_pearson, scenario_bound};
+pub use verify::{Row, check_rows};
+
+/// A side of a set along a state axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// The highest values.
+    Upper,
+    /// The lowest values.
+    Lower,
+}
+
+impl Side {
+    /// 1 or -1.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Upper => 1.0,
+            Self::Lower => -1.0,
+        }
+    }
+}

@@ -1,0 +1,477 @@
+//! The linear program: the smallest sets whose reachable hull reaches as far as the deviations.
+//!
+//! Unknowns are the centres c = (c_x, c_u), the radii r = (r_x, r_u) and, where it is asked for, the radii r_v of the noise. For each sample k
+//! and state i, with E_k = (e^{A t_k}, Γ(t_k)) and R_k = (|e^{A t_k}|, κ(t_k)):
+//!
+//! -  (E_k c)_i + (R_k r)_i + r_v,i >= max d_i(t_k)
+//! - -(E_k c)_i + (R_k r)_i + r_v,i >= max -d_i(t_k)
+//!
+//! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, corrections A, E and F of the method.
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
+};
+use reachtube_reach::Hyperrectangle;
+
+use super::deviation::{Deviation, Grid};
+use super::{Centre, Envelope, Noise, Settings, Side, UncertaintySets};
+use crate::error::{Error, Result};
+
+/// A row counts as violated beyond this part of the largest deviation.
+const TOLERANCE: f64 = 1e-10;
+
+/// The horizon is cut into this many windows; each hands in its worst row when it is violated.
+const WINDOWS: usize = 24;
+
+/// Rounds of row generation at most.
+const ROUNDS: usize = 200;
+
+/// The rows of one sample grid, ready to be evaluated at the speed of memory.
+struct Block {
+    /// Samples x states x (unknown centres, then radii): the entries of E_k, then of R_k.
+    coefficients: Vec<f64>,
+    envelope: Envelope,
+}
+
+/// The program.
+pub struct Program<'a> {
+    settings: &'a Settings,
+    joints: usize,
+    blocks: Vec<Block>,
+    /// Cost of each radius (r_x, r_u).
+    cost: Vec<f64>,
+    /// Cost of each noise radius.
+    noise_cost: Vec<f64>,
+    /// Largest |d| in the checked states, at least the smallest normal number.
+    scale: f64,
+}
+
+/// What the solver found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The sets; their rows hold to the solver's tolerance only.
+    pub sets: UncertaintySets,
+    /// The dual objective: no sets that satisfy the rows cost less, up to the solver's tolerance.
+    pub lower_bound: f64,
+    /// The rows with a multiplier: the deviations that decide the sets.
+    pub support: Vec<SupportRow>,
+    /// Rows in the whole program.
+    pub rows: usize,
+    /// Rows that were generated.
+    pub generated: usize,
+    /// Rounds of row generation.
+    pub rounds: usize,
+}
+
+/// A row of the program that decides the solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SupportRow {
+    /// Index of the grid.
+    pub grid: usize,
+    /// Sample index.
+    pub sample: usize,
+    /// State, from 0.
+    pub state: usize,
+    /// Which side.
+    pub side: Side,
+    /// The run (index in the data set) that reaches this far.
+    pub run: u32,
+}
+
+/// A row's place: block, sample, state, side.
+type Place = (usize, usize, usize, Side);
+
+impl<'a> Program<'a> {
+    /// The program for the merged deviations on each grid; `weights` are s, 2n.
+    pub fn new(
+        settings: &'a Settings,
+        weights: &[f64],
+        grids: &[Grid],
+        deviations: &[Deviation],
+    ) -> Self {
+        let joints = weights.len() / 2;
+        let mut merged: Vec<Envelope> = grids.iter().map(|_| Envelope::new(2 * joints)).collect();
+        deviations.iter().for_each(|deviation| merged[deviation.grid].merge(&deviation.envelope));
+        let blocks: Vec<Block> = grids
+            .iter()
+            .zip(merged)
+            .map(|(grid, envelope)| Block { coefficients: coefficients(grid), envelope })
+            .collect();
+        let counted = distinct_times(grids);
+        let (cost, noise_cost) = cost(&blocks, &counted, weights);
+        let mut program = Self { settings, joints, blocks, cost, noise_cost, scale: f64::MIN_POSITIVE };
+        program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program
+    }
+
+    /// The cost of some sets.
+    pub fn cost(&self, sets: &UncertaintySets) -> f64 {
+        let radii = sets.initial_set.radius.iter().chain(&sets.input_set.radius);
+        let noise = (0..2 * self.joints).map(|i| self.noise_cost[i] * sets.noise_radius(i));
+        radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
+    }
+
+    /// Number of rows of the whole program.
+    pub fn rows(&self) -> usize {
+        let states = self.settings.states.rows(self.joints);
+        self.blocks.iter().map(|block| 2 * states * block.envelope.len()).sum()
+    }
+
+    /// Solves the program by row generation: few of the rows decide, and only they are handed to the solver.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Program`] when the solver does not reach an optimum.
+    pub fn solve(&self) -> Result<Solution> {
+        let mut places = self.first_rows();
+        for round in 1..=ROUNDS {
+            let (sets, multipliers, lower_bound) = self.solve_rows(&places)?;
+            let added = self.violated(&sets, &places);
+            if added.is_empty() {
+                let support = self.support(&places, &multipliers);
+                let (rows, generated) = (self.rows(), places.len());
+                return Ok(Solution { sets, lower_bound, support, rows, generated, rounds: round });
+            }
+            places.extend(added);
+        }
+        Err(Error::Program(format!("{ROUNDS} rounds of row generation left violated rows; report this with the data")))
+    }
+
+    fn largest_bound(&self) -> f64 {
+        self.places(1).map(|place| self.bound(place).abs()).fold(0.0, f64::max)
+    }
+
+    /// Every `stride`-th sample's rows.
+    fn places(&self, stride: usize) -> impl Iterator<Item = Place> + '_ {
+        let states = self.settings.states.rows(self.joints);
+        self.blocks.iter().enumerate().flat_map(move |(b, block)| {
+            (0..block.envelope.len()).step_by(stride).flat_map(move |k| {
+                (0..states).flat_map(move |i| [(b, k, i, Side::Upper), (b, k, i, Side::Lower)])
+            })
+        })
+    }
+
+    fn first_rows(&self) -> Vec<Place> {
+        let longest = self.blocks.iter().map(|block| block.envelope.len()).max().unwrap_or(0);
+        self.places((longest / 8).max(1)).collect()
+    }
+
+    /// The right-hand side of a row: the deviation along its direction, less the noise that is known.
+    fn bound(&self, (b, k, i, side): Place) -> f64 {
+        let envelope = &self.blocks[b].envelope;
+        let known = match &self.settings.noise {
+            Noise::Fixed(radii) => radii[i],
+            Noise::None | Noise::Free => 0.0,
+        };
+        match side {
+            Side::Upper => envelope.upper(k, i) - known,
+            Side::Lower => -envelope.lower(k, i) - known,
+        }
+    }
+
+    /// Entries of E_k and of R_k in row i.
+    fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+        let width = 3 * self.joints;
+        let start = (k * 2 * self.joints + i) * 2 * width;
+        self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
+    }
+
+    /// Deviation minus reach of a row, unrounded.
+    fn excess(&self, place: Place, unknowns: &Unknowns) -> f64 {
+        let (b, k, i, side) = place;
+        let (center, radius) = self.row(b, k, i);
+        let reach = side.sign() * dot(center, &unknowns.center) + dot(radius, &unknowns.radius);
+        self.bound(place) - reach - unknowns.free_noise[i]
+    }
+
+    /// The worst violated row of each window, state and side that is not among `places` yet.
+    fn violated(&self, sets: &UncertaintySets, places: &[Place]) -> Vec<Place> {
+        let unknowns = self.unknowns(sets);
+        let known: std::collections::HashSet<&Place> = places.iter().collect();
+        let mut worst: std::collections::BTreeMap<(usize, usize, usize, bool), (f64, Place)> = Default::default();
+        for place in self.places(1) {
+            let excess = self.excess(place, &unknowns);
+            if excess <= TOLERANCE * self.scale || known.contains(&place) {
+                continue;
+            }
+            let (b, k, i, side) = place;
+            let window = k * WINDOWS / self.blocks[b].envelope.len();
+            let entry = worst.entry((b, window, i, side == Side::Upper)).or_insert((excess, place));
+            if excess > entry.0 {
+                *entry = (excess, place);
+            }
+        }
+        worst.into_values().map(|(_, place)| place).collect()
+    }
+
+    fn support(&self, places: &[Place], multipliers: &[f64]) -> Vec<SupportRow> {
+        let largest = multipliers.iter().copied().fold(0.0, f64::max);
+        let decides = |(_, z): &(&Place, &f64)| **z > 1e-6 * largest;
+        let mut support: Vec<SupportRow> = places
+            .iter()
+            .zip(multipliers)
+            .filter(decides)
+            .map(|(&(grid, sample, state, side), _)| {
+                let envelope = &self.blocks[grid].envelope;
+                let run = match side {
+                    Side::Upper => envelope.upper_run(sample, state),
+                    Side::Lower => envelope.lower_run(sample, state),
+                };
+                SupportRow { grid, sample, state, side, run }
+            })
+            .collect();
+        support.sort_by_key(|row| (row.state, row.grid, row.sample, row.side == Side::Lower));
+        support
+    }
+
+    fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
+        let join = |x: &Hyperrectangle, u: &Hyperrectangle, pick: fn(&Hyperrectangle) -> &Vec<f64>| {
+            pick(x).iter().chain(pick(u)).copied().collect()
+        };
+        let free = self.settings.noise == Noise::Free;
+        Unknowns {
+            center: join(&sets.initial_set, &sets.input_set, |set| &set.center),
+            radius: join(&sets.initial_set, &sets.input_set, |set| &set.radius),
+            free_noise: (0..2 * self.joints).map(|i| if free { sets.noise_radius(i) } else { 0.0 }).collect(),
+        }
+    }
+
+    /// Solves with the rows `places`; returns the sets, the rows' multipliers in their own units, and the dual objective.
+    fn solve_rows(&self, places: &[Place]) -> Result<(UncertaintySets, Vec<f64>, f64)> {
+        let layout = Layout::new(self);
+        let largest_cost = layout.cost.iter().copied().fold(0.0, f64::max);
+        // Each unknown is measured so that its cost is that of the dearest, each row so that its largest entry is 1.
+        let unit: Vec<f64> = layout.cost.iter().map(|w| largest_cost / w).collect();
+        let mut triplets = Triplets::default();
+        let (mut bounds, mut row_scales) = (Vec::new(), Vec::new());
+        for &place in places {
+            let (b, k, i, side) = place;
+            let (center, radius) = self.row(b, k, i);
+            let entries = layout.entries(center, radius, i, side);
+            let scale = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
+            triplets.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / scale)));
+            bounds.push(-self.bound(place) / (scale * self.scale));
+            row_scales.push(scale);
+        }
+        layout.restrictions(self.settings.centre, &mut triplets, &mut bounds, &unit);
+        let objective: Vec<f64> =
+            layout.cost.iter().enumerate().map(|(j, w)| if layout.is_center(j) { 0.0 } else { w * unit[j] / largest_cost }).collect();
+        let (x, z, dual) = solve_cone(&objective, triplets, &bounds)?;
+        let unknowns: Vec<f64> = x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
+        let multipliers = z.iter().zip(&row_scales).map(|(z, scale)| z / scale).collect();
+        let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
+        Ok((layout.sets(&unknowns, self.settings), multipliers, lower_bound))
+    }
+
+    /// What known noise adds to every cost.
+    fn fixed_cost(&self) -> f64 {
+        match &self.settings.noise {
+            Noise::Fixed(radii) => dot(radii, &self.noise_cost),
+            Noise::None | Noise::Free => 0.0,
+        }
+    }
+
+    /// The largest ratio of what a row needs to what the radii give it there, and 1 at least: r times that satisfies every row.
+    pub fn worst_ratio(&self, sets: &UncertaintySets) -> f64 {
+        let unknowns = self.unknowns(sets);
+        let ratio = |place: Place| {
+            let (b, k, i, _) = place;
+            let given = dot(self.row(b, k, i).1, &unknowns.radius);
+            if given > TOLERANCE * self.scale { 1.0 + self.excess(place, &unknowns) / given } else { 1.0 }
+        };
+        self.places(1).map(ratio).fold(1.0, f64::max)
+    }
+
+    /// Largest |d| among the rows.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The interval hull of the reachable set in the units of the paper: (Σ_k Σ_i (E_k (y1 - y2))_i of eq. (21), Σ_k Δt Π_i 2 (R_k r)_i of eq. (2)).
+    pub fn paper_sums(&self, grids: &[Grid], sets: &UncertaintySets) -> (f64, f64) {
+        let unknowns = self.unknowns(sets);
+        let (mut signed, mut volume) = (0.0, 0.0);
+        for (b, counted) in distinct_times(grids).iter().enumerate() {
+            let times = grids[b].propagation.grid().times();
+            for (k, _) in counted.iter().enumerate().filter(|(_, counted)| **counted) {
+                let rows = (0..2 * self.joints).map(|i| self.row(b, k, i));
+                signed += rows.clone().map(|(center, _)| 2.0 * dot(center, &unknowns.radius)).sum::<f64>();
+                let product: f64 = rows.map(|(_, radius)| 2.0 * dot(radius, &unknowns.radius)).product();
+                volume += product * (times.get(k + 1).unwrap_or(&times[k]) - times[k]);
+            }
+        }
+        (signed, volume)
+    }
+}
+
+/// The unknowns of the program, unscaled.
+struct Unknowns {
+    center: Vec<f64>,
+    radius: Vec<f64>,
+    free_noise: Vec<f64>,
+}
+
+/// Which column of the solver's matrix each unknown is.
+struct Layout {
+    joints: usize,
+    centers: bool,
+    /// Cost of each column; that of a centre is that of its radius, for scaling only.
+    cost: Vec<f64>,
+}
+
+impl Layout {
+    fn new(program: &Program) -> Self {
+        let centers = program.settings.centre != Centre::Zero;
+        let mut cost = if centers { program.cost.clone() } else { Vec::new() };
+        cost.extend(&program.cost);
+        if program.settings.noise == Noise::Free {
+            cost.extend(&program.noise_cost);
+        }
+        Self { joints: program.joints, centers, cost }
+    }
+
+    fn radii(&self) -> usize {
+        if self.centers { 3 * self.joints } else { 0 }
+    }
+
+    fn is_center(&self, column: usize) -> bool {
+        column < self.radii()
+    }
+
+    fn entries(&self, center: &[f64], radius: &[f64], state: usize, side: Side) -> Vec<(usize, f64)> {
+        let signed = center.iter().map(|a| side.sign() * a).take(self.radii());
+        let mut row: Vec<(usize, f64)> = signed.chain(radius.iter().copied()).enumerate().collect();
+        let noise = self.radii() + 3 * self.joints;
+        if self.cost.len() > noise {
+            row.push((noise + state, 1.0));
+        }
+        row
+    }
+
+    /// r >= 0, and |c| <= r where the origin must lie in the sets.
+    fn restrictions(&self, centre: Centre, triplets: &mut Triplets, bounds: &mut Vec<f64>, unit: &[f64]) {
+        for column in self.radii()..self.cost.len() {
+            triplets.row([(column, -1.0)]);
+            bounds.push(0.0);
+        }
+        if centre == Centre::Origin {
+            for center in 0..self.radii() {
+                let radius = center + self.radii();
+                for sign in [1.0, -1.0] {
+                    triplets.row([(center, sign * unit[center] / unit[radius]), (radius, -1.0)]);
+                    bounds.push(0.0);
+                }
+            }
+        }
+    }
+
+    fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
+        let (n, radii) = (self.joints, self.radii());
+        let set = |from: usize, to: usize| {
+            let radius: Vec<f64> = unknowns[radii + from..radii + to].iter().map(|r| r.max(0.0)).collect();
+            let mut center = if self.centers { unknowns[from..to].to_vec() } else { vec![0.0; to - from] };
+            if settings.centre == Centre::Origin {
+                center.iter_mut().zip(&radius).for_each(|(c, r)| *c = c.clamp(-r, *r));
+            }
+            Hyperrectangle { center, radius }
+        };
+        let noise = |radius: Vec<f64>| Some(Hyperrectangle { center: vec![0.0; 2 * n], radius });
+        let noise_set = match &settings.noise {
+            Noise::None => None,
+            Noise::Fixed(given) => noise(given.clone()),
+            Noise::Free => noise(unknowns[radii + 3 * n..].iter().map(|r| r.max(0.0)).collect()),
+        };
+        UncertaintySets { initial_set: set(0, 2 * n), input_set: set(2 * n, 3 * n), noise_set }
+    }
+}
+
+/// A sparse matrix, row by row.
+#[derive(Default)]
+struct Triplets {
+    rows: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+    count: usize,
+}
+
+impl Triplets {
+    /// Entries below 1e-13 are left out: they cannot be told from rounding, and the repair covers them.
+    fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
+        for (column, value) in entries.into_iter().filter(|(_, value)| value.abs() > 1e-13) {
+            self.rows.push(self.count);
+            self.columns.push(column);
+            self.values.push(value);
+        }
+        self.count += 1;
+    }
+}
+
+/// min objective·x subject to A x <= bounds: x, the multipliers, and the dual objective.
+fn solve_cone(objective: &[f64], matrix: Triplets, bounds: &[f64]) -> Result<(Vec<f64>, Vec<f64>, f64)> {
+    let (m, n) = (matrix.count, objective.len());
+    let a = CscMatrix::new_from_triplets(m, n, matrix.rows, matrix.columns, matrix.values);
+    let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(m)];
+    let settings = DefaultSettingsBuilder::default()
+        .verbose(false)
+        .tol_feas(1e-11)
+        .tol_gap_abs(1e-11)
+        .tol_gap_rel(1e-11)
+        .max_iter(200)
+        .build()
+        .map_err(|error| Error::Program(error.to_string()))?;
+    let zero = CscMatrix::zeros((n, n));
+    let mut solver = DefaultSolver::new(&zero, objective, &a, bounds, &cones, settings)
+        .map_err(|error| Error::Program(error.to_string()))?;
+    solver.solve();
+    match solver.solution.status {
+        SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
+            Ok((solver.solution.x, solver.solution.z, solver.solution.obj_val_dual))
+        }
+        status => Err(Error::Program(format!(
+            "the solver stopped with {status:?}; check that the recordings and the robot belong together"
+        ))),
+    }
+}
+
+fn coefficients(grid: &Grid) -> Vec<f64> {
+    let mut all = Vec::new();
+    for (k, gain) in grid.gains.iter().enumerate() {
+        let (e, g) = (grid.propagation.exponential(k), grid.propagation.integral(k));
+        for i in 0..e.nrows() {
+            all.extend(e.row(i).iter().chain(g.row(i).iter()).map(|x| x.mid()));
+            all.extend(e.row(i).iter().map(|x| x.mid().abs()));
+            all.extend(gain.row(i).iter().map(|x| x.lo()));
+        }
+    }
+    all
+}
+
+/// For each grid and sample: whether its time counts in the cost, each distinct time counting once.
+fn distinct_times(grids: &[Grid]) -> Vec<Vec<bool>> {
+    let mut seen = std::collections::HashSet::new();
+    let nanoseconds = |t: &f64| (t * 1e9).round() as i64;
+    grids
+        .iter()
+        .map(|grid| grid.propagation.grid().times().iter().map(|t| seen.insert(nanoseconds(t))).collect())
+        .collect()
+}
+
+fn cost(blocks: &[Block], counted: &[Vec<bool>], weights: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (states, unknowns) = (weights.len(), weights.len() / 2 * 3);
+    let (mut cost, mut noise) = (vec![0.0; unknowns], vec![0.0; states]);
+    for (block, counted) in blocks.iter().zip(counted) {
+        let samples = block.coefficients.chunks_exact(states * 2 * unknowns);
+        for (rows, _) in samples.zip(counted).filter(|(_, counted)| **counted) {
+            for (i, row) in rows.chunks_exact(2 * unknowns).enumerate() {
+                row[unknowns..].iter().zip(&mut cost).for_each(|(a, w)| *w += 2.0 * weights[i] * a);
+                noise[i] += 2.0 * weights[i];
+            }
+        }
+    }
+    (cost, noise)
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,34 @@
+use reachtube_reach::Hyperrectangle;
+use serde::{Deserialize, Serialize};
+
+/// The uncertainty sets of a model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UncertaintySets {
+    /// X0, 2n, rad and rad/s, around the nominal initial state.
+    pub initial_set: Hyperrectangle,
+    /// U, n, N m, around the nominal input.
+    pub input_set: Hyperrectangle,
+    /// V, 2n, rad and rad/s, centred at 0: added to the reachable set where it is compared with measurements.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_set: Option<Hyperrectangle>,
+}
+
+impl UncertaintySets {
+    /// The radius of V in state `i`, 0 without V.
+    pub fn noise_radius(&self, i: usize) -> f64 {
+        self.noise_set.as_ref().map_or(0.0, |set| set.radius[i])
+    }
+
+    /// All radii times `factor` plus `term`, both rounded to nearest. The radius of V is left alone: where it is known it must stay.
+    pub(crate) fn inflated(&self, factor: f64, term: f64) -> Self {
+        let inflate = |set: &Hyperrectangle| Hyperrectangle {
+            center: set.center.clone(),
+            radius: set.radius.iter().map(|r| r * factor + term).collect(),
+        };
+        Self {
+            initial_set: inflate(&self.initial_set),
+            input_set: inflate(&self.input_set),
+            noise_set: self.noise_set.clone(),
+        }
+    }
+}

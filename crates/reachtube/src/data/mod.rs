@@ -1,0 +1,17 @@
+//! Recordings and test suites, read and checked.
+//!
+//! A data set is a folder of CSV runs with the header `t,q1..qn,qd1..qdn,tau1..taun` and an index `runs.csv` that puts runs into test suites
+//! (Definition 2 of the paper: runs from one initial state under one input).
+
+mod data_set;
+mod defect;
+mod run;
+mod torque;
+mod units;
+
+pub use data_set::{DataSet, RunEntry, SuiteEntry};
+pub use defect::Defect;
+pub(crate) use defect::list_defects;
+pub use run::{GapLimit, Run};
+pub use torque::Torque;
+pub(crate) use units::{check_limits, velocity_mismatch};

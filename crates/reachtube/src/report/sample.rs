@@ -1,0 +1,78 @@
+//! A small invented result, for the tests of this module.
+
+use super::*;
+
+/// A suite of sine motions of so many joints, with three runs, two bands, and two tight spots.
+pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
+    let times: Vec<f64> = (0..201).map(|k| f64::from(k) * 0.01).collect();
+    let nominal: Vec<Vec<f64>> = (0..2 * joints).map(|state| wave(&times, state)).collect();
+    let band = |label: &str, start: f64, growth: f64| {
+        let edge = |sign: f64| {
+            let shift = |(x, t): (&f64, &f64)| x + sign * (start + growth * t);
+            nominal.iter().map(|row| row.iter().zip(&times).map(shift).collect()).collect()
+        };
+        Band { label: label.into(), lower: edge(-1.0), upper: edge(1.0) }
+    };
+    let run = |order: usize| {
+        let drift = 0.04 * (order as f64 - 2.0);
+        let shift = |(x, t): (&f64, &f64)| x + drift * t;
+        RunTrace {
+            name: format!("run {order}"),
+            order,
+            temperature: None,
+            times: times.clone(),
+            states: nominal.iter().map(|row| row.iter().zip(&times).map(shift).collect()).collect(),
+            touches: order,
+        }
+    };
+    SuiteFigure {
+        suite: name.into(),
+        joints: (1..=joints).map(|joint| format!("joint {joint}")).collect(),
+        band: band("position and velocity conformant", 0.01, 0.05),
+        inner: Some(band("position conformant", 0.005, 0.045)),
+        runs: (1..=3).map(run).collect(),
+        tight: vec![
+            TightSpot { run: 2, time_s: 1.5, state: joints - 1, side: Side::Upper, margin: 1.25e-6 },
+            TightSpot { run: 0, time_s: 1.0, state: 0, side: Side::Plane, margin: 0.0 },
+        ],
+        nominal: Nominal::Shared(nominal),
+        times,
+    }
+}
+
+fn wave(times: &[f64], state: usize) -> Vec<f64> {
+    times.iter().map(|t| (t * (1.0 + state as f64)).sin()).collect()
+}
+
+/// A table of sets of so many joints.
+pub(super) fn sets(joints: usize) -> SetsTable {
+    let row = |joint| JointSets {
+        joint: format!("joint {joint}"),
+        x0_q: [-0.0030, 0.0030],
+        x0_qd: [-0.0317, 1.2140],
+        u: [-2.7201, 3.6017],
+        noise: Some([[-1e-5, 1e-5], [0.0, 0.0]]),
+    };
+    SetsTable { notion: "position and velocity conformant".into(), joints: (1..=joints).map(row).collect() }
+}
+
+/// A whole page whose every text is hostile.
+pub(super) fn page() -> Page {
+    let hostile = |what: &str| format!("{what} <script>alert(\"x\")</script> & 'more'");
+    Page {
+        title: hostile("title"),
+        subtitle: hostile("subtitle"),
+        verdict: Verdict {
+            ok: true,
+            words: hostile("words"),
+            proved: vec![hostile("proved")],
+            not_proved: vec![hostile("not proved")],
+        },
+        suites: vec![suite(&hostile("A"), 2), suite("B", 7)],
+        sets: vec![sets(2)],
+        facts: vec![(hostile("name"), hostile("value"))],
+        trust: vec![hostile("trust")],
+        caution: vec![hostile("caution")],
+        notes: vec![hostile("note")],
+    }
+}

@@ -1,0 +1,43 @@
+use reachtube_scalar::Scalar;
+
+/// Viscous friction of one joint as a cubic (5): tau_v = v1 q̇ + v2 q̇² + v3 q̇³ \[N m\], q̇ in rad/s.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_robot::friction::Viscous;
+///
+/// let friction = Viscous { v1: 2.0, v2: 0.0, v3: -1.0 };
+/// assert_eq!(friction.torque(&1.0), 1.0);
+/// assert_eq!(friction.slope(&1.0), -1.0);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Viscous {
+    /// Linear coefficient \[N m s/rad\].
+    pub v1: f64,
+    /// Quadratic coefficient \[N m s²/rad²\]; it acts in the same direction whichever way the joint moves.
+    pub v2: f64,
+    /// Cubic coefficient \[N m s³/rad³\].
+    pub v3: f64,
+}
+
+impl Viscous {
+    /// tau_v(q̇) \[N m\] by Horner's rule.
+    ///
+    /// # Guarantee
+    ///
+    /// Over `Interval`: an outer enclosure.
+    pub fn torque<S: Scalar>(&self, qd: &S) -> S {
+        let inner = S::from(self.v2) + S::from(self.v3) * qd.clone();
+        (S::from(self.v1) + inner * qd.clone()) * qd.clone()
+    }
+
+    /// d tau_v / d q̇ \[N m s/rad\].
+    ///
+    /// # Guarantee
+    ///
+    /// Over `Interval`: an outer enclosure.
+    pub fn slope<S: Scalar>(&self, qd: &S) -> S {
+        S::from(self.v1) + (S::from(2.0 * self.v2) + S::from(3.0 * self.v3) * qd.clone()) * qd.clone()
+    }
+}

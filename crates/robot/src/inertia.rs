@@ -1,0 +1,78 @@
+use crate::placement::Placement;
+use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
+
+/// The ten inertial parameters of one link, as moments of its mass distribution about a frame's origin.
+///
+/// The second moments Σ = ∫ r rᵀ dm stand in for the inertia tensor I = tr(Σ) 1 - Σ: they move with a frame as
+/// R Σ Rᵀ + p hᵀ + h pᵀ + m p pᵀ, and the link is physical if and only if the pseudo-inertia [[Σ, h], [hᵀ, m]] is
+/// positive semidefinite (Wensing, Kim & Slotine, RA-L 2018).
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkInertia {
+    /// Mass m \[kg\].
+    pub mass: f64,
+    /// First moment h = m c, c the centre of mass \[kg m\].
+    pub first_moment: Vector3<f64>,
+    /// Second moments Σ = ∫ r rᵀ dm about the frame's origin \[kg m²\], symmetric.
+    pub second_moments: Matrix3<f64>,
+}
+
+impl LinkInertia {
+    /// A link from its inertia tensor about the frame's origin \[kg m²\].
+    pub fn about_origin(mass: f64, first_moment: Vector3<f64>, inertia: &Matrix3<f64>) -> Self {
+        let second_moments = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
+        Self { mass, first_moment, second_moments }
+    }
+
+    /// A link from its centre of mass \[m\] and its inertia tensor about that point \[kg m²\], in the frame's axes.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use nalgebra::{Matrix3, Vector3};
+    /// use reachtube_robot::LinkInertia;
+    ///
+    /// // A point mass of 2 kg at 0.5 m.
+    /// let link = LinkInertia::about_com(2.0, Vector3::new(0.5, 0.0, 0.0), &Matrix3::zeros());
+    /// assert_eq!(link.tensor()[(2, 2)], 0.5);
+    /// ```
+    pub fn about_com(mass: f64, com: Vector3<f64>, inertia: &Matrix3<f64>) -> Self {
+        let h = mass * com;
+        let mut link = Self::about_origin(mass, h, inertia);
+        link.second_moments += h * com.transpose();
+        link
+    }
+
+    /// The inertia tensor about the frame's origin \[kg m²\].
+    pub fn tensor(&self) -> Matrix3<f64> {
+        Matrix3::identity() * self.second_moments.trace() - self.second_moments
+    }
+
+    /// The smallest eigenvalue of the pseudo-inertia [[Σ, h], [hᵀ, m]], relative to its largest magnitude.
+    ///
+    /// Zero or more (to rounding) if and only if some distribution of positive mass has these ten parameters.
+    pub fn smallest_relative_eigenvalue(&self) -> f64 {
+        let mut pseudo = Matrix4::zeros();
+        pseudo.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.second_moments);
+        pseudo.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.first_moment);
+        pseudo.fixed_view_mut::<1, 3>(3, 0).copy_from(&self.first_moment.transpose());
+        pseudo[(3, 3)] = self.mass;
+        let eigenvalues = SymmetricEigen::new(pseudo).eigenvalues;
+        let scale = eigenvalues.amax();
+        if scale == 0.0 { 0.0 } else { eigenvalues.min() / scale }
+    }
+
+    /// The same link about the frame in which the present one has the given placement.
+    pub(crate) fn moved(&self, to: &Placement) -> Self {
+        let (r, p) = (&to.rotation, &to.translation);
+        let h = r * self.first_moment;
+        let shift = p * h.transpose();
+        Self {
+            mass: self.mass,
+            first_moment: h + self.mass * p,
+            second_moments: r * self.second_moments * r.transpose()
+                + shift
+                + shift.transpose()
+                + self.mass * p * p.transpose(),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! The input u of the abstracted dynamics (10) and the torques it stands for.
+
+use crate::Robot;
+use nalgebra::DVector;
+
+impl Robot {
+    /// Viscous friction torque tau_v(q̇) of (5) \[N m\], one entry a joint.
+    pub fn viscous_torque(&self, qd: &[f64]) -> DVector<f64> {
+        let torques = self.joints.iter().zip(qd).map(|(j, qd)| j.friction.viscous.torque(qd));
+        DVector::from_iterator(self.joint_count(), torques)
+    }
+
+    /// Coulomb friction torque tau_c(g(q), q̇) of (6) to (9) \[N m\], gravity taken for the load.
+    pub fn coulomb_torque(&self, q: &[f64], qd: &[f64]) -> DVector<f64> {
+        self.coulomb_under(&self.gravity_torque(q), qd)
+    }
+
+    fn coulomb_under(&self, load: &DVector<f64>, qd: &[f64]) -> DVector<f64> {
+        let joints = self.joints.iter().zip(load.iter().zip(qd));
+        DVector::from_iterator(
+            self.joint_count(),
+            joints.map(|(j, (load, qd))| j.friction.coulomb.torque(*load, *qd)),
+        )
+    }
+
+    /// The input (11): u = tau_m - tau_c(g(q), q̇) - g(q) \[N m\], for the torque of the motors on the link's side.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// let robot = reachtube_robot::Robot::lwa4p();
+    /// let (q, qd) = ([0.4; 6], [-0.2; 6]);
+    /// let u = robot.input_from_motor_torque(&q, &qd, &[3.0; 6]);
+    /// let tau_motor = robot.motor_torque_from_input(&q, &qd, u.as_slice());
+    /// assert!((tau_motor.add_scalar(-3.0)).amax() < 1e-13);
+    /// ```
+    pub fn input_from_motor_torque(&self, q: &[f64], qd: &[f64], tau_motor: &[f64]) -> DVector<f64> {
+        let g = self.gravity_torque(q);
+        DVector::from_column_slice(tau_motor) - self.coulomb_under(&g, qd) - g
+    }
+
+    /// The motor torque that gives an input: the inverse of [`Robot::input_from_motor_torque`] \[N m\].
+    pub fn motor_torque_from_input(&self, q: &[f64], qd: &[f64], u: &[f64]) -> DVector<f64> {
+        let g = self.gravity_torque(q);
+        DVector::from_column_slice(u) + self.coulomb_under(&g, qd) + g
+    }
+
+    /// The input of a torque behind all friction: u = tau_l - g(q) + tau_v(q̇) \[N m\].
+    ///
+    /// Then M_m q̈ + c = u - tau_v = tau_l - g, as (10) has it.
+    pub fn input_from_link_torque(&self, q: &[f64], qd: &[f64], tau_link: &[f64]) -> DVector<f64> {
+        DVector::from_column_slice(tau_link) - self.gravity_torque(q) + self.viscous_torque(qd)
+    }
+}

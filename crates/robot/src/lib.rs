@@ -1,0 +1,35 @@
+#![doc = include_str!("../README.md")]
+
+mod aba;
+mod algebra;
+mod chain;
+mod coriolis;
+mod crba;
+mod description;
+mod error;
+mod forward_dynamics;
+pub mod friction;
+mod gravity;
+mod inertia;
+mod input;
+mod kinematics;
+pub mod ltdl;
+mod physicality;
+mod placement;
+mod rnea;
+mod robot;
+mod simulate;
+mod workspace;
+
+pub use chain::JointGeometry;
+pub use description::{
+    Convention, Dh, FrictionDescription, GravityMoments, InertiaPoint, JointDescription, Parameters,
+    PlacementDescription, RobotDescription, SCHEMA_VERSION,
+};
+pub use error::RobotError;
+pub use inertia::LinkInertia;
+pub use physicality::Physicality;
+pub use placement::Placement;
+pub use robot::{Joint, Robot};
+pub use simulate::{Simulator, Trajectory};
+pub use workspace::Workspace;

@@ -1,0 +1,219 @@
+//! Identities of rigid-body dynamics on random robots and states.
+
+use proptest::prelude::*;
+use reachtube_robot::{
+    Dh, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot, RobotDescription, Workspace,
+    ltdl,
+};
+use reachtube_scalar::Interval;
+
+/// A body of a few random points, so that its parameters are physical; half the joints by DH, half by placement.
+fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
+    let points = x[..12].chunks(3).map(|c| nalgebra::Vector3::new(c[0], c[1], c[2]));
+    let mass = 1.0 + x[12].abs();
+    let com = points.clone().sum::<nalgebra::Vector3<f64>>() / 4.0;
+    let inertia = points
+        .map(|p| p - com)
+        .map(|r| 0.25 * mass * (nalgebra::Matrix3::identity() * r.norm_squared() - r * r.transpose()))
+        .sum::<nalgebra::Matrix3<f64>>();
+    let placement = PlacementDescription {
+        rotation: None,
+        rpy: Some([x[13], x[14], x[15]]),
+        translation: [x[16], x[17], x[18]],
+    };
+    JointDescription {
+        name: format!("j{index}"),
+        dh: by_dh.then_some(Dh { a: x[16], alpha: x[13], theta: x[14], d: x[17] }),
+        placement: (!by_dh).then_some(placement),
+        axis: (!by_dh).then_some([x[19], x[20], 0.3 + x[21].abs()]),
+        mass,
+        com: Some(com.into()),
+        inertia: [0, 1, 2, 4, 5, 8].map(|k| inertia[k]),
+        about: InertiaPoint::Com,
+        armature: Some(0.05 + 0.1 * x[19].abs()),
+        ..Default::default()
+    }
+}
+
+fn robots() -> impl Strategy<Value = Robot> {
+    let joints = prop::collection::vec((prop::collection::vec(-1.0..1.0f64, 22), any::<bool>()), 1..8);
+    (joints, prop::array::uniform3(-10.0..10.0f64)).prop_map(|(joints, gravity)| {
+        let description = RobotDescription {
+            schema_version: 1,
+            name: "random".into(),
+            parameters: Parameters::Physical,
+            convention: Default::default(),
+            gravity,
+            joints: joints.into_iter().enumerate().map(|(i, (x, by_dh))| joint(x, i, by_dh)).collect(),
+        };
+        Robot::from_description(&description).unwrap()
+    })
+}
+
+/// A robot with three vectors for it: q, q̇ and q̈ or torque.
+fn robots_and_states() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>, Vec<f64>)> {
+    robots().prop_flat_map(|robot| {
+        let n = robot.joint_count();
+        let vector = move |bound: f64| prop::collection::vec(-bound..bound, n);
+        (Just(robot), vector(3.2), vector(2.0), vector(5.0))
+    })
+}
+
+fn close(found: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
+    let scale = expected.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
+    let worst = found.iter().zip(expected).fold(0.0, |a: f64, (f, e)| a.max((f - e).abs()));
+    prop_assert!(worst <= 1e-9 * scale, "{found:?} is not {expected:?}");
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn forward_dynamics_undoes_rnea((robot, q, qd, qdd) in robots_and_states()) {
+        let tau = robot.inverse_dynamics(&q, &qd, &qdd);
+        let (sin, cos) = robot.sin_cos(&q);
+        let mut back = vec![0.0; q.len()];
+        robot.aba(&sin, &cos, &qd, tau.as_slice(), &mut Workspace::new(&robot), &mut back);
+        close(&back, &qdd)?;
+        close(robot.forward_acceleration(&q, &qd, tau.as_slice()).as_slice(), &qdd)?;
+    }
+
+    #[test]
+    fn crba_has_the_columns_of_rnea((robot, q, _, _) in robots_and_states()) {
+        let (n, m) = (q.len(), robot.mass_matrix(&q));
+        let g = robot.gravity_torque(&q);
+        for j in 0..n {
+            let unit: Vec<_> = (0..n).map(|i| f64::from(i == j)).collect();
+            let column = robot.inverse_dynamics(&q, &vec![0.0; n], &unit) - &g;
+            close(column.as_slice(), m.column(j).as_slice())?;
+        }
+    }
+
+    #[test]
+    fn rnea_is_the_sum_of_its_parts((robot, q, qd, qdd) in robots_and_states()) {
+        let acceleration = nalgebra::DVector::from_column_slice(&qdd);
+        let sum = robot.mass_matrix(&q) * acceleration + robot.coriolis_torque(&q, &qd) + robot.gravity_torque(&q);
+        close(robot.inverse_dynamics(&q, &qd, &qdd).as_slice(), sum.as_slice())?;
+    }
+
+    #[test]
+    fn gravity_is_the_gradient_of_potential_energy((robot, q, _, _) in robots_and_states()) {
+        let g = robot.gravity_torque(&q);
+        let slope = |i: usize, h: f64| {
+            let mut at = q.clone();
+            at[i] += h;
+            robot.potential_energy(&at)
+        };
+        // Fourth-order central difference: error about h⁴.
+        let h = 1e-3;
+        let gradient = |i| (8.0 * (slope(i, h) - slope(i, -h)) - slope(i, 2.0 * h) + slope(i, -2.0 * h)) / (12.0 * h);
+        for i in 0..q.len() {
+            prop_assert!((g[i] - gradient(i)).abs() < 1e-8 * (1.0 + g.amax()));
+        }
+    }
+
+    /// q̇ᵀ c = ½ q̇ᵀ Ṁ q̇: Coriolis torque does no work of its own.
+    #[test]
+    fn power_is_balanced((robot, q, qd, _) in robots_and_states()) {
+        let energy = |t: f64| {
+            let at: Vec<_> = q.iter().zip(&qd).map(|(q, v)| q + t * v).collect();
+            robot.kinetic_energy(&at, &qd)
+        };
+        let h = 1e-3;
+        let rate = (8.0 * (energy(h) - energy(-h)) - energy(2.0 * h) + energy(-2.0 * h)) / (12.0 * h);
+        let work: f64 = robot.coriolis_torque(&q, &qd).iter().zip(&qd).map(|(c, v)| c * v).sum();
+        prop_assert!((work - rate).abs() < 1e-7 * (1.0 + energy(0.0)));
+    }
+
+    #[test]
+    fn pivots_are_articulated_inertias((robot, q, _, tau) in robots_and_states()) {
+        // Torque on the last joint alone, all others fixed by their inertia: pivot n is M_nn; the product of the
+        // pivots is det M.
+        let mut m = robot.mass_matrix(&q);
+        let (n, det) = (q.len(), m.determinant());
+        let b = &m * nalgebra::DVector::from_column_slice(&tau);
+        let last = m[(n - 1, n - 1)];
+        ltdl::factor(m.as_mut_slice(), n);
+        // Row by row and symmetric: the strict lower triangle is nalgebra's upper one.
+        let pivots: Vec<_> = (0..n).map(|i| m[(i, i)]).collect();
+        close(&[pivots.iter().product::<f64>(), pivots[n - 1]], &[det, last])?;
+        let mut x = b.as_slice().to_vec();
+        ltdl::solve(m.as_slice(), &mut x);
+        close(&x, &tau)?;
+        let Ok(reachtube_robot::Physicality::Links { least_pivot }) = robot.check_physical() else { return Ok(()) };
+        prop_assert!(pivots.iter().all(|p| *p >= least_pivot * (1.0 - 1e-12)));
+    }
+
+    #[test]
+    fn intervals_enclose((robot, q, qd, qdd) in robots_and_states(), radius in 0.0..0.01f64, pick in -1.0..1.0f64) {
+        let n = q.len();
+        let wide = |x: &[f64]| x.iter().map(|x| Interval::centered(*x, radius)).collect::<Vec<_>>();
+        let (sin, cos) = robot.sin_cos(&q);
+        // Independent sine and cosine: nothing asks for s² + c² = 1.
+        let inside = |x: &[f64]| x.iter().map(|x| x + 0.99 * pick * radius).collect::<Vec<_>>();
+        let boxes = [&sin, &cos, &qd, &qdd].map(|x| wide(x));
+        let points = [&sin, &cos, &qd, &qdd].map(|x| inside(x));
+        let mut wide_ws = Workspace::<Interval>::new(&robot);
+        let mut ws = Workspace::<f64>::new(&robot);
+        let (mut outer, mut value) = (vec![Interval::ZERO; n * n], vec![0.0; n * n]);
+        // The f64 value is rounded itself; an enclosure of the exact value may miss it by that much.
+        let slack = 1e-12 * (1.0 + 100.0 * n as f64);
+        let encloses = |outer: &[Interval], value: &[f64]| {
+            outer.iter().zip(value).all(|(o, v)| o.lo() - slack <= *v && *v <= o.hi() + slack)
+        };
+        robot.rnea(&boxes[0], &boxes[1], &boxes[2], &boxes[3], &mut wide_ws, &mut outer[..n]);
+        robot.rnea(&points[0], &points[1], &points[2], &points[3], &mut ws, &mut value[..n]);
+        prop_assert!(encloses(&outer[..n], &value[..n]));
+        prop_assert!(outer[..n].iter().all(|o| o.width().is_finite()));
+        robot.crba(&boxes[0], &boxes[1], &mut wide_ws, &mut outer);
+        robot.crba(&points[0], &points[1], &mut ws, &mut value);
+        prop_assert!(encloses(&outer, &value));
+        robot.aba(&boxes[0], &boxes[1], &boxes[2], &boxes[3], &mut wide_ws, &mut outer[..n]);
+        robot.aba(&points[0], &points[1], &points[2], &points[3], &mut ws, &mut value[..n]);
+        prop_assert!(encloses(&outer[..n], &value[..n]));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn a_free_motion_keeps_its_energy((robot, q, qd, _) in robots_and_states()) {
+        let energy = |q: &[f64], qd: &[f64]| robot.kinetic_energy(q, qd) + robot.potential_energy(q);
+        let free = vec![vec![0.0; q.len()]; 50];
+        let motion = robot.simulate(&q, &qd, &free, 0.002, 8);
+        let (start, end) = (energy(&q, &qd), energy(&motion.q[50], &motion.qd[50]));
+        let scale = robot.kinetic_energy(&motion.q[50], &motion.qd[50]) + robot.kinetic_energy(&q, &qd) + start.abs();
+        prop_assert!((end - start).abs() < 1e-6 * (1.0 + scale), "{start} J became {end} J");
+    }
+}
+
+#[test]
+fn friction_takes_energy_away() {
+    let robot = Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
+    let motion = robot.simulate(&[2.0, -1.0], &[0.0, 0.0], &vec![vec![0.0; 2]; 10000], 0.002, 4);
+    let energies: Vec<_> = motion
+        .q
+        .iter()
+        .zip(&motion.qd)
+        .map(|(q, qd)| robot.kinetic_energy(q, qd) + robot.potential_energy(q))
+        .collect();
+    assert!(energies.windows(2).all(|w| w[1] <= w[0] + 1e-6));
+    // Gravity overcomes Coulomb friction at the start, and friction all motion by the end.
+    assert!(energies[0] - energies[10000] > 1.0);
+    assert!(robot.kinetic_energy(&motion.q[10000], &motion.qd[10000]) < 1e-6);
+}
+
+#[test]
+fn the_double_pendulum_has_its_textbook_mass_matrix() {
+    let robot = Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
+    let (i1, i2, m2, l1, r2) =
+        (0.031887199591513114, 0.05086984812807257, 0.6255677234174437, 0.2, 0.25569305436052964);
+    let motor = 36.0 * 6.287203962819607e-5;
+    for q2 in [0.0, 0.7, 2.0_f64] {
+        let m = robot.mass_matrix(&[0.3, q2]);
+        let coupling = m2 * l1 * r2 * q2.cos();
+        let expected =
+            [i1 + i2 + m2 * l1 * l1 + 2.0 * coupling + motor, i2 + coupling, i2 + coupling, i2 + motor];
+        assert!(m.iter().zip(expected).all(|(m, e)| (m - e).abs() < 1e-15), "{m} is not {expected:?}");
+    }
+}

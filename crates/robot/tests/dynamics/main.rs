@@ -1,0 +1,9 @@
+//! The crate against independent oracles, its identities, and what it says of robots that are none.
+
+mod close;
+mod description;
+mod identities;
+mod lwa4p;
+mod physicality;
+mod pinocchio;
+mod shared;

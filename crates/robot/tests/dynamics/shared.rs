@@ -1,0 +1,66 @@
+//! Reading the oracles.
+
+use reachtube_robot::{
+    Convention, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot, RobotDescription,
+    SCHEMA_VERSION,
+};
+use serde_json::Value;
+
+/// The JSON file in the shared folder, or `None` with a word on what is lacking.
+pub fn oracle(path: &str) -> Option<Value> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
+    let Ok(text) = std::fs::read_to_string(format!("{folder}{path}")) else {
+        eprintln!("skipped: the folder `shared` beside the repository lacks {path}");
+        return None;
+    };
+    Some(serde_json::from_str(&text).unwrap())
+}
+
+/// The numbers of a JSON array.
+pub fn numbers(v: &Value) -> Vec<f64> {
+    v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+}
+
+fn triple(v: &Value) -> [f64; 3] {
+    numbers(v).try_into().unwrap()
+}
+
+fn joint(link: &Value) -> JointDescription {
+    let rows = |key: &str| -> [[f64; 3]; 3] {
+        link[key].as_array().unwrap().iter().map(triple).collect::<Vec<_>>().try_into().unwrap()
+    };
+    let i = rows("inertia_com");
+    JointDescription {
+        name: link["joint"].as_str().unwrap().into(),
+        placement: Some(PlacementDescription {
+            rotation: Some(rows("R")),
+            translation: triple(&link["p"]),
+            rpy: None,
+        }),
+        axis: Some(triple(&link["axis"])),
+        mass: link["mass"].as_f64().unwrap(),
+        com: Some(triple(&link["com"])),
+        inertia: [i[0][0], i[0][1], i[0][2], i[1][1], i[1][2], i[2][2]],
+        about: InertiaPoint::Com,
+        armature: link["armature"].as_f64(),
+        ..Default::default()
+    }
+}
+
+/// The robot of an oracle by explicit placements.
+pub fn description(oracle: &Value) -> RobotDescription {
+    RobotDescription {
+        schema_version: SCHEMA_VERSION,
+        name: oracle["name"].as_str().unwrap().into(),
+        parameters: Parameters::Physical,
+        convention: Convention::Standard,
+        gravity: triple(&oracle["gravity"]),
+        joints: oracle["links"].as_array().unwrap().iter().map(joint).collect(),
+    }
+}
+
+/// The robot of `shared/oracle/<name>.json`, where the folder is.
+pub fn oracle_robot(name: &str) -> Option<Robot> {
+    let oracle = oracle(&format!("oracle/{name}.json"))?;
+    Some(Robot::from_description(&description(&oracle)).unwrap())
+}

@@ -1,0 +1,157 @@
+//! The four operations and what follows from them.
+
+use core::iter::Sum;
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_traits::{One, Zero};
+
+use super::Interval;
+use crate::rounding::{
+    add_down, add_up, bounds_of_rounded, div_down, div_up, is_far_from_underflow, mul_down, mul_up,
+};
+
+impl Neg for Interval {
+    type Output = Interval;
+    /// Exact.
+    #[inline]
+    fn neg(self) -> Interval {
+        Interval { lo: -self.hi, hi: -self.lo }
+    }
+}
+
+impl Add for Interval {
+    type Output = Interval;
+    #[inline]
+    fn add(self, rhs: Interval) -> Interval {
+        Interval { lo: add_down(self.lo, rhs.lo), hi: add_up(self.hi, rhs.hi) }
+    }
+}
+
+impl Sub for Interval {
+    type Output = Interval;
+    #[inline]
+    fn sub(self, rhs: Interval) -> Interval {
+        self + -rhs
+    }
+}
+
+/// `f64::min` without its care for NaN: one instruction.
+#[inline]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+impl Mul for Interval {
+    type Output = Interval;
+    #[inline]
+    fn mul(self, rhs: Interval) -> Interval {
+        let (ll, lh) = (self.lo * rhs.lo, self.lo * rhs.hi);
+        let (hl, hh) = (self.hi * rhs.lo, self.hi * rhs.hi);
+        let lo = smaller(smaller(ll, lh), smaller(hl, hh));
+        let hi = larger(larger(ll, lh), larger(hl, hh));
+        // Each of the four ends is a factor of ll or hh: where these are finite, no product is 0 · ∞.
+        if is_far_from_underflow(lo, hi) && (ll + hh).abs() < f64::INFINITY {
+            let (lo, hi) = bounds_of_rounded(lo, hi);
+            Interval { lo, hi }
+        } else {
+            self.mul_with_zero_or_infinity(rhs)
+        }
+    }
+}
+
+impl Interval {
+    /// The product where an end is zero, infinite, or near underflow.
+    fn mul_with_zero_or_infinity(self, rhs: Interval) -> Interval {
+        let ends = [(self.lo, rhs.lo), (self.lo, rhs.hi), (self.hi, rhs.lo), (self.hi, rhs.hi)];
+        let lo = ends.iter().fold(f64::INFINITY, |m, &(a, b)| m.min(mul_down(a, b)));
+        let hi = ends.iter().fold(f64::NEG_INFINITY, |m, &(a, b)| m.max(mul_up(a, b)));
+        Interval { lo, hi }
+    }
+
+    /// The quotient by an interval of positive numbers.
+    #[inline]
+    fn div_by_positive(self, rhs: Interval) -> Interval {
+        let lo = div_down(self.lo, if self.lo < 0.0 { rhs.lo } else { rhs.hi });
+        let hi = div_up(self.hi, if self.hi < 0.0 { rhs.hi } else { rhs.lo });
+        Interval { lo, hi }
+    }
+}
+
+impl Div for Interval {
+    type Output = Interval;
+    /// [`Interval::ENTIRE`] where the divisor contains zero.
+    #[inline]
+    fn div(self, rhs: Interval) -> Interval {
+        if rhs.lo > 0.0 {
+            self.div_by_positive(rhs)
+        } else if rhs.hi < 0.0 {
+            (-self).div_by_positive(-rhs)
+        } else {
+            Interval::ENTIRE
+        }
+    }
+}
+
+macro_rules! with_f64_and_assign {
+    ($($Op:ident $op:ident $OpAssign:ident $op_assign:ident)*) => {$(
+        impl $Op<f64> for Interval {
+            type Output = Interval;
+            #[inline]
+            fn $op(self, rhs: f64) -> Interval {
+                self.$op(Interval::point(rhs))
+            }
+        }
+        impl $Op<Interval> for f64 {
+            type Output = Interval;
+            #[inline]
+            fn $op(self, rhs: Interval) -> Interval {
+                Interval::point(self).$op(rhs)
+            }
+        }
+        impl $OpAssign for Interval {
+            #[inline]
+            fn $op_assign(&mut self, rhs: Interval) {
+                *self = self.$op(rhs);
+            }
+        }
+        impl $OpAssign<f64> for Interval {
+            #[inline]
+            fn $op_assign(&mut self, rhs: f64) {
+                *self = self.$op(rhs);
+            }
+        }
+    )*};
+}
+with_f64_and_assign! {
+    Add add AddAssign add_assign
+    Sub sub SubAssign sub_assign
+    Mul mul MulAssign mul_assign
+    Div div DivAssign div_assign
+}
+
+impl Zero for Interval {
+    fn zero() -> Interval {
+        Interval::ZERO
+    }
+
+    fn is_zero(&self) -> bool {
+        *self == Interval::ZERO
+    }
+}
+
+impl One for Interval {
+    fn one() -> Interval {
+        Interval::ONE
+    }
+}
+
+impl Sum for Interval {
+    fn sum<I: Iterator<Item = Interval>>(terms: I) -> Interval {
+        terms.fold(Interval::ZERO, Add::add)
+    }
+}
