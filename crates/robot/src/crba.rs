@@ -18,7 +18,7 @@ impl Robot {
     ///
     /// # Panics
     ///
-    /// When a slice or the workspace has another length than the robot asks for.
+    /// When a slice or the workspace is shorter than the robot asks for.
     pub fn crba<S: Scalar>(&self, sin: &[S], cos: &[S], ws: &mut Workspace<S>, m: &mut [S]) {
         let n = self.links.len();
         let (m, sin, cos, scratch) = (&mut m[..n * n], &sin[..n], &cos[..n], &mut ws.links[..n]);

@@ -32,7 +32,7 @@ impl Robot {
     ///
     /// # Panics
     ///
-    /// When a slice or the workspace has another length than the robot has joints.
+    /// When a slice or the workspace is shorter than the robot has joints.
     pub fn rnea<S: Scalar>(
         &self,
         sin: &[S],

@@ -18,13 +18,14 @@
 //! assert_eq!(mul_up(0.0, 0.1), 0.0);
 //! ```
 
-/// x ± |x| · `STEP` rounds to the neighbours of x, for every |x| > [`TINY`].
+/// x ± |x| · `STEP` rounds to the neighbours of x, for every |x| > [`TINY`]: |x| · `STEP` is a little above half an ulp
+/// and at most one.
 ///
 /// Rump, Zimmermann, Boldo, Melquiond: Computing predecessor and successor in rounding to nearest, BIT 49 (2009).
 const STEP: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
 
-/// Far above the numbers whose |x| · [`STEP`] is subnormal, and of no further meaning.
-const TINY: f64 = 1e-300;
+/// Above 2⁻⁹⁶⁹ = 2.1e-292, where |x| · [`STEP`] is a normal number and does not lose the little above half an ulp.
+const TINY: f64 = 1e-290;
 
 /// Whether [`bounds_of_rounded`] may be used for [lo, hi].
 #[inline]

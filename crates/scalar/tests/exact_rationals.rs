@@ -133,6 +133,19 @@ proptest! {
     }
 }
 
+/// Products that round to a power of two or beside it, where the ulp changes, at every magnitude.
+#[test]
+fn products_beside_every_power_of_two() {
+    for exponent in -1080..=1024_i32 {
+        let (first, second) = (exponent / 2, exponent - exponent / 2);
+        for (n, m) in (-2..=2).flat_map(|n| (-2..=2).map(move |m| (n, m))) {
+            let (a, b) = (steps_from(2_f64.powi(first), n), steps_from(-2_f64.powi(second), m));
+            let product = exact(a) * exact(b);
+            assert_tight_enclosure(Interval::point(a) * Interval::point(b), &product, &product, 1);
+        }
+    }
+}
+
 /// The identities of matrices that must not grow: zeros are kept.
 #[test]
 fn zeros_are_exact() {

@@ -2,14 +2,13 @@
 
 use reachtube_reach::{LinearSystem, ReachSets};
 use reachtube_robot::Robot;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::deviation::{Grids, suite_deviations};
-use super::identify::state_label;
 use super::recordings::{Progress, Recordings, Suite};
 use super::verify::{Row, check_rows};
 use super::{Settings, Side, Trust, UncertaintySets};
-use crate::data::DataSet;
+use crate::data::{DataSet, state_name};
 use crate::error::Result;
 
 /// The answer of a check.
@@ -56,7 +55,8 @@ pub struct SuiteCheck {
 }
 
 /// A row in the words of the recordings: a witness.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Place {
     /// The suite.
     pub suite: String,
@@ -87,7 +87,7 @@ impl Place {
             sample: row.sample,
             time: row.time,
             joint: row.state % joints + 1,
-            state: state_label(row.state, joints),
+            state: state_name(row.state, joints),
             side: row.side,
             excess: row.excess,
             radius: row.radius,

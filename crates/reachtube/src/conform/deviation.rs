@@ -6,9 +6,9 @@ use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{sub_down, sub_up};
 
-use super::recordings::{Recordings, Suite, read_run};
+use super::recordings::{Recordings, RunSummary, SharedInput, Suite, read_run};
 use super::{Envelope, NominalStart, Settings};
-use crate::data::DataSet;
+use crate::data::{DataSet, Run};
 use crate::error::{Error, Result};
 
 /// A sample grid that suites share, with all that depends on the system and the grid only.
@@ -72,6 +72,46 @@ pub struct Deviation {
     pub envelope: Envelope,
 }
 
+/// A nominal solution x̂ of the model.
+#[derive(Debug, Clone)]
+pub struct RunNominal {
+    /// The run (index in the data set) that it belongs to; none when it is that of the whole suite.
+    pub run: Option<usize>,
+    /// Index of the grid.
+    pub grid: usize,
+    /// The input u, row-major, samples x n.
+    pub inputs: Vec<f64>,
+    /// x̂ at the samples, enclosed.
+    pub trajectory: Trajectory,
+}
+
+/// The nominal solution of a suite, or one for each run where the runs differ in input.
+///
+/// # Errors
+///
+/// Defects of a run that has changed since it was first read.
+pub fn nominals(
+    data: &DataSet,
+    robot: &Robot,
+    settings: &Settings,
+    grids: &Grids,
+    suite: &Suite,
+) -> Result<Vec<RunNominal>> {
+    match &suite.shared {
+        Some(shared) => Ok(vec![shared_nominal(grids, suite, shared)]),
+        None => {
+            let own = |run: &RunSummary| Ok(own_nominal(data, robot, settings, grids, suite, run.index)?.0);
+            suite.runs.par_iter().map(own).collect()
+        }
+    }
+}
+
+fn shared_nominal(grids: &Grids, suite: &Suite, shared: &SharedInput) -> RunNominal {
+    let grid = grids.find(&shared.grid);
+    let trajectory = grids.as_slice()[grid].propagation.solve(&suite.mean_start, &shared.inputs);
+    RunNominal { run: None, grid, inputs: shared.inputs.clone(), trajectory }
+}
+
 /// The deviations of a suite from its nominal solution, or from one for each run where the runs differ in input.
 ///
 /// # Guarantee
@@ -90,13 +130,12 @@ pub fn suite_deviations(
 ) -> Result<Vec<Deviation>> {
     match &suite.shared {
         Some(shared) => {
-            let grid = grids.find(&shared.grid);
-            let nominal = grids.as_slice()[grid].propagation.solve(&suite.mean_start, &shared.inputs);
+            let nominal = shared_nominal(grids, suite, shared);
             let envelope = suite.envelope.map(
-                |k, i, upper| sub_up(upper, nominal.state(k)[i].lo()),
-                |k, i, lower| sub_down(lower, nominal.state(k)[i].hi()),
+                |k, i, upper| sub_up(upper, nominal.trajectory.state(k)[i].lo()),
+                |k, i, lower| sub_down(lower, nominal.trajectory.state(k)[i].hi()),
             );
-            Ok(vec![Deviation { grid, envelope }])
+            Ok(vec![Deviation { grid: nominal.grid, envelope }])
         }
         None => own_deviations(data, robot, settings, grids, suite),
     }
@@ -113,14 +152,14 @@ fn own_deviations(
         let (nominal, run) = own_nominal(data, robot, settings, grids, suite, summary.index)?;
         let (mut lower, mut upper) = (Vec::new(), Vec::new());
         for k in 0..run.len() {
-            for (x, nominal) in run.state(k).iter().zip(nominal.state(k)) {
+            for (x, nominal) in run.state(k).iter().zip(nominal.trajectory.state(k)) {
                 upper.push(sub_up(*x, nominal.lo()));
                 lower.push(sub_down(*x, nominal.hi()));
             }
         }
         let mut envelope = Envelope::new(2 * run.joints);
         envelope.include_bounds(summary.index as u32, &lower, &upper);
-        Ok(Deviation { grid: grids.find(&summary.grid), envelope })
+        Ok(Deviation { grid: nominal.grid, envelope })
     });
     let mut merged: Vec<Deviation> = Vec::new();
     for part in parts.collect::<Result<Vec<_>>>()? {
@@ -140,12 +179,13 @@ fn own_nominal(
     grids: &Grids,
     suite: &Suite,
     index: usize,
-) -> Result<(Trajectory, crate::data::Run)> {
+) -> Result<(RunNominal, Run)> {
     let (run, input) = read_run(data, index, robot, settings).map_err(Error::Defects)?;
     let start = match settings.nominal {
         NominalStart::Mean => suite.mean_start.clone(),
         NominalStart::Own => IntervalVector::from_fn(2 * run.joints, |i, _| Interval::point(run.state(0)[i])),
     };
-    let grid = &grids.as_slice()[grids.find(&input.grid)];
-    Ok((grid.propagation.solve(&start, &input.inputs), run))
+    let grid = grids.find(&input.grid);
+    let trajectory = grids.as_slice()[grid].propagation.solve(&start, &input.inputs);
+    Ok((RunNominal { run: Some(index), grid, inputs: input.inputs, trajectory }, run))
 }

@@ -114,7 +114,7 @@ pub fn conform(
         paper_cost,
         hull_volume,
         proof: checked.proof(settings, recordings.run_count()),
-        trust: trust(&recordings, &solution),
+        trust: trust(&recordings, &checked.tight),
         tight: checked.tight,
         program: solution,
         system,
@@ -229,20 +229,12 @@ impl Checked {
     }
 }
 
-/// Motions that have a support row, among all motions.
-fn trust(recordings: &Recordings, solution: &Solution) -> Trust {
+/// Motions that touch the reachable set, among all motions: the rows of support are among the tight ones.
+fn trust(recordings: &Recordings, tight: &[TightRow]) -> Trust {
     let motion_of = |suite: &super::Suite| suite.entry.motion.clone().unwrap_or_else(|| suite.entry.name.clone());
     let known = recordings.suites.iter().all(|suite| suite.entry.motion.is_some());
     let all: std::collections::BTreeSet<String> = recordings.suites.iter().map(motion_of).collect();
-    let supports = |suite: &&super::Suite| {
-        solution.support.iter().any(|row| suite.entry.runs.contains(&(row.run as usize)))
-    };
     let deciding: std::collections::BTreeSet<String> =
-        recordings.suites.iter().filter(supports).map(motion_of).collect();
+        tight.iter().map(|tight| motion_of(&recordings.suites[tight.suite])).collect();
     Trust::of_fit(all.len(), deciding.len(), known)
-}
-
-/// The label of state `i` of a robot of `joints` joints: q1..qn, qd1..qdn.
-pub(crate) fn state_label(i: usize, joints: usize) -> String {
-    if i < joints { format!("q{}", i + 1) } else { format!("qd{}", i + 1 - joints) }
 }

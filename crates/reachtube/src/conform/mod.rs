@@ -12,10 +12,10 @@ mod trust;
 mod verify;
 
 pub use check::{Check, Place, SuiteCheck, Violations, check};
-pub use deviation::{Deviation, Grid, Grids, suite_deviations};
+pub use deviation::{Deviation, Grid, Grids, RunNominal, nominals, suite_deviations};
 pub use envelope::Envelope;
 pub use identify::{Conformance, Proof, TightRow, conform};
-pub use program::{Program, Solution, SupportRow};
+pub use program::{Program, Solution};
 pub use recordings::{Progress, Recordings, RunSummary, SharedInput, Suite};
 use serde::{Deserialize, Serialize};
 pub use sets::UncertaintySets;

@@ -54,29 +54,12 @@ pub struct Solution {
     pub sets: UncertaintySets,
     /// The dual objective: no sets that satisfy the rows cost less, up to the solver's tolerance.
     pub lower_bound: f64,
-    /// The rows with a multiplier: the deviations that decide the sets.
-    pub support: Vec<SupportRow>,
     /// Rows in the whole program.
     pub rows: usize,
     /// Rows that were generated.
     pub generated: usize,
     /// Rounds of row generation.
     pub rounds: usize,
-}
-
-/// A row of the program that decides the solution.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SupportRow {
-    /// Index of the grid.
-    pub grid: usize,
-    /// Sample index.
-    pub sample: usize,
-    /// State, from 0.
-    pub state: usize,
-    /// Which side.
-    pub side: Side,
-    /// The run (index in the data set) that reaches this far.
-    pub run: u32,
 }
 
 /// A row's place: block, sample, state, side.
@@ -126,12 +109,11 @@ impl<'a> Program<'a> {
     pub fn solve(&self) -> Result<Solution> {
         let mut places = self.first_rows();
         for round in 1..=ROUNDS {
-            let (sets, multipliers, lower_bound) = self.solve_rows(&places)?;
+            let (sets, lower_bound) = self.solve_rows(&places)?;
             let added = self.violated(&sets, &places);
             if added.is_empty() {
-                let support = self.support(&places, &multipliers);
                 let (rows, generated) = (self.rows(), places.len());
-                return Ok(Solution { sets, lower_bound, support, rows, generated, rounds: round });
+                return Ok(Solution { sets, lower_bound, rows, generated, rounds: round });
             }
             places.extend(added);
         }
@@ -205,26 +187,6 @@ impl<'a> Program<'a> {
         worst.into_values().map(|(_, place)| place).collect()
     }
 
-    fn support(&self, places: &[Place], multipliers: &[f64]) -> Vec<SupportRow> {
-        let largest = multipliers.iter().copied().fold(0.0, f64::max);
-        let decides = |(_, z): &(&Place, &f64)| **z > 1e-6 * largest;
-        let mut support: Vec<SupportRow> = places
-            .iter()
-            .zip(multipliers)
-            .filter(decides)
-            .map(|(&(grid, sample, state, side), _)| {
-                let envelope = &self.blocks[grid].envelope;
-                let run = match side {
-                    Side::Upper => envelope.upper_run(sample, state),
-                    Side::Lower => envelope.lower_run(sample, state),
-                };
-                SupportRow { grid, sample, state, side, run }
-            })
-            .collect();
-        support.sort_by_key(|row| (row.state, row.grid, row.sample, row.side == Side::Lower));
-        support
-    }
-
     fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
         let join = |x: &Hyperrectangle, u: &Hyperrectangle, pick: fn(&Hyperrectangle) -> &Vec<f64>| {
             pick(x).iter().chain(pick(u)).copied().collect()
@@ -237,14 +199,14 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Solves with the rows `places`; returns the sets, the rows' multipliers in their own units, and the dual objective.
-    fn solve_rows(&self, places: &[Place]) -> Result<(UncertaintySets, Vec<f64>, f64)> {
+    /// Solves with the rows `places`; returns the sets and the dual objective.
+    fn solve_rows(&self, places: &[Place]) -> Result<(UncertaintySets, f64)> {
         let layout = Layout::new(self);
         let largest_cost = layout.cost.iter().copied().fold(0.0, f64::max);
         // Each unknown is measured so that its cost is that of the dearest, each row so that its largest entry is 1.
         let unit: Vec<f64> = layout.cost.iter().map(|w| largest_cost / w).collect();
         let mut triplets = Triplets::default();
-        let (mut bounds, mut row_scales) = (Vec::new(), Vec::new());
+        let mut bounds = Vec::new();
         for &place in places {
             let (b, k, i, side) = place;
             let (center, radius) = self.row(b, k, i);
@@ -252,16 +214,14 @@ impl<'a> Program<'a> {
             let scale = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
             triplets.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / scale)));
             bounds.push(-self.bound(place) / (scale * self.scale));
-            row_scales.push(scale);
         }
         layout.restrictions(self.settings.centre, &mut triplets, &mut bounds, &unit);
         let objective: Vec<f64> =
             layout.cost.iter().enumerate().map(|(j, w)| if layout.is_center(j) { 0.0 } else { w * unit[j] / largest_cost }).collect();
-        let (x, z, dual) = solve_cone(&objective, triplets, &bounds)?;
+        let (x, dual) = solve_cone(&objective, triplets, &bounds)?;
         let unknowns: Vec<f64> = x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
-        let multipliers = z.iter().zip(&row_scales).map(|(z, scale)| z / scale).collect();
         let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
-        Ok((layout.sets(&unknowns, self.settings), multipliers, lower_bound))
+        Ok((layout.sets(&unknowns, self.settings), lower_bound))
     }
 
     /// What known noise adds to every cost.
@@ -407,8 +367,8 @@ impl Triplets {
     }
 }
 
-/// min objective·x subject to A x <= bounds: x, the multipliers, and the dual objective.
-fn solve_cone(objective: &[f64], matrix: Triplets, bounds: &[f64]) -> Result<(Vec<f64>, Vec<f64>, f64)> {
+/// min objective·x subject to A x <= bounds: x and the dual objective.
+fn solve_cone(objective: &[f64], matrix: Triplets, bounds: &[f64]) -> Result<(Vec<f64>, f64)> {
     let (m, n) = (matrix.count, objective.len());
     let a = CscMatrix::new_from_triplets(m, n, matrix.rows, matrix.columns, matrix.values);
     let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(m)];
@@ -426,7 +386,7 @@ fn solve_cone(objective: &[f64], matrix: Triplets, bounds: &[f64]) -> Result<(Ve
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
-            Ok((solver.solution.x, solver.solution.z, solver.solution.obj_val_dual))
+            Ok((solver.solution.x, solver.solution.obj_val_dual))
         }
         status => Err(Error::Program(format!(
             "the solver stopped with {status:?}; check that the recordings and the robot belong together"

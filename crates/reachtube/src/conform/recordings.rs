@@ -223,27 +223,14 @@ fn index_notes(data: &DataSet, chosen: &[SuiteEntry]) -> Vec<String> {
             data.runs().len() - used - without,
         ));
     }
-    if let [first, ..] = data.unlisted() {
-        notes.push(format!(
-            "{} CSV files in {} are not in runs.csv and are not used, {} the first",
-            data.unlisted().len(),
-            data.root().display(),
-            first.display()
-        ));
-    }
+    notes.extend(data.unlisted_note());
     notes
 }
 
 fn suite_notes(data: &DataSet, suite: &Suite) -> Vec<String> {
     let mut notes = Vec::new();
     for run in &suite.runs {
-        let entry = &data.runs()[run.index];
-        if entry.sha256.as_ref().is_some_and(|sha| !sha.eq_ignore_ascii_case(&run.sha256)) {
-            notes.push(format!(
-                "{}: its SHA-256 is not the one in runs.csv (line {}): it was changed after it was listed",
-                entry.file, entry.line
-            ));
-        }
+        notes.extend(data.runs()[run.index].changed_note(&run.sha256));
     }
     if suite.shared.is_none() && suite.runs.len() > 1 {
         notes.push(format!(

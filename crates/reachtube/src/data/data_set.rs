@@ -34,6 +34,17 @@ pub struct RunEntry {
     pub line: u64,
 }
 
+impl RunEntry {
+    /// What a user should know when the file is not the one that was listed.
+    pub(crate) fn changed_note(&self, sha256: &str) -> Option<String> {
+        let listed = self.sha256.as_ref()?;
+        (!listed.eq_ignore_ascii_case(sha256)).then(|| {
+            let (file, line) = (&self.file, self.line);
+            format!("{file}: its SHA-256 is not the one in runs.csv (line {line}): it was changed after it was listed")
+        })
+    }
+}
+
 /// A test suite: its name and the indices of its runs, in the order of the index.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SuiteEntry {
@@ -88,6 +99,13 @@ impl DataSet {
     /// CSV files in the folder that the index does not name.
     pub fn unlisted(&self) -> &[PathBuf] {
         &self.unlisted
+    }
+
+    /// What a user should know about files that the index leaves out.
+    pub(crate) fn unlisted_note(&self) -> Option<String> {
+        let first = self.unlisted.first()?;
+        let (count, root) = (self.unlisted.len(), self.root.display());
+        Some(format!("{count} CSV files in {root} are not in runs.csv and are not used, {} the first", first.display()))
     }
 
     /// All test suites, in the order in which the index first names them.

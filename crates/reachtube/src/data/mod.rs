@@ -5,6 +5,7 @@
 
 mod data_set;
 mod defect;
+mod inspect;
 mod run;
 mod torque;
 mod units;
@@ -12,6 +13,8 @@ mod units;
 pub use data_set::{DataSet, RunEntry, SuiteEntry};
 pub use defect::Defect;
 pub(crate) use defect::list_defects;
+pub use inspect::{Group, Inspection, JointSummary, inspect};
+pub(crate) use run::{hex, state_name};
 pub use run::{GapLimit, Run};
 pub use torque::Torque;
-pub(crate) use units::{check_limits, velocity_mismatch};
+pub(crate) use units::check_limits;

@@ -112,7 +112,7 @@ impl Run {
     }
 }
 
-fn hex(bytes: &[u8]) -> String {
+pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -267,4 +267,9 @@ fn is_numbered(name: &str, prefix: &str) -> bool {
 /// q1..qn, qd1..qdn, tau1..taun.
 pub(crate) fn column_names(n: usize) -> impl Iterator<Item = String> {
     ["q", "qd", "tau"].into_iter().flat_map(move |prefix| (1..=n).map(move |i| format!("{prefix}{i}")))
+}
+
+/// The column of state `i` (from 0) of a robot of `joints` joints: q1..qn, qd1..qdn.
+pub(crate) fn state_name(i: usize, joints: usize) -> String {
+    column_names(joints).nth(i).unwrap_or_default()
 }

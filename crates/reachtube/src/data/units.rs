@@ -22,6 +22,16 @@ pub(crate) fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
         .collect()
 }
 
+/// The largest difference of q and ∫q̇ dt (trapezoidal) over a run, rad.
+pub(crate) fn integral_gap(run: &Run, joint: usize) -> f64 {
+    let (mut integral, mut largest) = (run.q(0)[joint], 0.0f64);
+    for k in 1..run.len() {
+        integral += 0.5 * (run.times[k] - run.times[k - 1]) * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
+        largest = largest.max((run.q(k)[joint] - integral).abs());
+    }
+    largest
+}
+
 fn position_per_integral(run: &Run, joint: usize) -> Option<f64> {
     let (mut integral, mut cross, mut square, mut largest) = (0.0f64, 0.0, 0.0, 0.0f64);
     for k in 1..run.len() {

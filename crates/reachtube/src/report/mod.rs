@@ -4,6 +4,7 @@
 //! figure in the spirit of Figs. 2 and 4 of Liu & Althoff (IROS 2018). The inputs are plain numbers and words, so
 //! the page can be made from any result, and the same input always gives the same bytes.
 
+mod assemble;
 mod check;
 mod colour;
 mod decimate;
@@ -21,6 +22,7 @@ mod browser;
 #[cfg(test)]
 mod sample;
 
+pub use assemble::{Sources, page};
 pub use figure::suite_svg;
 pub use html::write_html;
 

@@ -61,7 +61,9 @@ fn exp_of(x: f64) -> Interval {
     let tail = Interval::point(error) - LN_2_TAIL * k;
     let r = tail + head;
     let correction = tail + r.sqr() * SERIES.at(r);
-    times_power_of_two(correction + head + 1.0, k as i32)
+    let power = times_power_of_two(correction + head + 1.0, k as i32);
+    // e^x is on the side of 1 that x is of 0: without it the exact e^0 would lie outside of its neighbours' bounds.
+    if x > 0.0 { power.max(Interval::ONE) } else { power.min(Interval::ONE) }
 }
 
 /// m · 2^k for m near 1 and |k| < 1100: exact unless it leaves the normal numbers.
@@ -73,4 +75,24 @@ fn times_power_of_two(m: Interval, k: i32) -> Interval {
         return scaled;
     }
     Interval { lo: mul_down(m.lo * first, second), hi: mul_up(m.hi * first, second) }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+
+    use super::*;
+
+    /// ln 2 to 60 decimals.
+    #[test]
+    fn parts_enclose_ln_2() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let digits: BigRational =
+            "693147180559945309417232121458176568075500134360255254120680".parse().unwrap();
+        let ten: BigRational = "10".parse().unwrap();
+        let value = digits / num_traits::pow(ten, 60);
+        let rest = value - exact(LN_2_HEAD);
+        assert!(exact(LN_2_TAIL.lo) < rest && rest < exact(LN_2_TAIL.hi));
+        assert_eq!(LN_2_HEAD.to_bits() & ((1 << 12) - 1), 0, "more than 41 bits");
+    }
 }

@@ -182,3 +182,24 @@ impl Interval {
         reduce(self).map_or((RANGE, RANGE), |ends| (sin_between(ends, 0), sin_between(ends, 1)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use num_rational::BigRational;
+
+    use super::*;
+
+    /// π to 60 decimals.
+    #[test]
+    fn parts_enclose_half_pi() {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let digits: BigRational =
+            "3141592653589793238462643383279502884197169399375105820974944".parse().unwrap();
+        let ten: BigRational = "10".parse().unwrap();
+        let value = digits / num_traits::pow(ten, 60) / exact(2.0);
+        let rest = value - FRAC_PI_2_PARTS.iter().map(|&part| exact(part)).sum::<BigRational>();
+        assert!(exact(FRAC_PI_2_REST.lo) < rest && rest < exact(FRAC_PI_2_REST.hi));
+        let has_32_bits = |part: f64| (part.to_bits() & ((1 << 21) - 1)) == 0;
+        assert!(FRAC_PI_2_PARTS.into_iter().all(has_32_bits));
+    }
+}

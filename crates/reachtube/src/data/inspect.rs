@@ -1,0 +1,216 @@
+//! What is in a data set, before anything is made of it.
+
+use rayon::prelude::*;
+use reachtube_reach::TimeGrid;
+use serde::Serialize;
+
+use super::units::{integral_gap, velocity_mismatch};
+use super::{DataSet, Defect, GapLimit, Run};
+use crate::error::{Error, Result};
+
+/// A joint slower than this sticks, rad/s.
+const STICKING: f64 = 0.01;
+
+/// What is in a data set.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Inspection {
+    /// The folder.
+    pub folder: String,
+    /// Number of joints.
+    pub joints: usize,
+    /// Recordings in the index.
+    pub runs: usize,
+    /// Test suites, and last the recordings that belong to none, a group for each kind.
+    pub groups: Vec<Group>,
+    /// What a user should know.
+    pub notes: Vec<String>,
+}
+
+/// Recordings that belong together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Group {
+    /// The suite, or the kind of the recordings without one.
+    pub name: String,
+    /// Whether it is a test suite.
+    pub suite: bool,
+    /// The motion it is part of.
+    pub motion: Option<String>,
+    /// Recordings.
+    pub runs: usize,
+    /// Fewest and most samples of a recording.
+    pub samples: [usize; 2],
+    /// Longest recording, s.
+    pub duration: f64,
+    /// The rate, s, where all recordings share one; otherwise none.
+    pub step: Option<f64>,
+    /// Shortest and longest time between two samples, s.
+    pub steps: [f64; 2],
+    /// Whether all recordings have the same torques at the same times (Definition 2).
+    pub same_torque: bool,
+    /// Each joint.
+    pub joints: Vec<JointSummary>,
+}
+
+/// One joint over a group.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointSummary {
+    /// Lowest and highest position, rad.
+    pub position: [f64; 2],
+    /// Highest speed, rad/s.
+    pub speed: f64,
+    /// Highest |torque|, N m.
+    pub torque: f64,
+    /// Spread of the first positions, rad.
+    pub start_spread: f64,
+    /// Spread of the last positions, rad; of the runs of full length.
+    pub end_spread: f64,
+    /// Correlation of the last position with the order of the recordings: near ±1 where the robot drifts, as joints do that warm up.
+    pub drift: Option<f64>,
+    /// Part of the samples in which the joint sticks (below 0.01 rad/s).
+    pub sticking: f64,
+    /// Largest difference of q and the integral of qd over a recording, rad.
+    pub integral_gap: f64,
+}
+
+/// Reads every recording of the index and sums it up.
+///
+/// # Errors
+///
+/// Every defect of every recording.
+pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Result<Inspection> {
+    let read = |index: usize| data.read(index, None, gap_limit, None);
+    let results: Vec<_> = (0..data.runs().len()).into_par_iter().map(read).collect();
+    let mut runs = Vec::new();
+    let mut defects = Vec::new();
+    for result in results {
+        match result {
+            Ok(run) => runs.push(run),
+            Err(found) => defects.extend(found),
+        }
+    }
+    if defects.is_empty() {
+        defects.extend(other_joint_count(data, &runs));
+    }
+    if !defects.is_empty() {
+        return Err(Error::Defects(defects));
+    }
+    let groups = groups(data)
+        .into_iter()
+        .map(|(name, suite, members)| {
+            let chosen: Vec<&Run> = members.iter().map(|&index| &runs[index]).collect();
+            Group::new(name, suite, data.runs()[members[0]].motion.clone(), &chosen)
+        })
+        .collect();
+    Ok(Inspection {
+        folder: data.root().display().to_string(),
+        joints: runs[0].joints,
+        runs: runs.len(),
+        groups,
+        notes: notes(data, &runs),
+    })
+}
+
+fn other_joint_count(data: &DataSet, runs: &[Run]) -> Vec<Defect> {
+    let odd = |(index, run): (usize, &Run)| {
+        let problem = format!("{} joints, the first recording has {}", run.joints, runs[0].joints);
+        let defect = Defect::new(data.path(index), Some(1), problem, "keep the recordings of one robot in one data set");
+        (run.joints != runs[0].joints).then_some(defect)
+    };
+    runs.iter().enumerate().filter_map(odd).collect()
+}
+
+/// Suites, then a group for each kind of the runs without one: name, whether it is a suite, members.
+fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
+    let mut groups: Vec<_> = data.suites().into_iter().map(|suite| (suite.name, true, suite.runs)).collect();
+    for (index, run) in data.runs().iter().enumerate().filter(|(_, run)| run.suite.is_none()) {
+        let kind = run.kind.clone().unwrap_or_else(|| "no suite".into());
+        match groups.iter_mut().find(|(name, suite, _)| !suite && *name == kind) {
+            Some((_, _, members)) => members.push(index),
+            None => groups.push((kind, false, vec![index])),
+        }
+    }
+    groups
+}
+
+fn notes(data: &DataSet, runs: &[Run]) -> Vec<String> {
+    let mut notes = data.unlisted_note().into_iter().collect::<Vec<_>>();
+    for (entry, run) in data.runs().iter().zip(runs) {
+        notes.extend(entry.changed_note(&run.sha256));
+        for (joint, slope) in velocity_mismatch(run) {
+            notes.push(format!("{}: joint {}: q moves {slope:.3} times as far as qd integrates to", entry.file, joint + 1));
+        }
+    }
+    notes
+}
+
+impl Group {
+    fn new(name: String, suite: bool, motion: Option<String>, runs: &[&Run]) -> Self {
+        let steps = runs.iter().flat_map(|run| run.times.windows(2).map(|pair| pair[1] - pair[0]));
+        let (shortest, longest) = steps.fold((f64::INFINITY, 0.0f64), |(a, b), h| (a.min(h), b.max(h)));
+        let rate = |run: &&Run| TimeGrid::from_times(&run.times).ok().and_then(|grid| grid.step());
+        let first = rate(&runs[0]);
+        let samples = runs.iter().map(|run| run.len());
+        Self {
+            name,
+            suite,
+            motion,
+            runs: runs.len(),
+            samples: [samples.clone().min().unwrap_or(0), samples.max().unwrap_or(0)],
+            duration: runs.iter().map(|run| run.duration()).fold(0.0, f64::max),
+            step: first.filter(|_| runs.iter().all(|run| rate(run) == first)),
+            steps: [shortest.min(longest), longest],
+            same_torque: runs.iter().all(|run| same_torque(runs[0], run)),
+            joints: (0..runs[0].joints).map(|joint| JointSummary::new(joint, runs)).collect(),
+        }
+    }
+}
+
+fn same_torque(a: &Run, b: &Run) -> bool {
+    let count = a.len().min(b.len());
+    let since_start = |run: &Run, k: usize| run.times[k] - run.times[0];
+    let acting = count.saturating_sub(1) * a.joints;
+    a.torques[..acting] == b.torques[..acting]
+        && (0..count).all(|k| (since_start(a, k) - since_start(b, k)).abs() <= 1e-9)
+}
+
+impl JointSummary {
+    fn new(joint: usize, runs: &[&Run]) -> Self {
+        let positions = runs.iter().flat_map(|run| (0..run.len()).map(|k| run.q(k)[joint]));
+        let speeds = || runs.iter().flat_map(|run| (0..run.len()).map(|k| run.qd(k)[joint].abs()));
+        let torques = runs.iter().flat_map(|run| (0..run.len()).map(|k| run.torque(k)[joint].abs()));
+        let longest = runs.iter().map(|run| run.len()).max().unwrap_or(0);
+        let ends: Vec<f64> = runs
+            .iter()
+            .filter(|run| run.len() == longest)
+            .map(|run| run.q(longest - 1)[joint])
+            .collect();
+        let starts: Vec<f64> = runs.iter().map(|run| run.q(0)[joint]).collect();
+        let sticking = speeds().filter(|speed| *speed < STICKING).count() as f64;
+        Self {
+            position: positions.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], q| [a.min(q), b.max(q)]),
+            speed: speeds().fold(0.0, f64::max),
+            torque: torques.fold(0.0, f64::max),
+            start_spread: spread(&starts),
+            end_spread: spread(&ends),
+            drift: order_correlation(&ends),
+            sticking: sticking / speeds().count().max(1) as f64,
+            integral_gap: runs.iter().map(|run| integral_gap(run, joint)).fold(0.0, f64::max),
+        }
+    }
+}
+
+fn spread(values: &[f64]) -> f64 {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    (highest - lowest).max(0.0)
+}
+
+/// Pearson's correlation of values with their places, for three values or more that are not all the same.
+fn order_correlation(values: &[f64]) -> Option<f64> {
+    let n = values.len() as f64;
+    let (mean, center) = (values.iter().sum::<f64>() / n, (n - 1.0) / 2.0);
+    let sums = values.iter().enumerate().map(|(k, v)| (v - mean, k as f64 - center));
+    let (vv, kk, vk) =
+        sums.fold((0.0, 0.0, 0.0), |(vv, kk, vk), (v, k)| (vv + v * v, kk + k * k, vk + v * k));
+    (values.len() >= 3 && vv > 0.0).then(|| vk / (vv * kk).sqrt())
+}

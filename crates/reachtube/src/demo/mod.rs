@@ -1,0 +1,1 @@
+//! The virtual robot of the demo.

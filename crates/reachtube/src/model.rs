@@ -1,0 +1,258 @@
+//! The model file: what `conform` found, and all that is needed to use it and to trace it back.
+
+use std::path::Path;
+
+use nalgebra::{DMatrix, DVector};
+use reachtube_reach::{Hyperrectangle, LinearSystem};
+use reachtube_robot::{Robot, RobotDescription};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::conform::{Conformance, Place, Proof, Recordings, Settings, TightRow, Trust, UncertaintySets};
+use crate::data::DataSet;
+use crate::error::{Error, Result};
+
+/// What the field `format` of every model file says.
+pub const FORMAT: &str = "reachtube-model";
+
+/// The version of the format that this library writes and reads; the schema is `docs/model.schema.json`.
+pub const VERSION: u32 = 1;
+
+/// Tight rows kept in a file: as many as a degenerate program may have would make it unreadable.
+const MOST_TIGHT: usize = 500;
+
+/// A linear model with the uncertainty sets for which it is reachset conformant with the recordings named in it. SI units; states are ordered
+/// q then q̇.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// [`FORMAT`].
+    pub format: String,
+    /// [`VERSION`].
+    pub version: u32,
+    /// Name and version of the program that wrote the file.
+    pub tool: String,
+    /// Whether the sets were proved to enclose the recordings.
+    pub verified: bool,
+    /// The cost of the sets: Σ_k Σ_i s_i 2 (R_k r)_i over all states and distinct sample times.
+    pub cost: f64,
+    /// The solver's dual objective: sets that satisfy the program cost no less, up to its tolerance.
+    pub cost_lower_bound: f64,
+    /// The paper's sum (21), with E where |E| is meant, for comparison.
+    pub cost_paper: f64,
+    /// Σ_k Δt Π_i of the hull's edges, eq. (2).
+    pub hull_volume: f64,
+    /// X0 around the nominal initial state, 2n, rad and rad/s.
+    pub initial_set: Hyperrectangle,
+    /// U around the nominal input, n, N m.
+    pub input_set: Hyperrectangle,
+    /// V, the measurement noise, 2n, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_set: Option<Hyperrectangle>,
+    /// What was proved.
+    pub proof: Proof,
+    /// What may be expected of the next motion.
+    pub trust: Trust,
+    /// The recorded points that touch the reachable set and so decide the sets, the closest first, 500 at most.
+    pub tight: Vec<Place>,
+    /// How it was done.
+    pub settings: Settings,
+    /// Which of the paper's models it is.
+    pub abstraction: Abstraction,
+    /// A, 2n x 2n, a row a line.
+    pub a: Vec<Vec<f64>>,
+    /// B, 2n x n.
+    pub b: Vec<Vec<f64>>,
+    /// d of ẋ = A x + B u + d, 2n; zero about q̇ = 0.
+    pub drift: Vec<f64>,
+    /// The recordings.
+    pub data: DataRecord,
+    /// The robot.
+    pub robot: RobotDescription,
+}
+
+/// Which abstraction of the forward dynamics a model is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Abstraction {
+    /// 1, 2 or 3 of the paper.
+    pub model: u32,
+    /// The order p.
+    pub order: u32,
+}
+
+/// The recordings that a model encloses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DataRecord {
+    /// SHA-256 over the lines `sha256  file` of all runs, as in the output of sha256sum, in this order.
+    pub sha256: String,
+    /// The suites.
+    pub suites: Vec<SuiteRecord>,
+}
+
+/// A test suite in a model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SuiteRecord {
+    /// Its name.
+    pub name: String,
+    /// The motion it is part of, where the index says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+    /// Its runs.
+    pub runs: Vec<RunRecord>,
+}
+
+/// A run in a model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunRecord {
+    /// Path in the data set.
+    pub file: String,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// Samples used.
+    pub samples: usize,
+    /// Time from the first to the last of them, s.
+    pub duration: f64,
+}
+
+impl Model {
+    /// The model that a conformance found.
+    pub fn new(robot: &Robot, data: &DataSet, settings: &Settings, found: &Conformance) -> Self {
+        let UncertaintySets { initial_set, input_set, noise_set } = found.sets.clone();
+        Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            tool: concat!("reachtube ", env!("CARGO_PKG_VERSION")).into(),
+            verified: found.proof.verified,
+            cost: found.cost,
+            cost_lower_bound: found.lower_bound,
+            cost_paper: found.paper_cost,
+            hull_volume: found.hull_volume,
+            initial_set,
+            input_set,
+            noise_set,
+            proof: found.proof.clone(),
+            trust: found.trust.clone(),
+            tight: tight(data, found, robot.joint_count()),
+            settings: settings.clone(),
+            abstraction: Abstraction { model: 1, order: 1 },
+            a: rows(found.system.a()),
+            b: rows(found.system.b()),
+            drift: found.system.drift().iter().copied().collect(),
+            data: DataRecord::new(data, &found.recordings),
+            robot: robot.description().clone(),
+        }
+    }
+
+    /// Reads a model file and checks that its parts fit together.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Read`], or [`Error::ModelFile`] that says what is wrong.
+    pub fn load(path: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|source| Error::Read { path: path.into(), source })?;
+        let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
+        let value: serde_json::Value =
+            serde_json::from_str(&text).map_err(|error| wrong(format!("not JSON: {error}; give a file that `conform --out` wrote")))?;
+        if value["format"] != FORMAT {
+            return Err(wrong(format!("its format is not \"{FORMAT}\"; give a file that `conform --out` wrote")));
+        }
+        if value["version"] != VERSION {
+            return Err(wrong(format!("version {} of the format, this program reads {VERSION}; run conform again", value["version"])));
+        }
+        let model: Self = serde_json::from_value(value).map_err(|error| wrong(error.to_string()))?;
+        model.check().map_err(wrong)?;
+        Ok(model)
+    }
+
+    /// The file's text: JSON, ending with a newline.
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).expect("a model has only finite numbers and string keys");
+        text.push('\n');
+        text
+    }
+
+    /// The robot.
+    ///
+    /// # Errors
+    ///
+    /// When the embedded description is no robot.
+    pub fn robot(&self) -> Result<Robot> {
+        Ok(Robot::from_description(&self.robot)?)
+    }
+
+    /// Model 1 as a linear system.
+    ///
+    /// # Errors
+    ///
+    /// When the matrices do not fit together.
+    pub fn system(&self) -> Result<LinearSystem> {
+        let matrix = |rows: &[Vec<f64>]| {
+            DMatrix::from_row_iterator(rows.len(), rows.first().map_or(0, Vec::len), rows.iter().flatten().copied())
+        };
+        Ok(LinearSystem::new(matrix(&self.a), matrix(&self.b), DVector::from_vec(self.drift.clone()))?)
+    }
+
+    /// X0, U and V.
+    pub fn sets(&self) -> UncertaintySets {
+        UncertaintySets {
+            initial_set: self.initial_set.clone(),
+            input_set: self.input_set.clone(),
+            noise_set: self.noise_set.clone(),
+        }
+    }
+
+    /// Number of joints n.
+    pub fn joints(&self) -> usize {
+        self.input_set.dimension()
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let n = self.robot.joints.len();
+        let is = |matrix: &[Vec<f64>], columns: usize| {
+            matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
+        };
+        let set = |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
+        let sizes = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
+        let sets = set(&self.initial_set, 2 * n)
+            && set(&self.input_set, n)
+            && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
+        if !sizes || !sets {
+            return Err(format!(
+                "a, b, drift or a set does not have the size for the {n} joints of its robot, or a radius is negative; run conform again"
+            ));
+        }
+        self.settings.validate(n).map_err(|error| error.to_string())
+    }
+}
+
+impl DataRecord {
+    fn new(data: &DataSet, recordings: &Recordings) -> Self {
+        let mut digest = Sha256::new();
+        let mut suites = Vec::new();
+        for suite in &recordings.suites {
+            let mut runs = Vec::new();
+            for run in &suite.runs {
+                let file = data.runs()[run.index].file.clone();
+                digest.update(format!("{}  {file}\n", run.sha256));
+                let duration = run.grid.times().last().copied().unwrap_or(0.0);
+                runs.push(RunRecord { file, sha256: run.sha256.clone(), samples: run.grid.len(), duration });
+            }
+            suites.push(SuiteRecord { name: suite.entry.name.clone(), motion: suite.entry.motion.clone(), runs });
+        }
+        Self { sha256: crate::data::hex(&digest.finalize()), suites }
+    }
+}
+
+/// The tight rows in the words of the recordings.
+fn tight(data: &DataSet, found: &Conformance, joints: usize) -> Vec<Place> {
+    let place = |tight: &TightRow| Place::new(data, &found.recordings.suites[tight.suite], &tight.row, joints);
+    found.tight.iter().take(MOST_TIGHT).map(place).collect()
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}

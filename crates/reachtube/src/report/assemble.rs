@@ -1,0 +1,257 @@
+//! From a model and recordings to the page.
+
+use super::{Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict};
+use crate::conform::{self, Check, Recordings, States};
+use crate::data::DataSet;
+use crate::error::{Error, Result};
+use crate::model::Model;
+use crate::reach::SuiteReach;
+use reachtube_reach::Hyperrectangle;
+
+/// What a page is made of.
+#[derive(Debug, Clone, Copy)]
+pub struct Sources<'a> {
+    /// The model.
+    pub model: &'a Model,
+    /// The data set that is drawn.
+    pub data: &'a DataSet,
+    /// Its suites as read.
+    pub recordings: &'a Recordings,
+    /// Reachable sets over them.
+    pub reach: &'a [SuiteReach],
+    /// Whether they lie in the sets.
+    pub check: &'a Check,
+}
+
+/// The page of a model over recordings: those that it was made from, or others.
+///
+/// # Errors
+///
+/// Defects of a run that has changed since it was read.
+pub fn page(sources: &Sources) -> Result<Page> {
+    let Sources { model, check, .. } = *sources;
+    let figures = sources
+        .recordings
+        .suites
+        .iter()
+        .filter(|suite| suite.envelope.len() > 1)
+        .map(|suite| figure(sources, suite))
+        .collect::<Result<Vec<_>>>()?;
+    Ok(Page {
+        title: format!("{}: reachset conformance", model.robot.name),
+        subtitle: format!(
+            "Model {} of order {}, {} recordings in {} test suites",
+            model.abstraction.model,
+            model.abstraction.order,
+            check.runs,
+            check.suites.len()
+        ),
+        verdict: verdict(model, check),
+        suites: figures,
+        sets: vec![sets_table(model)],
+        facts: facts(model),
+        trust: trust(model, check, is_fit(sources)),
+        caution: caution(model),
+        notes: check.notes.clone(),
+    })
+}
+
+/// Whether the recordings are those that the model was fitted to.
+fn is_fit(sources: &Sources) -> bool {
+    let fitted: std::collections::BTreeSet<&str> =
+        sources.model.data.suites.iter().flat_map(|suite| suite.runs.iter().map(|run| run.sha256.as_str())).collect();
+    let mut runs = sources.recordings.suites.iter().flat_map(|suite| &suite.runs);
+    runs.any(|run| fitted.contains(run.sha256.as_str()))
+}
+
+fn verdict(model: &Model, check: &Check) -> Verdict {
+    let words = match &check.violations.worst {
+        None => format!("Conformant: all {} recordings lie in the reachable set at every sample.", check.runs),
+        Some(worst) => format!(
+            "Not conformant: {} of {} rows leave the reachable set, furthest {} at {:.3} s, {} by {:.3e}.",
+            check.violations.count, check.rows, worst.run, worst.time, worst.state, worst.excess
+        ),
+    };
+    let states = match model.settings.states {
+        States::All => "position and velocity",
+        States::Positions => "position",
+    };
+    let proved = vec![
+        format!(
+            "{} of {} rows (suite, time, state) hold, checked with directed rounding: the recorded {states} lies in the interval hull of the reachable set.",
+            check.rows - check.violations.count,
+            check.rows,
+        ),
+        "The grey band is an outer bound of the reachable set at the samples.".into(),
+    ];
+    let not_proved = vec![
+        "The recordings are compared with the set at samples; between samples only the model's own states are enclosed (the tube of `reach`).".into(),
+        "The notion is the hull: each state for itself. Points inside the hull need not be reachable together.".into(),
+    ];
+    Verdict { ok: check.conformant, words, proved, not_proved }
+}
+
+fn sets_table(model: &Model) -> SetsTable {
+    let n = model.joints();
+    let bounds = |set: &Hyperrectangle, i: usize| <[f64; 2]>::from(set.bounds(i));
+    let row = |joint: usize| JointSets {
+        joint: joint_name(model, joint),
+        x0_q: bounds(&model.initial_set, joint),
+        x0_qd: bounds(&model.initial_set, n + joint),
+        u: bounds(&model.input_set, joint),
+        noise: model.noise_set.as_ref().map(|noise| [bounds(noise, joint), bounds(noise, n + joint)]),
+    };
+    let notion = match model.settings.states {
+        States::All => "Position and velocity conformant",
+        States::Positions => "Position conformant",
+    };
+    SetsTable { notion: notion.into(), joints: (0..n).map(row).collect() }
+}
+
+fn joint_name(model: &Model, joint: usize) -> String {
+    model.robot.joints.get(joint).map_or_else(|| format!("{}", joint + 1), |description| description.name.clone())
+}
+
+fn facts(model: &Model) -> Vec<(String, String)> {
+    let settings = &model.settings;
+    let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
+    let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
+    [
+        ("Cost", format!("{:.6} (lower bound {:.6})", model.cost, model.cost_lower_bound)),
+        ("The paper's sum (21)", format!("{:.6}", model.cost_paper)),
+        ("Volume of the hull, eq. (2)", format!("{:.4e}", model.hull_volume)),
+        ("Notion of conformance", word(&settings.notion)),
+        ("Disturbance", word(&settings.disturbance)),
+        ("Centres of the sets", word(&settings.centre)),
+        ("States enclosed", word(&settings.states)),
+        ("Weights", word(&settings.weights)),
+        ("Measurement noise", word(&settings.noise)),
+        ("Nominal solution starts at", word(&settings.nominal)),
+        ("Recorded torque", word(&settings.torque)),
+        ("Fitted to", format!("{runs} runs of suites {}", suites.join(", "))),
+        ("SHA-256 of the data", model.data.sha256.clone()),
+        ("Written by", model.tool.clone()),
+    ]
+    .into_iter()
+    .map(|(name, value)| (name.to_string(), value))
+    .collect()
+}
+
+/// A setting in the word that the model file has for it.
+fn word(setting: impl serde::Serialize) -> String {
+    let value = serde_json::to_value(setting).unwrap_or_default();
+    value.as_str().map_or_else(|| value.to_string(), str::to_string)
+}
+
+fn trust(model: &Model, check: &Check, fit: bool) -> Vec<String> {
+    let trust = if fit { &model.trust } else { &check.trust };
+    let role = if fit { "touch the reachable set" } else { "leave the reachable set" };
+    vec![format!(
+        "The next motion leaves the reachable set with probability at most {:.3}, at confidence {:.0} %: {} independent motions, of which {} {role}. {}.",
+        trust.violation_probability,
+        100.0 * trust.confidence,
+        trust.motions,
+        trust.deciding,
+        trust.basis
+    )]
+}
+
+fn caution(model: &Model) -> Vec<String> {
+    let mut words = vec![
+        "That these sets enclose these recordings is a fact about the recordings. It says nothing certain about motions, payloads or temperatures that were not recorded.".to_string(),
+    ];
+    if model.trust.violation_probability > 0.5 {
+        words.push(
+            "There are too few independent motions for a useful bound on the next one; record more motions rather than more runs of the same.".into(),
+        );
+    }
+    words
+}
+
+fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
+    let Sources { model, data, check, reach, .. } = *sources;
+    let joints = model.joints();
+    let own: Vec<&SuiteReach> = reach.iter().filter(|reach| reach.suite == suite.entry.name).collect();
+    let longest = own.iter().max_by_key(|reach| reach.times.len()).copied();
+    let Some(longest) = longest else {
+        return Err(Error::Setting(format!("no reachable set was computed for suite {}", suite.entry.name)));
+    };
+    let shared = longest.run.is_none();
+    let mut runs = Vec::new();
+    for (order, summary) in suite.runs.iter().enumerate() {
+        let entry = &data.runs()[summary.index];
+        let of_run = own.iter().find(|reach| reach.run.as_deref().is_none_or(|run| run == entry.file));
+        runs.push(trace(data, model, summary.index, order, of_run.filter(|_| !shared).copied())?);
+    }
+    let nominal = columns(&longest.nominal, 2 * joints);
+    let relative = |values: &[f64]| {
+        let shifted: Vec<f64> =
+            values.iter().zip(&longest.nominal).map(|(v, x)| if shared { *v } else { v - x }).collect();
+        columns(&shifted, 2 * joints)
+    };
+    let name = |file: &String| suite.runs.iter().position(|run| data.runs()[run.index].file == *file);
+    let tight = model.tight.iter().filter(|place| place.suite == suite.entry.name);
+    let violated = check.suites.iter().filter(|own| own.suite == suite.entry.name);
+    let worst = violated.filter_map(|own| own.violations.worst.as_ref());
+    let spots: Vec<TightSpot> = tight
+        .chain(worst)
+        .filter_map(|place| Some(spot(place, name(&place.run)?, joints)))
+        .collect();
+    for spot in &spots {
+        runs[spot.run].touches += 1;
+    }
+    Ok(SuiteFigure {
+        suite: suite.entry.name.clone(),
+        joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
+        times: longest.times.clone(),
+        band: Band {
+            label: "reachable set".into(),
+            lower: relative(&longest.lower),
+            upper: relative(&longest.upper),
+        },
+        inner: None,
+        nominal: if shared { Nominal::Shared(nominal) } else { Nominal::PerRun },
+        runs,
+        tight: spots,
+    })
+}
+
+fn spot(place: &conform::Place, run: usize, joints: usize) -> TightSpot {
+    let state = if place.state.starts_with("qd") { joints + place.joint - 1 } else { place.joint - 1 };
+    let side = match place.side {
+        conform::Side::Upper => Side::Upper,
+        conform::Side::Lower => Side::Lower,
+    };
+    TightSpot { run, time_s: place.time, state, side, margin: -place.excess }
+}
+
+/// A run as a line; relative to its own nominal solution where it has one.
+fn trace(
+    data: &DataSet,
+    model: &Model,
+    index: usize,
+    order: usize,
+    own: Option<&SuiteReach>,
+) -> Result<RunTrace> {
+    let settings = &model.settings;
+    let run = data
+        .read(index, Some(model.joints()), settings.gap_limit, settings.until)
+        .map_err(Error::Defects)?;
+    let mut states = run.states.clone();
+    if let Some(own) = own {
+        states.iter_mut().zip(&own.nominal).for_each(|(x, nominal)| *x -= nominal);
+    }
+    Ok(RunTrace {
+        name: data.runs()[index].file.clone(),
+        order,
+        temperature: data.runs()[index].temperature,
+        times: run.times.iter().map(|t| t - run.times[0]).collect(),
+        states: columns(&states, 2 * model.joints()),
+        touches: 0,
+    })
+}
+
+/// Row-major samples x states, turned into one list a state.
+fn columns(values: &[f64], states: usize) -> Vec<Vec<f64>> {
+    (0..states).map(|i| values.iter().skip(i).step_by(states).copied().collect()).collect()
+}
