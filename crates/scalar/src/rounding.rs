@@ -24,7 +24,7 @@
 /// Rump, Zimmermann, Boldo, Melquiond: Computing predecessor and successor in rounding to nearest, BIT 49 (2009).
 const STEP: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
 
-/// Above 2⁻⁹⁶⁹ = 2.1e-292, where |x| · [`STEP`] is a normal number and does not lose the little above half an ulp.
+/// Far above 2⁻⁹⁶⁹ = 2e-292, where |x| · [`STEP`] is a normal number and does not lose the little above half an ulp.
 const TINY: f64 = 1e-290;
 
 /// Whether [`bounds_of_rounded`] may be used for [lo, hi].

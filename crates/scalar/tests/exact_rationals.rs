@@ -38,8 +38,9 @@ proptest! {
 
     #[test]
     fn rounded_quotients((a, b) in any_pair()) {
-        prop_assume!(b != 0.0);
-        assert_bounds(div_down(a, b), div_up(a, b), &(exact(a) / exact(b)), 1);
+        if b != 0.0 {
+            assert_bounds(div_down(a, b), div_up(a, b), &(exact(a) / exact(b)), 1);
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! From a model and recordings to the page.
 
 use super::{Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict};
-use crate::conform::{self, Check, Recordings, States};
+use crate::conform::{self, Check, Recordings, Settings, States};
 use crate::data::DataSet;
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -13,6 +13,8 @@ use reachtube_reach::Hyperrectangle;
 pub struct Sources<'a> {
     /// The model.
     pub model: &'a Model,
+    /// The settings with which the recordings were read.
+    pub settings: &'a Settings,
     /// The data set that is drawn.
     pub data: &'a DataSet,
     /// Its suites as read.
@@ -181,7 +183,7 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
     for (order, summary) in suite.runs.iter().enumerate() {
         let entry = &data.runs()[summary.index];
         let of_run = own.iter().find(|reach| reach.run.as_deref().is_none_or(|run| run == entry.file));
-        runs.push(trace(data, model, summary.index, order, of_run.filter(|_| !shared).copied())?);
+        runs.push(trace(sources, summary.index, order, of_run.filter(|_| !shared).copied())?);
     }
     let nominal = columns(&longest.nominal, 2 * joints);
     let relative = |values: &[f64]| {
@@ -226,14 +228,8 @@ fn spot(place: &conform::Place, run: usize, joints: usize) -> TightSpot {
 }
 
 /// A run as a line; relative to its own nominal solution where it has one.
-fn trace(
-    data: &DataSet,
-    model: &Model,
-    index: usize,
-    order: usize,
-    own: Option<&SuiteReach>,
-) -> Result<RunTrace> {
-    let settings = &model.settings;
+fn trace(sources: &Sources, index: usize, order: usize, own: Option<&SuiteReach>) -> Result<RunTrace> {
+    let Sources { model, settings, data, .. } = *sources;
     let run = data
         .read(index, Some(model.joints()), settings.gap_limit, settings.until)
         .map_err(Error::Defects)?;

@@ -1,0 +1,198 @@
+//! What the command line looks like.
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use reachtube::conform::{Centre, NominalStart, States};
+use reachtube::data::{GapLimit, Torque};
+use reachtube_reach::Disturbance;
+use serde::de::DeserializeOwned;
+
+/// Reachset-conformant models of robots: from recordings to a simple model and the smallest uncertainty sets for which every recording lies in the model's reachable set,
+/// proved with directed rounding.
+#[derive(Debug, Parser)]
+#[command(name = "reachtube", version, after_help = MAIN_HELP)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+    /// Print the result as JSON on standard output
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+const MAIN_HELP: &str = "\
+Examples:
+  reachtube demo --out demo                                   the whole job on a virtual arm
+  reachtube inspect --data recordings                         what is in this data set
+  reachtube conform --robot lwa4p --data recordings --suites A,B --torque compensated --out model.json
+  reachtube check --model model.json --data recordings --suites C --torque compensated
+  reachtube report --model model.json --data recordings --suites A,B --torque compensated --out report
+
+Exit codes: 0 conformant (or done), 1 not conformant, 2 error.
+Results go to standard output, everything else to standard error.";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Record, identify, check and report a virtual arm
+    #[command(after_help = "Example:\n  reachtube demo --out demo    then open demo/report/report.html")]
+    Demo(DemoArgs),
+    /// Say what a robot's description was understood as
+    #[command(subcommand)]
+    Robot(RobotCommand),
+    /// Say what is in a data set
+    #[command(after_help = "Example:\n  reachtube inspect --data recordings --json")]
+    Inspect(InspectArgs),
+    /// Find the smallest sets for which a linear model encloses every recording, and prove it
+    #[command(after_help = CONFORM_HELP)]
+    Conform(ConformArgs),
+    /// Check other recordings against a model
+    #[command(after_help = "Example:\n  reachtube check --model model.json --data recordings --suites C,F --torque compensated\n\nExit code 1 and a witness (suite, run, time, joint, excess) when a recording leaves the reachable set.")]
+    Check(ModelArgs),
+    /// Compute the reachable set of a model over recorded suites, at samples and between them
+    #[command(after_help = "Example:\n  reachtube reach --model model.json --data recordings --suites A --torque compensated --out reach\n\nWrites A.csv (at samples), A_tube.csv (over each step, outer) and A_*.svg into the folder.")]
+    Reach(ReachArgs),
+    /// Draw the page and figures of a model over recordings
+    #[command(after_help = "Example:\n  reachtube report --model model.json --data recordings --torque compensated --out report\n\nWrites report.html (works offline) and an SVG for each figure into the folder.")]
+    Report(ReportArgs),
+}
+
+const CONFORM_HELP: &str = "\
+Examples:
+  reachtube conform --robot lwa4p --data recordings --suites A,B,D,E --torque compensated --out model.json
+  reachtube conform --robot arm.toml --data recordings --torque motor --disturbance measurable --report report
+  reachtube conform --robot lwa4p --data recordings --torque compensated --centre origin --disturbance constant
+                                                              the settings of Liu and Althoff (2018)
+Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
+
+#[derive(Debug, Subcommand)]
+pub enum RobotCommand {
+    /// Print geometry, inertia, friction and M(q_a) of a robot; refuse what is no physical robot
+    #[command(after_help = "Example:\n  reachtube robot show arm.toml\n  reachtube robot show lwa4p --at 0,0.5,0,0,0,0")]
+    Show(RobotShowArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct RobotShowArgs {
+    /// An embedded robot (lwa4p) or a TOML file
+    pub robot: String,
+    /// Positions q_a at which M is printed, rad, separated by commas [default: 0]
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
+    pub at: Vec<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Folder for recordings, model and report
+    #[arg(long, default_value = "reachtube-demo")]
+    pub out: PathBuf,
+    /// Seed of the virtual arm
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// Folder with runs.csv and the recordings
+    #[arg(long)]
+    pub data: PathBuf,
+    /// Accept gaps up to this many seconds
+    #[arg(long, value_name = "SECONDS")]
+    pub max_gap: Option<f64>,
+}
+
+/// Which recordings, and what their torques are.
+#[derive(Debug, Args)]
+pub struct DataArgs {
+    /// Folder with runs.csv and the recordings
+    #[arg(long)]
+    pub data: PathBuf,
+    /// Test suites, separated by commas [default: all]
+    #[arg(long, value_delimiter = ',')]
+    pub suites: Vec<String>,
+    /// What the columns tau are: the input u itself (gravity and Coulomb friction taken off), motor torque, or link-side torque
+    #[arg(long, value_parser = word_of::<Torque>(&["compensated", "motor", "link"]))]
+    pub torque: Torque,
+    /// Use samples up to this many seconds after the first
+    #[arg(long, value_name = "SECONDS")]
+    pub until: Option<f64>,
+    /// Accept gaps up to this many seconds, with the input held over them
+    #[arg(long, value_name = "SECONDS")]
+    pub max_gap: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct ConformArgs {
+    /// An embedded robot (lwa4p) or a TOML file
+    #[arg(long)]
+    pub robot: String,
+    #[command(flatten)]
+    pub data: DataArgs,
+    /// How the disturbance may change in time
+    #[arg(long, default_value = "sample", value_parser = word_of::<Disturbance>(&["constant", "sample", "measurable"]))]
+    pub disturbance: Disturbance,
+    /// What the centres of the sets may be: anything, such that the set contains 0, or 0
+    #[arg(long, default_value = "free", value_parser = word_of::<Centre>(&["free", "origin", "zero"]))]
+    pub centre: Centre,
+    /// Which states must be enclosed
+    #[arg(long, default_value = "all", value_parser = word_of::<States>(&["all", "positions"]))]
+    pub states: States,
+    /// Weights of the states in the cost: unit, spread (one over the largest deviation), or 2, or 2n numbers
+    #[arg(long, default_value = "unit", value_name = "unit|spread|W,W,..")]
+    pub weights: String,
+    /// Measurement noise: none, free (found by the program), or its radius in rad and rad/s: 2 or 2n numbers
+    #[arg(long, default_value = "none", value_name = "none|free|R,R,..")]
+    pub noise: String,
+    /// Where nominal solutions start: at the mean of the runs' first states, or at each run's own
+    #[arg(long, default_value = "mean", value_parser = word_of::<NominalStart>(&["mean", "own"]))]
+    pub nominal: NominalStart,
+    /// Expansion point: n positions, or n positions and n velocities, separated by commas [default: 0]
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
+    pub expansion: Vec<f64>,
+    /// Write the model to this file
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Write the page and figures into this folder
+    #[arg(long, value_name = "FOLDER")]
+    pub report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct ModelArgs {
+    /// A file that `conform --out` wrote
+    #[arg(long)]
+    pub model: PathBuf,
+    #[command(flatten)]
+    pub data: DataArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct ReachArgs {
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Folder for the CSV files and figures
+    #[arg(long, default_value = "reach")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct ReportArgs {
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Folder for the page and figures
+    #[arg(long, default_value = "report")]
+    pub out: PathBuf,
+}
+
+/// The limit that `--max-gap` asks for.
+pub fn gap_limit(max_gap: Option<f64>) -> GapLimit {
+    max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+}
+
+/// A parser for a setting by the word that model files have for it.
+fn word_of<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(words).try_map(|word| serde_json::from_value::<T>(word.into()))
+}

@@ -1,0 +1,79 @@
+use reachtube::abstraction::ExpansionPoint;
+use reachtube::conform::{Noise, Settings, Weights, conform};
+use reachtube::data::DataSet;
+use reachtube::{Error, Model, Result, write};
+use reachtube_robot::Robot;
+
+use super::{Opened, Outcome};
+use crate::args::{ConformArgs, gap_limit};
+use crate::progress::Progress;
+use crate::{output, words};
+
+pub fn run(args: &ConformArgs, json: bool) -> Result<Outcome> {
+    let robot = Robot::load(&args.robot)?;
+    robot.check_physical()?;
+    let settings = settings(args, robot.joint_count())?;
+    let data = DataSet::open(&args.data.data)?;
+    let bar = Progress::new("reading");
+    let show = |done: usize, total: usize| bar.show(done, total);
+    let found = conform(&robot, &data, &args.data.suites, &settings, &show)?;
+    drop(bar);
+    output::notes(&found.recordings.notes);
+    let model = Model::new(&robot, &data, &settings, &found);
+    drop(found);
+    if let Some(path) = &args.out {
+        write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
+    }
+    if json {
+        output::print(&model.to_json());
+    } else {
+        output::print(&words::model(&model));
+    }
+    let verified = model.verified;
+    if let Some(folder) = &args.report {
+        let page = super::report::write(&Opened::with(model, robot, &args.data)?, folder)?;
+        eprintln!("wrote {}", page.display());
+    }
+    if let Some(path) = &args.out {
+        eprintln!("wrote {}", path.display());
+    }
+    Ok(Outcome::of(verified))
+}
+
+fn settings(args: &ConformArgs, joints: usize) -> Result<Settings> {
+    let settings = Settings {
+        expansion_point: ExpansionPoint::from_values(&args.expansion, joints)?,
+        disturbance: args.disturbance,
+        centre: args.centre,
+        states: args.states,
+        weights: match args.weights.as_str() {
+            "unit" => Weights::Unit,
+            "spread" => Weights::Spread,
+            list => Weights::Given(numbers("--weights", list, joints)?),
+        },
+        noise: match args.noise.as_str() {
+            "none" => Noise::None,
+            "free" => Noise::Free,
+            list => Noise::Fixed(numbers("--noise", list, joints)?),
+        },
+        nominal: args.nominal,
+        until: args.data.until,
+        gap_limit: gap_limit(args.data.max_gap),
+        ..Settings::new(args.data.torque, joints)
+    };
+    settings.validate(joints)?;
+    Ok(settings)
+}
+
+/// 2n numbers, or 2: one for all positions and one for all velocities.
+fn numbers(option: &str, list: &str, joints: usize) -> Result<Vec<f64>> {
+    let parse = |text: &str| {
+        text.trim().parse::<f64>().map_err(|_| Error::Setting(format!("{option}: \"{text}\" is neither a word it knows nor a number")))
+    };
+    let values = list.split(',').map(parse).collect::<Result<Vec<_>>>()?;
+    match values[..] {
+        [position, velocity] => Ok([vec![position; joints], vec![velocity; joints]].concat()),
+        _ if values.len() == 2 * joints => Ok(values),
+        _ => Err(Error::Setting(format!("{option} has {} numbers; give 2 (positions, velocities) or {}", values.len(), 2 * joints))),
+    }
+}

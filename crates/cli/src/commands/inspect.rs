@@ -1,0 +1,17 @@
+use reachtube::Result;
+use reachtube::data::{DataSet, inspect};
+
+use super::Outcome;
+use crate::args::{InspectArgs, gap_limit};
+use crate::{output, words};
+
+pub fn run(args: &InspectArgs, json: bool) -> Result<Outcome> {
+    let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap))?;
+    output::notes(&inspection.notes);
+    if json {
+        output::print_json(&inspection);
+    } else {
+        output::print(&words::inspection(&inspection));
+    }
+    Ok(Outcome::Done)
+}

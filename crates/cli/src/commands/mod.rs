@@ -1,0 +1,93 @@
+//! One module a command.
+
+mod check;
+mod conform;
+mod demo;
+mod inspect;
+mod reach;
+mod report;
+mod robot;
+
+use reachtube::conform::{Check, Grids, Recordings, Settings, check as check_recordings};
+use reachtube::data::DataSet;
+use reachtube::reach::{SuiteReach, reach as reach_suites};
+use reachtube::{Model, Result};
+use reachtube_robot::Robot;
+
+use crate::args::{Cli, Command, DataArgs, ModelArgs, RobotCommand, gap_limit};
+use crate::progress::Progress;
+
+/// What a command came to when it did not fail.
+pub enum Outcome {
+    /// Done; where there is a verdict, it is conformant.
+    Done,
+    /// Not conformant.
+    NotConformant,
+}
+
+impl Outcome {
+    fn of(conformant: bool) -> Self {
+        if conformant { Self::Done } else { Self::NotConformant }
+    }
+}
+
+/// Runs the command asked for.
+pub fn run(cli: &Cli) -> Result<Outcome> {
+    match &cli.command {
+        Command::Demo(args) => demo::run(args, cli.json),
+        Command::Robot(RobotCommand::Show(args)) => robot::show(args, cli.json),
+        Command::Inspect(args) => inspect::run(args, cli.json),
+        Command::Conform(args) => conform::run(args, cli.json),
+        Command::Check(args) => check::run(args, cli.json),
+        Command::Reach(args) => reach::run(args, cli.json),
+        Command::Report(args) => report::run(args, cli.json),
+    }
+}
+
+/// A model, and recordings read with its settings.
+struct Opened {
+    model: Model,
+    robot: Robot,
+    settings: Settings,
+    data: DataSet,
+    suites: Vec<String>,
+}
+
+impl Opened {
+    fn new(args: &ModelArgs) -> Result<Self> {
+        let model = Model::load(&args.model)?;
+        let robot = model.robot()?;
+        Self::with(model, robot, &args.data)
+    }
+
+    fn with(model: Model, robot: Robot, args: &DataArgs) -> Result<Self> {
+        let settings = Settings {
+            torque: args.torque,
+            until: args.until.or(model.settings.until),
+            gap_limit: gap_limit(args.max_gap),
+            ..model.settings.clone()
+        };
+        settings.validate(robot.joint_count())?;
+        let data = DataSet::open(&args.data)?;
+        Ok(Self { model, robot, settings, data, suites: args.suites.clone() })
+    }
+
+    fn check(&self) -> Result<Check> {
+        let (system, sets) = (self.model.system()?, self.model.sets());
+        let bar = Progress::new("checking");
+        let show = |done: usize, total: usize| bar.show(done, total);
+        check_recordings(&self.robot, &system, &sets, &self.data, &self.suites, &self.settings, &show)
+    }
+
+    fn recordings(&self) -> Result<(Recordings, Grids)> {
+        let bar = Progress::new("reading");
+        let show = |done: usize, total: usize| bar.show(done, total);
+        let recordings = Recordings::read(&self.data, &self.suites, &self.robot, &self.settings, &show)?;
+        let grids = Grids::new(&recordings, &self.model.system()?, self.settings.disturbance)?;
+        Ok((recordings, grids))
+    }
+
+    fn reach(&self, recordings: &Recordings, grids: &Grids) -> Result<Vec<SuiteReach>> {
+        reach_suites(&self.data, &self.robot, &self.settings, &self.model.sets(), recordings, grids)
+    }
+}

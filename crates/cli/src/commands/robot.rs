@@ -1,0 +1,77 @@
+use std::fmt::Write;
+
+use nalgebra::DMatrix;
+use reachtube::abstraction::ExpansionPoint;
+use reachtube::{Error, Result};
+use reachtube_robot::{Physicality, Robot};
+use serde_json::json;
+
+use super::Outcome;
+use crate::args::RobotShowArgs;
+use crate::{output, words};
+
+pub fn show(args: &RobotShowArgs, json: bool) -> Result<Outcome> {
+    let robot = Robot::load(&args.robot)?;
+    let at = ExpansionPoint::from_values(&args.at, robot.joint_count())?;
+    if args.at.len() > robot.joint_count() {
+        return Err(Error::Setting(format!("--at takes {} positions", robot.joint_count())));
+    }
+    let physicality = robot.check_physical()?;
+    let mass = robot.mass_matrix(&at.q);
+    if json {
+        output::print_json(&json!({
+            "description": robot.description(),
+            "physical": physicality_words(&physicality, &robot),
+            "q": at.q,
+            "mass_matrix": mass.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
+            "gravity_torque": robot.gravity_torque(&at.q).as_slice(),
+        }));
+    } else {
+        output::print(&describe(&robot, &at.q, &mass, &physicality));
+    }
+    Ok(Outcome::Done)
+}
+
+fn describe(robot: &Robot, q: &[f64], mass: &DMatrix<f64>, physicality: &Physicality) -> String {
+    let mut text = String::new();
+    let [gx, gy, gz] = robot.gravity_acceleration();
+    let _ = writeln!(text, "{}: {} revolute joints, gravity [{gx}, {gy}, {gz}] m/s^2\n", robot.name(), robot.joint_count());
+    let rows: Vec<Vec<String>> = robot.joints().iter().map(joint_row).collect();
+    let header = ["joint", "limits [rad]", "speed [rad/s]", "gear", "k_r^2 I_m [kg m^2]", "viscous v1, v2, v3"];
+    text.push_str(&words::table(&header, &rows));
+    let _ = writeln!(text, "\nM(q_a) with motors [kg m^2], q_a = {q:?} rad:");
+    for row in mass.row_iter() {
+        let cells: Vec<String> = row.iter().map(|m| format!("{m:>9.5}")).collect();
+        let _ = writeln!(text, "  {}", cells.join(" "));
+    }
+    let gravity: Vec<String> = robot.gravity_torque(q).iter().map(|g| format!("{g:>9.5}")).collect();
+    let _ = writeln!(text, "g(q_a) [N m]:\n  {}", gravity.join(" "));
+    let _ = writeln!(text, "\n{}", physicality_words(physicality, robot));
+    text
+}
+
+fn joint_row(joint: &reachtube_robot::Joint) -> Vec<String> {
+    let viscous = &joint.friction.viscous;
+    let maybe = |value: Option<f64>| value.map_or_else(|| "-".into(), |value| format!("{value}"));
+    vec![
+        joint.name.clone(),
+        format!("[{:.3}, {:.3}]", joint.position_limits[0], joint.position_limits[1]),
+        maybe(joint.velocity_limit),
+        maybe(joint.gear_ratio),
+        format!("{:.5}", joint.armature),
+        format!("{}, {}, {}", viscous.v1, viscous.v2, viscous.v3),
+    ]
+}
+
+fn physicality_words(physicality: &Physicality, robot: &Robot) -> String {
+    match physicality {
+        Physicality::Links { least_pivot } => format!(
+            "physical: the mass matrix is positive definite everywhere, proved link by link; no joint has less than {least_pivot:.3e} kg m^2"
+        ),
+        Physicality::Searched { positions, joint, pivot, q } => format!(
+            "no sign of an unphysical robot: the mass matrix is positive definite at {positions} positions searched (no proof); \
+             least {pivot:.4} kg m^2 about {} at q = {q:.3?}",
+            robot.joints()[*joint].name
+        ),
+    }
+}

@@ -1,0 +1,180 @@
+//! Results in words and tables.
+
+use std::fmt::Write;
+
+use reachtube::Model;
+use reachtube::conform::{Check, Place, Trust};
+use reachtube::data::{Group, Inspection};
+
+/// A table with right-aligned columns, the first left-aligned.
+pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
+        cells.chain([header[column].chars().count()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..header.len()).map(width).collect();
+    let line = |cells: Vec<&str>| {
+        let aligned = cells.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
+            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        format!("  {}\n", aligned.collect::<Vec<_>>().join("   ").trim_end())
+    };
+    let mut text = line(header.to_vec());
+    rows.iter().for_each(|row| text.push_str(&line(row.iter().map(String::as_str).collect())));
+    text
+}
+
+/// The result of `conform`, with a table like Table II of the paper.
+pub fn model(model: &Model) -> String {
+    let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
+    let mut text = String::new();
+    let verdict = if model.verified { "conformant" } else { "NOT PROVED conformant" };
+    let _ = writeln!(
+        text,
+        "{verdict}: {runs} recordings in {} suites, {} of {} rows proved with directed rounding (hull, at samples)",
+        model.data.suites.len(),
+        model.proof.proved,
+        model.proof.rows
+    );
+    let gap = (model.cost - model.cost_lower_bound) / model.cost.max(f64::MIN_POSITIVE);
+    let _ = writeln!(text, "cost {:.6}, at most {gap:.1e} above the optimum by the solver's dual bound\n", model.cost);
+    text.push_str(&sets(model));
+    let _ = writeln!(text, "\n{} rows touch the reachable set:", model.tight.len());
+    text.push_str(&places(&model.tight, 6));
+    let _ = writeln!(text, "\n{}", trust(&model.trust, "touch the set"));
+    text
+}
+
+fn sets(model: &Model) -> String {
+    let n = model.joints();
+    let interval = |(low, high): (f64, f64)| format!("[{low:.4}, {high:.4}]");
+    let mut header = vec!["joint", "X0 q [rad]", "X0 qd [rad/s]", "U [N m]"];
+    if model.noise_set.is_some() {
+        header.extend(["V q [rad]", "V qd [rad/s]"]);
+    }
+    let row = |joint: usize| {
+        let mut row = vec![
+            model.robot.joints[joint].name.clone(),
+            interval(model.initial_set.bounds(joint)),
+            interval(model.initial_set.bounds(n + joint)),
+            interval(model.input_set.bounds(joint)),
+        ];
+        if let Some(noise) = &model.noise_set {
+            row.extend([interval(noise.bounds(joint)), interval(noise.bounds(n + joint))]);
+        }
+        row
+    };
+    table(&header, &(0..n).map(row).collect::<Vec<_>>())
+}
+
+fn places(places: &[Place], most: usize) -> String {
+    let row = |place: &Place| {
+        vec![
+            place.run.clone(),
+            format!("{:.3} s", place.time),
+            place.state.clone(),
+            format!("{:?}", place.side).to_lowercase(),
+            format!("{:+.2e}", place.excess),
+        ]
+    };
+    let rows: Vec<_> = places.iter().take(most).map(row).collect();
+    let mut text = table(&["run", "time", "state", "side", "excess"], &rows);
+    if places.len() > most {
+        let _ = writeln!(text, "  and {} more (--json lists them)", places.len() - most);
+    }
+    text
+}
+
+fn trust(trust: &Trust, role: &str) -> String {
+    format!(
+        "the next motion leaves the set with probability at most {:.3} (confidence {:.0} %): {} motions, {} of them {role};\n{}",
+        trust.violation_probability,
+        100.0 * trust.confidence,
+        trust.motions,
+        trust.deciding,
+        trust.basis
+    )
+}
+
+/// The result of `check`.
+pub fn check(check: &Check) -> String {
+    let mut text = String::new();
+    let verdict = if check.conformant { "conformant" } else { "not conformant" };
+    let _ = writeln!(
+        text,
+        "{verdict}: {} recordings, {} of {} rows (suite, time, state) outside the reachable set\n",
+        check.runs, check.violations.count, check.rows
+    );
+    let row = |suite: &reachtube::conform::SuiteCheck| {
+        vec![
+            suite.suite.clone(),
+            suite.runs.to_string(),
+            suite.rows.to_string(),
+            suite.violations.count.to_string(),
+            suite.violations.worst.as_ref().map_or_else(|| "-".into(), witness),
+        ]
+    };
+    let rows: Vec<_> = check.suites.iter().map(row).collect();
+    text.push_str(&table(&["suite", "runs", "rows", "outside", "furthest"], &rows));
+    let _ = writeln!(text, "\n{}", trust(&check.trust, "leave the set"));
+    text
+}
+
+/// A place in one line.
+pub fn witness(place: &Place) -> String {
+    let unit = if place.state.starts_with("qd") { "rad/s" } else { "rad" };
+    format!(
+        "{} at {:.3} s: joint {}, {} {:.3e} {unit} beyond the {} side",
+        place.run,
+        place.time,
+        place.joint,
+        place.state,
+        place.excess,
+        format!("{:?}", place.side).to_lowercase()
+    )
+}
+
+/// The result of `inspect`.
+pub fn inspection(inspection: &Inspection) -> String {
+    let mut text = format!("{}: {} recordings of {} joints\n", inspection.folder, inspection.runs, inspection.joints);
+    for group in &inspection.groups {
+        text.push('\n');
+        text.push_str(&group_words(group));
+    }
+    text
+}
+
+fn group_words(group: &Group) -> String {
+    let [fewest, most] = group.samples;
+    let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
+    let rate = match group.step {
+        Some(step) => format!("every {step} s"),
+        None => format!("every {:.4} to {:.4} s", group.steps[0], group.steps[1]),
+    };
+    let kind = if group.suite { "suite" } else { "no suite:" };
+    let motion = group.motion.as_ref().map_or_else(String::new, |motion| format!(" (motion {motion})"));
+    let torque = if group.same_torque { "the same torque in all" } else { "torques differ" };
+    let mut text = format!(
+        "{kind} {}{motion}: {} runs of {samples} samples {rate}, {:.3} s, {torque}\n",
+        group.name, group.runs, group.duration
+    );
+    let row = |(index, joint): (usize, &reachtube::data::JointSummary)| {
+        vec![
+            (index + 1).to_string(),
+            format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1]),
+            format!("{:.3}", joint.speed),
+            format!("{:.2}", joint.torque),
+            format!("{:.4}", joint.start_spread),
+            format!("{:.4}", joint.end_spread),
+            joint.drift.map_or_else(|| "-".into(), |drift| format!("{drift:+.2}")),
+            format!("{:.0} %", 100.0 * joint.sticking),
+            format!("{:.1e}", joint.integral_gap),
+        ]
+    };
+    let rows: Vec<_> = group.joints.iter().enumerate().map(row).collect();
+    let header = [
+        "joint", "q [rad]", "|qd| [rad/s]", "|tau| [N m]", "start spread", "end spread", "drift", "sticks", "q - int qd",
+    ];
+    text.push_str(&table(&header, &rows));
+    text
+}
