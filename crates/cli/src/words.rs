@@ -116,7 +116,12 @@ pub fn check(check: &Check) -> String {
     };
     let rows: Vec<_> = check.suites.iter().map(row).collect();
     text.push_str(&table(&["suite", "runs", "rows", "outside", "furthest"], &rows));
-    let _ = writeln!(text, "\n{}", trust(&check.trust, "leave the set"));
+    match &check.trust {
+        Some(held_out) => {
+            let _ = writeln!(text, "\n{}", trust(held_out, "leave the set"));
+        }
+        None => text.push_str("\nthe model was fitted to some of these recordings: this says nothing about the next motion\n"),
+    }
     text
 }
 

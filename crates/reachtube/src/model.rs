@@ -1,5 +1,6 @@
 //! The model file: what `conform` found, and all that is needed to use it and to trace it back.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use nalgebra::{DMatrix, DVector};
@@ -203,6 +204,13 @@ impl Model {
             input_set: self.input_set.clone(),
             noise_set: self.noise_set.clone(),
         }
+    }
+
+    /// Whether one of these recordings, by its SHA-256, is among those that the model was fitted to.
+    pub fn was_fitted_to(&self, recordings: &Recordings) -> bool {
+        let fitted: HashSet<&str> =
+            self.data.suites.iter().flat_map(|suite| &suite.runs).map(|run| run.sha256.as_str()).collect();
+        recordings.suites.iter().flat_map(|suite| &suite.runs).any(|run| fitted.contains(run.sha256.as_str()))
     }
 
     /// Number of joints n.

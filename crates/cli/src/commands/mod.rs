@@ -73,10 +73,9 @@ impl Opened {
     }
 
     fn check(&self) -> Result<Check> {
-        let (system, sets) = (self.model.system()?, self.model.sets());
         let bar = Progress::new("checking");
         let show = |done: usize, total: usize| bar.show(done, total);
-        check_recordings(&self.robot, &system, &sets, &self.data, &self.suites, &self.settings, &show)
+        check_recordings(&self.model, &self.data, &self.suites, &self.settings, &show)
     }
 
     fn recordings(&self) -> Result<(Recordings, Grids)> {

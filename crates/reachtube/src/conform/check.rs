@@ -1,15 +1,15 @@
 //! Whether other recordings lie in the reachable set of a model, and where not: the answer comes with a witness.
 
-use reachtube_reach::{LinearSystem, ReachSets};
-use reachtube_robot::Robot;
+use reachtube_reach::ReachSets;
 use serde::{Deserialize, Serialize};
 
 use super::deviation::{Grids, suite_deviations};
 use super::recordings::{Progress, Recordings, Suite};
 use super::verify::{Row, check_rows};
-use super::{Settings, Side, Trust, UncertaintySets};
+use super::{Settings, Side, Trust};
 use crate::data::{DataSet, state_name};
 use crate::error::Result;
+use crate::model::Model;
 
 /// The answer of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,8 +24,8 @@ pub struct Check {
     pub runs: usize,
     /// (suite, time, state) rows checked.
     pub rows: usize,
-    /// What this says of the next motion, if these recordings were not used in the fit.
-    pub trust: Trust,
+    /// What this says of the next motion; nothing when a recording was used in the fit.
+    pub trust: Option<Trust>,
     /// What a user should know about the data.
     pub notes: Vec<String>,
 }
@@ -107,7 +107,8 @@ impl Violations {
     }
 }
 
-/// Checks the suites `names` of `data` (all when none is named) against the reachable set of `system` with `sets`.
+/// Checks the suites `names` of `data` (all when none is named) against the reachable set of `model`. `settings` say how the recordings are read; they are those of the
+/// model but for what the torques are, and what part of the recordings is used.
 ///
 /// # Guarantee
 ///
@@ -118,16 +119,15 @@ impl Violations {
 ///
 /// Defects of the recordings, or an unknown suite. A violation is no error.
 pub fn check(
-    robot: &Robot,
-    system: &LinearSystem,
-    sets: &UncertaintySets,
+    model: &Model,
     data: &DataSet,
     names: &[String],
     settings: &Settings,
     progress: Progress,
 ) -> Result<Check> {
-    let recordings = Recordings::read(data, names, robot, settings, progress)?;
-    let grids = Grids::new(&recordings, system, settings.disturbance)?;
+    let (robot, system, sets) = (model.robot()?, model.system()?, model.sets());
+    let recordings = Recordings::read(data, names, &robot, settings, progress)?;
+    let grids = Grids::new(&recordings, &system, settings.disturbance)?;
     let reach: Vec<ReachSets> = grids
         .as_slice()
         .iter()
@@ -142,16 +142,16 @@ pub fn check(
             violations: Violations::none(),
             violating_runs: Vec::new(),
         };
-        for deviation in suite_deviations(data, robot, settings, &grids, suite)? {
+        for deviation in suite_deviations(data, &robot, settings, &grids, suite)? {
             let grid = &grids.as_slice()[deviation.grid];
             let mut sides = Sides::default();
-            check_rows(grid, &reach[deviation.grid], sets, settings.states, &deviation, |row| {
+            check_rows(grid, &reach[deviation.grid], &sets, settings.states, &deviation, |row| {
                 sides.take(row, &mut result, data, suite, robot.joint_count());
             });
         }
         suites.push(result);
     }
-    Ok(summary(&recordings, suites))
+    Ok(summary(&recordings, suites, model))
 }
 
 /// The two sides of a (time, state) row come one after the other and count once.
@@ -179,7 +179,7 @@ impl Sides {
     }
 }
 
-fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>) -> Check {
+fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>, model: &Model) -> Check {
     let mut violations = Violations::none();
     for suite in &suites {
         violations.count += suite.violations.count;
@@ -197,9 +197,10 @@ fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>) -> Check {
         let chosen = suites.iter().filter(|suite| !violating || suite.violations.count > 0);
         chosen.map(|suite| motion(&suite.suite)).collect::<std::collections::BTreeSet<_>>().len()
     };
+    let held_out = !model.was_fitted_to(recordings);
     Check {
         conformant: violations.count == 0 && rows > 0,
-        trust: Trust::of_check(distinct(false), distinct(true), known),
+        trust: held_out.then(|| Trust::of_check(distinct(false), distinct(true), known)),
         runs: recordings.run_count(),
         notes: recordings.notes.clone(),
         violations,

@@ -52,18 +52,10 @@ pub fn page(sources: &Sources) -> Result<Page> {
         suites: figures,
         sets: vec![sets_table(model)],
         facts: facts(model),
-        trust: trust(model, check, is_fit(sources)),
+        trust: vec![trust(model, check)],
         caution: caution(model),
         notes: check.notes.clone(),
     })
-}
-
-/// Whether the recordings are those that the model was fitted to.
-fn is_fit(sources: &Sources) -> bool {
-    let fitted: std::collections::BTreeSet<&str> =
-        sources.model.data.suites.iter().flat_map(|suite| suite.runs.iter().map(|run| run.sha256.as_str())).collect();
-    let mut runs = sources.recordings.suites.iter().flat_map(|suite| &suite.runs);
-    runs.any(|run| fitted.contains(run.sha256.as_str()))
 }
 
 fn verdict(model: &Model, check: &Check) -> Verdict {
@@ -87,7 +79,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
         "The grey band is an outer bound of the reachable set at the samples.".into(),
     ];
     let not_proved = vec![
-        "The recordings are compared with the set at samples; between samples only the model's own states are enclosed (the tube of `reach`).".into(),
+        "The recordings are compared with the set at samples; between samples only the model's own states are enclosed (the tube that the command reach writes).".into(),
         "The notion is the hull: each state for itself. Points inside the hull need not be reachable together.".into(),
     ];
     Verdict { ok: check.conformant, words, proved, not_proved }
@@ -145,17 +137,19 @@ fn word(setting: impl serde::Serialize) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_string)
 }
 
-fn trust(model: &Model, check: &Check, fit: bool) -> Vec<String> {
-    let trust = if fit { &model.trust } else { &check.trust };
-    let role = if fit { "touch the reachable set" } else { "leave the reachable set" };
-    vec![format!(
-        "The next motion leaves the reachable set with probability at most {:.3}, at confidence {:.0} %: {} independent motions, of which {} {role}. {}.",
+fn trust(model: &Model, check: &Check) -> String {
+    let (trust, role) = match &check.trust {
+        Some(held_out) => (held_out, "leave the reachable set"),
+        None => (&model.trust, "touch the reachable set"),
+    };
+    format!(
+        "The next motion leaves the reachable set with probability at most {:.3}, at confidence {:.0} %: {} independent motions, of which {} {role}; {}.",
         trust.violation_probability,
         100.0 * trust.confidence,
         trust.motions,
         trust.deciding,
         trust.basis
-    )]
+    )
 }
 
 fn caution(model: &Model) -> Vec<String> {
