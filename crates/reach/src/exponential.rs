@@ -5,7 +5,7 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_down};
 
 use crate::LinearSystem;
-use crate::matrix::{IntervalMatrix, IntervalVector, magnitude, point};
+use crate::matrix::{IntervalMatrix, IntervalVector, add_product, magnitude, point, product};
 
 /// Norm of A h below which the Taylor series is summed; above it, h is halved and the result squared.
 const SERIES_NORM: f64 = 0.5;
@@ -32,14 +32,14 @@ pub fn step(system: &LinearSystem, h: Interval) -> Step {
     let n = system.states();
     let x = point(system.a()) * small;
     let phi1 = phi1_series(&x, &connected(system.a()));
-    let mut phi = IntervalMatrix::identity(n, n) + &x * &phi1;
+    let mut phi = IntervalMatrix::identity(n, n) + product(&x, &phi1);
     let integral = phi1 * small;
-    let mut gamma = &integral * point(system.b());
-    let mut drift = &integral * system.drift().map(Interval::point);
+    let mut gamma = product(&integral, &point(system.b()));
+    let mut drift = integral * system.drift().map(Interval::point);
     for _ in 0..halvings {
-        gamma = &gamma + &phi * &gamma;
+        gamma += product(&phi, &gamma);
         drift = &drift + &phi * &drift;
-        phi = &phi * &phi;
+        phi = product(&phi, &phi);
     }
     Step { phi, gamma, drift }
 }
@@ -64,20 +64,20 @@ fn phi1_series(x: &IntervalMatrix, connected: &DMatrix<bool>) -> IntervalMatrix 
     let mut sum = identity.clone();
     for i in (1..=degree).rev() {
         let divisor = Interval::point(i as f64 + 1.0);
-        sum = &identity + (x * sum).map(|entry| entry / divisor);
+        sum = &identity + product(x, &sum).map(|entry| entry / divisor);
     }
     let symmetric = Interval::centered(0.0, remainder);
     sum.zip_map(connected, |entry, linked| if linked { entry + symmetric } else { entry })
 }
 
 /// The degree at which the series may stop, and an upper bound of what it leaves out:
-/// Σ_{i>p} xⁱ/(i+1)! <= x^{p+1}/(p+2)! / (1 - x/(p+3)).
+/// Σ_{i>p} xⁱ/(i+1)! <= x^{p+1}/(p+2)! / (1 - x/(p+3)), for x < p + 3.
 fn truncation(norm: f64) -> (usize, f64) {
-    let mut term = norm / 2.0;
+    let mut term = div_up(norm, 2.0);
     for degree in 1..60 {
         term = div_up(mul_up(term, norm), degree as f64 + 2.0);
         let tail = div_up(term, sub_down(1.0, div_up(norm, degree as f64 + 3.0)));
-        if tail <= f64::EPSILON / 256.0 {
+        if (0.0..=f64::EPSILON / 256.0).contains(&tail) {
             return (degree, tail);
         }
     }
@@ -105,6 +105,9 @@ fn connected(a: &DMatrix<f64>) -> DMatrix<bool> {
 }
 
 /// The derivative ẋ = A x + B u + d, enclosed for every x and u in the vectors given.
-pub(crate) fn derivative(system: &LinearSystem, x: &IntervalVector, u: &IntervalVector) -> IntervalVector {
-    point(system.a()) * x + point(system.b()) * u + system.drift().map(Interval::point)
+pub(crate) fn derivative(system: &LinearSystem, x: &[Interval], u: &[Interval]) -> IntervalVector {
+    let mut sum = system.drift().map(Interval::point);
+    add_product(sum.as_mut_slice(), &point(system.a()), x);
+    add_product(sum.as_mut_slice(), &point(system.b()), u);
+    sum
 }

@@ -1,18 +1,24 @@
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::exponential::{Step, step};
 use crate::matrix::{
-    IntervalMatrix, IntervalVector, accumulate_upward, ball, magnitude, midpoint, mul_upward, point,
+    IntervalMatrix, IntervalVector, accumulate_upward, add_product, ball, magnitude, midpoint, mul_upward, point,
+    product, radius,
 };
 use crate::{LinearSystem, ReachError, TimeGrid, Trajectory};
 
 /// e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, and the solutions of the system on it.
 ///
 /// Intervals are never multiplied step after step, which would let them grow with every step. The steps are done in floating point, the
-/// defect of each is enclosed, δ_k = Ẽ_k Φ_k - Ẽ_{k+1}, and the error is e_k = Σ_j δ_j e^{A(t_k - t_{j+1})}, hence |e_k| <= (Σ_j |δ_j|) M
-/// with M >= |e^{Aτ}| over the whole horizon: it grows linearly. M itself is found a posteriori (see `bound_exponential`).
+/// defect of each is bounded, δ_k = Ẽ_k Φ_k - Ẽ_{k+1}, and the error of Ẽ_k is e_k = Σ_j δ_j e^{A(t_k - t_{j+1})}. Two bounds hold, and the
+/// smaller one is taken entry by entry:
+///
+/// - |e_k| <= (Σ_j |δ_j|) M with M >= |e^{Aτ}| over the whole horizon, which grows linearly (M is found a posteriori, see
+///   `bound_exponential`);
+/// - |e_{k+1}| <= |e_k| |Φ_k| + |δ_k|, which follows the growth or decay of a system whose entries keep their signs.
 ///
 /// # Examples
 ///
@@ -44,16 +50,17 @@ impl Propagation {
     /// [`ReachError::Horizon`] when no finite enclosure is found.
     pub fn new(system: &LinearSystem, grid: &TimeGrid) -> Result<Self, ReachError> {
         let steps = steps_of(system, grid);
-        let phi = |k: usize| if grid.step().is_some() { &steps[0] } else { &steps[k] };
-        let rounded = RoundedPowers::new(system.states(), grid.len(), &phi);
-        let longest = Interval::new(0.0, grid.longest_step()).unwrap_or(Interval::ENTIRE);
-        let within_step = magnitude(&step(system, longest).phi);
-        let horizon = || ReachError::Horizon { time: grid.times().last().copied().unwrap_or(0.0) };
-        let bound = bound_exponential(&rounded, &within_step).ok_or_else(horizon)?;
-        let (exponential, integral) = enclose(system, rounded, &phi, &bound);
+        let step_at = |k: usize| if grid.step().is_some() { &steps[0] } else { &steps[k] };
+        let powers = RoundedPowers::new(system.states(), grid.len(), &step_at);
+        let longest = Interval::ZERO.hull(Interval::point(grid.longest_step()));
+        let bound = bound_exponential(&powers, &magnitude(&step(system, longest).phi));
+        let errors = powers.errors(&step_at, &bound);
+        let mut exponential: Vec<_> = powers.mid.iter().zip(&errors).map(|(mid, rad)| ball(mid, rad)).collect();
+        exponential.truncate(grid.len());
+        let integral = integrals(system, &exponential, &step_at);
         let finite = |m: &IntervalMatrix| m.iter().all(|x| x.mag().is_finite());
-        if !exponential.iter().all(finite) || !integral.iter().all(finite) {
-            return Err(horizon());
+        if !exponential.iter().chain(&integral).all(finite) {
+            return Err(ReachError::Horizon { time: grid.times().last().copied().unwrap_or(0.0) });
         }
         Ok(Self { system: system.clone(), grid: grid.clone(), steps, exponential, integral, bound })
     }
@@ -92,28 +99,26 @@ impl Propagation {
     }
 
     /// The solution from `start` (N) under the piecewise constant input `inputs` (one row of m entries a sample, in effect until the next
-    /// sample; the row of the last sample is not used). Its length is the number of rows, at most that of the grid.
+    /// sample; the row of the last sample is not used). Its length is the number of rows, at most that of the grid (without inputs,
+    /// that of the grid).
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding: for every start in `start`, the exact solution at each sample lies in the trajectory.
     pub fn solve(&self, start: &IntervalVector, inputs: &[f64]) -> Trajectory {
         let (n, m) = (self.system.states(), self.system.inputs());
-        let samples = if m == 0 { self.grid.len() } else { inputs.len() / m };
+        let rows = inputs.len().checked_div(m).unwrap_or(usize::MAX);
+        let samples = rows.min(self.grid.len());
         let mut mid: Vec<f64> = start.iter().map(|x| x.mid()).collect();
-        let mut defect: Vec<f64> = start.iter().map(|x| x.rad()).collect();
+        let mut error = SolutionError::new(start);
         let mut states = Vec::with_capacity(samples * n);
-        let mut next = vec![Interval::point(0.0); n];
+        let mut next = vec![Interval::ZERO; n];
         for k in 0..samples {
-            let spread = |i: usize| dot_upward(&self.bound, i, &defect);
-            states.extend((0..n).map(|i| Interval::centered(mid[i], spread(i))));
-            if k + 1 == samples {
-                break;
-            }
-            advance(self.step(k), &mid, &inputs[k * m..(k + 1) * m], &mut next);
-            for i in 0..n {
-                mid[i] = next[i].mid();
-                defect[i] = add_up(defect[i], next[i].rad());
+            states.extend(mid.iter().zip(&error.radius).map(|(&mid, &rad)| Interval::centered(mid, rad)));
+            if k + 1 < samples {
+                advance(self.step(k), &mid, &inputs[k * m..(k + 1) * m], &mut next);
+                error.advance(self, k, &next);
+                mid.iter_mut().zip(&next).for_each(|(mid, next)| *mid = next.mid());
             }
         }
         Trajectory::new(n, states)
@@ -122,85 +127,138 @@ impl Propagation {
 
 /// One step of the solution, enclosed: Φ x + Γ u + γ.
 fn advance(step: &Step, x: &[f64], u: &[f64], next: &mut [Interval]) {
-    next.iter_mut().zip(&step.drift).for_each(|(entry, drift)| *entry = *drift);
-    for (j, &value) in x.iter().enumerate() {
-        next.iter_mut().zip(step.phi.column(j).iter()).for_each(|(entry, &phi)| *entry += phi * value);
-    }
-    for (j, &value) in u.iter().enumerate() {
-        next.iter_mut().zip(step.gamma.column(j).iter()).for_each(|(entry, &gamma)| *entry += gamma * value);
+    next.copy_from_slice(step.drift.as_slice());
+    for (matrix, vector) in [(&step.phi, x), (&step.gamma, u)] {
+        for (column, &value) in matrix.column_iter().zip(vector) {
+            let value = Interval::point(value);
+            next.iter_mut().zip(column.iter()).filter(|(_, x)| **x != Interval::ZERO).for_each(|(sum, &x)| *sum += x * value);
+        }
     }
 }
 
-fn dot_upward(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
-    vector.iter().enumerate().fold(0.0, |sum, (j, &x)| add_up(sum, mul_up(matrix[(row, j)], x)))
+/// The error of a floating-point solution, bounded in the same two ways as that of the exponential.
+struct SolutionError {
+    start: Vec<f64>,
+    /// Sum of the defects so far.
+    defects: Vec<f64>,
+    /// The smaller of the two bounds.
+    radius: Vec<f64>,
+}
+
+impl SolutionError {
+    fn new(start: &IntervalVector) -> Self {
+        let radius: Vec<f64> = start.iter().map(|x| x.rad()).collect();
+        Self { start: radius.clone(), defects: vec![0.0; radius.len()], radius }
+    }
+
+    /// To sample k + 1, where the rounded step was `next`.
+    fn advance(&mut self, propagation: &Propagation, k: usize, next: &[Interval]) {
+        for (defect, next) in self.defects.iter_mut().zip(next) {
+            *defect = add_up(*defect, next.rad());
+        }
+        let (phi, exponential) = (&propagation.step(k).phi, &propagation.exponential[k + 1]);
+        let bound = |i: usize| {
+            let followed = add_up(dot_upward(phi.row(i).iter().map(|x| x.mag()), &self.radius), next[i].rad());
+            let start = dot_upward(exponential.row(i).iter().map(|x| x.mag()), &self.start);
+            followed.min(add_up(start, dot_upward(propagation.bound.row(i).iter().copied(), &self.defects)))
+        };
+        self.radius = (0..next.len()).map(bound).collect();
+    }
+}
+
+fn dot_upward(row: impl Iterator<Item = f64>, vector: &[f64]) -> f64 {
+    row.zip(vector).fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y)))
 }
 
 fn steps_of(system: &LinearSystem, grid: &TimeGrid) -> Vec<Step> {
-    let count = match (grid.step(), grid.len()) {
-        (Some(_), _) => 1,
-        (None, samples) => samples.saturating_sub(1),
-    };
-    (0..count).map(|k| step(system, grid.interval(k))).collect()
+    let count = if grid.step().is_some() { 1 } else { grid.len().saturating_sub(1) };
+    (0..count).into_par_iter().map(|k| step(system, grid.interval(k))).collect()
 }
 
-/// Floating-point e^{A t_k} and the running sum of its defects.
+/// Floating-point e^{A t_k}, and bounds of the defects |δ_k| of its steps.
 struct RoundedPowers {
     mid: Vec<DMatrix<f64>>,
-    /// Σ_{j<k} |δ_j|, rounded upward.
     defects: Vec<DMatrix<f64>>,
 }
 
 impl RoundedPowers {
-    fn new<'a>(states: usize, samples: usize, phi: &impl Fn(usize) -> &'a Step) -> Self {
+    fn new<'a>(states: usize, samples: usize, step_at: &impl Fn(usize) -> &'a Step) -> Self {
         let mut mid = vec![DMatrix::identity(states, states)];
-        let mut defects = vec![DMatrix::zeros(states, states)];
+        let mut defects = Vec::new();
         for k in 1..samples {
-            let product = point(&mid[k - 1]) * &phi(k - 1).phi;
-            let mut defect = defects[k - 1].clone();
-            accumulate_upward(&mut defect, &product.map(|x| x.rad()));
-            mid.push(midpoint(&product));
-            defects.push(defect);
+            let phi = &step_at(k - 1).phi;
+            defects.push(mul_upward(&mid[k - 1].abs(), &product_error(phi)));
+            mid.push(&mid[k - 1] * midpoint(phi));
         }
         Self { mid, defects }
     }
+
+    /// The bounds of |e_k|.
+    fn errors<'a>(&self, step_at: &impl Fn(usize) -> &'a Step, bound: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
+        let mut total = self.mid[0].map(|_| 0.0);
+        let mut errors = vec![total.clone()];
+        for (k, defect) in self.defects.iter().enumerate() {
+            accumulate_upward(&mut total, defect);
+            let mut followed = mul_upward(&errors[k], &magnitude(&step_at(k).phi));
+            accumulate_upward(&mut followed, defect);
+            errors.push(followed.zip_map(&mul_upward(&total, bound), f64::min));
+        }
+        errors
+    }
 }
 
-/// M >= |e^{Aτ}| entrywise for every τ of the horizon.
+/// W >= 0 such that the floating-point product of any matrix X with the midpoint of Φ is within |X| W of the exact X Φ.
+///
+/// W = (N + 1) u |mid Φ| + rad Φ with the unit roundoff u: the sum of N products, in any order and with or without fused operations, has
+/// an error of at most N u / (1 - N u) times the sum of the absolute products (Higham, Accuracy and Stability of Numerical Algorithms,
+/// section 3.1). Where a product underflows, the rounding of |X| W by at least one unit for each product covers it.
+fn product_error(phi: &IntervalMatrix) -> DMatrix<f64> {
+    let relative = (phi.nrows() + 1) as f64 * f64::EPSILON / 2.0;
+    phi.map(|x| add_up(mul_up(relative, x.mid().abs()), x.rad()))
+}
+
+/// M >= |e^{Aτ}| entrywise for every τ of the horizon; infinite when none is found.
 ///
 /// With P >= |e^{As}| over one step, D = Σ|δ_j| and M̃ = max_k |Ẽ_k|, any M with (M̃ + D M) P <= M bounds it, by induction over the samples:
-/// |e^{A t_k}| <= |Ẽ_k| + D M as long as M holds before t_k, and between samples another factor P covers it.
-fn bound_exponential(powers: &RoundedPowers, within_step: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let largest = powers.mid.iter().skip(1).fold(powers.mid[0].abs(), |max, e| max.sup(&e.abs()));
-    let defects = powers.defects.last()?;
+/// |e^{A t_k}| <= |Ẽ_k| + D M as long as M holds up to t_k, and from there to the next sample another factor P covers it. The left side
+/// of the inequality then is such an M as well, and a smaller one.
+fn bound_exponential(powers: &RoundedPowers, within_step: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut largest = powers.mid[0].clone();
+    let mut defects = powers.mid[0].map(|_| 0.0);
+    for (mid, defect) in powers.mid.iter().skip(1).zip(&powers.defects) {
+        largest.zip_apply(mid, |max, x| *max = max.max(x.abs()));
+        accumulate_upward(&mut defects, defect);
+    }
     let mut candidate = mul_upward(&largest, within_step) * 2.0;
     for _ in 0..8 {
-        let mut inside = mul_upward(defects, &candidate);
+        let mut inside = mul_upward(&defects, &candidate);
         accumulate_upward(&mut inside, &largest);
         let image = mul_upward(&inside, within_step);
         if image.iter().zip(&candidate).all(|(i, c)| i <= c && c.is_finite()) {
-            return Some(candidate);
+            return image;
         }
         candidate = candidate.sup(&image) * 2.0;
     }
-    None
+    candidate.map(|_| f64::INFINITY)
 }
 
-fn enclose<'a>(
+/// Γ(t_{k+1}) = Γ(t_k) + e^{A t_k} Γ(h_k), again with the error apart from a floating-point sum.
+fn integrals<'a>(
     system: &LinearSystem,
-    powers: RoundedPowers,
-    phi: &impl Fn(usize) -> &'a Step,
-    bound: &DMatrix<f64>,
-) -> (Vec<IntervalMatrix>, Vec<IntervalMatrix>) {
-    let exponential: Vec<IntervalMatrix> =
-        powers.mid.iter().zip(&powers.defects).map(|(mid, d)| ball(mid, &mul_upward(d, bound))).collect();
+    exponential: &[IntervalMatrix],
+    step_at: &(impl Fn(usize) -> &'a Step + Sync),
+) -> Vec<IntervalMatrix> {
+    let increment = |k: usize| product(&exponential[k], &step_at(k).gamma);
+    let increments: Vec<_> = (0..exponential.len().saturating_sub(1)).into_par_iter().map(increment).collect();
     let zero = DMatrix::zeros(system.states(), system.inputs());
     let (mut mid, mut rad) = (zero.clone(), zero);
     let mut integral = vec![ball(&mid, &rad)];
-    for k in 1..exponential.len() {
-        let sum = point(&mid) + &exponential[k - 1] * &phi(k - 1).gamma;
+    for increment in increments {
+        let sum = point(&mid) + increment;
         mid = midpoint(&sum);
-        accumulate_upward(&mut rad, &sum.map(|x| x.rad()));
+        accumulate_upward(&mut rad, &radius(&sum));
         integral.push(ball(&mid, &rad));
     }
-    (exponential, integral)
+    integral.truncate(exponential.len());
+    integral
 }

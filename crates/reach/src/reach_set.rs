@@ -1,6 +1,6 @@
 use reachtube_scalar::Interval;
 
-use crate::matrix::IntervalMatrix;
+use crate::matrix::{IntervalMatrix, absolute, add_product, points};
 use crate::{Hyperrectangle, Propagation};
 
 /// An enclosed solution at the samples of a grid.
@@ -56,15 +56,18 @@ impl ReachSets {
         input_set: &Hyperrectangle,
     ) -> Self {
         let dimension = propagation.system().states();
-        let mut sets = Self { dimension, center: Vec::new(), radius: Vec::new() };
+        let (initial_center, initial_radius) = (points(&initial_set.center), points(&initial_set.radius));
+        let (input_center, input_radius) = (points(&input_set.center), points(&input_set.radius));
+        let mut center = vec![Interval::ZERO; gains.len() * dimension];
+        let mut radius = center.clone();
         for (k, gain) in gains.iter().enumerate() {
-            let (e, g) = (propagation.exponential(k), propagation.integral(k));
-            for i in 0..dimension {
-                sets.center.push(dot(e, i, &initial_set.center) + dot(g, i, &input_set.center));
-                sets.radius.push(dot_absolute(e, i, &initial_set.radius) + dot(gain, i, &input_set.radius));
-            }
+            let states = k * dimension..(k + 1) * dimension;
+            add_product(&mut center[states.clone()], propagation.exponential(k), &initial_center);
+            add_product(&mut center[states.clone()], propagation.integral(k), &input_center);
+            add_product(&mut radius[states.clone()], &absolute(propagation.exponential(k)), &initial_radius);
+            add_product(&mut radius[states], gain, &input_radius);
         }
-        sets
+        Self { dimension, center, radius }
     }
 
     /// Number of samples.
@@ -122,12 +125,4 @@ impl ReachSets {
     pub fn lower_inner(&self, k: usize, i: usize) -> f64 {
         (self.center(k, i) - self.radius(k, i)).hi()
     }
-}
-
-fn dot(matrix: &IntervalMatrix, row: usize, vector: &[f64]) -> Interval {
-    vector.iter().enumerate().fold(Interval::ZERO, |sum, (j, &x)| sum + matrix[(row, j)] * x)
-}
-
-fn dot_absolute(matrix: &IntervalMatrix, row: usize, vector: &[f64]) -> Interval {
-    vector.iter().enumerate().fold(Interval::ZERO, |sum, (j, &x)| sum + matrix[(row, j)].abs() * x)
 }

@@ -12,14 +12,18 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
 };
+use nalgebra::{DMatrix, DVector};
 use reachtube_reach::Hyperrectangle;
 
 use super::deviation::{Deviation, Grid};
 use super::{Centre, Envelope, Noise, Settings, Side, UncertaintySets};
 use crate::error::{Error, Result};
 
-/// A row counts as violated beyond this part of the largest deviation.
+/// A row counts as violated beyond this part of its own size.
 const TOLERANCE: f64 = 1e-10;
+
+/// What is below this part of the largest deviation is rounding.
+const ROUNDING: f64 = 1e-14;
 
 /// The horizon is cut into this many windows; each hands in its worst row when it is violated.
 const WINDOWS: usize = 24;
@@ -174,10 +178,11 @@ impl<'a> Program<'a> {
         let mut worst: std::collections::BTreeMap<(usize, usize, usize, bool), (f64, Place)> = Default::default();
         for place in self.places(1) {
             let excess = self.excess(place, &unknowns);
-            if excess <= TOLERANCE * self.scale || known.contains(&place) {
+            let (b, k, i, side) = place;
+            let size = self.bound(place).abs().max(dot(self.row(b, k, i).1, &unknowns.radius));
+            if excess <= (TOLERANCE * size).max(ROUNDING * self.scale) || known.contains(&place) {
                 continue;
             }
-            let (b, k, i, side) = place;
             let window = k * WINDOWS / self.blocks[b].envelope.len();
             let entry = worst.entry((b, window, i, side == Side::Upper)).or_insert((excess, place));
             if excess > entry.0 {
@@ -218,7 +223,7 @@ impl<'a> Program<'a> {
         layout.restrictions(self.settings.centre, &mut triplets, &mut bounds, &unit);
         let objective: Vec<f64> =
             layout.cost.iter().enumerate().map(|(j, w)| if layout.is_center(j) { 0.0 } else { w * unit[j] / largest_cost }).collect();
-        let (x, dual) = solve_cone(&objective, triplets, &bounds)?;
+        let (x, dual) = solve_cone(&objective, &triplets, &bounds)?;
         let unknowns: Vec<f64> = x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
         let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
         Ok((layout.sets(&unknowns, self.settings), lower_bound))
@@ -238,7 +243,7 @@ impl<'a> Program<'a> {
         let ratio = |place: Place| {
             let (b, k, i, _) = place;
             let given = dot(self.row(b, k, i).1, &unknowns.radius);
-            if given > TOLERANCE * self.scale { 1.0 + self.excess(place, &unknowns) / given } else { 1.0 }
+            if given > ROUNDING * self.scale { 1.0 + self.excess(place, &unknowns) / given } else { 1.0 }
         };
         self.places(1).map(ratio).fold(1.0, f64::max)
     }
@@ -368,9 +373,9 @@ impl Triplets {
 }
 
 /// min objective·x subject to A x <= bounds: x and the dual objective.
-fn solve_cone(objective: &[f64], matrix: Triplets, bounds: &[f64]) -> Result<(Vec<f64>, f64)> {
+fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<(Vec<f64>, f64)> {
     let (m, n) = (matrix.count, objective.len());
-    let a = CscMatrix::new_from_triplets(m, n, matrix.rows, matrix.columns, matrix.values);
+    let a = CscMatrix::new_from_triplets(m, n, matrix.rows.clone(), matrix.columns.clone(), matrix.values.clone());
     let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(m)];
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
@@ -386,12 +391,38 @@ fn solve_cone(objective: &[f64], matrix: Triplets, bounds: &[f64]) -> Result<(Ve
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
-            Ok((solver.solution.x, solver.solution.obj_val_dual))
+            let solution = &solver.solution;
+            let active: Vec<bool> = solution.z.iter().zip(&solution.s).map(|(z, s)| z > s).collect();
+            Ok((polish(matrix, bounds, &active, &solution.x), solution.obj_val_dual))
         }
         status => Err(Error::Program(format!(
             "the solver stopped with {status:?}; check that the recordings and the robot belong together"
         ))),
     }
+}
+
+/// Moves x the least way onto the active rows, those whose multiplier exceeds their slack. An interior-point solution meets each of them to about 1e-9 of the largest row, which is
+/// much for a small one; a vertex meets all to rounding.
+fn polish(matrix: &Triplets, bounds: &[f64], active: &[bool], x: &[f64]) -> Vec<f64> {
+    let place: Vec<Option<usize>> = active
+        .iter()
+        .scan(0, |count, &active| {
+            *count += usize::from(active);
+            Some(active.then(|| *count - 1))
+        })
+        .collect();
+    let count = place.iter().flatten().count();
+    let mut rows = DMatrix::zeros(count, x.len());
+    for ((&row, &column), &value) in matrix.rows.iter().zip(&matrix.columns).zip(&matrix.values) {
+        if let Some(at) = place[row] {
+            rows[(at, column)] = value;
+        }
+    }
+    let wanted = DVector::from_iterator(count, bounds.iter().zip(active).filter(|(_, active)| **active).map(|(b, _)| *b));
+    let before = DVector::from_column_slice(x);
+    let residual = &wanted - &rows * &before;
+    let Ok(step) = rows.svd(true, true).solve(&residual, 1e-9) else { return x.to_vec() };
+    (before + step).data.into()
 }
 
 fn coefficients(grid: &Grid) -> Vec<f64> {

@@ -122,6 +122,8 @@ mod tests {
     #[test]
     fn friction_is_nominal_where_it_was_identified_and_falls_with_warmth() {
         assert_eq!(friction_share(IDENTIFIED_AT, VISCOUS_PER_KELVIN), 1.0);
-        assert!(friction_share(40.0, COULOMB_PER_KELVIN) < 1.0 && friction_share(COLD, COULOMB_PER_KELVIN) > 1.0);
+        assert!(
+            friction_share(40.0, COULOMB_PER_KELVIN) < 1.0 && friction_share(COLD, COULOMB_PER_KELVIN) > 1.0
+        );
     }
 }

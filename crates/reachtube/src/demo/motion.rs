@@ -46,7 +46,8 @@ impl Motion {
             joints.iter().map(|_| random.sign() * random.uniform(LEAST_TRAVEL, 1.0)).collect();
         let fastest = share.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
         let peak = random.uniform(PEAK_SPEED[0], PEAK_SPEED[1]);
-        let mut travel: Vec<f64> = share.iter().map(|s| s / fastest * peak * duration / QUINTIC_PEAK).collect();
+        let mut travel: Vec<f64> =
+            share.iter().map(|s| s / fastest * peak * duration / QUINTIC_PEAK).collect();
         let slack = joints.iter().zip(&travel).map(|(joint, travel)| {
             let speed = SPEED_SHARE * joint.velocity_limit.unwrap_or(f64::INFINITY);
             (2.0 * half_range(joint.position_limits)).min(speed * duration / QUINTIC_PEAK) / travel.abs()

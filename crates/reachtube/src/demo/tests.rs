@@ -1,0 +1,167 @@
+//! The recordings as a user has them.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+
+use super::hidden::{ENCODER_STEP, SCATTER_Q, SCATTER_QD};
+use super::*;
+use crate::conform::{Settings, conform};
+use crate::data::{DataSet, GapLimit, Run, Torque};
+
+fn small(seed: u64) -> DemoOptions {
+    DemoOptions { seed, motions: 2, held_out_motions: 1, start_points: 2, runs: 5, duration: 2.0 }
+}
+
+fn recorded(options: &DemoOptions) -> (tempfile::TempDir, RecordedDemo) {
+    let folder = tempfile::tempdir().unwrap();
+    let demo = record(&Robot::lwa4p(), options, folder.path()).unwrap();
+    (folder, demo)
+}
+
+/// Each file below the folder, and its bytes.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            let below = files(&path).into_iter();
+            found.extend(below.map(|(file, bytes)| (Path::new(path.file_name().unwrap()).join(file), bytes)));
+        } else {
+            found.insert(path.file_name().unwrap().into(), std::fs::read(&path).unwrap());
+        }
+    }
+    found
+}
+
+fn suites(folder: &Path) -> Vec<Vec<Run>> {
+    let data = DataSet::open(folder).unwrap();
+    let read = |index: &usize| data.read(*index, Some(6), GapLimit::Usual, None).unwrap();
+    data.suites().iter().map(|suite| suite.runs.iter().map(read).collect()).collect()
+}
+
+#[test]
+fn a_seed_gives_the_same_bytes_and_another_seed_others() {
+    let (once, again, other) = (recorded(&small(3)).0, recorded(&small(3)).0, recorded(&small(4)).0);
+    let bytes = files(once.path());
+    assert_eq!(bytes.len(), 4 * 5 + 2);
+    assert_eq!(bytes, files(again.path()));
+    let run = Path::new("M1a/M1a_01.csv");
+    assert_ne!(bytes[run], files(other.path())[run]);
+}
+
+#[test]
+fn the_folder_is_a_data_set() {
+    let (folder, demo) = recorded(&small(1));
+    assert_eq!(demo.training, ["M1a", "M1b"]);
+    assert_eq!(demo.check, ["M2a", "M2b"]);
+    assert_eq!(demo.runs, 20);
+    let text = std::fs::read_to_string(folder.path().join("M1a/M1a_01.csv")).unwrap();
+    let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6";
+    assert_eq!(text.lines().next(), Some(header));
+    assert_eq!(text.lines().count(), 1 + 451, "from a tenth of 2 s to their end, both included");
+    let data = DataSet::open(folder.path()).unwrap();
+    assert!(data.unlisted().is_empty());
+    for (index, entry) in data.runs().iter().enumerate() {
+        let run = data.read(index, Some(6), GapLimit::Usual, None).unwrap();
+        assert_eq!(entry.sha256.as_ref(), Some(&run.sha256));
+        assert!(entry.suite.as_ref().unwrap().starts_with(entry.motion.as_ref().unwrap()));
+    }
+}
+
+#[test]
+fn conformance_of_a_small_demo_is_verified() {
+    let (folder, demo) = recorded(&small(1));
+    let data = DataSet::open(folder.path()).unwrap();
+    let settings = Settings::new(Torque::Compensated, 6);
+    let result = conform(&Robot::lwa4p(), &data, &demo.training, &settings, &|_, _| {}).unwrap();
+    assert!(result.proof.verified);
+    assert_eq!(result.proof.runs, 10);
+    assert!(result.recordings.suites.iter().all(|suite| suite.shared.is_some()));
+    assert!(result.recordings.notes.iter().all(|note| !note.contains("SHA-256")));
+    let input_radius = result.sets.input_set.radius;
+    assert!(input_radius.iter().all(|r| (0.01..8.0).contains(r)), "{input_radius:?} N m");
+}
+
+#[test]
+fn runs_of_a_suite_have_one_input_and_their_temperature_rises() {
+    let (folder, _) = recorded(&small(2));
+    let all = suites(folder.path());
+    assert!(all.iter().all(|suite| suite.iter().all(|run| run.torques == suite[0].torques)));
+    assert_ne!(all[0][0].torques, all[2][0].torques);
+    let data = DataSet::open(folder.path()).unwrap();
+    for suite in data.suites() {
+        let temperature: Vec<f64> =
+            suite.runs.iter().map(|run| data.runs()[*run].temperature.unwrap()).collect();
+        assert!(temperature.windows(2).all(|pair| pair[0] < pair[1]), "{temperature:?} °C");
+    }
+}
+
+#[test]
+fn runs_drift_apart_with_the_order_of_recording() {
+    let (folder, _) = recorded(&small(1));
+    for suite in suites(folder.path()) {
+        let ends =
+            |joint: usize| suite.iter().map(move |run| run.q(run.len() - 1)[joint]).collect::<Vec<f64>>();
+        let monotone = (0..6).map(ends).filter(|q| q.is_sorted() || q.iter().rev().is_sorted());
+        let spread = monotone.map(|q| (q[4] - q[0]).abs()).fold(0.0, f64::max);
+        assert!((0.03..1.0).contains(&spread), "{spread} rad");
+    }
+}
+
+#[test]
+fn recordings_of_others_are_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let index = folder.path().join("runs.csv");
+    std::fs::write(&index, "file,suite\n").unwrap();
+    let error = record(&Robot::lwa4p(), &small(1), folder.path()).unwrap_err().to_string();
+    assert!(error.contains("runs.csv") && error.contains("give an empty folder"), "{error}");
+    assert_eq!(files(folder.path()).len(), 1);
+}
+
+#[test]
+fn a_demo_may_be_repeated_in_its_folder() {
+    let (folder, first) = recorded(&small(1));
+    assert_eq!(record(&Robot::lwa4p(), &small(1), folder.path()).unwrap(), first);
+}
+
+#[test]
+fn options_that_record_nothing_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let defaults = DemoOptions::default;
+    for (options, word) in [
+        (DemoOptions { motions: 2, held_out_motions: 2, ..defaults() }, "2 are held out"),
+        (DemoOptions { start_points: 0, ..defaults() }, "0 start points"),
+        (DemoOptions { start_points: 27, ..defaults() }, "1 to 26"),
+        (DemoOptions { runs: 0, ..defaults() }, "0 runs"),
+        (DemoOptions { duration: f64::NAN, ..defaults() }, "NaN s; give 0.5 to 60 s"),
+    ] {
+        let error = record(&Robot::lwa4p(), &options, folder.path()).unwrap_err().to_string();
+        assert!(error.contains(word), "{error}");
+    }
+    assert!(files(folder.path()).is_empty());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+    #[test]
+    fn starts_scatter_within_their_bounds(seed: u64) {
+        let robot = Robot::lwa4p();
+        let mut furthest = 0.0f64;
+        for suite in plan::suites(&robot, &small(seed)) {
+            let measured: Vec<Vec<f64>> =
+                suite.runs.iter().map(|run| simulate(&robot, &suite, run).unwrap()[..12].to_vec()).collect();
+            for (a, b) in measured.iter().flat_map(|a| measured.iter().map(move |b| (a, b))) {
+                for i in 0..6 {
+                    // The filter of the velocity lets through the part 1 - e^(-0.4) < 0.33 of an encoder step a sample.
+                    prop_assert!((a[i] - b[i]).abs() <= 2.0 * SCATTER_Q + ENCODER_STEP + 1e-6);
+                    let noise = 0.33 * ENCODER_STEP / SAMPLE_TIME;
+                    prop_assert!((a[i + 6] - b[i + 6]).abs() <= 2.0 * (SCATTER_QD + noise) + 1e-6);
+                    furthest = furthest.max((a[i] - b[i]).abs());
+                }
+            }
+        }
+        prop_assert!(furthest > SCATTER_Q);
+    }
+}
