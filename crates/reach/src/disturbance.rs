@@ -29,7 +29,9 @@ impl Disturbance {
     /// `Sample` is that of `Measurable`, which contains it.
     pub fn gains(self, propagation: &Propagation) -> Vec<IntervalMatrix> {
         match self {
-            Self::Constant => (0..propagation.grid().len()).map(|k| absolute(propagation.integral(k))).collect(),
+            Self::Constant => {
+                (0..propagation.grid().len()).map(|k| absolute(propagation.integral(k))).collect()
+            }
             Self::Sample if propagation.grid().step().is_some() => sample_gains(propagation),
             Self::Sample => sample_gains_on_any_grid(propagation),
             Self::Measurable => measurable_gains(propagation),
@@ -40,7 +42,8 @@ impl Disturbance {
 /// On a uniform grid the increments Γ((j+1)h) - Γ(jh) = e^{A jh} Γ(h) do not depend on k, and κ is their running sum.
 fn sample_gains(propagation: &Propagation) -> Vec<IntervalMatrix> {
     let increment = |k: usize| absolute(&product(propagation.exponential(k), &propagation.step(k).gamma));
-    let increments: Vec<_> = (1..propagation.grid().len()).into_par_iter().map(|k| increment(k - 1)).collect();
+    let increments: Vec<_> =
+        (1..propagation.grid().len()).into_par_iter().map(|k| increment(k - 1)).collect();
     running_sum(propagation, &increments)
 }
 

@@ -32,15 +32,19 @@ impl TimeGrid {
     ///
     /// # Errors
     ///
-    /// [`ReachError::Times`] when a time is not after the one before it, or not finite.
+    /// [`ReachError::Times`] when a time is not after the one before it (by a picosecond), or not finite.
     pub fn from_times(recorded: &[f64]) -> Result<Self, ReachError> {
-        for (index, pair) in recorded.windows(2).enumerate() {
-            if !(pair[1] > pair[0] && pair[1].is_finite()) {
-                return Err(ReachError::Times { index: index + 1, time: pair[1], previous: pair[0] });
-            }
-        }
         let origin = recorded.first().copied().unwrap_or(0.0);
-        let times: Vec<f64> = recorded.iter().map(|t| ((t - origin) * 1e12).round() / 1e12).collect();
+        let mut times: Vec<f64> = Vec::with_capacity(recorded.len());
+        for (index, &time) in recorded.iter().enumerate() {
+            let since_first = ((time - origin) * 1e12).round() / 1e12;
+            let follows = times.last().is_none_or(|&last| since_first > last);
+            if !(follows && since_first.is_finite()) {
+                let previous = recorded[index.saturating_sub(1)];
+                return Err(ReachError::Times { index, time, previous });
+            }
+            times.push(since_first);
+        }
         Ok(match uniform_step(&times) {
             Some(step) => Self::uniform(step, times.len()),
             None => Self { times, step: None },
@@ -48,7 +52,15 @@ impl TimeGrid {
     }
 
     /// The grid 0, h, 2h, ... of `count` samples.
+    ///
+    /// # Panics
+    ///
+    /// When the step h (s) is not a finite number > 0.
     pub fn uniform(step: f64, count: usize) -> Self {
+        assert!(
+            step > 0.0 && step.is_finite(),
+            "the step of a time grid is {step} s; it must be finite and above 0"
+        );
         Self { times: (0..count).map(|k| k as f64 * step).collect(), step: Some(step) }
     }
 
@@ -89,13 +101,15 @@ impl TimeGrid {
         (1..self.len()).map(|k| self.interval(k - 1).hi()).fold(0.0, f64::max)
     }
 
-    /// Whether every sample of `self` is the sample of the same index of `longer`.
+    /// Whether every sample of `self` is the sample of the same index of `longer`, exactly: k h of a uniform grid with k > 1 may round to
+    /// a recorded time that it is not.
     pub fn is_prefix_of(&self, longer: &Self) -> bool {
         if self.len() > longer.len() {
             return false;
         }
         match (self.step, longer.step) {
             (Some(h), Some(g)) if self.len() > 1 => h == g,
+            (None, Some(_)) | (Some(_), None) if self.len() > 2 => false,
             _ => longer.times.starts_with(&self.times),
         }
     }
@@ -103,6 +117,19 @@ impl TimeGrid {
     /// The first `count` samples.
     pub fn prefix(&self, count: usize) -> Self {
         Self { times: self.times[..count.min(self.len())].to_vec(), step: self.step }
+    }
+
+    /// Every step divided into `parts`, a power of two; the samples stay where they are.
+    pub(crate) fn refined(&self, parts: usize) -> Self {
+        let count = self.len().saturating_sub(1) * parts + 1;
+        if let Some(h) = self.step {
+            return Self::uniform(h / parts as f64, count);
+        }
+        let time = |at: usize| match (at / parts, at % parts) {
+            (k, 0) => self.times[k],
+            (k, part) => self.times[k] + (self.times[k + 1] - self.times[k]) * (part as f64 / parts as f64),
+        };
+        Self { times: (0..count).map(time).collect(), step: None }
     }
 }
 
@@ -122,7 +149,8 @@ mod tests {
     #[test]
     fn decimal_times_of_a_fixed_rate_are_uniform_whatever_their_length() {
         for count in [2, 3, 937, 1088] {
-            let times: Vec<f64> = (0..count).map(|k| format!("{:.3}", k as f64 * 0.004).parse().unwrap()).collect();
+            let times: Vec<f64> =
+                (0..count).map(|k| format!("{:.3}", k as f64 * 0.004).parse().unwrap()).collect();
             assert_eq!(TimeGrid::from_times(&times).unwrap().step(), Some(0.004));
         }
     }

@@ -5,8 +5,8 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::exponential::{Step, step};
 use crate::matrix::{
-    IntervalMatrix, IntervalVector, accumulate_upward, add_product, ball, magnitude, midpoint, mul_upward, point,
-    product, radius,
+    IntervalMatrix, IntervalVector, accumulate_upward, add_product, ball, magnitude, midpoint, mul_upward,
+    point, product, radius,
 };
 use crate::{LinearSystem, ReachError, TimeGrid, Trajectory};
 
@@ -55,7 +55,8 @@ impl Propagation {
         let longest = Interval::ZERO.hull(Interval::point(grid.longest_step()));
         let bound = bound_exponential(&powers, &magnitude(&step(system, longest).phi));
         let errors = powers.errors(&step_at, &bound);
-        let mut exponential: Vec<_> = powers.mid.iter().zip(&errors).map(|(mid, rad)| ball(mid, rad)).collect();
+        let mut exponential: Vec<_> =
+            powers.mid.iter().zip(&errors).map(|(mid, rad)| ball(mid, rad)).collect();
         exponential.truncate(grid.len());
         let integral = integrals(system, &exponential, &step_at);
         let finite = |m: &IntervalMatrix| m.iter().all(|x| x.mag().is_finite());
@@ -131,7 +132,10 @@ fn advance(step: &Step, x: &[f64], u: &[f64], next: &mut [Interval]) {
     for (matrix, vector) in [(&step.phi, x), (&step.gamma, u)] {
         for (column, &value) in matrix.column_iter().zip(vector) {
             let value = Interval::point(value);
-            next.iter_mut().zip(column.iter()).filter(|(_, x)| **x != Interval::ZERO).for_each(|(sum, &x)| *sum += x * value);
+            next.iter_mut()
+                .zip(column.iter())
+                .filter(|(_, x)| **x != Interval::ZERO)
+                .for_each(|(sum, &x)| *sum += x * value);
         }
     }
 }
@@ -141,6 +145,8 @@ struct SolutionError {
     start: Vec<f64>,
     /// Sum of the defects so far.
     defects: Vec<f64>,
+    /// The error carried over from the sample before.
+    followed: Vec<f64>,
     /// The smaller of the two bounds.
     radius: Vec<f64>,
 }
@@ -148,21 +154,23 @@ struct SolutionError {
 impl SolutionError {
     fn new(start: &IntervalVector) -> Self {
         let radius: Vec<f64> = start.iter().map(|x| x.rad()).collect();
-        Self { start: radius.clone(), defects: vec![0.0; radius.len()], radius }
+        let zero = vec![0.0; radius.len()];
+        Self { start: radius.clone(), defects: zero.clone(), followed: zero, radius }
     }
 
     /// To sample k + 1, where the rounded step was `next`.
     fn advance(&mut self, propagation: &Propagation, k: usize, next: &[Interval]) {
-        for (defect, next) in self.defects.iter_mut().zip(next) {
-            *defect = add_up(*defect, next.rad());
-        }
         let (phi, exponential) = (&propagation.step(k).phi, &propagation.exponential[k + 1]);
-        let bound = |i: usize| {
-            let followed = add_up(dot_upward(phi.row(i).iter().map(|x| x.mag()), &self.radius), next[i].rad());
+        for (i, next) in next.iter().enumerate() {
+            self.defects[i] = add_up(self.defects[i], next.rad());
+            self.followed[i] =
+                add_up(dot_upward(phi.row(i).iter().map(|x| x.mag()), &self.radius), next.rad());
+        }
+        for i in 0..next.len() {
             let start = dot_upward(exponential.row(i).iter().map(|x| x.mag()), &self.start);
-            followed.min(add_up(start, dot_upward(propagation.bound.row(i).iter().copied(), &self.defects)))
-        };
-        self.radius = (0..next.len()).map(bound).collect();
+            let defects = dot_upward(propagation.bound.row(i).iter().copied(), &self.defects);
+            self.radius[i] = self.followed[i].min(add_up(start, defects));
+        }
     }
 }
 
@@ -249,7 +257,8 @@ fn integrals<'a>(
     step_at: &(impl Fn(usize) -> &'a Step + Sync),
 ) -> Vec<IntervalMatrix> {
     let increment = |k: usize| product(&exponential[k], &step_at(k).gamma);
-    let increments: Vec<_> = (0..exponential.len().saturating_sub(1)).into_par_iter().map(increment).collect();
+    let increments: Vec<_> =
+        (0..exponential.len().saturating_sub(1)).into_par_iter().map(increment).collect();
     let zero = DMatrix::zeros(system.states(), system.inputs());
     let (mut mid, mut rad) = (zero.clone(), zero);
     let mut integral = vec![ball(&mid, &rad)];

@@ -5,7 +5,7 @@ use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_up};
 
 use crate::LinearSystem;
 use crate::exponential::norm_upper;
-use crate::matrix::{IntervalMatrix, magnitude, point};
+use crate::matrix::{IntervalMatrix, dot, magnitude, point, product};
 
 /// Terms at most.
 const MOST_TERMS: usize = 200;
@@ -13,10 +13,14 @@ const MOST_TERMS: usize = 200;
 /// Halvings of one step at most when an entry changes sign in it.
 const DEEPEST: usize = 40;
 
+/// Where f is at most so many times as large as the width of its enclosure at a point, its sign is not to be had by halving.
+const NOISE: f64 = 4.0;
+
 /// The terms A^m B / m!, m < M, for steps up to a given length.
 pub(crate) struct Series {
     pub(crate) terms: Vec<IntervalMatrix>,
-    /// |A|^M |B| / M!: all terms left out are together at most twice that times τ^M.
+    /// |A|^M |B| / M!. All terms left out are together at most twice that times τ^M: from one to the next they shrink by
+    /// |A| τ / (M + 1), which is less than 1/2 up to the given length and a little beyond.
     remainder: f64,
 }
 
@@ -31,22 +35,19 @@ impl Series {
         for m in 1..MOST_TERMS {
             remainder = div_up(mul_up(remainder, a_norm), m as f64);
             power *= longest;
-            if remainder * power <= 1e-18 * b_norm && mul_up(2.0 * a_norm, longest) <= m as f64 + 1.0 {
+            if remainder * power <= 1e-18 * b_norm && mul_up(2.0 * a_norm, longest) <= m as f64 {
                 return Self { terms, remainder };
             }
             let divisor = Interval::point(m as f64);
-            terms.push((&a * &terms[m - 1]).map(|x| x / divisor));
+            terms.push(product(&a, &terms[m - 1]).map(|x| x / divisor));
         }
         Self { terms, remainder: f64::INFINITY }
     }
 
     /// Entry (i, j) of `start` e^{Aτ} B as a polynomial in τ.
     pub(crate) fn entry(&self, start: &IntervalMatrix, i: usize, j: usize) -> Polynomial {
-        let row = || start.row(i).into_iter();
-        let coefficient = |term: &IntervalMatrix| {
-            row().zip(term.column(j).iter()).fold(Interval::ZERO, |sum, (x, y)| sum + *x * *y)
-        };
-        let norm = row().fold(0.0, |sum, x| add_up(sum, x.mag()));
+        let coefficient = |term: &IntervalMatrix| dot(start.row(i).iter(), term.column(j).iter());
+        let norm = start.row(i).iter().fold(0.0, |sum, x| add_up(sum, x.mag()));
         Polynomial {
             coefficients: self.terms.iter().map(coefficient).collect(),
             tail: mul_up(2.0 * norm, self.remainder),
@@ -61,17 +62,18 @@ pub(crate) struct Polynomial {
 }
 
 impl Polynomial {
-    /// f over `tau`, by the mean value form.
+    /// f over `tau`, by the mean value form, and the width of f at one point: what of the range no halving of `tau` can remove.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub(crate) fn range(&self, tau: Interval) -> Interval {
+    pub(crate) fn range(&self, tau: Interval) -> (Interval, f64) {
         let middle = Interval::point(tau.mid());
         let terms = || self.coefficients.iter().enumerate();
-        let value = terms().rev().fold(Interval::ZERO, |sum, (_, c)| sum * middle + *c);
+        let sum = terms().rev().fold(Interval::ZERO, |sum, (_, c)| sum * middle + *c);
+        let value = sum + self.error(tau);
         let slope = terms().skip(1).rev().fold(Interval::ZERO, |sum, (m, c)| sum * tau + *c * m as f64);
-        value + slope * (tau - middle) + self.error(tau)
+        (value + slope * (tau - middle), value.width())
     }
 
     /// ∫₀^σ f.
@@ -80,29 +82,41 @@ impl Polynomial {
     ///
     /// Outer, directed rounding.
     pub(crate) fn integral(&self, sigma: Interval) -> Interval {
-        let antiderivative = |sum: Interval, (m, c): (usize, &Interval)| sum * sigma + *c / Interval::point(m as f64 + 1.0);
+        let antiderivative =
+            |sum: Interval, (m, c): (usize, &Interval)| sum * sigma + *c / Interval::point(m as f64 + 1.0);
         let sum = self.coefficients.iter().enumerate().rev().fold(Interval::ZERO, antiderivative);
         (sum + self.error(sigma)) * sigma
     }
 
-    /// ∫_a^b |f|, by halving where f may change sign, until a piece is `negligible`.
+    /// ∫_a^b |f|, by halving where f may change sign, until a piece is `negligible` or f is not known better than that.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub(crate) fn integral_of_absolute(&self, a: Interval, b: Interval, negligible: f64, depth: usize) -> Interval {
-        let range = self.range(a.hull(b));
+    pub(crate) fn integral_of_absolute(&self, a: Interval, b: Interval, negligible: f64) -> Interval {
+        self.pieces(a, b, negligible, 0)
+    }
+
+    /// Whether f may change sign within `tau`, and by more than is negligible or uncertain anyway.
+    pub(crate) fn may_turn(&self, tau: Interval, negligible: f64) -> bool {
+        let (range, point_width) = self.range(tau);
+        range.contains_zero()
+            && range.mag() > NOISE * point_width
+            && mul_up(range.mag(), tau.width()) > negligible
+    }
+
+    fn pieces(&self, a: Interval, b: Interval, negligible: f64, depth: usize) -> Interval {
+        let (range, point_width) = self.range(a.hull(b));
         let inner = (self.integral(b) - self.integral(a)).abs();
         if !range.contains_zero() {
             return inner;
         }
         let outer = mul_up(range.mag(), sub_up(b.hi(), a.lo()));
-        if outer <= negligible || depth == DEEPEST {
+        if depth == DEEPEST || outer <= negligible || range.mag() <= NOISE * point_width {
             return Interval::new(inner.lo().min(outer), outer).unwrap_or(Interval::ENTIRE);
         }
         let middle = (a + b) * 0.5;
-        self.integral_of_absolute(a, middle, negligible, depth + 1)
-            + self.integral_of_absolute(middle, b, negligible, depth + 1)
+        self.pieces(a, middle, negligible, depth + 1) + self.pieces(middle, b, negligible, depth + 1)
     }
 
     fn error(&self, tau: Interval) -> Interval {

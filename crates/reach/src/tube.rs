@@ -1,7 +1,8 @@
+use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
 use crate::exponential::{derivative, step};
-use crate::matrix::{IntervalMatrix, IntervalVector, absolute, point};
+use crate::matrix::{IntervalMatrix, absolute, add_product, point, points, product};
 use crate::variation::measurable_gains;
 use crate::{Disturbance, Hyperrectangle, Propagation, ReachSets, Trajectory};
 
@@ -29,24 +30,20 @@ impl Tube {
         input_set: &Hyperrectangle,
         radii: &TubeRadii,
     ) -> Self {
-        let system = propagation.system();
-        let (n, m) = (system.states(), system.inputs());
-        let center = |k: usize| {
-            IntervalVector::from_iterator(n, (0..n).map(|i| nominal.state(k)[i] + sets.center(k, i)))
-        };
-        let mut bounds = Vec::new();
-        for k in 0..nominal.len().saturating_sub(1) {
-            let (y, next) = (center(k), center(k + 1));
-            let u = IntervalVector::from_iterator(
-                m,
-                (0..m).map(|j| Interval::point(inputs[k * m + j]) + Interval::point(input_set.center[j])),
-            );
-            let velocity = derivative(system, &y, &u);
-            let acceleration = point(system.a()) * (&radii.within(k).phi * velocity);
-            let eighth = radii.within(k).eighth;
+        let (n, m) = (propagation.system().states(), propagation.system().inputs());
+        let center = |k: usize, i: usize| nominal.state(k)[i] + sets.center(k, i);
+        let steps = nominal.len().saturating_sub(1);
+        let mut bounds = Vec::with_capacity(steps * n);
+        for k in 0..steps {
+            let y: Vec<Interval> = (0..n).map(|i| center(k, i)).collect();
+            let input = |j: usize| Interval::point(inputs[k * m + j]) + Interval::point(input_set.center[j]);
+            let velocity = derivative(propagation.system(), &y, &(0..m).map(input).collect::<Vec<_>>());
+            let mut acceleration = vec![Interval::ZERO; n];
+            add_product(&mut acceleration, &radii.jerk, &velocity);
+            let eighth = eighth(propagation, k);
             for i in 0..n {
                 let bulge = symmetric(acceleration[i].abs() * eighth);
-                bounds.push(y[i].hull(next[i]) + bulge + symmetric(radii.radius(k, i)));
+                bounds.push(y[i].hull(center(k + 1, i)) + bulge + symmetric(radii.radius(k, i)));
             }
         }
         Self { dimension: n, bounds }
@@ -73,21 +70,15 @@ impl Tube {
 pub struct TubeRadii {
     dimension: usize,
     radius: Vec<Interval>,
-    within: Vec<WithinStep>,
-    uniform: bool,
-}
-
-#[derive(Debug, Clone)]
-struct WithinStep {
-    /// e^{As} for every s of the step.
-    phi: IntervalMatrix,
-    /// h²/8.
-    eighth: Interval,
+    /// A e^{As} for every s up to the longest step: it takes ẏ at a sample to ÿ within the step.
+    jerk: IntervalMatrix,
 }
 
 impl TubeRadii {
     /// The radii for the initial set X0 and the input set U. The disturbance `Sample` is covered by the gain of `Measurable`, which contains it
     /// between the samples too.
+    ///
+    /// An entry of e^{At} (and of Γ(t), for `Constant`) stays within h²/8 sup|d²/dt²| of its chord, and the chord within its ends.
     ///
     /// # Guarantee
     ///
@@ -98,62 +89,54 @@ impl TubeRadii {
         initial_set: &Hyperrectangle,
         input_set: &Hyperrectangle,
     ) -> Self {
-        let grid = propagation.grid();
-        let dimension = propagation.system().states();
-        let uniform = grid.step().is_some();
-        let steps = grid.len().saturating_sub(1);
-        let within: Vec<_> =
-            (0..if uniform { steps.min(1) } else { steps }).map(|k| within_step(propagation, k)).collect();
-        let mut radii = Self { dimension, radius: Vec::new(), within, uniform };
+        let system = propagation.system();
+        let (a, b) = (point(system.a()), point(system.b()));
+        let longest = Interval::ZERO.hull(Interval::point(propagation.grid().longest_step()));
+        let jerk = product(&step(system, longest).phi, &a);
+        let (second_of_initial, second_of_input) = (product(&jerk, &a), product(&jerk, &b));
         let variation = match disturbance {
             Disturbance::Constant => None,
             Disturbance::Sample | Disturbance::Measurable => Some(measurable_gains(propagation)),
         };
-        for k in 0..steps {
-            let radius = radii.step_radius(propagation, k, variation.as_deref(), initial_set, input_set);
-            radii.radius.extend(radius);
-        }
-        radii
-    }
-
-    fn within(&self, k: usize) -> &WithinStep {
-        &self.within[if self.uniform { 0 } else { k }]
+        let (initial_radius, input_radius) = (points(&initial_set.radius), points(&input_set.radius));
+        let step_radius = |k: usize| {
+            let mut radius = vec![Interval::ZERO; system.states()];
+            let initial = over_step(propagation, k, Propagation::exponential, &second_of_initial);
+            add_product(&mut radius, &initial, &initial_radius);
+            match &variation {
+                Some(gains) => add_product(&mut radius, &gains[k + 1], &input_radius),
+                None => {
+                    let input = over_step(propagation, k, Propagation::integral, &second_of_input);
+                    add_product(&mut radius, &input, &input_radius);
+                }
+            }
+            radius
+        };
+        let steps = propagation.grid().len().saturating_sub(1);
+        let radius = (0..steps).into_par_iter().flat_map_iter(step_radius).collect();
+        Self { dimension: system.states(), radius, jerk }
     }
 
     fn radius(&self, k: usize, i: usize) -> Interval {
         self.radius[k * self.dimension + i]
     }
-
-    fn step_radius(
-        &self,
-        propagation: &Propagation,
-        k: usize,
-        variation: Option<&[IntervalMatrix]>,
-        initial_set: &Hyperrectangle,
-        input_set: &Hyperrectangle,
-    ) -> impl Iterator<Item = Interval> + use<> {
-        let system = propagation.system();
-        let within = self.within(k);
-        let rate = propagation.exponential(k) * &within.phi * point(system.a());
-        let curvature = (&rate * point(system.a())).map(|x| x.abs() * within.eighth);
-        let initial = largest(propagation.exponential(k), propagation.exponential(k + 1)) + curvature;
-        let input = match variation {
-            Some(gains) => gains[k + 1].clone(),
-            None => {
-                let curvature = (rate * point(system.b())).map(|x| x.abs() * within.eighth);
-                largest(propagation.integral(k), propagation.integral(k + 1)) + curvature
-            }
-        };
-        let vector = |x: &[f64]| IntervalVector::from_iterator(x.len(), x.iter().map(|&r| Interval::point(r)));
-        let radius = initial * vector(&initial_set.radius) + input * vector(&input_set.radius);
-        radius.data.as_vec().clone().into_iter()
-    }
 }
 
-fn within_step(propagation: &Propagation, k: usize) -> WithinStep {
-    let h = propagation.grid().interval(k);
-    let phi = step(propagation.system(), Interval::ZERO.hull(h)).phi;
-    WithinStep { phi, eighth: h * h * 0.125 }
+/// |F(t)| over step k of a matrix function F with F̈ = e^{A t_k} `second` within it.
+fn over_step(
+    propagation: &Propagation,
+    k: usize,
+    samples: impl Fn(&Propagation, usize) -> &IntervalMatrix,
+    second: &IntervalMatrix,
+) -> IntervalMatrix {
+    let eighth = eighth(propagation, k);
+    let bulge = product(propagation.exponential(k), second).map(|x| x.abs() * eighth);
+    largest(samples(propagation, k), samples(propagation, k + 1)) + bulge
+}
+
+/// h²/8 of step k.
+fn eighth(propagation: &Propagation, k: usize) -> Interval {
+    propagation.grid().interval(k).sqr() * 0.125
 }
 
 /// |x| on a chord between two matrices is at most the larger of the two ends.

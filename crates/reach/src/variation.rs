@@ -1,20 +1,27 @@
 //! ∫ |e^{Aτ} B| dτ, entry by entry: the total variation of Γ. Where an entry of e^{Aτ} B keeps its sign, the integral of its absolute value is the
 //! absolute value of its integral, in closed form; where it may change sign, the cell is halved until the rest does not matter.
 
-use std::collections::BTreeSet;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
-use reachtube_scalar::rounding::mul_up;
 
 use crate::Propagation;
 use crate::disturbance::running_sum;
-use crate::matrix::IntervalMatrix;
+use crate::exponential::{norm_upper, step};
+use crate::matrix::{IntervalMatrix, magnitude, point, product};
 use crate::series::{Polynomial, Series};
 
 /// A piece of the integral is left as an interval once its outer bound is below this part of the largest entry of its cell.
 const NEGLIGIBLE: f64 = 1e-13;
+
+/// Norm of A h above which the series of one cell would lose digits to cancellation, and cells are made shorter than the step h.
+const CELL_NORM: f64 = 4.0;
+
+/// Cells of one step at most.
+const MOST_CELLS: usize = 256;
 
 /// κ(t_k) = ∫₀^{t_k} |e^{Aτ} B| dτ at every sample.
 ///
@@ -22,49 +29,95 @@ const NEGLIGIBLE: f64 = 1e-13;
 ///
 /// Outer enclosure, directed rounding; the width is about 1e-12 of the value.
 pub(crate) fn measurable_gains(propagation: &Propagation) -> Vec<IntervalMatrix> {
-    Cells::new(propagation).gains
+    Cells::new(propagation).gains()
 }
 
-/// The gains, and for each entry the cells in which it may change sign.
-struct Cells {
-    gains: Vec<IntervalMatrix>,
+/// The integral, cell by cell.
+struct Cells<'a> {
+    /// Of the grid itself, or of a finer one where a step is long for the system.
+    propagation: Cow<'a, Propagation>,
+    /// Cells of one step of the grid.
+    parts: usize,
+    series: Series,
+    /// e^{Aτ} B within the first cell.
+    within: IntervalMatrix,
+    /// ∫ |e^{Aτ} B| over each cell.
+    integrals: Vec<IntervalMatrix>,
+    /// For each entry, the cells in which it may change sign.
     turning: DMatrix<Vec<usize>>,
 }
 
-impl Cells {
-    fn new(propagation: &Propagation) -> Self {
+impl<'a> Cells<'a> {
+    fn new(propagation: &'a Propagation) -> Self {
+        let (propagation, parts) = refine(propagation);
         let system = propagation.system();
-        let mut turning = DMatrix::from_element(system.states(), system.inputs(), Vec::new());
-        let series = Series::new(system, propagation.grid().longest_step());
-        let gains = running_sum(propagation, |k| {
-            let h = propagation.grid().interval(k);
-            cell(propagation.exponential(k), &series, h, |i, j| turning[(i, j)].push(k))
+        let longest = propagation.grid().longest_step();
+        let within =
+            product(&step(system, Interval::ZERO.hull(Interval::point(longest))).phi, &point(system.b()));
+        let series = Series::new(system, longest);
+        let turning = DMatrix::from_element(system.states(), system.inputs(), Vec::new());
+        let mut cells = Self { parts, series, within, integrals: Vec::new(), turning, propagation };
+        let count = cells.propagation.grid().len().saturating_sub(1);
+        let (integrals, turns): (Vec<_>, Vec<_>) = (0..count).into_par_iter().map(|k| cells.cell(k)).unzip();
+        cells.integrals = integrals;
+        for (k, entries) in turns.into_iter().enumerate() {
+            entries.into_iter().for_each(|entry| cells.turning[entry].push(k));
+        }
+        cells
+    }
+
+    /// ∫ |e^{Aτ} B| over cell k, and the entries that may change sign in it.
+    fn cell(&self, k: usize) -> (IntervalMatrix, Vec<(usize, usize)>) {
+        let start = self.propagation.exponential(k);
+        let h = self.propagation.grid().interval(k);
+        let range = product(start, &self.within);
+        let change = product(start, &self.propagation.step(k).gamma);
+        let scale = range.iter().fold(0.0, |max: f64, x| max.max(x.mag()));
+        let negligible = NEGLIGIBLE * scale * h.hi();
+        let mut turns = Vec::new();
+        let integral = IntervalMatrix::from_fn(range.nrows(), range.ncols(), |i, j| {
+            let range = range[(i, j)];
+            if !range.contains_zero() || range == Interval::ZERO {
+                return change[(i, j)].abs();
+            }
+            let entry = self.series.entry(start, i, j);
+            if entry.may_turn(Interval::ZERO.hull(h), negligible) {
+                turns.push((i, j));
+            }
+            entry.integral_of_absolute(Interval::ZERO, h, negligible)
         });
-        Self { gains, turning }
+        (integral, turns)
+    }
+
+    /// The sum of the cells up to each sample.
+    fn gains(&self) -> Vec<IntervalMatrix> {
+        let fine = running_sum(&self.propagation, &self.integrals);
+        fine.into_iter().step_by(self.parts).collect()
+    }
+
+    /// A lower bound of Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| in entry (i, j), for every sample k of a grid with these `times`.
+    fn variation_at_least(&self, times: &[f64], (i, j): (usize, usize)) -> Vec<f64> {
+        let mut integral = IntegralEntry { cells: self, entry: (i, j), polynomials: BTreeMap::new() };
+        let mut total = |k: usize| {
+            let nodes = nodes_around(times, k, &self.turning[(i, j)], self.propagation.grid().times());
+            let values: Vec<Interval> = nodes.iter().map(|&l| integral.between(times[l], times[k])).collect();
+            values.windows(2).fold(Interval::ZERO, |sum, v| sum + (v[1] - v[0]).abs()).lo()
+        };
+        (0..times.len()).map(|k| total(k)).collect()
     }
 }
 
-/// ∫ |e^{Aτ} B| over one cell of length `h` that starts at e^{A t_k} = `start`.
-fn cell(
-    start: &IntervalMatrix,
-    series: &Series,
-    h: Interval,
-    mut turns: impl FnMut(usize, usize),
-) -> IntervalMatrix {
-    let (rows, columns) = (start.nrows(), series.terms[0].ncols());
-    let entry = |at: usize| series.entry(start, at / columns, at % columns);
-    let integrands: Vec<Polynomial> = (0..rows * columns).map(entry).collect();
-    let cell = Interval::ZERO.hull(h);
-    let scale = integrands.iter().map(|f| f.range(cell).mag()).fold(0.0, f64::max);
-    let negligible = NEGLIGIBLE * scale * h.hi();
-    IntervalMatrix::from_fn(rows, columns, |i, j| {
-        let f = &integrands[i * columns + j];
-        let range = f.range(cell);
-        if range.contains_zero() && mul_up(range.mag(), h.hi()) > negligible {
-            turns(i, j);
-        }
-        f.integral_of_absolute(Interval::ZERO, h, negligible, 0)
-    })
+/// The propagation on a grid of shorter steps where those given are long, and the number of steps that one becomes.
+fn refine(propagation: &Propagation) -> (Cow<'_, Propagation>, usize) {
+    let system = propagation.system();
+    let norm = norm_upper(&magnitude(&point(system.a()))) * propagation.grid().longest_step();
+    let parts = ((norm / CELL_NORM).ceil().clamp(1.0, MOST_CELLS as f64) as usize).next_power_of_two();
+    if parts > 1
+        && let Ok(finer) = Propagation::new(system, &propagation.grid().refined(parts))
+    {
+        return (Cow::Owned(finer), parts);
+    }
+    (Cow::Borrowed(propagation), 1)
 }
 
 /// κ(t_k) = Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| on a grid that need not be uniform.
@@ -77,24 +130,24 @@ fn cell(
 /// [`measurable_gains`].
 pub(crate) fn sample_gains_on_any_grid(propagation: &Propagation) -> Vec<IntervalMatrix> {
     let cells = Cells::new(propagation);
-    let series = Series::new(propagation.system(), propagation.grid().longest_step());
-    let gain = |(k, upper): (usize, &IntervalMatrix)| {
-        IntervalMatrix::from_fn(upper.nrows(), upper.ncols(), |i, j| {
-            let nodes = nodes_around(propagation.grid().times(), k, &cells.turning[(i, j)]);
-            let values: Vec<Interval> = nodes.iter().map(|&l| gamma_between(propagation, &series, (k, l), (i, j))).collect();
-            let sum = values.windows(2).fold(Interval::ZERO, |sum, v| sum + (v[1] - v[0]).abs());
+    let (states, inputs) = cells.turning.shape();
+    let times = propagation.grid().times();
+    let lower = |at: usize| cells.variation_at_least(times, (at / inputs, at % inputs));
+    let lower: Vec<Vec<f64>> = (0..states * inputs).into_par_iter().map(lower).collect();
+    let gain = |(k, upper): (usize, IntervalMatrix)| {
+        IntervalMatrix::from_fn(states, inputs, |i, j| {
             let highest = upper[(i, j)].hi();
-            Interval::new(sum.lo().min(highest), highest).unwrap_or(Interval::ENTIRE)
+            Interval::new(lower[i * inputs + j][k].clamp(0.0, highest), highest).unwrap_or(Interval::ENTIRE)
         })
     };
-    cells.gains.par_iter().enumerate().map(gain).collect()
+    cells.gains().into_iter().enumerate().map(gain).collect()
 }
 
 /// Indices l, descending, of the nodes s = t_k - t_l to visit: both ends, and those within and next to each turning cell.
-fn nodes_around(times: &[f64], k: usize, turning: &[usize]) -> Vec<usize> {
+fn nodes_around(times: &[f64], k: usize, turning: &[usize], cells: &[f64]) -> Vec<usize> {
     let mut nodes = BTreeSet::from([0, k]);
-    for &cell in turning.iter().take_while(|&&cell| cell < k) {
-        let (from, to) = (times[k] - times[cell + 1], times[k] - times[cell]);
+    for &cell in turning.iter().take_while(|&&cell| cells[cell] < times[k]) {
+        let (from, to) = (times[k] - cells[cell + 1], times[k] - cells[cell]);
         let first = times.partition_point(|&t| t < from).saturating_sub(1);
         let last = times.partition_point(|&t| t <= to).min(k);
         nodes.extend(first..=last);
@@ -102,14 +155,28 @@ fn nodes_around(times: &[f64], k: usize, turning: &[usize]) -> Vec<usize> {
     nodes.into_iter().rev().collect()
 }
 
-/// Γ_ij(t_k - t_l), from the sample before it.
-fn gamma_between(propagation: &Propagation, series: &Series, (k, l): (usize, usize), (i, j): (usize, usize)) -> Interval {
-    let times = propagation.grid().times();
-    if l == 0 || l == k {
-        return propagation.integral(k - l)[(i, j)];
+/// One entry of Γ at any time within the horizon.
+struct IntegralEntry<'a> {
+    cells: &'a Cells<'a>,
+    entry: (usize, usize),
+    /// e^{Aτ} B within the cells visited so far.
+    polynomials: BTreeMap<usize, Polynomial>,
+}
+
+impl IntegralEntry<'_> {
+    /// Γ(to - from), for samples from <= to.
+    fn between(&mut self, from: f64, to: f64) -> Interval {
+        let propagation = &self.cells.propagation;
+        let times = propagation.grid().times();
+        let s = Interval::point(to) - Interval::point(from);
+        let base = times.partition_point(|&t| t <= s.lo()).saturating_sub(1);
+        let integral = propagation.integral(base)[self.entry];
+        let sigma = s - Interval::point(times[base]);
+        if sigma == Interval::ZERO {
+            return integral;
+        }
+        let (i, j) = self.entry;
+        let series = || self.cells.series.entry(propagation.exponential(base), i, j);
+        integral + self.polynomials.entry(base).or_insert_with(series).integral(sigma)
     }
-    let s = Interval::point(times[k]) - Interval::point(times[l]);
-    let base = times.partition_point(|&t| t <= s.lo()) - 1;
-    let sigma = s - Interval::point(times[base]);
-    propagation.integral(base)[(i, j)] + series.entry(propagation.exponential(base), i, j).integral(sigma)
 }

@@ -8,7 +8,6 @@ use sha2::{Digest, Sha256};
 use super::SAMPLE_TIME;
 use super::hidden;
 use super::plan::{RunPlan, SuitePlan};
-use crate::data::column_names;
 use crate::error::{Error, Result};
 use crate::write::atomically;
 
@@ -64,7 +63,9 @@ pub(super) fn write_index(folder: &Path, robot: &str, seed: u64, lines: &[String
 
 fn run_text(n: usize, states: &[f64], inputs: &[f64]) -> String {
     let mut text = String::from("t");
-    column_names(n).for_each(|name| text.extend([",", &name]));
+    for column in ["q", "qd", "tau"] {
+        (1..=n).for_each(|joint| text += &format!(",{column}{joint}"));
+    }
     text.push('\n');
     for (k, (state, input)) in states.chunks_exact(2 * n).zip(inputs.chunks_exact(n)).enumerate() {
         let _ = write!(text, "{:.3}", k as f64 * SAMPLE_TIME);
