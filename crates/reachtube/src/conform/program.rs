@@ -71,12 +71,7 @@ type Place = (usize, usize, usize, Side);
 
 impl<'a> Program<'a> {
     /// The program for the merged deviations on each grid; `weights` are s, 2n.
-    pub fn new(
-        settings: &'a Settings,
-        weights: &[f64],
-        grids: &[Grid],
-        deviations: &[Deviation],
-    ) -> Self {
+    pub fn new(settings: &'a Settings, weights: &[f64], grids: &[Grid], deviations: &[Deviation]) -> Self {
         let joints = weights.len() / 2;
         let mut merged: Vec<Envelope> = grids.iter().map(|_| Envelope::new(2 * joints)).collect();
         deviations.iter().for_each(|deviation| merged[deviation.grid].merge(&deviation.envelope));
@@ -121,7 +116,9 @@ impl<'a> Program<'a> {
             }
             places.extend(added);
         }
-        Err(Error::Program(format!("{ROUNDS} rounds of row generation left violated rows; report this with the data")))
+        Err(Error::Program(format!(
+            "{ROUNDS} rounds of row generation left violated rows; report this with the data"
+        )))
     }
 
     fn largest_bound(&self) -> f64 {
@@ -175,7 +172,8 @@ impl<'a> Program<'a> {
     fn violated(&self, sets: &UncertaintySets, places: &[Place]) -> Vec<Place> {
         let unknowns = self.unknowns(sets);
         let known: std::collections::HashSet<&Place> = places.iter().collect();
-        let mut worst: std::collections::BTreeMap<(usize, usize, usize, bool), (f64, Place)> = Default::default();
+        let mut worst: std::collections::BTreeMap<(usize, usize, usize, bool), (f64, Place)> =
+            Default::default();
         for place in self.places(1) {
             let excess = self.excess(place, &unknowns);
             let (b, k, i, side) = place;
@@ -221,12 +219,25 @@ impl<'a> Program<'a> {
             bounds.push(-self.bound(place) / (scale * self.scale));
         }
         layout.restrictions(self.settings.centre, &mut triplets, &mut bounds, &unit);
-        let objective: Vec<f64> =
-            layout.cost.iter().enumerate().map(|(j, w)| if layout.is_center(j) { 0.0 } else { w * unit[j] / largest_cost }).collect();
-        let (x, dual) = solve_cone(&objective, &triplets, &bounds)?;
-        let unknowns: Vec<f64> = x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
-        let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
-        Ok((layout.sets(&unknowns, self.settings), lower_bound))
+        let objective: Vec<f64> = layout
+            .cost
+            .iter()
+            .enumerate()
+            .map(|(j, w)| if layout.is_center(j) { 0.0 } else { w * unit[j] / largest_cost })
+            .collect();
+        let optimum = solve_cone(&objective, &triplets, &bounds)?;
+        let sets = |x: &[f64]| {
+            let unknowns: Vec<f64> = x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
+            layout.sets(&unknowns, self.settings)
+        };
+        let (found, polished) = (sets(&optimum.found), sets(&optimum.polished));
+        let better = if self.repaired_cost(&polished) < self.repaired_cost(&found) { polished } else { found };
+        Ok((better, optimum.dual * self.scale * largest_cost + self.fixed_cost()))
+    }
+
+    /// The cost of the sets once they satisfy every row.
+    fn repaired_cost(&self, sets: &UncertaintySets) -> f64 {
+        self.cost(&sets.inflated(self.worst_ratio(sets), 0.0))
     }
 
     /// What known noise adds to every cost.
@@ -293,6 +304,9 @@ impl Layout {
         if program.settings.noise == Noise::Free {
             cost.extend(&program.noise_cost);
         }
+        // A radius without a cost is in no row (with one sample nothing depends on the input): any cost makes it 0.
+        let largest = cost.iter().copied().fold(0.0, f64::max);
+        cost.iter_mut().filter(|w| **w == 0.0).for_each(|w| *w = largest);
         Self { joints: program.joints, centers, cost }
     }
 
@@ -372,10 +386,23 @@ impl Triplets {
     }
 }
 
-/// min objective·x subject to A x <= bounds: x and the dual objective.
-fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<(Vec<f64>, f64)> {
+/// An optimal point as the solver found it, the same moved onto its active rows, and the dual objective.
+struct Optimum {
+    found: Vec<f64>,
+    polished: Vec<f64>,
+    dual: f64,
+}
+
+/// min objective·x subject to A x <= bounds.
+fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<Optimum> {
     let (m, n) = (matrix.count, objective.len());
-    let a = CscMatrix::new_from_triplets(m, n, matrix.rows.clone(), matrix.columns.clone(), matrix.values.clone());
+    let a = CscMatrix::new_from_triplets(
+        m,
+        n,
+        matrix.rows.clone(),
+        matrix.columns.clone(),
+        matrix.values.clone(),
+    );
     let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(m)];
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
@@ -393,7 +420,11 @@ fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<(V
         SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
             let solution = &solver.solution;
             let active: Vec<bool> = solution.z.iter().zip(&solution.s).map(|(z, s)| z > s).collect();
-            Ok((polish(matrix, bounds, &active, &solution.x), solution.obj_val_dual))
+            Ok(Optimum {
+                found: solution.x.clone(),
+                polished: polish(matrix, bounds, &active, &solution.x),
+                dual: solution.obj_val_dual,
+            })
         }
         status => Err(Error::Program(format!(
             "the solver stopped with {status:?}; check that the recordings and the robot belong together"
@@ -418,7 +449,10 @@ fn polish(matrix: &Triplets, bounds: &[f64], active: &[bool], x: &[f64]) -> Vec<
             rows[(at, column)] = value;
         }
     }
-    let wanted = DVector::from_iterator(count, bounds.iter().zip(active).filter(|(_, active)| **active).map(|(b, _)| *b));
+    let wanted = DVector::from_iterator(
+        count,
+        bounds.iter().zip(active).filter(|(_, active)| **active).map(|(b, _)| *b),
+    );
     let before = DVector::from_column_slice(x);
     let residual = &wanted - &rows * &before;
     let Ok(step) = rows.svd(true, true).solve(&residual, 1e-9) else { return x.to_vec() };
