@@ -30,7 +30,7 @@ pub(super) const LINK_SHARE: f64 = 1.02;
 pub(super) const ARMATURE_SHARE: f64 = 1.03;
 
 /// Amplitude of the torque ripple over the motor's torque; one period a motor turn.
-pub(super) const RIPPLE_SHARE: f64 = 0.02;
+pub(super) const RIPPLE_SHARE: f64 = 0.05;
 
 /// Speed at which Coulomb friction has come to tanh 1 of its value, rad/s.
 pub(super) const STICKING_SPEED: f64 = 0.01;

@@ -52,9 +52,9 @@ pub struct DemoOptions {
 }
 
 impl Default for DemoOptions {
-    /// 6 motions of 3 s, 2 of them held out, each from 2 points 8 times.
+    /// 10 motions of 3 s, 2 of them held out, each from 2 points 8 times.
     fn default() -> Self {
-        Self { seed: 1, motions: 6, held_out_motions: 2, start_points: 2, runs: 8, duration: 3.0 }
+        Self { seed: 1, motions: 10, held_out_motions: 2, start_points: 2, runs: 8, duration: 3.0 }
     }
 }
 

@@ -30,7 +30,7 @@ impl SplitMix64 {
 mod tests {
     use super::*;
 
-    /// The first numbers of seed 1234567, published with the reference program `splitmix64.c` (Vigna) on Rosetta Code.
+    /// The first numbers of seed 1234567 as Rosetta Code gives them (Pseudo-random numbers/Splitmix64).
     #[test]
     fn it_is_splitmix64() {
         let mut random = SplitMix64::new(1_234_567);
