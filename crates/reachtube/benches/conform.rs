@@ -2,6 +2,7 @@
 
 use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
+use rayon::prelude::*;
 use reachtube::abstraction::{ExpansionPoint, linear_model};
 use reachtube::conform::{Deviation, Envelope, Grid, Program, Settings, conform};
 use reachtube::data::{DataSet, Torque};
@@ -54,6 +55,26 @@ fn envelope_of_2280_runs(bencher: Bencher) {
         let mut envelope = Envelope::new(STATES);
         runs.iter().enumerate().for_each(|(run, states)| envelope.include(run as u32, black_box(states)));
         envelope
+    });
+}
+
+/// The same with one envelope a core, merged: how recordings are read.
+#[divan::bench(sample_count = 10)]
+fn envelope_of_2280_runs_on_all_cores(bencher: Bencher) {
+    let runs = recordings();
+    let bytes = runs.iter().map(|run| run.len() * 8).sum::<usize>();
+    let part = RUNS.div_ceil(rayon::current_num_threads());
+    bencher.counter(BytesCount::new(bytes)).bench(|| {
+        let envelope_of = |(at, runs): (usize, &[Vec<f64>])| {
+            let mut envelope = Envelope::new(STATES);
+            runs.iter().enumerate().for_each(|(run, states)| envelope.include((at * part + run) as u32, states));
+            envelope
+        };
+        let merge = |mut a: Envelope, b: Envelope| {
+            a.merge(&b);
+            a
+        };
+        runs.par_chunks(part).enumerate().map(envelope_of).reduce_with(merge)
     });
 }
 

@@ -8,6 +8,7 @@ mod program;
 mod recordings;
 mod sets;
 mod settings;
+mod solver;
 mod trust;
 mod verify;
 

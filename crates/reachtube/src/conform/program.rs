@@ -8,14 +8,10 @@
 //!
 //! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, corrections A, E and F of the method.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT,
-};
-use nalgebra::{DMatrix, DVector};
 use reachtube_reach::Hyperrectangle;
 
 use super::deviation::{Deviation, Grid};
+use super::solver::{Triplets, solve_cone};
 use super::{Centre, Envelope, Noise, Settings, Side, UncertaintySets};
 use crate::error::{Error, Result};
 
@@ -108,9 +104,12 @@ impl<'a> Program<'a> {
     pub fn solve(&self) -> Result<Solution> {
         let mut places = self.first_rows();
         for round in 1..=ROUNDS {
-            let (sets, lower_bound) = self.solve_rows(&places)?;
-            let added = self.violated(&sets, &places);
+            let (candidates, lower_bound) = self.solve_rows(&places)?;
+            let added = self.violated(&candidates[0], &places);
             if added.is_empty() {
+                let [found, polished] = candidates;
+                let better = self.repaired_cost(&polished) < self.repaired_cost(&found);
+                let sets = if better { polished } else { found };
                 let (rows, generated) = (self.rows(), places.len());
                 return Ok(Solution { sets, lower_bound, rows, generated, rounds: round });
             }
@@ -202,8 +201,8 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Solves with the rows `places`; returns the sets and the dual objective.
-    fn solve_rows(&self, places: &[Place]) -> Result<(UncertaintySets, f64)> {
+    /// Solves with the rows `places`; returns the sets as found and polished, and the dual objective.
+    fn solve_rows(&self, places: &[Place]) -> Result<([UncertaintySets; 2], f64)> {
         let layout = Layout::new(self);
         let largest_cost = layout.cost.iter().copied().fold(0.0, f64::max);
         // Each unknown is measured so that its cost is that of the dearest, each row so that its largest entry is 1.
@@ -230,9 +229,8 @@ impl<'a> Program<'a> {
             let unknowns: Vec<f64> = x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
             layout.sets(&unknowns, self.settings)
         };
-        let (found, polished) = (sets(&optimum.found), sets(&optimum.polished));
-        let better = if self.repaired_cost(&polished) < self.repaired_cost(&found) { polished } else { found };
-        Ok((better, optimum.dual * self.scale * largest_cost + self.fixed_cost()))
+        let lower_bound = optimum.dual * self.scale * largest_cost + self.fixed_cost();
+        Ok(([sets(&optimum.found), sets(&optimum.polished)], lower_bound))
     }
 
     /// The cost of the sets once they satisfy every row.
@@ -363,100 +361,6 @@ impl Layout {
         };
         UncertaintySets { initial_set: set(0, 2 * n), input_set: set(2 * n, 3 * n), noise_set }
     }
-}
-
-/// A sparse matrix, row by row.
-#[derive(Default)]
-struct Triplets {
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-    values: Vec<f64>,
-    count: usize,
-}
-
-impl Triplets {
-    /// Entries below 1e-13 are left out: they cannot be told from rounding, and the repair covers them.
-    fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
-        for (column, value) in entries.into_iter().filter(|(_, value)| value.abs() > 1e-13) {
-            self.rows.push(self.count);
-            self.columns.push(column);
-            self.values.push(value);
-        }
-        self.count += 1;
-    }
-}
-
-/// An optimal point as the solver found it, the same moved onto its active rows, and the dual objective.
-struct Optimum {
-    found: Vec<f64>,
-    polished: Vec<f64>,
-    dual: f64,
-}
-
-/// min objective·x subject to A x <= bounds.
-fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<Optimum> {
-    let (m, n) = (matrix.count, objective.len());
-    let a = CscMatrix::new_from_triplets(
-        m,
-        n,
-        matrix.rows.clone(),
-        matrix.columns.clone(),
-        matrix.values.clone(),
-    );
-    let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(m)];
-    let settings = DefaultSettingsBuilder::default()
-        .verbose(false)
-        .tol_feas(1e-11)
-        .tol_gap_abs(1e-11)
-        .tol_gap_rel(1e-11)
-        .max_iter(200)
-        .build()
-        .map_err(|error| Error::Program(error.to_string()))?;
-    let zero = CscMatrix::zeros((n, n));
-    let mut solver = DefaultSolver::new(&zero, objective, &a, bounds, &cones, settings)
-        .map_err(|error| Error::Program(error.to_string()))?;
-    solver.solve();
-    match solver.solution.status {
-        SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
-            let solution = &solver.solution;
-            let active: Vec<bool> = solution.z.iter().zip(&solution.s).map(|(z, s)| z > s).collect();
-            Ok(Optimum {
-                found: solution.x.clone(),
-                polished: polish(matrix, bounds, &active, &solution.x),
-                dual: solution.obj_val_dual,
-            })
-        }
-        status => Err(Error::Program(format!(
-            "the solver stopped with {status:?}; check that the recordings and the robot belong together"
-        ))),
-    }
-}
-
-/// Moves x the least way onto the active rows, those whose multiplier exceeds their slack. An interior-point solution meets each of them to about 1e-9 of the largest row, which is
-/// much for a small one; a vertex meets all to rounding.
-fn polish(matrix: &Triplets, bounds: &[f64], active: &[bool], x: &[f64]) -> Vec<f64> {
-    let place: Vec<Option<usize>> = active
-        .iter()
-        .scan(0, |count, &active| {
-            *count += usize::from(active);
-            Some(active.then(|| *count - 1))
-        })
-        .collect();
-    let count = place.iter().flatten().count();
-    let mut rows = DMatrix::zeros(count, x.len());
-    for ((&row, &column), &value) in matrix.rows.iter().zip(&matrix.columns).zip(&matrix.values) {
-        if let Some(at) = place[row] {
-            rows[(at, column)] = value;
-        }
-    }
-    let wanted = DVector::from_iterator(
-        count,
-        bounds.iter().zip(active).filter(|(_, active)| **active).map(|(b, _)| *b),
-    );
-    let before = DVector::from_column_slice(x);
-    let residual = &wanted - &rows * &before;
-    let Ok(step) = rows.svd(true, true).solve(&residual, 1e-9) else { return x.to_vec() };
-    (before + step).data.into()
 }
 
 fn coefficients(grid: &Grid) -> Vec<f64> {
