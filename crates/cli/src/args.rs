@@ -47,13 +47,19 @@ pub enum Command {
     #[command(after_help = CONFORM_HELP)]
     Conform(ConformArgs),
     /// Check other recordings against a model
-    #[command(after_help = "Example:\n  reachtube check --model model.json --data recordings --suites C,F --torque compensated\n\nExit code 1 and a witness (suite, run, time, joint, excess) when a recording leaves the reachable set.")]
+    #[command(
+        after_help = "Example:\n  reachtube check --model model.json --data recordings --suites C,F --torque compensated\n\nExit code 1 and a witness (suite, run, time, joint, excess) when a recording leaves the reachable set."
+    )]
     Check(ModelArgs),
     /// Compute the reachable set of a model over recorded suites, at samples and between them
-    #[command(after_help = "Example:\n  reachtube reach --model model.json --data recordings --suites A --torque compensated --out reach\n\nWrites A.csv (at samples), A_tube.csv (over each step, outer) and A_*.svg into the folder.")]
+    #[command(
+        after_help = "Example:\n  reachtube reach --model model.json --data recordings --suites A --torque compensated --out reach\n\nWrites A.csv (at samples), A_tube.csv (over each step, outer) and A_*.svg into the folder."
+    )]
     Reach(ReachArgs),
     /// Draw the page and figures of a model over recordings
-    #[command(after_help = "Example:\n  reachtube report --model model.json --data recordings --torque compensated --out report\n\nWrites report.html (works offline) and an SVG for each figure into the folder.")]
+    #[command(
+        after_help = "Example:\n  reachtube report --model model.json --data recordings --torque compensated --out report\n\nWrites report.html (works offline) and an SVG for each figure into the folder."
+    )]
     Report(ReportArgs),
 }
 
@@ -68,7 +74,9 @@ Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
 #[derive(Debug, Subcommand)]
 pub enum RobotCommand {
     /// Print geometry, inertia, friction and M(q_a) of a robot; refuse what is no physical robot
-    #[command(after_help = "Example:\n  reachtube robot show arm.toml\n  reachtube robot show lwa4p --at 0,0.5,0,0,0,0")]
+    #[command(
+        after_help = "Example:\n  reachtube robot show arm.toml\n  reachtube robot show lwa4p --at 0,0.5,0,0,0,0"
+    )]
     Show(RobotShowArgs),
 }
 
@@ -97,7 +105,7 @@ pub struct InspectArgs {
     #[arg(long)]
     pub data: PathBuf,
     /// Accept gaps up to this many seconds
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub max_gap: Option<f64>,
 }
 
@@ -108,16 +116,16 @@ pub struct DataArgs {
     #[arg(long)]
     pub data: PathBuf,
     /// Test suites, separated by commas [default: all]
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
     /// What the columns tau are: the input u itself (gravity and Coulomb friction taken off), motor torque, or link-side torque
     #[arg(long, value_parser = word_of::<Torque>(&["compensated", "motor", "link"]))]
     pub torque: Torque,
     /// Use samples up to this many seconds after the first
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub until: Option<f64>,
     /// Accept gaps up to this many seconds, with the input held over them
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub max_gap: Option<f64>,
 }
 
@@ -138,10 +146,10 @@ pub struct ConformArgs {
     #[arg(long, default_value = "all", value_parser = word_of::<States>(&["all", "positions"]))]
     pub states: States,
     /// Weights of the states in the cost: unit, spread (one over the largest deviation), or 2, or 2n numbers
-    #[arg(long, default_value = "unit", value_name = "unit|spread|W,W,..")]
+    #[arg(long, default_value = "unit", value_name = "unit|spread|W,W,..", allow_hyphen_values = true)]
     pub weights: String,
     /// Measurement noise: none, free (found by the program), or its radius in rad and rad/s: 2 or 2n numbers
-    #[arg(long, default_value = "none", value_name = "none|free|R,R,..")]
+    #[arg(long, default_value = "none", value_name = "none|free|R,R,..", allow_hyphen_values = true)]
     pub noise: String,
     /// Where nominal solutions start: at the mean of the runs' first states, or at each run's own
     #[arg(long, default_value = "mean", value_parser = word_of::<NominalStart>(&["mean", "own"]))]
@@ -187,6 +195,15 @@ pub struct ReportArgs {
 /// The limit that `--max-gap` asks for.
 pub fn gap_limit(max_gap: Option<f64>) -> GapLimit {
     max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+}
+
+fn trimmed(text: &str) -> Result<String, std::convert::Infallible> {
+    Ok(text.trim().into())
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
+    value.ok_or_else(|| "give a number of seconds above 0".into())
 }
 
 /// A parser for a setting by the word that model files have for it.

@@ -2,10 +2,12 @@
 
 mod args;
 mod commands;
+mod numbers;
 mod output;
 mod progress;
 mod words;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -23,7 +25,7 @@ fn main() -> ExitCode {
         Ok(commands::Outcome::NotConformant) => ExitCode::from(NOT_CONFORMANT),
         Err(error) => {
             for line in error.to_string().lines() {
-                eprintln!("error: {line}");
+                let _ = writeln!(std::io::stderr(), "error: {line}");
             }
             ExitCode::from(ERROR)
         }

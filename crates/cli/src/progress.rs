@@ -1,41 +1,83 @@
 //! A progress bar on a terminal, for jobs of over a second.
 
-use std::sync::OnceLock;
-use std::time::{Duration, Instant};
+use std::io::IsTerminal;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A job that takes less shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Progress of one job; hidden unless standard error is a terminal.
+/// Time between two pictures of the bar.
+const REFRESH: Duration = Duration::from_millis(100);
+
+/// Recordings read so far, and how many there are.
+#[derive(Default)]
+struct Count {
+    done: AtomicUsize,
+    total: AtomicUsize,
+}
+
+/// Progress of one job; nothing is shown unless standard error is a terminal. The bar has a thread of its own, so that it moves on while recordings
+/// have been read and the sets are computed.
 pub struct Progress {
-    start: Instant,
-    what: &'static str,
-    bar: OnceLock<ProgressBar>,
+    count: Arc<Count>,
+    watcher: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Progress {
-    pub fn new(what: &'static str) -> Self {
-        Self { start: Instant::now(), what, bar: OnceLock::new() }
+    pub fn new() -> Self {
+        let count = Arc::new(Count::default());
+        let watcher = std::io::stderr().is_terminal().then(|| {
+            let (stop, stopped) = channel();
+            let watched = Arc::clone(&count);
+            (stop, std::thread::spawn(move || watch(&watched, &stopped)))
+        });
+        Self { count, watcher }
     }
 
     pub fn show(&self, done: usize, total: usize) {
-        if self.start.elapsed() < PATIENCE {
-            return;
-        }
-        let bar = self.bar.get_or_init(|| {
-            let style = ProgressStyle::with_template("{msg} [{bar:32}] {pos}/{len} {eta}").unwrap_or_else(|_| ProgressStyle::default_bar());
-            ProgressBar::new(total as u64).with_style(style.progress_chars("=> ")).with_message(self.what)
-        });
-        bar.set_position(done as u64);
+        self.count.total.store(total, Relaxed);
+        self.count.done.fetch_max(done, Relaxed);
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = self.bar.get() {
-            bar.finish_and_clear();
+        if let Some((stop, thread)) = self.watcher.take() {
+            drop(stop);
+            let _ = thread.join();
         }
     }
+}
+
+/// Draws until the other end of `stopped` is dropped.
+fn watch(count: &Count, stopped: &Receiver<()>) {
+    if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+        return;
+    }
+    let bar = ProgressBar::no_length();
+    loop {
+        let (done, total) = (count.done.load(Relaxed), count.total.load(Relaxed));
+        if done < total {
+            bar.set_style(style("reading recordings [{bar:32}] {pos}/{len}"));
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        } else {
+            bar.set_style(style("{spinner} computing, {elapsed}"));
+        }
+        bar.tick();
+        if stopped.recv_timeout(REFRESH) != Err(RecvTimeoutError::Timeout) {
+            return bar.finish_and_clear();
+        }
+    }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    style.progress_chars("=> ")
 }

@@ -5,6 +5,14 @@ use std::fmt::Write;
 use reachtube::Model;
 use reachtube::conform::{Check, Place, Trust};
 use reachtube::data::{Group, Inspection};
+use reachtube::model::MOST_TIGHT;
+
+use crate::numbers::{interval, number};
+
+/// A word for so many.
+fn plural(count: usize, word: &str) -> String {
+    format!("{word}{}", if count == 1 { "" } else { "s" })
+}
 
 /// A table with right-aligned columns, the first left-aligned.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
@@ -29,25 +37,44 @@ pub fn model(model: &Model) -> String {
     let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
     let mut text = String::new();
     let verdict = if model.verified { "conformant" } else { "NOT PROVED conformant" };
+    let (suites, proof) = (model.data.suites.len(), &model.proof);
     let _ = writeln!(
         text,
-        "{verdict}: {runs} recordings in {} suites, {} of {} rows proved with directed rounding (hull, at samples)",
-        model.data.suites.len(),
-        model.proof.proved,
-        model.proof.rows
+        "{verdict}: {runs} {} in {suites} {}; {} of {} bounds (suite, sample, state, side) proved with directed rounding, \
+         at samples",
+        plural(runs, "recording"),
+        plural(suites, "suite"),
+        proof.proved,
+        proof.rows
     );
-    let gap = (model.cost - model.cost_lower_bound) / model.cost.max(f64::MIN_POSITIVE);
-    let _ = writeln!(text, "cost {:.6}, at most {gap:.1e} above the optimum by the solver's dual bound\n", model.cost);
+    let gap = (model.cost - model.cost_lower_bound).max(0.0);
+    let gap = match gap / model.cost {
+        part if part > 0.0 => format!("at most {part:.0e} above the least"),
+        _ => "the least there is to the solver's accuracy".into(),
+    };
+    let _ = writeln!(
+        text,
+        "cost {} (weighted widths of the reachable set, summed over states and samples), {gap}\n",
+        number(model.cost)
+    );
     text.push_str(&sets(model));
-    let _ = writeln!(text, "\n{} rows touch the reachable set:", model.tight.len());
+    let _ = writeln!(
+        text,
+        "\n{} the reachable set and decide X0 and U:",
+        match model.tight.len() {
+            1 => "1 recorded value touches".into(),
+            MOST_TIGHT => format!("{MOST_TIGHT} recorded values or more touch"),
+            touching => format!("{touching} recorded values touch"),
+        }
+    );
     text.push_str(&places(&model.tight, 6));
     let _ = writeln!(text, "\n{}", trust(&model.trust, "touch the set"));
     text
 }
 
+/// The sets, joint by joint, as in Table II of the paper.
 fn sets(model: &Model) -> String {
     let n = model.joints();
-    let interval = |(low, high): (f64, f64)| format!("[{low:.4}, {high:.4}]");
     let mut header = vec!["joint", "X0 q [rad]", "X0 qd [rad/s]", "U [N m]"];
     if model.noise_set.is_some() {
         header.extend(["V q [rad]", "V qd [rad/s]"]);
@@ -74,23 +101,24 @@ fn places(places: &[Place], most: usize) -> String {
             format!("{:.3} s", place.time),
             place.state.clone(),
             format!("{:?}", place.side).to_lowercase(),
-            format!("{:+.2e}", place.excess),
+            format!("{:.1e}", -place.excess),
         ]
     };
     let rows: Vec<_> = places.iter().take(most).map(row).collect();
-    let mut text = table(&["run", "time", "state", "side", "excess"], &rows);
+    let mut text = table(&["run", "time", "state", "side", "inside by"], &rows);
     if places.len() > most {
-        let _ = writeln!(text, "  and {} more (--json lists them)", places.len() - most);
+        let _ = writeln!(text, "  and {} more, which --json lists", places.len() - most);
     }
     text
 }
 
 fn trust(trust: &Trust, role: &str) -> String {
     format!(
-        "the next motion leaves the set with probability at most {:.3} (confidence {:.0} %): {} motions, {} of them {role};\n{}",
+        "the next motion leaves the set with probability at most {:.3} (confidence {:.0} %): {} {}, {} of them {role};\n{}",
         trust.violation_probability,
         100.0 * trust.confidence,
         trust.motions,
+        plural(trust.motions, "motion"),
         trust.deciding,
         trust.basis
     )
@@ -102,8 +130,11 @@ pub fn check(check: &Check) -> String {
     let verdict = if check.conformant { "conformant" } else { "not conformant" };
     let _ = writeln!(
         text,
-        "{verdict}: {} recordings, {} of {} rows (suite, time, state) outside the reachable set\n",
-        check.runs, check.violations.count, check.rows
+        "{verdict}: {} {}; {} of {} values (suite, sample, state) outside the reachable set\n",
+        check.runs,
+        plural(check.runs, "recording"),
+        check.violations.count,
+        check.rows
     );
     let row = |suite: &reachtube::conform::SuiteCheck| {
         vec![
@@ -115,12 +146,14 @@ pub fn check(check: &Check) -> String {
         ]
     };
     let rows: Vec<_> = check.suites.iter().map(row).collect();
-    text.push_str(&table(&["suite", "runs", "rows", "outside", "furthest"], &rows));
+    text.push_str(&table(&["suite", "runs", "values", "outside", "furthest"], &rows));
     match &check.trust {
         Some(held_out) => {
             let _ = writeln!(text, "\n{}", trust(held_out, "leave the set"));
         }
-        None => text.push_str("\nthe model was fitted to some of these recordings: this says nothing about the next motion\n"),
+        None => text.push_str(
+            "\nthe model was fitted to some of these recordings: this says nothing about the next motion\n",
+        ),
     }
     text
 }
@@ -129,39 +162,58 @@ pub fn check(check: &Check) -> String {
 pub fn witness(place: &Place) -> String {
     let unit = if place.state.starts_with("qd") { "rad/s" } else { "rad" };
     format!(
-        "{} at {:.3} s: joint {}, {} {:.3e} {unit} beyond the {} side",
+        "{} at {:.3} s: joint {}, {} {} {unit} beyond the {} side",
         place.run,
         place.time,
         place.joint,
         place.state,
-        place.excess,
+        number(place.excess),
         format!("{:?}", place.side).to_lowercase()
     )
 }
 
 /// The result of `inspect`.
 pub fn inspection(inspection: &Inspection) -> String {
-    let mut text = format!("{}: {} recordings of {} joints\n", inspection.folder, inspection.runs, inspection.joints);
+    let (runs, joints) = (inspection.runs, inspection.joints);
+    let (recordings, of) = (plural(runs, "recording"), plural(joints, "joint"));
+    let mut text = format!("{}: {runs} {recordings} of {joints} {of}\n", inspection.folder);
     for group in &inspection.groups {
         text.push('\n');
         text.push_str(&group_words(group));
     }
+    text.push_str(LEGEND);
     text
 }
+
+const LEGEND: &str = "
+start, end: spread of the first and of the last positions over the runs, rad
+drift: correlation of the last position with the order of the runs, near +1 or -1 where the robot changes, as it does warming up
+sticks: samples slower than 0.01 rad/s
+q - int qd: largest difference of q and the integral of qd, rad
+";
 
 fn group_words(group: &Group) -> String {
     let [fewest, most] = group.samples;
     let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
     let rate = match group.step {
-        Some(step) => format!("every {step} s"),
-        None => format!("every {:.4} to {:.4} s", group.steps[0], group.steps[1]),
+        _ if most == 1 => String::new(),
+        Some(step) => format!(" every {step} s"),
+        None => format!(" every {} to {} s", number(group.steps[0]), number(group.steps[1])),
     };
     let kind = if group.suite { "suite" } else { "no suite:" };
     let motion = group.motion.as_ref().map_or_else(String::new, |motion| format!(" (motion {motion})"));
-    let torque = if group.same_torque { "the same torque in all" } else { "torques differ" };
+    let torque = match group.same_torque {
+        _ if group.runs == 1 => "",
+        true => ", the same torques in all",
+        false => ", torques or times differ",
+    };
     let mut text = format!(
-        "{kind} {}{motion}: {} runs of {samples} samples {rate}, {:.3} s, {torque}\n",
-        group.name, group.runs, group.duration
+        "{kind} {}{motion}: {} {} of {samples} {}{rate}, {:.3} s{torque}\n",
+        group.name,
+        group.runs,
+        plural(group.runs, "run"),
+        plural(most, "sample"),
+        group.duration
     );
     let row = |(index, joint): (usize, &reachtube::data::JointSummary)| {
         vec![
@@ -169,17 +221,16 @@ fn group_words(group: &Group) -> String {
             format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1]),
             format!("{:.3}", joint.speed),
             format!("{:.2}", joint.torque),
-            format!("{:.4}", joint.start_spread),
-            format!("{:.4}", joint.end_spread),
+            number(joint.start_spread),
+            joint.end_spread.map_or_else(|| "-".into(), number),
             joint.drift.map_or_else(|| "-".into(), |drift| format!("{drift:+.2}")),
             format!("{:.0} %", 100.0 * joint.sticking),
             format!("{:.1e}", joint.integral_gap),
         ]
     };
     let rows: Vec<_> = group.joints.iter().enumerate().map(row).collect();
-    let header = [
-        "joint", "q [rad]", "|qd| [rad/s]", "|tau| [N m]", "start spread", "end spread", "drift", "sticks", "q - int qd",
-    ];
+    let header =
+        ["joint", "q [rad]", "|qd| [rad/s]", "|tau| [N m]", "start", "end", "drift", "sticks", "q - int qd"];
     text.push_str(&table(&header, &rows));
     text
 }

@@ -1,6 +1,6 @@
 //! Reachable sets of a six-joint arm, 12 states and 6 inputs, on a recording of 5 s at 250 Hz.
 
-#[path = "../tests/common/arm.rs"]
+#[path = "../tests/reach/arm.rs"]
 mod arm;
 
 use arm::arm;

@@ -49,7 +49,7 @@ fn halve(system: &LinearSystem, h: Interval) -> (u32, Interval) {
     let mut halvings = 0;
     let norm = norm_upper(&magnitude(&point(system.a())));
     while norm.is_finite() && mul_up(norm, small.hi()) > SERIES_NORM && halvings < 1000 {
-        small = small * 0.5;
+        small *= 0.5;
         halvings += 1;
     }
     (halvings, small)
@@ -110,4 +110,45 @@ pub(crate) fn derivative(system: &LinearSystem, x: &[Interval], u: &[Interval]) 
     add_product(sum.as_mut_slice(), &point(system.a()), x);
     add_product(sum.as_mut_slice(), &point(system.b()), u);
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dmatrix;
+
+    use super::*;
+
+    #[test]
+    fn the_remainder_covers_the_terms_left_out() {
+        for norm in [1e-300, 1e-9, 0.01, 0.3, 0.5] {
+            let (degree, remainder) = truncation(norm);
+            let mut term =
+                (2..=degree + 2).fold(1.0, |term, i| term / i as f64) * norm.powi(degree as i32 + 1);
+            let mut rest = 0.0;
+            for i in degree + 1..degree + 30 {
+                rest += term;
+                term *= norm / (i as f64 + 2.0);
+            }
+            assert!(
+                remainder >= rest * (1.0 - 1e-12) && remainder <= 1.4 * rest + 1e-300,
+                "{norm}: {remainder:e} {rest:e}"
+            );
+        }
+        assert_eq!(truncation(0.0), (1, 0.0));
+        assert_eq!(truncation(f64::INFINITY).1, f64::INFINITY);
+        assert!(truncation(50.0).1 > 0.0);
+    }
+
+    #[test]
+    fn an_entry_is_linked_when_a_path_leads_there() {
+        let chain = dmatrix![0.0, 1.0, 0.0; 0.0, 0.0, 1.0; 0.0, 0.0, 0.0];
+        let expected = dmatrix![true, true, true; false, true, true; false, false, true];
+        assert_eq!(connected(&chain), expected);
+    }
+
+    #[test]
+    fn the_largest_row_sum_is_rounded_upward() {
+        assert_eq!(norm_upper(&dmatrix![1.0, 2.0; 0.5, 0.25]), 3.0);
+        assert!(norm_upper(&dmatrix![1.0, 1e-20]) > 1.0);
+    }
 }

@@ -90,22 +90,73 @@ pub(crate) fn dot<'a>(
     terms.fold(Interval::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// An upper bound of the product of two matrices with entries >= 0, rounded upward.
+/// Above it, underflow in a sum of products does not count against the rounding of the sum.
+const FAR_FROM_UNDERFLOW: f64 = 1e-280;
+
+/// An upper bound of the product of two matrices with entries >= 0; an entry all of whose terms are zero is 0.
+///
+/// The sum of N products >= 0 in floating point, in any order, is at least 1 - N u / (1 - N u) times the exact one, with the unit
+/// roundoff u (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1). What is zero, infinite or near underflow is
+/// summed again, rounded upward.
 pub(crate) fn mul_upward(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
-    let rows = left.nrows();
-    let mut product = DMatrix::zeros(rows, right.ncols());
-    for j in 0..right.ncols() {
-        let sum = &mut product.as_mut_slice()[j * rows..(j + 1) * rows];
-        for (k, &y) in right.column(j).iter().enumerate().filter(|(_, y)| **y != 0.0) {
-            for (sum, &x) in sum.iter_mut().zip(&left.as_slice()[k * rows..(k + 1) * rows]) {
-                *sum = add_up(*sum, mul_up(x, y));
+    let widening = 1.0 + (left.ncols() + 1) as f64 * f64::EPSILON;
+    let mut product = left * right;
+    for j in 0..product.ncols() {
+        for i in 0..product.nrows() {
+            let entry = &mut product[(i, j)];
+            *entry = match *entry {
+                FAR_FROM_UNDERFLOW..f64::INFINITY => mul_up(*entry, widening),
+                _ => dot_upward(left.row(i).iter().copied(), right.column(j).as_slice()),
             }
         }
     }
     product
 }
 
+/// An upper bound of Σ x_i y_i with terms >= 0.
+pub(crate) fn dot_upward(left: impl Iterator<Item = f64>, right: &[f64]) -> f64 {
+    let terms = left.zip(right).filter(|(_, y)| **y != 0.0);
+    terms.fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y)))
+}
+
 /// `sum += term` for entries >= 0, rounded upward.
 pub(crate) fn accumulate_upward(sum: &mut DMatrix<f64>, term: &DMatrix<f64>) {
     sum.zip_apply(term, |s, t| *s = add_up(*s, t));
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dmatrix;
+
+    use super::*;
+
+    fn sample() -> (IntervalMatrix, IntervalMatrix) {
+        let left = dmatrix![0.1, 0.0, -3.0; 0.0, 7.0, 1e-200];
+        let right = dmatrix![0.3, 0.0; -0.7, 0.0; 1e-200, 2.5];
+        (point(&left), ball(&right, &right.map(|x: f64| x.abs() * 1e-3)))
+    }
+
+    #[test]
+    fn products_are_those_of_nalgebra_and_keep_zeros() {
+        let (left, right) = sample();
+        let (ours, plain) = (product(&left, &right), &left * &right);
+        assert!(ours.iter().zip(&plain).all(|(x, y)| x.hull(*y).width() <= x.width() * (1.0 + 1e-9)));
+        assert_eq!(product(&point(&dmatrix![1.0, 0.0]), &point(&dmatrix![0.0; 5.0]))[(0, 0)], Interval::ZERO);
+        let row = left.row(0);
+        assert_eq!(dot(row.iter(), right.column(1).iter()), ours[(0, 1)]);
+    }
+
+    #[test]
+    fn upward_products_are_above_the_exact_ones_also_where_they_underflow() {
+        let left = dmatrix![0.1, 0.2; 1e-200, 0.0];
+        let right = dmatrix![0.7, 0.0; 0.3, 1e-250];
+        let bound = mul_upward(&left, &right);
+        // 0.07 + 0.06 in exact decimals; the `f64` factors are a little above or below.
+        assert!(bound[(0, 0)] > 0.13 && bound[(0, 0)] < 0.13 + 1e-15);
+        assert!(bound[(0, 1)] > 0.2 * 1e-250 && bound[(1, 0)] > 0.7 * 1e-200);
+        assert_eq!(bound[(1, 1)], 0.0);
+        assert!(mul_upward(&dmatrix![1e-200], &dmatrix![1e-200])[(0, 0)] > 0.0);
+        assert_eq!(mul_upward(&dmatrix![0.0, 1.0], &dmatrix![f64::INFINITY; 2.0])[(0, 0)], 2f64.next_up());
+        assert_eq!(mul_upward(&dmatrix![1.0], &dmatrix![f64::INFINITY])[(0, 0)], f64::INFINITY);
+    }
 }

@@ -3,12 +3,18 @@ use rayon::prelude::*;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up};
 
-use crate::exponential::{Step, step};
+use crate::exponential::{Step, norm_upper, step};
 use crate::matrix::{
-    IntervalMatrix, IntervalVector, accumulate_upward, add_product, ball, magnitude, midpoint, mul_upward,
+    IntervalMatrix, IntervalVector, accumulate_upward, ball, dot_upward, magnitude, midpoint, mul_upward,
     point, product, radius,
 };
 use crate::{LinearSystem, ReachError, TimeGrid, Trajectory};
+
+/// Norm of A s up to which e^{As} is enclosed for all shorter times at once.
+const SHORT_STEP_NORM: f64 = 0.5;
+
+/// Parts of one step at most; beyond, the bound is valid but large.
+const MOST_SHORT_STEPS: f64 = 4096.0;
 
 /// e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, and the solutions of the system on it.
 ///
@@ -52,8 +58,7 @@ impl Propagation {
         let steps = steps_of(system, grid);
         let step_at = |k: usize| if grid.step().is_some() { &steps[0] } else { &steps[k] };
         let powers = RoundedPowers::new(system.states(), grid.len(), &step_at);
-        let longest = Interval::ZERO.hull(Interval::point(grid.longest_step()));
-        let bound = bound_exponential(&powers, &magnitude(&step(system, longest).phi));
+        let bound = bound_exponential(&powers, &bound_within_step(system, grid.longest_step()));
         let errors = powers.errors(&step_at, &bound);
         let mut exponential: Vec<_> =
             powers.mid.iter().zip(&errors).map(|(mid, rad)| ball(mid, rad)).collect();
@@ -174,10 +179,6 @@ impl SolutionError {
     }
 }
 
-fn dot_upward(row: impl Iterator<Item = f64>, vector: &[f64]) -> f64 {
-    row.zip(vector).fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y)))
-}
-
 fn steps_of(system: &LinearSystem, grid: &TimeGrid) -> Vec<Step> {
     let count = if grid.step().is_some() { 1 } else { grid.len().saturating_sub(1) };
     (0..count).into_par_iter().map(|k| step(system, grid.interval(k))).collect()
@@ -225,6 +226,17 @@ fn product_error(phi: &IntervalMatrix) -> DMatrix<f64> {
     phi.map(|x| add_up(mul_up(relative, x.mid().abs()), x.rad()))
 }
 
+/// P >= |e^{As}| entrywise for 0 <= s <= h: a horizon in itself, of steps so short that one enclosure over each is good enough.
+fn bound_within_step(system: &LinearSystem, h: f64) -> DMatrix<f64> {
+    let norm = norm_upper(&magnitude(&point(system.a())));
+    // `max` is 1 for NaN too: an infinite norm over no time.
+    let parts = MOST_SHORT_STEPS.min((norm * h / SHORT_STEP_NORM).ceil().max(1.0));
+    let short = Interval::point(h) / parts;
+    let short_step = step(system, short);
+    let powers = RoundedPowers::new(system.states(), parts as usize, &|_| &short_step);
+    bound_exponential(&powers, &magnitude(&step(system, Interval::ZERO.hull(short)).phi))
+}
+
 /// M >= |e^{Aτ}| entrywise for every τ of the horizon; infinite when none is found.
 ///
 /// With P >= |e^{As}| over one step, D = Σ|δ_j| and M̃ = max_k |Ẽ_k|, any M with (M̃ + D M) P <= M bounds it, by induction over the samples:
@@ -270,4 +282,37 @@ fn integrals<'a>(
     }
     integral.truncate(exponential.len());
     integral
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{dmatrix, dvector};
+
+    use super::*;
+
+    fn rotation(omega: f64) -> LinearSystem {
+        LinearSystem::new(dmatrix![0.0, omega; -omega, 0.0], dmatrix![0.0; 1.0], dvector![0.0, 0.0]).unwrap()
+    }
+
+    #[test]
+    fn the_bound_holds_over_the_horizon_and_is_close() {
+        let propagation = Propagation::new(&rotation(2.0), &TimeGrid::uniform(0.01, 400)).unwrap();
+        assert!(propagation.bound.iter().all(|&m| (1.0..1.1).contains(&m)), "{}", propagation.bound);
+    }
+
+    #[test]
+    fn the_bound_within_a_long_step_does_not_grow_with_its_norm() {
+        let bound = bound_within_step(&rotation(100.0), 0.5);
+        assert!(bound.iter().all(|&p| (1.0..2.0).contains(&p)), "{bound}");
+        let decay = LinearSystem::new(dmatrix![-80.0], dmatrix![1.0], dvector![0.0]).unwrap();
+        assert!((1.0..2.0).contains(&bound_within_step(&decay, 1.0)[(0, 0)]));
+    }
+
+    #[test]
+    fn no_bound_is_infinite_not_wrong() {
+        let growth = LinearSystem::new(dmatrix![60.0], dmatrix![1.0], dvector![0.0]).unwrap();
+        let propagation = Propagation::new(&growth, &TimeGrid::uniform(0.01, 101)).unwrap();
+        assert_eq!(propagation.bound[(0, 0)], f64::INFINITY);
+        assert!(propagation.exponential(100)[(0, 0)].contains(60f64.exp()));
+    }
 }

@@ -127,3 +127,75 @@ impl Polynomial {
         Interval::centered(0.0, mul_up(self.tail, power.hi()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{dmatrix, dvector};
+
+    use super::*;
+
+    /// e^{Aτ} B = (sin ωτ, cos ωτ) as polynomials, for τ up to `longest`.
+    fn oscillation(omega: f64, longest: f64) -> [Polynomial; 2] {
+        let a = dmatrix![0.0, omega; -omega, 0.0];
+        let system = LinearSystem::new(a, dmatrix![0.0; 1.0], dvector![0.0, 0.0]).unwrap();
+        let series = Series::new(&system, longest);
+        [0, 1].map(|i| series.entry(&IntervalMatrix::identity(2, 2), i, 0))
+    }
+
+    fn between(a: f64, b: f64) -> Interval {
+        Interval::new(a, b).unwrap()
+    }
+
+    #[test]
+    fn ranges_and_integrals_enclose_sine_and_cosine() {
+        let [sine, cosine] = oscillation(3.0, 0.5);
+        for k in 0..50 {
+            let (a, b) = (0.01 * f64::from(k), 0.01 * f64::from(k + 1));
+            let (range, point_width) = sine.range(between(a, b));
+            assert!(range.contains((1.5 * (a + b)).sin()) && point_width < 1e-14);
+            assert!(
+                range.contains((3.0 * a).sin()) && range.contains((3.0 * b).sin()) && range.width() < 0.04
+            );
+            let integral = cosine.integral(Interval::point(b));
+            assert!((integral - (3.0 * b).sin() / 3.0).mag() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn the_tail_covers_what_a_short_series_leaves_out() {
+        let [mut sine, _] = oscillation(3.0, 0.5);
+        let full = sine.integral(Interval::point(0.5));
+        sine.coefficients.truncate(6);
+        // |A|⁶ |B| / 6!, as the series would have it at six terms.
+        sine.tail = 2.0 * 729.0 / 720.0;
+        let short = sine.integral(Interval::point(0.5));
+        assert!(short.encloses(&full) && short.width() > 1e-4 && short.width() < 0.04);
+        let exact = (3.0f64 * 0.4).sin();
+        assert!(sine.range(Interval::point(0.4)).0.contains(exact));
+    }
+
+    #[test]
+    fn absolute_values_are_integrated_across_a_change_of_sign() {
+        let [_, cosine] = oscillation(4.0, 0.75);
+        let whole = cosine.integral_of_absolute(Interval::ZERO, Interval::point(0.75), 1e-14);
+        let exact = (2.0 - 3.0f64.sin()) / 4.0;
+        assert!(whole.contains(exact) || (whole - exact).mag() < 1e-15);
+        assert!(whole.width() < 1e-12 && (whole - exact).mag() < 1e-12);
+        assert!(cosine.may_turn(between(0.0, 0.75), 1e-14) && !cosine.may_turn(between(0.0, 0.3), 1e-14));
+    }
+
+    #[test]
+    fn noise_is_not_halved_for_ever() {
+        let coefficient = |m: i32| Interval::centered(0.0, 1e-6 * 0.1f64.powi(m));
+        let noise = Polynomial { coefficients: (0..8).map(coefficient).collect(), tail: 0.0 };
+        let integral = noise.integral_of_absolute(Interval::ZERO, Interval::ONE, 0.0);
+        assert!(integral.lo() == 0.0 && integral.hi() >= 1e-6 && integral.hi() < 1e-4);
+        assert!(!noise.may_turn(between(0.0, 1.0), 0.0));
+    }
+
+    #[test]
+    fn a_norm_beyond_every_series_gives_no_bound_but_no_wrong_one() {
+        let [sine, _] = oscillation(1e4, 1.0);
+        assert_eq!(sine.integral_of_absolute(Interval::ZERO, Interval::ONE, 1e-10).hi(), f64::INFINITY);
+    }
+}

@@ -39,7 +39,7 @@ impl Tube {
             let input = |j: usize| Interval::point(inputs[k * m + j]) + Interval::point(input_set.center[j]);
             let velocity = derivative(propagation.system(), &y, &(0..m).map(input).collect::<Vec<_>>());
             let mut acceleration = vec![Interval::ZERO; n];
-            add_product(&mut acceleration, &radii.jerk, &velocity);
+            add_product(&mut acceleration, &radii.curvature, &velocity);
             let eighth = eighth(propagation, k);
             for i in 0..n {
                 let bulge = symmetric(acceleration[i].abs() * eighth);
@@ -71,7 +71,7 @@ pub struct TubeRadii {
     dimension: usize,
     radius: Vec<Interval>,
     /// A e^{As} for every s up to the longest step: it takes ẏ at a sample to ÿ within the step.
-    jerk: IntervalMatrix,
+    curvature: IntervalMatrix,
 }
 
 impl TubeRadii {
@@ -92,8 +92,8 @@ impl TubeRadii {
         let system = propagation.system();
         let (a, b) = (point(system.a()), point(system.b()));
         let longest = Interval::ZERO.hull(Interval::point(propagation.grid().longest_step()));
-        let jerk = product(&step(system, longest).phi, &a);
-        let (second_of_initial, second_of_input) = (product(&jerk, &a), product(&jerk, &b));
+        let curvature = product(&step(system, longest).phi, &a);
+        let (second_of_initial, second_of_input) = (product(&curvature, &a), product(&curvature, &b));
         let variation = match disturbance {
             Disturbance::Constant => None,
             Disturbance::Sample | Disturbance::Measurable => Some(measurable_gains(propagation)),
@@ -114,7 +114,7 @@ impl TubeRadii {
         };
         let steps = propagation.grid().len().saturating_sub(1);
         let radius = (0..steps).into_par_iter().flat_map_iter(step_radius).collect();
-        Self { dimension: system.states(), radius, jerk }
+        Self { dimension: system.states(), radius, curvature }
     }
 
     fn radius(&self, k: usize, i: usize) -> Interval {

@@ -8,17 +8,17 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
-use crate::Propagation;
 use crate::disturbance::running_sum;
 use crate::exponential::{norm_upper, step};
 use crate::matrix::{IntervalMatrix, magnitude, point, product};
 use crate::series::{Polynomial, Series};
+use crate::{LinearSystem, Propagation};
 
 /// A piece of the integral is left as an interval once its outer bound is below this part of the largest entry of its cell.
 const NEGLIGIBLE: f64 = 1e-13;
 
 /// Norm of A h above which the series of one cell would lose digits to cancellation, and cells are made shorter than the step h.
-const CELL_NORM: f64 = 4.0;
+const CELL_NORM: f64 = 2.0;
 
 /// Cells of one step at most.
 const MOST_CELLS: usize = 256;
@@ -39,8 +39,7 @@ struct Cells<'a> {
     /// Cells of one step of the grid.
     parts: usize,
     series: Series,
-    /// e^{Aτ} B within the first cell.
-    within: IntervalMatrix,
+    within: Within,
     /// ∫ |e^{Aτ} B| over each cell.
     integrals: Vec<IntervalMatrix>,
     /// For each entry, the cells in which it may change sign.
@@ -52,8 +51,7 @@ impl<'a> Cells<'a> {
         let (propagation, parts) = refine(propagation);
         let system = propagation.system();
         let longest = propagation.grid().longest_step();
-        let within =
-            product(&step(system, Interval::ZERO.hull(Interval::point(longest))).phi, &point(system.b()));
+        let within = Within::new(system, longest);
         let series = Series::new(system, longest);
         let turning = DMatrix::from_element(system.states(), system.inputs(), Vec::new());
         let mut cells = Self { parts, series, within, integrals: Vec::new(), turning, propagation };
@@ -70,7 +68,7 @@ impl<'a> Cells<'a> {
     fn cell(&self, k: usize) -> (IntervalMatrix, Vec<(usize, usize)>) {
         let start = self.propagation.exponential(k);
         let h = self.propagation.grid().interval(k);
-        let range = product(start, &self.within);
+        let range = self.within.range(start);
         let change = product(start, &self.propagation.step(k).gamma);
         let scale = range.iter().fold(0.0, |max: f64, x| max.max(x.mag()));
         let negligible = NEGLIGIBLE * scale * h.hi();
@@ -98,12 +96,43 @@ impl<'a> Cells<'a> {
     /// A lower bound of Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| in entry (i, j), for every sample k of a grid with these `times`.
     fn variation_at_least(&self, times: &[f64], (i, j): (usize, usize)) -> Vec<f64> {
         let mut integral = IntegralEntry { cells: self, entry: (i, j), polynomials: BTreeMap::new() };
-        let mut total = |k: usize| {
+        let total = |k: usize| {
             let nodes = nodes_around(times, k, &self.turning[(i, j)], self.propagation.grid().times());
             let values: Vec<Interval> = nodes.iter().map(|&l| integral.between(times[l], times[k])).collect();
             values.windows(2).fold(Interval::ZERO, |sum, v| sum + (v[1] - v[0]).abs()).lo()
         };
-        (0..times.len()).map(|k| total(k)).collect()
+        (0..times.len()).map(total).collect()
+    }
+}
+
+/// e^{Aτ} B for 0 <= τ <= L, to second order about L/2: value + slope (τ - L/2) + bend (τ - L/2)²/2.
+struct Within {
+    value: IntervalMatrix,
+    slope: IntervalMatrix,
+    bend: IntervalMatrix,
+    /// L.
+    longest: f64,
+}
+
+impl Within {
+    fn new(system: &LinearSystem, longest: f64) -> Self {
+        let (a, b) = (point(system.a()), point(system.b()));
+        let value = product(&step(system, Interval::point(0.5 * longest)).phi, &b);
+        let over_cell = product(&step(system, Interval::ZERO.hull(Interval::point(longest))).phi, &b);
+        Self { slope: product(&a, &value), bend: product(&a, &product(&a, &over_cell)), value, longest }
+    }
+
+    /// `start` e^{Aτ} B over all of 0 <= τ <= L.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    fn range(&self, start: &IntervalMatrix) -> IntervalMatrix {
+        let from_middle = Interval::centered(0.0, 0.5 * self.longest);
+        let half_square = from_middle.sqr() * 0.5;
+        product(start, &self.value)
+            + product(start, &self.slope) * from_middle
+            + product(start, &self.bend) * half_square
     }
 }
 

@@ -67,7 +67,9 @@ fn envelope_of_2280_runs_on_all_cores(bencher: Bencher) {
     bencher.counter(BytesCount::new(bytes)).bench(|| {
         let envelope_of = |(at, runs): (usize, &[Vec<f64>])| {
             let mut envelope = Envelope::new(STATES);
-            runs.iter().enumerate().for_each(|(run, states)| envelope.include((at * part + run) as u32, states));
+            runs.iter()
+                .enumerate()
+                .for_each(|(run, states)| envelope.include((at * part + run) as u32, states));
             envelope
         };
         let merge = |mut a: Envelope, b: Envelope| {

@@ -5,31 +5,39 @@ use thiserror::Error;
 
 use crate::data::Defect;
 
-/// What can go wrong. A model that is not conformant is not an error, it is a [`Verdict`](crate::conform::Verdict).
+/// What can go wrong. A model that is not conformant is not an error, it is a value, as in [`Proof`](crate::conform::Proof) and [`Check`](crate::conform::Check).
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A file could not be read.
-    #[error("{}: cannot read: {source}", path.display())]
+    #[error("{}: cannot read: {source}; {remedy}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// Why.
         source: std::io::Error,
+        /// What to do.
+        remedy: &'static str,
     },
     /// A file could not be written; nothing was left behind.
-    #[error("{}: cannot write: {source}; nothing was written, and a file of that name is as it was", path.display())]
+    #[error("{}: cannot write: {source}; nothing was written, and a file of that name is as it was; choose a place with room and permission", path.display())]
     Write {
         /// The file.
         path: PathBuf,
         /// Why.
         source: std::io::Error,
     },
+    /// A result could not be printed.
+    #[error("standard output: cannot write: {0}; make room or print elsewhere, and run the command again")]
+    Output(std::io::Error),
     /// The recordings have defects.
     #[error("{}", crate::data::list_defects(.0))]
     Defects(Vec<Defect>),
     /// A suite was asked for that the data set does not have.
-    #[error("{}: there is no suite \"{name}\"; the data set has {}", index.display(), if available.is_empty() { "no suite at all (the column suite of runs.csv is empty)".into() } else { available.join(", ") })]
+    #[error("{}: {}", index.display(), match &available[..] {
+        [] => "no run has a suite; put the runs that start from one state under one input into a suite, by the column suite".into(),
+        some => format!("there is no suite \"{name}\"; the data set has {}", some.join(", ")),
+    })]
     UnknownSuite {
         /// The index file.
         index: PathBuf,

@@ -12,4 +12,3 @@ pub mod write;
 
 pub use error::{Error, Result};
 pub use model::Model;
-

@@ -9,6 +9,7 @@ use reachtube_robot::{Robot, RobotDescription};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::abstraction::linear_model;
 use crate::conform::{Conformance, Place, Proof, Recordings, Settings, TightRow, Trust, UncertaintySets};
 use crate::data::DataSet;
 use crate::error::{Error, Result};
@@ -19,8 +20,13 @@ pub const FORMAT: &str = "reachtube-model";
 /// The version of the format that this library writes and reads; the schema is `docs/model.schema.json`.
 pub const VERSION: u32 = 1;
 
-/// Tight rows kept in a file: as many as a degenerate program may have would make it unreadable.
-const MOST_TIGHT: usize = 500;
+/// Numbers that are computed twice are the same to this part.
+const SAME: f64 = 1e-9;
+
+const MODEL_REMEDY: &str = "give a file that `conform --out` wrote";
+
+/// Tight rows kept in a file at most: as many as a degenerate program may have would make it unreadable.
+pub const MOST_TIGHT: usize = 500;
 
 /// A linear model with the uncertainty sets for which it is reachset conformant with the recordings named in it. SI units; states are ordered
 /// q then q̇.
@@ -154,24 +160,36 @@ impl Model {
     ///
     /// [`Error::Read`], or [`Error::ModelFile`] that says what is wrong.
     pub fn load(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::Read { path: path.into(), source })?;
+        let text = std::fs::read_to_string(path).map_err(|source| Error::Read {
+            path: path.into(),
+            source,
+            remedy: MODEL_REMEDY,
+        })?;
         let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
-        let value: serde_json::Value =
-            serde_json::from_str(&text).map_err(|error| wrong(format!("not JSON: {error}; give a file that `conform --out` wrote")))?;
+        let value: serde_json::Value = serde_json::from_str(&text)
+            .map_err(|error| wrong(format!("not JSON: {error}; give a file that `conform --out` wrote")))?;
         if value["format"] != FORMAT {
-            return Err(wrong(format!("its format is not \"{FORMAT}\"; give a file that `conform --out` wrote")));
+            return Err(wrong(format!(
+                "its format is not \"{FORMAT}\"; give a file that `conform --out` wrote"
+            )));
         }
         if value["version"] != VERSION {
-            return Err(wrong(format!("version {} of the format, this program reads {VERSION}; run conform again", value["version"])));
+            return Err(wrong(format!(
+                "version {} of the format, this program reads {VERSION}; run conform again",
+                value["version"]
+            )));
         }
-        let model: Self = serde_json::from_value(value).map_err(|error| wrong(error.to_string()))?;
+        let model: Self = serde_json::from_value(value).map_err(|error| {
+            wrong(format!("{error}; give the file as `conform --out` wrote it, or run conform again"))
+        })?;
         model.check().map_err(wrong)?;
         Ok(model)
     }
 
     /// The file's text: JSON, ending with a newline.
     pub fn to_json(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self).expect("a model has only finite numbers and string keys");
+        let mut text =
+            serde_json::to_string_pretty(self).expect("a model has only finite numbers and string keys");
         text.push('\n');
         text
     }
@@ -192,7 +210,11 @@ impl Model {
     /// When the matrices do not fit together.
     pub fn system(&self) -> Result<LinearSystem> {
         let matrix = |rows: &[Vec<f64>]| {
-            DMatrix::from_row_iterator(rows.len(), rows.first().map_or(0, Vec::len), rows.iter().flatten().copied())
+            DMatrix::from_row_iterator(
+                rows.len(),
+                rows.first().map_or(0, Vec::len),
+                rows.iter().flatten().copied(),
+            )
         };
         Ok(LinearSystem::new(matrix(&self.a), matrix(&self.b), DVector::from_vec(self.drift.clone()))?)
     }
@@ -228,36 +250,79 @@ impl Model {
         let sets = set(&self.initial_set, 2 * n)
             && set(&self.input_set, n)
             && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
-        if !sizes || !sets {
+        if !sizes {
             return Err(format!(
-                "a, b, drift or a set does not have the size for the {n} joints of its robot, or a radius is negative; run conform again"
+                "a, b or drift has not the size for the {n} joints of its robot; run conform again"
             ));
         }
-        self.settings.validate(n).map_err(|error| error.to_string())
+        if !sets {
+            return Err(format!(
+                "initial_set, input_set or noise_set has not the size for the {n} joints of its robot, or a negative radius; run conform again"
+            ));
+        }
+        let point = &self.settings.expansion_point;
+        if point.q.len() != n || point.qd.len() != n {
+            return Err(format!("its expansion point is not one of {n} joints; run conform again"));
+        }
+        self.settings.validate(n).map_err(|error| error.to_string())?;
+        self.check_parts()
+    }
+
+    /// What is in the file twice must be the same: where it is not, somebody has changed a part.
+    fn check_parts(&self) -> Result<(), String> {
+        let changed =
+            |what: &str| Err(format!("{what}: the file was changed after it was written; run conform again"));
+        let model = self.robot().and_then(|robot| linear_model(&robot, &self.settings.expansion_point));
+        let model = model.map_err(|error| error.to_string())?;
+        let system = self.system().map_err(|error| error.to_string())?;
+        let near = |x: &DMatrix<f64>, y: &DMatrix<f64>| (x - y).amax() <= SAME * x.amax().max(y.amax());
+        let drift = (model.drift() - system.drift()).amax() <= SAME * model.drift().amax();
+        if !(near(model.a(), system.a()) && near(model.b(), system.b()) && drift) {
+            return changed("a, b or drift is not that of its robot at its expansion point");
+        }
+        if self.data.sha256 != self.data.digest() {
+            return changed("data.sha256 is not that of the recordings it lists");
+        }
+        if self.verified != self.proof.verified || self.verified && self.proof.proved != self.proof.rows {
+            return changed("verified does not agree with proof");
+        }
+        Ok(())
     }
 }
 
 impl DataRecord {
     fn new(data: &DataSet, recordings: &Recordings) -> Self {
-        let mut digest = Sha256::new();
         let mut suites = Vec::new();
         for suite in &recordings.suites {
             let mut runs = Vec::new();
             for run in &suite.runs {
                 let file = data.runs()[run.index].file.clone();
-                digest.update(format!("{}  {file}\n", run.sha256));
-                let duration = run.grid.times().last().copied().unwrap_or(0.0);
-                runs.push(RunRecord { file, sha256: run.sha256.clone(), samples: run.grid.len(), duration });
+                let (sha256, samples, duration) = (run.sha256.clone(), run.samples, run.duration);
+                runs.push(RunRecord { file, sha256, samples, duration });
             }
-            suites.push(SuiteRecord { name: suite.entry.name.clone(), motion: suite.entry.motion.clone(), runs });
+            suites.push(SuiteRecord {
+                name: suite.entry.name.clone(),
+                motion: suite.entry.motion.clone(),
+                runs,
+            });
         }
-        Self { sha256: crate::data::hex(&digest.finalize()), suites }
+        let record = Self { sha256: String::new(), suites };
+        Self { sha256: record.digest(), ..record }
+    }
+
+    fn digest(&self) -> String {
+        let mut digest = Sha256::new();
+        for run in self.suites.iter().flat_map(|suite| &suite.runs) {
+            digest.update(format!("{}  {}\n", run.sha256, run.file));
+        }
+        crate::data::hex(&digest.finalize())
     }
 }
 
 /// The tight rows in the words of the recordings.
 fn tight(data: &DataSet, found: &Conformance, joints: usize) -> Vec<Place> {
-    let place = |tight: &TightRow| Place::new(data, &found.recordings.suites[tight.suite], &tight.row, joints);
+    let place =
+        |tight: &TightRow| Place::new(data, &found.recordings.suites[tight.suite], &tight.row, joints);
     found.tight.iter().take(MOST_TIGHT).map(place).collect()
 }
 

@@ -99,7 +99,8 @@ impl SuiteReach {
         match &self.run {
             None => self.suite.clone(),
             Some(run) => {
-                let stem = std::path::Path::new(run).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                let stem =
+                    std::path::Path::new(run).file_stem().unwrap_or_default().to_string_lossy().into_owned();
                 format!("{}_{stem}", self.suite)
             }
         }

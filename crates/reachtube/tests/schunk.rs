@@ -116,8 +116,10 @@ fn plain_excess(model: &Model, runs: &[reachtube::data::Run]) -> Vec<(usize, usi
     let (mut e, mut g, mut gain) = (DMatrix::identity(12, 12), DMatrix::zeros(12, 6), DMatrix::zeros(12, 6));
     let (mut x, mut rows) = (mean, Vec::new());
     for k in 0..runs[0].len() {
-        let center: DVector<f64> = &x + &e * vector(&sets.initial_set.center) + &g * vector(&sets.input_set.center);
-        let radius: DVector<f64> = e.abs() * vector(&sets.initial_set.radius) + &gain * vector(&sets.input_set.radius);
+        let center: DVector<f64> =
+            &x + &e * vector(&sets.initial_set.center) + &g * vector(&sets.input_set.center);
+        let radius: DVector<f64> =
+            e.abs() * vector(&sets.initial_set.radius) + &gain * vector(&sets.input_set.radius);
         for i in 0..12 {
             let furthest = runs.iter().map(|run| (run.state(k)[i] - center[i]).abs()).fold(0.0, f64::max);
             rows.push((k, i, furthest - radius[i]));

@@ -12,7 +12,7 @@ pub enum RobotError {
         source: std::io::Error,
     },
     /// The text is not TOML or lacks a field; the parser's message names line, column and field.
-    #[error("{origin}: {message}")]
+    #[error("{origin}: {}\ncorrect it; the README of reachtube-robot describes the format", message.trim_end())]
     Syntax {
         /// File or name the text came from.
         origin: String,

@@ -8,9 +8,9 @@ pub fn run(args: &ModelArgs, json: bool) -> Result<Outcome> {
     let check = Opened::new(args)?.check()?;
     output::notes(&check.notes);
     if json {
-        output::print_json(&check);
+        output::print_json(&check)?;
     } else {
-        output::print(&words::check(&check));
+        output::print(&words::check(&check))?;
     }
     Ok(Outcome::of(check.conformant))
 }

@@ -14,7 +14,13 @@ pub fn run(args: &ConformArgs, json: bool) -> Result<Outcome> {
     robot.check_physical()?;
     let settings = settings(args, robot.joint_count())?;
     let data = DataSet::open(&args.data.data)?;
-    let bar = Progress::new("reading");
+    if let Some(path) = &args.out {
+        write::try_at(path)?;
+    }
+    if let Some(folder) = &args.report {
+        write::try_at(&folder.join("report.html"))?;
+    }
+    let bar = Progress::new();
     let show = |done: usize, total: usize| bar.show(done, total);
     let found = conform(&robot, &data, &args.data.suites, &settings, &show)?;
     drop(bar);
@@ -23,19 +29,17 @@ pub fn run(args: &ConformArgs, json: bool) -> Result<Outcome> {
     drop(found);
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
+        output::note(&format!("wrote {}", path.display()));
     }
     if json {
-        output::print(&model.to_json());
+        output::print(&model.to_json())?;
     } else {
-        output::print(&words::model(&model));
+        output::print(&words::model(&model))?;
     }
     let verified = model.verified;
     if let Some(folder) = &args.report {
-        let page = super::report::write(&Opened::with(model, robot, &args.data)?, folder)?;
-        eprintln!("wrote {}", page.display());
-    }
-    if let Some(path) = &args.out {
-        eprintln!("wrote {}", path.display());
+        let (page, _) = super::report::write(&Opened::with(model, robot, &args.data)?, folder)?;
+        output::note(&format!("wrote {}", page.display()));
     }
     Ok(Outcome::of(verified))
 }
@@ -49,12 +53,12 @@ fn settings(args: &ConformArgs, joints: usize) -> Result<Settings> {
         weights: match args.weights.as_str() {
             "unit" => Weights::Unit,
             "spread" => Weights::Spread,
-            list => Weights::Given(numbers("--weights", list, joints)?),
+            list => Weights::Given(numbers("--weights", "unit, spread", list, joints)?),
         },
         noise: match args.noise.as_str() {
             "none" => Noise::None,
             "free" => Noise::Free,
-            list => Noise::Fixed(numbers("--noise", list, joints)?),
+            list => Noise::Fixed(numbers("--noise", "none, free", list, joints)?),
         },
         nominal: args.nominal,
         until: args.data.until,
@@ -65,15 +69,20 @@ fn settings(args: &ConformArgs, joints: usize) -> Result<Settings> {
     Ok(settings)
 }
 
-/// 2n numbers, or 2: one for all positions and one for all velocities.
-fn numbers(option: &str, list: &str, joints: usize) -> Result<Vec<f64>> {
-    let parse = |text: &str| {
-        text.trim().parse::<f64>().map_err(|_| Error::Setting(format!("{option}: \"{text}\" is neither a word it knows nor a number")))
+/// 2n numbers, or 2: one for all positions and one for all velocities. `words` are what else the option takes.
+fn numbers(option: &str, words: &str, list: &str, joints: usize) -> Result<Vec<f64>> {
+    let all = 2 * joints;
+    let wrong = |what: String| {
+        Error::Setting(format!(
+            "{option}: {what}; give {words}, 2 numbers (for positions, for velocities), or {all}"
+        ))
     };
+    let parse =
+        |text: &str| text.trim().parse::<f64>().map_err(|_| wrong(format!("\"{text}\" is no number")));
     let values = list.split(',').map(parse).collect::<Result<Vec<_>>>()?;
     match values[..] {
         [position, velocity] => Ok([vec![position; joints], vec![velocity; joints]].concat()),
-        _ if values.len() == 2 * joints => Ok(values),
-        _ => Err(Error::Setting(format!("{option} has {} numbers; give 2 (positions, velocities) or {}", values.len(), 2 * joints))),
+        _ if values.len() == all => Ok(values),
+        _ => Err(wrong(format!("{} given", values.len()))),
     }
 }

@@ -20,7 +20,12 @@ pub fn run(args: &DemoArgs, json: bool) -> Result<Outcome> {
     let bar = Progress::new();
     let recorded = record(&robot, &options, &folder)?;
     drop(bar);
-    output::note(&format!("recorded {} runs of a virtual {} in {}", recorded.runs, robot.name(), folder.display()));
+    output::note(&format!(
+        "recorded {} runs of a virtual {} in {}",
+        recorded.runs,
+        robot.name(),
+        folder.display()
+    ));
     let model = identify(&robot, &folder, &recorded)?;
     let path = args.out.join("model.json");
     write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
@@ -30,7 +35,8 @@ pub fn run(args: &DemoArgs, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&json!({ "model": model, "held_out": held_out }))?;
     } else {
-        let words = format!("{}\n{}\n{}", words::model(&model), held_out_words(&recorded), words::check(&held_out));
+        let words =
+            format!("{}\n{}\n{}", words::model(&model), held_out_words(&recorded), words::check(&held_out));
         output::print(&words)?;
     }
     Ok(Outcome::of(model.verified))

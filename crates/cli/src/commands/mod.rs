@@ -3,6 +3,7 @@
 mod check;
 mod conform;
 mod demo;
+mod files;
 mod inspect;
 mod reach;
 mod report;
@@ -11,10 +12,12 @@ mod robot;
 use reachtube::conform::{Check, Grids, Recordings, Settings, check as check_recordings};
 use reachtube::data::DataSet;
 use reachtube::reach::{SuiteReach, reach as reach_suites};
+use reachtube::report::Sources;
 use reachtube::{Model, Result};
 use reachtube_robot::Robot;
 
 use crate::args::{Cli, Command, DataArgs, ModelArgs, RobotCommand, gap_limit};
+use crate::output;
 use crate::progress::Progress;
 
 /// What a command came to when it did not fail.
@@ -61,6 +64,11 @@ impl Opened {
     }
 
     fn with(model: Model, robot: Robot, args: &DataArgs) -> Result<Self> {
+        if let (None, Some(until)) = (args.until, model.settings.until) {
+            output::note(&format!(
+                "samples later than {until} s after the first are not used, as in the fit; --until changes that"
+            ));
+        }
         let settings = Settings {
             torque: args.torque,
             until: args.until.or(model.settings.until),
@@ -73,13 +81,13 @@ impl Opened {
     }
 
     fn check(&self) -> Result<Check> {
-        let bar = Progress::new("checking");
+        let bar = Progress::new();
         let show = |done: usize, total: usize| bar.show(done, total);
         check_recordings(&self.model, &self.data, &self.suites, &self.settings, &show)
     }
 
     fn recordings(&self) -> Result<(Recordings, Grids)> {
-        let bar = Progress::new("reading");
+        let bar = Progress::new();
         let show = |done: usize, total: usize| bar.show(done, total);
         let recordings = Recordings::read(&self.data, &self.suites, &self.robot, &self.settings, &show)?;
         let grids = Grids::new(&recordings, &self.model.system()?, self.settings.disturbance)?;
@@ -87,6 +95,18 @@ impl Opened {
     }
 
     fn reach(&self, recordings: &Recordings, grids: &Grids) -> Result<Vec<SuiteReach>> {
+        let _bar = Progress::new();
         reach_suites(&self.data, &self.robot, &self.settings, &self.model.sets(), recordings, grids)
+    }
+
+    /// What the page is made from.
+    fn sources<'a>(
+        &'a self,
+        recordings: &'a Recordings,
+        reach: &'a [SuiteReach],
+        check: &'a Check,
+    ) -> Sources<'a> {
+        let Self { model, settings, data, .. } = self;
+        Sources { model, settings, data, recordings, reach, check }
     }
 }

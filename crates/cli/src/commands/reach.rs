@@ -1,58 +1,82 @@
-use reachtube::report::{Sources, page};
+use std::path::PathBuf;
+
+use reachtube::reach::SuiteReach;
+use reachtube::report::page;
 use reachtube::{Result, write};
 use serde_json::json;
 
-use super::{Opened, Outcome};
+use super::{Opened, Outcome, files, report};
 use crate::args::ReachArgs;
+use crate::numbers::number;
 use crate::{output, words};
+
+/// The reachable set of a suite or run, and where it was written.
+struct Written<'a> {
+    reach: &'a SuiteReach,
+    samples: PathBuf,
+    tube: PathBuf,
+}
 
 pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model)?;
+    write::try_at(&args.out.join("A.csv"))?;
     let (recordings, grids) = opened.recordings()?;
     output::notes(&recordings.notes);
     let reach = opened.reach(&recordings, &grids)?;
-    let mut files = Vec::new();
-    for suite in &reach {
-        let samples = args.out.join(format!("{}.csv", suite.name()));
-        write::atomically(&samples, |out| suite.write_samples(out))?;
-        let tube = args.out.join(format!("{}_tube.csv", suite.name()));
-        write::atomically(&tube, |out| suite.write_tube(out))?;
-        files.push((suite, samples, tube));
-    }
     let check = opened.check()?;
-    let sources = Sources {
-        model: &opened.model,
-        settings: &opened.settings,
-        data: &opened.data,
-        recordings: &recordings,
-        reach: &reach,
-        check: &check,
-    };
-    for figure in &page(&sources)?.suites {
-        super::report::write_figures(figure, &args.out)?;
+    let mut written = Vec::new();
+    for (reach, name) in reach.iter().zip(files::of_reach(&reach)) {
+        let samples = args.out.join(format!("{name}.csv"));
+        write::atomically(&samples, |out| reach.write_samples(out))?;
+        let tube = args.out.join(format!("{name}_tube.csv"));
+        write::atomically(&tube, |out| reach.write_tube(out))?;
+        written.push(Written { reach, samples, tube });
     }
-    let widths = |suite: &reachtube::reach::SuiteReach| -> Vec<f64> {
-        let last = suite.upper.len() - suite.dimension;
-        (last..suite.upper.len()).map(|at| suite.upper[at] - suite.lower[at]).collect()
-    };
+    report::write_figures(&page(&opened.sources(&recordings, &reach, &check))?, &args.out)?;
     if json {
-        let rows: Vec<_> = files
-            .iter()
-            .map(|(suite, samples, tube)| {
-                json!({ "suite": suite.suite, "run": suite.run, "samples": suite.times.len(), "duration": suite.times.last(),
-                    "final_width": widths(suite), "csv": samples, "tube_csv": tube })
-            })
-            .collect();
-        output::print_json(&json!({ "reach": rows }));
+        let rows: Vec<_> = written.iter().map(Written::json).collect();
+        output::print_json(&json!({ "reach": rows }))?;
     } else {
-        let row = |(suite, samples, _): &(&reachtube::reach::SuiteReach, std::path::PathBuf, std::path::PathBuf)| {
-            let n = suite.dimension / 2;
-            let widest = |widths: &[f64]| format!("{:.4}", widths.iter().copied().fold(0.0, f64::max));
-            let widths = widths(suite);
-            vec![suite.name(), suite.times.len().to_string(), widest(&widths[..n]), widest(&widths[n..]), samples.display().to_string()]
-        };
-        let header = ["suite", "samples", "widest q at the end [rad]", "widest qd at the end [rad/s]", "file"];
-        output::print(&words::table(&header, &files.iter().map(row).collect::<Vec<_>>()));
+        let header = ["suite", "run", "samples", "widest q [rad]", "widest qd [rad/s]", "file"];
+        let rows: Vec<_> = written.iter().map(Written::words).collect();
+        output::print(&format!(
+            "reachable sets; widths at the last sample\n{}",
+            words::table(&header, &rows)
+        ))?;
     }
     Ok(Outcome::Done)
+}
+
+impl Written<'_> {
+    /// Widths of the set at the last sample, 2n.
+    fn final_width(&self) -> Vec<f64> {
+        let SuiteReach { lower, upper, dimension, .. } = self.reach;
+        (upper.len() - dimension..upper.len()).map(|at| upper[at] - lower[at]).collect()
+    }
+
+    fn json(&self) -> serde_json::Value {
+        json!({
+            "suite": self.reach.suite,
+            "run": self.reach.run,
+            "samples": self.reach.times.len(),
+            "duration": self.reach.times.last(),
+            "final_width": self.final_width(),
+            "csv": self.samples,
+            "tube_csv": self.tube,
+        })
+    }
+
+    fn words(&self) -> Vec<String> {
+        let widths = self.final_width();
+        let (positions, velocities) = widths.split_at(widths.len() / 2);
+        let widest = |widths: &[f64]| number(widths.iter().copied().fold(0.0, f64::max));
+        vec![
+            self.reach.suite.clone(),
+            self.reach.run.clone().unwrap_or_else(|| "all".into()),
+            self.reach.times.len().to_string(),
+            widest(positions),
+            widest(velocities),
+            self.samples.display().to_string(),
+        ]
+    }
 }

@@ -1,54 +1,49 @@
 use std::path::{Path, PathBuf};
 
-use reachtube::report::{Sources, SuiteFigure, page, suite_svg, write_html};
+use reachtube::report::{Page, page, suite_svg, write_html};
 use reachtube::{Result, write};
 use serde_json::json;
 
-use super::{Opened, Outcome};
+use super::{Opened, Outcome, files};
 use crate::args::ReportArgs;
 use crate::output;
 
 pub fn run(args: &ReportArgs, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model)?;
-    let page = write(&opened, &args.out)?;
+    let (page, notes) = write(&opened, &args.out)?;
+    output::notes(&notes);
     if json {
-        output::print_json(&json!({ "report": page }));
+        output::print_json(&json!({ "report": page }))?;
     } else {
-        output::print(&format!("wrote {}\n", page.display()));
+        output::print(&format!("wrote {}\n", page.display()))?;
     }
     Ok(Outcome::Done)
 }
 
-/// Writes the page and its figures into `folder`; returns the page's path.
-pub fn write(opened: &Opened, folder: &Path) -> Result<PathBuf> {
+/// Writes the page and its figures into `folder`; returns the page's path, and notes on the recordings.
+pub fn write(opened: &Opened, folder: &Path) -> Result<(PathBuf, Vec<String>)> {
+    let path = folder.join("report.html");
+    write::try_at(&path)?;
     let check = opened.check()?;
     let (recordings, grids) = opened.recordings()?;
     let reach = opened.reach(&recordings, &grids)?;
-    let sources = Sources {
-        model: &opened.model,
-        settings: &opened.settings,
-        data: &opened.data,
-        recordings: &recordings,
-        reach: &reach,
-        check: &check,
-    };
-    let page = page(&sources)?;
-    for figure in &page.suites {
-        write_figures(figure, folder)?;
-    }
+    let page = page(&opened.sources(&recordings, &reach, &check))?;
     let mut html = Vec::new();
     write_html(&page, &mut html)?;
-    let path = folder.join("report.html");
+    write_figures(&page, folder)?;
     write::atomically(&path, |out| out.write_all(&html))?;
-    Ok(path)
+    let notes = recordings.notes;
+    Ok((path, notes))
 }
 
-/// Writes each view of a suite as SVG: A_motion.svg, A_deviation.svg.
-pub fn write_figures(figure: &SuiteFigure, folder: &Path) -> Result<()> {
-    for &view in figure.views() {
-        let svg = suite_svg(figure, view)?;
-        let name = format!("{}_{}.svg", figure.suite, format!("{view:?}").to_lowercase());
-        write::atomically(&folder.join(name), |out| out.write_all(svg.as_bytes()))?;
+/// Writes each view of each suite as SVG: A_motion.svg, A_deviation.svg.
+pub fn write_figures(page: &Page, folder: &Path) -> Result<()> {
+    for (figure, name) in page.suites.iter().zip(files::of_figures(&page.suites)) {
+        for &view in figure.views() {
+            let svg = suite_svg(figure, view)?;
+            let path = folder.join(format!("{name}_{}.svg", format!("{view:?}").to_lowercase()));
+            write::atomically(&path, |out| out.write_all(svg.as_bytes()))?;
+        }
     }
     Ok(())
 }

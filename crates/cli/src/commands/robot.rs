@@ -3,19 +3,21 @@ use std::fmt::Write;
 use nalgebra::DMatrix;
 use reachtube::abstraction::ExpansionPoint;
 use reachtube::{Error, Result};
-use reachtube_robot::{Physicality, Robot};
+use reachtube_robot::{JointDescription, Physicality, Robot};
 use serde_json::json;
 
 use super::Outcome;
 use crate::args::RobotShowArgs;
+use crate::numbers::fixed;
 use crate::{output, words};
 
 pub fn show(args: &RobotShowArgs, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
-    let at = ExpansionPoint::from_values(&args.at, robot.joint_count())?;
-    if args.at.len() > robot.joint_count() {
-        return Err(Error::Setting(format!("--at takes {} positions", robot.joint_count())));
+    let joints = robot.joint_count();
+    if !args.at.is_empty() && args.at.len() != joints {
+        return Err(Error::Setting(format!("--at: {} given; give {joints} positions in rad", args.at.len())));
     }
+    let at = ExpansionPoint::from_values(&args.at, joints)?;
     let physicality = robot.check_physical()?;
     let mass = robot.mass_matrix(&at.q);
     if json {
@@ -25,9 +27,9 @@ pub fn show(args: &RobotShowArgs, json: bool) -> Result<Outcome> {
             "q": at.q,
             "mass_matrix": mass.row_iter().map(|row| row.iter().copied().collect::<Vec<_>>()).collect::<Vec<_>>(),
             "gravity_torque": robot.gravity_torque(&at.q).as_slice(),
-        }));
+        }))?;
     } else {
-        output::print(&describe(&robot, &at.q, &mass, &physicality));
+        output::print(&describe(&robot, &at.q, &mass, &physicality))?;
     }
     Ok(Outcome::Done)
 }
@@ -35,16 +37,34 @@ pub fn show(args: &RobotShowArgs, json: bool) -> Result<Outcome> {
 fn describe(robot: &Robot, q: &[f64], mass: &DMatrix<f64>, physicality: &Physicality) -> String {
     let mut text = String::new();
     let [gx, gy, gz] = robot.gravity_acceleration();
-    let _ = writeln!(text, "{}: {} revolute joints, gravity [{gx}, {gy}, {gz}] m/s^2\n", robot.name(), robot.joint_count());
+    let _ = writeln!(
+        text,
+        "{}: {} revolute joints, gravity [{gx}, {gy}, {gz}] m/s^2\n",
+        robot.name(),
+        robot.joint_count()
+    );
     let rows: Vec<Vec<String>> = robot.joints().iter().map(joint_row).collect();
-    let header = ["joint", "limits [rad]", "speed [rad/s]", "gear", "k_r^2 I_m [kg m^2]", "viscous v1, v2, v3"];
+    let header =
+        ["joint", "limits [rad]", "speed [rad/s]", "gear", "motor inertia [kg m^2]", "viscous v1, v2, v3"];
+    text.push_str(&words::table(&header, &rows));
+    text.push_str("\nlinks, and Coulomb friction\n");
+    let rows: Vec<Vec<String>> = robot.description().joints.iter().map(link_row).collect();
+    let header = [
+        "joint",
+        "geometry [m, rad]",
+        "mass [kg]",
+        "mass x centre [kg m]",
+        "inertia xx xy xz yy yz zz [kg m^2]",
+        "Coulomb a1..a8",
+    ];
     text.push_str(&words::table(&header, &rows));
     let _ = writeln!(text, "\nM(q_a) with motors [kg m^2], q_a = {q:?} rad:");
     for row in mass.row_iter() {
-        let cells: Vec<String> = row.iter().map(|m| format!("{m:>9.5}")).collect();
+        let cells: Vec<String> = row.iter().map(|m| format!("{:>9}", fixed(*m, 5))).collect();
         let _ = writeln!(text, "  {}", cells.join(" "));
     }
-    let gravity: Vec<String> = robot.gravity_torque(q).iter().map(|g| format!("{g:>9.5}")).collect();
+    let gravity: Vec<String> =
+        robot.gravity_torque(q).iter().map(|g| format!("{:>9}", fixed(*g, 5))).collect();
     let _ = writeln!(text, "g(q_a) [N m]:\n  {}", gravity.join(" "));
     let _ = writeln!(text, "\n{}", physicality_words(physicality, robot));
     text
@@ -61,6 +81,35 @@ fn joint_row(joint: &reachtube_robot::Joint) -> Vec<String> {
         format!("{:.5}", joint.armature),
         format!("{}, {}, {}", viscous.v1, viscous.v2, viscous.v3),
     ]
+}
+
+/// What the description says of the link and its friction.
+fn link_row(joint: &JointDescription) -> Vec<String> {
+    let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    let moment = match (joint.first_moment, joint.com) {
+        (Some(moment), _) => moment,
+        (None, com) => com.unwrap_or_default().map(|c| joint.mass * c),
+    };
+    let geometry = match (joint.dh, joint.placement) {
+        (Some(dh), _) => format!("a {} alpha {:.4} theta {:.4} d {}", dh.a, dh.alpha, dh.theta, dh.d),
+        (None, placement) => {
+            let placement = placement.unwrap_or_default();
+            let axis = list(&joint.axis.unwrap_or([0.0, 0.0, 1.0]));
+            match (placement.rotation, placement.rpy) {
+                (Some(_), _) => format!("at {} turned, axis {axis}", list(&placement.translation)),
+                (None, rpy) => {
+                    format!(
+                        "at {} rpy {} axis {axis}",
+                        list(&placement.translation),
+                        list(&rpy.unwrap_or_default())
+                    )
+                }
+            }
+        }
+    };
+    let coulomb = &joint.friction.coulomb;
+    let coulomb = if coulomb.iter().all(|a| *a == 0.0) { "0".into() } else { list(coulomb) };
+    vec![joint.name.clone(), geometry, joint.mass.to_string(), list(&moment), list(&joint.inertia), coulomb]
 }
 
 fn physicality_words(physicality: &Physicality, robot: &Robot) -> String {

@@ -1,7 +1,9 @@
 //! d = x_m(t_k) - x̂(t_k): what the uncertainty sets must cover.
 
 use rayon::prelude::*;
-use reachtube_reach::{Disturbance, IntervalMatrix, IntervalVector, LinearSystem, Propagation, TimeGrid, Trajectory};
+use reachtube_reach::{
+    Disturbance, IntervalMatrix, IntervalVector, LinearSystem, Propagation, TimeGrid, Trajectory,
+};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{sub_down, sub_up};
@@ -33,9 +35,16 @@ impl Grids {
     ///
     /// When the solution of the system cannot be enclosed over a grid.
     pub fn new(recordings: &Recordings, system: &LinearSystem, disturbance: Disturbance) -> Result<Self> {
-        let mut all: Vec<&TimeGrid> =
-            recordings.suites.iter().flat_map(|suite| suite.runs.iter().map(|run| &run.grid)).collect();
-        all.sort_by(|a, b| b.len().cmp(&a.len()).then(b.times().last().unwrap_or(&0.0).total_cmp(a.times().last().unwrap_or(&0.0))));
+        let mut all: Vec<&TimeGrid> = recordings
+            .suites
+            .iter()
+            .flat_map(|suite| suite.runs.iter().map(|run| run.grid.as_ref()))
+            .collect();
+        all.sort_by(|a, b| {
+            b.len()
+                .cmp(&a.len())
+                .then(b.times().last().unwrap_or(&0.0).total_cmp(a.times().last().unwrap_or(&0.0)))
+        });
         let mut distinct: Vec<&TimeGrid> = Vec::new();
         for grid in all {
             if !distinct.iter().any(|longer| grid.is_prefix_of(longer)) {

@@ -231,7 +231,8 @@ impl Checked {
 
 /// Motions that touch the reachable set, among all motions: the rows of support are among the tight ones.
 fn trust(recordings: &Recordings, tight: &[TightRow]) -> Trust {
-    let motion_of = |suite: &super::Suite| suite.entry.motion.clone().unwrap_or_else(|| suite.entry.name.clone());
+    let motion_of =
+        |suite: &super::Suite| suite.entry.motion.clone().unwrap_or_else(|| suite.entry.name.clone());
     let known = recordings.suites.iter().all(|suite| suite.entry.motion.is_some());
     let all: std::collections::BTreeSet<String> = recordings.suites.iter().map(motion_of).collect();
     let deciding: std::collections::BTreeSet<String> =

@@ -1,5 +1,7 @@
 //! Test suites as conformance sees them: read once, run by run, and kept as envelopes.
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 use rayon::prelude::*;
 use reachtube_reach::{IntervalVector, TimeGrid};
@@ -46,12 +48,18 @@ pub struct Suite {
 pub struct RunSummary {
     /// Index in the data set.
     pub index: usize,
-    /// Its grid.
-    pub grid: TimeGrid,
+    /// Its samples.
+    pub samples: usize,
+    /// Time from the first to the last of them, s.
+    pub duration: f64,
+    /// Its grid, or a longer one of the suite that it is the beginning of: runs of one rate share one.
+    pub grid: Arc<TimeGrid>,
     /// Its first state, 2n.
     pub start: Vec<f64>,
     /// SHA-256 of its file.
     pub sha256: String,
+    /// What a user should know about it.
+    pub notes: Vec<String>,
 }
 
 /// Sample times and inputs of the longest run of a suite; those of the others are its beginning.
@@ -94,13 +102,16 @@ impl Recordings {
             let counted = |within: usize| progress(done + within, total);
             match read_suite(data, &entry, robot, settings, &counted) {
                 Ok(suite) => {
-                    notes.extend(suite_notes(data, &suite));
+                    notes.extend(suite_notes(&suite, settings.nominal));
                     suites.push(suite);
                 }
                 Err(found) => defects.extend(found),
             }
             done += entry.runs.len();
         }
+        let read =
+            suites.iter().flat_map(|suite| suite.runs.iter().map(|run| (run.index, run.sha256.as_str())));
+        notes.extend(data.copies_note(read));
         if defects.is_empty() { Ok(Self { suites, notes }) } else { Err(Error::Defects(defects)) }
     }
 
@@ -117,13 +128,22 @@ struct Part {
     /// Whether no run has been taken in yet, so that `shared` is not yet known.
     empty: bool,
     envelope: Envelope,
+    grids: Vec<Arc<TimeGrid>>,
     defects: Vec<(usize, Vec<Defect>)>,
 }
 
 impl Part {
     fn new(joints: usize) -> Self {
         let envelope = Envelope::new(2 * joints);
-        Self { runs: Vec::new(), shared: None, empty: true, envelope, defects: Vec::new() }
+        Self { runs: Vec::new(), shared: None, empty: true, envelope, grids: Vec::new(), defects: Vec::new() }
+    }
+
+    fn grid(&mut self, grid: &TimeGrid) -> Arc<TimeGrid> {
+        if let Some(known) = self.grids.iter().find(|known| grid.is_prefix_of(known)) {
+            return Arc::clone(known);
+        }
+        self.grids.push(Arc::new(grid.clone()));
+        Arc::clone(&self.grids[self.grids.len() - 1])
     }
 
     fn share(&mut self, other: Option<SharedInput>, joints: usize) {
@@ -160,7 +180,10 @@ fn read_suite(
             Ok((run, shared)) => {
                 part.envelope.include(index as u32, &run.states);
                 let start = run.state(0).to_vec();
-                let summary = RunSummary { index, grid: shared.grid.clone(), start, sha256: run.sha256 };
+                let notes = data.run_notes(index, &run);
+                let (samples, duration) = (run.len(), shared.grid.times().last().copied().unwrap_or(0.0));
+                let grid = part.grid(&shared.grid);
+                let summary = RunSummary { index, samples, duration, grid, start, sha256: run.sha256, notes };
                 part.runs.push((place, summary));
                 part.share(Some(shared), n);
             }
@@ -179,7 +202,13 @@ fn read_suite(
     let runs: Vec<RunSummary> = whole.runs.into_iter().map(|(_, run)| run).collect();
     let own_start = settings.nominal == NominalStart::Own;
     let shared = whole.shared.filter(|_| !own_start);
-    Ok(Suite { entry: entry.clone(), mean_start: mean_start(&runs, n), runs, shared, envelope: whole.envelope })
+    Ok(Suite {
+        entry: entry.clone(),
+        mean_start: mean_start(&runs, n),
+        runs,
+        shared,
+        envelope: whole.envelope,
+    })
 }
 
 /// A run with its grid and the input u along it.
@@ -195,8 +224,9 @@ pub(super) fn read_run(
     if !defects.is_empty() {
         return Err(defects);
     }
-    let grid = TimeGrid::from_times(&run.times)
-        .map_err(|error| vec![Defect::new(&path, None, error.to_string(), "sort the samples, drop duplicates")])?;
+    let grid = TimeGrid::from_times(&run.times).map_err(|error| {
+        vec![Defect::new(&path, None, error.to_string(), "sort the samples, drop duplicates")]
+    })?;
     let mut inputs = Vec::with_capacity(run.torques.len());
     for k in 0..run.len() {
         inputs.extend(settings.torque.input(robot, run.q(k), run.qd(k), run.torque(k)));
@@ -227,12 +257,17 @@ fn index_notes(data: &DataSet, chosen: &[SuiteEntry]) -> Vec<String> {
     notes
 }
 
-fn suite_notes(data: &DataSet, suite: &Suite) -> Vec<String> {
-    let mut notes = Vec::new();
-    for run in &suite.runs {
-        notes.extend(data.runs()[run.index].changed_note(&run.sha256));
+fn suite_notes(suite: &Suite, nominal: NominalStart) -> Vec<String> {
+    let mut notes: Vec<String> = suite.runs.iter().flat_map(|run| run.notes.clone()).collect();
+    let lengths = suite.runs.iter().map(|run| run.samples);
+    let (shortest, longest) = (lengths.clone().min().unwrap_or(0), lengths.max().unwrap_or(0));
+    if shortest < longest {
+        let name = &suite.entry.name;
+        notes.push(format!(
+            "suite {name}: its runs have {shortest} to {longest} samples; each counts as far as it goes"
+        ));
     }
-    if suite.shared.is_none() && suite.runs.len() > 1 {
+    if suite.shared.is_none() && suite.runs.len() > 1 && nominal == NominalStart::Mean {
         notes.push(format!(
             "suite {}: its runs differ in input or sample times, so each run has its own nominal solution",
             suite.entry.name

@@ -81,7 +81,7 @@ pub enum Weights {
     Unit,
     /// The reciprocal of the largest deviation of that state in the recordings.
     Spread,
-    /// As given, 2n positive numbers.
+    /// As given, 2n numbers between 1e-9 and 1e9.
     Given(Vec<f64>),
 }
 
@@ -140,10 +140,10 @@ impl Settings {
     /// [`Error::Setting`] that names the setting, its value and what it may be.
     pub fn validate(&self, joints: usize) -> Result<()> {
         if let Weights::Given(weights) = &self.weights {
-            check_list("weight", weights, 2 * joints, |w| w > 0.0, "positive")?;
+            check_list("weight", weights, 2 * joints, |w| (1e-9..=1e9).contains(&w), "between 1e-9 and 1e9")?;
         }
         if let Noise::Fixed(radii) = &self.noise {
-            check_list("noise radius", radii, 2 * joints, |r| r >= 0.0, "not negative")?;
+            check_list("noise radius", radii, 2 * joints, |r| (0.0..=1e9).contains(&r), "between 0 and 1e9")?;
         }
         match self.until {
             Some(until) if !(until >= 0.0 && until.is_finite()) => {
@@ -162,10 +162,13 @@ fn check_list(
     range: &str,
 ) -> Result<()> {
     if values.len() != count {
-        return Err(Error::Setting(format!("{} {what} values; there are {count} states, q then q̇", values.len())));
+        return Err(Error::Setting(format!(
+            "{} {what} values; there are {count} states, q then q̇",
+            values.len()
+        )));
     }
     match values.iter().enumerate().find(|(_, v)| !(v.is_finite() && fits(**v))) {
-        Some((i, value)) => Err(Error::Setting(format!("{what} {} is {value}; it must be finite and {range}", i + 1))),
+        Some((i, value)) => Err(Error::Setting(format!("{what} {} is {value}; it must be {range}", i + 1))),
         None => Ok(()),
     }
 }

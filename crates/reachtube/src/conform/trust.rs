@@ -30,7 +30,10 @@ impl Trust {
             deciding,
             violation_probability: scenario_bound(motions, deciding, 1.0 - CONFIDENCE),
             confidence: CONFIDENCE,
-            basis: format!("scenario bound (Campi and Garatti 2018) for independent motions{}", caveat(known)),
+            basis: format!(
+                "scenario bound (Campi and Garatti 2018) for independent motions{}",
+                caveat(known)
+            ),
         }
     }
 
@@ -41,7 +44,10 @@ impl Trust {
             deciding: violating,
             violation_probability: clopper_pearson(motions, violating, 1.0 - CONFIDENCE),
             confidence: CONFIDENCE,
-            basis: format!("hold-out bound (Clopper and Pearson 1934) for independent motions{}", caveat(known)),
+            basis: format!(
+                "hold-out bound (Clopper and Pearson 1934) for independent motions{}",
+                caveat(known)
+            ),
         }
     }
 }
@@ -59,7 +65,9 @@ pub fn clopper_pearson(trials: usize, hits: usize, beta: f64) -> f64 {
     if hits >= trials {
         return 1.0;
     }
-    let tail = |p: f64| (0..=hits).map(|k| (ln_choose(trials, k) + power(p, k) + power(1.0 - p, trials - k)).exp()).sum();
+    let tail = |p: f64| {
+        (0..=hits).map(|k| (ln_choose(trials, k) + power(p, k) + power(1.0 - p, trials - k)).exp()).sum()
+    };
     bisect(|p| -> f64 { tail(p) }, beta, 0.0, 1.0)
 }
 
@@ -127,7 +135,8 @@ mod tests {
             assert!(epsilon > last && epsilon <= 1.0, "support {k}: {epsilon}");
             last = epsilon;
             let t = 1.0 - epsilon;
-            let choose = |m: usize, k: usize| (0..k).map(|i| (m - i) as f64 / (k - i) as f64).product::<f64>();
+            let choose =
+                |m: usize, k: usize| (0..k).map(|i| (m - i) as f64 / (k - i) as f64).product::<f64>();
             let left: f64 = (k..=n).map(|m| choose(m, k) * t.powi((m - k) as i32)).sum::<f64>() * beta / 51.0;
             let right = choose(n, k) * t.powi((n - k) as i32);
             assert!((left / right - 1.0).abs() < 1e-6, "support {k}");

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
 use serde::Serialize;
 
-use super::units::{integral_gap, velocity_mismatch};
+use super::units::integral_gap;
 use super::{DataSet, Defect, GapLimit, Run};
 use crate::error::{Error, Result};
 
@@ -62,8 +62,8 @@ pub struct JointSummary {
     pub torque: f64,
     /// Spread of the first positions, rad.
     pub start_spread: f64,
-    /// Spread of the last positions, rad; of the runs of full length.
-    pub end_spread: f64,
+    /// Spread of the last positions, rad, of the runs of full length, where there are two or more.
+    pub end_spread: Option<f64>,
     /// Correlation of the last position with the order of the recordings: near ±1 where the robot drifts, as joints do that warm up.
     pub drift: Option<f64>,
     /// Part of the samples in which the joint sticks (below 0.01 rad/s).
@@ -113,7 +113,12 @@ pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Result<Inspection> {
 fn other_joint_count(data: &DataSet, runs: &[Run]) -> Vec<Defect> {
     let odd = |(index, run): (usize, &Run)| {
         let problem = format!("{} joints, the first recording has {}", run.joints, runs[0].joints);
-        let defect = Defect::new(data.path(index), Some(1), problem, "keep the recordings of one robot in one data set");
+        let defect = Defect::new(
+            data.path(index),
+            Some(1),
+            problem,
+            "keep the recordings of one robot in one data set",
+        );
         (run.joints != runs[0].joints).then_some(defect)
     };
     runs.iter().enumerate().filter_map(odd).collect()
@@ -134,12 +139,10 @@ fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
 
 fn notes(data: &DataSet, runs: &[Run]) -> Vec<String> {
     let mut notes = data.unlisted_note().into_iter().collect::<Vec<_>>();
-    for (entry, run) in data.runs().iter().zip(runs) {
-        notes.extend(entry.changed_note(&run.sha256));
-        for (joint, slope) in velocity_mismatch(run) {
-            notes.push(format!("{}: joint {}: q moves {slope:.3} times as far as qd integrates to", entry.file, joint + 1));
-        }
+    for (index, run) in runs.iter().enumerate() {
+        notes.extend(data.run_notes(index, run));
     }
+    notes.extend(data.copies_note(runs.iter().map(|run| run.sha256.as_str()).enumerate()));
     notes
 }
 
@@ -179,11 +182,8 @@ impl JointSummary {
         let speeds = || runs.iter().flat_map(|run| (0..run.len()).map(|k| run.qd(k)[joint].abs()));
         let torques = runs.iter().flat_map(|run| (0..run.len()).map(|k| run.torque(k)[joint].abs()));
         let longest = runs.iter().map(|run| run.len()).max().unwrap_or(0);
-        let ends: Vec<f64> = runs
-            .iter()
-            .filter(|run| run.len() == longest)
-            .map(|run| run.q(longest - 1)[joint])
-            .collect();
+        let ends: Vec<f64> =
+            runs.iter().filter(|run| run.len() == longest).map(|run| run.q(longest - 1)[joint]).collect();
         let starts: Vec<f64> = runs.iter().map(|run| run.q(0)[joint]).collect();
         let sticking = speeds().filter(|speed| *speed < STICKING).count() as f64;
         Self {
@@ -191,7 +191,7 @@ impl JointSummary {
             speed: speeds().fold(0.0, f64::max),
             torque: torques.fold(0.0, f64::max),
             start_spread: spread(&starts),
-            end_spread: spread(&ends),
+            end_spread: (ends.len() > 1).then(|| spread(&ends)),
             drift: order_correlation(&ends),
             sticking: sticking / speeds().count().max(1) as f64,
             integral_gap: runs.iter().map(|run| integral_gap(run, joint)).fold(0.0, f64::max),

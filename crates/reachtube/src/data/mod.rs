@@ -4,17 +4,22 @@
 //! (Definition 2 of the paper: runs from one initial state under one input).
 
 mod data_set;
+mod decimal;
 mod defect;
+mod index;
 mod inspect;
+mod notes;
+mod reading;
 mod run;
 mod torque;
 mod units;
 
-pub use data_set::{DataSet, RunEntry, SuiteEntry};
+pub use data_set::{DataSet, SuiteEntry};
 pub use defect::Defect;
 pub(crate) use defect::list_defects;
+pub use index::RunEntry;
 pub use inspect::{Group, Inspection, JointSummary, inspect};
-pub(crate) use run::{hex, state_name};
 pub use run::{GapLimit, Run};
+pub(crate) use run::{hex, state_name};
 pub use torque::Torque;
 pub(crate) use units::check_limits;

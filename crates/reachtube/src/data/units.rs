@@ -58,7 +58,18 @@ pub(crate) fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect>
             continue;
         };
         let problem = format!("q moves {slope:.3} times as far as qd integrates to: {guess}");
-        defects.push(Defect::new(path, None, problem, "give q in rad and qd in rad/s").of_joint(Some(joint + 1)));
+        defects.push(
+            Defect::new(path, None, problem, "give q in rad and qd in rad/s").of_joint(Some(joint + 1)),
+        );
+    }
+    for (joint, description) in robot.description().joints.iter().enumerate() {
+        let Some([low, high]) = description.position_limits else { continue };
+        let furthest = (0..run.len()).map(|k| run.q(k)[joint].abs()).fold(0.0, f64::max);
+        if furthest > BEYOND_LIMIT * low.abs().max(high.abs()) {
+            let problem = format!("|q| reaches {furthest:.3}, the joint's limits are {low} and {high} rad");
+            let remedy = "give q in rad, or correct the limits in the robot's description";
+            defects.push(Defect::new(path, None, problem, remedy).of_joint(Some(joint + 1)));
+        }
     }
     for joint in 0..run.joints {
         let fastest = (0..run.len()).map(|k| run.qd(k)[joint].abs()).fold(0.0, f64::max);
@@ -66,8 +77,13 @@ pub(crate) fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect>
         if fastest > BEYOND_LIMIT * limit {
             let problem = format!("qd reaches {fastest:.3}, the joint's limit is {limit} rad/s");
             defects.push(
-                Defect::new(path, None, problem, "give qd in rad/s, or correct the limit in the robot's description")
-                    .of_joint(Some(joint + 1)),
+                Defect::new(
+                    path,
+                    None,
+                    problem,
+                    "give qd in rad/s, or correct the limit in the robot's description",
+                )
+                .of_joint(Some(joint + 1)),
             );
         }
     }

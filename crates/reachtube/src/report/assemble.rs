@@ -60,9 +60,11 @@ pub fn page(sources: &Sources) -> Result<Page> {
 
 fn verdict(model: &Model, check: &Check) -> Verdict {
     let words = match &check.violations.worst {
-        None => format!("Conformant: all {} recordings lie in the reachable set at every sample.", check.runs),
+        None => {
+            format!("All {} recordings lie in the reachable set at every sample.", check.runs)
+        }
         Some(worst) => format!(
-            "Not conformant: {} of {} rows leave the reachable set, furthest {} at {:.3} s, {} by {:.3e}.",
+            "{} of {} rows leave the reachable set, furthest {} at {:.3} s, {} by {:.3e}.",
             check.violations.count, check.rows, worst.run, worst.time, worst.state, worst.excess
         ),
     };
@@ -103,7 +105,11 @@ fn sets_table(model: &Model) -> SetsTable {
 }
 
 fn joint_name(model: &Model, joint: usize) -> String {
-    model.robot.joints.get(joint).map_or_else(|| format!("{}", joint + 1), |description| description.name.clone())
+    model
+        .robot
+        .joints
+        .get(joint)
+        .map_or_else(|| format!("{}", joint + 1), |description| description.name.clone())
 }
 
 fn facts(model: &Model) -> Vec<(String, String)> {
@@ -114,14 +120,14 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("Cost", format!("{:.6} (lower bound {:.6})", model.cost, model.cost_lower_bound)),
         ("The paper's sum (21)", format!("{:.6}", model.cost_paper)),
         ("Volume of the hull, eq. (2)", format!("{:.4e}", model.hull_volume)),
-        ("Notion of conformance", word(&settings.notion)),
-        ("Disturbance", word(&settings.disturbance)),
-        ("Centres of the sets", word(&settings.centre)),
-        ("States enclosed", word(&settings.states)),
+        ("Notion of conformance", word(settings.notion)),
+        ("Disturbance", word(settings.disturbance)),
+        ("Centres of the sets", word(settings.centre)),
+        ("States enclosed", word(settings.states)),
         ("Weights", word(&settings.weights)),
         ("Measurement noise", word(&settings.noise)),
-        ("Nominal solution starts at", word(&settings.nominal)),
-        ("Recorded torque", word(&settings.torque)),
+        ("Nominal solution starts at", word(settings.nominal)),
+        ("Recorded torque", word(settings.torque)),
         ("Fitted to", format!("{runs} runs of suites {}", suites.join(", "))),
         ("SHA-256 of the data", model.data.sha256.clone()),
         ("Written by", model.tool.clone()),
@@ -189,10 +195,8 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
     let tight = model.tight.iter().filter(|place| place.suite == suite.entry.name);
     let violated = check.suites.iter().filter(|own| own.suite == suite.entry.name);
     let worst = violated.filter_map(|own| own.violations.worst.as_ref());
-    let spots: Vec<TightSpot> = tight
-        .chain(worst)
-        .filter_map(|place| Some(spot(place, name(&place.run)?, joints)))
-        .collect();
+    let spots: Vec<TightSpot> =
+        tight.chain(worst).filter_map(|place| Some(spot(place, name(&place.run)?, joints))).collect();
     for spot in &spots {
         runs[spot.run].touches += 1;
     }
@@ -224,9 +228,8 @@ fn spot(place: &conform::Place, run: usize, joints: usize) -> TightSpot {
 /// A run as a line; relative to its own nominal solution where it has one.
 fn trace(sources: &Sources, index: usize, order: usize, own: Option<&SuiteReach>) -> Result<RunTrace> {
     let Sources { model, settings, data, .. } = *sources;
-    let run = data
-        .read(index, Some(model.joints()), settings.gap_limit, settings.until)
-        .map_err(Error::Defects)?;
+    let run =
+        data.read(index, Some(model.joints()), settings.gap_limit, settings.until).map_err(Error::Defects)?;
     let mut states = run.states.clone();
     if let Some(own) = own {
         states.iter_mut().zip(&own.nominal).for_each(|(x, nominal)| *x -= nominal);

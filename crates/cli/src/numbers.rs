@@ -1,0 +1,77 @@
+//! Numbers as a reader wants them: few digits, but never so few that nothing is left.
+
+/// Below this, four decimals would hide what a number is.
+const SMALL: f64 = 1e-3;
+
+/// Below this, six decimals would.
+const TINY: f64 = 1e-5;
+
+/// From this on, decimals say nothing.
+const LARGE: f64 = 1e5;
+
+/// A number with four decimals, or in powers of ten where it is very small or large.
+pub fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (SMALL..LARGE).contains(&size) => format!("{value:.4}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// An interval by its ends, or by centre and radius where its ends would look the same.
+pub fn interval((low, high): (f64, f64)) -> String {
+    let (size, radius) = (low.abs().max(high.abs()), 0.5 * (high - low));
+    let center = 0.5 * (low + high);
+    if radius == 0.0 {
+        number(center)
+    } else if radius < SMALL * size {
+        format!("{} ± {radius:.1e}", number(center))
+    } else if (TINY..LARGE).contains(&size) {
+        let digits = (1.0 - radius.log10().floor()).clamp(4.0, 6.0) as usize;
+        format!("[{}, {}]", fixed(low, digits), fixed(high, digits))
+    } else {
+        format!("[{low:.2e}, {high:.2e}]")
+    }
+}
+
+/// So many decimals, without the sign of a zero.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    text.strip_prefix('-')
+        .filter(|rest| rest.bytes().all(|b| b == b'0' || b == b'.'))
+        .map_or(text.clone(), String::from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{interval, number};
+
+    #[test]
+    fn small_numbers_keep_their_digits() {
+        let shown = [0.0, 2.1e-9, -0.25, 12.34567, 3.2e7].map(number);
+        assert_eq!(shown, ["0", "2.1e-9", "-0.2500", "12.3457", "3.2e7"]);
+    }
+
+    #[test]
+    fn intervals_show_their_width() {
+        let shown = [
+            (0.0, 0.0),
+            (-0.1, 0.25),
+            (-1e-6, 0.25),
+            (-6.8e-4, 3.94e-4),
+            (-2.1e-9, 2.1e-9),
+            (0.5 - 3e-8, 0.5 + 3e-8),
+            (0.5, 0.5),
+        ];
+        let expected = [
+            "0",
+            "[-0.1000, 0.2500]",
+            "[0.0000, 0.2500]",
+            "[-0.00068, 0.00039]",
+            "[-2.10e-9, 2.10e-9]",
+            "0.5000 ± 3.0e-8",
+            "0.5000",
+        ];
+        assert_eq!(shown.map(interval), expected);
+    }
+}

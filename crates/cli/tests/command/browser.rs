@@ -1,0 +1,77 @@
+//! The page of `report` in a headless browser: its script runs to the end, and nothing is complained about.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::fixture::Lab;
+
+const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+const PATIENCE: Duration = Duration::from_secs(120);
+const OPTIONS: [&str; 8] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--disable-background-networking",
+    "--enable-logging=stderr",
+    "--timeout=20000",
+    "--dump-dom",
+];
+
+#[test]
+fn the_page_and_its_figures_are_written_and_the_page_opens() {
+    let lab = Lab::new();
+    lab.conform("--out model.json --report report").exits(0).notes("wrote report/report.html");
+    let figures = ["A_deviation.svg", "A_motion.svg", "B_deviation.svg", "B_motion.svg"];
+    assert_eq!(lab.names("report"), [&figures[..], &["report.html"]].concat());
+    for name in figures {
+        let svg = lab.read(&format!("report/{name}"));
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{name}");
+    }
+    let html = lab.read("report/report.html");
+    assert!(!html.contains("http://") || !html.contains("src=\"http"), "the page works offline");
+    lab.run("report --model model.json --data data --torque compensated --out again").exits(0);
+    assert_eq!(lab.read("again/report.html"), html);
+    let Some(browser) = browser() else {
+        println!("skipped: none of {BROWSERS:?} is on the PATH, so the page is not opened");
+        return;
+    };
+    let dom = open(&browser, &lab.path("report/report.html"), &lab.path("browser"));
+    assert!(dom.contains("data-ready=\"yes\""), "the script did not end");
+    assert_eq!(dom.matches("<figure").count(), 4);
+}
+
+fn browser() -> Option<PathBuf> {
+    let folders: Vec<PathBuf> = std::env::split_paths(&std::env::var_os("PATH")?).collect();
+    let all = BROWSERS.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
+    all.into_iter().find(|path| path.is_file())
+}
+
+/// The document that the page's script leaves.
+fn open(browser: &Path, page: &Path, folder: &Path) -> String {
+    std::fs::create_dir(folder).unwrap();
+    let at = |name: &str| folder.join(name);
+    let file = |name: &str| Stdio::from(std::fs::File::create(at(name)).unwrap());
+    let mut child = Command::new(browser)
+        .args(OPTIONS)
+        .arg(format!("--user-data-dir={}", at("profile").display()))
+        .arg(format!("file://{}", page.display()))
+        .stdout(file("dom"))
+        .stderr(file("log"))
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > PATIENCE {
+            let _ = child.kill();
+            let _ = child.wait();
+            panic!("the browser did not end within {PATIENCE:?}");
+        }
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let read = |name: &str| String::from_utf8_lossy(&std::fs::read(at(name)).unwrap()).into_owned();
+    let log = read("log");
+    assert!(!log.contains(":CONSOLE"), "{log}");
+    read("dom")
+}

@@ -1,0 +1,196 @@
+//! A small data set of a 2-joint arm, and the command run on it.
+//!
+//! The links weigh nothing, so that each joint is m q̈ = u - v q̇ exactly, and its motion under a held input has a closed form.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Samples of each run.
+pub const SAMPLES: usize = 51;
+
+/// Time between samples, s.
+pub const STEP: f64 = 0.01;
+
+const INERTIA: [f64; 2] = [1.0, 0.5];
+const DAMPING: [f64; 2] = [2.0, 1.0];
+
+/// Radius of the first positions about their mean, rad.
+pub const START: f64 = 0.002;
+
+/// Radius of the disturbance torque, N m.
+pub const TORQUE: f64 = 0.1;
+
+/// The robot that moves like the recordings.
+pub fn robot_toml() -> String {
+    let joint = |j: usize| {
+        format!(
+            "[[joint]]\nname = \"axis{}\"\nplacement = {{ translation = [0.0, 0.0, 0.5] }}\narmature = {}\nvelocity_limit = 3.0\n\
+             friction = {{ viscous = [{}, 0.0, 0.0] }}\n",
+            j + 1,
+            INERTIA[j],
+            DAMPING[j]
+        )
+    };
+    format!("schema_version = 1\nname = \"two axes\"\nparameters = \"base\"\n\n{}\n{}", joint(0), joint(1))
+}
+
+/// A folder with `arm.toml`, and in `data` the suites A and B of three runs, each a motion of its own.
+pub struct Lab {
+    folder: TempDir,
+}
+
+impl Lab {
+    pub fn new() -> Self {
+        let lab = Self { folder: tempfile::tempdir().unwrap() };
+        std::fs::create_dir(lab.path("data")).unwrap();
+        lab.write("arm.toml", robot_toml());
+        let mut index = String::from("file,suite,motion\n");
+        for (suite, frequency) in [("A", 4.0), ("B", 9.0)] {
+            for run in 1..=3 {
+                lab.write(&format!("data/{suite}_{run}.csv"), recording(frequency, run as f64 - 2.0));
+                index += &format!("{suite}_{run}.csv,{suite},motion {suite}\n");
+            }
+        }
+        lab.write("data/runs.csv", &index);
+        lab
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    /// Rewrites the lines of a file.
+    pub fn edit(&self, name: &str, change: impl FnOnce(&mut Vec<String>)) {
+        let mut lines: Vec<String> = self.read(name).lines().map(String::from).collect();
+        change(&mut lines);
+        self.write(name, lines.join("\n") + "\n");
+    }
+
+    /// Names in a folder, sorted.
+    pub fn names(&self, folder: &str) -> Vec<String> {
+        let entries = std::fs::read_dir(self.path(folder)).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    pub fn command(&self, arguments: &str) -> Command {
+        command_in(self.folder.path(), arguments)
+    }
+
+    pub fn run(&self, arguments: &str) -> Run {
+        Run::of(self.command(arguments).output().unwrap())
+    }
+
+    /// `conform` with the usual options and some more.
+    pub fn conform(&self, more: &str) -> Run {
+        self.run(&format!("conform --robot arm.toml --data data --torque compensated {more}"))
+    }
+
+    /// `check` of model.json.
+    pub fn check(&self, more: &str) -> Run {
+        self.run(&format!("check --model model.json --data data --torque compensated {more}"))
+    }
+}
+
+/// The binary in a folder, with arguments separated by spaces.
+pub fn command_in(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_reachtube"));
+    command.current_dir(folder).args(arguments.split_whitespace());
+    command
+}
+
+/// What a run of the command came to.
+#[derive(Debug)]
+pub struct Run {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Run {
+    pub fn of(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+
+    /// Asserts the exit code.
+    #[track_caller]
+    pub fn exits(self, code: i32) -> Self {
+        assert_eq!(self.code, code, "{self:#?}");
+        self
+    }
+
+    /// Asserts an error: exit code 2, nothing on standard output, and each of `parts` in the text.
+    #[track_caller]
+    pub fn fails_with(self, parts: &[&str]) -> Self {
+        assert_eq!((self.code, self.stdout.as_str()), (2, ""), "{self:#?}");
+        assert!(self.stderr.lines().all(|line| line.starts_with("error: ")), "{}", self.stderr);
+        parts
+            .iter()
+            .for_each(|part| assert!(self.stderr.contains(part), "{part:?} is not in\n{}", self.stderr));
+        self
+    }
+
+    /// Asserts that `part` is said on standard error.
+    #[track_caller]
+    pub fn notes(self, part: &str) -> Self {
+        assert!(
+            self.stderr.lines().any(|line| line.starts_with("note: ") && line.contains(part)),
+            "{}",
+            self.stderr
+        );
+        self
+    }
+
+    #[track_caller]
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {}", self.stdout))
+    }
+}
+
+/// A run whose start and input are off by `deviation` (-1, 0, 1) radii.
+fn recording(frequency: f64, deviation: f64) -> String {
+    let mut text = String::from("t,q1,q2,qd1,qd2,tau1,tau2\n");
+    let (mut q, mut qd) = ([0.1, -0.2].map(|q| q + deviation * START), [0.0; 2]);
+    for k in 0..SAMPLES {
+        let t = k as f64 * STEP;
+        let u = [3.0, -2.0].map(|torque| torque * (frequency * t).cos());
+        text += &format!("{t:.3},{:?},{:?},{:?},{:?},{:?},{:?}\n", q[0], q[1], qd[0], qd[1], u[0], u[1]);
+        for j in 0..2 {
+            (q[j], qd[j]) = step(j, q[j], qd[j], u[j] + deviation * TORQUE);
+        }
+    }
+    text
+}
+
+/// The state after a step under the torque `u`.
+fn step(j: usize, q: f64, qd: f64, u: f64) -> (f64, f64) {
+    let (steady, rate) = (u / DAMPING[j], DAMPING[j] / INERTIA[j]);
+    let left = (-rate * STEP).exp();
+    (q + steady * STEP + (qd - steady) * (1.0 - left) / rate, steady + (qd - steady) * left)
+}
+
+/// Replaces a cell of a CSV line.
+pub fn set_cell(line: &mut String, column: usize, value: &str) {
+    let mut cells: Vec<&str> = line.split(',').collect();
+    cells[column] = value;
+    *line = cells.join(",");
+}
+
+/// A cell of a CSV line as a number.
+pub fn cell(line: &str, column: usize) -> f64 {
+    line.split(',').nth(column).unwrap().parse().unwrap()
+}

@@ -1,0 +1,13 @@
+//! The command as a user meets it: the real binary, its exit codes, what it prints and what it writes.
+
+mod browser;
+mod defects;
+mod fixture;
+mod index;
+mod options;
+mod outputs;
+mod reach;
+mod robots;
+mod schema;
+mod schunk;
+mod verdicts;

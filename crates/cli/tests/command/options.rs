@@ -1,0 +1,112 @@
+//! Options and what is wrong with them.
+
+use crate::fixture::{Lab, SAMPLES};
+
+#[test]
+fn help_has_examples_and_exit_codes() {
+    let lab = Lab::new();
+    for command in ["", "demo", "robot show", "inspect", "conform", "check", "reach", "report"] {
+        let help = lab.run(&format!("{command} --help")).exits(0).stdout;
+        assert!(
+            help.contains("Example") && help.contains(&format!("reachtube {command}")),
+            "{command}: {help}"
+        );
+    }
+    assert!(
+        lab.run("--help").stdout.contains("Exit codes: 0 conformant (or done), 1 not conformant, 2 error")
+    );
+    assert_eq!(lab.run("--version").exits(0).stdout, concat!("reachtube ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+#[test]
+fn a_wrong_command_line_is_an_error() {
+    let lab = Lab::new();
+    for arguments in ["", "foo", "conform", "robot show", "conform --robot arm.toml --data data --torque raw"]
+    {
+        let run = lab.run(arguments).exits(2);
+        assert!(
+            run.stdout.is_empty() && run.stderr.contains("Usage") || run.stderr.contains("possible values")
+        );
+    }
+}
+
+#[test]
+fn numbers_that_do_not_fit() {
+    let lab = Lab::new();
+    lab.conform("--weights 0,1").fails_with(&["weight 1 is 0", "between 1e-9 and 1e9"]);
+    lab.conform("--weights 1,2,3").fails_with(&["--weights: 3 given", "unit, spread, 2 numbers", "or 4"]);
+    lab.conform("--weights Spread").fails_with(&["--weights: \"Spread\" is no number", "unit, spread"]);
+    lab.conform("--noise -1,0").fails_with(&["noise radius 1 is -1", "between 0 and 1e9"]);
+    lab.conform("--noise NaN,0").fails_with(&["noise radius 1 is NaN"]);
+    lab.conform("--expansion 1,2,3").fails_with(&["3 values", "the robot has 2 joints", "4 values"]);
+    lab.conform("--expansion inf,0").fails_with(&["inf", "finite"]);
+    for option in ["--until 0", "--until -1", "--until NaN", "--max-gap 0", "--max-gap x"] {
+        let run = lab.conform(option).exits(2);
+        assert!(run.stdout.is_empty() && run.stderr.contains("give a number of seconds above 0"), "{run:?}");
+    }
+}
+
+#[test]
+fn until_uses_the_beginning() {
+    let lab = Lab::new();
+    let model = lab.conform("--until 0.1 --json --out model.json").exits(0).json();
+    assert_eq!(model["data"]["suites"][0]["runs"][0]["samples"], 11);
+    assert_eq!(model["settings"]["until"], 0.1);
+    let check = lab.check("--json").exits(0).notes("samples later than 0.1 s after the first are not used");
+    assert_eq!(check.json()["rows"], 2 * 11 * 4);
+    assert_eq!(
+        lab.conform("--until 1e-6 --json").exits(0).json()["data"]["suites"][0]["runs"][0]["samples"],
+        1
+    );
+}
+
+#[test]
+fn every_setting_gives_a_model_that_its_own_check_accepts() {
+    let lab = Lab::new();
+    for options in [
+        "--disturbance constant",
+        "--disturbance measurable",
+        "--centre origin",
+        "--centre zero",
+        "--states positions",
+        "--weights spread",
+        "--weights 1,0.1",
+        "--noise free",
+        "--noise 0.001,0.01",
+        "--noise 10,10",
+        "--nominal own",
+        "--expansion 0.3,-0.5,0.2,0.1",
+        "--suites B,A",
+    ] {
+        let model = lab.conform(&format!("{options} --json --out model.json")).exits(0).json();
+        assert_eq!(model["verified"], true, "{options}");
+        let check = lab.check("--json").exits(0).json();
+        assert_eq!(
+            (&check["conformant"], &check["violations"]["count"]),
+            (&true.into(), &0.into()),
+            "{options}"
+        );
+    }
+}
+
+#[test]
+fn suites_of_different_rates_go_together() {
+    let lab = Lab::new();
+    for run in 1..=3 {
+        lab.edit(&format!("data/B_{run}.csv"), |lines| {
+            let mut number = 0;
+            lines.retain(|_| {
+                number += 1;
+                number == 1 || number % 2 == 0
+            });
+        });
+    }
+    let inspected = lab.run("inspect --data data --json").exits(0).json();
+    assert_eq!(
+        (&inspected["groups"][0]["step"], &inspected["groups"][1]["step"]),
+        (&0.01.into(), &0.02.into())
+    );
+    let model = lab.conform("--json --out model.json").exits(0).json();
+    assert_eq!(model["proof"]["rows"], 2 * 4 * (SAMPLES + SAMPLES.div_ceil(2)));
+    lab.check("").exits(0);
+}

@@ -1,0 +1,56 @@
+//! Robots that are none.
+
+use crate::fixture::{Lab, robot_toml};
+
+#[track_caller]
+fn refused(from: &str, to: &str, parts: &[&str]) {
+    let lab = Lab::new();
+    assert!(robot_toml().contains(from));
+    lab.write("arm.toml", robot_toml().replacen(from, to, 1));
+    lab.run("robot show arm.toml").fails_with(parts);
+    lab.conform("").fails_with(parts);
+}
+
+#[test]
+fn what_was_understood_is_shown() {
+    let lab = Lab::new();
+    let text = lab.run("robot show arm.toml --at 0.1,-0.2").exits(0).stdout;
+    for part in ["two axes: 2 revolute joints", "axis1", "q_a = [0.1, -0.2] rad", "1.00000", "0.50000"] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    lab.run("robot show arm.toml --at 1,2,3").fails_with(&["--at: 3 given", "2 positions in rad"]);
+    lab.run("robot show lwa4p").exits(0);
+}
+
+#[test]
+fn defects_are_found_with_line_and_joint() {
+    refused(
+        "armature = 0.5",
+        "armature = -0.5",
+        &["arm.toml:15: joint `axis2`: armature = -0.5 is negative", "at least 0"],
+    );
+    refused(
+        "armature = 0.5",
+        "armatur = 0.5",
+        &["arm.toml: TOML parse error at line 15", "unknown field `armatur`"],
+    );
+    refused("schema_version = 1\n", "", &["missing field `schema_version`", "README"]);
+    refused("axis2", "axis1", &["arm.toml:13: joint `axis1`: the name occurs twice"]);
+}
+
+#[test]
+fn a_singular_model_is_refused() {
+    refused(
+        "armature = 0.5",
+        "armature = 0.0",
+        &["joint `axis2`", "positive", "correct its inertial parameters"],
+    );
+}
+
+#[test]
+fn a_robot_that_is_not_there() {
+    let lab = Lab::new();
+    lab.run("robot show nobody")
+        .fails_with(&["cannot read robot `nobody`", "TOML file or an embedded name (lwa4p)"]);
+    lab.run("conform --robot data --data data --torque motor").fails_with(&["cannot read robot `data`"]);
+}

@@ -1,0 +1,113 @@
+//! The model file against its schema, and tampered files.
+
+use serde_json::{Value, json};
+
+use crate::fixture::Lab;
+
+fn schema() -> jsonschema::Validator {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/model.schema.json");
+    let schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    jsonschema::draft202012::meta::validate(&schema).unwrap();
+    jsonschema::draft202012::new(&schema).unwrap()
+}
+
+fn complaints(schema: &jsonschema::Validator, model: &Value) -> Vec<String> {
+    schema.iter_errors(model).map(|error| format!("{}: {error}", error.instance_path())).collect()
+}
+
+#[test]
+fn models_fit_the_schema() {
+    let (schema, lab) = (schema(), Lab::new());
+    for options in [
+        "",
+        "--noise free --weights 1,0.5",
+        "--noise 0.001,0.01 --until 0.2 --weights spread",
+        "--states positions",
+    ] {
+        let model = lab.conform(&format!("--json {options}")).exits(0).json();
+        assert_eq!(complaints(&schema, &model), Vec::<String>::new(), "{options}");
+    }
+    lab.edit("data/runs.csv", |lines| lines[0] = lines[0].replace("motion", "other"));
+    let model = lab.conform("--json").exits(0).json();
+    assert_eq!(complaints(&schema, &model), Vec::<String>::new());
+}
+
+#[test]
+fn the_embedded_robot_fits_the_schema() {
+    let (schema, lab) = (schema(), Lab::new());
+    let mut model = lab.conform("--json").exits(0).json();
+    model["robot"] = lab.run("robot show lwa4p --json").exits(0).json()["description"].clone();
+    assert_eq!(complaints(&schema, &model), Vec::<String>::new());
+}
+
+#[test]
+fn the_schema_refuses_what_the_program_refuses() {
+    let (schema, lab) = (schema(), Lab::new());
+    let model = lab.conform("--json").exits(0).json();
+    let set = |path: &str, value: Value| {
+        let mut changed = model.clone();
+        *changed.pointer_mut(path).unwrap() = value;
+        changed
+    };
+    let mut more = model.clone();
+    more["more"] = json!(1);
+    let mut less = model.clone();
+    less.as_object_mut().unwrap().remove("cost");
+    for (changed, words) in [
+        (set("/format", json!("other")), "format is not"),
+        (set("/version", json!(2)), "version 2 of the format, this program reads 1; run conform again"),
+        (set("/cost", json!(null)), "null"),
+        (set("/input_set/radius/0", json!(-0.1)), "input_set or noise_set"),
+        (set("/settings/torque", json!("raw")), "unknown variant `raw`"),
+        (more, "unknown field `more`"),
+        (less, "missing field `cost`"),
+    ] {
+        assert!(!complaints(&schema, &changed).is_empty(), "{words}");
+        lab.write("model.json", changed.to_string());
+        lab.check("").fails_with(&["model.json: ", words]);
+    }
+}
+
+#[test]
+fn a_part_that_was_changed_is_noticed() {
+    let lab = Lab::new();
+    let model = lab.conform("--json").exits(0).json();
+    for (path, value, words) in [
+        ("/a/2/2", json!(-3.0), "a, b or drift is not that of its robot"),
+        ("/b/3/1", json!(2.5), "a, b or drift is not that of its robot"),
+        ("/robot/joint/0/armature", json!(1.5), "a, b or drift is not that of its robot"),
+        ("/robot/joint/0/armature", json!(-1.5), "armature = -1.5 is negative"),
+        ("/a/2", json!([0.0]), "has not the size for the 2 joints"),
+        ("/settings/expansion_point/q", json!([0.0]), "expansion point"),
+        ("/data/suites/0/runs/0/sha256", json!("0".repeat(64)), "data.sha256"),
+        ("/verified", json!(false), "verified does not agree with proof"),
+        ("/proof/proved", json!(1), "verified does not agree with proof"),
+    ] {
+        let mut changed = model.clone();
+        *changed.pointer_mut(path).unwrap() = value;
+        lab.write("model.json", changed.to_string());
+        lab.check("").fails_with(&["model.json: ", words]);
+    }
+}
+
+#[test]
+fn a_smaller_set_is_no_longer_conformant() {
+    let lab = Lab::new();
+    let mut model = lab.conform("--json").exits(0).json();
+    model["input_set"]["radius"] = json!([0.05, 0.1]);
+    lab.write("model.json", model.to_string());
+    let worst = lab.check("--json").exits(1).json()["violations"]["worst"].clone();
+    assert_eq!(worst["joint"], 1);
+}
+
+#[test]
+fn what_is_no_model_file() {
+    let lab = Lab::new();
+    lab.check("").fails_with(&["model.json: cannot read", "give a file that `conform --out` wrote"]);
+    for text in ["", "{", "[1]", "3", "t,q1,qd1,tau1\n", "\"reachtube-model\""] {
+        lab.write("model.json", text);
+        lab.check("").fails_with(&["model.json: ", "give a file that `conform --out` wrote"]);
+    }
+    lab.write("model.json", [0xff, 0xfe, 0x00]);
+    lab.check("").fails_with(&["model.json: cannot read"]);
+}

@@ -1,0 +1,25 @@
+//! The recordings of the paper's own robot, where they are at hand.
+
+use std::time::{Duration, Instant};
+
+use crate::fixture::{Lab, Run};
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/schunk_lwa4p");
+
+#[test]
+fn the_recordings_of_the_paper_are_enclosed() {
+    if !std::path::Path::new(DATA).is_dir() {
+        println!("skipped: there is no folder {DATA}");
+        return;
+    }
+    let (lab, start) = (Lab::new(), Instant::now());
+    let with = format!("--data {DATA} --suites A,B,D,E --torque compensated");
+    let run = |arguments: String| -> Run { lab.run(&arguments).exits(0) };
+    let model = run(format!("conform --robot lwa4p {with} --out model.json --json")).json();
+    let check = run(format!("check --model model.json {with} --json")).json();
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
+    assert_eq!((&model["verified"], &check["conformant"]), (&true.into(), &true.into()));
+    // 937 + 703 + 234 + 1088 samples of 12 states, both sides.
+    assert_eq!((&model["proof"]["rows"], &model["proof"]["runs"]), (&71_088.into(), &73.into()));
+    assert_eq!((&check["rows"], &check["violations"]["count"]), (&35_544.into(), &0.into()));
+}

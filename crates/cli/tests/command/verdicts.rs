@@ -1,0 +1,110 @@
+//! Conform and check: verdicts, witnesses, and exit codes.
+
+use serde_json::Value;
+
+use crate::fixture::{Lab, SAMPLES, START, TORQUE, cell, set_cell};
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn the_sets_are_those_that_made_the_recordings() {
+    let lab = Lab::new();
+    let model = lab.conform("--json").exits(0).json();
+    assert_eq!(model["verified"], true);
+    assert!(model["cost"].as_f64().unwrap() > 0.0);
+    let (start, input) = (numbers(&model["initial_set"]["radius"]), numbers(&model["input_set"]["radius"]));
+    // The recordings hold numbers to the last digit, so only rounding separates the sets from what made them.
+    let near = |found: &[f64], expected: &[f64]| {
+        found
+            .iter()
+            .zip(expected)
+            .for_each(|(x, y)| assert!((x - y).abs() < 1e-6, "{found:?} is not {expected:?}"));
+    };
+    near(&start, &[START, START, 0.0, 0.0]);
+    near(&input, &[TORQUE; 2]);
+    near(&numbers(&model["initial_set"]["center"]), &[0.0; 4]);
+    near(&numbers(&model["input_set"]["center"]), &[0.0; 2]);
+    assert_eq!(model["proof"]["proved"], 2 * 2 * 4 * SAMPLES);
+}
+
+#[test]
+fn a_model_file_is_what_json_prints() {
+    let lab = Lab::new();
+    let run = lab.conform("--json --out new/folder/model.json").exits(0).notes("wrote new/folder/model.json");
+    assert_eq!(lab.read("new/folder/model.json"), run.stdout);
+}
+
+#[test]
+fn a_table_tells_the_sets() {
+    let text = Lab::new().conform("").exits(0).stdout;
+    assert!(text.starts_with("conformant: 6 recordings in 2 suites; 816 of 816 bounds"), "{text}");
+    for part in ["axis1", "axis2", "[-0.0020, 0.0020]", "[-0.1000, 0.1000]", "U [N m]"] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    assert!(!text.contains("-0.0000,") && !text.contains("-0.0000]"), "{text}");
+}
+
+#[test]
+fn one_value_outside_is_found_with_its_place() {
+    let lab = Lab::new();
+    lab.conform("--out model.json").exits(0);
+    lab.check("").exits(0);
+    lab.edit("data/B_2.csv", |lines| {
+        let moved = format!("{:?}", cell(&lines[21], 1) + 0.5);
+        set_cell(&mut lines[21], 1, &moved);
+    });
+    let check = lab.check("--json").exits(1).json();
+    assert_eq!((&check["conformant"], &check["violations"]["count"]), (&false.into(), &1.into()));
+    let worst = &check["violations"]["worst"];
+    let expected = [("suite", "B"), ("run", "B_2.csv"), ("state", "q1"), ("side", "upper")];
+    expected.iter().for_each(|(key, value)| assert_eq!(worst[key], *value, "{worst}"));
+    assert_eq!((&worst["sample"], &worst["time"], &worst["joint"]), (&20.into(), &0.2.into(), &1.into()));
+    // The run is in the middle of the set, whose radius there is at least that of X0.
+    let excess = worst["excess"].as_f64().unwrap();
+    assert!((0.4..=0.5 - START).contains(&excess), "{excess}");
+    assert_eq!(check["suites"][0]["violations"]["count"], 0);
+    let text = lab.check("").exits(1).stdout;
+    assert!(text.starts_with("not conformant: 6 recordings; 1 of 408 values"), "{text}");
+    assert!(text.contains("B_2.csv at 0.200 s: joint 1, q1 0.4"), "{text}");
+}
+
+#[test]
+fn trust_is_stated_for_recordings_that_were_held_out_only() {
+    let lab = Lab::new();
+    lab.conform("--suites A --out model.json").exits(0);
+    assert_eq!(lab.check("--suites A,B --json").json()["trust"], Value::Null);
+    let held_out = lab.check("--suites B --json").json();
+    assert_eq!(held_out["trust"]["motions"], 1);
+}
+
+#[test]
+fn a_suite_of_one_run_needs_no_initial_set() {
+    let lab = Lab::new();
+    lab.edit("data/runs.csv", |lines| lines.truncate(2));
+    let model = lab.conform("--json --out model.json").exits(0).json();
+    assert!(numbers(&model["initial_set"]["radius"]).iter().all(|radius| *radius < 1e-6));
+    lab.check("").exits(0);
+}
+
+#[test]
+fn recordings_are_inspected() {
+    let lab = Lab::new();
+    let found = lab.run("inspect --data data --json").exits(0).json();
+    assert_eq!((&found["joints"], &found["runs"]), (&2.into(), &6.into()));
+    let group = &found["groups"][0];
+    assert_eq!(
+        (&group["name"], &group["motion"], &group["same_torque"]),
+        (&"A".into(), &"motion A".into(), &true.into())
+    );
+    let spread = group["joints"][0]["start_spread"].as_f64().unwrap();
+    assert!((spread - 2.0 * START).abs() < 1e-12);
+    let text = lab.run("inspect --data data").exits(0).stdout;
+    assert!(
+        text.contains(
+            "suite A (motion motion A): 3 runs of 51 samples every 0.01 s, 0.500 s, the same torques in all"
+        ),
+        "{text}"
+    );
+}

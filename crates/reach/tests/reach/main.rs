@@ -1,0 +1,12 @@
+//! Enclosures against exact rational numbers, closed forms, brute force and simulated disturbances.
+
+mod arm;
+mod disturbances;
+mod edges;
+mod exponential;
+mod gains;
+mod grid;
+mod propagation;
+mod random;
+mod rational;
+mod tube;

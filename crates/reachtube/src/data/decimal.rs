@@ -1,0 +1,53 @@
+/// A decimal number of seconds as picoseconds, rounded to the nearest: the digits are taken as they are written, so that the difference of two times since 1970 is
+/// that of the numbers in the file, where double precision keeps a tenth of a microsecond only.
+///
+/// None for what is no finite decimal number, or has more digits than fit.
+pub(super) fn picoseconds(text: &str) -> Option<i128> {
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
+        None => (text, 0),
+    };
+    let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
+    let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
+    let digits = format!("{whole}{fraction}");
+    let digits: i128 = digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())??;
+    let shift = exponent.checked_add(12)?.checked_sub_unsigned(fraction.len() as u32)?;
+    let size = match 10i128.checked_pow(shift.unsigned_abs()) {
+        Some(power) if shift >= 0 => digits.checked_mul(power)?,
+        Some(power) => (digits + power / 2) / power,
+        None if shift < 0 || digits == 0 => 0,
+        None => return None,
+    };
+    Some(if mantissa.starts_with('-') { -size } else { size })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::picoseconds;
+
+    #[test]
+    fn numbers_are_taken_as_written() {
+        let cases = [
+            ("0", 0),
+            ("-0.0", 0),
+            ("0.004", 4_000_000_000),
+            ("+.5", 500_000_000_000),
+            ("5.", 5_000_000_000_000),
+            ("-1.5e-3", -1_500_000_000),
+            ("4E-3", 4_000_000_000),
+            ("1e-400", 0),
+            ("0.0000000000015", 2),
+            ("1700000000.004", 1_700_000_000_004_000_000_000),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(picoseconds(text), Some(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_or_does_not_fit_is_none() {
+        for text in ["", ".", "-", "1,5", "nan", "inf", "--1", "1e", "1e99", "1.-5"] {
+            assert_eq!(picoseconds(text), None, "{text}");
+        }
+    }
+}

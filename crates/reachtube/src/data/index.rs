@@ -1,0 +1,155 @@
+//! The index of a data set, `runs.csv`.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::Defect;
+use super::reading::{line_of, quoted};
+
+const REMEDY: &str = "runs.csv has a header with at least file and suite, then one line a run";
+
+/// One line of `runs.csv`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunEntry {
+    /// Path in the folder, as written.
+    pub file: String,
+    /// The test suite, if it belongs to one.
+    pub suite: Option<String>,
+    /// The motion that the suite is part of; suites of one motion are not independent.
+    pub motion: Option<String>,
+    /// What kind of recording it is, as written.
+    pub kind: Option<String>,
+    /// Temperature in °C, where recorded.
+    pub temperature: Option<f64>,
+    /// SHA-256 the file should have.
+    pub sha256: Option<String>,
+    /// Line in `runs.csv`, from 1.
+    pub line: u64,
+}
+
+#[derive(Deserialize)]
+struct IndexRow {
+    file: String,
+    suite: Option<String>,
+    motion: Option<String>,
+    kind: Option<String>,
+    temperature: Option<f64>,
+    sha256: Option<String>,
+}
+
+impl IndexRow {
+    fn entry(self, line: u64) -> RunEntry {
+        let filled = |text: Option<String>| text.filter(|text| !text.is_empty());
+        RunEntry {
+            file: self.file,
+            suite: filled(self.suite),
+            motion: filled(self.motion),
+            kind: filled(self.kind),
+            temperature: self.temperature,
+            sha256: filled(self.sha256),
+            line,
+        }
+    }
+}
+
+/// The runs listed in `bytes`, the content of `index`, the index of the folder `root`.
+pub(super) fn read_index(root: &Path, index: &Path, bytes: &[u8]) -> Result<Vec<RunEntry>, Vec<Defect>> {
+    let (runs, mut defects) = parse(index, bytes);
+    defects.extend(missing_or_repeated(root, index, &runs));
+    defects.extend(two_motions(index, &runs));
+    if defects.is_empty() { Ok(runs) } else { Err(defects) }
+}
+
+fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let defect = |line, problem: String| Defect::new(index, line, problem, REMEDY);
+    let header = match reader.headers() {
+        Ok(header) => header.clone(),
+        Err(_) => return (vec![], vec![defect(Some(1), "the header is no UTF-8 text".into())]),
+    };
+    let absent = |column: &&str| !header.iter().any(|name| name == *column);
+    let mut defects: Vec<Defect> = ["file", "suite"]
+        .into_iter()
+        .filter(absent)
+        .map(|column| {
+            let found = header.iter().collect::<Vec<_>>().join(",");
+            defect(Some(1), format!("no column \"{column}\" in the header {}", quoted(&found)))
+        })
+        .collect();
+    if !defects.is_empty() {
+        return (vec![], defects);
+    }
+    let mut runs = Vec::new();
+    let mut record = csv::StringRecord::new();
+    loop {
+        let read = reader.read_record(&mut record);
+        let at = line_of(bytes, record.position());
+        let line = Some(at);
+        match read {
+            Ok(false) => break,
+            Ok(true) if record.len() != header.len() => {
+                defects
+                    .push(defect(line, format!("{} fields, the header has {}", record.len(), header.len())));
+            }
+            Ok(true) => match record.deserialize::<IndexRow>(Some(&header)) {
+                Ok(row) => runs.push(row.entry(at)),
+                Err(error) => defects.push(defect(line, what_is_wrong(&error, &header))),
+            },
+            Err(error) => {
+                let line = Some(line_of(bytes, error.position()));
+                defects.push(defect(line, what_is_wrong(&error, &header)));
+            }
+        }
+    }
+    if runs.is_empty() && defects.is_empty() {
+        defects.push(defect(None, "no run is listed".into()));
+    }
+    (runs, defects)
+}
+
+fn what_is_wrong(error: &csv::Error, header: &csv::StringRecord) -> String {
+    match error.kind() {
+        csv::ErrorKind::Utf8 { .. } => "the line is no UTF-8 text".into(),
+        csv::ErrorKind::Deserialize { err, .. } => {
+            let column = err.field().and_then(|field| header.get(field as usize)).unwrap_or("a field");
+            format!("{column}: {}", err.kind())
+        }
+        _ => error.to_string(),
+    }
+}
+
+fn missing_or_repeated(root: &Path, index: &Path, runs: &[RunEntry]) -> Vec<Defect> {
+    let mut first: BTreeMap<PathBuf, u64> = BTreeMap::new();
+    let mut defects = Vec::new();
+    for run in runs {
+        let path = root.join(&run.file);
+        if !path.is_file() {
+            let problem = format!("\"{}\" is not a file in {}", run.file, root.display());
+            let remedy = "add the recording or take the line out";
+            defects.push(Defect::new(index, Some(run.line), problem, remedy));
+        } else if let Some(line) = first.insert(path, run.line) {
+            let problem = format!("\"{}\" is listed on line {line} already", run.file);
+            defects.push(Defect::new(index, Some(run.line), problem, "list each run once"));
+        }
+    }
+    defects
+}
+
+fn two_motions(index: &Path, runs: &[RunEntry]) -> Vec<Defect> {
+    let mut first: BTreeMap<&str, (&str, u64)> = BTreeMap::new();
+    let mut defects = Vec::new();
+    for run in runs {
+        let (Some(suite), Some(motion)) = (&run.suite, &run.motion) else { continue };
+        let (known, line) = *first.entry(suite).or_insert((motion, run.line));
+        if known != motion {
+            let problem =
+                format!("suite {suite} has the motion {motion:?} here and {known:?} on line {line}");
+            let remedy = "a suite is part of one motion: correct one of the lines, or split the suite";
+            defects.push(Defect::new(index, Some(run.line), problem, remedy));
+        }
+    }
+    defects
+}

@@ -1,0 +1,247 @@
+//! The file of one recording, read line by line; what is wrong with it is found in one go.
+
+use std::path::Path;
+
+use super::decimal::picoseconds;
+use super::run::column_names;
+use super::{Defect, GapLimit, Run};
+
+/// A longer time between two samples than this many usual ones is a gap, where the rate is fixed: a missing sample makes it 2, a late one less.
+const FIXED_RATE_GAP: f64 = 1.9;
+
+/// The same where the times jitter.
+const JITTER_GAP: f64 = 10.0;
+
+/// Part of the samples that must follow at the usual time for the rate to be called fixed.
+const FIXED_RATE_SHARE: f64 = 0.9;
+
+/// Longest piece of a file that an error quotes, characters.
+const QUOTED: usize = 40;
+
+const HEADER: &str = "the header is t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m";
+
+/// The samples in `bytes`, the content of the file `path`; a run of other than `joints` joints is a defect. The SHA-256 is left empty.
+pub(super) fn read_samples(
+    path: &Path,
+    bytes: &[u8],
+    joints: Option<usize>,
+    gap_limit: GapLimit,
+) -> Result<Run, Vec<Defect>> {
+    let mut reading = Reading { path, run: Run::empty(0), rows: Vec::new(), defects: Vec::new() };
+    reading.header_and_rows(bytes, joints);
+    reading.gaps(gap_limit);
+    reading.defects.sort_by_key(|defect| defect.line);
+    if reading.defects.is_empty() { Ok(reading.run) } else { Err(reading.defects) }
+}
+
+/// A line of samples: where it is, and its time where that is a number.
+struct Row {
+    line: u64,
+    time: Option<i128>,
+}
+
+/// A file while it is read.
+struct Reading<'a> {
+    path: &'a Path,
+    run: Run,
+    rows: Vec<Row>,
+    defects: Vec<Defect>,
+}
+
+impl Reading<'_> {
+    fn defect(&mut self, line: Option<u64>, joint: Option<usize>, problem: String, remedy: &str) {
+        self.defects.push(Defect::new(self.path, line, problem, remedy).of_joint(joint));
+    }
+
+    fn header_and_rows(&mut self, bytes: &[u8], joints: Option<usize>) {
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        if let Some((problem, remedy)) = other_format(bytes) {
+            return self.defect(Some(1), None, problem, remedy);
+        }
+        let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+        let header = match reader.byte_headers() {
+            Ok(header) => {
+                header.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect::<Vec<_>>()
+            }
+            Err(error) => {
+                return self.defect(Some(1), None, error.to_string(), "write the file as UTF-8 CSV");
+            }
+        };
+        if !self.header(&header, joints) {
+            return;
+        }
+        let mut record = csv::ByteRecord::new();
+        let mut values = vec![0.0; 1 + 3 * self.run.joints];
+        loop {
+            match reader.read_byte_record(&mut record) {
+                Ok(true) => self.row(line_of(bytes, record.position()), &record, header.len(), &mut values),
+                Ok(false) => break,
+                Err(error) => {
+                    let line = line_of(bytes, error.position());
+                    return self.defect(Some(line), None, error.to_string(), "mend the line");
+                }
+            }
+        }
+        if self.rows.is_empty() {
+            let remedy = "record at least one, or leave the run out of runs.csv";
+            self.defect(None, None, "no sample after the header".into(), remedy);
+        }
+    }
+
+    /// Whether the header is `t,q1..qn,qd1..qdn,tau1..taun`, possibly with more columns after that.
+    fn header(&mut self, header: &[String], joints: Option<usize>) -> bool {
+        let n = header.iter().skip(1).take_while(|name| is_numbered(name, "q")).count();
+        let expected: Vec<String> = std::iter::once("t".into()).chain(column_names(n.max(1))).collect();
+        let wrong = expected.iter().enumerate().find(|(i, name)| header.get(*i) != Some(name));
+        if let Some((i, name)) = wrong {
+            let found = header.get(i).map_or("missing".into(), |found| quoted(found));
+            let problem = format!("column {} of the header is {found}, expected \"{name}\"", i + 1);
+            self.defect(Some(1), None, problem, HEADER);
+            return false;
+        }
+        if let Some(robot) = joints.filter(|robot| *robot != n) {
+            let problem = format!("the recording has {n} joints, the robot {robot}");
+            self.defect(Some(1), None, problem, "name the robot that was recorded, or the right data set");
+            return false;
+        }
+        self.run = Run::empty(n);
+        true
+    }
+
+    fn row(&mut self, line: u64, record: &csv::ByteRecord, fields: usize, values: &mut [f64]) {
+        if record.len() != fields {
+            self.rows.push(Row { line, time: None });
+            let problem = format!("{} fields, the header has {fields}", record.len());
+            let remedy = "the line is cut short or has a stray comma or quote: mend it or record again";
+            return self.defect(Some(line), None, problem, remedy);
+        }
+        let mut sound = true;
+        for (column, value) in values.iter_mut().enumerate() {
+            let text = String::from_utf8_lossy(&record[column]);
+            match text.parse::<f64>() {
+                Ok(number) if number.is_finite() => *value = number,
+                _ => {
+                    sound = false;
+                    *value = f64::NAN;
+                    self.bad_number(line, column, &text);
+                }
+            }
+        }
+        let time = self.time(line, values[0], &String::from_utf8_lossy(&record[0]));
+        if sound && let Some(time) = time {
+            self.sample(time, values);
+        }
+    }
+
+    fn bad_number(&mut self, line: u64, column: usize, text: &str) {
+        let n = self.run.joints;
+        let joint = column.checked_sub(1).map(|index| index % n + 1);
+        let name =
+            column.checked_sub(1).map_or("t".into(), |index| column_names(n).nth(index).unwrap_or_default());
+        let problem = match text {
+            "" => format!("{name} is empty"),
+            _ => format!("{name} is {}, not a finite number", quoted(text)),
+        };
+        let remedy = "no value may be missing: cut the run before it, or record again";
+        self.defect(Some(line), joint, problem, remedy);
+    }
+
+    /// The time of a line, where it is a number and later than that of the line above.
+    fn time(&mut self, line: u64, value: f64, text: &str) -> Option<i128> {
+        let time = value.is_finite().then(|| picoseconds(text).unwrap_or((value * 1e12) as i128));
+        let above = self.rows.last().and_then(|row| row.time);
+        self.rows.push(Row { line, time });
+        let follows = above.zip(time).is_none_or(|(above, time)| time > above);
+        if !follows {
+            let what =
+                if above == time { "the time of the line above" } else { "earlier than the line above" };
+            let remedy = "times must increase strictly: sort the samples, drop duplicates";
+            self.defect(Some(line), None, format!("t = {text} s is {what}"), remedy);
+        }
+        time.filter(|_| follows)
+    }
+
+    fn sample(&mut self, time: i128, values: &[f64]) {
+        let n = self.run.joints;
+        let first = self.rows.iter().find_map(|row| row.time).unwrap_or(time);
+        if self.run.times.is_empty() {
+            self.run.start = values[0];
+        }
+        self.run.times.push(seconds(time.saturating_sub(first)));
+        self.run.states.extend_from_slice(&values[1..1 + 2 * n]);
+        self.run.torques.extend_from_slice(&values[1 + 2 * n..]);
+    }
+
+    /// Too long a time from one line to the next; beside a line whose time is unknown nothing can be said.
+    fn gaps(&mut self, limit: GapLimit) {
+        let step = |pair: &[Row]| {
+            let step = seconds(pair[1].time?.saturating_sub(pair[0].time?));
+            (step > 0.0).then_some((pair[1].line, step))
+        };
+        let steps: Vec<(u64, f64)> = self.rows.windows(2).filter_map(step).collect();
+        let longest = match limit {
+            GapLimit::Seconds(seconds) => seconds * (1.0 + 1e-9),
+            GapLimit::Usual => usual_limit(steps.iter().map(|(_, step)| *step).collect()),
+        };
+        for (line, step) in steps.into_iter().filter(|(_, step)| *step > longest) {
+            let problem = format!("a gap of {step:.6} s before this sample, the limit is {longest:.6} s");
+            let remedy = "samples are missing and the input there is unknown: record again, cut the run, or accept it with --max-gap SECONDS";
+            self.defect(Some(line), None, problem, remedy);
+        }
+    }
+}
+
+fn seconds(picoseconds: i128) -> f64 {
+    picoseconds as f64 / 1e12
+}
+
+fn usual_limit(mut steps: Vec<f64>) -> f64 {
+    steps.sort_by(f64::total_cmp);
+    let Some(&usual) = steps.get(steps.len() / 2) else { return f64::INFINITY };
+    let same = steps.iter().filter(|&&step| (step - usual).abs() <= 1e-3 * usual).count();
+    let fixed_rate = same as f64 >= FIXED_RATE_SHARE * steps.len() as f64;
+    usual * if fixed_rate { FIXED_RATE_GAP } else { JITTER_GAP }
+}
+
+/// What is wrong, and what to do, with a file that is no comma-separated text with a header.
+fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
+    if bytes.is_empty() {
+        return Some(("the file is empty".into(), "record it again, or leave the run out of runs.csv"));
+    }
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Some(("the file is UTF-16 text".into(), "save it as CSV in UTF-8"));
+    }
+    if bytes.contains(&0) {
+        return Some(("the file is no text".into(), "write the recording as CSV in UTF-8"));
+    }
+    let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or(bytes);
+    let first = String::from_utf8_lossy(first);
+    let cell = first.split(',').next().unwrap_or("").trim().trim_matches('"');
+    if let Some(separator) = [';', '\t'].into_iter().find(|separator| cell.contains(*separator)) {
+        let problem = format!("the columns are separated by {separator:?}");
+        return Some((problem, "separate them by commas, and write numbers with a decimal point"));
+    }
+    if cell.parse::<f64>().is_ok() {
+        return Some(("the first line holds numbers, so the header is missing".into(), HEADER));
+    }
+    None
+}
+
+/// The line, from 1, on which a record starts; the reader's position may be that of blank lines above it.
+pub(super) fn line_of(bytes: &[u8], position: Option<&csv::Position>) -> u64 {
+    let Some(position) = position else { return 1 };
+    let ahead = bytes.get(position.byte() as usize..).unwrap_or_default();
+    let blank = ahead.iter().take_while(|byte| matches!(byte, b'\n' | b'\r'));
+    position.line() + blank.filter(|byte| **byte == b'\n').count() as u64
+}
+
+/// A piece of a file, cut short and without control characters.
+pub(super) fn quoted(text: &str) -> String {
+    let short: String = text.chars().take(QUOTED).collect();
+    let dots = if short.len() < text.len() { "..." } else { "" };
+    format!("{short:?}{dots}")
+}
+
+fn is_numbered(name: &str, prefix: &str) -> bool {
+    name.strip_prefix(prefix).is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
+}
