@@ -90,33 +90,37 @@ pub(crate) fn dot<'a>(
     terms.fold(Interval::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// Above it, underflow in a sum of products does not count against the rounding of the sum.
-const FAR_FROM_UNDERFLOW: f64 = 1e-280;
-
 /// An upper bound of the product of two matrices with entries >= 0; an entry all of whose terms are zero is 0.
-///
-/// The sum of N products >= 0 in floating point, in any order, is at least 1 - N u / (1 - N u) times the exact one, with the unit
-/// roundoff u (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1). What is zero, infinite or near underflow is
-/// summed again, rounded upward.
 pub(crate) fn mul_upward(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
-    let widening = 1.0 + (left.ncols() + 1) as f64 * f64::EPSILON;
     let mut product = left * right;
     for j in 0..product.ncols() {
         for i in 0..product.nrows() {
-            let entry = &mut product[(i, j)];
-            *entry = match *entry {
-                FAR_FROM_UNDERFLOW..f64::INFINITY => mul_up(*entry, widening),
-                _ => dot_upward(left.row(i).iter().copied(), right.column(j).as_slice()),
-            }
+            let (row, column) = (left.row(i), right.column(j));
+            let terms = row.iter().copied().zip(column.as_slice());
+            product[(i, j)] = sum_upward(product[(i, j)], left.ncols(), terms);
         }
     }
     product
 }
 
 /// An upper bound of Σ x_i y_i with terms >= 0.
-pub(crate) fn dot_upward(left: impl Iterator<Item = f64>, right: &[f64]) -> f64 {
-    let terms = left.zip(right).filter(|(_, y)| **y != 0.0);
-    terms.fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y)))
+pub(crate) fn dot_upward(left: impl Iterator<Item = f64> + Clone, right: &[f64]) -> f64 {
+    let terms = left.zip(right);
+    sum_upward(terms.clone().map(|(x, y)| x * y).sum(), right.len(), terms)
+}
+
+/// Above it, underflow in a sum of products does not count against the rounding of the sum.
+const FAR_FROM_UNDERFLOW: f64 = 1e-280;
+
+/// An upper bound of the sum of so many products x y >= 0, which is `nearest` in floating point.
+///
+/// In any order, `nearest` is at least 1 - N u / (1 - N u) times the exact sum, with the unit roundoff u (Higham, Accuracy and Stability
+/// of Numerical Algorithms, section 3.1). What is zero, infinite or near underflow is summed again, rounded upward.
+fn sum_upward<'a>(nearest: f64, count: usize, terms: impl Iterator<Item = (f64, &'a f64)>) -> f64 {
+    match nearest {
+        FAR_FROM_UNDERFLOW..f64::INFINITY => mul_up(nearest, 1.0 + (count + 1) as f64 * f64::EPSILON),
+        _ => terms.filter(|(_, y)| **y != 0.0).fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y))),
+    }
 }
 
 /// `sum += term` for entries >= 0, rounded upward.
