@@ -9,7 +9,7 @@ use reachtube::data::{GapLimit, Torque};
 use reachtube_reach::Disturbance;
 use serde::de::DeserializeOwned;
 
-/// Reachset-conformant models of robots: from recordings to a simple model and the smallest uncertainty sets for which every recording lies in the model's reachable set,
+/// Reachset-conformant models of robots: from recordings to a simple model and the smallest uncertainty sets for which every recording lies in the interval hull of the model's reachable set,
 /// proved with directed rounding.
 #[derive(Debug, Parser)]
 #[command(name = "reachtube", version, after_help = MAIN_HELP)]

@@ -1,4 +1,4 @@
-//! Whether other recordings lie in the reachable set of a model, and where not: the answer comes with a witness.
+//! Whether other recordings lie in the hull of the reachable set of a model, and where not: the answer comes with a witness.
 
 use reachtube_reach::ReachSets;
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ use crate::model::Model;
 /// The answer of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
-    /// Whether every recording was proved to lie in the reachable set at every sample.
+    /// Whether every recording was proved to lie in the interval hull of the reachable set at every sample.
     pub conformant: bool,
     /// Where not.
     pub violations: Violations,

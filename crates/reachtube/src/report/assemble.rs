@@ -61,7 +61,10 @@ pub fn page(sources: &Sources) -> Result<Page> {
 fn verdict(model: &Model, check: &Check) -> Verdict {
     let words = match &check.violations.worst {
         None => {
-            format!("All {} recordings lie in the reachable set at every sample.", check.runs)
+            format!(
+                "All {} recordings lie in the interval hull of the reachable set at every sample.",
+                check.runs
+            )
         }
         Some(worst) => format!(
             "{} of {} rows leave the reachable set, furthest {} at {:.3} s, {} by {:.3e}.",

@@ -55,7 +55,7 @@ pub struct Page {
 /// The outcome in words.
 #[derive(Debug, Clone, Default)]
 pub struct Verdict {
-    /// Whether every recording was proved to lie in the reachable set.
+    /// Whether every recording was proved to be enclosed, in the notion that the words name.
     pub ok: bool,
     /// The outcome as one sentence.
     pub words: String,
