@@ -3,6 +3,7 @@
 mod arithmetic;
 mod decimal;
 mod exponential;
+mod inverse;
 mod powers;
 mod taylor;
 mod trigonometric;

@@ -1,0 +1,60 @@
+//! Truncated Taylor polynomials: dense products, division, sparse products. Compare peers/README for what other libraries need.
+
+use std::sync::Arc;
+
+use divan::{Bencher, black_box, counter::ItemsCount};
+use reachtube_scalar::{Interval, Scalar, TaylorPolynomial, TaylorSpace};
+
+fn main() {
+    divan::main();
+}
+
+/// Variables and order.
+const SPACES: [(usize, u32); 4] = [(6, 6), (12, 4), (24, 3), (24, 4)];
+
+/// Coefficient products of a dense product: C(2k + p, p).
+fn coefficient_products(variables: usize, order: u32) -> usize {
+    (1..=order as usize).fold(1, |c, i| c * (2 * variables + i) / i)
+}
+
+/// A dense series without zeros.
+fn dense<C: Scalar>(space: &Arc<TaylorSpace>, shift: f64) -> TaylorPolynomial<C> {
+    let sum = (0..space.variables()).fold(TaylorPolynomial::<C>::from(2.0 + shift), |sum, i| {
+        sum + TaylorPolynomial::variable(space, i) * TaylorPolynomial::from(0.1 + 0.01 * i as f64)
+    });
+    sum.recip()
+}
+
+#[divan::bench(args = SPACES)]
+fn product(bencher: Bencher, (variables, order): (usize, u32)) {
+    let space = TaylorSpace::new(variables, order).unwrap();
+    let (a, b) = (dense::<f64>(&space, 0.0), dense::<f64>(&space, 0.5));
+    let count = ItemsCount::new(coefficient_products(variables, order));
+    bencher.counter(count).bench(|| black_box(&a) * black_box(&b));
+}
+
+#[divan::bench(args = SPACES)]
+fn quotient(bencher: Bencher, (variables, order): (usize, u32)) {
+    let space = TaylorSpace::new(variables, order).unwrap();
+    let (a, b) = (dense::<f64>(&space, 0.0), dense::<f64>(&space, 0.5));
+    let count = ItemsCount::new(coefficient_products(variables, order));
+    bencher.counter(count).bench(|| black_box(&a) / black_box(&b));
+}
+
+#[divan::bench(args = [(6, 6), (12, 4)])]
+fn product_of_intervals(bencher: Bencher, (variables, order): (usize, u32)) {
+    let space = TaylorSpace::new(variables, order).unwrap();
+    let (a, b) = (dense::<Interval>(&space, 0.0), dense::<Interval>(&space, 0.5));
+    let count = ItemsCount::new(coefficient_products(variables, order));
+    bencher.counter(count).bench(|| black_box(&a) * black_box(&b));
+}
+
+/// (1 + Σ x_i)^4 by sparse products in a space too large for dense ones.
+#[divan::bench]
+fn sparse_power(bencher: Bencher) {
+    let space = TaylorSpace::new(24, 12).unwrap();
+    let sum = (0..24)
+        .fold(TaylorPolynomial::<f64>::from(1.0), |sum, i| sum + TaylorPolynomial::variable(&space, i));
+    let square = &sum * &sum;
+    bencher.bench(|| black_box(&square) * black_box(&square));
+}

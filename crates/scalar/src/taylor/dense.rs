@@ -1,0 +1,218 @@
+//! Dense series: coefficients block by block of one degree, and the product kernel.
+
+use super::space::TaylorSpace;
+use super::sparse::Term;
+use crate::Scalar;
+
+/// The coefficients of a series, with the blocks that are zero known.
+pub(super) struct Series<'a, C> {
+    space: &'a TaylorSpace,
+    coefficients: &'a [C],
+    zero: [u64; 4],
+}
+
+impl<'a, C: Scalar> Series<'a, C> {
+    /// A series whose zero blocks are looked for.
+    pub fn new(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
+        let mut series = Self::full(space, coefficients);
+        for degree in 0..=degree(space, coefficients.len()) {
+            if coefficients[space.block(degree)].iter().all(C::is_zero) {
+                series.zero[degree as usize / 64] |= 1 << (degree % 64);
+            }
+        }
+        series
+    }
+
+    /// A series none of whose blocks is taken to be zero.
+    pub fn full(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
+        Self { space, coefficients, zero: [0; 4] }
+    }
+
+    /// The block of one degree; empty where it is zero or above the last stored.
+    pub fn block(&self, degree: u32) -> &'a [C] {
+        let known_zero = self.zero[degree as usize / 64] >> (degree % 64) & 1 == 1;
+        let block = self.space.block(degree);
+        if known_zero || block.end > self.coefficients.len() { &[] } else { &self.coefficients[block] }
+    }
+
+    fn degree(&self) -> u32 {
+        degree(self.space, self.coefficients.len())
+    }
+}
+
+/// The degree of a series of so many coefficients.
+pub(super) fn degree(space: &TaylorSpace, len: usize) -> u32 {
+    (0..=space.order()).find(|d| space.block(*d).end == len).expect("whole blocks are stored")
+}
+
+/// x y to the space's order.
+pub(super) fn product<C: Scalar>(space: &TaylorSpace, x: &[C], y: &[C]) -> Vec<C> {
+    let (x, y) = (Series::new(space, x), Series::new(space, y));
+    let high = (x.degree() + y.degree()).min(space.order());
+    let mut out = vec![C::zero(); space.dense_len(high)];
+    for degree in 0..=high {
+        let block = &mut out[space.block(degree)];
+        if let [x0] = x.block(0) {
+            add_scaled(block, x0, y.block(degree));
+        }
+        if let ([y0], 1..) = (y.block(0), degree) {
+            add_scaled(block, y0, x.block(degree));
+        }
+        add_inner(space, degree, &x, &y, block);
+    }
+    out
+}
+
+/// Adds Σ x_i y_{d-i} over 0 < i < d to `out`, the block of degree d.
+pub(super) fn add_inner<C: Scalar>(space: &TaylorSpace, d: u32, x: &Series<C>, y: &Series<C>, out: &mut [C]) {
+    for i in 1..=d / 2 {
+        let j = d - i;
+        if i == j {
+            add_square(space.table(i, i), x.block(i), y.block(i), out);
+        } else {
+            add_mixed(space.table(i, j), [x.block(i), x.block(j)], [y.block(i), y.block(j)], out);
+        }
+    }
+}
+
+/// out += x_i y_j + y_i x_j: one place of the table serves both products.
+fn add_mixed<C: Scalar>(table: &[u32], [xi, xj]: [&[C]; 2], [yi, yj]: [&[C]; 2], out: &mut [C]) {
+    match (xi.is_empty() || yj.is_empty(), yi.is_empty() || xj.is_empty()) {
+        (true, true) => {}
+        (false, true) => rows(table, yj.len(), xi).for_each(|(row, p)| add_row(row, p, yj, out)),
+        (true, false) => rows(table, xj.len(), yi).for_each(|(row, q)| add_row(row, q, xj, out)),
+        (false, false) => {
+            for ((row, p), q) in table.chunks_exact(xj.len()).zip(xi).zip(yi) {
+                match (p.is_zero(), q.is_zero()) {
+                    (true, true) => {}
+                    (false, true) => add_row(row, p, yj, out),
+                    (true, false) => add_row(row, q, xj, out),
+                    (false, false) => add_two_rows(row, [p, q], [yj, xj], out),
+                }
+            }
+        }
+    }
+}
+
+/// Rows of a table with their factors, those with factor zero left out.
+fn rows<'a, C: Scalar>(
+    table: &'a [u32],
+    width: usize,
+    factors: &'a [C],
+) -> impl Iterator<Item = (&'a [u32], &'a C)> {
+    table.chunks_exact(width).zip(factors).filter(|(_, factor)| !factor.is_zero())
+}
+
+/// out += x_i y_i for blocks of one degree.
+fn add_square<C: Scalar>(table: &[u32], x: &[C], y: &[C], out: &mut [C]) {
+    if x.is_empty() || y.is_empty() {
+        return;
+    }
+    for (a, row) in table.chunks_exact(x.len()).enumerate() {
+        let (p, q) = (&x[a], &y[a]);
+        out[row[a] as usize] += p.clone() * q.clone();
+        let (row, x, y) = (&row[a + 1..], &x[a + 1..], &y[a + 1..]);
+        match (p.is_zero(), q.is_zero()) {
+            (true, true) => {}
+            (false, true) => add_row(row, p, y, out),
+            (true, false) => add_row(row, q, x, out),
+            (false, false) => add_two_rows(row, [p, q], [y, x], out),
+        }
+    }
+}
+
+fn add_row<C: Scalar>(row: &[u32], p: &C, y: &[C], out: &mut [C]) {
+    for (at, y) in row.iter().zip(y) {
+        out[*at as usize] += p.clone() * y.clone();
+    }
+}
+
+fn add_two_rows<C: Scalar>(row: &[u32], [p, q]: [&C; 2], [y, x]: [&[C]; 2], out: &mut [C]) {
+    for ((at, y), x) in row.iter().zip(y).zip(x) {
+        out[*at as usize] += p.clone() * y.clone() + q.clone() * x.clone();
+    }
+}
+
+/// out += k x.
+pub(super) fn add_scaled<C: Scalar>(out: &mut [C], k: &C, x: &[C]) {
+    out.iter_mut().zip(x).for_each(|(out, x)| *out += k.clone() * x.clone());
+}
+
+/// The product of a dense series with a list of terms.
+pub(super) fn product_with_terms<C: Scalar>(space: &TaylorSpace, terms: &[Term<C>], y: &[C]) -> Vec<C> {
+    let y = Series::new(space, y);
+    let packing = space.packing;
+    let high = terms.last().map_or(0, |(m, _)| packing.degree(*m) + y.degree()).min(space.order());
+    let mut out = vec![C::zero(); space.dense_len(high)];
+    let mut factors = Vec::new();
+    for (monomial, c) in terms {
+        let i = packing.degree(*monomial);
+        packing.factors(*monomial, &mut factors);
+        let a = space.place(&factors);
+        for j in 0..=y.degree().min(high.saturating_sub(i)) {
+            let (from, target) = (y.block(j), &mut out[space.block(i + j)]);
+            match (from.len(), i, j) {
+                (0, ..) => {}
+                (_, 0, _) => add_scaled(target, c, from),
+                (_, _, 0) => target[a] += c.clone() * from[0].clone(),
+                (width, ..) if i <= j => add_row(&space.table(i, j)[a * width..][..width], c, from, target),
+                _ => {
+                    let column = space.table(j, i)[a..].iter().step_by(space.block(i).len());
+                    column.zip(from).for_each(|(at, y)| target[*at as usize] += c.clone() * y.clone());
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Adds terms, with the sign, to coefficients that have room for them.
+pub(super) fn add_terms<C: Scalar>(space: &TaylorSpace, out: &mut [C], terms: &[Term<C>], minus: bool) {
+    let mut factors = Vec::new();
+    for (monomial, c) in terms {
+        space.packing.factors(*monomial, &mut factors);
+        let at = space.block(factors.len() as u32).start + space.place(&factors);
+        if minus {
+            out[at] -= c.clone();
+        } else {
+            out[at] += c.clone();
+        }
+    }
+}
+
+/// The non-zero coefficients as terms.
+pub(super) fn terms<'a, C: Scalar>(
+    space: &'a TaylorSpace,
+    coefficients: &'a [C],
+) -> impl Iterator<Item = (u128, &'a C)> {
+    let of_degree = move |degree: u32| {
+        let block = &coefficients[space.block(degree)];
+        let key = move |at: usize| {
+            let factors = &space.factors(degree)[at * degree as usize..][..degree as usize];
+            space.packing.of_factors(factors)
+        };
+        block.iter().enumerate().filter(|(_, c)| !c.is_zero()).map(move |(at, c)| (key(at), c))
+    };
+    (0..=degree(space, coefficients.len())).flat_map(of_degree)
+}
+
+/// The derivative in variable i.
+pub(super) fn derivative<C: Scalar>(space: &TaylorSpace, coefficients: &[C], i: usize) -> Vec<C> {
+    let high = degree(space, coefficients.len());
+    if high == 0 {
+        return vec![C::zero()];
+    }
+    let mut out = vec![C::zero(); space.dense_len(high - 1)];
+    out[0] = coefficients[space.block(1)][i].clone();
+    for d in 1..high {
+        let above = &coefficients[space.block(d + 1)];
+        let size = space.block(d).len();
+        let row = &space.table(1, d)[i * size..][..size];
+        let factors = space.factors(d).chunks_exact(d as usize);
+        for ((out, at), factors) in out[space.block(d)].iter_mut().zip(row).zip(factors) {
+            let exponent = 1 + factors.iter().filter(|v| usize::from(**v) == i).count();
+            *out = above[*at as usize].clone() * C::from(exponent as f64);
+        }
+    }
+    out
+}

@@ -1,0 +1,199 @@
+//! Several polynomials of the same variables, prepared for fast evaluation.
+
+use std::collections::BTreeMap;
+
+use super::monomial::Packing;
+use super::polynomial::TaylorPolynomial;
+use crate::Scalar;
+
+/// A map from k variables to m values whose components are polynomials.
+///
+/// Monomials are shared by the components, and each is one product: the monomial without its first variable, which comes before it, times a
+/// power of that variable.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_scalar::{Interval, PolynomialMap, TaylorPolynomial, TaylorSpace};
+///
+/// let space = TaylorSpace::new(2, 2).unwrap();
+/// let [x, y] = [0, 1].map(|i| TaylorPolynomial::<f64>::variable(&space, i));
+/// let map = PolynomialMap::new(2, &[&x * &y, &x * &x]);
+/// assert_eq!(map.evaluate(&[2.0, 3.0]), [6.0, 4.0]);
+/// let wide = Interval::new(-1.0, 2.0).unwrap();
+/// assert!(map.evaluate(&[wide, wide])[1].encloses(&Interval::new(0.0, 4.0).unwrap()));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct PolynomialMap<C = f64> {
+    variables: usize,
+    /// Highest exponent of each variable.
+    highest: Vec<u32>,
+    constants: Vec<C>,
+    nodes: Vec<Node>,
+    /// Component and coefficient, node by node.
+    terms: Vec<(u32, C)>,
+}
+
+/// A monomial: its parent (0 is the monomial 1, else a node's number plus 1) times a power.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Node {
+    parent: u32,
+    /// Place in the list of powers.
+    power: u32,
+    /// Where its terms end.
+    end: u32,
+}
+
+/// Scratch memory of an evaluation.
+#[derive(Debug, Clone)]
+pub struct MapWorkspace<T> {
+    powers: Vec<T>,
+    values: Vec<T>,
+}
+
+impl<C: Scalar> PolynomialMap<C> {
+    /// The map with the given components, polynomials of one space of `variables` variables or constants.
+    ///
+    /// # Panics
+    ///
+    /// Where a component belongs to a space of another number of variables.
+    pub fn new(variables: usize, components: &[TaylorPolynomial<C>]) -> Self {
+        let mut packing = Packing::new(variables).expect("1 to 120 variables");
+        let mut constants = vec![C::zero(); components.len()];
+        let mut monomials: BTreeMap<u128, Vec<(u32, C)>> = BTreeMap::new();
+        for (at, component) in components.iter().enumerate() {
+            if let Some(space) = component.space() {
+                assert_eq!(space.variables(), variables, "component {at} has other variables");
+                packing = space.packing;
+            }
+            component.for_each_term(|m, c| match m {
+                0 => constants[at] = c.clone(),
+                _ => monomials.entry(m).or_default().push((at as u32, c.clone())),
+            });
+        }
+        close_under_parents(packing, &mut monomials);
+        let mut map =
+            Self { variables, highest: vec![0; variables], constants, nodes: vec![], terms: vec![] };
+        map.fill(packing, monomials);
+        map
+    }
+
+    fn fill(&mut self, packing: Packing, monomials: BTreeMap<u128, Vec<(u32, C)>>) {
+        for m in monomials.keys() {
+            for i in 0..self.variables {
+                self.highest[i] = self.highest[i].max(packing.exponent(*m, i));
+            }
+        }
+        let starts: Vec<u32> = (0..self.variables).map(|i| self.highest[..i].iter().sum()).collect();
+        let mut numbers = std::collections::HashMap::with_capacity(monomials.len());
+        for (m, terms) in monomials {
+            let i = packing.first_variable(m).expect("1 is a constant");
+            let parent = numbers.get(&packing.without(m, i)).copied().unwrap_or(0);
+            self.terms.extend(terms);
+            let power = starts[i] + packing.exponent(m, i) - 1;
+            self.nodes.push(Node { parent, power, end: self.terms.len() as u32 });
+            numbers.insert(m, self.nodes.len() as u32);
+        }
+    }
+
+    /// Number of variables k.
+    pub fn variables(&self) -> usize {
+        self.variables
+    }
+
+    /// Number of components m.
+    pub fn components(&self) -> usize {
+        self.constants.len()
+    }
+
+    /// Number of non-constant terms of all components together.
+    pub fn term_count(&self) -> usize {
+        self.terms.len()
+    }
+
+    /// Scratch memory for evaluation over T.
+    pub fn workspace<T: Scalar>(&self) -> MapWorkspace<T> {
+        let powers = self.highest.iter().sum::<u32>() as usize;
+        MapWorkspace { powers: vec![T::zero(); powers], values: vec![T::zero(); self.nodes.len() + 1] }
+    }
+
+    /// The components at `at` (k values), into `out` (m values). Allocates nothing.
+    ///
+    /// # Guarantee
+    ///
+    /// Over `Interval`: outer enclosures of the components' ranges over the box.
+    ///
+    /// # Panics
+    ///
+    /// Where `at` or `out` has another length, or the workspace was made for another map.
+    pub fn evaluate_into<T: Scalar + From<C> + Powers>(
+        &self,
+        at: &[T],
+        ws: &mut MapWorkspace<T>,
+        out: &mut [T],
+    ) {
+        assert_eq!((at.len(), out.len()), (self.variables, self.constants.len()), "k arguments, m values");
+        let mut place = 0;
+        for (x, highest) in at.iter().zip(&self.highest) {
+            for e in 1..=*highest {
+                ws.powers[place] = x.power(e, ws.powers.get(place.wrapping_sub(1)));
+                place += 1;
+            }
+        }
+        out.iter_mut().zip(&self.constants).for_each(|(out, c)| *out = T::from(c.clone()));
+        ws.values[0] = T::one();
+        let mut from = 0;
+        for (number, node) in self.nodes.iter().enumerate() {
+            let power = &ws.powers[node.power as usize];
+            let value = match node.parent {
+                0 => power.clone(),
+                parent => ws.values[parent as usize].clone() * power.clone(),
+            };
+            for (component, c) in &self.terms[from..node.end as usize] {
+                out[*component as usize] += T::from(c.clone()) * value.clone();
+            }
+            ws.values[number + 1] = value;
+            from = node.end as usize;
+        }
+    }
+
+    /// The components at `at`, as [`evaluate_into`](Self::evaluate_into).
+    pub fn evaluate<T: Scalar + From<C> + Powers>(&self, at: &[T]) -> Vec<T> {
+        let mut out = vec![T::zero(); self.constants.len()];
+        self.evaluate_into(at, &mut self.workspace(), &mut out);
+        out
+    }
+}
+
+/// A number whose powers are formed one after the other.
+pub trait Powers: Scalar {
+    /// self^e, e ≥ 1, given self^(e-1) where e > 1.
+    fn power(&self, e: u32, before: Option<&Self>) -> Self {
+        match before {
+            Some(before) if e > 1 => before.clone() * self.clone(),
+            _ => self.clone(),
+        }
+    }
+}
+
+impl Powers for f64 {}
+impl<C: Scalar> Powers for TaylorPolynomial<C> {}
+impl Powers for crate::Interval {
+    /// Even powers are not negative, which a product of intervals does not see.
+    fn power(&self, e: u32, _: Option<&Self>) -> Self {
+        self.powi(e as i32)
+    }
+}
+
+/// Adds the monomials that others are products of.
+fn close_under_parents<C>(packing: Packing, monomials: &mut BTreeMap<u128, Vec<(u32, C)>>) {
+    let mut missing: Vec<u128> = monomials.keys().copied().collect();
+    while let Some(m) = missing.pop() {
+        let i = packing.first_variable(m).expect("1 is a constant");
+        let parent = packing.without(m, i);
+        if parent != 0 && !monomials.contains_key(&parent) {
+            monomials.insert(parent, Vec::new());
+            missing.push(parent);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Truncated polynomials of many variables.
+
+mod arithmetic;
+mod dense;
+mod functions;
+mod map;
+mod monomial;
+mod polynomial;
+mod space;
+mod sparse;
+mod substitution;
+
+pub use map::{MapWorkspace, PolynomialMap, Powers};
+pub use polynomial::{TaylorPolynomial, TaylorTerm};
+pub use space::{TaylorSpace, TaylorSpaceError};
