@@ -63,6 +63,9 @@ pub enum Error {
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+    /// Polynomials of that order do not fit.
+    #[error(transparent)]
+    Space(#[from] reachtube_scalar::TaylorSpaceError),
     /// The reachable set could not be computed.
     #[error(transparent)]
     Reach(#[from] ReachError),

@@ -16,6 +16,7 @@ mod kinematics;
 pub mod ltdl;
 mod physicality;
 mod placement;
+mod polynomial_dynamics;
 mod rnea;
 mod robot;
 mod simulate;
@@ -29,7 +30,8 @@ pub use description::{
 pub use error::RobotError;
 pub use inertia::LinkInertia;
 pub use physicality::Physicality;
-pub use placement::Placement;
+pub use placement::{Placement, snapped_sin_cos};
+pub use polynomial_dynamics::PolynomialDynamics;
 pub use robot::{Joint, Robot};
 pub use simulate::{Simulator, Trajectory};
 pub use workspace::Workspace;

@@ -1,7 +1,40 @@
-//! The three models of the forward dynamics (Sec. IV-B of the paper). So far: model 1 at order p = 1.
+//! The three models of the forward dynamics (Sec. IV-B of the paper): ẋ = f_p(x, u), linear or polynomial.
 
+mod build;
 mod expansion_point;
-mod model1;
+mod layout;
+mod polynomial_model;
+mod remainder;
 
 pub use expansion_point::ExpansionPoint;
-pub use model1::linear_model;
+pub use layout::Layout;
+pub use polynomial_model::{ModelKind, ModelWorkspace, PolynomialModel};
+use reachtube_reach::LinearSystem;
+use reachtube_robot::Robot;
+pub use remainder::{OperatingBox, Remainder};
+
+use crate::error::Result;
+
+/// Model 1 (13) at order p = 1: ẋ = A x + B u + d with x = (q, q̇),
+/// A = [0 I; 0 -M⁻¹ diag(τ_v'(q̇_a))], B = [0; M⁻¹], d = [0; -M⁻¹ (τ_v(q̇_a) - τ_v'(q̇_a) q̇_a)], M = M_m(q_a).
+///
+/// The double-precision result is the model; what it leaves out is for the uncertainty sets to cover.
+///
+/// # Errors
+///
+/// [`Error::Setting`](crate::Error::Setting) when M_m(q_a) is not positive definite.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube::abstraction::{ExpansionPoint, linear_model};
+/// use reachtube_robot::Robot;
+///
+/// let model = linear_model(&Robot::lwa4p(), &ExpansionPoint::zero(6))?;
+/// assert_eq!((model.states(), model.inputs()), (12, 6));
+/// assert_eq!(model.a()[(0, 6)], 1.0);
+/// # Ok::<(), reachtube::Error>(())
+/// ```
+pub fn linear_model(robot: &Robot, point: &ExpansionPoint) -> Result<LinearSystem> {
+    PolynomialModel::new(robot, ModelKind::One, 1, point)?.linear_system()
+}

@@ -6,4 +6,5 @@ mod identities;
 mod lwa4p;
 mod physicality;
 mod pinocchio;
+mod polynomials;
 mod shared;

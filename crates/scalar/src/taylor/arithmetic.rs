@@ -82,10 +82,9 @@ impl<C: Scalar> TaylorPolynomial<C> {
             (Sparse(s, a), Sparse(t, b)) => {
                 let space = common(s, t);
                 if is_better_dense(space, a.len().saturating_mul(b.len())) {
-                    return Self::dense(
-                        space,
-                        dense::product_with_terms(space, a, &other.coefficients(space)),
-                    );
+                    let (few, many) = if a.len() <= b.len() { (a, other) } else { (b, self) };
+                    let product = dense::product_with_terms(space, few, &many.coefficients(space));
+                    return Self::dense(space, product);
                 }
                 Self::sparse(space, sparse::product(space, a, b))
             }
