@@ -5,6 +5,7 @@ pub mod conform;
 pub mod data;
 pub mod demo;
 mod error;
+mod json;
 pub mod model;
 pub mod reach;
 pub mod report;
@@ -12,3 +13,6 @@ pub mod write;
 
 pub use error::{Error, Result};
 pub use model::Model;
+
+/// Name and version of the program, as files that it writes record it.
+pub const TOOL: &str = concat!("reachtube ", env!("CARGO_PKG_VERSION"));

@@ -13,6 +13,7 @@ use crate::abstraction::linear_model;
 use crate::conform::{Conformance, Place, Proof, Recordings, Settings, TightRow, Trust, UncertaintySets};
 use crate::data::DataSet;
 use crate::error::{Error, Result};
+use crate::json;
 
 /// What the field `format` of every model file says.
 pub const FORMAT: &str = "reachtube-model";
@@ -132,7 +133,7 @@ impl Model {
         Self {
             format: FORMAT.into(),
             version: VERSION,
-            tool: concat!("reachtube ", env!("CARGO_PKG_VERSION")).into(),
+            tool: crate::TOOL.into(),
             verified: found.proof.verified,
             cost: found.cost,
             cost_lower_bound: found.lower_bound,
@@ -166,19 +167,7 @@ impl Model {
             remedy: MODEL_REMEDY,
         })?;
         let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
-        let value: serde_json::Value = serde_json::from_str(&text)
-            .map_err(|error| wrong(format!("not JSON: {error}; give a file that `conform --out` wrote")))?;
-        if value["format"] != FORMAT {
-            return Err(wrong(format!(
-                "its format is not \"{FORMAT}\"; give a file that `conform --out` wrote"
-            )));
-        }
-        if value["version"] != VERSION {
-            return Err(wrong(format!(
-                "version {} of the format, this program reads {VERSION}; run conform again",
-                value["version"]
-            )));
-        }
+        let value = json::versioned(&text, FORMAT, VERSION, "conform").map_err(wrong)?;
         let model: Self = serde_json::from_value(value).map_err(|error| {
             wrong(format!("{error}; give the file as `conform --out` wrote it, or run conform again"))
         })?;

@@ -1,42 +1,176 @@
-use reachtube::abstraction::*;
+//! The three models against the dynamics they stand for.
+
+use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel, linear_model};
 use reachtube_robot::{Robot, Workspace};
+use reachtube_scalar::{Interval, TaylorPolynomial};
+
+const KINDS: [ModelKind; 3] = [ModelKind::One, ModelKind::Two, ModelKind::Three];
+
+/// A reproducible number in [-1, 1].
+fn number(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+fn numbers(seed: &mut u64, count: usize, scale: f64) -> Vec<f64> {
+    (0..count).map(|_| scale * number(seed)).collect()
+}
+
+/// q̈ of (10) by articulated bodies: u drives what gravity and Coulomb friction are taken off of.
+fn truth(robot: &Robot, q: &[f64], qd: &[f64], u: &[f64]) -> Vec<f64> {
+    let n = robot.joint_count();
+    let (sin, cos) = robot.sin_cos(q);
+    let mut ws = Workspace::new(robot);
+    let mut torque = vec![0.0; n];
+    robot.gravity(&sin, &cos, &mut ws, &mut torque);
+    for i in 0..n {
+        torque[i] += u[i] - robot.joints()[i].friction.viscous.torque(&qd[i]);
+    }
+    let mut qdd = vec![0.0; n];
+    robot.aba(&sin, &cos, qd, &torque, &mut ws, &mut qdd);
+    qdd
+}
+
+fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().map(f64::abs).fold(0.0, f64::max)
+}
+
+fn model(robot: &Robot, kind: ModelKind, order: u32) -> PolynomialModel {
+    PolynomialModel::new(robot, kind, order, &ExpansionPoint::zero(robot.joint_count())).unwrap()
+}
+
 #[test]
-fn probe() {
+fn at_order_one_the_three_models_are_one_linear_system() {
     let robot = Robot::lwa4p();
-    for kind in [ModelKind::One, ModelKind::Two, ModelKind::Three] {
-        for p in [1, 2, 3, 4, 5, 7, 12] {
-            if kind == ModelKind::Three && p > 5 {
-                continue;
-            }
-            let t = std::time::Instant::now();
-            let m = PolynomialModel::new(&robot, kind, p, &ExpansionPoint::zero(6)).unwrap();
-            let made = t.elapsed();
-            let q = [0.1, -0.2, 0.15, 0.3, -0.1, 0.2];
-            let qd = [0.5, -0.3, 0.4, 0.2, -0.6, 0.1];
-            let u = [3.0, -2.0, 1.0, 4.0, 0.5, -0.3];
-            let x = m.state(&q, &qd);
-            let mut ws = m.workspace();
-            let mut rate = vec![0.0; m.states()];
-            let t = std::time::Instant::now();
-            for _ in 0..100 {
-                m.rate_into(&x, &u, &mut ws, &mut rate);
-            }
-            let e = t.elapsed() / 100;
-            let (s, c) = robot.sin_cos(&q);
-            let tau: Vec<f64> =
-                (0..6).map(|i| u[i] - robot.joints()[i].friction.viscous.torque(&qd[i])).collect();
-            let mut w = Workspace::new(&robot);
-            let mut bias = vec![0.0; 6];
-            robot.gravity(&s, &c, &mut w, &mut bias);
-            let tau: Vec<f64> = tau.iter().zip(&bias).map(|(t, g)| t + g).collect();
-            let mut qdd = vec![0.0; 6];
-            robot.aba(&s, &c, &qd, &tau, &mut w, &mut qdd);
-            let err: Vec<f64> = (0..6).map(|i| ((rate[6 + i] - qdd[i]) * 1e6).round() / 1e6).collect();
-            println!(
-                "{kind:?} {p} made {made:?} degree {} terms {} eval {e:?} err {err:?}",
-                m.degree(),
-                m.term_count()
+    let linear = linear_model(&robot, &ExpansionPoint::zero(6)).unwrap();
+    for kind in KINDS {
+        let system = model(&robot, kind, 1).linear_system().unwrap();
+        let scale = linear.a().amax();
+        assert!((system.a() - linear.a()).amax() < 1e-14 * scale, "{kind:?}");
+        assert!((system.b() - linear.b()).amax() < 1e-14 * linear.b().amax(), "{kind:?}");
+        assert!(system.drift().amax() < 1e-14, "{kind:?}");
+    }
+    let error = model(&robot, ModelKind::Two, 3).linear_system().unwrap_err().to_string();
+    assert!(error.contains("not linear") && error.contains("use order 1"), "{error}");
+}
+
+#[test]
+fn model_1_is_complete_at_order_3() {
+    let robot = Robot::lwa4p();
+    let (third, ninth) = (model(&robot, ModelKind::One, 3), model(&robot, ModelKind::One, 9));
+    assert_eq!((third.degree(), ninth.degree()), (3, 3));
+    assert!(third.acceleration().iter().zip(ninth.acceleration()).all(|(a, b)| a.terms() == b.terms()));
+}
+
+/// p_max = 12 for the LWA 4P: from there on M_m(q_a) q̈ = u - c - τ_v holds to rounding, and no earlier.
+#[test]
+fn coriolis_terms_of_model_2_are_exact_from_order_12() {
+    let robot = Robot::lwa4p();
+    let mass = robot.mass_matrix(&[0.0; 6]);
+    let mut seed = 3;
+    for (order, exact) in [(11, false), (12, true), (14, true)] {
+        let model = model(&robot, ModelKind::Two, order);
+        assert_eq!(model.degree(), order.min(12));
+        let mut worst: f64 = 0.0;
+        for _ in 0..50 {
+            let (q, qd, u) =
+                (numbers(&mut seed, 6, 3.0), numbers(&mut seed, 6, 1.2), numbers(&mut seed, 6, 10.0));
+            let rate = model.rate(&model.state(&q, &qd), &u);
+            let expected = mass.clone().cholesky().unwrap().solve(&nalgebra::DVector::from_fn(6, |i, _| {
+                u[i] - robot.coriolis_torque(&q, &qd)[i] - robot.viscous_torque(&qd)[i]
+            }));
+            let scale = largest(expected.iter().copied());
+            worst = worst.max(largest((0..6).map(|i| rate[6 + i] - expected[i])) / scale);
+        }
+        assert_eq!(worst < 1e-12, exact, "order {order}: {worst}");
+    }
+}
+
+/// Near the expansion point the error of model 3 falls with the power p + 1 of the distance.
+#[test]
+fn model_3_is_a_taylor_polynomial_of_the_forward_dynamics() {
+    let robot = Robot::lwa4p();
+    let mut seed = 8;
+    let point = ExpansionPoint::from_values(
+        &[numbers(&mut seed, 6, 1.5), numbers(&mut seed, 6, 0.6), numbers(&mut seed, 6, 5.0)].concat(),
+        6,
+    )
+    .unwrap();
+    let direction = [numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 5.0)];
+    for order in 1..=4u32 {
+        let model = PolynomialModel::new(&robot, ModelKind::Three, order, &point).unwrap();
+        let error = |t: f64| {
+            let along =
+                |at: &[f64], d: &[f64]| -> Vec<f64> { at.iter().zip(d).map(|(a, d)| a + t * d).collect() };
+            let (q, qd, u) = (
+                along(&point.q, &direction[0]),
+                along(&point.qd, &direction[1]),
+                along(&point.u, &direction[2]),
             );
+            let (rate, expected) = (model.rate(&model.state(&q, &qd), &u), truth(&robot, &q, &qd, &u));
+            largest((0..6).map(|i| rate[6 + i] - expected[i]))
+        };
+        let slope = (error(0.04) / error(0.02)).log2();
+        assert!((slope - f64::from(order + 1)).abs() < 0.3, "order {order}: slope {slope}");
+    }
+}
+
+#[test]
+fn intervals_enclose_numbers_and_derivatives_are_slopes() {
+    let robot = Robot::lwa4p();
+    let mut seed = 21;
+    for (kind, order) in
+        [(ModelKind::One, 3), (ModelKind::Two, 5), (ModelKind::Two, 12), (ModelKind::Three, 3)]
+    {
+        let model = model(&robot, kind, order);
+        let derivatives = model.derivatives();
+        for _ in 0..20 {
+            let (q, qd, u) =
+                (numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 5.0));
+            let x = model.state(&q, &qd);
+            let wide = |values: &[f64]| -> Vec<Interval> {
+                values.iter().map(|v| Interval::centered(*v, 0.01)).collect()
+            };
+            let (rate, boxed) = (model.rate(&x, &u), model.rate(&wide(&x), &wide(&u)));
+            assert!(rate.iter().zip(&boxed).all(|(r, b)| b.contains(*r)));
+            let z: Vec<f64> = x[6..].iter().chain(&u).zip(model.origin()).map(|(z, o)| z - o).collect();
+            let (place, h) = ((number(&mut seed).abs() * z.len() as f64) as usize, 1e-5);
+            let at = |sign: f64| {
+                let mut z = z.clone();
+                z[place] += sign * h;
+                model.acceleration()[2].evaluate(&z)
+            };
+            let slope = derivatives[2][place].evaluate(&z);
+            assert!((slope - (at(1.0) - at(-1.0)) / (2.0 * h)).abs() < 1e-6 * (1.0 + slope.abs()));
         }
     }
+}
+
+#[test]
+fn files_keep_every_bit() {
+    let robot = Robot::lwa4p();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.json");
+    for (kind, order) in
+        [(ModelKind::One, 3), (ModelKind::Two, 4), (ModelKind::Two, 12), (ModelKind::Three, 3)]
+    {
+        let model = model(&robot, kind, order);
+        std::fs::write(&path, model.to_json()).unwrap();
+        let read = PolynomialModel::load(&path).unwrap();
+        assert_eq!(
+            read.acceleration().iter().map(TaylorPolynomial::terms).collect::<Vec<_>>(),
+            model.acceleration().iter().map(TaylorPolynomial::terms).collect::<Vec<_>>()
+        );
+        assert_eq!((read.kind(), read.order(), read.origin()), (kind, order, model.origin()));
+    }
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_a_remedy() {
+    let robot = Robot::lwa4p();
+    let zero = ExpansionPoint::zero(6);
+    let refusal = |kind, order| PolynomialModel::new(&robot, kind, order, &zero).unwrap_err().to_string();
+    assert!(refusal(ModelKind::One, 0).contains("order 1 at least"));
+    assert!(refusal(ModelKind::Three, 20).contains("fits"), "{}", refusal(ModelKind::Three, 20));
+    assert!(refusal(ModelKind::Two, 40).contains("order 31 at most"), "{}", refusal(ModelKind::Two, 40));
 }

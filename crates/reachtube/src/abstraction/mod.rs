@@ -2,6 +2,7 @@
 
 mod build;
 mod expansion_point;
+mod file;
 mod layout;
 mod polynomial_model;
 mod remainder;

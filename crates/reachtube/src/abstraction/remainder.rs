@@ -27,3 +27,12 @@ pub struct Remainder {
     /// Boxes that the operating box was cut into.
     pub boxes: usize,
 }
+
+impl Remainder {
+    /// Whether its sizes are those of n joints and its box is not empty.
+    pub(super) fn is_of(&self, n: usize) -> bool {
+        let OperatingBox { q, qd, u } = &self.operating_box;
+        let is = |ranges: &[[f64; 2]]| ranges.len() == n && ranges.iter().all(|[low, high]| low <= high);
+        is(q) && is(qd) && is(u) && self.bounds.len() == n && self.seen.len() == n
+    }
+}
