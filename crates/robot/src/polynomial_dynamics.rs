@@ -9,7 +9,7 @@ use reachtube_scalar::{Scalar, TaylorPolynomial, TaylorSpace, TaylorSpaceError};
 ///
 /// A polynomial on the circle s² + c² = 1 has many extensions off it. Here M is that of the composite-body algorithm ([`Robot::crba`]) and c follows
 /// from it by Christoffel symbols (12), of degree 2(n - 1) in (s, c) and so of the paper's p_max = 12 with q̇ for six joints; [`Robot::coriolis`] has
-/// another extension, of degree 16.
+/// another extension, of degree 13 for the LWA 4P.
 ///
 /// # Guarantee
 ///
