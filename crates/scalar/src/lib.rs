@@ -1,15 +1,17 @@
-//! What a number can be: the trait [`Scalar`] that all dynamics is written over, and [`Interval`], a validated
-//! number that is right on stable Rust on any platform.
+//! What a number can be: the trait [`Scalar`] that all dynamics is written over; [`Interval`], a validated
+//! number that is right on stable Rust on any platform; and [`Lanes`], several numbers at once.
 #![doc = include_str!("../README.md")]
 
 mod elementary;
 mod interval;
+mod lanes;
 pub mod rounding;
 mod scalar;
 mod taylor;
 
 pub use elementary::Elementary;
 pub use interval::{DecimalError, Interval};
+pub use lanes::{Lanes, Lanewise};
 pub use scalar::Scalar;
 pub use taylor::{
     MapWorkspace, PolynomialMap, Powers, TaylorPolynomial, TaylorSpace, TaylorSpaceError, TaylorTerm,
