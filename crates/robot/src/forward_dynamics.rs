@@ -1,5 +1,6 @@
 //! Forward dynamics by mass matrix and factorisation.
 
+use crate::rnea::Weight;
 use crate::{Robot, Workspace, ltdl};
 use nalgebra::DVector;
 use reachtube_scalar::Scalar;
@@ -22,10 +23,21 @@ impl Robot {
         ws: &mut Workspace<S>,
         qdd: &mut [S],
     ) {
+        self.accelerate([sin, cos, qd, tau], self.weight(), ws, qdd);
+    }
+
+    /// Forward dynamics over [sin q, cos q, q̇, tau] under a weight.
+    pub(crate) fn accelerate<S: Scalar>(
+        &self,
+        [sin, cos, qd, tau]: [&[S]; 4],
+        weight: Weight<S>,
+        ws: &mut Workspace<S>,
+        qdd: &mut [S],
+    ) {
         let n = self.links.len();
         let mut mass_matrix = core::mem::take(&mut ws.mass_matrix);
         self.crba(sin, cos, ws, &mut mass_matrix);
-        self.bias_torque(sin, cos, qd, ws, qdd);
+        self.newton_euler([sin, cos, qd, &ws.rest], weight, &mut ws.links, qdd);
         ltdl::factor(&mut mass_matrix, n);
         qdd.iter_mut().zip(tau).for_each(|(x, t)| *x = t.clone() - x.clone());
         ltdl::solve(&mass_matrix, &mut qdd[..n]);

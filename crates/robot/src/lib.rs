@@ -7,6 +7,7 @@ mod coriolis;
 mod crba;
 mod description;
 mod error;
+mod field;
 mod forward_dynamics;
 pub mod friction;
 mod gravity;
@@ -28,10 +29,11 @@ pub use description::{
     PlacementDescription, RobotDescription, SCHEMA_VERSION,
 };
 pub use error::RobotError;
+pub use field::{DrivenBy, RobotField};
 pub use inertia::LinkInertia;
 pub use physicality::Physicality;
 pub use placement::{Placement, snapped_sin_cos};
 pub use polynomial_dynamics::PolynomialDynamics;
 pub use robot::{Joint, Robot};
-pub use simulate::{Simulator, Trajectory};
+pub use simulate::Trajectory;
 pub use workspace::Workspace;

@@ -1,6 +1,7 @@
 //! The virtual robot, driven open loop.
 
-use reachtube_robot::{Robot, Simulator, Workspace};
+use reachtube_ode::RungeKutta4;
+use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
 
 use super::SAMPLE_TIME;
 use super::hidden::{
@@ -40,17 +41,19 @@ impl<'a> Drive<'a> {
 
     /// Drives the robot from q (rad) and q̇ (rad/s) by `inputs` (N m, row-major K x n), each held for a sample; the last one acts on nothing.
     /// Returns what is measured: (q, q̇), row-major K x 2n.
-    pub fn run(&self, mut q: Vec<f64>, mut qd: Vec<f64>, inputs: &[f64]) -> Vec<f64> {
+    pub fn run(&self, q: Vec<f64>, qd: Vec<f64>, inputs: &[f64]) -> Vec<f64> {
         let n = q.len();
-        let mut simulator = Simulator::new(&self.body);
+        let mut field = RobotField::new(&self.body, DrivenBy::Motor);
+        let mut method = RungeKutta4::new(2 * n);
         let mut scratch = Scratch::new(self.nominal);
         let mut sensors = Sensors::new(&q, &qd);
         let mut states = Vec::with_capacity(2 * inputs.len());
+        let mut x = [q, qd].concat();
         for input in inputs.chunks_exact(n) {
-            sensors.record(&q, &mut states);
+            sensors.record(&x[..n], &mut states);
             for _ in 0..CYCLES {
-                self.joint_torque(&q, &qd, input, &mut scratch);
-                simulator.advance(&mut q, &mut qd, &scratch.torque, SAMPLE_TIME / CYCLES as f64, 1);
+                self.joint_torque(&x[..n], &x[n..], input, &mut scratch);
+                method.step(&mut field, 0.0, SAMPLE_TIME / CYCLES as f64, &mut x, &scratch.torque);
             }
         }
         states

@@ -1,3 +1,5 @@
+use reachtube_scalar::Lanewise;
+
 /// Load-dependent Coulomb friction of one joint: a straight line in the load torque for each motor quadrant, eqs. (6)
 /// to (9), after Hamon et al. (AIM 2010).
 ///
@@ -56,8 +58,12 @@ impl Coulomb {
     /// Friction torque \[N m\] at a load torque \[N m\] and a joint velocity \[rad/s\].
     ///
     /// At q̇ = 0 it is 0: stiction is a set of torques, not a value, and belongs to the uncertainty. At zero load the
-    /// joint brakes, by the convention of the fields.
-    pub fn torque(&self, load: f64, qd: f64) -> f64 {
+    /// joint brakes, by the convention of the fields. Over lanes each has its own quadrant.
+    pub fn torque<S: Lanewise>(&self, load: S, qd: S) -> S {
+        load.zip(qd, |load, qd| self.of_lane(load, qd))
+    }
+
+    fn of_lane(&self, load: f64, qd: f64) -> f64 {
         if qd == 0.0 {
             return 0.0;
         }
