@@ -1,63 +1,9 @@
 //! Identities of rigid-body dynamics on random robots and states.
 
+use crate::random::robots_and_states;
 use proptest::prelude::*;
-use reachtube_robot::{
-    Dh, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot, RobotDescription, Workspace,
-    ltdl,
-};
+use reachtube_robot::{Robot, Workspace, ltdl};
 use reachtube_scalar::Interval;
-
-/// A body of a few random points, so that its parameters are physical; half the joints by DH, half by placement.
-fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
-    let points = x[..12].chunks(3).map(|c| nalgebra::Vector3::new(c[0], c[1], c[2]));
-    let mass = 1.0 + x[12].abs();
-    let com = points.clone().sum::<nalgebra::Vector3<f64>>() / 4.0;
-    let inertia = points
-        .map(|p| p - com)
-        .map(|r| 0.25 * mass * (nalgebra::Matrix3::identity() * r.norm_squared() - r * r.transpose()))
-        .sum::<nalgebra::Matrix3<f64>>();
-    let placement = PlacementDescription {
-        rotation: None,
-        rpy: Some([x[13], x[14], x[15]]),
-        translation: [x[16], x[17], x[18]],
-    };
-    JointDescription {
-        name: format!("j{index}"),
-        dh: by_dh.then_some(Dh { a: x[16], alpha: x[13], theta: x[14], d: x[17] }),
-        placement: (!by_dh).then_some(placement),
-        axis: (!by_dh).then_some([x[19], x[20], 0.3 + x[21].abs()]),
-        mass,
-        com: Some(com.into()),
-        inertia: [0, 1, 2, 4, 5, 8].map(|k| inertia[k]),
-        about: InertiaPoint::Com,
-        armature: Some(0.05 + 0.1 * x[19].abs()),
-        ..Default::default()
-    }
-}
-
-fn robots() -> impl Strategy<Value = Robot> {
-    let joints = prop::collection::vec((prop::collection::vec(-1.0..1.0f64, 22), any::<bool>()), 1..8);
-    (joints, prop::array::uniform3(-10.0..10.0f64)).prop_map(|(joints, gravity)| {
-        let description = RobotDescription {
-            schema_version: 1,
-            name: "random".into(),
-            parameters: Parameters::Physical,
-            convention: Default::default(),
-            gravity,
-            joints: joints.into_iter().enumerate().map(|(i, (x, by_dh))| joint(x, i, by_dh)).collect(),
-        };
-        Robot::from_description(&description).unwrap()
-    })
-}
-
-/// A robot with three vectors for it: q, q̇ and q̈ or torque.
-fn robots_and_states() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>, Vec<f64>)> {
-    robots().prop_flat_map(|robot| {
-        let n = robot.joint_count();
-        let vector = move |bound: f64| prop::collection::vec(-bound..bound, n);
-        (Just(robot), vector(3.2), vector(2.0), vector(5.0))
-    })
-}
 
 fn close(found: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
     let scale = expected.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));

@@ -3,8 +3,11 @@
 mod close;
 mod description;
 mod identities;
+mod lanes;
 mod lwa4p;
 mod physicality;
 mod pinocchio;
 mod polynomials;
+mod random;
 mod shared;
+mod simulation;
