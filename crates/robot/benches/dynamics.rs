@@ -1,12 +1,15 @@
-//! Time of one call of each algorithm over f64; sine and cosine apart.
+//! Time of one call of each algorithm over `f64` and over lanes, which is a state in each lane; sine and cosine apart.
 //!
-//! UR5 and the LWA 4P's geometry come from the shared oracle files where those are; `lwa4p` is embedded.
+//! UR5 and the LWA 4P's geometry come from the shared oracle files where those are; `lwa4p` is embedded. Lanes gain by what
+//! vectors the target has: compare with RUSTFLAGS="-C target-cpu=native".
 
 #[path = "../tests/dynamics/shared.rs"]
 mod shared;
 
+use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use reachtube_robot::{Robot, Workspace};
+use reachtube_scalar::{Lanes, Lanewise};
 
 const ROBOTS: [&str; 3] = ["ur5", "dh6", "lwa4p"];
 const STATES: usize = 256;
@@ -15,69 +18,77 @@ fn main() {
     divan::main();
 }
 
-/// One state: sin, cos, q, q̇, q̈ and torque.
-type State = [Vec<f64>; 6];
+/// A state in each lane: sin, cos, q, q̇, q̈ and torque.
+type State<S> = [Vec<S>; 6];
 
-fn states(n: usize) -> Vec<State> {
+fn states<S: Lanewise>(n: usize) -> Vec<State<S>> {
     // A Weyl sequence: equidistributed and reproducible.
     let mut x = 0.0;
     let mut next = |scale: f64| {
         x = (x + 0.618_033_988_749_894_9) % 1.0;
         scale * (2.0 * x - 1.0)
     };
-    let mut row = |scale: f64| (0..n).map(|_| next(scale)).collect::<Vec<_>>();
+    let mut row = |scale: f64| (0..n).map(|_| S::from_lanes(|_| next(scale))).collect::<Vec<_>>();
     let state = |_| {
         let q = row(3.1);
         let (sin, cos) = q.iter().map(|q| q.sin_cos()).unzip();
         [sin, cos, q, row(2.0), row(5.0), row(50.0)]
     };
-    (0..STATES).map(state).collect()
+    (0..STATES / S::LANES).map(state).collect()
 }
 
-fn each(bencher: Bencher, name: &str, mut call: impl FnMut(&Robot, &State, &mut Workspace<f64>, &mut [f64])) {
+fn each<S: Lanewise>(
+    bencher: Bencher,
+    name: &str,
+    mut call: impl FnMut(&Robot, &State<S>, &mut Workspace<S>, &mut [S]),
+) {
     let robot = if name == "lwa4p" { Some(Robot::lwa4p()) } else { shared::oracle_robot(name) };
     let Some(robot) = robot else { return };
     let n = robot.joint_count();
-    let (states, mut ws, mut out, mut k) = (states(n), Workspace::new(&robot), vec![0.0; n * n], 0);
-    bencher.bench_local(|| {
-        k = (k + 1) % STATES;
+    let (states, mut ws, mut out, mut k) = (states(n), Workspace::new(&robot), vec![S::zero(); n * n], 0);
+    bencher.counter(ItemsCount::new(S::LANES)).bench_local(|| {
+        k = (k + 1) % states.len();
         call(black_box(&robot), &states[k], &mut ws, &mut out);
         black_box(&out);
     });
 }
 
-#[divan::bench(args = ROBOTS)]
-fn sin_cos(bencher: Bencher, name: &str) {
-    each(bencher, name, |_, [_, _, q, ..], _, out| {
+#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
+fn sin_cos<S: Lanewise>(bencher: Bencher, name: &str) {
+    each::<S>(bencher, name, |_, [_, _, q, ..], _, out| {
         for (q, out) in q.iter().zip(out.chunks_exact_mut(2)) {
             (out[0], out[1]) = q.sin_cos();
         }
     });
 }
 
-#[divan::bench(args = ROBOTS)]
-fn rnea(bencher: Bencher, name: &str) {
-    each(bencher, name, |robot, [sin, cos, _, qd, qdd, _], ws, out| robot.rnea(sin, cos, qd, qdd, ws, out));
+#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
+fn rnea<S: Lanewise>(bencher: Bencher, name: &str) {
+    each::<S>(bencher, name, |robot, [sin, cos, _, qd, qdd, _], ws, out| {
+        robot.rnea(sin, cos, qd, qdd, ws, out)
+    });
 }
 
-#[divan::bench(args = ROBOTS)]
-fn gravity(bencher: Bencher, name: &str) {
-    each(bencher, name, |robot, [sin, cos, ..], ws, out| robot.gravity(sin, cos, ws, out));
+#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
+fn gravity<S: Lanewise>(bencher: Bencher, name: &str) {
+    each::<S>(bencher, name, |robot, [sin, cos, ..], ws, out| robot.gravity(sin, cos, ws, out));
 }
 
-#[divan::bench(args = ROBOTS)]
-fn crba(bencher: Bencher, name: &str) {
-    each(bencher, name, |robot, [sin, cos, ..], ws, out| robot.crba(sin, cos, ws, out));
+#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
+fn crba<S: Lanewise>(bencher: Bencher, name: &str) {
+    each::<S>(bencher, name, |robot, [sin, cos, ..], ws, out| robot.crba(sin, cos, ws, out));
 }
 
-#[divan::bench(args = ROBOTS)]
-fn aba(bencher: Bencher, name: &str) {
-    each(bencher, name, |robot, [sin, cos, _, qd, _, tau], ws, out| robot.aba(sin, cos, qd, tau, ws, out));
+#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
+fn aba<S: Lanewise>(bencher: Bencher, name: &str) {
+    each::<S>(bencher, name, |robot, [sin, cos, _, qd, _, tau], ws, out| {
+        robot.aba(sin, cos, qd, tau, ws, out)
+    });
 }
 
-#[divan::bench(args = ROBOTS)]
-fn forward_dynamics(bencher: Bencher, name: &str) {
-    each(bencher, name, |robot, [sin, cos, _, qd, _, tau], ws, out| {
+#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
+fn forward_dynamics<S: Lanewise>(bencher: Bencher, name: &str) {
+    each::<S>(bencher, name, |robot, [sin, cos, _, qd, _, tau], ws, out| {
         robot.forward_dynamics(sin, cos, qd, tau, ws, out);
     });
 }
