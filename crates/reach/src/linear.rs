@@ -1,6 +1,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::ReachError;
+use reachtube_ode::VectorField;
+use reachtube_scalar::Scalar;
 
 /// The linear system ẋ = A x + B u + d with constant A (N x N), B (N x m) and drift d (N).
 ///
@@ -62,6 +64,16 @@ impl LinearSystem {
     /// Number of inputs m.
     pub fn inputs(&self) -> usize {
         self.b.ncols()
+    }
+}
+
+/// ẋ = A x + B u + d; x has N entries, u has m.
+impl<S: Scalar> VectorField<S> for &LinearSystem {
+    fn rate(&mut self, _: f64, x: &[S], u: &[S], dx: &mut [S]) {
+        dx.iter_mut().zip(self.drift.iter()).for_each(|(dx, d)| *dx = S::from(*d));
+        for (column, x) in self.a.column_iter().zip(x).chain(self.b.column_iter().zip(u)) {
+            dx.iter_mut().zip(column.iter()).for_each(|(dx, a)| *dx += S::from(*a) * x.clone());
+        }
     }
 }
 

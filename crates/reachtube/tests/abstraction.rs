@@ -1,8 +1,9 @@
 //! The three models against the dynamics they stand for.
 
-use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel, linear_model};
-use reachtube_robot::{Robot, Workspace};
-use reachtube_scalar::{Interval, TaylorPolynomial};
+use reachtube::abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel, linear_model};
+use reachtube_ode::{DormandPrince, Ensemble, Run, Tolerance};
+use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
+use reachtube_scalar::{Interval, Lanes, Lanewise, TaylorPolynomial};
 
 const KINDS: [ModelKind; 3] = [ModelKind::One, ModelKind::Two, ModelKind::Three];
 
@@ -173,4 +174,68 @@ fn what_does_not_fit_is_refused_with_a_remedy() {
     assert!(refusal(ModelKind::One, 0).contains("order 1 at least"));
     assert!(refusal(ModelKind::Three, 20).contains("fits"), "{}", refusal(ModelKind::Three, 20));
     assert!(refusal(ModelKind::Two, 40).contains("order 31 at most"), "{}", refusal(ModelKind::Two, 40));
+}
+
+/// The states at the samples of all runs, one after the other.
+fn simulated<S: Lanewise + reachtube_scalar::Powers>(
+    model: &PolynomialModel,
+    times: &[f64],
+    runs: &[Run<'_>],
+) -> Vec<f64> {
+    let mut states = vec![0.0; runs.len() * times.len() * model.states()];
+    let place = |run: usize, sample: usize| (run * times.len() + sample) * model.states();
+    let mut field = ModelField::<S>::new(model);
+    let outcomes = Ensemble::new(model.states()).integrate(&mut field, times, 4, runs, |run, sample, x| {
+        states[place(run, sample)..][..x.len()].copy_from_slice(x);
+    });
+    assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
+    states
+}
+
+#[test]
+fn simulated_models_are_one_motion_in_every_way() {
+    let (robot, mut seed) = (Robot::lwa4p(), 5);
+    let times: Vec<f64> = (0..=25).map(|k| 0.004 * f64::from(k)).collect();
+    let inputs = numbers(&mut seed, 6 * 25, 3.0);
+    for (kind, order) in [(ModelKind::One, 3), (ModelKind::Two, 12), (ModelKind::Three, 4)] {
+        let model = model(&robot, kind, order);
+        let starts: Vec<Vec<f64>> =
+            (0..6).map(|_| model.state(&numbers(&mut seed, 6, 0.1), &numbers(&mut seed, 6, 0.1))).collect();
+        let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &inputs }).collect();
+        let alone = simulated::<f64>(&model, &times, &runs);
+        assert_eq!(alone, simulated::<Lanes<4>>(&model, &times, &runs), "{kind:?}");
+        let states = model.states();
+        let fine = Tolerance { relative: 1e-10, absolute: 1e-10 };
+        let mut solver = DormandPrince::new(states, fine);
+        let outcome = solver.follow(&mut ModelField::new(&model), &times, runs[0], |sample, x| {
+            let error = largest(x.iter().zip(&alone[sample * states..]).map(|(a, b)| a - b));
+            assert!(error < 1e-7, "{kind:?}: {error} at sample {sample}");
+        });
+        assert!(outcome.is_reached());
+    }
+}
+
+/// Near the expansion point the models of high order move as the robot does.
+#[test]
+fn a_simulated_model_3_moves_as_the_robot() {
+    let (robot, mut seed) = (Robot::lwa4p(), 9);
+    let model = model(&robot, ModelKind::Three, 6);
+    let times: Vec<f64> = (0..=25).map(|k| 0.004 * f64::from(k)).collect();
+    let inputs = numbers(&mut seed, 6 * 25, 3.0);
+    let (q, qd) = (numbers(&mut seed, 6, 0.1), numbers(&mut seed, 6, 0.1));
+    let (start, body) = (model.state(&q, &qd), [q, qd].concat());
+    let mut motion = Vec::new();
+    let mut solver = DormandPrince::new(12, Tolerance::default());
+    let run = Run { start: &body, inputs: &inputs };
+    let mut field = RobotField::new(&robot, DrivenBy::Input);
+    assert!(solver.follow(&mut field, &times, run, |_, x| motion.push(x.to_vec())).is_reached());
+    let mut solver = DormandPrince::new(24, Tolerance::default());
+    let run = Run { start: &start, inputs: &inputs };
+    let outcome = solver.follow(&mut ModelField::new(&model), &times, run, |sample, x| {
+        let error = largest(x.iter().zip(&motion[sample]).map(|(a, b)| a - b));
+        assert!(error < 1e-4, "{error} at sample {sample}");
+    });
+    assert!(outcome.is_reached());
+    let travelled = largest(motion[25].iter().zip(&motion[0]).map(|(a, b)| a - b));
+    assert!(travelled > 0.05, "{travelled}");
 }

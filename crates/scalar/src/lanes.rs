@@ -1,12 +1,12 @@
 //! Several numbers as one: SIMD lanes.
 
-use crate::Scalar;
+use crate::{Elementary, Powers};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
 /// N numbers in place of one: every operation acts on each lane alone, as it would on an `f64`, to the last bit.
 ///
-/// An algorithm over [`Scalar`] evaluated over lanes works on N arguments at once. The compiler turns the loops over the
+/// An algorithm over [`Scalar`](crate::Scalar) evaluated over lanes works on N arguments at once. The compiler turns the loops over the
 /// lanes into vector instructions of whatever the target has: nothing here depends on the platform.
 ///
 /// Nothing is done across lanes: a lane that overflows or is divided by zero leaves the others as they are.
@@ -26,7 +26,7 @@ pub struct Lanes<const N: usize>([f64; N]);
 
 /// A scalar of one or more independent `f64`: `f64` itself and [`Lanes`].
 ///
-/// It has what an algorithm over numbers needs beyond [`Scalar`]: elementary functions and branches, taken lane by lane.
+/// It has what an algorithm over numbers needs beyond [`Elementary`]: branches, taken lane by lane.
 ///
 /// # Examples
 ///
@@ -39,7 +39,7 @@ pub struct Lanes<const N: usize>([f64; N]);
 /// assert_eq!(sign(-3.0), -1.0);
 /// assert_eq!(sign(Lanes::new([-3.0, 5.0])), Lanes::new([-1.0, 1.0]));
 /// ```
-pub trait Lanewise: Scalar + Copy {
+pub trait Lanewise: Elementary + Copy {
     /// Number of lanes, 1 or more.
     const LANES: usize;
 
@@ -63,12 +63,6 @@ pub trait Lanewise: Scalar + Copy {
     #[inline(always)]
     fn zip(self, other: Self, mut f: impl FnMut(f64, f64) -> f64) -> Self {
         Self::from_lanes(|i| f(self.lane(i), other.lane(i)))
-    }
-
-    /// (sin x, cos x) for x in rad, by the platform's `f64::sin` and `f64::cos`.
-    #[inline(always)]
-    fn sin_cos(self) -> (Self, Self) {
-        (self.map(f64::sin), self.map(f64::cos))
     }
 }
 
@@ -100,6 +94,31 @@ impl<const N: usize> Lanewise for Lanes<N> {
         self.0[i]
     }
 }
+
+impl<const N: usize> Elementary for Lanes<N> {
+    fn sqrt(&self) -> Self {
+        self.map(f64::sqrt)
+    }
+
+    fn exp(&self) -> Self {
+        self.map(f64::exp)
+    }
+
+    fn ln(&self) -> Self {
+        self.map(f64::ln)
+    }
+
+    #[inline]
+    fn sin_cos(&self) -> (Self, Self) {
+        (self.map(f64::sin), self.map(f64::cos))
+    }
+
+    fn atan2(&self, x: &Self) -> Self {
+        self.zip(*x, f64::atan2)
+    }
+}
+
+impl<const N: usize> Powers for Lanes<N> {}
 
 impl<const N: usize> Lanes<N> {
     /// Lane i is `lanes[i]`.

@@ -1,7 +1,7 @@
 //! Lanes against `f64`, to the last bit.
 
 use proptest::prelude::*;
-use reachtube_scalar::{Lanes, Lanewise, Scalar};
+use reachtube_scalar::{Elementary, Lanes, Lanewise, Scalar};
 
 fn polynomial<S: Scalar>(x: S, y: S) -> S {
     let mut z = (x.clone() + S::from(0.1)) * y.clone() - x.clone() / y.clone();
@@ -24,6 +24,10 @@ proptest! {
         prop_assert_eq!(bits(sin.to_array()), bits(x.map(f64::sin)));
         prop_assert_eq!(bits(cos.to_array()), bits(x.map(f64::cos)));
         prop_assert_eq!(bits(core::array::from_fn(|i| a.lane(i))), bits(x));
+        prop_assert_eq!(bits(a.sqrt().to_array()), bits(x.map(f64::sqrt)));
+        prop_assert_eq!(bits(a.exp().to_array()), bits(x.map(f64::exp)));
+        prop_assert_eq!(bits(a.ln().to_array()), bits(x.map(f64::ln)));
+        prop_assert_eq!(bits(a.atan2(&b).to_array()), bits(core::array::from_fn(|i| x[i].atan2(y[i]))));
     }
 }
 

@@ -9,4 +9,5 @@ mod grid;
 mod propagation;
 mod random;
 mod rational;
+mod simulation;
 mod tube;

@@ -2,12 +2,14 @@
 
 mod build;
 mod expansion_point;
+mod field;
 mod file;
 mod layout;
 mod polynomial_model;
 mod remainder;
 
 pub use expansion_point::ExpansionPoint;
+pub use field::ModelField;
 pub use layout::Layout;
 pub use polynomial_model::{ModelKind, ModelWorkspace, PolynomialModel};
 use reachtube_reach::LinearSystem;

@@ -4,7 +4,7 @@ use crate::random::robots_and_states;
 use proptest::prelude::*;
 use reachtube_ode::{Ensemble, Run, VectorField};
 use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
-use reachtube_scalar::{Lanes, Lanewise};
+use reachtube_scalar::{Elementary, Lanes, Lanewise};
 
 /// Lane k of each: the numbers shifted and stretched.
 fn spread<const N: usize>(x: &[f64]) -> Vec<Lanes<N>> {
@@ -36,7 +36,7 @@ fn bits(x: &[f64]) -> Vec<u64> {
 }
 
 fn same_in_every_lane<const N: usize>(robot: &Robot, state: [&[f64]; 3]) -> Result<(), TestCaseError> {
-    let [q, qd, load] = state.map(|x| spread::<N>(x));
+    let [q, qd, load] = state.map(spread::<N>);
     let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(|q| q.sin_cos()).unzip();
     let all = dynamics(robot, [&sin, &cos, &qd, &load]);
     for k in 0..N {
