@@ -85,11 +85,9 @@ fn a_run_that_diverges_leaves_its_neighbours() {
     let mut ensemble = Ensemble::<Lanes<4>>::new(1).bounded_by(1e6);
     let outcomes = ensemble.integrate(&mut Square, &times, 10, &runs, |run, sample, x| {
         let exact = 1.0 / (1.0 / starts[run][0] - times[sample]);
-        assert!(
-            (x[0] / exact - 1.0).abs() < 1e-3 || !(0.0..=50.0).contains(&exact),
-            "{run}: {} is not {exact}",
-            x[0]
-        );
+        // Near and past its pole a run of fixed steps is no solution any more.
+        let is_early = starts[run][0] * times[sample] < 0.9;
+        assert!((x[0] / exact - 1.0).abs() < 1e-3 || !is_early, "{run}: {} is not {exact}", x[0]);
         reached[run] = sample;
     });
     for (run, [start]) in starts.iter().enumerate() {
