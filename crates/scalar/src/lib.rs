@@ -8,6 +8,7 @@ mod lanes;
 pub mod rounding;
 mod scalar;
 mod taylor;
+mod taylor_model;
 
 pub use elementary::Elementary;
 pub use interval::{DecimalError, Interval};
@@ -16,3 +17,4 @@ pub use scalar::Scalar;
 pub use taylor::{
     MapWorkspace, PolynomialMap, Powers, TaylorPolynomial, TaylorSpace, TaylorSpaceError, TaylorTerm,
 };
+pub use taylor_model::{TaylorBox, TaylorModel};

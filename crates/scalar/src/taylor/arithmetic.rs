@@ -27,48 +27,55 @@ fn common<'a>(a: &'a Arc<TaylorSpace>, b: &Arc<TaylorSpace>) -> &'a Arc<TaylorSp
 impl<C: Scalar> TaylorPolynomial<C> {
     /// self ± other.
     fn sum(&self, other: &Self, minus: bool) -> Self {
+        self.sum_by(other, minus, &mut |a, b| a.clone() + b)
+    }
+
+    /// self ± other, by the given addition of coefficients.
+    fn sum_by(&self, other: &Self, minus: bool, add: &mut impl FnMut(&C, C) -> C) -> Self {
         use Form::{Constant, Dense, Sparse};
+        let mut merged = |a: &[_], b: &[_]| sparse::sum_by(a, b, minus, add);
         match (&self.form, &other.form) {
-            (Constant(a), Constant(b)) => Self::constant(signed_sum(a, b, minus)),
+            (Constant(a), Constant(b)) => Self::constant(add(a, signed(b, minus))),
             (_, Constant(b)) if b.is_zero() => self.clone(),
             (Constant(a), _) if a.is_zero() && !minus => other.clone(),
-            (Sparse(space, a), Constant(b)) => Self::sparse(space, sparse::sum(a, &constant_terms(b), minus)),
-            (Constant(a), Sparse(space, b)) => Self::sparse(space, sparse::sum(&constant_terms(a), b, minus)),
-            (Sparse(s, a), Sparse(t, b)) => Self::sparse(common(s, t), sparse::sum(a, b, minus)).densified(),
+            (Sparse(space, a), Constant(b)) => Self::sparse(space, merged(a, &constant_terms(b))),
+            (Constant(a), Sparse(space, b)) => Self::sparse(space, merged(&constant_terms(a), b)),
+            (Sparse(s, a), Sparse(t, b)) => Self::sparse(common(s, t), merged(a, b)).densified(),
             (Dense(..), _) => {
                 let mut sum = self.clone();
-                sum.accumulate(other, minus);
+                sum.accumulate_by(other, minus, add);
                 sum
             }
-            (_, Dense(..)) if minus => -other.sum(self, true),
-            (_, Dense(..)) => other.sum(self, false),
+            (_, Dense(..)) if minus => -other.sum_by(self, true, add),
+            (_, Dense(..)) => other.sum_by(self, false, add),
         }
     }
 
-    /// self ± other in place; a dense self that nobody shares is not copied.
+    /// self ± other in place.
     fn accumulate(&mut self, other: &Self, minus: bool) {
+        self.accumulate_by(other, minus, &mut |a, b| a.clone() + b);
+    }
+
+    /// self ± other in place, by the given addition of coefficients; a dense self that nobody shares is not copied.
+    pub(crate) fn accumulate_by(&mut self, other: &Self, minus: bool, add: &mut impl FnMut(&C, C) -> C) {
         let Form::Dense(space, coefficients) = &mut self.form else {
-            *self = self.sum(other, minus);
+            *self = self.sum_by(other, minus, add);
             return;
         };
         let coefficients = Arc::make_mut(coefficients);
         match &other.form {
-            Form::Constant(c) => coefficients[0] = signed_sum(&coefficients[0], c, minus),
+            Form::Constant(c) => coefficients[0] = add(&coefficients[0], signed(c, minus)),
             Form::Sparse(t, terms) => {
                 common(space, t);
                 let degree = terms.last().map_or(0, |(m, _)| space.packing.degree(*m));
                 grow(coefficients, space.dense_len(degree));
-                dense::add_terms(space, coefficients, terms, minus);
+                dense::add_terms(space, coefficients, terms, &mut |a, b| add(a, signed(&b, minus)));
             }
             Form::Dense(t, others) => {
                 common(space, t);
                 grow(coefficients, others.len());
                 for (a, b) in coefficients.iter_mut().zip(others.iter()) {
-                    if minus {
-                        *a -= b.clone();
-                    } else {
-                        *a += b.clone();
-                    }
+                    *a = add(a, signed(b, minus));
                 }
             }
         }
@@ -123,7 +130,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
             Form::Sparse(_, terms) => {
                 let degree = terms.last().map_or(0, |(m, _)| space.packing.degree(*m));
                 grow(&mut out, space.dense_len(degree));
-                dense::add_terms(space, &mut out, terms, false);
+                dense::add_terms(space, &mut out, terms, &mut |_, b| b);
             }
         }
         out
@@ -155,8 +162,8 @@ fn constant_terms<C: Scalar>(c: &C) -> Vec<sparse::Term<C>> {
     if c.is_zero() { Vec::new() } else { vec![(0, c.clone())] }
 }
 
-fn signed_sum<C: Scalar>(a: &C, b: &C, minus: bool) -> C {
-    if minus { a.clone() - b.clone() } else { a.clone() + b.clone() }
+fn signed<C: Scalar>(c: &C, minus: bool) -> C {
+    if minus { -c.clone() } else { c.clone() }
 }
 
 impl<C: Scalar> Neg for TaylorPolynomial<C> {

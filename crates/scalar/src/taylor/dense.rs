@@ -166,17 +166,18 @@ pub(super) fn product_with_terms<C: Scalar>(space: &TaylorSpace, terms: &[Term<C
     out
 }
 
-/// Adds terms, with the sign, to coefficients that have room for them.
-pub(super) fn add_terms<C: Scalar>(space: &TaylorSpace, out: &mut [C], terms: &[Term<C>], minus: bool) {
+/// Adds terms, by the given addition, to coefficients that have room for them.
+pub(super) fn add_terms<C: Scalar>(
+    space: &TaylorSpace,
+    out: &mut [C],
+    terms: &[Term<C>],
+    add: &mut impl FnMut(&C, C) -> C,
+) {
     let mut factors = Vec::new();
     for (monomial, c) in terms {
         space.packing.factors(*monomial, &mut factors);
         let at = space.block(factors.len() as u32).start + space.place(&factors);
-        if minus {
-            out[at] -= c.clone();
-        } else {
-            out[at] += c.clone();
-        }
+        out[at] = add(&out[at], c.clone());
     }
 }
 

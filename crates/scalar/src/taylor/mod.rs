@@ -11,5 +11,6 @@ mod sparse;
 mod substitution;
 
 pub use map::{MapWorkspace, PolynomialMap, Powers};
+pub(crate) use polynomial::Form;
 pub use polynomial::{TaylorPolynomial, TaylorTerm};
 pub use space::{TaylorSpace, TaylorSpaceError};

@@ -5,7 +5,7 @@
 /// Packed monomials multiply by addition and compare by degree, then by the exponents of the last variables first: the order of
 /// [`TaylorSpace`](super::TaylorSpace).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Packing {
+pub(crate) struct Packing {
     bits: u32,
 }
 
@@ -30,6 +30,11 @@ impl Packing {
 
     pub fn exponent(self, key: u128, i: usize) -> u32 {
         (key >> (self.bits * i as u32)) as u32 & self.largest_exponent()
+    }
+
+    /// The lowest bit of each exponent: none of them is set in a monomial that is a square.
+    pub fn odd_exponents(self) -> u128 {
+        (0..120 / self.bits).map(|i| 1 << (self.bits * i)).sum()
     }
 
     /// The monomial without what it has of variable i.

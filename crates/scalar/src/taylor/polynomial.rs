@@ -33,11 +33,12 @@ use crate::Scalar;
 /// ```
 #[derive(Clone, Debug)]
 pub struct TaylorPolynomial<C = f64> {
-    pub(super) form: Form<C>,
+    pub(crate) form: Form<C>,
 }
 
+/// How a polynomial is stored.
 #[derive(Clone, Debug)]
-pub(super) enum Form<C> {
+pub(crate) enum Form<C> {
     Constant(C),
     Sparse(Arc<TaylorSpace>, Arc<Vec<Term<C>>>),
     Dense(Arc<TaylorSpace>, Arc<Vec<C>>),
@@ -95,11 +96,11 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self::sparse(space, sparse::collected(all.collect()))
     }
 
-    pub(super) fn sparse(space: &Arc<TaylorSpace>, terms: Vec<Term<C>>) -> Self {
+    pub(crate) fn sparse(space: &Arc<TaylorSpace>, terms: Vec<Term<C>>) -> Self {
         Self { form: Form::Sparse(Arc::clone(space), Arc::new(terms)) }
     }
 
-    pub(super) fn dense(space: &Arc<TaylorSpace>, coefficients: Vec<C>) -> Self {
+    pub(crate) fn dense(space: &Arc<TaylorSpace>, coefficients: Vec<C>) -> Self {
         Self { form: Form::Dense(Arc::clone(space), Arc::new(coefficients)) }
     }
 
@@ -206,6 +207,17 @@ impl<C: Scalar> TaylorPolynomial<C> {
                 let mapped = terms.iter().map(|(m, c)| (*m, map(c))).filter(|(_, c)| !c.is_zero());
                 TaylorPolynomial::sparse(space, mapped.collect())
             }
+        }
+    }
+}
+
+impl TaylorPolynomial<f64> {
+    /// Whether no coefficient is infinite or NaN.
+    pub(crate) fn is_finite(&self) -> bool {
+        match &self.form {
+            Form::Constant(c) => c.is_finite(),
+            Form::Sparse(_, terms) => terms.iter().all(|(_, c)| c.is_finite()),
+            Form::Dense(_, coefficients) => coefficients.iter().all(|c| c.is_finite()),
         }
     }
 }

@@ -32,7 +32,7 @@ const MOST_ENTRIES: u128 = 1 << 28;
 pub struct TaylorSpace {
     variables: usize,
     order: u32,
-    pub(super) packing: Packing,
+    pub(crate) packing: Packing,
     /// Where the block of each degree starts in a dense series; one entry more than there are degrees. Empty where no dense series fits.
     offsets: Vec<usize>,
     factors: Vec<OnceLock<Box<[u8]>>>,
@@ -197,8 +197,13 @@ impl TaylorSpace {
         self.offsets[degree as usize + 1]
     }
 
+    /// The degrees of which a dense series of so many coefficients has a block.
+    pub(crate) fn stored_degrees(&self, len: usize) -> impl Iterator<Item = u32> {
+        (0..=self.order).take_while(move |degree| self.offsets[*degree as usize + 1] <= len)
+    }
+
     /// Where the coefficients of one degree are.
-    pub(super) fn block(&self, degree: u32) -> core::ops::Range<usize> {
+    pub(crate) fn block(&self, degree: u32) -> core::ops::Range<usize> {
         self.offsets[degree as usize]..self.offsets[degree as usize + 1]
     }
 
@@ -208,7 +213,7 @@ impl TaylorSpace {
     }
 
     /// Place of the product of monomial a of degree i and monomial b of degree j in the block of degree i + j, at a · (size of block j) + b; i ≤ j.
-    pub(super) fn table(&self, i: u32, j: u32) -> &[u32] {
+    pub(crate) fn table(&self, i: u32, j: u32) -> &[u32] {
         debug_assert!(1 <= i && i <= j && i + j <= self.order);
         let at = i as usize * (self.order as usize + 1) + j as usize;
         self.tables[at].get_or_init(|| self.make_table(i, j))

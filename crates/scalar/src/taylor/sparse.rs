@@ -12,13 +12,23 @@ const FEW: usize = 4;
 
 /// a + b, or a - b where `minus`.
 pub(super) fn sum<C: Scalar>(a: &[Term<C>], b: &[Term<C>], minus: bool) -> Vec<Term<C>> {
+    sum_by(a, b, minus, &mut |a, b| a.clone() + b)
+}
+
+/// [`sum`], by the given addition of coefficients.
+pub(super) fn sum_by<C: Scalar>(
+    a: &[Term<C>],
+    b: &[Term<C>],
+    minus: bool,
+    add: &mut impl FnMut(&C, C) -> C,
+) -> Vec<Term<C>> {
     let signed = |c: &C| if minus { -c.clone() } else { c.clone() };
     let mut out = Vec::with_capacity(a.len() + b.len());
     let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
     loop {
         match (a.peek(), b.peek()) {
             (Some(x), Some(y)) if x.0 == y.0 => {
-                let c = x.1.clone() + signed(&y.1);
+                let c = add(&x.1, signed(&y.1));
                 if !c.is_zero() {
                     out.push((x.0, c));
                 }
