@@ -36,7 +36,10 @@ fn exponential(x: Interval, n: u32) -> Vec<Interval> {
 fn over_factorials(n: u32, derivative: impl Fn(u32) -> Interval) -> Vec<Interval> {
     let mut factorial = Interval::ONE;
     let term = |i: u32| {
-        factorial *= f64::from(i.max(1));
+        if i < 2 {
+            return derivative(i);
+        }
+        factorial *= f64::from(i);
         derivative(i) / factorial
     };
     (0..=n).map(term).collect()
