@@ -24,18 +24,40 @@ fn common<'a>(a: &'a Arc<TaylorSpace>, b: &Arc<TaylorSpace>) -> &'a Arc<TaylorSp
     a
 }
 
+/// How coefficients are added.
+pub(crate) trait Addition<C: Scalar> {
+    /// a + b.
+    fn sum(&mut self, a: &C, b: C) -> C;
+
+    /// a_i ± b_i in the place of each a_i.
+    fn accumulate(&mut self, a: &mut [C], b: &[C], minus: bool) {
+        for (a, b) in a.iter_mut().zip(b) {
+            *a = self.sum(a, signed(b, minus));
+        }
+    }
+}
+
+/// The addition of the scalar.
+pub(super) struct Plain;
+
+impl<C: Scalar> Addition<C> for Plain {
+    fn sum(&mut self, a: &C, b: C) -> C {
+        a.clone() + b
+    }
+}
+
 impl<C: Scalar> TaylorPolynomial<C> {
     /// self ± other.
     fn sum(&self, other: &Self, minus: bool) -> Self {
-        self.sum_by(other, minus, &mut |a, b| a.clone() + b)
+        self.sum_by(other, minus, &mut Plain)
     }
 
     /// self ± other, by the given addition of coefficients.
-    fn sum_by(&self, other: &Self, minus: bool, add: &mut impl FnMut(&C, C) -> C) -> Self {
+    fn sum_by(&self, other: &Self, minus: bool, add: &mut impl Addition<C>) -> Self {
         use Form::{Constant, Dense, Sparse};
         let mut merged = |a: &[_], b: &[_]| sparse::sum_by(a, b, minus, add);
         match (&self.form, &other.form) {
-            (Constant(a), Constant(b)) => Self::constant(add(a, signed(b, minus))),
+            (Constant(a), Constant(b)) => Self::constant(add.sum(a, signed(b, minus))),
             (_, Constant(b)) if b.is_zero() => self.clone(),
             (Constant(a), _) if a.is_zero() && !minus => other.clone(),
             (Sparse(space, a), Constant(b)) => Self::sparse(space, merged(a, &constant_terms(b))),
@@ -53,30 +75,28 @@ impl<C: Scalar> TaylorPolynomial<C> {
 
     /// self ± other in place.
     fn accumulate(&mut self, other: &Self, minus: bool) {
-        self.accumulate_by(other, minus, &mut |a, b| a.clone() + b);
+        self.accumulate_by(other, minus, &mut Plain);
     }
 
     /// self ± other in place, by the given addition of coefficients; a dense self that nobody shares is not copied.
-    pub(crate) fn accumulate_by(&mut self, other: &Self, minus: bool, add: &mut impl FnMut(&C, C) -> C) {
+    pub(crate) fn accumulate_by(&mut self, other: &Self, minus: bool, add: &mut impl Addition<C>) {
         let Form::Dense(space, coefficients) = &mut self.form else {
             *self = self.sum_by(other, minus, add);
             return;
         };
         let coefficients = Arc::make_mut(coefficients);
         match &other.form {
-            Form::Constant(c) => coefficients[0] = add(&coefficients[0], signed(c, minus)),
+            Form::Constant(c) => coefficients[0] = add.sum(&coefficients[0], signed(c, minus)),
             Form::Sparse(t, terms) => {
                 common(space, t);
                 let degree = terms.last().map_or(0, |(m, _)| space.packing.degree(*m));
                 grow(coefficients, space.dense_len(degree));
-                dense::add_terms(space, coefficients, terms, &mut |a, b| add(a, signed(&b, minus)));
+                dense::add_terms(space, coefficients, terms, minus, add);
             }
             Form::Dense(t, others) => {
                 common(space, t);
                 grow(coefficients, others.len());
-                for (a, b) in coefficients.iter_mut().zip(others.iter()) {
-                    *a = add(a, signed(b, minus));
-                }
+                add.accumulate(coefficients, others, minus);
             }
         }
     }
@@ -130,7 +150,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
             Form::Sparse(_, terms) => {
                 let degree = terms.last().map_or(0, |(m, _)| space.packing.degree(*m));
                 grow(&mut out, space.dense_len(degree));
-                dense::add_terms(space, &mut out, terms, &mut |_, b| b);
+                dense::add_terms(space, &mut out, terms, false, &mut Plain);
             }
         }
         out
@@ -162,7 +182,7 @@ fn constant_terms<C: Scalar>(c: &C) -> Vec<sparse::Term<C>> {
     if c.is_zero() { Vec::new() } else { vec![(0, c.clone())] }
 }
 
-fn signed<C: Scalar>(c: &C, minus: bool) -> C {
+pub(super) fn signed<C: Scalar>(c: &C, minus: bool) -> C {
     if minus { -c.clone() } else { c.clone() }
 }
 

@@ -1,5 +1,6 @@
 //! Dense series: coefficients block by block of one degree, and the product kernel.
 
+use super::arithmetic::{Addition, signed};
 use super::space::TaylorSpace;
 use super::sparse::Term;
 use crate::Scalar;
@@ -166,18 +167,19 @@ pub(super) fn product_with_terms<C: Scalar>(space: &TaylorSpace, terms: &[Term<C
     out
 }
 
-/// Adds terms, by the given addition, to coefficients that have room for them.
+/// Adds terms, with the sign, to coefficients that have room for them.
 pub(super) fn add_terms<C: Scalar>(
     space: &TaylorSpace,
     out: &mut [C],
     terms: &[Term<C>],
-    add: &mut impl FnMut(&C, C) -> C,
+    minus: bool,
+    add: &mut impl Addition<C>,
 ) {
     let mut factors = Vec::new();
     for (monomial, c) in terms {
         space.packing.factors(*monomial, &mut factors);
         let at = space.block(factors.len() as u32).start + space.place(&factors);
-        out[at] = add(&out[at], c.clone());
+        out[at] = add.sum(&out[at], signed(c, minus));
     }
 }
 

@@ -10,6 +10,7 @@ mod space;
 mod sparse;
 mod substitution;
 
+pub(crate) use arithmetic::Addition;
 pub use map::{MapWorkspace, PolynomialMap, Powers};
 pub(crate) use polynomial::Form;
 pub use polynomial::{TaylorPolynomial, TaylorTerm};

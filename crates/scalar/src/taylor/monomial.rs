@@ -7,13 +7,19 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Packing {
     bits: u32,
+    /// The lowest bit of each exponent: none of them is set in a monomial that is a square.
+    pub odd_exponents: u128,
 }
 
 const DEGREE_SHIFT: u32 = 120;
 
 impl Packing {
     pub fn new(variables: usize) -> Option<Self> {
-        (1..=120).contains(&variables).then(|| Self { bits: (120 / variables as u32).min(8) })
+        (1..=120).contains(&variables).then(|| {
+            let bits = (120 / variables as u32).min(8);
+            let odd_exponents = (0..variables as u32).map(|i| 1 << (bits * i)).sum();
+            Self { bits, odd_exponents }
+        })
     }
 
     pub fn largest_exponent(self) -> u32 {
@@ -30,11 +36,6 @@ impl Packing {
 
     pub fn exponent(self, key: u128, i: usize) -> u32 {
         (key >> (self.bits * i as u32)) as u32 & self.largest_exponent()
-    }
-
-    /// The lowest bit of each exponent: none of them is set in a monomial that is a square.
-    pub fn odd_exponents(self) -> u128 {
-        (0..120 / self.bits).map(|i| 1 << (self.bits * i)).sum()
     }
 
     /// The monomial without what it has of variable i.

@@ -1,5 +1,6 @@
 //! Sums and products of lists of terms.
 
+use super::arithmetic::{Addition, Plain, signed};
 use super::monomial::Packing;
 use super::space::TaylorSpace;
 use crate::Scalar;
@@ -12,7 +13,7 @@ const FEW: usize = 4;
 
 /// a + b, or a - b where `minus`.
 pub(super) fn sum<C: Scalar>(a: &[Term<C>], b: &[Term<C>], minus: bool) -> Vec<Term<C>> {
-    sum_by(a, b, minus, &mut |a, b| a.clone() + b)
+    sum_by(a, b, minus, &mut Plain)
 }
 
 /// [`sum`], by the given addition of coefficients.
@@ -20,15 +21,14 @@ pub(super) fn sum_by<C: Scalar>(
     a: &[Term<C>],
     b: &[Term<C>],
     minus: bool,
-    add: &mut impl FnMut(&C, C) -> C,
+    add: &mut impl Addition<C>,
 ) -> Vec<Term<C>> {
-    let signed = |c: &C| if minus { -c.clone() } else { c.clone() };
     let mut out = Vec::with_capacity(a.len() + b.len());
     let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
     loop {
         match (a.peek(), b.peek()) {
             (Some(x), Some(y)) if x.0 == y.0 => {
-                let c = add(&x.1, signed(&y.1));
+                let c = add.sum(&x.1, signed(&y.1, minus));
                 if !c.is_zero() {
                     out.push((x.0, c));
                 }
@@ -36,11 +36,11 @@ pub(super) fn sum_by<C: Scalar>(
                 b.next();
             }
             (Some(x), Some(y)) if x.0 > y.0 => {
-                out.push((y.0, signed(&y.1)));
+                out.push((y.0, signed(&y.1, minus)));
                 b.next();
             }
             (None, Some(y)) => {
-                out.push((y.0, signed(&y.1)));
+                out.push((y.0, signed(&y.1, minus)));
                 b.next();
             }
             (Some(x), _) => {

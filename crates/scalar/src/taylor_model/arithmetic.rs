@@ -5,31 +5,58 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use num_traits::{One, Zero};
 
 use super::TaylorModel;
-use super::bounds::inflated;
+use super::bounds::{LANES, inflated};
 use crate::Interval;
 use crate::rounding::two_sum;
+use crate::taylor::Addition;
+
+/// Adds, and sums up the rounding errors of the sums, which are known exactly.
+#[derive(Default)]
+struct Observed {
+    errors: [f64; LANES],
+    count: usize,
+}
+
+impl Addition<f64> for Observed {
+    fn sum(&mut self, a: &f64, b: f64) -> f64 {
+        let (sum, error) = two_sum(*a, b);
+        self.errors[0] += error.abs();
+        self.count += 1;
+        sum
+    }
+
+    fn accumulate(&mut self, a: &mut [f64], b: &[f64], minus: bool) {
+        let sign = if minus { -1.0 } else { 1.0 };
+        let (a_chunks, a_rest) = a[..b.len()].as_chunks_mut::<LANES>();
+        let (b_chunks, b_rest) = b.as_chunks::<LANES>();
+        for (a, b) in a_chunks.iter_mut().zip(b_chunks) {
+            for ((a, b), errors) in a.iter_mut().zip(b).zip(&mut self.errors) {
+                let (sum, error) = two_sum(*a, sign * b);
+                *errors += error.abs();
+                *a = sum;
+            }
+        }
+        self.count += a_chunks.len();
+        a_rest.iter_mut().zip(b_rest).for_each(|(a, b)| *a = self.sum(a, sign * b));
+    }
+}
+
+impl Observed {
+    /// An upper bound of all errors; NaN where a sum overflowed.
+    fn total(&self) -> f64 {
+        inflated(self.errors.iter().sum(), self.count + LANES)
+    }
+}
 
 impl TaylorModel {
     /// self ± other in place.
-    ///
-    /// The rounding error of a sum of two coefficients is known exactly; errors are non-negative numbers that are summed up.
     fn accumulate(&mut self, other: &Self, minus: bool) {
-        let (mut errors, mut count) = (0.0, 0);
-        let mut add = |a: &f64, b: f64| {
-            let (sum, error) = two_sum(*a, b);
-            errors += error.abs();
-            count += 1;
-            sum
-        };
-        let mut remainder = other.remainder;
-        if minus {
-            remainder = -remainder;
-        }
-        self.polynomial.accumulate_by(&other.polynomial, minus, &mut add);
-        self.remainder += remainder;
-        // NaN where a sum overflowed.
-        if errors != 0.0 {
-            self.remainder += Interval::centered(0.0, inflated(errors, count));
+        let mut sums = Observed::default();
+        self.polynomial.accumulate_by(&other.polynomial, minus, &mut sums);
+        self.remainder += if minus { -other.remainder } else { other.remainder };
+        let error = sums.total();
+        if error != 0.0 {
+            self.remainder += Interval::centered(0.0, error);
         }
         if self.remainder == Interval::ENTIRE {
             *self = Self::unknown();

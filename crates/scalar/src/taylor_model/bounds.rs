@@ -17,7 +17,8 @@ fn deflated(x: f64, operations: usize) -> f64 {
     if operations == 0 { x } else { x * (1.0 - (operations + 2) as f64 * f64::EPSILON) }
 }
 
-const LANES: usize = 8;
+/// So many sums are formed side by side.
+pub(super) const LANES: usize = 8;
 
 /// Σ |c|, rounded up.
 pub(super) fn magnitude(c: &[f64]) -> f64 {
@@ -52,7 +53,8 @@ impl Norms {
                     norms.add(space.packing.degree(*m), c.abs());
                 }
                 norms.terms = terms.len();
-                norms.of_degree.iter_mut().for_each(|n| *n = inflated(*n, terms.len().saturating_sub(1)));
+                let sums = norms.of_degree[..norms.len].iter_mut();
+                sums.for_each(|n| *n = inflated(*n, terms.len().saturating_sub(1)));
             }
             Form::Dense(space, coefficients) => {
                 for degree in space.stored_degrees(coefficients.len()) {
@@ -141,7 +143,7 @@ pub(super) fn range(p: &TaylorPolynomial<f64>) -> Interval {
 
 fn sparse_parts(space: &TaylorSpace, terms: &[(u128, f64)]) -> Parts {
     let mut parts = Parts::default();
-    let odd = space.packing.odd_exponents();
+    let odd = space.packing.odd_exponents;
     for (m, c) in terms.iter().filter(|(m, _)| *m != 0) {
         parts.all += c.abs();
         parts.count += 1;

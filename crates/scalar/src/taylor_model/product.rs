@@ -1,7 +1,7 @@
 //! Products.
 
 use super::TaylorModel;
-use super::bounds::{Norms, range};
+use super::bounds::{LANES, Norms, range};
 use crate::rounding::{add_up, mul_up};
 use crate::taylor::Form;
 use crate::{Interval, TaylorPolynomial};
@@ -81,11 +81,21 @@ fn scaling_error(p: &TaylorPolynomial, k: f64, is_power_of_two: bool) -> Option<
 
 /// The least magnitude of a coefficient that is not zero; ∞ where there is none.
 fn least(p: &TaylorPolynomial) -> f64 {
-    let smaller = |least: f64, c: &f64| if *c != 0.0 && c.abs() < least { c.abs() } else { least };
+    let smaller = |least: f64, c: &f64| {
+        let size = if *c == 0.0 { f64::INFINITY } else { c.abs() };
+        if size < least { size } else { least }
+    };
     match &p.form {
         Form::Constant(c) => smaller(f64::INFINITY, c),
         Form::Sparse(_, terms) => terms.iter().map(|(_, c)| c).fold(f64::INFINITY, smaller),
-        Form::Dense(_, coefficients) => coefficients.iter().fold(f64::INFINITY, smaller),
+        Form::Dense(_, coefficients) => {
+            let (chunks, rest) = coefficients.as_chunks::<LANES>();
+            let mut least = [f64::INFINITY; LANES];
+            for chunk in chunks {
+                least.iter_mut().zip(chunk).for_each(|(least, c)| *least = smaller(*least, c));
+            }
+            least.iter().chain(rest).fold(f64::INFINITY, smaller)
+        }
     }
 }
 

@@ -1,0 +1,68 @@
+//! Taylor models of low order in the variables of a robot, next to the polynomials they consist of.
+
+use divan::{Bencher, black_box};
+use reachtube_scalar::{Elementary, Interval, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace};
+
+fn main() {
+    divan::main();
+}
+
+const VARIABLES: usize = 18;
+const ORDERS: [u32; 3] = [1, 2, 3];
+
+/// A model of `used` variables with a remainder: of few, a list of terms; of all, a dense series.
+fn model(order: u32, used: usize, shift: f64) -> TaylorModel {
+    let domain = TaylorBox::new(
+        &TaylorSpace::new(VARIABLES, order).unwrap(),
+        &[Interval::centered(0.3, 0.1); VARIABLES],
+    );
+    let number = |x: f64| TaylorModel::from(x);
+    let sum =
+        (0..used).fold(number(shift), |sum, i| sum + domain.variable(i) * number(0.1 + 0.01 * i as f64));
+    let sum = sum + TaylorModel::from(Interval::centered(0.0, 1e-3));
+    if used < VARIABLES { sum } else { sum.recip() }
+}
+
+#[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
+fn product<const USED: usize>(bencher: Bencher, order: u32) {
+    let (a, b) = (model(order, USED, 2.0), model(order, USED, 3.0));
+    bencher.bench(|| black_box(&a) * black_box(&b));
+}
+
+#[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
+fn product_of_polynomials<const USED: usize>(bencher: Bencher, order: u32) {
+    let polynomial = |shift| -> TaylorPolynomial { model(order, USED, shift).polynomial().clone() };
+    let (a, b) = (polynomial(2.0), polynomial(3.0));
+    bencher.bench(|| black_box(&a) * black_box(&b));
+}
+
+#[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
+fn sum<const USED: usize>(bencher: Bencher, order: u32) {
+    let (a, b) = (model(order, USED, 2.0), model(order, USED, 3.0));
+    bencher.bench(|| black_box(&a) + black_box(&b));
+}
+
+#[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
+fn sum_of_polynomials<const USED: usize>(bencher: Bencher, order: u32) {
+    let polynomial = |shift| -> TaylorPolynomial { model(order, USED, shift).polynomial().clone() };
+    let (a, b) = (polynomial(2.0), polynomial(3.0));
+    bencher.bench(|| black_box(&a) + black_box(&b));
+}
+
+#[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
+fn multiple<const USED: usize>(bencher: Bencher, order: u32) {
+    let (a, k) = (model(order, USED, 2.0), TaylorModel::from(0.3));
+    bencher.bench(|| black_box(&a) * black_box(&k));
+}
+
+#[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
+fn quotient<const USED: usize>(bencher: Bencher, order: u32) {
+    let (a, b) = (model(order, USED, 2.0), model(order, USED, 3.0));
+    bencher.bench(|| black_box(&a) / black_box(&b));
+}
+
+#[divan::bench(args = ORDERS)]
+fn sine_and_cosine(bencher: Bencher, order: u32) {
+    let a = model(order, 1, 0.5);
+    bencher.bench(|| black_box(&a).sin_cos());
+}
