@@ -185,6 +185,26 @@ fn exact_values(model: &TaylorModel, t: &[BigRational]) -> [BigRational; 2] {
     ends(model.remainder()).map(|end| &value + end)
 }
 
+/// Norms of the degrees from 31 on are kept together.
+#[test]
+fn high_orders() {
+    for order in [30, 31, 32, 61, 62, 70] {
+        let domain =
+            TaylorBox::new(&TaylorSpace::new(1, order).unwrap(), &[Interval::new(-1.0, 1.0).unwrap()]);
+        let power = |n: u32| (0..n).fold(TaylorModel::from(1.0), |p, _| p * domain.variable(0));
+        let (low, high) = (order / 2, order / 2 + 1);
+        let kept = power(low) * power(order - low);
+        assert!(kept.range().encloses(&Interval::new(0.0, 1.0).unwrap()));
+        let cut = (power(high) * power(high)).range();
+        assert!(
+            cut.encloses(&Interval::new(0.0, 1.0).unwrap()) && cut.hi() < 1.001,
+            "order {order}: {cut:?}"
+        );
+        let cut = (power(high) * power(order)).range();
+        assert!(cut.contains(1.0) && (order > 31 || cut.hi() < 1.001), "order {order}: {cut:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(cases(400))]
 
@@ -233,6 +253,23 @@ fn numbers_stay_exact() {
     assert_eq!(TaylorModel::zero().sin_cos(), (TaylorModel::zero(), TaylorModel::one()));
     assert_eq!(x.clone() / TaylorModel::from(0.5), x.clone() + x);
     assert_eq!(TaylorModel::from(Interval::ENTIRE) * TaylorModel::zero(), TaylorModel::zero());
+}
+
+/// What is cut off of a square is not negative.
+#[test]
+fn squares_at_first_order() {
+    let space = TaylorSpace::new(4, 1).unwrap();
+    let domain = TaylorBox::new(&space, &[Interval::new(-1.0, 1.0).unwrap(); 4]);
+    let t = domain.variables();
+    let a = t[0].clone() * 0.3.into() - t[1].clone() * 0.2.into() + t[3].clone();
+    for (square, largest) in [(&a * &a, 2.25), (&a * &(a.clone() * TaylorModel::from(-7.0)), 15.75)] {
+        let (values, sign) = (square.remainder(), square.remainder().mid().signum());
+        assert!(values.mag() < largest * 1.000001 && values.mag() >= largest);
+        assert!((if sign > 0.0 { values.lo() } else { -values.hi() }) > -1e-12, "{values:?}");
+    }
+    // Nothing is known of the sign of a product of different variables.
+    let product = (&t[0] * &t[1]).remainder();
+    assert!(product.encloses(&Interval::new(-1.0, 1.0).unwrap()) && product.width() < 2.000001);
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub(super) fn magnitude(c: &[f64]) -> f64 {
     inflated(sum, chunks.len() + 2 * LANES)
 }
 
-/// Norms of more degrees than this are kept together.
+/// Norms of the degrees from 31 on are kept together: models of a higher order have wider remainders than they need.
 const DEGREES: usize = 32;
 
 /// Upper bounds of Σ |c| over the terms of each degree, which bounds the sum of these terms over [-1, 1]^k.
@@ -78,16 +78,22 @@ impl Norms {
         inflated(self.of_degree[..self.len].iter().sum(), self.len - 1)
     }
 
-    /// Bounds the terms of the product of degree above `order`, but for products of two terms of degree `except`.
-    pub fn cut_off(&self, other: &Self, order: u32, except: Option<u32>) -> f64 {
+    /// Σ |c| over the terms of one degree, rounded up; 0 for degrees that are kept together.
+    pub fn of(&self, degree: u32) -> f64 {
+        self.of_degree[..DEGREES - 1].get(degree as usize).copied().unwrap_or(0.0)
+    }
+
+    /// Bounds the terms of the product of degree above `order`, but for products of two terms of degree `except` whose norm [`of`](Self::of)
+    /// tells.
+    pub fn cut_off(&self, other: &Self, order: u32, except: u32) -> f64 {
         let (order, last) = (order as usize, DEGREES - 1);
-        let except = except.map_or(usize::MAX, |degree| degree as usize);
+        let except = if except as usize == last { usize::MAX } else { except as usize };
         let (mut sum, mut is_any) = (0.0, false);
         for (i, a) in self.of_degree[..self.len].iter().enumerate() {
             // The last norm is that of all higher degrees: cut off where one of them may be.
-            let first = if i == last && order >= last { 0 } else { (order + 1).saturating_sub(i) };
+            let first = if i == last && order > last { 0 } else { (order + 1).saturating_sub(i) };
             for (j, b) in other.of_degree[..other.len].iter().enumerate() {
-                let is_cut = j >= first || j == last && order >= last;
+                let is_cut = j >= first || j == last && order > last;
                 if is_cut && !(i == except && j == except) {
                     sum += a * b;
                     is_any |= *a > 0.0 && *b > 0.0;

@@ -4,6 +4,7 @@ mod arithmetic;
 mod bounds;
 mod division;
 mod functions;
+mod polarisation;
 mod product;
 mod taylor_box;
 

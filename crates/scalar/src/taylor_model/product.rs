@@ -2,6 +2,7 @@
 
 use super::TaylorModel;
 use super::bounds::{LANES, Norms, range};
+use super::polarisation::product_of_parts;
 use crate::rounding::{add_up, mul_up};
 use crate::taylor::Form;
 use crate::{Interval, TaylorPolynomial};
@@ -32,8 +33,11 @@ impl TaylorModel {
             return Self::from(self.range() * other.range());
         }
         let order = a.space().or(b.space()).map_or(0, |space| space.order());
-        let left_out = add_up(x.cut_off(&y, order, None), rounding_error(&x, &y, order, bound));
-        Self::new(a * b, cross + Interval::centered(0.0, left_out))
+        // Of the products that are cut off, those of two parts of the lowest such degree weigh most.
+        let degree = order / 2 + 1;
+        let parts = product_of_parts(a, b, degree, [&x, &y].map(|norms| norms.of(degree)));
+        let left_out = add_up(x.cut_off(&y, order, degree), rounding_error(&x, &y, order, bound));
+        Self::new(a * b, cross + parts + Interval::centered(0.0, left_out))
     }
 
     /// Of (P + R)(Q + S) all but P Q.
