@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use reachtube::abstraction::ModelKind;
 use reachtube::conform::{Centre, NominalStart, States};
 use reachtube::data::{GapLimit, Torque};
 use reachtube_reach::Disturbance;
@@ -25,6 +26,7 @@ const MAIN_HELP: &str = "\
 Examples:
   reachtube demo --out demo                                   the whole job on a virtual arm
   reachtube inspect --data recordings                         what is in this data set
+  reachtube abstract --robot lwa4p --model 2 --order 5         a polynomial model of its forward dynamics
   reachtube conform --robot lwa4p --data recordings --suites A,B --torque compensated --out model.json
   reachtube check --model model.json --data recordings --suites C --torque compensated
   reachtube report --model model.json --data recordings --suites A,B --torque compensated --out report
@@ -43,6 +45,9 @@ pub enum Command {
     /// Say what is in a data set
     #[command(after_help = "Example:\n  reachtube inspect --data recordings --json")]
     Inspect(InspectArgs),
+    /// Make a simple model of a robot's forward dynamics: linear or polynomial, models 1, 2 and 3 of the paper
+    #[command(after_help = ABSTRACT_HELP)]
+    Abstract(AbstractArgs),
     /// Find the smallest sets for which a linear model encloses every recording, and prove it
     #[command(after_help = CONFORM_HELP)]
     Conform(ConformArgs),
@@ -62,6 +67,15 @@ pub enum Command {
     )]
     Report(ReportArgs),
 }
+
+const ABSTRACT_HELP: &str = "\
+Examples:
+  reachtube abstract --robot lwa4p --model 2 --order 5 --out model2.json
+  reachtube abstract --robot lwa4p --model 1 --order 1 --at 0,0.5,0,0,0,0 --out model1.json
+  reachtube abstract --robot lwa4p --model 3 --order 3 --box 0.2,0.3,2    with a proved bound of what is left out
+
+Model 1: M(q_a)^-1 (u - tau_v(qd)); model 2: also Coriolis terms, polynomial in sin q and cos q; model 3: the Taylor polynomial of the whole forward dynamics.
+`conform --abstraction FILE` finds the uncertainty sets of a linear one.";
 
 const CONFORM_HELP: &str = "\
 Examples:
@@ -87,6 +101,31 @@ pub struct RobotShowArgs {
     /// Positions q_a at which M is printed, rad, separated by commas [default: 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
     pub at: Vec<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct AbstractArgs {
+    /// An embedded robot (lwa4p) or a TOML file
+    #[arg(long)]
+    pub robot: String,
+    /// Which of the paper's models
+    #[arg(long, default_value = "1", value_parser = word_of_number(&["1", "2", "3"]))]
+    pub model: ModelKind,
+    /// Order p of the Taylor polynomials
+    #[arg(long, default_value_t = 1, value_name = "P")]
+    pub order: u32,
+    /// Expansion point: n positions (rad), also n velocities (rad/s), also n inputs (N m), separated by commas [default: 0]
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,..")]
+    pub at: Vec<f64>,
+    /// Bound what the model leaves out over a box about the expansion point: radii of positions (rad), velocities (rad/s) and inputs (N m), 3 or 3n numbers
+    #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
+    pub operating_box: Vec<f64>,
+    /// Boxes that the bound may cut the operating box into: more take longer and bound more tightly
+    #[arg(long, default_value_t = 2000, value_name = "COUNT")]
+    pub most_boxes: usize,
+    /// Write the model to this file
+    #[arg(long)]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -131,9 +170,12 @@ pub struct DataArgs {
 
 #[derive(Debug, Args)]
 pub struct ConformArgs {
-    /// An embedded robot (lwa4p) or a TOML file
-    #[arg(long)]
-    pub robot: String,
+    /// An embedded robot (lwa4p) or a TOML file, to take model 1 of order 1 of
+    #[arg(long, required_unless_present = "abstraction")]
+    pub robot: Option<String>,
+    /// A linear model that `abstract --out` wrote
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["robot", "expansion"])]
+    pub abstraction: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArgs,
     /// How the disturbance may change in time
@@ -204,6 +246,14 @@ fn trimmed(text: &str) -> Result<String, std::convert::Infallible> {
 fn seconds(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
     value.ok_or_else(|| "give a number of seconds above 0".into())
+}
+
+/// A parser for a setting that is one of a few numbers.
+fn word_of_number<T>(words: &'static [&'static str]) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(words).try_map(|word| serde_json::from_str::<T>(&word))
 }
 
 /// A parser for a setting by the word that model files have for it.

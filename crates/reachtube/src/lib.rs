@@ -7,6 +7,7 @@ pub mod demo;
 mod error;
 mod json;
 pub mod model;
+mod random;
 pub mod reach;
 pub mod report;
 pub mod write;

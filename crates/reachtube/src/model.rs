@@ -9,7 +9,6 @@ use reachtube_robot::{Robot, RobotDescription};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::abstraction::linear_model;
 use crate::conform::{Conformance, Place, Proof, Recordings, Settings, TightRow, Trust, UncertaintySets};
 use crate::data::DataSet;
 use crate::error::{Error, Result};
@@ -65,8 +64,6 @@ pub struct Model {
     pub tight: Vec<Place>,
     /// How it was done.
     pub settings: Settings,
-    /// Which of the paper's models it is.
-    pub abstraction: Abstraction,
     /// A, 2n x 2n, a row a line.
     pub a: Vec<Vec<f64>>,
     /// B, 2n x n.
@@ -77,16 +74,6 @@ pub struct Model {
     pub data: DataRecord,
     /// The robot.
     pub robot: RobotDescription,
-}
-
-/// Which abstraction of the forward dynamics a model is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Abstraction {
-    /// 1, 2 or 3 of the paper.
-    pub model: u32,
-    /// The order p.
-    pub order: u32,
 }
 
 /// The recordings that a model encloses.
@@ -146,7 +133,6 @@ impl Model {
             trust: found.trust.clone(),
             tight: tight(data, found, robot.joint_count()),
             settings: settings.clone(),
-            abstraction: Abstraction { model: 1, order: 1 },
             a: rows(found.system.a()),
             b: rows(found.system.b()),
             drift: found.system.drift().iter().copied().collect(),
@@ -261,7 +247,7 @@ impl Model {
     fn check_parts(&self) -> Result<(), String> {
         let changed =
             |what: &str| Err(format!("{what}: the file was changed after it was written; run conform again"));
-        let model = self.robot().and_then(|robot| linear_model(&robot, &self.settings.expansion_point));
+        let model = self.robot().and_then(|robot| self.settings.linear_system(&robot));
         let model = model.map_err(|error| error.to_string())?;
         let system = self.system().map_err(|error| error.to_string())?;
         let near = |x: &DMatrix<f64>, y: &DMatrix<f64>| (x - y).amax() <= SAME * x.amax().max(y.amax());

@@ -1,4 +1,4 @@
-use reachtube::abstraction::ExpansionPoint;
+use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube::conform::{Noise, Settings, Weights, conform};
 use reachtube::data::DataSet;
 use reachtube::{Error, Model, Result, write};
@@ -10,9 +10,8 @@ use crate::progress::Progress;
 use crate::{output, words};
 
 pub fn run(args: &ConformArgs, json: bool) -> Result<Outcome> {
-    let robot = Robot::load(&args.robot)?;
+    let (robot, settings) = robot_and_settings(args)?;
     robot.check_physical()?;
-    let settings = settings(args, robot.joint_count())?;
     let data = DataSet::open(&args.data.data)?;
     if let Some(path) = &args.out {
         write::try_at(path)?;
@@ -42,6 +41,22 @@ pub fn run(args: &ConformArgs, json: bool) -> Result<Outcome> {
         output::note(&format!("wrote {}", page.display()));
     }
     Ok(Outcome::of(verified))
+}
+
+/// The robot, and what else decides the result; from a model's file where one is given.
+fn robot_and_settings(args: &ConformArgs) -> Result<(Robot, Settings)> {
+    let Some(path) = &args.abstraction else {
+        let robot = Robot::load(args.robot.as_deref().unwrap_or_default())?;
+        let settings = settings(args, robot.joint_count())?;
+        return Ok((robot, settings));
+    };
+    let model = PolynomialModel::load(path)?;
+    let settings = Settings {
+        abstraction: Abstraction { model: model.kind(), order: model.order() },
+        expansion_point: model.expansion_point().clone(),
+        ..settings(args, model.joints())?
+    };
+    Ok((Robot::from_description(model.robot())?, settings))
 }
 
 fn settings(args: &ConformArgs, joints: usize) -> Result<Settings> {

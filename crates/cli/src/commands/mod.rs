@@ -1,5 +1,6 @@
 //! One module a command.
 
+mod r#abstract;
 mod check;
 mod conform;
 mod demo;
@@ -40,6 +41,7 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
         Command::Demo(args) => demo::run(args, cli.json),
         Command::Robot(RobotCommand::Show(args)) => robot::show(args, cli.json),
         Command::Inspect(args) => inspect::run(args, cli.json),
+        Command::Abstract(args) => r#abstract::run(args, cli.json),
         Command::Conform(args) => conform::run(args, cli.json),
         Command::Check(args) => check::run(args, cli.json),
         Command::Reach(args) => reach::run(args, cli.json),

@@ -5,16 +5,19 @@ mod expansion_point;
 mod field;
 mod file;
 mod layout;
+mod operating_box;
 mod polynomial_model;
 mod remainder;
+mod seen_error;
 
 pub use expansion_point::ExpansionPoint;
 pub use field::ModelField;
 pub use layout::Layout;
-pub use polynomial_model::{ModelKind, ModelWorkspace, PolynomialModel};
+pub use operating_box::OperatingBox;
+pub use polynomial_model::{Abstraction, ModelKind, ModelWorkspace, PolynomialModel};
 use reachtube_reach::LinearSystem;
 use reachtube_robot::Robot;
-pub use remainder::{OperatingBox, Remainder};
+pub use remainder::Remainder;
 
 use crate::error::Result;
 

@@ -22,6 +22,23 @@ pub enum ModelKind {
     Three,
 }
 
+/// Which abstraction of the forward dynamics a model is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Abstraction {
+    /// 1, 2 or 3 of the paper.
+    pub model: ModelKind,
+    /// The order p.
+    pub order: u32,
+}
+
+impl Default for Abstraction {
+    /// Model 1 of order 1: linear.
+    fn default() -> Self {
+        Self { model: ModelKind::One, order: 1 }
+    }
+}
+
 impl From<ModelKind> for u32 {
     fn from(kind: ModelKind) -> u32 {
         kind as u32 + 1

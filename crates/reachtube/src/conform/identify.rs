@@ -9,7 +9,6 @@ use super::program::{Program, Solution};
 use super::recordings::{Progress, Recordings};
 use super::verify::{Row, check_rows};
 use super::{Settings, Trust, UncertaintySets, Weights};
-use crate::abstraction::linear_model;
 use crate::data::DataSet;
 use crate::error::Result;
 
@@ -94,7 +93,7 @@ pub fn conform(
     progress: Progress,
 ) -> Result<Conformance> {
     settings.validate(robot.joint_count())?;
-    let system = linear_model(robot, &settings.expansion_point)?;
+    let system = settings.linear_system(robot)?;
     let recordings = Recordings::read(data, names, robot, settings, progress)?;
     let grids = Grids::new(&recordings, &system, settings.disturbance)?;
     let deviations = recordings

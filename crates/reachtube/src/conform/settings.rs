@@ -1,7 +1,10 @@
 use reachtube_reach::Disturbance;
 use serde::{Deserialize, Serialize};
 
-use crate::abstraction::ExpansionPoint;
+use reachtube_reach::LinearSystem;
+use reachtube_robot::Robot;
+
+use crate::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use crate::data::{GapLimit, Torque};
 use crate::error::{Error, Result};
 
@@ -91,6 +94,8 @@ pub enum Weights {
 pub struct Settings {
     /// What the recorded torques are.
     pub torque: Torque,
+    /// Which of the paper's models; it must be linear.
+    pub abstraction: Abstraction,
     /// Where the model is expanded.
     pub expansion_point: ExpansionPoint,
     /// The notion of conformance.
@@ -120,6 +125,7 @@ impl Settings {
     pub fn new(torque: Torque, joints: usize) -> Self {
         Self {
             torque,
+            abstraction: Abstraction::default(),
             expansion_point: ExpansionPoint::zero(joints),
             notion: Notion::default(),
             disturbance: Disturbance::default(),
@@ -131,6 +137,16 @@ impl Settings {
             until: None,
             gap_limit: GapLimit::default(),
         }
+    }
+
+    /// The linear system of a robot that these settings ask for.
+    ///
+    /// # Errors
+    ///
+    /// Where the abstraction is not linear, or the robot not physical at the expansion point.
+    pub fn linear_system(&self, robot: &Robot) -> Result<LinearSystem> {
+        let Abstraction { model, order } = self.abstraction;
+        PolynomialModel::new(robot, model, order, &self.expansion_point)?.linear_system()
     }
 
     /// Checks sizes and signs for a robot of `joints` joints.

@@ -12,7 +12,6 @@ mod hidden;
 mod motion;
 mod number;
 mod plan;
-mod random;
 #[cfg(test)]
 mod tests;
 

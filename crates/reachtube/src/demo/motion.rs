@@ -2,7 +2,7 @@
 
 use reachtube_robot::Robot;
 
-use super::random::SplitMix64;
+use crate::random::SplitMix64;
 
 /// Peak speed of the fastest joint of a motion, rad/s: from, to.
 const PEAK_SPEED: [f64; 2] = [0.5, 1.0];

@@ -5,7 +5,7 @@ use reachtube_robot::Robot;
 use super::hidden::{self, SCATTER_Q, SCATTER_QD};
 use super::motion::Motion;
 use super::number::rounded;
-use super::random::SplitMix64;
+use crate::random::SplitMix64;
 use super::{DemoOptions, SAMPLE_TIME};
 
 /// Parts of a motion at which the first suite starts, and after which none does.

@@ -43,8 +43,8 @@ pub fn page(sources: &Sources) -> Result<Page> {
         title: format!("{}: reachset conformance", model.robot.name),
         subtitle: format!(
             "Model {} of order {}, {} recordings in {} test suites",
-            model.abstraction.model,
-            model.abstraction.order,
+            u32::from(model.settings.abstraction.model),
+            model.settings.abstraction.order,
             check.runs,
             check.suites.len()
         ),

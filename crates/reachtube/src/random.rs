@@ -1,7 +1,7 @@
 //! Numbers that look random and depend on a seed alone.
 
 /// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): a counter through a mixing function. Not for secrets.
-pub(super) struct SplitMix64(u64);
+pub(crate) struct SplitMix64(u64);
 
 impl SplitMix64 {
     pub fn new(seed: u64) -> Self {
