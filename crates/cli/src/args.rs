@@ -109,7 +109,7 @@ pub struct AbstractArgs {
     #[arg(long)]
     pub robot: String,
     /// Which of the paper's models
-    #[arg(long, default_value = "1", value_parser = word_of_number(&["1", "2", "3"]))]
+    #[arg(long, default_value = "1", value_parser = word_of_number::<ModelKind>(&["1", "2", "3"]))]
     pub model: ModelKind,
     /// Order p of the Taylor polynomials
     #[arg(long, default_value_t = 1, value_name = "P")]

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::Model;
+use reachtube::abstraction::PolynomialModel;
 use reachtube::conform::{Check, Place, Trust};
 use reachtube::data::{Group, Inspection};
 use reachtube::model::MOST_TIGHT;
@@ -30,6 +31,62 @@ pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let mut text = line(header.to_vec());
     rows.iter().for_each(|row| text.push_str(&line(row.iter().map(String::as_str).collect())));
     text
+}
+
+/// The result of `abstract`.
+pub fn abstraction(model: &PolynomialModel, seconds: f64) -> String {
+    let mut text = String::new();
+    let point = model.expansion_point();
+    let at = |name: &str, values: &[f64]| match values.iter().all(|v| *v == 0.0) {
+        true => format!("{name} = 0"),
+        false => format!("{name} = {values:?}"),
+    };
+    let _ = writeln!(
+        text,
+        "model {} of order {} of {}, about {} rad, {} rad/s, {} N m",
+        u32::from(model.kind()),
+        model.order(),
+        model.robot().name,
+        at("q", &point.q),
+        at("qd", &point.qd),
+        at("u", &point.input())
+    );
+    let _ = writeln!(
+        text,
+        "{} states, degree {}, {} terms, made in {}\n",
+        model.states(),
+        model.degree(),
+        model.term_count(),
+        duration(seconds)
+    );
+    let rows: Vec<Vec<String>> = (0..model.joints()).map(|i| joint_of_abstraction(model, i)).collect();
+    match model.remainder() {
+        Some(remainder) => {
+            text.push_str(&table(&["joint", "terms", "left out [rad/s^2], proved", "seen"], &rows));
+            let _ = writeln!(
+                text,
+                "\nleft out: forward dynamics minus model, over the box ({} parts); seen: the largest at 20000 states of it",
+                remainder.boxes
+            );
+        }
+        None => text.push_str(&table(&["joint", "terms"], &rows)),
+    }
+    text
+}
+
+fn joint_of_abstraction(model: &PolynomialModel, i: usize) -> Vec<String> {
+    let mut row =
+        vec![model.robot().joints[i].name.clone(), model.acceleration()[i].term_count().to_string()];
+    if let Some(remainder) = model.remainder() {
+        let bound = remainder.bounds[i].map(|[low, high]| interval((low, high)));
+        row.push(bound.unwrap_or_else(|| "no bound found".into()));
+        row.push(number(remainder.seen[i]));
+    }
+    row
+}
+
+fn duration(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.2} s") }
 }
 
 /// The result of `conform`, with a table like Table II of the paper.

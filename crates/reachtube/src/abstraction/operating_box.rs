@@ -28,7 +28,9 @@ impl OperatingBox {
     pub fn about(point: &ExpansionPoint, radii: &[f64]) -> Result<Self> {
         let n = point.q.len();
         if let Some(radius) = radii.iter().find(|radius| !(radius.is_finite() && **radius >= 0.0)) {
-            return Err(Error::Setting(format!("a radius of the box is {radius}; give finite numbers, 0 or more")));
+            return Err(Error::Setting(format!(
+                "a radius of the box is {radius}; give finite numbers, 0 or more"
+            )));
         }
         let radius = |group: usize, i: usize| match radii.len() {
             3 => Some(radii[group]),
@@ -57,7 +59,8 @@ impl OperatingBox {
 
     pub(super) fn is_of(&self, n: usize) -> bool {
         let is = |sides: &[[f64; 2]]| {
-            sides.len() == n && sides.iter().all(|[low, high]| low <= high && low.is_finite() && high.is_finite())
+            sides.len() == n
+                && sides.iter().all(|[low, high]| low <= high && low.is_finite() && high.is_finite())
         };
         is(&self.q) && is(&self.qd) && is(&self.u)
     }
@@ -66,7 +69,9 @@ impl OperatingBox {
     pub(super) fn check(&self, robot: &Robot) -> Result<()> {
         let n = robot.joint_count();
         if !self.is_of(n) {
-            return Err(Error::Setting(format!("the operating box has not one finite interval a joint for each of q, qd and u; there are {n} joints")));
+            return Err(Error::Setting(format!(
+                "the operating box has not one finite interval a joint for each of q, qd and u; there are {n} joints"
+            )));
         }
         for (i, joint) in robot.joints().iter().enumerate() {
             let outside = |what: &str, side: [f64; 2], limits: [f64; 2], unit: &str| {

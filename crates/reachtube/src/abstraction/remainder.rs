@@ -132,8 +132,7 @@ impl<'a> Search<'a> {
     }
 
     fn cells_of(&self, parts: Vec<Vec<Interval>>) -> Vec<Cell> {
-        let scratch =
-            || Scratch { robot: Workspace::new(self.robot), model: self.model.workspace() };
+        let scratch = || Scratch { robot: Workspace::new(self.robot), model: self.model.workspace() };
         parts.into_par_iter().map_init(scratch, |scratch, sides| self.cell(sides, scratch)).collect()
     }
 
@@ -142,7 +141,12 @@ impl<'a> Search<'a> {
         let spread = Spread::of(&mass);
         let Some((bounds, load)) = spread.as_ref().and_then(|spread| spread.solve(&residual)) else {
             let cut = widest_position(&sides, self.robot.joint_count());
-            return Cell { bounds: vec![Interval::ENTIRE; self.seen.len()], cut, excess: f64::INFINITY, sides };
+            return Cell {
+                bounds: vec![Interval::ENTIRE; self.seen.len()],
+                cut,
+                excess: f64::INFINITY,
+                sides,
+            };
         };
         let ratio = |i: usize| bounds[i].mag() / self.seen[i].max(f64::MIN_POSITIVE);
         let worst = (0..bounds.len()).max_by(|i, j| ratio(*i).total_cmp(&ratio(*j))).unwrap_or(0);
@@ -249,9 +253,8 @@ impl Spread {
 
     /// |1 - P M| v, rounded up, for v ≥ 0.
     fn magnitude_times(&self, v: &[f64]) -> Vec<f64> {
-        let row = |row: &[Interval]| {
-            row.iter().zip(v).fold(0.0, |sum, (d, v)| add_up(sum, mul_up(d.mag(), *v)))
-        };
+        let row =
+            |row: &[Interval]| row.iter().zip(v).fold(0.0, |sum, (d, v)| add_up(sum, mul_up(d.mag(), *v)));
         self.deviation.chunks(v.len()).map(row).collect()
     }
 
@@ -275,7 +278,8 @@ impl Spread {
             radius = rest.iter().zip(&ranges).map(|(rest, load)| add_up(load.mag(), *rest)).collect();
         }
         let rest = self.magnitude_times(&radius);
-        let bounds: Vec<Interval> = ranges.iter().zip(&rest).map(|(load, r)| *load + Interval::centered(0.0, *r)).collect();
+        let bounds: Vec<Interval> =
+            ranges.iter().zip(&rest).map(|(load, r)| *load + Interval::centered(0.0, *r)).collect();
         let finite = bounds.iter().all(|b| b.mag().is_finite());
         finite.then_some((bounds, load))
     }

@@ -5,8 +5,8 @@ use reachtube_robot::Robot;
 use super::hidden::{self, SCATTER_Q, SCATTER_QD};
 use super::motion::Motion;
 use super::number::rounded;
-use crate::random::SplitMix64;
 use super::{DemoOptions, SAMPLE_TIME};
+use crate::random::SplitMix64;
 
 /// Parts of a motion at which the first suite starts, and after which none does.
 const STARTS: [f64; 2] = [0.1, 0.9];
