@@ -65,7 +65,7 @@ pub fn abstraction(model: &PolynomialModel, seconds: f64) -> String {
             text.push_str(&table(&["joint", "terms", "left out [rad/s^2], proved", "seen"], &rows));
             let _ = writeln!(
                 text,
-                "\nleft out: forward dynamics minus model, over the box ({} parts); seen: the largest at 20000 states of it",
+                "\nleft out: forward dynamics minus model, over the box (cut into {}); seen: the largest that a search found in it",
                 remainder.boxes
             );
         }

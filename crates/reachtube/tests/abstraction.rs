@@ -1,6 +1,8 @@
 //! The three models against the dynamics they stand for.
 
-use reachtube::abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel, linear_model};
+use reachtube::abstraction::{
+    ExpansionPoint, ModelField, ModelKind, OperatingBox, PolynomialModel, linear_model,
+};
 use reachtube_ode::{DormandPrince, Ensemble, Run, Tolerance};
 use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
 use reachtube_scalar::{Interval, Lanes, Lanewise, TaylorPolynomial};
@@ -238,4 +240,57 @@ fn a_simulated_model_3_moves_as_the_robot() {
     assert!(outcome.is_reached());
     let travelled = largest(motion[25].iter().zip(&motion[0]).map(|(a, b)| a - b));
     assert!(travelled > 0.05, "{travelled}");
+}
+
+/// The bound holds at 20,000 states and is not far above the largest error found.
+#[test]
+fn what_models_leave_out_is_bounded() {
+    let robot = Robot::lwa4p();
+    let mut seed = 5;
+    for (kind, order, radii, boxes, times) in [
+        (ModelKind::One, 1, [0.2, 0.3, 2.0], 64, 2.0),
+        (ModelKind::Two, 4, [0.2, 0.3, 2.0], 8, 3.0),
+        (ModelKind::Three, 3, [0.1, 0.3, 2.0], 8, 4.0),
+    ] {
+        let model = model(&robot, kind, order);
+        let operating_box = OperatingBox::about(model.expansion_point(), &radii).unwrap();
+        let remainder = model.bound_remainder(&operating_box, boxes).unwrap();
+        let bounds: Vec<[f64; 2]> = remainder.bounds.iter().map(|b| b.unwrap()).collect();
+        for _ in 0..20_000 {
+            let [q, qd, u] = radii.map(|radius| numbers(&mut seed, 6, radius));
+            let (rate, exact) = (model.rate(&model.state(&q, &qd), &u), truth(&robot, &q, &qd, &u));
+            for i in 0..6 {
+                let error = exact[i] - rate[6 + i];
+                assert!(
+                    bounds[i][0] <= error && error <= bounds[i][1],
+                    "{kind:?}: joint {i}: {error} {:?}",
+                    bounds[i]
+                );
+            }
+        }
+        for (bound, seen) in bounds.iter().zip(&remainder.seen) {
+            assert!(largest(*bound) < times * seen, "{kind:?}: {bound:?} where {seen} was seen");
+        }
+    }
+}
+
+/// Over a box so wide that the mass matrix is not known to be invertible there is no bound, and that is said.
+#[test]
+fn no_bound_is_an_answer() {
+    let robot = Robot::lwa4p();
+    let model = model(&robot, ModelKind::One, 1);
+    let whole = OperatingBox::about(model.expansion_point(), &[3.14, 1.2, 10.0]).unwrap();
+    assert!(model.bound_remainder(&whole, 4).unwrap().bounds.iter().all(Option::is_none));
+    let refusal = |radii: &[f64]| {
+        let outside = OperatingBox::about(model.expansion_point(), radii);
+        outside.and_then(|b| model.bound_remainder(&b, 4)).unwrap_err().to_string()
+    };
+    assert!(
+        refusal(&[0.1, 1.3, 1.0]).contains("beyond the limits [-1.2, 1.2]"),
+        "{}",
+        refusal(&[0.1, 1.3, 1.0])
+    );
+    assert!(refusal(&[4.0, 1.0, 1.0]).contains("joint1"));
+    assert!(refusal(&[0.1, -1.0, 1.0]).contains("0 or more"));
+    assert!(refusal(&[0.1, 1.0]).contains("give 3"));
 }

@@ -23,7 +23,8 @@ pub fn run(args: &AbstractArgs, json: bool) -> Result<Outcome> {
     if !args.operating_box.is_empty() {
         let _bar = Progress::new();
         let operating_box = OperatingBox::about(&point, &args.operating_box)?;
-        model.set_remainder(model.bound_remainder(&operating_box, args.most_boxes)?);
+        let most = args.most_boxes.unwrap_or_else(|| model.usual_boxes());
+        model.set_remainder(model.bound_remainder(&operating_box, most)?);
     }
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;

@@ -10,11 +10,13 @@ use reachtube_scalar::{Elementary, Interval, TaylorBox, TaylorModel, TaylorSpace
 use serde::{Deserialize, Serialize};
 
 use super::operating_box::OperatingBox;
-use super::{ModelWorkspace, PolynomialModel};
+use super::{ModelKind, ModelWorkspace, PolynomialModel};
 use crate::error::Result;
 
-/// Order of the Taylor models: enough that what depends on two variables at once is followed.
-const ORDER: u32 = 2;
+/// Order of the Taylor models for models that are wrong in the first order of q.
+const LOW_ORDER: u32 = 3;
+/// Highest order for model 3, where one above the model's lets cancel what the model has right.
+const HIGH_ORDER: u32 = 6;
 /// Boxes that are cut at once, so that both cores have work.
 const BATCH: usize = 32;
 /// A bound this near to an error that was seen is not refined further.
@@ -30,7 +32,7 @@ pub struct Remainder {
     pub operating_box: OperatingBox,
     /// For each joint the acceleration left out lies in \[low, high\], rad/s²; none where no bound was found.
     pub bounds: Vec<Option<[f64; 2]>>,
-    /// The largest magnitude seen at sampled states, rad/s²: no bound can be less.
+    /// The largest magnitude found by search, rad/s²: no bound can be less.
     pub seen: Vec<f64>,
     /// Boxes that the operating box was cut into.
     pub boxes: usize,
@@ -75,6 +77,11 @@ impl PolynomialModel {
         })
     }
 
+    /// Boxes for [`bound_remainder`](Self::bound_remainder) that take some seconds: the more terms the model has, the fewer.
+    pub fn usual_boxes(&self) -> usize {
+        (300_000 / self.term_count().max(1)).clamp(16, 2000)
+    }
+
     /// Keeps a bound with the model, and so in its file.
     pub fn set_remainder(&mut self, remainder: Remainder) {
         self.remainder = Some(remainder);
@@ -110,7 +117,8 @@ struct Scratch {
 
 impl<'a> Search<'a> {
     fn new(model: &'a PolynomialModel, robot: &'a Robot, seen: &'a [f64]) -> Result<Self> {
-        let space = TaylorSpace::new(3 * robot.joint_count(), ORDER)?;
+        let space =
+            TaylorSpace::new(3 * robot.joint_count(), (model.order() + 1).clamp(ORDERS[0], ORDERS[1]))?;
         Ok(Self { model, robot, seen, space, cells: Vec::new() })
     }
 
