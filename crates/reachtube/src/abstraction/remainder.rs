@@ -117,8 +117,11 @@ struct Scratch {
 
 impl<'a> Search<'a> {
     fn new(model: &'a PolynomialModel, robot: &'a Robot, seen: &'a [f64]) -> Result<Self> {
-        let space =
-            TaylorSpace::new(3 * robot.joint_count(), (model.order() + 1).clamp(ORDERS[0], ORDERS[1]))?;
+        let order = match model.kind() {
+            ModelKind::Three => (model.order() + 1).clamp(LOW_ORDER, HIGH_ORDER),
+            _ => LOW_ORDER,
+        };
+        let space = TaylorSpace::new(3 * robot.joint_count(), order)?;
         Ok(Self { model, robot, seen, space, cells: Vec::new() })
     }
 
