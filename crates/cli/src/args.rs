@@ -66,6 +66,9 @@ pub enum Command {
         after_help = "Example:\n  reachtube report --model model.json --data recordings --torque compensated --out report\n\nWrites report.html (works offline) and an SVG for each figure into the folder."
     )]
     Report(ReportArgs),
+    /// Make a table of the paper again
+    #[command(subcommand)]
+    Reproduce(ReproduceCommand),
 }
 
 const ABSTRACT_HELP: &str = "\
@@ -101,6 +104,40 @@ pub struct RobotShowArgs {
     /// Positions q_a at which M is printed, rad, separated by commas [default: 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
     pub at: Vec<f64>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum ReproduceCommand {
+    /// Table I: the velocity error of models 1, 2 and 3 in simulation, against forward dynamics by Featherstone's algorithm
+    #[command(
+        after_help = "Example:\n  reachtube reproduce table1 --motions 50 --seed 1 --out table1.csv\n\nThe paper's trajectories are unpublished: what can agree is the size and the order of the numbers."
+    )]
+    Table1(Table1Args),
+}
+
+#[derive(Debug, Args)]
+pub struct Table1Args {
+    /// An embedded robot (lwa4p) or a TOML file
+    #[arg(long, default_value = "lwa4p")]
+    pub robot: String,
+    /// Random motions; each is made slowly and fast
+    #[arg(long, default_value_t = 50)]
+    pub motions: usize,
+    /// Seed of the motions
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Orders p of the models, separated by commas
+    #[arg(long, value_delimiter = ',', default_value = "1,3,5,7", value_name = "P,..")]
+    pub orders: Vec<u32>,
+    /// Leave out model 3 at higher orders than this
+    #[arg(long, default_value_t = 5, value_name = "P")]
+    pub model3_up_to: u32,
+    /// Keep motions this close to the expansion point q = 0, rad
+    #[arg(long, default_value_t = std::f64::consts::FRAC_PI_2, value_name = "RAD")]
+    pub range: f64,
+    /// Write the error of each motion to this CSV file
+    #[arg(long)]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

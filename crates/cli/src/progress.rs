@@ -15,9 +15,9 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Time between two pictures of the bar.
 const REFRESH: Duration = Duration::from_millis(100);
 
-/// Recordings read so far, and how many there are.
-#[derive(Default)]
+/// What is done so far, and how much there is.
 struct Count {
+    doing: &'static str,
     done: AtomicUsize,
     total: AtomicUsize,
 }
@@ -30,8 +30,13 @@ pub struct Progress {
 }
 
 impl Progress {
+    /// Of recordings that are read.
     pub fn new() -> Self {
-        let count = Arc::new(Count::default());
+        Self::of("reading recordings")
+    }
+
+    pub fn of(doing: &'static str) -> Self {
+        let count = Arc::new(Count { doing, done: AtomicUsize::new(0), total: AtomicUsize::new(0) });
         let watcher = std::io::stderr().is_terminal().then(|| {
             let (stop, stopped) = channel();
             let watched = Arc::clone(&count);
@@ -64,7 +69,7 @@ fn watch(count: &Count, stopped: &Receiver<()>) {
     loop {
         let (done, total) = (count.done.load(Relaxed), count.total.load(Relaxed));
         if done < total {
-            bar.set_style(style("reading recordings [{bar:32}] {pos}/{len}"));
+            bar.set_style(style(&format!("{} [{{bar:32}}] {{pos}}/{{len}}", count.doing)));
             bar.set_length(total as u64);
             bar.set_position(done as u64);
         } else {

@@ -3,10 +3,11 @@
 use std::fmt::Write;
 
 use reachtube::Model;
-use reachtube::abstraction::PolynomialModel;
+use reachtube::abstraction::{ModelKind, PolynomialModel};
 use reachtube::conform::{Check, Place, Trust};
 use reachtube::data::{Group, Inspection};
 use reachtube::model::MOST_TIGHT;
+use reachtube::reproduce::{Cell, Paper, Speed, Table1};
 
 use crate::numbers::{interval, number};
 
@@ -87,6 +88,56 @@ fn joint_of_abstraction(model: &PolynomialModel, i: usize) -> Vec<String> {
 
 fn duration(seconds: f64) -> String {
     if seconds < 1.0 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.2} s") }
+}
+
+/// The result of `reproduce table1`, in the paper's layout.
+pub fn table1(table: &Table1) -> String {
+    let (options, [slow, fast]) = (&table.options, table.durations);
+    let mut text = format!(
+        "Table I for {}: mean |velocity error| over time and joints [rad/s], against articulated bodies\n\
+         mean ± standard deviation over {} random point-to-point motions (seed {}) within {} rad of 0, {slow:.2} s (slow) and {fast:.2} s (fast) long, inputs held over 4 ms\n\n",
+        table.robot,
+        options.motions,
+        options.seed,
+        number(options.range)
+    );
+    let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];
+    let rows: Vec<Vec<String>> = options
+        .orders
+        .iter()
+        .flat_map(|order| Speed::ALL.map(|speed| (*order, speed)))
+        .map(|(order, speed)| {
+            let cells = kinds.map(|kind| table1_cell(table.cell(kind, order, speed)));
+            [order.to_string(), speed.name().into()].into_iter().chain(cells.into_iter().flatten()).collect()
+        })
+        .collect();
+    let header = ["p", "speed", "model 1", "paper", "model 2", "paper", "model 3", "paper"];
+    text.push_str(&self::table(&header, &rows));
+    if options.orders.iter().any(|order| *order > options.model3_up_to) {
+        let _ = writeln!(
+            text,
+            "\n-: left out; model 3 is simulated up to order {} (--model3-up-to)",
+            options.model3_up_to
+        );
+    }
+    text
+}
+
+/// Ours and the paper's number.
+fn table1_cell(cell: Option<&Cell>) -> [String; 2] {
+    let Some(cell) = cell else { return ["-".into(), String::new()] };
+    let spread = cell.spread.map(|spread| format!(" ± {}", number(spread))).unwrap_or_default();
+    let ours = match (cell.mean, cell.diverged) {
+        (None, diverged) => format!("∞ ({diverged} diverged)"),
+        (Some(mean), 0) => format!("{}{spread}", number(mean)),
+        (Some(mean), diverged) => format!("{}{spread} ({diverged} diverged)", number(mean)),
+    };
+    let paper = match cell.paper {
+        Some(Paper::Error(error)) => format!("{error:.4}"),
+        Some(Paper::Diverged) => "∞".into(),
+        None => String::new(),
+    };
+    [ours, paper]
 }
 
 /// The result of `conform`, with a table like Table II of the paper.

@@ -7,9 +7,11 @@ pub mod demo;
 mod error;
 mod json;
 pub mod model;
+mod motion;
 mod random;
 pub mod reach;
 pub mod report;
+pub mod reproduce;
 pub mod write;
 
 pub use error::{Error, Result};

@@ -2,7 +2,7 @@
 
 use crate::algebra::{Pose, Sym3, Vec3, mul};
 use crate::chain::Link;
-use crate::rnea::{Motion, link_wrench};
+use crate::rnea::{Motion, Weight, link_wrench};
 use crate::workspace::{ArticulatedBody, ArticulatedScratch};
 use crate::{Robot, Workspace};
 use reachtube_scalar::Scalar;
@@ -25,13 +25,28 @@ impl Robot {
         ws: &mut Workspace<S>,
         qdd: &mut [S],
     ) {
+        self.articulate([sin, cos, qd, tau], self.weight(), ws, qdd);
+    }
+
+    /// Forward dynamics over [sin q, cos q, q̇, tau] under a weight.
+    pub(crate) fn articulate<S: Scalar>(
+        &self,
+        [sin, cos, qd, tau]: [&[S]; 4],
+        weight: Weight<S>,
+        ws: &mut Workspace<S>,
+        qdd: &mut [S],
+    ) {
         let Workspace { links, articulated, torque, .. } = ws;
-        if !self.separate_gravity {
-            return self.articulated_bodies([sin, cos, qd, tau], self.base_acceleration(), articulated, qdd);
-        }
-        self.gravity_pass(sin, cos, links, torque);
-        torque.iter_mut().zip(tau).for_each(|(g, t)| *g = t.clone() - g.clone());
-        self.articulated_bodies([sin, cos, qd, torque], Vec3::zero(), articulated, qdd);
+        let base_acceleration = match weight {
+            Weight::None => Vec3::zero(),
+            Weight::Inertial(acceleration) => acceleration,
+            Weight::Separate(_) => {
+                self.gravity_pass(sin, cos, links, torque);
+                torque.iter_mut().zip(tau).for_each(|(g, t)| *g = t.clone() - g.clone());
+                return self.articulated_bodies([sin, cos, qd, torque], Vec3::zero(), articulated, qdd);
+            }
+        };
+        self.articulated_bodies([sin, cos, qd, tau], base_acceleration, articulated, qdd);
     }
 
     /// The algorithm over [sin q, cos q, q̇, tau] with the inertial parameters, the base accelerating.

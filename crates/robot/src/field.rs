@@ -41,6 +41,7 @@ pub struct RobotField<'a, S> {
     robot: &'a Robot,
     driven_by: DrivenBy,
     sticking_speed: f64,
+    articulated: bool,
     ws: Workspace<S>,
     sin: Vec<S>,
     cos: Vec<S>,
@@ -51,8 +52,23 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
     /// The motion of one robot.
     pub fn new(robot: &'a Robot, driven_by: DrivenBy) -> Self {
         let zeros = || vec![S::zero(); robot.joint_count()];
-        let (ws, sticking_speed) = (Workspace::new(robot), 0.0);
-        Self { robot, driven_by, sticking_speed, ws, sin: zeros(), cos: zeros(), torque: zeros() }
+        let (ws, sticking_speed, articulated) = (Workspace::new(robot), 0.0, false);
+        Self {
+            robot,
+            driven_by,
+            sticking_speed,
+            articulated,
+            ws,
+            sin: zeros(),
+            cos: zeros(),
+            torque: zeros(),
+        }
+    }
+
+    /// The same motion by Featherstone's articulated bodies, [`Robot::aba`], in place of [`Robot::forward_dynamics`].
+    #[must_use]
+    pub fn by_articulated_bodies(self) -> Self {
+        Self { articulated: true, ..self }
     }
 
     /// The same with Coulomb friction in proportion to |q̇| below a speed \[rad/s\], and as it is from there on: a joint that would stick
@@ -103,6 +119,11 @@ impl<S: Lanewise> VectorField<S> for RobotField<'_, S> {
                 Weight::None
             }
         };
-        self.robot.accelerate([&self.sin, &self.cos, qd, &self.torque], weight, &mut self.ws, acceleration);
+        let state = [&self.sin, &self.cos, qd, &self.torque];
+        if self.articulated {
+            self.robot.articulate(state, weight, &mut self.ws, acceleration);
+        } else {
+            self.robot.accelerate(state, weight, &mut self.ws, acceleration);
+        }
     }
 }

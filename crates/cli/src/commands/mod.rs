@@ -8,6 +8,7 @@ mod files;
 mod inspect;
 mod reach;
 mod report;
+mod reproduce;
 mod robot;
 
 use reachtube::conform::{Check, Grids, Recordings, Settings, check as check_recordings};
@@ -17,7 +18,7 @@ use reachtube::report::Sources;
 use reachtube::{Model, Result};
 use reachtube_robot::Robot;
 
-use crate::args::{Cli, Command, DataArgs, ModelArgs, RobotCommand, gap_limit};
+use crate::args::{Cli, Command, DataArgs, ModelArgs, ReproduceCommand, RobotCommand, gap_limit};
 use crate::output;
 use crate::progress::Progress;
 
@@ -46,6 +47,7 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
         Command::Check(args) => check::run(args, cli.json),
         Command::Reach(args) => reach::run(args, cli.json),
         Command::Report(args) => report::run(args, cli.json),
+        Command::Reproduce(ReproduceCommand::Table1(args)) => reproduce::table1(args, cli.json),
     }
 }
 

@@ -1,7 +1,8 @@
-//! Point-to-point motions and the input that is recorded along them.
+//! Motions of the demo.
 
 use reachtube_robot::Robot;
 
+use crate::motion::{Motion, QUINTIC_PEAK};
 use crate::random::SplitMix64;
 
 /// Peak speed of the fastest joint of a motion, rad/s: from, to.
@@ -16,31 +17,9 @@ const POSITION_SHARE: f64 = 0.4;
 /// The slowest joint's travel over the fastest joint's, at least.
 const LEAST_TRAVEL: f64 = 0.1;
 
-/// Peak of the derivative of the quintic from 0 to 1 in unit time.
-const QUINTIC_PEAK: f64 = 1.875;
-
-/// A point-to-point motion of all joints at once, at rest at both ends.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Motion {
-    /// Positions at the start, rad.
-    pub start: Vec<f64>,
-    /// From start to end, rad.
-    pub travel: Vec<f64>,
-    /// s.
-    pub duration: f64,
-}
-
-/// A state and its rate of change: q rad, q̇ rad/s, q̈ rad/s².
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Planned {
-    pub q: Vec<f64>,
-    pub qd: Vec<f64>,
-    pub qdd: Vec<f64>,
-}
-
 impl Motion {
     /// A motion within the robot's position and speed limits.
-    pub fn random(robot: &Robot, duration: f64, random: &mut SplitMix64) -> Self {
+    pub(crate) fn random(robot: &Robot, duration: f64, random: &mut SplitMix64) -> Self {
         let joints = robot.joints();
         let share: Vec<f64> =
             joints.iter().map(|_| random.sign() * random.uniform(LEAST_TRAVEL, 1.0)).collect();
@@ -60,27 +39,6 @@ impl Motion {
             0.5 * (low + high) - 0.5 * travel + random.uniform(-room, room)
         });
         Self { start: start.collect(), travel, duration }
-    }
-
-    /// The plan at time `t` s: q = start + s(t / T) travel with s = 10 x³ - 15 x⁴ + 6 x⁵; at rest outside [0, T].
-    pub fn at(&self, t: f64) -> Planned {
-        let x = (t / self.duration).clamp(0.0, 1.0);
-        let rest = 1.0 - x;
-        let s = x * x * x * (10.0 + x * (6.0 * x - 15.0));
-        let rate = 30.0 * (x * rest).powi(2) / self.duration;
-        let bend = 60.0 * x * rest * (1.0 - 2.0 * x) / self.duration.powi(2);
-        Planned {
-            q: self.start.iter().zip(&self.travel).map(|(start, travel)| start + s * travel).collect(),
-            qd: self.travel.iter().map(|travel| rate * travel).collect(),
-            qdd: self.travel.iter().map(|travel| bend * travel).collect(),
-        }
-    }
-
-    /// The input (11) that moves the nominal robot along the plan at time `t` s: u = M_m q̈ + c + τ_v, N m.
-    pub fn input(&self, robot: &Robot, t: f64) -> Vec<f64> {
-        let Planned { q, qd, qdd } = self.at(t);
-        let link = robot.inverse_dynamics(&q, &qd, &qdd);
-        robot.input_from_link_torque(&q, &qd, link.as_slice()).data.into()
     }
 }
 
@@ -111,38 +69,5 @@ mod tests {
             }
             prop_assert!(duration > 4.0 || (0.5..=1.0).contains(&peak), "{peak}");
         }
-
-        #[test]
-        fn velocity_and_acceleration_are_derivatives(seed: u64, t in 0.01..2.99f64) {
-            let motion = Motion::random(&Robot::lwa4p(), 3.0, &mut SplitMix64::new(seed));
-            let (before, plan, after) = (motion.at(t - 1e-4), motion.at(t), motion.at(t + 1e-4));
-            for i in 0..6 {
-                prop_assert!(((after.q[i] - before.q[i]) / 2e-4 - plan.qd[i]).abs() < 1e-6);
-                prop_assert!(((after.qd[i] - before.qd[i]) / 2e-4 - plan.qdd[i]).abs() < 1e-6);
-            }
-        }
-    }
-
-    #[test]
-    fn the_motion_goes_from_rest_to_rest() {
-        let motion = Motion::random(&Robot::lwa4p(), 3.0, &mut SplitMix64::new(1));
-        assert_eq!(motion.at(0.0).q, motion.start);
-        for (end, (start, travel)) in motion.at(3.0).q.iter().zip(motion.start.iter().zip(&motion.travel)) {
-            assert!((end - start - travel).abs() < 1e-12);
-        }
-        for t in [0.0, 3.0, 4.0] {
-            assert!(motion.at(t).qd.iter().chain(&motion.at(t).qdd).all(|x| *x == 0.0));
-        }
-    }
-
-    #[test]
-    fn the_input_moves_the_nominal_robot_as_planned() {
-        let robot = Robot::lwa4p();
-        let motion = Motion::random(&robot, 3.0, &mut SplitMix64::new(2));
-        let plan = motion.at(1.0);
-        let net = robot.gravity_torque(&plan.q) - robot.viscous_torque(&plan.qd)
-            + nalgebra::DVector::from_vec(motion.input(&robot, 1.0));
-        let qdd = robot.forward_acceleration(&plan.q, &plan.qd, net.as_slice());
-        assert!((qdd - nalgebra::DVector::from_vec(plan.qdd)).amax() < 1e-12);
     }
 }

@@ -3,9 +3,9 @@
 use reachtube_robot::Robot;
 
 use super::hidden::{self, SCATTER_Q, SCATTER_QD};
-use super::motion::Motion;
 use super::number::rounded;
 use super::{DemoOptions, SAMPLE_TIME};
+use crate::motion::Motion;
 use crate::random::SplitMix64;
 
 /// Parts of a motion at which the first suite starts, and after which none does.

@@ -30,8 +30,25 @@ pub struct PolynomialMap<C = f64> {
     highest: Vec<u32>,
     constants: Vec<C>,
     nodes: Vec<Node>,
-    /// Component and coefficient, node by node.
-    terms: Vec<(u32, C)>,
+    /// Of each [`GROUP`] components, one group after the other.
+    groups: Vec<Group<C>>,
+    /// Non-constant terms of all components.
+    term_count: usize,
+}
+
+/// Components that are summed together: they mostly have the same monomials.
+const GROUP: usize = 2;
+
+/// Sums that are formed at a time: an addition does not wait for the one before it.
+const SUMS: usize = 2;
+
+/// The non-constant terms of some components.
+#[derive(Debug, Clone, PartialEq)]
+struct Group<C> {
+    /// Numbers of the monomials that one of the components has, increasing.
+    monomials: Vec<u32>,
+    /// 0 where a component lacks a monomial.
+    coefficients: Vec<[C; GROUP]>,
 }
 
 /// A monomial: its parent (0 is the monomial 1, else a node's number plus 1) times a power.
@@ -40,8 +57,6 @@ struct Node {
     parent: u32,
     /// Place in the list of powers.
     power: u32,
-    /// Where its terms end.
-    end: u32,
 }
 
 /// Scratch memory of an evaluation.
@@ -72,8 +87,10 @@ impl<C: Scalar> PolynomialMap<C> {
             });
         }
         close_under_parents(packing, &mut monomials);
+        let group = Group { monomials: vec![], coefficients: vec![] };
+        let groups = vec![group; components.len().div_ceil(GROUP)];
         let mut map =
-            Self { variables, highest: vec![0; variables], constants, nodes: vec![], terms: vec![] };
+            Self { variables, highest: vec![0; variables], constants, nodes: vec![], groups, term_count: 0 };
         map.fill(packing, monomials);
         map
     }
@@ -89,10 +106,14 @@ impl<C: Scalar> PolynomialMap<C> {
         for (m, terms) in monomials {
             let i = packing.first_variable(m).expect("1 is a constant");
             let parent = numbers.get(&packing.without(m, i)).copied().unwrap_or(0);
-            self.terms.extend(terms);
             let power = starts[i] + packing.exponent(m, i) - 1;
-            self.nodes.push(Node { parent, power, end: self.terms.len() as u32 });
-            numbers.insert(m, self.nodes.len() as u32);
+            self.nodes.push(Node { parent, power });
+            let number = self.nodes.len() as u32;
+            self.term_count += terms.len();
+            for (component, c) in terms {
+                self.groups[component as usize / GROUP].push(number, component as usize % GROUP, c);
+            }
+            numbers.insert(m, number);
         }
     }
 
@@ -108,7 +129,7 @@ impl<C: Scalar> PolynomialMap<C> {
 
     /// Number of non-constant terms of all components together.
     pub fn term_count(&self) -> usize {
-        self.terms.len()
+        self.term_count
     }
 
     /// Scratch memory for evaluation over T.
@@ -140,20 +161,20 @@ impl<C: Scalar> PolynomialMap<C> {
                 place += 1;
             }
         }
-        out.iter_mut().zip(&self.constants).for_each(|(out, c)| *out = T::from(c.clone()));
         ws.values[0] = T::one();
-        let mut from = 0;
         for (number, node) in self.nodes.iter().enumerate() {
             let power = &ws.powers[node.power as usize];
-            let value = match node.parent {
+            ws.values[number + 1] = match node.parent {
                 0 => power.clone(),
                 parent => ws.values[parent as usize].clone() * power.clone(),
             };
-            for (component, c) in &self.terms[from..node.end as usize] {
-                out[*component as usize] += T::from(c.clone()) * value.clone();
+        }
+        let constants = self.constants.chunks(GROUP);
+        for ((out, constants), group) in out.chunks_mut(GROUP).zip(constants).zip(&self.groups) {
+            let sums = group.sums(&ws.values);
+            for ((out, constant), sum) in out.iter_mut().zip(constants).zip(sums) {
+                *out = T::from(constant.clone()) + sum;
             }
-            ws.values[number + 1] = value;
-            from = node.end as usize;
         }
     }
 
@@ -162,6 +183,41 @@ impl<C: Scalar> PolynomialMap<C> {
         let mut out = vec![T::zero(); self.constants.len()];
         self.evaluate_into(at, &mut self.workspace(), &mut out);
         out
+    }
+}
+
+impl<C: Scalar> Group<C> {
+    fn push(&mut self, monomial: u32, component: usize, c: C) {
+        if self.monomials.last() != Some(&monomial) {
+            self.monomials.push(monomial);
+            self.coefficients.push(core::array::from_fn(|_| C::zero()));
+        }
+        if let Some(coefficients) = self.coefficients.last_mut() {
+            coefficients[component] = c;
+        }
+    }
+
+    /// Coefficients times monomials, summed for each component.
+    fn sums<T: Scalar + From<C>>(&self, values: &[T]) -> [T; GROUP] {
+        let add = |sums: &mut [T; GROUP], c: &[C; GROUP], monomial: u32| {
+            let value = &values[monomial as usize];
+            for (sum, c) in sums.iter_mut().zip(c) {
+                *sum += T::from(c.clone()) * value.clone();
+            }
+        };
+        let (coefficients, monomials) =
+            (self.coefficients.chunks_exact(SUMS), self.monomials.chunks_exact(SUMS));
+        let rest = coefficients.remainder().iter().zip(monomials.remainder());
+        let mut sums: [[T; GROUP]; SUMS] = core::array::from_fn(|_| core::array::from_fn(|_| T::zero()));
+        for (c, monomials) in coefficients.zip(monomials) {
+            for i in 0..SUMS {
+                add(&mut sums[i], &c[i], monomials[i]);
+            }
+        }
+        rest.for_each(|(c, monomial)| add(&mut sums[0], c, *monomial));
+        let [mut total, other] = sums;
+        total.iter_mut().zip(other).for_each(|(a, b)| *a += b);
+        total
     }
 }
 
