@@ -1,0 +1,63 @@
+//! What Table I of the paper says of the models, on random motions.
+
+use reachtube::abstraction::ModelKind::{One, Three, Two};
+use reachtube::reproduce::{Paper, Speed, Table1, Table1Options, table1};
+use reachtube_robot::Robot;
+
+fn table(orders: &[u32], motions: usize) -> Table1 {
+    let options =
+        Table1Options { motions, orders: orders.to_vec(), model3_up_to: 3, seed: 2, ..Default::default() };
+    table1(&Robot::lwa4p(), &options, &|_, _| ()).unwrap()
+}
+
+#[test]
+fn at_order_one_the_models_have_one_error_of_the_papers_size() {
+    let table = table(&[1], 16);
+    for (speed, expected) in [(Speed::Slow, 0.004..0.010), (Speed::Fast, 0.0408..0.07)] {
+        let one = table.cell(One, 1, speed).unwrap();
+        assert!(expected.contains(&one.mean.unwrap()), "{speed:?}: {:?}", one.mean);
+        for kind in [Two, Three] {
+            let other = table.cell(kind, 1, speed).unwrap();
+            let pairs = one.errors.iter().zip(&other.errors);
+            assert!(pairs.clone().count() == 16);
+            for (a, b) in pairs {
+                assert!((a.unwrap() - b.unwrap()).abs() < 1e-13, "{kind:?}");
+            }
+        }
+    }
+}
+
+/// The paper's order of models 1 and 2, which is that of each motion's own errors in the mean, and ∞ for model 3.
+#[test]
+fn the_models_are_in_the_papers_order() {
+    let table = table(&[3, 7], 16);
+    let mean = |kind, order, speed| table.cell(kind, order, speed).unwrap().mean.unwrap();
+    for speed in Speed::ALL {
+        assert!(mean(Two, 3, speed) > mean(One, 3, speed));
+        assert!(mean(Two, 7, speed) < 0.9 * mean(One, 7, speed));
+        assert!((mean(One, 7, speed) - mean(One, 3, speed)).abs() < 1e-13);
+        let three = table.cell(Three, 3, speed).unwrap();
+        assert_eq!((three.paper, three.diverged > 0), (Some(Paper::Diverged), true));
+        assert_eq!(three.errors.iter().filter(|error| error.is_none()).count(), three.diverged);
+    }
+    assert!(table.cell(Three, 7, Speed::Fast).is_none());
+}
+
+/// A motion is the same whatever else is simulated, and the file has every error.
+#[test]
+fn errors_depend_on_seed_and_motion_alone() {
+    let (few, many) = (table(&[3], 3), table(&[1, 3], 9));
+    for cell in &few.cells {
+        assert_eq!(cell.errors[..], many.cell(cell.model, 3, cell.speed).unwrap().errors[..3]);
+    }
+    let mut csv = Vec::new();
+    few.write_csv(&mut csv).unwrap();
+    let csv = String::from_utf8(csv).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 3 * 2 * 3);
+    let error = few.cell(One, 3, Speed::Slow).unwrap().errors[0].unwrap();
+    assert_eq!(csv.lines().nth(1), Some(&format!("3,1,slow,1,{error}")[..]));
+    let nothing = Table1Options { motions: 0, ..Default::default() };
+    assert!(
+        table1(&Robot::lwa4p(), &nothing, &|_, _| ()).unwrap_err().to_string().contains("give 1 at least")
+    );
+}
