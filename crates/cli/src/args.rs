@@ -30,6 +30,7 @@ Examples:
   reachtube conform --robot lwa4p --data recordings --suites A,B --torque compensated --out model.json
   reachtube check --model model.json --data recordings --suites C --torque compensated
   reachtube report --model model.json --data recordings --suites A,B --torque compensated --out report
+  reachtube reproduce table1                                  the models in simulation, beside the paper's numbers
 
 Exit codes: 0 conformant (or done), 1 not conformant, 2 error.
 Results go to standard output, everything else to standard error.";
@@ -133,7 +134,7 @@ pub struct Table1Args {
     #[arg(long, default_value_t = 5, value_name = "P")]
     pub model3_up_to: u32,
     /// Keep motions this close to the expansion point q = 0, rad
-    #[arg(long, default_value_t = std::f64::consts::FRAC_PI_2, value_name = "RAD")]
+    #[arg(long, default_value_t = std::f64::consts::FRAC_PI_2, value_name = "RAD", allow_negative_numbers = true)]
     pub range: f64,
     /// Write the error of each motion to this CSV file
     #[arg(long)]

@@ -279,7 +279,7 @@ fn what_models_leave_out_is_bounded() {
 fn no_bound_is_an_answer() {
     let robot = Robot::lwa4p();
     let model = model(&robot, ModelKind::One, 1);
-    let whole = OperatingBox::about(model.expansion_point(), &[3.14, 1.2, 10.0]).unwrap();
+    let whole = OperatingBox::about(model.expansion_point(), &[3.1, 1.2, 10.0]).unwrap();
     assert!(model.bound_remainder(&whole, 4).unwrap().bounds.iter().all(Option::is_none));
     let refusal = |radii: &[f64]| {
         let outside = OperatingBox::about(model.expansion_point(), radii);

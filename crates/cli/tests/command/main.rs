@@ -7,6 +7,7 @@ mod index;
 mod options;
 mod outputs;
 mod reach;
+mod reproduce;
 mod robots;
 mod schema;
 mod schunk;

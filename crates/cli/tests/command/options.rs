@@ -5,7 +5,9 @@ use crate::fixture::{Lab, SAMPLES};
 #[test]
 fn help_has_examples_and_exit_codes() {
     let lab = Lab::new();
-    for command in ["", "demo", "robot show", "inspect", "conform", "check", "reach", "report"] {
+    for command in
+        ["", "demo", "robot show", "inspect", "conform", "check", "reach", "report", "reproduce table1"]
+    {
         let help = lab.run(&format!("{command} --help")).exits(0).stdout;
         assert!(
             help.contains("Example") && help.contains(&format!("reachtube {command}")),
