@@ -8,8 +8,8 @@ mod shared;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::{Lanes, Lanewise};
+use reachtube_robot::{RegressorWorkspace, Robot, Workspace};
 
 const ROBOTS: [&str; 3] = ["ur5", "dh6", "lwa4p"];
 const STATES: usize = 256;
@@ -90,5 +90,20 @@ fn aba<S: Lanewise>(bencher: Bencher, name: &str) {
 fn forward_dynamics<S: Lanewise>(bencher: Bencher, name: &str) {
     each::<S>(bencher, name, |robot, [sin, cos, _, qd, _, tau], ws, out| {
         robot.forward_dynamics(sin, cos, qd, tau, ws, out);
+    });
+}
+
+/// Sine and cosine included, as in Pinocchio's `computeJointTorqueRegressor`.
+#[divan::bench(args = ROBOTS)]
+fn inertial_regressor(bencher: Bencher, name: &str) {
+    let mut scratch: Option<RegressorWorkspace<f64>> = None;
+    let (mut y, mut sin, mut cos) = (vec![0.0; 360], vec![0.0; 6], vec![0.0; 6]);
+    each(bencher, name, |robot, [_, _, q, qd, qdd, _], _, _| {
+        let ws = scratch.get_or_insert_with(|| RegressorWorkspace::new(robot));
+        for (i, q) in q.iter().enumerate() {
+            (sin[i], cos[i]) = q.sin_cos();
+        }
+        robot.inertial_regressor(&sin, &cos, qd, qdd, ws, &mut y);
+        black_box(&y);
     });
 }

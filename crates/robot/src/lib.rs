@@ -3,6 +3,7 @@
 mod aba;
 mod algebra;
 mod chain;
+mod column;
 mod coriolis;
 mod crba;
 mod description;
@@ -18,12 +19,14 @@ pub mod ltdl;
 mod physicality;
 mod placement;
 mod polynomial_dynamics;
+mod regressor;
 mod rnea;
 mod robot;
 mod simulate;
 mod workspace;
 
 pub use chain::JointGeometry;
+pub use column::{Column, ColumnKind, Regressor};
 pub use description::{
     Convention, Dh, FrictionDescription, GravityMoments, InertiaPoint, JointDescription, Parameters,
     PlacementDescription, RobotDescription, SCHEMA_VERSION,
@@ -34,6 +37,7 @@ pub use inertia::LinkInertia;
 pub use physicality::Physicality;
 pub use placement::{Placement, snapped_sin_cos};
 pub use polynomial_dynamics::PolynomialDynamics;
+pub use regressor::RegressorWorkspace;
 pub use robot::{Joint, Robot};
 pub use simulate::Trajectory;
 pub use workspace::Workspace;

@@ -194,12 +194,23 @@ impl<S: Scalar> Motion<S> {
 
 impl<S: Scalar> AccelerationGradient<S> {
     #[inline(always)]
-    fn times(&self, r: &Vec3<S>) -> Vec3<S> {
+    pub fn times(&self, r: &Vec3<S>) -> Vec3<S> {
         let k = &self.0;
         Vec3::new(
             sum2(&k[0], &r.x, &k[1], &r.y) + mul(&k[2], &r.z),
             sum2(&k[3], &r.x, &k[4], &r.y) + mul(&k[5], &r.z),
             sum2(&k[6], &r.x, &k[7], &r.y) + mul(&k[8], &r.z),
+        )
+    }
+
+    /// Kᵀ v.
+    #[inline(always)]
+    pub fn transposed_times(&self, v: &Vec3<S>) -> Vec3<S> {
+        let k = &self.0;
+        Vec3::new(
+            sum2(&k[0], &v.x, &k[3], &v.y) + mul(&k[6], &v.z),
+            sum2(&k[1], &v.x, &k[4], &v.y) + mul(&k[7], &v.z),
+            sum2(&k[2], &v.x, &k[5], &v.y) + mul(&k[8], &v.z),
         )
     }
 

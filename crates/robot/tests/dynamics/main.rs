@@ -9,5 +9,6 @@ mod physicality;
 mod pinocchio;
 mod polynomials;
 mod random;
+mod regressor;
 mod shared;
 mod simulation;
