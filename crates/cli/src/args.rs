@@ -100,7 +100,7 @@ pub enum RobotCommand {
 
 #[derive(Debug, Args)]
 pub struct RobotShowArgs {
-    /// An embedded robot (lwa4p) or a TOML file
+    /// An embedded robot (lwa4p), or a TOML or URDF file
     pub robot: String,
     /// Positions q_a at which M is printed, rad, separated by commas [default: 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
@@ -143,7 +143,7 @@ pub struct Table1Args {
 
 #[derive(Debug, Args)]
 pub struct AbstractArgs {
-    /// An embedded robot (lwa4p) or a TOML file
+    /// An embedded robot (lwa4p), or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
     /// Which of the paper's models
@@ -208,7 +208,7 @@ pub struct DataArgs {
 
 #[derive(Debug, Args)]
 pub struct ConformArgs {
-    /// An embedded robot (lwa4p) or a TOML file, to take model 1 of order 1 of
+    /// An embedded robot (lwa4p), or a TOML or URDF file, to take model 1 of order 1 of
     #[arg(long, required_unless_present = "abstraction")]
     pub robot: Option<String>,
     /// A linear model that `abstract --out` wrote

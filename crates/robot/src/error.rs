@@ -4,15 +4,15 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum RobotError {
     /// No embedded robot has this name and no file could be read.
-    #[error("cannot read robot `{}`: {source}; give the path of a TOML file or an embedded name (lwa4p)", path.display())]
+    #[error("cannot read robot `{}`: {source}; give the path of a TOML or URDF file or an embedded name (lwa4p)", path.display())]
     Read {
         /// The name or path that was asked for.
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
     },
-    /// The text is not TOML or lacks a field; the parser's message names line, column and field.
-    #[error("{origin}: {}\ncorrect it; the README of reachtube-robot describes the format", message.trim_end())]
+    /// The text is not TOML or XML, or lacks a field; the parser's message names line, column and field.
+    #[error("{origin}: {}\ncorrect it; docs/robot.md describes the format", message.trim_end())]
     Syntax {
         /// File or name the text came from.
         origin: String,

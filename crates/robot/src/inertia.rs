@@ -47,6 +47,13 @@ impl LinkInertia {
         Matrix3::identity() * self.second_moments.trace() - self.second_moments
     }
 
+    /// Mass, centre of mass \[m\], and ixx, ixy, ixz, iyy, iyz, izz about it \[kg m²\]; about the origin where the mass is 0.
+    pub(crate) fn about_own_com(&self) -> (f64, [f64; 3], [f64; 6]) {
+        let c = if self.mass == 0.0 { Vector3::zeros() } else { self.first_moment / self.mass };
+        let t = self.tensor() - self.mass * (Matrix3::identity() * c.norm_squared() - c * c.transpose());
+        (self.mass, c.into(), [t[(0, 0)], t[(0, 1)], t[(0, 2)], t[(1, 1)], t[(1, 2)], t[(2, 2)]])
+    }
+
     /// The smallest eigenvalue of the pseudo-inertia [[Σ, h], [hᵀ, m]], relative to its largest magnitude.
     ///
     /// Zero or more (to rounding) if and only if some distribution of positive mass has these ten parameters.

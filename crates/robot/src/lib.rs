@@ -23,6 +23,7 @@ mod regressor;
 mod rnea;
 mod robot;
 mod simulate;
+mod urdf;
 mod workspace;
 
 pub use chain::JointGeometry;
@@ -40,4 +41,5 @@ pub use polynomial_dynamics::PolynomialDynamics;
 pub use regressor::RegressorWorkspace;
 pub use robot::{Joint, Robot};
 pub use simulate::Trajectory;
+pub use urdf::{Urdf, UrdfEnds};
 pub use workspace::Workspace;

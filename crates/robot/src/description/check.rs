@@ -183,14 +183,15 @@ fn check_link_numbers(joint: &JointDescription) -> Checked {
 fn check_body(joint: &JointDescription) -> Checked {
     let remedy = "correct it, or set parameters = \"base\" where only identified combinations are meant";
     require(joint.mass >= 0.0, "mass", remedy, || format!("mass = {} kg is negative", joint.mass))?;
-    let principal = principal_spreads(&joint.inertia_about_com());
+    let (_, _, about_com) = joint.about_own_com();
+    let principal = principal_spreads(&about_com);
     let scale = principal.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let least = principal.iter().fold(f64::INFINITY, |a, b| a.min(*b));
     require(least >= -TOLERANCE * scale, "inertia", remedy, || {
         format!(
             "inertia {:?} about the centre of mass is that of no body: one principal inertia exceeds the sum of the \
              other two by {:.3e} kg m²",
-            joint.inertia_about_com(),
+            about_com,
             -2.0 * least
         )
     })?;

@@ -3,6 +3,8 @@
 mod check;
 mod read;
 
+pub(crate) use check::Finding;
+
 use serde::{Deserialize, Serialize};
 
 /// The version of the format that this crate writes, and the only one it reads.

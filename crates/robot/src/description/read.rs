@@ -15,7 +15,8 @@ use std::path::Path;
 const EMBEDDED: [(&str, &str); 1] = [("lwa4p", include_str!("../../robots/lwa4p.toml"))];
 
 impl Robot {
-    /// An embedded robot by name (`lwa4p`), or one from a TOML file by path.
+    /// An embedded robot by name (`lwa4p`), or one from a TOML or URDF file by path; what ends in `.urdf` is read as
+    /// [`Urdf::load`](crate::Urdf::load) does without named ends.
     ///
     /// # Errors
     ///
@@ -24,7 +25,11 @@ impl Robot {
         if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == name_or_path) {
             return Self::from_toml(text, name);
         }
-        let text = std::fs::read_to_string(Path::new(name_or_path))
+        let path = Path::new(name_or_path);
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) {
+            return Ok(crate::Urdf::load(path, &Default::default())?.into_robot());
+        }
+        let text = std::fs::read_to_string(path)
             .map_err(|source| RobotError::Read { path: name_or_path.into(), source })?;
         Self::from_toml(&text, name_or_path)
     }
@@ -37,11 +42,9 @@ impl Robot {
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, RobotError> {
         let description: RobotDescription = toml::from_str(text)
             .map_err(|e| RobotError::Syntax { origin: origin.into(), message: e.to_string() })?;
-        description.check().map_err(|f| {
-            let place = format!("{origin}:{}", line_of(text, f.joint, f.key));
-            invalid(&description, &place, f)
-        })?;
-        Ok(description.build())
+        Self::checked(&description, |f| {
+            (format!("{origin}:{}", line_of(text, f.joint, f.key)), joint_words(&description, f))
+        })
     }
 
     /// A robot from its description.
@@ -50,7 +53,18 @@ impl Robot {
     ///
     /// [`RobotError`] with joint, value and remedy.
     pub fn from_description(description: &RobotDescription) -> Result<Self, RobotError> {
-        description.check().map_err(|f| invalid(description, &description.name, f))?;
+        Self::checked(description, |f| (description.name.clone(), joint_words(description, f)))
+    }
+
+    /// A robot from its description; `locate` says origin and place of a value that makes no robot.
+    pub(crate) fn checked(
+        description: &RobotDescription,
+        locate: impl Fn(&Finding) -> (String, String),
+    ) -> Result<Self, RobotError> {
+        description.check().map_err(|f| {
+            let (origin, place) = locate(&f);
+            RobotError::Invalid { origin, place, problem: f.problem, remedy: f.remedy.into() }
+        })?;
         Ok(description.clone().build())
     }
 
@@ -62,9 +76,8 @@ impl Robot {
     }
 }
 
-fn invalid(description: &RobotDescription, origin: &str, f: Finding) -> RobotError {
-    let place = f.joint.map_or(String::new(), |i| format!("joint `{}`: ", description.joints[i].name));
-    RobotError::Invalid { origin: origin.into(), place, problem: f.problem, remedy: f.remedy.into() }
+fn joint_words(description: &RobotDescription, f: &Finding) -> String {
+    f.joint.map_or(String::new(), |i| format!("joint `{}`: ", description.joints[i].name))
 }
 
 /// Line (from 1) of a key in the table of the given joint, or the table's first line where the key is absent.
@@ -111,13 +124,6 @@ impl JointDescription {
         }
     }
 
-    fn centre_of_mass(&self) -> Vector3<f64> {
-        match self.first_moment {
-            Some(h) if self.mass != 0.0 => Vector3::from(h) / self.mass,
-            _ => self.com.unwrap_or_default().into(),
-        }
-    }
-
     fn tensor(&self) -> Matrix3<f64> {
         let [xx, xy, xz, yy, yz, zz] = self.inertia;
         Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
@@ -135,15 +141,12 @@ impl JointDescription {
         }
     }
 
-    /// ixx, ixy, ixz, iyy, iyz, izz about the centre of mass.
-    pub(crate) fn inertia_about_com(&self) -> [f64; 6] {
-        let c = self.centre_of_mass();
-        let shift = match self.about {
-            InertiaPoint::Com => 0.0,
-            InertiaPoint::Origin => self.mass,
-        };
-        let t = self.tensor() - shift * (Matrix3::identity() * c.norm_squared() - c * c.transpose());
-        [t[(0, 0)], t[(0, 1)], t[(0, 2)], t[(1, 1)], t[(1, 2)], t[(2, 2)]]
+    /// Mass, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz about it; the numbers as given where those are they.
+    pub(crate) fn about_own_com(&self) -> (f64, [f64; 3], [f64; 6]) {
+        match self.about {
+            InertiaPoint::Com => (self.mass, self.com.unwrap_or_default(), self.inertia),
+            InertiaPoint::Origin => self.link_inertia().about_own_com(),
+        }
     }
 
     fn gravity_inertia(&self) -> LinkInertia {

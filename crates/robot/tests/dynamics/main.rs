@@ -12,3 +12,4 @@ mod random;
 mod regressor;
 mod shared;
 mod simulation;
+mod urdf;

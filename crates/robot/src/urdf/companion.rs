@@ -1,0 +1,98 @@
+//! The TOML file beside a URDF: what URDF has no place for.
+
+use crate::{FrictionDescription, JointDescription, Parameters, RobotDescription, RobotError};
+use serde::{Deserialize, Serialize};
+
+/// Ends of the chain, gravity, and motor and friction of joints; each value comes before that of the URDF.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Companion {
+    #[serde(skip)]
+    origin: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub base: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tip: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gravity: Option<[f64; 3]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parameters: Option<Parameters>,
+    #[serde(rename = "joint", default)]
+    joints: Vec<Drive>,
+}
+
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+struct Drive {
+    name: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gear_ratio: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rotor_inertia: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    armature: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    friction: Option<FrictionDescription>,
+}
+
+impl Companion {
+    /// Reads it; empty where the text is a whole robot, which has a `schema_version`.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, RobotError> {
+        let syntax =
+            |e: toml::de::Error| RobotError::Syntax { origin: origin.into(), message: e.to_string() };
+        let table: toml::Table = toml::from_str(text).map_err(syntax)?;
+        if table.contains_key("schema_version") {
+            return Ok(Self::default());
+        }
+        let companion: Self = toml::from_str(text).map_err(syntax)?;
+        Ok(Self { origin: origin.into(), ..companion })
+    }
+
+    /// Writes its values into a description.
+    pub fn apply(&self, description: &mut RobotDescription) -> Result<(), RobotError> {
+        description.gravity = self.gravity.unwrap_or(description.gravity);
+        description.parameters = self.parameters.unwrap_or(description.parameters);
+        let names: Vec<_> = description.joints.iter().map(|j| format!("`{}`", j.name)).collect();
+        for drive in &self.joints {
+            let joint = description.joints.iter_mut().find(|j| j.name == drive.name);
+            let joint = joint.ok_or_else(|| RobotError::Invalid {
+                origin: self.origin.clone(),
+                place: format!("joint `{}`: ", drive.name),
+                problem: "the chain has no such joint".into(),
+                remedy: format!("name one of {}", names.join(", ")),
+            })?;
+            drive.apply(joint);
+        }
+        Ok(())
+    }
+
+    /// The motors and friction of a description.
+    pub fn of(description: &RobotDescription, base: Option<String>, tip: Option<String>) -> Self {
+        let drive = |j: &JointDescription| Drive {
+            name: j.name.clone(),
+            gear_ratio: j.gear_ratio,
+            rotor_inertia: j.rotor_inertia,
+            armature: j.armature,
+            friction: Some(j.friction),
+        };
+        Self {
+            origin: String::new(),
+            base,
+            tip,
+            gravity: Some(description.gravity),
+            parameters: Some(description.parameters),
+            joints: description.joints.iter().map(drive).collect(),
+        }
+    }
+}
+
+impl Drive {
+    /// One way of giving the motor inertia displaces the other.
+    fn apply(&self, joint: &mut JointDescription) {
+        joint.gear_ratio = self.gear_ratio.or(joint.gear_ratio);
+        if self.armature.is_some() || self.rotor_inertia.is_some() {
+            (joint.armature, joint.rotor_inertia) = (self.armature, self.rotor_inertia);
+        }
+        joint.friction = self.friction.unwrap_or(joint.friction);
+    }
+}

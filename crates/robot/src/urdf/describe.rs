@@ -1,0 +1,233 @@
+//! From a chain of elements to a description.
+
+use super::chain::Chain;
+use super::document::{Tree, TreeJoint, element};
+use crate::description::Finding;
+use crate::inertia::LinkInertia;
+use crate::placement::Placement;
+use crate::{
+    Convention, FrictionDescription, InertiaPoint, JointDescription, Parameters, PlacementDescription,
+    RobotDescription, RobotError, SCHEMA_VERSION,
+};
+use nalgebra::{Matrix3, Vector3};
+
+/// A moving link, what is fixed to it, and its joint.
+#[derive(Clone, Debug)]
+pub(super) struct MovedLink {
+    pub link: String,
+    pub joint: String,
+    /// Links fixed to it, whose mass is taken as its own.
+    pub lumped: Vec<String>,
+}
+
+impl<'a> Tree<'a> {
+    pub fn describe(&self, chain: &Chain<'a>) -> Result<(RobotDescription, Vec<MovedLink>), RobotError> {
+        let mut fixed: Option<Placement> = None;
+        let (mut joints, mut moved) = (Vec::new(), Vec::new());
+        for &k in &chain.joints {
+            let joint = &self.joints[k];
+            if joint.is_fixed() {
+                let placement = self.placement_of(joint.node)?;
+                fixed = Some(fixed.map_or_else(|| placement.clone(), |f| f.then(&placement)));
+                continue;
+            }
+            let (bodies, lumped) = self.bodies(joint.child, chain)?;
+            moved.push(MovedLink { link: joint.child.into(), joint: joint.name.into(), lumped });
+            joints.push(self.joint(joint, fixed.take(), &bodies)?);
+        }
+        let root = self.document.root_element();
+        let description = RobotDescription {
+            schema_version: SCHEMA_VERSION,
+            name: root.attribute("name").unwrap_or("robot").into(),
+            parameters: Parameters::Physical,
+            convention: Convention::Standard,
+            gravity: self.gravity(chain.base)?,
+            joints,
+        };
+        Ok((description, moved))
+    }
+
+    /// Earth's gravity along -z of the root, in the base; joints between them at zero.
+    fn gravity(&self, base: &'a str) -> Result<[f64; 3], RobotError> {
+        let mut down = Vector3::new(0.0, 0.0, -9.81);
+        let joints: Vec<_> = self.above(base).collect();
+        for k in joints.into_iter().rev() {
+            down = self.placement_of(self.joints[k].node)?.rotation.transpose() * down;
+        }
+        Ok(down.into())
+    }
+
+    /// The masses that move with a link, each placed in it, and the names of those fixed to it.
+    #[expect(clippy::type_complexity, reason = "two lists that are made in one walk")]
+    fn bodies(
+        &self,
+        link: &'a str,
+        chain: &Chain<'a>,
+    ) -> Result<(Vec<(Placement, Body)>, Vec<String>), RobotError> {
+        let mut open = vec![(link, Placement::identity())];
+        let (mut bodies, mut lumped) = (Vec::new(), Vec::new());
+        while let Some((name, placement)) = open.pop() {
+            if let Some(body) = self.body(name)? {
+                bodies.push((placement.clone(), body));
+            }
+            if name != link {
+                lumped.push(name.into());
+            }
+            for k in self.below(name) {
+                let joint = &self.joints[k];
+                if joint.is_fixed() {
+                    open.push((joint.child, placement.then(&self.placement_of(joint.node)?)));
+                } else if !chain.joints.contains(&k) {
+                    return Err(self.error(
+                        joint.node,
+                        format!(
+                            "the chain branches: this {} joint hangs on the moving link `{link}`",
+                            joint.kind
+                        ),
+                        "only serial chains are handled; make the joint fixed, or take the branch out",
+                    ));
+                }
+            }
+        }
+        Ok((bodies, lumped))
+    }
+
+    /// The `<inertial>` of a link; none weighs nothing.
+    fn body(&self, link: &str) -> Result<Option<Body>, RobotError> {
+        let Some(inertial) = self.links[link].and_then(|node| element(node, "inertial")) else {
+            return Ok(None);
+        };
+        let mass = self.child(inertial, "mass")?;
+        let inertia = self.child(inertial, "inertia")?;
+        let entry = |name| Ok(self.number(inertia, name)?.unwrap_or(0.0));
+        let value = self.attribute(mass, "value")?;
+        Ok(Some(Body {
+            mass: self.to_number(mass, "value", value)?,
+            inertia: [
+                entry("ixx")?,
+                entry("ixy")?,
+                entry("ixz")?,
+                entry("iyy")?,
+                entry("iyz")?,
+                entry("izz")?,
+            ],
+            turned: self.origin_of(inertial)?.1 != [0.0; 3],
+            frame: self.placement_of(inertial)?,
+        }))
+    }
+
+    fn joint(
+        &self,
+        joint: &TreeJoint<'a>,
+        before: Option<Placement>,
+        bodies: &[(Placement, Body)],
+    ) -> Result<JointDescription, RobotError> {
+        let (translation, rpy) = self.origin_of(joint.node)?;
+        let placement = match before {
+            None => PlacementDescription { rotation: None, rpy: Some(rpy), translation },
+            Some(before) => {
+                let p = before.then(&self.placement_of(joint.node)?);
+                let rows = core::array::from_fn(|i| core::array::from_fn(|j| p.rotation[(i, j)]));
+                PlacementDescription { rotation: Some(rows), rpy: None, translation: p.translation.into() }
+            }
+        };
+        let axis = element(joint.node, "axis").map(|node| self.triple(node, "xyz")).transpose()?.flatten();
+        let (mass, com, inertia) = lump(bodies);
+        let (position_limits, velocity_limit) = self.limits(joint)?;
+        let (gear_ratio, rotor_inertia) = self.motor(joint)?;
+        Ok(JointDescription {
+            name: joint.name.into(),
+            placement: Some(placement),
+            axis: Some(axis.unwrap_or([1.0, 0.0, 0.0])),
+            mass,
+            com: Some(com),
+            inertia,
+            about: InertiaPoint::Com,
+            gear_ratio,
+            rotor_inertia,
+            position_limits,
+            velocity_limit,
+            friction: self.friction(joint)?,
+            ..Default::default()
+        })
+    }
+
+    /// Position and velocity limits; zeros stand for fields that an exporter left empty.
+    fn limits(&self, joint: &TreeJoint<'a>) -> Result<(Option<[f64; 2]>, Option<f64>), RobotError> {
+        let Some(limit) = element(joint.node, "limit") else { return Ok((None, None)) };
+        let [low, high] =
+            [self.number(limit, "lower")?, self.number(limit, "upper")?].map(Option::unwrap_or_default);
+        let position = (joint.kind == "revolute" && (low, high) != (0.0, 0.0)).then_some([low, high]);
+        Ok((position, self.number(limit, "velocity")?.filter(|v| *v != 0.0)))
+    }
+
+    fn friction(&self, joint: &TreeJoint<'a>) -> Result<FrictionDescription, RobotError> {
+        let Some(dynamics) = element(joint.node, "dynamics") else { return Ok(Default::default()) };
+        let get = |name| Ok(self.number(dynamics, name)?.unwrap_or(0.0));
+        let (damping, f) = (get("damping")?, get("friction")?);
+        let coulomb = if f == 0.0 { [0.0; 8] } else { [f, 0.0, -f, 0.0, -f, 0.0, f, 0.0] };
+        Ok(FrictionDescription { coulomb, viscous: [damping, 0.0, 0.0] })
+    }
+
+    /// Where in the URDF a value stands that makes no robot.
+    pub fn locate(&self, moved: &[MovedLink], finding: &Finding) -> (String, String) {
+        let root = self.document.root_element();
+        let joint = finding.joint.and_then(|i| self.joints.iter().find(|j| j.name == moved[i].joint));
+        let inner = |node, tags: &[&str]| tags.iter().find_map(|tag| element(node, tag)).unwrap_or(node);
+        let node = joint.map_or(root, |joint| match finding.key {
+            "mass" | "com" | "inertia" => {
+                self.links[joint.child].map_or(joint.node, |link| inner(link, &["inertial"]))
+            }
+            "position_limits" | "velocity_limit" => inner(joint.node, &["limit"]),
+            "friction" => inner(joint.node, &["dynamics"]),
+            "placement" => inner(joint.node, &["origin"]),
+            "axis" => inner(joint.node, &["axis"]),
+            _ => joint.node,
+        });
+        let line = self.document.text_pos_at(node.range().start).row;
+        let place = joint.map_or(String::new(), |j| format!("joint `{}`, link `{}`: ", j.name, j.child));
+        (format!("{}:{line}", self.origin), place)
+    }
+}
+
+/// An `<inertial>`.
+struct Body {
+    mass: f64,
+    inertia: [f64; 6],
+    turned: bool,
+    frame: Placement,
+}
+
+impl Body {
+    fn weighs(&self) -> bool {
+        self.mass != 0.0 || self.inertia != [0.0; 6]
+    }
+
+    fn in_link(&self, placement: &Placement) -> LinkInertia {
+        let [xx, xy, xz, yy, yz, zz] = self.inertia;
+        let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        LinkInertia::about_com(self.mass, Vector3::zeros(), &tensor).moved(&placement.then(&self.frame))
+    }
+}
+
+/// Mass, centre of mass and inertia about it in the link's axes, of all bodies together; numbers of a single body
+/// whose frame is not turned are taken as they are.
+fn lump(bodies: &[(Placement, Body)]) -> (f64, [f64; 3], [f64; 6]) {
+    let heavy: Vec<_> = bodies.iter().filter(|(_, body)| body.weighs()).collect();
+    match heavy[..] {
+        [] => (0.0, [0.0; 3], [0.0; 6]),
+        [(placement, body)] if !body.turned && *placement == Placement::identity() => {
+            (body.mass, body.frame.translation.into(), body.inertia)
+        }
+        _ => {
+            let mut whole = LinkInertia::about_origin(0.0, Vector3::zeros(), &Matrix3::zeros());
+            for (placement, body) in heavy {
+                let part = body.in_link(placement);
+                whole.mass += part.mass;
+                whole.first_moment += part.first_moment;
+                whole.second_moments += part.second_moments;
+            }
+            whole.about_own_com()
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Changes of XML text in place: what is not touched stays as it is, byte for byte.
+
+use core::ops::Range;
+use roxmltree::Node;
+
+/// Replacements of ranges of a text.
+#[derive(Default)]
+pub(super) struct Edits(Vec<(Range<usize>, String)>);
+
+impl Edits {
+    /// Gives an attribute of an element a value.
+    pub fn set(&mut self, node: Node, name: &str, value: &str) {
+        let edit = match node.attribute_node(name) {
+            Some(attribute) => (attribute.range_value(), value.into()),
+            None => {
+                let text = &node.document().input_text()[node.range()];
+                let tag =
+                    text.find(|c: char| c.is_whitespace() || c == '/' || c == '>').unwrap_or(text.len());
+                let at = node.range().start + tag;
+                (at..at, format!(" {name}=\"{value}\""))
+            }
+        };
+        self.0.push(edit);
+    }
+
+    /// Gives attributes of a child element their values; adds the child where there is none.
+    pub fn set_child(&mut self, node: Node<'_, '_>, tag: &str, values: &[(&str, String)]) {
+        match node.children().find(|n| n.is_element() && n.tag_name().name() == tag) {
+            Some(child) => values.iter().for_each(|(name, value)| self.set(child, name, value)),
+            None => self.add(node, &empty_element(tag, values)),
+        }
+    }
+
+    /// Adds an element at the end of another, indented as its siblings are.
+    pub fn add(&mut self, node: Node, new: &str) {
+        let (text, range) = (node.document().input_text(), node.range());
+        let line = text[..range.start].rfind('\n').map_or(0, |k| k + 1);
+        let outer: String = text[line..].chars().take_while(|c| *c == ' ' || *c == '\t').collect();
+        let last = node.children().filter(Node::is_element).last();
+        let inner = match last {
+            Some(sibling) => {
+                let line = text[..sibling.range().start].rfind('\n').map_or(0, |k| k + 1);
+                text[line..].chars().take_while(|c| *c == ' ' || *c == '\t').collect()
+            }
+            None => format!("{outer}  "),
+        };
+        let new = format!("\n{inner}{}", new.replace('\n', &format!("\n{inner}")));
+        if let Some(sibling) = last {
+            self.0.push((sibling.range().end..sibling.range().end, new));
+        } else if text[range.clone()].ends_with("/>") {
+            // <tag/> must be opened first.
+            let tag = text[range.start + 1..]
+                .split(|c: char| c.is_whitespace() || c == '/')
+                .next()
+                .unwrap_or_default();
+            self.0.push((range.end - 2..range.end, format!(">{new}\n{outer}</{tag}>")));
+        } else {
+            let end = range.start + text[range.clone()].rfind("</").unwrap_or(range.len());
+            self.0.push((end..end, format!("{new}\n{outer}")));
+        }
+    }
+
+    /// The text with all changes made.
+    pub fn apply(mut self, text: &str) -> String {
+        self.0.sort_by_key(|(range, _)| range.start);
+        let (mut out, mut at) = (String::with_capacity(text.len()), 0);
+        for (range, new) in self.0 {
+            out += &text[at..range.start];
+            out += &new;
+            at = range.end;
+        }
+        out + &text[at..]
+    }
+}
+
+/// `<tag name="value" .../>`.
+pub(super) fn empty_element(tag: &str, values: &[(&str, String)]) -> String {
+    let attributes: String = values.iter().map(|(name, value)| format!(" {name}=\"{value}\"")).collect();
+    format!("<{tag}{attributes}/>")
+}
