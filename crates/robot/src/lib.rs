@@ -2,6 +2,7 @@
 
 mod aba;
 mod algebra;
+mod base_parameters;
 mod chain;
 mod column;
 mod coriolis;
@@ -23,9 +24,11 @@ mod regressor;
 mod rnea;
 mod robot;
 mod simulate;
+mod states;
 mod urdf;
 mod workspace;
 
+pub use base_parameters::BaseParameters;
 pub use chain::JointGeometry;
 pub use column::{Column, ColumnKind, Regressor};
 pub use description::{

@@ -1,5 +1,6 @@
 //! The crate against independent oracles, its identities, and what it says of robots that are none.
 
+mod base_parameters;
 mod close;
 mod description;
 mod identities;

@@ -1,0 +1,112 @@
+//! Combinations of parameters in words.
+
+use crate::Column;
+
+/// Coefficients are taken for a readable number within this, relative to 1 or their size.
+const SNAP: f64 = 1e-9;
+
+/// A row of K as `Ixx2 - Iyy2 + Izz2 + J2`, its leading column first, terms with one coefficient in brackets.
+pub(super) fn words(columns: &[Column], leader: usize, row: &[f64]) -> String {
+    let mut groups: Vec<(f64, Vec<(f64, usize)>)> = vec![(1.0, vec![(1.0, leader)])];
+    for (k, &value) in row.iter().enumerate().filter(|(k, v)| *k != leader && v.abs() > SNAP) {
+        let same = groups.iter_mut().find(|(size, _)| (*size - value.abs()).abs() <= SNAP * size.max(1.0));
+        match same {
+            Some((_, members)) => members.push((value.signum(), k)),
+            None => groups.push((value.abs(), vec![(value.signum(), k)])),
+        }
+    }
+    let mut out = String::new();
+    for (size, members) in groups {
+        let factor = Factor::of(size);
+        let bracket = members.len() > 1 && factor != Factor::One;
+        let outer = if bracket { members[0].0 } else { 1.0 };
+        let names: Vec<_> = members.iter().map(|(sign, k)| (sign * outer, columns[*k].to_string())).collect();
+        if bracket {
+            out += &term(outer, &factor.around(&format!("({})", sum(&names))), out.is_empty());
+        } else {
+            for (sign, name) in names {
+                out += &term(sign, &factor.around(&name), out.is_empty());
+            }
+        }
+    }
+    out
+}
+
+fn sum(terms: &[(f64, String)]) -> String {
+    terms.iter().enumerate().map(|(i, (sign, name))| term(*sign, name, i == 0)).collect()
+}
+
+fn term(sign: f64, what: &str, first: bool) -> String {
+    match (first, sign < 0.0) {
+        (true, false) => what.into(),
+        (true, true) => format!("-{what}"),
+        (false, false) => format!(" + {what}"),
+        (false, true) => format!(" - {what}"),
+    }
+}
+
+/// A positive coefficient as people write it.
+#[derive(Debug, PartialEq)]
+enum Factor {
+    One,
+    Times(String),
+    Over(String),
+}
+
+impl Factor {
+    fn of(size: f64) -> Self {
+        if (size - 1.0).abs() <= SNAP {
+            return Self::One;
+        }
+        let (inverse, root) = (1.0 / size, size.sqrt());
+        let squared = |(cost, text): (i32, String)| (cost + 1, format!("{text}²"));
+        let ways = [
+            shortest(size).map(|(cost, text)| (cost, Self::Times(text))),
+            shortest(inverse).map(|(cost, text)| (cost + 1, Self::Over(text))),
+            shortest(root).map(squared).map(|(cost, text)| (cost, Self::Times(text))),
+            shortest(1.0 / root).map(squared).map(|(cost, text)| (cost + 1, Self::Over(text))),
+        ];
+        let best = ways.into_iter().flatten().min_by_key(|(cost, _)| *cost);
+        best.map_or_else(|| Self::Times(((size * 1e6).round() / 1e6).to_string()), |(_, factor)| factor)
+    }
+
+    fn around(&self, what: &str) -> String {
+        match self {
+            Self::One => what.into(),
+            Self::Times(factor) => format!("{factor} {what}"),
+            Self::Over(divisor) => format!("{what}/{divisor}"),
+        }
+    }
+}
+
+/// The fewest digits, up to 7, that give a number, and the number in them.
+fn shortest(x: f64) -> Option<(i32, String)> {
+    (1..=7).find_map(|digits| {
+        let unit = 10f64.powi(digits - 1 - x.log10().floor() as i32);
+        let rounded = (x * unit).round() / unit;
+        ((rounded - x).abs() <= SNAP * x).then(|| (digits, rounded.to_string()))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_are_written_as_people_do() {
+        let words = |x: f64| Factor::of(x).around("x");
+        let third = "0.333333 x";
+        let cases = [
+            (1.0, "x"),
+            (0.3012, "0.3012 x"),
+            (0.3012 * 0.3012, "0.3012² x"),
+            (2.0, "2 x"),
+            (1.0 / 0.35, "x/0.35"),
+        ];
+        cases.iter().for_each(|(x, w)| assert_eq!(words(*x), *w));
+        assert_eq!(words(1.0 / (0.35 * 0.35)), "x/0.35²");
+        assert_eq!(words(0.25), "0.25 x");
+        assert_eq!(words(0.089159), "0.089159 x");
+        assert_eq!(words(1.0 / 3.0 + 1e-7), third);
+    }
+}
