@@ -46,4 +46,7 @@ pub enum RobotError {
         /// The position \[rad\].
         q: Vec<f64>,
     },
+    /// A setting that allows no answer; the message names setting, value and remedy.
+    #[error("{0}")]
+    Setting(String),
 }

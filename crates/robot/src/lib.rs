@@ -10,6 +10,7 @@ mod crba;
 mod description;
 mod error;
 mod field;
+mod excitation;
 mod forward_dynamics;
 pub mod friction;
 mod gravity;
@@ -37,6 +38,7 @@ pub use description::{
 };
 pub use error::RobotError;
 pub use field::{DrivenBy, RobotField};
+pub use excitation::{Criterion, Excitation, ExcitationSettings, FourierTrajectory, MotionSample, Quality};
 pub use inertia::LinkInertia;
 pub use physicality::Physicality;
 pub use placement::{Placement, snapped_sin_cos};

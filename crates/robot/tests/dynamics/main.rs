@@ -3,6 +3,7 @@
 mod base_parameters;
 mod close;
 mod description;
+mod excitation;
 mod identities;
 mod lanes;
 mod lwa4p;

@@ -1,0 +1,105 @@
+use core::f64::consts::{PI, TAU};
+
+/// Grid points a harmonic at which a series is looked at for its bounds.
+pub(super) const GRID: usize = 20;
+
+/// A periodic motion: for joint i, q_i(t) = c_i + Σ_l (a_il sin(l ω t) - b_il cos(l ω t)) / (l ω), so that the velocity is
+/// Σ_l a_il cos(l ω t) + b_il sin(l ω t) (Swevers et al., IEEE Trans. Robotics and Automation 13(5), 1997).
+#[derive(Clone, Debug, PartialEq)]
+pub struct FourierTrajectory {
+    /// Period 2π/ω \[s\].
+    pub period: f64,
+    /// Centres c \[rad\], one a joint.
+    pub centre: Vec<f64>,
+    /// Amplitudes a of the velocity's cosines \[rad/s\], one row a joint, one entry a harmonic.
+    pub cosine: Vec<Vec<f64>>,
+    /// Amplitudes b of the velocity's sines \[rad/s\], likewise.
+    pub sine: Vec<Vec<f64>>,
+}
+
+/// One sample of a motion, one entry a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionSample {
+    /// Time \[s\].
+    pub t: f64,
+    /// Positions \[rad\].
+    pub q: Vec<f64>,
+    /// Velocities \[rad/s\].
+    pub qd: Vec<f64>,
+    /// Accelerations \[rad/s²\].
+    pub qdd: Vec<f64>,
+}
+
+impl FourierTrajectory {
+    /// Number of joints.
+    pub fn joint_count(&self) -> usize {
+        self.centre.len()
+    }
+
+    /// Position, velocity and acceleration at a time \[s\].
+    pub fn at(&self, t: f64) -> MotionSample {
+        let joints = (0..self.joint_count()).map(|i| self.joint_at(i, t));
+        let (mut q, mut qd, mut qdd) = (Vec::new(), Vec::new(), Vec::new());
+        joints.for_each(|[p, v, a]| {
+            q.push(p);
+            qd.push(v);
+            qdd.push(a);
+        });
+        MotionSample { t, q, qd, qdd }
+    }
+
+    fn joint_at(&self, i: usize, t: f64) -> [f64; 3] {
+        let mut out = [self.centre[i], 0.0, 0.0];
+        for (l, (a, b)) in self.cosine[i].iter().zip(&self.sine[i]).enumerate() {
+            let w = TAU * (l + 1) as f64 / self.period;
+            let (s, c) = (w * t).sin_cos();
+            out[0] += (a * s - b * c) / w;
+            out[1] += a * c + b * s;
+            out[2] += w * (b * c - a * s);
+        }
+        out
+    }
+
+    /// One period in samples, both ends included, at least at the given rate \[1/s\].
+    pub fn samples(&self, rate: f64) -> Vec<MotionSample> {
+        let count = (self.period * rate).ceil().max(1.0) as usize;
+        (0..=count).map(|k| self.at(self.period * k as f64 / count as f64)).collect()
+    }
+
+    /// Bounds of a joint's position at all times \[rad\].
+    ///
+    /// # Guarantee
+    ///
+    /// Outer for the series as it is, up to rounding: between M equidistant samples of a period a trigonometric
+    /// polynomial of degree N exceeds its largest sample by no more than the factor 1/cos(π N / M) (Ehlich & Zeller
+    /// 1964), here 1.013.
+    pub fn position_range(&self, joint: usize) -> [f64; 2] {
+        let (low, high) = self.extremes(joint, 0);
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * excess());
+        [middle - half, middle + half]
+    }
+
+    /// A bound of a joint's speed at all times \[rad/s\], in the sense of [`FourierTrajectory::position_range`].
+    pub fn speed_bound(&self, joint: usize) -> f64 {
+        let (low, high) = self.extremes(joint, 1);
+        high.max(-low) * excess()
+    }
+
+    /// A bound of the magnitude of a joint's acceleration at all times \[rad/s²\], likewise.
+    pub fn acceleration_bound(&self, joint: usize) -> f64 {
+        let (low, high) = self.extremes(joint, 2);
+        high.max(-low) * excess()
+    }
+
+    fn extremes(&self, joint: usize, derivative: usize) -> (f64, f64) {
+        let count = GRID * self.cosine[joint].len().max(1);
+        let values =
+            (0..count).map(|k| self.joint_at(joint, self.period * k as f64 / count as f64)[derivative]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    }
+}
+
+/// How far a series can exceed its values on the grid.
+pub(super) fn excess() -> f64 {
+    1.0 / (PI / GRID as f64).cos()
+}
