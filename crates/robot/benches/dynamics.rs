@@ -8,8 +8,8 @@ mod shared;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use reachtube_scalar::{Lanes, Lanewise};
 use reachtube_robot::{RegressorWorkspace, Robot, Workspace};
+use reachtube_scalar::{Lanes, Lanewise};
 
 const ROBOTS: [&str; 3] = ["ur5", "dh6", "lwa4p"];
 const STATES: usize = 256;

@@ -9,8 +9,8 @@ mod coriolis;
 mod crba;
 mod description;
 mod error;
-mod field;
 mod excitation;
+mod field;
 mod forward_dynamics;
 pub mod friction;
 mod gravity;
@@ -25,6 +25,7 @@ mod regressor;
 mod rnea;
 mod robot;
 mod simulate;
+mod singular;
 mod states;
 mod urdf;
 mod workspace;
@@ -37,8 +38,8 @@ pub use description::{
     PlacementDescription, RobotDescription, SCHEMA_VERSION,
 };
 pub use error::RobotError;
-pub use field::{DrivenBy, RobotField};
 pub use excitation::{Criterion, Excitation, ExcitationSettings, FourierTrajectory, MotionSample, Quality};
+pub use field::{DrivenBy, RobotField};
 pub use inertia::LinkInertia;
 pub use physicality::Physicality;
 pub use placement::{Placement, snapped_sin_cos};

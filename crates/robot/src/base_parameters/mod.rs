@@ -3,6 +3,7 @@
 mod combination;
 mod independent;
 
+use crate::singular::singular_values;
 use crate::states::{Random, rest, states};
 use crate::{Column, Regressor, Robot};
 use independent::{Independent, triangle};
@@ -72,8 +73,7 @@ impl BaseParameters {
     pub fn of_regressor(columns: &[Column], stacked: &DMatrix<f64>, tolerance: f64) -> Self {
         assert_eq!(stacked.ncols(), columns.len(), "one column a parameter");
         let (r, norms) = triangle(stacked, tolerance);
-        let mut singular_values: Vec<f64> = r.singular_values().iter().copied().collect();
-        singular_values.sort_by(|a, b| b.total_cmp(a));
+        let singular_values = singular_values(&r);
         let Independent { indices, combinations } = Independent::of(&r, &norms, tolerance);
         Self { columns: columns.to_vec(), independent: indices, combinations, singular_values }
     }

@@ -2,6 +2,7 @@
 
 use super::ExcitationSettings;
 use super::shape::Shape;
+use crate::singular::singular_values;
 use crate::{BaseParameters, Regressor, Robot};
 use nalgebra::DMatrix;
 
@@ -106,7 +107,8 @@ impl<'a> Judge<'a> {
             }
             column.unscale_mut(length);
         }
-        let values = unit.qr().r().singular_values();
-        if values.min() == 0.0 { f64::INFINITY } else { values.max() / values.min() }
+        let values = singular_values(&unit.qr().r());
+        // Also when there is no column at all.
+        values.first().zip(values.last()).map_or(f64::INFINITY, |(most, least)| most / least)
     }
 }
