@@ -8,7 +8,7 @@ mod shared;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use reachtube_robot::{RegressorWorkspace, Robot, Workspace};
+use reachtube_robot::{BaseParameters, Column, ColumnKind, RegressorWorkspace, Robot, Workspace};
 use reachtube_scalar::{Lanes, Lanewise};
 
 const ROBOTS: [&str; 3] = ["ur5", "dh6", "lwa4p"];
@@ -105,5 +105,15 @@ fn inertial_regressor(bencher: Bencher, name: &str) {
         }
         robot.inertial_regressor(&sin, &cos, qd, qdd, ws, &mut y);
         black_box(&y);
+    });
+}
+
+/// All inertial parameters and motors, from 200 states.
+#[divan::bench(args = ROBOTS)]
+fn base_parameters(bencher: Bencher, name: &str) {
+    let kinds = [&ColumnKind::INERTIAL[..], &[ColumnKind::MotorInertia]].concat();
+    let columns = Column::of_joints(6, &kinds);
+    each(bencher, name, |robot, _, _, _| {
+        black_box(BaseParameters::of_robot(robot, &columns));
     });
 }

@@ -91,6 +91,20 @@ fn line_of(text: &str, joint: Option<usize>, key: &str) -> usize {
 }
 
 impl RobotDescription {
+    /// The description as TOML text, which [`Robot::from_toml`] reads to the same robot.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_robot::Robot;
+    ///
+    /// let text = Robot::lwa4p().description().to_toml();
+    /// assert_eq!(Robot::from_toml(&text, "copy").unwrap(), Robot::lwa4p());
+    /// ```
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("numbers, words and tables are TOML")
+    }
+
     /// The robot of a checked description.
     fn build(self) -> Robot {
         let geometry: Vec<_> = self.joints.iter().map(|j| j.geometry(self.convention)).collect();

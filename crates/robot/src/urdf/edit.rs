@@ -36,7 +36,7 @@ impl Edits {
         let (text, range) = (node.document().input_text(), node.range());
         let line = text[..range.start].rfind('\n').map_or(0, |k| k + 1);
         let outer: String = text[line..].chars().take_while(|c| *c == ' ' || *c == '\t').collect();
-        let last = node.children().filter(Node::is_element).last();
+        let last = node.children().rfind(Node::is_element);
         let inner = match last {
             Some(sibling) => {
                 let line = text[..sibling.range().start].rfind('\n').map_or(0, |k| k + 1);

@@ -195,7 +195,9 @@ fn round_trips() {
     assert_eq!(back.robot().joints(), changed.joints());
     assert_eq!(back.updated(back.robot()).unwrap(), text);
     assert_eq!(Urdf::parse_with(&text, "", &companion, &UrdfEnds::default()).unwrap().robot(), back.robot());
-    // A link without `<inertial>`, open or not, gets one.
+    let described = Robot::from_toml(&back.robot().description().to_toml(), "arm.toml").unwrap();
+    assert_eq!(&described, back.robot());
+    // A link without `<inertial>` gets one.
     assert!(text.contains("<link name=\"lower\">\n    <inertial>\n      <origin xyz="), "{text}");
     assert!(text.contains("<!-- kept as it is -->"));
 }
@@ -292,4 +294,25 @@ fn broken_files_are_answered_with_line_and_element() {
         .replace("<rotor_inertia value=\"1e-4\"/>", "");
     let error = read(&weightless).robot().check_physical().unwrap_err().to_string();
     assert!(error.contains("joint `elbow` has the articulated inertia"), "{error}");
+}
+
+/// A file that lost a line, or everything after some byte, is read or answered; what is read can be written.
+#[test]
+fn damaged_files_are_read_or_answered() {
+    let lines: Vec<_> = ARM.lines().collect();
+    let without = |k: usize| {
+        lines.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, l)| *l).collect::<Vec<_>>().join("\n")
+    };
+    let cut = (0..ARM.len()).step_by(7).map(|k| ARM[..k].to_string());
+    let mut read = 0;
+    for text in (0..lines.len()).map(without).chain(cut) {
+        let Ok(urdf) = Urdf::parse(&text, "arm.urdf", &UrdfEnds::default()) else { continue };
+        let masses = Column::of_joints(urdf.robot().joint_count(), &[ColumnKind::Mass]);
+        let changed = urdf.robot().description().with_values(&masses, &vec![3.0; masses.len()]).unwrap();
+        let Ok(changed) = Robot::from_description(&changed) else { continue };
+        let back = Urdf::parse(&urdf.updated(&changed).unwrap(), "arm.urdf", &UrdfEnds::default()).unwrap();
+        assert_close(&back.robot().column_values(&masses), &vec![3.0; masses.len()], "masses");
+        read += 1;
+    }
+    assert!(read >= 5, "{read}");
 }
