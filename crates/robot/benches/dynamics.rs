@@ -94,11 +94,11 @@ fn forward_dynamics<S: Lanewise>(bencher: Bencher, name: &str) {
 }
 
 /// Sine and cosine included, as in Pinocchio's `computeJointTorqueRegressor`.
-#[divan::bench(args = ROBOTS)]
-fn inertial_regressor(bencher: Bencher, name: &str) {
-    let mut scratch: Option<RegressorWorkspace<f64>> = None;
-    let (mut y, mut sin, mut cos) = (vec![0.0; 360], vec![0.0; 6], vec![0.0; 6]);
-    each(bencher, name, |robot, [_, _, q, qd, qdd, _], _, _| {
+#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
+fn inertial_regressor<S: Lanewise>(bencher: Bencher, name: &str) {
+    let mut scratch: Option<RegressorWorkspace<S>> = None;
+    let (mut y, mut sin, mut cos) = (vec![S::zero(); 360], vec![S::zero(); 6], vec![S::zero(); 6]);
+    each::<S>(bencher, name, |robot, [_, _, q, qd, qdd, _], _, _| {
         let ws = scratch.get_or_insert_with(|| RegressorWorkspace::new(robot));
         for (i, q) in q.iter().enumerate() {
             (sin[i], cos[i]) = q.sin_cos();
@@ -113,7 +113,7 @@ fn inertial_regressor(bencher: Bencher, name: &str) {
 fn base_parameters(bencher: Bencher, name: &str) {
     let kinds = [&ColumnKind::INERTIAL[..], &[ColumnKind::MotorInertia]].concat();
     let columns = Column::of_joints(6, &kinds);
-    each(bencher, name, |robot, _, _, _| {
+    each::<f64>(bencher, name, |robot, _, _, _| {
         black_box(BaseParameters::of_robot(robot, &columns));
     });
 }
