@@ -1,5 +1,6 @@
 //! What a number can be: the trait [`Scalar`] that all dynamics is written over; [`Interval`], a validated
-//! number that is right on stable Rust on any platform; and [`Lanes`], several numbers at once.
+//! number that is right on stable Rust on any platform; [`TaylorPolynomial`] and [`TaylorModel`], functions in
+//! place of numbers; and [`Lanes`], several numbers at once.
 #![doc = include_str!("../README.md")]
 
 mod elementary;
