@@ -1,5 +1,7 @@
 //! Dense series: coefficients block by block of one degree, and the product kernel.
 
+use core::array::from_fn;
+
 use super::arithmetic::{Addition, signed};
 use super::space::TaylorSpace;
 use super::sparse::Term;
@@ -128,7 +130,18 @@ fn add_row<C: Scalar>(row: &[u32], p: &C, y: &[C], out: &mut [C]) {
     }
 }
 
+/// So many products are formed at once, for vector instructions.
+const CHUNK: usize = 4;
+
 fn add_two_rows<C: Scalar>(row: &[u32], [p, q]: [&C; 2], [y, x]: [&[C]; 2], out: &mut [C]) {
+    let ((rows, row), (ys, y), (xs, x)) =
+        (row.as_chunks::<CHUNK>(), y.as_chunks::<CHUNK>(), x.as_chunks::<CHUNK>());
+    for ((row, y), x) in rows.iter().zip(ys).zip(xs) {
+        let sums: [C; CHUNK] = from_fn(|i| p.clone() * y[i].clone() + q.clone() * x[i].clone());
+        for (at, sum) in row.iter().zip(sums) {
+            out[*at as usize] += sum;
+        }
+    }
     for ((at, y), x) in row.iter().zip(y).zip(x) {
         out[*at as usize] += p.clone() * y.clone() + q.clone() * x.clone();
     }
