@@ -292,6 +292,9 @@ fn what_is_not_known_is_entire() {
         assert!(model.remainder().mag() == f64::INFINITY && !model.range().width().is_nan(), "{model:?}");
         assert!(model.range().contains(1e308) || model.range().contains(-1e308), "{model:?}");
     }
+    // Two coefficients of which each is a number and the sum is not.
+    let pair = TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centered(0.0, f64::MAX); 2]);
+    assert_eq!((pair.variable(0) + pair.variable(1)).range(), Interval::ENTIRE);
     assert_eq!(x.ln().range().lo(), f64::NEG_INFINITY);
     assert!(x.sqrt().range().encloses(&Interval::new(0.0, 1.0).unwrap()));
     assert!(unknown.sin_cos().0.range().encloses(&Interval::new(-1.0, 1.0).unwrap()));

@@ -17,6 +17,9 @@ fn deflated(x: f64, operations: usize) -> f64 {
     if operations == 0 { x } else { x * (1.0 - (operations + 2) as f64 * f64::EPSILON) }
 }
 
+/// No sum of magnitudes, nor of products of which it is a bound, overflows below it.
+pub(super) const LARGEST: f64 = 1e300;
+
 /// So many sums are formed side by side.
 pub(super) const LANES: usize = 8;
 
@@ -140,11 +143,7 @@ pub(super) fn range(p: &TaylorPolynomial<f64>) -> Interval {
         Form::Sparse(space, terms) => sparse_parts(space, terms),
         Form::Dense(space, coefficients) => dense_parts(space, coefficients),
     };
-    if parts.all < f64::INFINITY {
-        Interval::point(p.constant_term()) + parts.range()
-    } else {
-        Interval::ENTIRE
-    }
+    if parts.all < LARGEST { Interval::point(p.constant_term()) + parts.range() } else { Interval::ENTIRE }
 }
 
 fn sparse_parts(space: &TaylorSpace, terms: &[(u128, f64)]) -> Parts {

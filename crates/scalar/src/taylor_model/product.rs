@@ -1,14 +1,12 @@
 //! Products.
 
 use super::TaylorModel;
-use super::bounds::{LANES, Norms, range};
+use super::bounds::{LANES, LARGEST, Norms, range};
 use super::polarisation::product_of_parts;
 use crate::rounding::{add_up, mul_up};
 use crate::taylor::Form;
 use crate::{Interval, TaylorPolynomial};
 
-/// No sum of products of coefficients overflows below it.
-const LARGEST: f64 = 1e300;
 /// Numbers above it are normal and far from underflow.
 const UNDERFLOW: f64 = 1e-290;
 
