@@ -1,5 +1,6 @@
 //! The command as a user meets it: the real binary, its exit codes, what it prints and what it writes.
 
+mod abstraction;
 mod browser;
 mod defects;
 mod fixture;

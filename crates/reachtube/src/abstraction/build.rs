@@ -50,6 +50,21 @@ fn inverse_mass_matrix(robot: &Robot, point: &ExpansionPoint) -> Result<DMatrix<
     })
 }
 
+/// Memory that the terms of a model may take, in bytes.
+const MOST_BYTES: f64 = 2e9;
+/// A term with its copies while products are formed.
+const BYTES_OF_TERM: f64 = 128.0;
+
+/// More terms than model 3 has: it is affine in u and cubic in q̇, each such factor times a series of `angles` variables.
+fn most_terms(joints: usize, angles: usize, order: u32) -> f64 {
+    let n = joints as f64;
+    // Monomials of degree up to d.
+    let series =
+        |d: i64| (1..=d.max(-1)).fold(f64::from(d >= 0), |c, i| c * (angles as f64 + i as f64) / i as f64);
+    let p = i64::from(order);
+    n * (series(p) + 2.0 * n * series(p - 1) + 0.5 * n * (n + 1.0) * series(p - 2) + n * series(p - 3))
+}
+
 type Polynomials = Vec<TaylorPolynomial>;
 
 /// A matrix of numbers times a vector of polynomials.
@@ -174,11 +189,29 @@ impl Builder<'_> {
         Ok(((0..n).map(row).collect(), origin))
     }
 
+    /// Refuses an order whose terms would not fit in memory; M_m depends on `angles` sines and cosines.
+    fn check_size(&self, angles: usize) -> Result<()> {
+        let bytes = |order: u32| most_terms(self.layout.joints, angles, order) * BYTES_OF_TERM;
+        let needed = bytes(self.order);
+        if needed <= MOST_BYTES {
+            return Ok(());
+        }
+        let fits = (1..self.order).rev().find(|order| bytes(*order) <= MOST_BYTES).unwrap_or(1);
+        Err(Error::Setting(format!(
+            "model 3 of order {} for {} joints would need about {:.0} GB for its terms, more than the {:.0} GB allowed; order {fits} fits",
+            self.order,
+            self.layout.joints,
+            needed / 1e9,
+            MOST_BYTES / 1e9
+        )))
+    }
+
     /// The series of M_m⁻¹ about (s_a, c_a), n x n, made in the space of the variables that M_m depends on.
     fn inverse_series(&self, dynamics: &PolynomialDynamics, at: &[f64]) -> Result<Polynomials> {
         let n = self.layout.joints;
         let used: Vec<usize> =
             (0..2 * n).filter(|i| dynamics.mass_matrix.iter().any(|m| m.depends_on(*i))).collect();
+        self.check_size(used.len())?;
         let space = TaylorSpace::new(used.len().max(1), self.order)?;
         space.check_dense()?;
         let place = |i: usize| used.iter().position(|u| *u == i).unwrap_or(0);

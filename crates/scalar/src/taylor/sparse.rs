@@ -11,6 +11,9 @@ pub(super) type Term<C> = (u128, C);
 /// A product by as few terms as this is merged term by term, one by more is collected and sorted.
 const FEW: usize = 4;
 
+/// Products of terms that are collected before they are sorted, so that memory stays near that of the result.
+const CHUNK: usize = 1 << 20;
+
 /// a + b, or a - b where `minus`.
 pub(super) fn sum<C: Scalar>(a: &[Term<C>], b: &[Term<C>], minus: bool) -> Vec<Term<C>> {
     sum_by(a, b, minus, &mut Plain)
@@ -59,11 +62,15 @@ pub(super) fn product<C: Scalar>(space: &TaylorSpace, a: &[Term<C>], b: &[Term<C
         let rows = few.iter().map(|x| times_term(space, x, many));
         return rows.reduce(|p, q| sum(&p, &q, false)).unwrap_or_default();
     }
-    let mut all = Vec::with_capacity(a.len() * b.len());
+    let (mut done, mut open) = (Vec::new(), Vec::with_capacity(a.len().saturating_mul(b.len()).min(CHUNK)));
     for x in few {
-        all.extend(times_term_lazily(space, x, many));
+        open.extend(times_term_lazily(space, x, many));
+        if open.len() >= CHUNK {
+            done = sum(&done, &collected(core::mem::take(&mut open)), false);
+        }
     }
-    collected(all)
+    let last = collected(open);
+    if done.is_empty() { last } else { sum(&done, &last, false) }
 }
 
 /// The product by one term keeps the order.

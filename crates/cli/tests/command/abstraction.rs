@@ -1,0 +1,118 @@
+//! `abstract`, its file, and `conform` on it.
+
+use serde_json::{Value, json};
+
+use crate::fixture::Lab;
+
+fn schema() -> jsonschema::Validator {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/abstraction.schema.json");
+    let schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    jsonschema::draft202012::meta::validate(&schema).unwrap();
+    jsonschema::draft202012::new(&schema).unwrap()
+}
+
+/// (degree, terms of all joints) by hand: model 1 of the LWA 4P has six q̇, six q̇², six q̇³ and six u a joint.
+#[test]
+fn models_are_made_and_described() {
+    let lab = Lab::new();
+    for (arguments, degree, terms) in [
+        ("--model 1 --order 1", 1, 72),
+        ("--model 1 --order 5", 3, 144),
+        ("--model 2 --order 1", 1, 72),
+        ("--model 3 --order 1", 1, 72),
+    ] {
+        let made = lab.run(&format!("abstract --robot lwa4p {arguments} --json")).exits(0).json();
+        let sum: u64 = made["terms"].as_array().unwrap().iter().map(|t| t.as_u64().unwrap()).sum();
+        assert_eq!((made["degree"].as_u64().unwrap(), sum), (degree, terms), "{arguments}");
+    }
+    let text = lab.run("abstract --robot lwa4p --model 2 --order 4 --box 0.05,0.1,1").exits(0).stdout;
+    for part in ["model 2 of order 4 of Schunk LWA 4P", "24 states", "joint6", "proved", "q = 0 rad"] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+}
+
+#[test]
+fn files_fit_the_schema_and_conform_takes_them() {
+    let (schema, lab) = (schema(), Lab::new());
+    let usual = lab.conform("--json").exits(0).json();
+    for model in [1, 2, 3] {
+        let arguments =
+            format!("abstract --robot arm.toml --model {model} --box 0.1,0.5,1 --out m{model}.json");
+        lab.run(&arguments).exits(0);
+        let file: Value = serde_json::from_str(&lab.read(&format!("m{model}.json"))).unwrap();
+        let complaints: Vec<String> = schema.iter_errors(&file).map(|e| e.to_string()).collect();
+        assert_eq!(complaints, Vec::<String>::new());
+        let found = lab
+            .run(&format!("conform --abstraction m{model}.json --data data --torque compensated --json"))
+            .exits(0)
+            .json();
+        assert_eq!(found["settings"]["abstraction"], json!({"model": model, "order": 1}));
+        assert!((found["cost"].as_f64().unwrap() / usual["cost"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+    }
+    lab.run("conform --abstraction m2.json --data data --torque compensated --out model.json").exits(0);
+    lab.check("").exits(0);
+}
+
+/// The arm's links weigh nothing, so that model 1 leaves nothing out.
+#[test]
+fn nothing_is_left_out_of_an_arm_that_is_linear() {
+    let lab = Lab::new();
+    let made = lab.run("abstract --robot arm.toml --box 1,1,1 --json").exits(0).json();
+    for bound in made["remainder"]["bounds"].as_array().unwrap() {
+        let largest = bound.as_array().unwrap().iter().map(|b| b.as_f64().unwrap().abs()).fold(0.0, f64::max);
+        assert!(largest < 1e-12, "{bound}");
+    }
+}
+
+#[test]
+fn what_cannot_be_made_is_refused() {
+    let lab = Lab::new();
+    lab.write("bent.toml", crate::fixture::robot_toml().replace("[2.0, 0.0, 0.0]", "[2.0, 0.5, -0.1]"));
+    let refused = |arguments: &str, parts: &[&str]| {
+        lab.run(arguments).fails_with(parts);
+    };
+    let unknown = lab.run("abstract --robot lwa4p --model 4").exits(2).stderr;
+    assert!(unknown.contains("invalid value '4'") && unknown.contains("1, 2, 3"), "{unknown}");
+    refused("abstract --robot lwa4p --order 0", &["order 1 at least"]);
+    refused("abstract --robot lwa4p --model 3 --order 20", &["GB for its terms", "fits"]);
+    refused("abstract --robot lwa4p --model 2 --order 40", &["order 31 at most"]);
+    refused("abstract --robot lwa4p --at 1,2", &["expansion point has 2 values", "6 positions"]);
+    refused("abstract --robot lwa4p --box 0.1,1.3,1", &["joint `joint1`", "beyond the limits [-1.2, 1.2]"]);
+    refused("abstract --robot lwa4p --box 0.1,1", &["2 radii", "give 3"]);
+    refused("abstract --robot lwa4p --box 0.1,nan,1", &["finite numbers"]);
+    let neither = lab.run("conform --data data --torque compensated").exits(2).stderr;
+    assert!(neither.contains("--robot"), "{neither}");
+    refused(
+        "conform --abstraction none.json --data data --torque compensated",
+        &["none.json", "`abstract --out`"],
+    );
+    lab.run("abstract --robot bent.toml --order 3 --out bent.json").exits(0);
+    refused(
+        "conform --abstraction bent.json --data data --torque compensated",
+        &["is not linear", "acceleration of joint 1", "use order 1"],
+    );
+}
+
+#[test]
+fn a_changed_file_is_refused() {
+    let lab = Lab::new();
+    lab.run("abstract --robot arm.toml --out m.json").exits(0);
+    let whole: Value = serde_json::from_str(&lab.read("m.json")).unwrap();
+    let changed = |path: &str, value: Value, parts: &[&str]| {
+        let mut file = whole.clone();
+        *file.pointer_mut(path).unwrap() = value;
+        lab.write("m.json", file.to_string());
+        lab.run("conform --abstraction m.json --data data --torque compensated").fails_with(parts);
+    };
+    changed("/format", json!("reachtube-model"), &["format is not \"reachtube-abstraction\""]);
+    changed("/version", json!(7), &["version 7", "run abstract again"]);
+    changed("/variables/0", json!("q1"), &["its variables are not qd1, qd2, u1, u2"]);
+    changed("/acceleration/0/0/1", json!(-2.5), &["changed after it was written"]);
+    changed(
+        "/acceleration/1/0/0",
+        json!([1, 0, 0]),
+        &["acceleration of joint 2", "3 exponents", "4 variables"],
+    );
+    changed("/order", json!(0), &["exponents of sum 1", "order 0"]);
+    changed("/robot/joint/0/armature", json!(2.0), &["changed after it was written"]);
+}
