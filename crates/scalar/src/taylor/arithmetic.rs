@@ -108,7 +108,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
             (_, Constant(k)) => self.scaled(k),
             (Sparse(s, a), Sparse(t, b)) => {
                 let space = common(s, t);
-                if is_better_dense(space, a.len().saturating_mul(b.len())) {
+                if is_better_dense(space, sparse::pairs(space, a, b)) {
                     let (few, many) = if a.len() <= b.len() { (a, other) } else { (b, self) };
                     let product = dense::product_with_terms(space, few, &many.coefficients(space));
                     return Self::dense(space, product);

@@ -73,6 +73,14 @@ pub(super) fn product<C: Scalar>(space: &TaylorSpace, a: &[Term<C>], b: &[Term<C
     if done.is_empty() { last } else { sum(&done, &last, false) }
 }
 
+/// Number of pairs of terms whose product is not cut off.
+pub(super) fn pairs<C>(space: &TaylorSpace, a: &[Term<C>], b: &[Term<C>]) -> usize {
+    let (packing, order) = (space.packing, space.order());
+    let up_to = |degree: u32| b.partition_point(|term| packing.degree(term.0) <= degree);
+    let of_degree = |group: &[Term<C>]| group.len() * up_to(order - packing.degree(group[0].0));
+    a.chunk_by(|x, y| packing.degree(x.0) == packing.degree(y.0)).map(of_degree).sum()
+}
+
 /// The product by one term keeps the order.
 fn times_term<C: Scalar>(space: &TaylorSpace, x: &Term<C>, many: &[Term<C>]) -> Vec<Term<C>> {
     times_term_lazily(space, x, many).filter(|(_, c)| !c.is_zero()).collect()
