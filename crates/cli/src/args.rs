@@ -158,6 +158,9 @@ pub struct AbstractArgs {
     /// Bound what the model leaves out over a box about the expansion point: radii of positions (rad), velocities (rad/s) and inputs (N m), 3 or 3n numbers
     #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
     pub operating_box: Vec<f64>,
+    /// Print the polynomials themselves, a line a joint, in place of the summary
+    #[arg(long, conflicts_with = "json")]
+    pub print: bool,
     /// Boxes that the bound may cut the operating box into: more take longer and bound more tightly [default: 16 to 2000, by the model's size]
     #[arg(long, value_name = "COUNT")]
     pub most_boxes: Option<usize>,

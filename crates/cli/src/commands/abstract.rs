@@ -30,7 +30,9 @@ pub fn run(args: &AbstractArgs, json: bool) -> Result<Outcome> {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
         output::note(&format!("wrote {}", path.display()));
     }
-    if json {
+    if args.print {
+        output::print(&model.to_string())?;
+    } else if json {
         let terms: Vec<usize> = model.acceleration().iter().map(|f| f.term_count()).collect();
         output::print_json(&json!({
             "model": model.kind(),

@@ -31,6 +31,13 @@ fn models_are_made_and_described() {
     }
 }
 
+/// Of the arm with m = 1 and 0.5, v = 2 and 1.
+#[test]
+fn polynomials_are_printed() {
+    let printed = Lab::new().run("abstract --robot arm.toml --print").exits(0).stdout;
+    assert_eq!(printed, "qdd1 = - 2 qd1 + 1 u1\nqdd2 = - 2 qd2 + 2 u2\n");
+}
+
 #[test]
 fn files_fit_the_schema_and_conform_takes_them() {
     let (schema, lab) = (schema(), Lab::new());

@@ -4,6 +4,7 @@ mod build;
 mod expansion_point;
 mod field;
 mod file;
+mod formula;
 mod layout;
 mod operating_box;
 mod polynomial_model;
