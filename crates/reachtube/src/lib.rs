@@ -6,6 +6,7 @@ pub mod data;
 pub mod demo;
 mod error;
 mod json;
+pub mod identify;
 pub mod model;
 mod motion;
 mod random;
