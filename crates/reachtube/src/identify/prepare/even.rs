@@ -7,12 +7,6 @@ pub fn usual_step(times: &[f64]) -> Option<f64> {
     (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// The mean time between samples \[s\].
-pub fn mean_step(times: &[f64]) -> Option<f64> {
-    let (first, last) = (times.first()?, times.last()?);
-    (times.len() > 1).then(|| (last - first) / (times.len() - 1) as f64)
-}
-
 /// Values at the times k · `step` from the first time on, by straight lines between samples; `times` increase.
 pub fn resampled(times: &[f64], values: impl Fn(usize) -> f64, step: f64) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Vec::new() };

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// What is cut from each end, in periods of the cut-off.
-const END: f64 = 1.5;
+const END: f64 = 2.5;
 
 /// How recordings are prepared.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -102,7 +102,7 @@ fn fastest_band(log: &RawLog) -> Option<f64> {
 }
 
 /// Prepares recordings: even sample times, gains, a low-pass without delay on positions, velocities and torques, accelerations, and the ends, where
-/// a filter has to guess, cut by one and a half periods of the cut-off.
+/// a filter has to guess, cut by two and a half periods of the cut-off.
 ///
 /// # Errors
 ///
@@ -243,9 +243,9 @@ mod tests {
                 let t = log.time(k);
                 let off = [log.q(k)[0] - t.sin(), log.qd(k)[0] - t.cos(), log.tau(k)[0] - 6.0 * t.sin()];
                 assert!(off.iter().all(|x| x.abs() < 5e-4), "{t}: {off:?}");
-                // The ends are continued without curvature; 1.5 periods later 0.2 % of that is left.
+                // The ends are continued without curvature; 2.5 periods later 0.1 % of that is left.
                 let off = log.qdd(k)[0] + t.sin();
-                assert!(off.abs() < 3e-3, "{t}: {off}");
+                assert!(off.abs() < 2e-3, "{t}: {off}");
             }
             assert!(
                 prepared.changes.iter().any(|words| words.contains("multiplied by [3.0]")),
