@@ -49,6 +49,9 @@ pub enum Command {
     /// Make a simple model of a robot's forward dynamics: linear or polynomial, models 1, 2 and 3 of the paper
     #[command(after_help = ABSTRACT_HELP)]
     Abstract(AbstractArgs),
+    /// Find a robot's gravity, friction and inertia from its recordings
+    #[command(after_help = IDENTIFY_HELP)]
+    Identify(IdentifyArgs),
     /// Find the smallest sets for which a linear model encloses every recording, and prove it
     #[command(after_help = CONFORM_HELP)]
     Conform(ConformArgs),
@@ -88,6 +91,14 @@ Examples:
   reachtube conform --robot lwa4p --data recordings --torque compensated --centre origin --disturbance constant
                                                               the settings of Liu and Althoff (2018)
 Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
+
+const IDENTIFY_HELP: &str = "\
+Examples:
+  reachtube identify --robot arm.urdf --static poses --friction slow --dynamic a.csv b.csv --validate c.csv --out arm.toml
+  reachtube identify --settings arm-identify.toml --report report
+  reachtube identify --robot panda.toml --dynamic excitation --link-torque --cut-off 6
+
+A settings file holds all of it, see docs/identify.md; what is given on the command line counts more.";
 
 #[derive(Debug, Subcommand)]
 pub enum RobotCommand {
@@ -177,6 +188,46 @@ pub struct DemoArgs {
     /// Seed of the virtual arm
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub struct IdentifyArgs {
+    /// An embedded robot (lwa4p) or a TOML file
+    #[arg(long)]
+    pub robot: Option<String>,
+    /// A TOML file with all settings; its paths are relative to its folder
+    #[arg(long, value_name = "FILE")]
+    pub settings: Option<PathBuf>,
+    /// Recordings of poses at rest: CSV files or folders
+    #[arg(long = "static", value_name = "PATH", num_args = 1..)]
+    pub rest: Vec<PathBuf>,
+    /// Recordings of one slow joint at a time
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub friction: Vec<PathBuf>,
+    /// Recordings of exciting motions
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub dynamic: Vec<PathBuf>,
+    /// Recordings kept back
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub validate: Vec<PathBuf>,
+    /// Cut-off of the low-pass, Hz [default: chosen from the recordings]
+    #[arg(long, value_name = "HZ")]
+    pub cut_off: Option<f64>,
+    /// What the recorded torques are multiplied with, joint by joint (for currents: N m/A)
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
+    pub gains: Vec<f64>,
+    /// The torque is measured behind the gear: motor inertia is not in it
+    #[arg(long)]
+    pub link_torque: bool,
+    /// Write the robot to this TOML file
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Write the robot's URDF with the new values to this file
+    #[arg(long, value_name = "FILE")]
+    pub urdf: Option<PathBuf>,
+    /// Write the page and figures into this folder
+    #[arg(long, value_name = "FOLDER")]
+    pub report: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 
 mod args;
 mod commands;
+mod identified;
 mod numbers;
 mod output;
 mod progress;

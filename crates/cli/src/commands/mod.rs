@@ -5,6 +5,7 @@ mod check;
 mod conform;
 mod demo;
 mod files;
+mod identify;
 mod inspect;
 mod reach;
 mod report;
@@ -41,6 +42,7 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
     match &cli.command {
         Command::Demo(args) => demo::run(args, cli.json),
         Command::Robot(RobotCommand::Show(args)) => robot::show(args, cli.json),
+        Command::Identify(args) => identify::run(args, cli.json),
         Command::Inspect(args) => inspect::run(args, cli.json),
         Command::Abstract(args) => r#abstract::run(args, cli.json),
         Command::Conform(args) => conform::run(args, cli.json),

@@ -15,6 +15,9 @@ const LAST_BARRIER: f64 = 1e-3;
 /// Newton steps for one barrier; a dozen are usual.
 const MOST_STEPS: usize = 200;
 
+/// A squared decrement that rounding may leave at the last barrier, well below its gap.
+const NEARLY: f64 = 1e-3;
+
 /// Half the squared Newton decrement at which a barrier's minimum is reached.
 const REACHED: f64 = 1e-8;
 
@@ -77,22 +80,30 @@ impl Feasible<'_> {
         let inverse: Vec<_> = self.prior.iter().map(|p| p.try_inverse()).collect::<Option<_>>()?;
         let mut x = self.start();
         let hessian = self.data.r.transpose() * &self.data.r;
-        let mut barrier = 1.0;
+        let inequalities = 4 * self.prior.len() + self.positive.len();
+        // The first barrier weighs as much as the misfit at the start, or its minimum would be far away.
+        let mut barrier = (self.data.squares(&x) / inequalities as f64).max(1.0);
         let mut steps = 0;
         loop {
+            barrier = (SHRINK * barrier).max(LAST_BARRIER);
+            let mut decrement = f64::INFINITY;
             for _ in 0..MOST_STEPS {
                 let step = self.newton_step(&x, barrier, &hessian, &inverse, &basis)?;
-                steps += 1;
-                x = self.advance(&x, &step, barrier, &inverse)?;
-                if 0.5 * step.decrement < REACHED {
+                (steps, decrement) = (steps + 1, step.decrement);
+                let next = self.advance(&x, &step, barrier, &inverse)?;
+                let stuck = next == x;
+                x = next;
+                if 0.5 * decrement < REACHED || stuck {
                     break;
                 }
             }
             if barrier <= LAST_BARRIER {
-                let inequalities = 4 * self.prior.len() + self.positive.len();
-                return Some(FeasiblePoint { x, gap: barrier * inequalities as f64, steps });
+                return (decrement < NEARLY).then(|| FeasiblePoint {
+                    x,
+                    gap: barrier * inequalities as f64,
+                    steps,
+                });
             }
-            barrier *= SHRINK;
         }
     }
 

@@ -21,8 +21,19 @@ impl Triangle {
     /// Of rows [a, y], each of p + 1 entries, row-major.
     pub fn of(rows: &[f64], columns: usize) -> Self {
         let width = columns + 1;
-        let part = |part: &[f64]| factor(DMatrix::from_row_slice(part.len() / width, width, part));
-        let parts: Vec<_> = rows.par_chunks(CHUNK * width).map(part).collect();
+        let all: Vec<usize> = (0..rows.len() / width).collect();
+        Self::of_rows(&all, columns, |index, row| row.copy_from_slice(&rows[index * width..][..width]))
+    }
+
+    /// Of the rows [a, y] that `write` writes for each index.
+    pub fn of_rows(indices: &[usize], columns: usize, write: impl Fn(usize, &mut [f64]) + Sync) -> Self {
+        let width = columns + 1;
+        let part = |part: &[usize]| {
+            let mut rows = vec![0.0; part.len() * width];
+            part.iter().zip(rows.chunks_exact_mut(width)).for_each(|(index, row)| write(*index, row));
+            factor(DMatrix::from_row_slice(part.len(), width, &rows))
+        };
+        let parts: Vec<_> = indices.par_chunks(CHUNK).map(part).collect();
         Self::joined(parts, width)
     }
 

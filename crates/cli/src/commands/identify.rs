@@ -1,0 +1,78 @@
+use std::path::{Path, PathBuf};
+
+use reachtube::identify::prepare::LogEntry;
+use reachtube::identify::{Identification, IdentifySettings, identify};
+use reachtube::{Error, Result, write};
+use reachtube_robot::Robot;
+
+use super::Outcome;
+use crate::args::IdentifyArgs;
+use crate::progress::Progress;
+use crate::{identified, output};
+
+pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
+    let (settings, folder) = settings(args)?;
+    let name = settings.robot.clone().ok_or_else(|| {
+        Error::Setting("no robot: name one with --robot or robot = \"..\" in the settings".into())
+    })?;
+    let robot = Robot::load(&from_folder(&name, args, &folder))?;
+    for path in [&args.out, &args.urdf].into_iter().flatten() {
+        write::try_at(path)?;
+    }
+    let bar = Progress::new();
+    let found = identify(&robot, &settings, &folder, &|done, total| bar.show(done, total))?;
+    drop(bar);
+    output::notes(&found.changes);
+    files(args, &found)?;
+    if json {
+        output::print_json(&found.summary())?;
+    } else {
+        output::print(&identified::words(&found))?;
+    }
+    found.warnings.iter().for_each(|warning| output::note(&format!("warning: {warning}")));
+    Ok(Outcome::Done)
+}
+
+fn files(args: &IdentifyArgs, found: &Identification) -> Result<()> {
+    if let Some(path) = &args.out {
+        let text = found.robot_toml();
+        write::atomically(path, |out| out.write_all(text.as_bytes()))?;
+        output::note(&format!("wrote {}", path.display()));
+    }
+    Ok(())
+}
+
+/// The settings of the file and the command line, and the folder that paths are relative to: that of the settings file, or the present one.
+fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
+    let mut settings = match &args.settings {
+        Some(path) => IdentifySettings::load(path)?,
+        None => IdentifySettings::default(),
+    };
+    let folder = args.settings.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_path_buf();
+    let here = std::env::current_dir().unwrap_or_default();
+    let given = [
+        (&mut settings.rest, &args.rest),
+        (&mut settings.friction, &args.friction),
+        (&mut settings.dynamic, &args.dynamic),
+        (&mut settings.validate, &args.validate),
+    ];
+    for (entries, paths) in given {
+        if !paths.is_empty() {
+            // Paths on the command line are relative to where it is typed.
+            *entries = paths.iter().map(|path| LogEntry::Path(here.join(path))).collect();
+        }
+    }
+    settings.robot = args.robot.clone().or(settings.robot);
+    settings.prepare.cut_off = args.cut_off.or(settings.prepare.cut_off);
+    if !args.gains.is_empty() {
+        settings.prepare.gains = args.gains.clone();
+    }
+    settings.model.motor_inertia &= !args.link_torque;
+    Ok((settings, folder))
+}
+
+/// A robot of the settings file lies beside it; one of the command line, and an embedded one, is what it is.
+fn from_folder(name: &str, args: &IdentifyArgs, folder: &Path) -> String {
+    let beside = folder.join(name);
+    if args.robot.is_none() && beside.exists() { beside.display().to_string() } else { name.into() }
+}
