@@ -86,7 +86,15 @@ fn friction(text: &mut String, found: &Identification) {
 
 fn inertia(text: &mut String, found: &Identification) {
     let fit = &found.inertia;
-    let _ = writeln!(text, "\n3. inertial parameters: condition {}", number(found.condition()));
+    let shown = fit.parameters.iter().filter(|parameter| parameter.standard_error.is_finite()).count();
+    let _ = writeln!(
+        text,
+        "\n3. inertial parameters: {shown} of {} combinations shown, condition {} (structure: relative singular values {:.0e} | {:.0e})",
+        fit.parameters.len(),
+        number(fit.condition),
+        fit.gap[0],
+        fit.gap[1]
+    );
     let rows: Vec<Vec<String>> = fit
         .joints
         .iter()
@@ -116,6 +124,7 @@ fn inertia(text: &mut String, found: &Identification) {
         "outliers",
     ];
     text.push_str(&table(&header, &rows));
+    parameters(text, found);
     let Some(physical) = &fit.physical else { return };
     match &physical.plain_impossible {
         Some(why) => {
@@ -129,6 +138,23 @@ fn inertia(text: &mut String, found: &Identification) {
         number(physical.cost),
         number(physical.gap)
     );
+}
+
+fn parameters(text: &mut String, found: &Identification) {
+    let row = |parameter: &reachtube::identify::BaseParameter| {
+        let relative = parameter.standard_error / parameter.least_squares.abs();
+        vec![
+            number(parameter.value),
+            number(parameter.least_squares),
+            number(parameter.standard_error),
+            if relative < 10.0 { percent(relative) } else { "-".into() },
+            number(parameter.described),
+            parameter.name.clone(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = found.inertia.parameters.iter().map(row).collect();
+    let header = ["value", "least squares", "standard error", "part", "described", "combination (SI units)"];
+    text.push_str(&table(&header, &rows));
 }
 
 fn gains(text: &mut String, found: &Identification) {

@@ -2,8 +2,9 @@ use std::path::{Path, PathBuf};
 
 use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
+use reachtube::report::write_identified_html;
 use reachtube::{Error, Result, write};
-use reachtube_robot::Robot;
+use reachtube_robot::{Robot, Urdf, UrdfEnds};
 
 use super::Outcome;
 use crate::args::IdentifyArgs;
@@ -15,7 +16,9 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     let name = settings.robot.clone().ok_or_else(|| {
         Error::Setting("no robot: name one with --robot or robot = \"..\" in the settings".into())
     })?;
-    let robot = Robot::load(&from_folder(&name, args, &folder))?;
+    let name = from_folder(&name, args, &folder);
+    let robot = Robot::load(&name)?;
+    let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &UrdfEnds::default())).transpose()?;
     for path in [&args.out, &args.urdf].into_iter().flatten() {
         write::try_at(path)?;
     }
@@ -23,7 +26,7 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     let found = identify(&robot, &settings, &folder, &|done, total| bar.show(done, total))?;
     drop(bar);
     output::notes(&found.changes);
-    files(args, &found)?;
+    files(args, &found, urdf.as_ref())?;
     if json {
         output::print_json(&found.summary())?;
     } else {
@@ -33,11 +36,27 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-fn files(args: &IdentifyArgs, found: &Identification) -> Result<()> {
-    if let Some(path) = &args.out {
-        let text = found.robot_toml();
+fn files(args: &IdentifyArgs, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
+    let save = |path: &Path, text: String| {
         write::atomically(path, |out| out.write_all(text.as_bytes()))?;
         output::note(&format!("wrote {}", path.display()));
+        Ok::<(), Error>(())
+    };
+    if let Some(path) = &args.out {
+        save(path, found.robot_toml())?;
+    }
+    if let Some(folder) = &args.report {
+        let path = folder.join("identify.html");
+        let mut page = Vec::new();
+        write_identified_html(found, &mut page)?;
+        write::atomically(&path, |out| out.write_all(&page))?;
+        output::note(&format!("wrote {}", path.display()));
+    }
+    if let (Some(path), Some(urdf)) = (&args.urdf, urdf) {
+        let robot = Robot::from_description(&found.description)?;
+        save(path, urdf.updated(&robot)?)?;
+        // Motors and what URDF has no words for stand beside it.
+        save(&path.with_extension("toml"), urdf.companion(&robot))?;
     }
     Ok(())
 }

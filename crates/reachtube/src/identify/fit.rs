@@ -30,7 +30,7 @@ pub struct JointFit {
     pub independent: f64,
     /// Root mean square of the residuals \[N m\].
     pub residual: f64,
-    /// Root mean square of the torque \[N m\].
+    /// Root mean square of the recorded torque \[N m\].
     pub torque: f64,
     /// Robust standard deviation of the residuals \[N m\].
     pub deviation: f64,
@@ -112,7 +112,7 @@ fn deviation(residuals: &[f64], torque: &[f64], plain: bool) -> f64 {
 }
 
 fn joint_fit(samples: &Samples, residuals: &[f64], joint: usize) -> JointFit {
-    let (own, torque) = (samples.of_joint(residuals, joint), flat(samples, &samples.torque, joint));
+    let (own, torque) = (samples.of_joint(residuals, joint), flat(samples, &samples.recorded, joint));
     let all = own.concat();
     let series: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
     let deviation = deviation(&all, &torque, false);

@@ -7,11 +7,14 @@ use super::prepare::Log;
 use super::samples::{Known, Samples, Sampling};
 use super::settings::{ModelSettings, Prior};
 use crate::error::{Error, Result};
-use nalgebra::{Cholesky, DVector, Matrix4, Vector4};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Vector4};
 use reachtube_robot::{
-    Column, ColumnKind, FrictionDescription, Parameters, Robot, RobotDescription, RobotError,
+    BaseParameters, Column, ColumnKind, FrictionDescription, Parameters, Robot, RobotDescription, RobotError,
 };
 use serde::Serialize;
+
+/// Condition beyond which a combination counts as not shown: one part in ten thousand of a column is below what a rigid robot's torque is known to.
+const ILL_CONDITIONED: f64 = 1e4;
 
 /// Radius of the balls that stand in for links of which nothing is known \[m\].
 const BALL_RADIUS: f64 = 0.1;
@@ -29,6 +32,27 @@ pub struct InertiaFit {
     pub physical: Option<PhysicalFit>,
     /// How well each joint's torque was fitted.
     pub joints: Vec<JointFit>,
+    /// The combinations that torque shows.
+    pub parameters: Vec<BaseParameter>,
+    /// Condition number of the base regressor, columns scaled to unit length; infinite where the recordings leave a combination open.
+    pub condition: f64,
+    /// Relative singular values of the structural base, either side of the cut.
+    pub gap: [f64; 2],
+}
+
+/// A combination of parameters that torque shows, with its value in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BaseParameter {
+    /// The combination, such as `Ixx2 - Iyy2 + Izz2 + J2`.
+    pub name: String,
+    /// Its value in the robot that was found.
+    pub value: f64,
+    /// Its value by least squares.
+    pub least_squares: f64,
+    /// Standard error of the latter; infinite where the recordings do not show it.
+    pub standard_error: f64,
+    /// Its value in the description that was given.
+    pub described: f64,
 }
 
 /// What it costs that every link is a body.
@@ -46,15 +70,24 @@ pub struct PhysicalFit {
     pub balls: Vec<String>,
 }
 
+/// What is fitted of friction with the inertial parameters.
+#[derive(Debug, Clone, Copy)]
+pub struct Friction {
+    /// Whether it is fitted at all: as a change where it is known.
+    pub refit: bool,
+    /// Whether it has a cubic term.
+    pub cubic: bool,
+}
+
 /// The columns that are fitted to exciting motions.
-pub fn columns(joints: usize, model: &ModelSettings, refit_friction: bool) -> Vec<Column> {
+pub fn columns(joints: usize, model: &ModelSettings, friction: Friction) -> Vec<Column> {
     let mut columns = Column::of_joints(joints, &ColumnKind::INERTIAL);
     if model.motor_inertia {
         columns.extend(Column::of_joints(joints, &[ColumnKind::MotorInertia]));
     }
-    if refit_friction {
+    if friction.refit {
         let kinds = [ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1, ColumnKind::Viscous3];
-        columns.extend(Column::of_joints(joints, &kinds[..if model.cubic { 4 } else { 3 }]));
+        columns.extend(Column::of_joints(joints, &kinds[..if friction.cubic { 4 } else { 3 }]));
     }
     columns
 }
@@ -70,9 +103,9 @@ pub fn fit(
     [dynamic, rests]: [&[Log]; 2],
     sampling: &Sampling,
     model: &ModelSettings,
-    refit_friction: bool,
+    friction: Friction,
 ) -> Result<InertiaFit> {
-    let columns = columns(robot.joint_count(), model, refit_friction);
+    let columns = columns(robot.joint_count(), model, friction);
     let moving = Samples::of(robot, &columns, dynamic, sampling, &Known::Friction(known));
     if !moving.used.contains(&true) {
         return Err(Error::Setting("no joint moves in the recordings for the inertial parameters; name recordings of motions with --dynamic".into()));
@@ -81,24 +114,78 @@ pub fn fit(
     let groups: Vec<&Samples> = [&moving, &still].into_iter().filter(|samples| !samples.is_empty()).collect();
     let fit = Fit::of(&groups, !model.robust);
     let physical =
-        model.physical.then(|| nearest_bodies(robot, &columns, &fit, &moving, model)).transpose()?;
+        model.physical.then(|| nearest_bodies([robot, known], &columns, &fit, &moving, model)).transpose()?;
     let (values, physical) = match physical {
         Some((values, physical)) => (values, Some(physical)),
         None => (fit.solution.x.clone(), None),
     };
-    Ok(InertiaFit { columns, joints: fit.joints[0].clone(), fit, values, physical })
+    let base = BaseParameters::of_robot(robot, &columns);
+    let (parameters, condition) = base_parameters(robot, &base, &fit, &values, model.physical)?;
+    Ok(InertiaFit {
+        joints: fit.joints[0].clone(),
+        gap: base.gap(),
+        columns,
+        fit,
+        values,
+        physical,
+        parameters,
+        condition,
+    })
+}
+
+/// The base parameters with their errors, and the condition of their regression.
+fn base_parameters(
+    robot: &Robot,
+    base: &BaseParameters,
+    fit: &Fit,
+    values: &DVector<f64>,
+    physical: bool,
+) -> Result<(Vec<BaseParameter>, f64)> {
+    let chosen = DMatrix::from_fn(base.columns().len(), base.count(), |i, j| {
+        f64::from(u8::from(base.independent()[j] == i))
+    });
+    let solution = fit.whitened.mapped(&chosen).solve_within(ILL_CONDITIONED.recip());
+    let names = base.names();
+    if !physical && !solution.open.is_empty() {
+        let open: Vec<&str> = solution.open.iter().map(|k| names[*k].as_str()).collect();
+        return Err(Error::Setting(format!(
+            "the recordings do not show {} of {} combinations of parameters (condition above {ILL_CONDITIONED:.0e}): {}; move all joints through more positions and \
+             faster, or set model.physical = true, where the description decides what they leave open",
+            open.len(),
+            names.len(),
+            open.join("; ")
+        )));
+    }
+    let (found, described) =
+        (base.reduce(values.as_slice()), base.reduce(&robot.column_values(base.columns())));
+    let errors = solution.standard_errors();
+    let parameter = |(k, name)| BaseParameter {
+        name,
+        value: found[k],
+        least_squares: solution.x[k],
+        standard_error: errors[k],
+        described: described[k],
+    };
+    Ok((names.into_iter().enumerate().map(parameter).collect(), solution.condition))
 }
 
 fn nearest_bodies(
-    robot: &Robot,
+    [robot, known]: [&Robot; 2],
     columns: &[Column],
     fit: &Fit,
     moving: &Samples,
     model: &ModelSettings,
 ) -> Result<(DVector<f64>, PhysicalFit)> {
     let (prior, balls) = prior(robot, model.prior);
-    let positive: Vec<usize> =
-        (0..columns.len()).filter(|c| columns[*c].kind == ColumnKind::MotorInertia).collect();
+    let frictionless =
+        |joint: usize| known.description().joints[joint].friction == FrictionDescription::default();
+    // Friction that is fitted here alone must dissipate; what is added to friction that is known may have either sign.
+    let positive = |column: &Column| match column.kind {
+        ColumnKind::MotorInertia => true,
+        ColumnKind::Coulomb | ColumnKind::Viscous1 => frictionless(column.joint),
+        _ => false,
+    };
+    let positive: Vec<usize> = (0..columns.len()).filter(|c| positive(&columns[*c])).collect();
     let strength = model.prior_strength;
     let program = Feasible { data: &fit.whitened, prior: &prior, strength, positive: &positive };
     let point = program.solve().ok_or_else(|| {
@@ -197,4 +284,24 @@ pub fn description(
         }
     }
     Ok(out)
+}
+
+impl InertiaFit {
+    /// Which combinations the recordings leave to the prior, in words; none where they show all.
+    pub fn not_shown(&self) -> Option<String> {
+        let open: Vec<&str> = self
+            .parameters
+            .iter()
+            .filter(|p| p.standard_error.is_infinite())
+            .map(|p| p.name.as_str())
+            .collect();
+        (!open.is_empty()).then(|| {
+            format!(
+                "the recordings do not show {} of {} combinations of parameters; the prior decides about: {}",
+                open.len(),
+                self.parameters.len(),
+                open.join("; ")
+            )
+        })
+    }
 }

@@ -19,7 +19,7 @@ mod validate;
 pub use fit::{Fit, JointFit};
 pub use friction::{FrictionFit, JointFriction};
 pub use gravity::GravityFit;
-pub use inertia::{InertiaFit, PhysicalFit};
+pub use inertia::{BaseParameter, InertiaFit, PhysicalFit};
 pub use settings::{IdentifySettings, ModelSettings, Prior};
 pub use summary::Summary;
 pub use suspect::Gain;
@@ -105,9 +105,12 @@ pub fn identify(
     let coefficients = gravity::coefficients(&first.friction, robot);
     let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
     let known = gravity::with_friction(load, &coefficients)?;
-    let refit = model.refit_friction || first.friction.len() < robot.joint_count();
+    let friction = inertia::Friction {
+        refit: model.refit_friction || first.friction.len() < robot.joint_count(),
+        cubic: model.cubic.unwrap_or(!first.friction.is_empty()),
+    };
     let rests: &[Log] = if model.separate_gravity { &[] } else { &logs.rest };
-    let inertia = inertia::fit(robot, &known, [&logs.dynamic, rests], &sampling, model, refit)?;
+    let inertia = inertia::fit(robot, &known, [&logs.dynamic, rests], &sampling, model, friction)?;
     let mut description = inertia::description(robot, &inertia, &coefficients)?;
     if model.separate_gravity
         && let Some(gravity) = &first.gravity
@@ -123,6 +126,7 @@ pub fn identify(
     let moving = Samples::of(robot, &inertia.columns, &logs.dynamic, &sampling, &Known::Friction(&known));
     let gains = suspect::gains(robot, &moving, &inertia.joints);
     let mut warnings = first.notes;
+    warnings.extend(inertia.not_shown());
     warnings.extend(suspect::words(
         robot,
         &description,

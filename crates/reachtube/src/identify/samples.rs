@@ -91,7 +91,9 @@ impl Samples {
     fn push(&mut self, regressor: &mut Regressor, [q, qd, qdd]: [&[f64]; 3], tau: &[f64], known: &Known) {
         let at = self.regressor.len();
         self.regressor.resize(at + self.joints * self.columns.len(), 0.0);
-        regressor.fill(q, qd, qdd, &mut self.regressor[at..]);
+        if !self.columns.is_empty() {
+            regressor.fill(q, qd, qdd, &mut self.regressor[at..]);
+        }
         let known = known.torque([q, qd, qdd]);
         self.recorded.extend_from_slice(tau);
         self.torque.extend(tau.iter().enumerate().map(|(j, tau)| tau - known.as_ref().map_or(0.0, |k| k[j])));

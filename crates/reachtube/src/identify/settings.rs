@@ -52,8 +52,8 @@ pub struct ModelSettings {
     pub motor_inertia: bool,
     /// Whether friction is fitted once more, as a change, with the inertial parameters; always where there are no friction recordings.
     pub refit_friction: bool,
-    /// Whether viscous friction has a cubic term where it is fitted with the inertial parameters.
-    pub cubic: bool,
+    /// Whether viscous friction has a cubic term where it is fitted with the inertial parameters; where left out, if there are friction recordings.
+    pub cubic: Option<bool>,
     /// Speed below which a joint's torque is not used \[rad/s\], for friction has no value there; 2 % of each joint's high speeds where left out.
     pub slow: Option<f64>,
     /// Speed up to which the robot is at rest \[rad/s\].
@@ -88,7 +88,7 @@ impl Default for ModelSettings {
         Self {
             motor_inertia: true,
             refit_friction: true,
-            cubic: true,
+            cubic: None,
             slow: None,
             rest_speed: 0.01,
             robust: true,

@@ -1,5 +1,6 @@
 use super::{
-    Gain, GravityFit, Identification, JointFit, JointFriction, LogValidation, PhysicalFit, WindowErrors,
+    BaseParameter, Gain, GravityFit, Identification, JointFit, JointFriction, LogValidation, PhysicalFit,
+    WindowErrors,
 };
 use reachtube_robot::RobotDescription;
 use serde::Serialize;
@@ -19,7 +20,9 @@ pub struct Summary<'a> {
     pub friction: Vec<&'a JointFriction>,
     /// How well the torque of exciting motions was fitted, joint by joint.
     pub inertia: &'a [JointFit],
-    /// Condition of the regression, columns scaled to unit length.
+    /// The combinations that torque shows.
+    pub parameters: &'a [BaseParameter],
+    /// Condition of their regression, columns scaled to unit length.
     pub condition: f64,
     /// What it costs that every link is a body.
     pub physical: &'a Option<PhysicalFit>,
@@ -45,7 +48,8 @@ impl Identification {
             gravity: &self.gravity,
             friction: self.friction.iter().map(|fit| &fit.joint).collect(),
             inertia: &self.inertia.joints,
-            condition: self.condition(),
+            parameters: &self.inertia.parameters,
+            condition: self.inertia.condition,
             physical: &self.inertia.physical,
             gains: &self.gains,
             validation: &self.validation,
@@ -53,11 +57,6 @@ impl Identification {
             windows: &self.windows,
             warnings: &self.warnings,
         }
-    }
-
-    /// Condition number of the regression of the inertial parameters, columns scaled to unit length.
-    pub fn condition(&self) -> f64 {
-        self.inertia.fit.solution.condition
     }
 
     /// The robot that was found as a file that `conform` reads.

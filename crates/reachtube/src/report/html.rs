@@ -36,7 +36,7 @@ pub fn write_html(page: &Page, out: &mut impl Write) -> Result<(), ReportError> 
     page.sets.iter().try_for_each(check::sets)?;
     let figures = page.suites.iter().enumerate().map(|(index, suite)| suite_section(index, suite));
     let figures: Vec<String> = figures.collect::<Result<_, _>>()?;
-    out.write_all(top(page).as_bytes())?;
+    out.write_all(top(&page.title, &page.subtitle).as_bytes())?;
     out.write_all(verdict(page).as_bytes())?;
     if !figures.is_empty() {
         out.write_all(controls(page).as_bytes())?;
@@ -48,8 +48,9 @@ pub fn write_html(page: &Page, out: &mut impl Write) -> Result<(), ReportError> 
     Ok(())
 }
 
-fn top(page: &Page) -> String {
-    let title = escape(&page.title);
+/// The head of a page, up to its heading.
+pub(super) fn top(title: &str, subtitle: &str) -> String {
+    let title = escape(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
@@ -57,7 +58,7 @@ fn top(page: &Page) -> String {
          <meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n\
          <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
          <header><h1>{title}</h1>\n<p>{}</p></header>\n",
-        escape(&page.subtitle)
+        escape(subtitle)
     )
 }
 
@@ -74,7 +75,7 @@ fn verdict(page: &Page) -> String {
 }
 
 /// A heading and its points; nothing where there are none.
-fn titled_list(title: &str, class: &str, points: &[String]) -> String {
+pub(super) fn titled_list(title: &str, class: &str, points: &[String]) -> String {
     if points.is_empty() {
         return String::new();
     }
@@ -204,7 +205,7 @@ fn rest(page: &Page) -> String {
     html
 }
 
-fn section(title: &str, body: &str) -> String {
+pub(super) fn section(title: &str, body: &str) -> String {
     format!("<section>\n<h2>{title}</h2>\n{body}</section>\n")
 }
 

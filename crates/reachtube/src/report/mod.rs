@@ -5,11 +5,13 @@
 //! the page can be made from any result, and the same input always gives the same bytes.
 
 mod assemble;
+mod chart;
 mod check;
 mod colour;
 mod decimate;
 mod figure;
 mod html;
+mod identified;
 mod layout;
 mod legend;
 mod number;
@@ -23,8 +25,10 @@ mod browser;
 mod sample;
 
 pub use assemble::{Sources, page};
+pub use chart::{Chart, Series, chart_svg};
 pub use figure::suite_svg;
 pub use html::write_html;
+pub use identified::write_identified_html;
 
 /// A closed interval `[lower, upper]`, in the unit that the field holding it names.
 pub type Bounds = [f64; 2];

@@ -17,7 +17,7 @@ pub(super) const INK: RGBColor = RGBColor(31, 35, 40);
 /// Rings of tight spots, and of samples outside the set.
 pub(super) const RINGS: [RGBColor; 2] = [INK, RGBColor(207, 19, 34)];
 
-const GRID: RGBColor = RGBColor(238, 240, 243);
+pub(super) const GRID: RGBColor = RGBColor(238, 240, 243);
 const RUN_WIDTH: u32 = 7;
 const EDGE_WIDTH: u32 = 7;
 /// How far a thinned line may pass from a sample \[px\].

@@ -14,7 +14,7 @@ const LOWEST: f64 = 3.0;
 /// The highest, as a part of the sample rate.
 const HIGHEST: f64 = 0.2;
 
-/// The highest frequency of a motion \[Hz\]: that below which 99.9 % of the power of the fastest joint's velocity lies.
+/// The highest frequency of a motion \[Hz\]: that below which 99.9 % of the power of the velocity lies.
 ///
 /// `q` and `qd` are one joint's evenly spaced positions and velocities. The power is taken from the recorded velocity and
 /// from the differentiated position, and the lower frequency counts: noise is in one of them more than in the other.
@@ -23,11 +23,17 @@ pub fn motion_band(q: &[f64], qd: &[f64], step: f64) -> f64 {
     band(&slope, step).min(band(qd, step))
 }
 
-/// The cut-off \[Hz\] for the bands of several logs: 1.5 times their median, at least 3 Hz and at most a fifth of the sample rate.
-pub fn chosen(mut bands: Vec<f64>, rate: f64) -> f64 {
-    bands.sort_by(f64::total_cmp);
-    let band = bands.get(bands.len() / 2).copied().unwrap_or(0.0);
-    (ROOM * band).max(LOWEST).min(HIGHEST * rate)
+/// The cut-off \[Hz\] for the bands of joints in logs, each with the weight of its motion: 1.5 times their weighted median, at least 3 Hz and at most a fifth
+/// of the sample rate.
+pub fn chosen(mut bands: Vec<(f64, f64)>, rate: f64) -> f64 {
+    bands.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let half = 0.5 * bands.iter().map(|(_, weight)| weight).sum::<f64>();
+    let mut sum = 0.0;
+    let median = bands.iter().find(|(_, weight)| {
+        sum += weight;
+        sum >= half
+    });
+    (ROOM * median.map_or(0.0, |(band, _)| *band)).max(LOWEST).min(HIGHEST * rate)
 }
 
 fn band(values: &[f64], step: f64) -> f64 {
@@ -95,8 +101,8 @@ mod tests {
 
     #[test]
     fn the_choice_has_its_limits() {
-        assert_eq!(chosen(vec![0.4, 0.5, 0.6], 1000.0), 3.0);
-        assert_eq!(chosen(vec![4.0, 6.0, 60.0], 1000.0), 9.0);
-        assert_eq!(chosen(vec![4.0], 20.0), 4.0);
+        assert_eq!(chosen(vec![(0.4, 1.0), (0.5, 1.0), (0.6, 1.0)], 1000.0), 3.0);
+        assert_eq!(chosen(vec![(4.0, 1.0), (6.0, 1.0), (60.0, 0.5)], 1000.0), 9.0);
+        assert_eq!(chosen(vec![(4.0, 1.0)], 20.0), 4.0);
     }
 }

@@ -71,8 +71,8 @@ struct Change {
     differentiated: bool,
 }
 
-/// The cut-off asked for, or chosen from recordings with motion: 1.5 times the frequency below which 99.9 % of the power of the fastest joint's velocity
-/// lies (the median of the logs), at least 3 Hz so that friction steps where a joint turns, at most a fifth of the sample rate.
+/// The cut-off asked for, or chosen from recordings with motion: 1.5 times the frequency below which 99.9 % of the power of a joint's velocity
+/// lies (the median over joints and logs, weighted by how much they move), at least 3 Hz so that friction steps where a joint turns, at most a fifth of the sample rate.
 ///
 /// # Errors
 ///
@@ -88,17 +88,20 @@ pub fn cut_off(logs: &[&RawLog], settings: &PrepareSettings) -> Result<f64> {
         }
         return Ok(given);
     }
-    let bands = logs.par_iter().filter_map(|log| fastest_band(log)).collect();
+    let bands = logs.par_iter().flat_map_iter(|log| bands(log)).collect();
     Ok(cut_off::chosen(bands, lowest_rate))
 }
 
-fn fastest_band(log: &RawLog) -> Option<f64> {
-    let step = usual_step(&log.run.times)?;
-    let power = |joint: usize| (0..log.run.len()).map(|k| log.run.qd(k)[joint].powi(2)).sum::<f64>();
-    let most = (0..log.run.joints).map(power).fold(0.0, f64::max);
-    let moving = (0..log.run.joints).filter(|joint| power(*joint) > 1e-2 * most && most > 0.0);
+/// The band of each joint's motion in a log \[Hz\], with the variance of its position times the duration for weight.
+fn bands(log: &RawLog) -> Vec<(f64, f64)> {
+    let Some(step) = usual_step(&log.run.times) else { return Vec::new() };
     let column = |which, joint| resampled(&log.run.times, log.column(which, joint), step);
-    moving.map(|joint| motion_band(&column(Run::q, joint), &column(Run::qd, joint), step)).reduce(f64::max)
+    let band = |joint: usize| {
+        let q = column(Run::q, joint);
+        let mean = q.iter().sum::<f64>() / q.len() as f64;
+        (motion_band(&q, &column(Run::qd, joint), step), q.iter().map(|q| step * (q - mean).powi(2)).sum())
+    };
+    (0..log.run.joints).map(band).collect()
 }
 
 /// Prepares recordings: even sample times, gains, a low-pass without delay on positions, velocities and torques, accelerations, and the ends, where

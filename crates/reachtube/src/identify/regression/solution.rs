@@ -21,8 +21,13 @@ pub struct Solution {
 }
 
 impl Triangle {
-    /// Solves the least-squares problem by the singular values of R with its columns scaled to unit length.
+    /// Solves the least-squares problem by the singular values of R with its columns scaled to unit length; directions that only rounding shows are left open.
     pub fn solve(&self) -> Solution {
+        self.solve_within(RANK_TOLERANCE)
+    }
+
+    /// The same, leaving directions open whose singular value is below so much of the largest.
+    pub fn solve_within(&self, tolerance: f64) -> Solution {
         let p = self.r.ncols();
         let scale: Vec<f64> = self.r.column_iter().map(|column| column.norm()).collect();
         let largest_scale = scale.iter().copied().fold(0.0, f64::max);
@@ -32,7 +37,7 @@ impl Triangle {
         let svd = (&self.r * DMatrix::from_diagonal(&unit)).svd(true, true);
         let (Some(u), Some(v_t)) = (&svd.u, &svd.v_t) else { unreachable!("both were asked for") };
         let sigma = &svd.singular_values;
-        let cut = RANK_TOLERANCE * sigma.max();
+        let cut = tolerance * sigma.max();
         let mut scaled = DVector::zeros(p);
         let mut covariance = DMatrix::zeros(p, p);
         let mut open = vec![false; p];
