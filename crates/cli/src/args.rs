@@ -52,6 +52,11 @@ pub enum Command {
     /// Find a robot's gravity, friction and inertia from its recordings
     #[command(after_help = IDENTIFY_HELP)]
     Identify(IdentifyArgs),
+    /// Filter recordings, cut them into windows, and write them as test suites
+    #[command(
+        after_help = "Example:\n  reachtube prepare --robot arm.toml --logs repeated --repeats --window 1 --cut-off 6 --out windows"
+    )]
+    Prepare(PrepareArgs),
     /// Find the smallest sets for which a linear model encloses every recording, and prove it
     #[command(after_help = CONFORM_HELP)]
     Conform(ConformArgs),
@@ -228,6 +233,37 @@ pub struct IdentifyArgs {
     /// Write the page and figures into this folder
     #[arg(long, value_name = "FOLDER")]
     pub report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct PrepareArgs {
+    /// An embedded robot (lwa4p), a TOML or a URDF file
+    #[arg(long)]
+    pub robot: String,
+    /// Recordings: CSV files or folders
+    #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
+    pub logs: Vec<PathBuf>,
+    /// Logs whose names differ after the last _ only are repeats: align them, and put each window of all of them into one suite
+    #[arg(long)]
+    pub repeats: bool,
+    /// Length of the windows, s [default: whole recordings]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub window: Option<f64>,
+    /// Cut-off of the low-pass, Hz [default: chosen from the recordings]
+    #[arg(long, value_name = "HZ", value_parser = seconds)]
+    pub cut_off: Option<f64>,
+    /// What the recorded torques are multiplied with, joint by joint
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
+    pub gains: Vec<f64>,
+    /// The robot's joints by name in the order of the columns [default: the robot's order]
+    #[arg(long, value_delimiter = ',')]
+    pub joints: Vec<String>,
+    /// Accept gaps up to this many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub max_gap: Option<f64>,
+    /// Folder for the recordings and runs.csv
+    #[arg(long)]
+    pub out: PathBuf,
 }
 
 #[derive(Debug, Args)]

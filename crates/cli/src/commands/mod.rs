@@ -7,6 +7,7 @@ mod demo;
 mod files;
 mod identify;
 mod inspect;
+mod prepare;
 mod reach;
 mod report;
 mod reproduce;
@@ -45,6 +46,7 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
         Command::Identify(args) => identify::run(args, cli.json),
         Command::Inspect(args) => inspect::run(args, cli.json),
         Command::Abstract(args) => r#abstract::run(args, cli.json),
+        Command::Prepare(args) => prepare::run(args, cli.json),
         Command::Conform(args) => conform::run(args, cli.json),
         Command::Check(args) => check::run(args, cli.json),
         Command::Reach(args) => reach::run(args, cli.json),

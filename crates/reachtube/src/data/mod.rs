@@ -20,6 +20,6 @@ pub(crate) use defect::list_defects;
 pub use index::RunEntry;
 pub use inspect::{Group, Inspection, JointSummary, inspect};
 pub use run::{GapLimit, Run};
-pub(crate) use run::{hex, state_name};
+pub(crate) use run::{column_names, hex, state_name};
 pub use torque::Torque;
 pub(crate) use units::check_limits;

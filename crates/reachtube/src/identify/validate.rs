@@ -71,6 +71,8 @@ pub struct TorqueTrace {
     pub recorded: Vec<Vec<f64>>,
     /// Predicted torque, likewise.
     pub predicted: Vec<Vec<f64>>,
+    /// Whether the joint moves, likewise.
+    pub moves: Vec<Vec<bool>>,
 }
 
 /// Predicts the torque of logs by the robot that was found; plain least squares, beside it, by `fit` and the friction of `known`. Log by log, then over all.
@@ -138,6 +140,9 @@ fn trace(samples: &Samples, residuals: &[f64], log: &Log, rows: std::ops::Range<
     TorqueTrace {
         log: log.name.clone(),
         times: (0..count).map(|k| log.start + step * k as f64).collect(),
+        moves: (0..n)
+            .map(|joint| rows.clone().skip(joint).step_by(n).map(|r| samples.used[r]).collect())
+            .collect(),
         recorded: (0..n).map(|joint| column(joint, &|r| samples.recorded[r])).collect(),
         predicted: (0..n).map(|joint| column(joint, &|r| samples.recorded[r] - residuals[r])).collect(),
     }

@@ -9,7 +9,7 @@ use super::{ReportError, decimate};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-const WIDTH: f64 = 410.0;
+const WIDTH: f64 = 400.0;
 const HEIGHT: f64 = 230.0;
 const TITLE: f64 = 20.0;
 const LEFT: f64 = 56.0;
@@ -135,7 +135,8 @@ fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
 fn range(chart: &Chart, of: fn(&(f64, f64)) -> f64) -> [f64; 2] {
     let values = || chart.series.iter().flat_map(|series| series.points.iter().map(of));
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-    match (low.is_finite(), high > low) {
+    // What differs by rounding only does not vary.
+    match (low.is_finite(), high - low > 1e-9 * high.abs().max(low.abs()).max(1e-3)) {
         (true, true) => [low - 0.05 * (high - low), high + 0.05 * (high - low)],
         (true, false) => [low - 0.5, high + 0.5],
         _ => [0.0, 1.0],

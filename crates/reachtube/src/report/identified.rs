@@ -15,6 +15,7 @@ const MOST_LOGS: usize = 4;
 
 const RECORDED: [u8; 3] = [120, 128, 138];
 const PREDICTED: [u8; 3] = [18, 70, 200];
+const FITTED: [u8; 3] = [255, 170, 60];
 const LEFT_OVER: [u8; 3] = [222, 30, 30];
 
 /// Writes the page of an identification as one HTML file that needs nothing else.
@@ -89,7 +90,7 @@ fn prediction(found: &Identification) -> Result<String, ReportError> {
     let head: Vec<&str> = std::iter::once("Recording").chain(joints.iter().map(String::as_str)).collect();
     let caption = "Part of the torque that is not predicted where a joint moves (standstill included), and its root mean square";
     let mut body = format!("<p>On recordings {which}.</p>\n{}", table(caption, &head, &rows));
-    body += "<p>Grey: recorded. Blue: predicted from the motion. Red: what is left.</p>\n";
+    body += "<p>Grey: recorded. Blue: predicted from the motion. Red: what is left. Where a joint stands still its friction has no value, and nothing is predicted.</p>\n";
     for trace in found.traces.iter().take(MOST_LOGS) {
         let charts: Vec<Chart> =
             (0..joints.len()).map(|joint| torque_chart(trace, joint, &joints[joint])).collect();
@@ -98,24 +99,25 @@ fn prediction(found: &Identification) -> Result<String, ReportError> {
     Ok(section("Predicted torque", &body))
 }
 
+/// Recorded torque throughout, predicted and left only where the joint moves: at rest friction has no value.
 fn torque_chart(trace: &TorqueTrace, joint: usize, name: &str) -> Chart {
-    let line = |values: Vec<f64>, colour| Series {
-        points: trace.times.iter().copied().zip(values).collect(),
+    let (recorded, predicted, moves) = (&trace.recorded[joint], &trace.predicted[joint], &trace.moves[joint]);
+    let mut series = vec![Series {
+        points: trace.times.iter().copied().zip(recorded.iter().copied()).collect(),
         dots: false,
-        colour,
-    };
-    let (recorded, predicted) = (&trace.recorded[joint], &trace.predicted[joint]);
-    let left = recorded.iter().zip(predicted).map(|(a, b)| a - b).collect();
-    Chart {
-        title: name.into(),
-        x: "time [s]".into(),
-        y: "torque [N m]".into(),
-        series: vec![
-            line(recorded.clone(), RECORDED),
-            line(predicted.clone(), PREDICTED),
-            line(left, LEFT_OVER),
-        ],
+        colour: RECORDED,
+    }];
+    let samples: Vec<usize> = (0..moves.len()).collect();
+    for stretch in samples.chunk_by(|a, b| moves[*a] == moves[*b]).filter(|stretch| moves[stretch[0]]) {
+        let line = |value: &dyn Fn(usize) -> f64, colour| Series {
+            points: stretch.iter().map(|k| (trace.times[*k], value(*k))).collect(),
+            dots: false,
+            colour,
+        };
+        series.push(line(&|k| predicted[k], PREDICTED));
+        series.push(line(&|k| recorded[k] - predicted[k], LEFT_OVER));
     }
+    Chart { title: name.into(), x: "time [s]".into(), y: "torque [N m]".into(), series }
 }
 
 fn windows(found: &Identification) -> String {
@@ -165,6 +167,7 @@ fn friction(found: &Identification) -> Result<String, ReportError> {
     let head = ["Joint", "R²", "Residual [N m]", "a1 to a8", "v1, v2, v3"];
     let charts: Vec<Chart> =
         found.friction.iter().flat_map(|fit| [load_chart(fit), viscous_chart(fit)]).collect();
+    let words = "<p>Blue: recorded torque less gravity, the joint's inertia and the other part of friction. Orange: the fit.</p>\n";
     Ok(table("Coulomb friction (6) to (9) and viscous friction (5), with standard errors", &head, &rows)
         + &figures(&charts)?)
 }
@@ -207,8 +210,8 @@ fn chart_of(
         x: x.into(),
         y: "friction [N m]".into(),
         series: vec![
-            Series { points: all().map(measured).collect(), dots: true, colour: RECORDED },
-            Series { points: all().map(fitted).collect(), dots: true, colour: PREDICTED },
+            Series { points: all().map(fitted).collect(), dots: true, colour: FITTED },
+            Series { points: all().map(measured).collect(), dots: true, colour: PREDICTED },
         ],
     }
 }

@@ -7,6 +7,7 @@ mod log;
 mod low_pass;
 mod read;
 mod rest;
+mod windows;
 
 pub use align::lateness;
 pub use cut_off::motion_band;
@@ -15,6 +16,7 @@ pub use log::{Log, RawLog};
 pub use low_pass::LowPass;
 pub use read::{LogEntry, read};
 pub use rest::rests;
+pub use windows::{Window, Windows, windows};
 
 use crate::data::Run;
 use crate::error::{Error, Result};
