@@ -7,12 +7,16 @@ use super::samples::{Known, Samples, Sampling};
 use crate::error::Result;
 use nalgebra::DVector;
 use reachtube_robot::{
-    Column, ColumnKind, FrictionDescription, GravityMoments, Parameters, Robot, RobotDescription,
+    BaseParameters, Column, ColumnKind, FrictionDescription, GravityMoments, Parameters, Robot,
+    RobotDescription,
 };
 use serde::Serialize;
 
 /// Rounds of gravity and friction, each with what the other found; the second changes the load by what friction's slopes take.
 const ROUNDS: usize = 3;
+
+/// Poses for each combination that gravity shows, from which on slow motions are not needed for gravity.
+const POSES_PER_PARAMETER: usize = 2;
 
 /// Gravity as fitted to poses at rest and to slow motions.
 #[derive(Debug, Clone, Serialize)]
@@ -114,6 +118,10 @@ fn fit_gravity(
         [inertial.clone(), Column::of_joints(n, &moving)].concat()
     };
     let at_rest = Samples::of_rests(robot, &columns, rests, rest_speed);
+    // Slopes of friction that differ between driving and braking look like gravity in motion; poses tell them apart, if there are enough.
+    let poses = at_rest.len() / n;
+    let enough = poses >= POSES_PER_PARAMETER * BaseParameters::at_rest(robot, &inertial).count();
+    let slow = if enough { &[] } else { slow };
     let in_motion = Samples::of(robot, &columns, slow, sampling, known);
     let groups: Vec<&Samples> =
         [&at_rest, &in_motion].into_iter().filter(|samples| !samples.is_empty()).collect();

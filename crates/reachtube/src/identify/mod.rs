@@ -89,7 +89,7 @@ pub fn identify(
     progress: &dyn Fn(usize, usize),
 ) -> Result<Identification> {
     settings.validate(robot.joint_count())?;
-    let robot = &without_gravity_moments(robot)?;
+    let robot = &own_gravity(robot, settings.model.motor_inertia)?;
     let (logs, cut_off, mut changes) = read(robot, settings, folder)?;
     progress(1, 4);
     let model = &settings.model;
@@ -124,14 +124,15 @@ pub fn identify(
     let (validation, traces) = validate::predict(&found, &known, tried, &sampling, &inertia);
     let windows = validate::simulate(&found, tried, &model.windows);
     let moving = Samples::of(robot, &inertia.columns, &logs.dynamic, &sampling, &Known::Friction(&known));
-    let gains = suspect::gains(robot, &moving, &inertia.joints);
+    let consistency = suspect::Consistency::of(&moving, &inertia.joints);
+    let gains = consistency.gains(robot);
     let mut warnings = first.notes;
     warnings.extend(inertia.not_shown());
     warnings.extend(suspect::words(
         robot,
-        &description,
-        &gains,
-        &inertia.joints,
+        &inertia,
+        &coefficients,
+        &consistency,
         &logs.dynamic,
         &moving,
         &sampling,
@@ -154,10 +155,15 @@ pub fn identify(
     })
 }
 
-/// The same robot with gravity from its links.
-fn without_gravity_moments(robot: &Robot) -> Result<Robot> {
+/// The same robot with gravity from its links; without motors where the torque does not drive them.
+fn own_gravity(robot: &Robot, motor_inertia: bool) -> Result<Robot> {
     let mut description = robot.description().clone();
-    description.joints.iter_mut().for_each(|joint| joint.gravity_moments = None);
+    for joint in &mut description.joints {
+        joint.gravity_moments = None;
+        if !motor_inertia {
+            (joint.armature, joint.rotor_inertia) = (None, None);
+        }
+    }
     Ok(Robot::from_description(&description)?)
 }
 

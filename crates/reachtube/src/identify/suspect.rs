@@ -1,12 +1,13 @@
 //! Mistakes of sign and gain, told from what a rigid body cannot do.
 
 use super::fit::{Fit, JointFit};
+use super::inertia::InertiaFit;
 use super::prepare::Log;
 use super::regression::Triangle;
 use super::samples::{Known, Samples, Sampling};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use reachtube_robot::{Column, Robot, RobotDescription};
+use reachtube_robot::{Column, ColumnKind, FrictionDescription, Robot};
 use serde::Serialize;
 
 /// Gains further from 1 than this, and than four standard errors, are said.
@@ -20,6 +21,9 @@ const POOR: f64 = 0.3;
 
 /// A turned sign must bring the sum of squares below this part.
 const BETTER: f64 = 0.5;
+
+/// A torque whose sign is turned must bring the contradiction of the torques below this part.
+const TURNED: f64 = 0.9;
 
 /// Samples that are enough to tell a sign.
 const SIGN_SAMPLES: f64 = 800.0;
@@ -35,32 +39,66 @@ pub struct Gain {
     pub standard_error: f64,
 }
 
-/// The most likely gains, relative to the joint with the largest torque: a link's mass and inertia act on its own joint and on all before it, so that
-/// torques of different scale contradict each other.
+/// How much the joints' torques contradict each other: a link's mass and inertia act on its own joint and on all before it.
 ///
-/// With the parameters eliminated the misfit is gᵀ S g; its likelihood has the term Σ N_j log g_j of what a gain does to a joint's errors.
-pub fn gains(robot: &Robot, samples: &Samples, joints: &[JointFit]) -> Vec<Gain> {
-    let (n, p) = (samples.joints, samples.columns.len());
-    let used: Vec<usize> = (0..samples.len()).filter(|r| samples.used[*r]).collect();
-    let weight = |joint: usize| {
-        (joints[joint].independent / joints[joint].rows.max(1) as f64).sqrt() / joints[joint].deviation
-    };
-    let whole = Triangle::of_rows(&used, p + n, |r, out| {
-        let (joint, w) = (r % n, weight(r % n));
-        out[..p].iter_mut().zip(samples.row(r)).for_each(|(o, y)| *o = w * y);
-        out[p + joint] = w * samples.torque[r];
-    });
-    let misfit = eliminated(&whole, p);
-    let counts: Vec<f64> = joints.iter().map(|joint| joint.independent).collect();
-    let size = |j: &usize| joints[*j].torque;
-    let reference = (0..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
-    let Some((gains, errors)) = most_likely(&misfit, &counts, reference) else { return Vec::new() };
-    let gain = |j: usize| Gain {
-        joint: robot.joints()[j].name.clone(),
-        gain: gains[j] / gains[reference],
-        standard_error: errors[j],
-    };
-    (0..n).map(gain).collect()
+/// With the parameters eliminated the misfit of torques scaled by g is gᵀ S g.
+pub struct Consistency {
+    misfit: DMatrix<f64>,
+    /// Independent samples of each joint.
+    counts: Vec<f64>,
+    /// The joint with the largest torque.
+    reference: usize,
+}
+
+impl Consistency {
+    /// Of samples that were fitted with such residuals.
+    pub fn of(samples: &Samples, joints: &[JointFit]) -> Self {
+        let (n, p) = (samples.joints, samples.columns.len());
+        let used: Vec<usize> = (0..samples.len()).filter(|r| samples.used[*r]).collect();
+        // With the root mean square, not the robust deviation: outliers must not pull a gain down.
+        let weight = |j: usize| {
+            let size = joints[j].residual.max(1e-6 * joints[j].torque).max(f64::MIN_POSITIVE);
+            (joints[j].independent / joints[j].rows.max(1) as f64).sqrt() / size
+        };
+        let whole = Triangle::of_rows(&used, p + n, |r, out| {
+            let (joint, w) = (r % n, weight(r % n));
+            out[..p].iter_mut().zip(samples.row(r)).for_each(|(o, y)| *o = w * y);
+            out[p + joint] = w * samples.torque[r];
+        });
+        let size = |j: &usize| joints[*j].torque;
+        let reference = (0..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
+        Self {
+            misfit: eliminated(&whole, p),
+            counts: joints.iter().map(|joint| joint.independent).collect(),
+            reference,
+        }
+    }
+
+    /// The most likely gains relative to the joint with the largest torque: a gain scales a joint's errors too, which its likelihood has as Σ N_j log g_j.
+    pub fn gains(&self, robot: &Robot) -> Vec<Gain> {
+        let Some((gains, errors)) = most_likely(&self.misfit, &self.counts, self.reference) else {
+            return Vec::new();
+        };
+        let name = |j: usize| robot.joints()[j].name.clone();
+        let gain = |j: usize| Gain {
+            joint: name(j),
+            gain: gains[j] / gains[self.reference],
+            standard_error: errors[j],
+        };
+        (0..gains.len()).map(gain).collect()
+    }
+
+    /// The joint whose torque, with the other sign, contradicts the others least, and the part of the misfit that is then left.
+    fn turned(&self) -> Option<(usize, f64)> {
+        let n = self.counts.len();
+        let squares = |turned: Option<usize>| {
+            let g = DVector::from_fn(n, |j, _| if turned == Some(j) { -1.0 } else { 1.0 });
+            g.dot(&(&self.misfit * &g))
+        };
+        let here = squares(None);
+        let best = (0..n).map(|j| (j, squares(Some(j)) / here)).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (best.1 < TURNED).then_some(best)
+    }
 }
 
 /// S: what no parameters can fit of the last columns. The first p columns may be dependent.
@@ -104,38 +142,40 @@ fn most_likely(misfit: &DMatrix<f64>, counts: &[f64], reference: usize) -> Optio
     Some((log.iter().map(|log| log.exp()).collect(), (0..n).map(|j| variance(j).max(0.0).sqrt()).collect()))
 }
 
-/// What looks wrong, in words: gains that contradict each other, friction that drives, and, where the fit is poor, signs that are turned.
+/// What looks wrong, in words: torques that contradict each other, friction that drives, and, where the fit is poor, signs that are turned.
 pub fn words(
     robot: &Robot,
-    found: &RobotDescription,
-    gains: &[Gain],
-    joints: &[JointFit],
+    fit: &InertiaFit,
+    known: &[FrictionDescription],
+    consistency: &Consistency,
     logs: &[Log],
     samples: &Samples,
     sampling: &Sampling,
 ) -> Vec<String> {
+    let joints = &fit.joints;
+    let name = |j: usize| &robot.joints()[j].name;
     let mut words = Vec::new();
     let poor: Vec<usize> = (0..joints.len()).filter(|j| joints[*j].relative() > POOR).collect();
-    if let Some((what, part)) =
-        (!poor.is_empty()).then(|| turned_sign(robot, logs, samples, sampling)).flatten()
-    {
+    let searched = || turned_sign(robot, logs, samples, sampling);
+    let turned = consistency.turned().map(|(j, part)| (format!("tau of {}", name(j)), part));
+    if let Some((what, part)) = turned.clone().or_else(|| (!poor.is_empty()).then(searched).flatten()) {
         words.push(format!(
             "the sign of {what} looks turned: with the other sign the sum of squared residuals is {part:.3} of what it is; multiply the column by -1 (for a \
              torque: a negative gain)"
         ));
     }
-    for joint in &found.joints {
-        let [a1, _, a3, _, a5, _, a7, _] = joint.friction.coulomb;
-        let (forward, backward) = (0.5 * (a1 + a7), 0.5 * (a3 + a5));
-        if forward - backward < 0.0 && joint.friction.viscous[0] < 0.0 {
+    for j in 0..joints.len() {
+        let (coulomb, viscous) = plain_friction(fit, &known[j], j);
+        if coulomb < 0.0 && viscous < 0.0 {
             words.push(format!(
-                "friction of {} drives the joint (Coulomb {forward:.3} N m forward, {backward:.3} backward, viscous {:.3} N m s/rad): the sign of its torque or of its \
-                 velocity is probably turned",
-                joint.name, joint.friction.viscous[0]
+                "least squares finds friction of {} that drives it (Coulomb {coulomb:.3} N m, viscous {viscous:.3} N m s/rad): the sign of its torque or of its velocity \
+                 is probably turned",
+                name(j)
             ));
         }
     }
-    for gain in gains {
+    // A turned sign makes nonsense of the gains.
+    for gain in consistency.gains(robot).iter().filter(|_| turned.is_none()) {
         let off = (gain.gain - 1.0).abs();
         if off > GAIN_OFF && off > SURE * gain.standard_error {
             words.push(format!(
@@ -147,11 +187,24 @@ pub fn words(
     for j in poor {
         words.push(format!(
             "{}: {:.0} % of the torque is not explained; friction that no law describes, a wrong robot, or columns in another order look like this",
-            robot.joints()[j].name,
+            name(j),
             100.0 * joints[j].relative()
         ));
     }
     words
+}
+
+/// Coulomb and viscous friction of a joint by least squares, what is known of it included.
+fn plain_friction(fit: &InertiaFit, known: &FrictionDescription, joint: usize) -> (f64, f64) {
+    let [a1, _, a3, _, a5, _, a7, _] = known.coulomb;
+    let fitted = |kind| {
+        let column = fit.columns.iter().position(|c| c.joint == joint && c.kind == kind);
+        column.map_or(0.0, |k| fit.fit.solution.x[k])
+    };
+    (
+        0.25 * (a1 + a7 - a3 - a5) + fitted(ColumnKind::Coulomb),
+        known.viscous[0] + fitted(ColumnKind::Viscous1),
+    )
 }
 
 /// The turned sign of one joint's torque, of its position with its velocity, or of all three, that explains the torque best; and what is then left of the sum of squares.
@@ -194,21 +247,28 @@ fn turn(log: &Log, joint: usize, motion: bool, torque: bool) -> Log {
 mod tests {
     use super::*;
 
+    /// Two joints whose torques are both x(t), a sine with an unknown amplitude, the second recorded at half scale.
+    fn whole(sign: f64) -> Triangle {
+        let noise = |k: usize| 0.01 * (((k * 7919) % 1009) as f64 / 1009.0 - 0.5) * 12f64.sqrt();
+        let row = |k: usize| {
+            let x = (0.1 * k as f64).sin();
+            let second = sign * 0.5 * (2.0 * x + noise(3 * k + 500));
+            [[x, 2.0 * x + noise(k), 0.0, 0.0].map(|v| v / 0.01), [x, 0.0, second, 0.0].map(|v| v / 0.01)]
+                .concat()
+        };
+        Triangle::of(&(0..400).flat_map(row).collect::<Vec<_>>(), 3)
+    }
+
     #[test]
     fn the_most_likely_gain_restores_a_joint_that_was_scaled() {
-        // Two rows that should say the same x, one recorded at half scale: t1 = x + e, t2 = 0.5 x + 0.5 e.
-        let count = 200;
-        let noise = |k: usize| 0.01 * (((k * 7919) % 1009) as f64 / 1009.0 - 0.5);
-        let rows: Vec<f64> = (0..count)
-            .flat_map(|k| {
-                let x = 1.0 + (0.1 * k as f64).sin();
-                [1.0, x + noise(k), 0.0, 0.0, 1.0, 0.0, 0.5 * (x + noise(k + 500)), 0.0].map(|v| v / 0.003)
-            })
-            .collect();
-        // One parameter a sample cannot be shared, so a constant one stands for it: x = 1 on average.
-        let whole = Triangle::of(&rows, 3);
-        let misfit = eliminated(&whole, 1);
-        let (gains, _) = most_likely(&misfit, &[count as f64, count as f64], 0).unwrap();
-        assert!(gains[1] / gains[0] > 1.2, "{gains:?}");
+        let (gains, errors) = most_likely(&eliminated(&whole(1.0), 1), &[400.0, 400.0], 0).unwrap();
+        assert!((gains[1] / gains[0] - 2.0).abs() < 0.1 && errors[1] < 0.1, "{gains:?} {errors:?}");
+    }
+
+    #[test]
+    fn a_turned_torque_contradicts_the_other() {
+        let consistency =
+            |sign| Consistency { misfit: eliminated(&whole(sign), 1), counts: vec![400.0; 2], reference: 0 };
+        assert!(consistency(-1.0).turned().is_some() && consistency(1.0).turned().is_none());
     }
 }

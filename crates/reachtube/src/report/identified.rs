@@ -167,8 +167,8 @@ fn friction(found: &Identification) -> Result<String, ReportError> {
     let head = ["Joint", "R²", "Residual [N m]", "a1 to a8", "v1, v2, v3"];
     let charts: Vec<Chart> =
         found.friction.iter().flat_map(|fit| [load_chart(fit), viscous_chart(fit)]).collect();
-    let words = "<p>Blue: recorded torque less gravity, the joint's inertia and the other part of friction. Orange: the fit.</p>\n";
     Ok(table("Coulomb friction (6) to (9) and viscous friction (5), with standard errors", &head, &rows)
+        + "<p>Blue: recorded torque less gravity, the joint's inertia and the other part of friction. Orange: the fit.</p>\n"
         + &figures(&charts)?)
 }
 

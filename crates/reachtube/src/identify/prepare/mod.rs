@@ -26,6 +26,9 @@ use serde::{Deserialize, Serialize};
 /// What is cut from each end, in periods of the cut-off.
 const END: f64 = 2.5;
 
+/// Rates that differ by less than this part are taken as the same.
+const SAME_RATE: f64 = 0.25;
+
 /// How recordings are prepared.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -113,14 +116,18 @@ fn bands(log: &RawLog) -> Vec<(f64, f64)> {
 ///
 /// [`Error::Setting`] where a log is too short for the cut-off, or not sampled fast enough.
 pub fn prepare(raw: &[RawLog], settings: &PrepareSettings, cut_off: f64) -> Result<Prepared> {
+    let mut steps: Vec<f64> = raw.iter().filter_map(|log| usual_step(&log.run.times)).collect();
+    steps.sort_by(f64::total_cmp);
+    let common = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
     let done: Vec<(Log, Change)> =
-        raw.par_iter().map(|log| prepare_one(log, settings, cut_off)).collect::<Result<_>>()?;
+        raw.par_iter().map(|log| prepare_one(log, settings, cut_off, common)).collect::<Result<_>>()?;
     let (logs, changes): (Vec<Log>, Vec<Change>) = done.into_iter().unzip();
     let changes = words(&logs, &changes, settings, cut_off);
     Ok(Prepared { logs, cut_off, changes })
 }
 
-fn prepare_one(raw: &RawLog, settings: &PrepareSettings, cut_off: f64) -> Result<(Log, Change)> {
+/// Logs sampled at nearly the same rate get the same one, `common` \[s\], so that repeats can be compared sample by sample.
+fn prepare_one(raw: &RawLog, settings: &PrepareSettings, cut_off: f64, common: f64) -> Result<(Log, Change)> {
     let (n, times) = (raw.run.joints, &raw.run.times);
     let short = || {
         Error::Setting(format!(
@@ -130,7 +137,8 @@ fn prepare_one(raw: &RawLog, settings: &PrepareSettings, cut_off: f64) -> Result
             raw.run.duration()
         ))
     };
-    let step = usual_step(times).ok_or_else(short)?;
+    let own = usual_step(times).ok_or_else(short)?;
+    let step = if (own / common - 1.0).abs() < SAME_RATE { common } else { own };
     let filter = LowPass::new(cut_off, step.recip()).ok_or_else(|| {
         Error::Setting(format!(
             "{}: sampled at {:.4} Hz, too slowly for cut_off = {cut_off} Hz",
@@ -168,7 +176,7 @@ fn prepare_one(raw: &RawLog, settings: &PrepareSettings, cut_off: f64) -> Result
     if samples < 2 * end + 8 {
         return Err(short());
     }
-    let jitter = times.windows(2).map(|pair| (pair[1] - pair[0] - step).abs()).fold(0.0, f64::max);
+    let jitter = times.windows(2).map(|pair| (pair[1] - pair[0] - own).abs()).fold(0.0, f64::max);
     Ok((log.part(end..samples - end), Change { usual_step: step, jitter, differentiated }))
 }
 

@@ -28,31 +28,38 @@ pub struct Window {
 /// Cuts logs into windows of a duration \[s\], or leaves them whole. Logs whose names differ after the last `_` only are repeats of a motion where `repeats` is set:
 /// they are aligned with the first by their velocities, and each window of a motion is a suite with a run a repeat. What does not fill a window is left out.
 pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
-    let motion = |log: &Log| match log.name.rsplit_once('_') {
+    let motion_of = |log: &Log| match log.name.rsplit_once('_') {
         Some((motion, _)) if repeats => motion.to_string(),
         _ => log.name.clone(),
     };
+    let motions: Vec<String> = logs.iter().map(motion_of).collect();
+    let first = |index: usize| motions.iter().position(|motion| *motion == motions[index]).unwrap_or(index);
+    let late: Vec<f64> = (0..logs.len())
+        .map(|index| {
+            if first(index) == index {
+                0.0
+            } else {
+                lateness(&logs[first(index)], &logs[index]).unwrap_or(0.0)
+            }
+        })
+        .collect();
     let mut found = Windows { windows: Vec::new(), changes: Vec::new() };
-    for (index, log) in logs.iter().enumerate() {
-        let motion = motion(log);
-        let same =
-            |other: &&Log| !repeats || other.name.rsplit_once('_').is_some_and(|(own, _)| own == motion);
-        let first = if repeats { logs[..index].iter().find(same).unwrap_or(log) } else { log };
-        let late = if first.name == log.name { 0.0 } else { lateness(first, log).unwrap_or(0.0) };
-        if late != 0.0 {
+    for (index, (log, motion)) in logs.iter().zip(&motions).enumerate() {
+        if late[index] != 0.0 {
+            let reference = &logs[first(index)].name;
             found.changes.push(format!(
-                "{} is {:.1} ms late against {} and was shifted",
+                "{} is {:.1} ms late against {reference}; it was shifted by whole samples",
                 log.name,
-                1e3 * late,
-                first.name
+                1e3 * late[index]
             ));
         }
-        // All repeats start where the latest start of any of them is covered: only whole samples are shifted.
-        let skip = (late / log.step).round().max(0.0) as usize;
-        let length =
-            duration.map_or(log.len().saturating_sub(skip + 1), |d| (d / log.step).round().max(1.0) as usize);
-        let count = log.len().saturating_sub(skip + 1).checked_div(length).unwrap_or(0);
-        for k in 0..count {
+        // The earliest repeat keeps its start.
+        let same = (0..logs.len()).filter(|other| motions[*other] == *motion);
+        let earliest = same.map(|other| late[other]).fold(0.0, f64::min);
+        let skip = ((late[index] - earliest) / log.step).round() as usize;
+        let rest = log.len().saturating_sub(skip + 1);
+        let length = duration.map_or(rest, |duration| (duration / log.step).round().max(1.0) as usize);
+        for k in 0..rest.checked_div(length).unwrap_or(0) {
             let start = skip + k * length;
             let suite = if duration.is_some() { format!("{motion}_w{:02}", k + 1) } else { motion.clone() };
             found.windows.push(Window {
