@@ -6,7 +6,7 @@ use super::regression::root_mean_square;
 use super::samples::{Known, Samples, Sampling};
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reachtube_robot::{Robot, Simulator};
+use reachtube_robot::Robot;
 use serde::Serialize;
 
 /// Simulated windows of one length, at most, in one log.
@@ -183,14 +183,12 @@ fn simulate_windows(robot: &Robot, logs: &[Log], duration: f64) -> WindowErrors 
 
 /// Simulated less recorded state at the end of a window, 2n entries; none where it is not finite.
 fn window_error(robot: &Robot, log: &Log, start: usize, length: usize) -> Option<DVector<f64>> {
-    let mut simulator = Simulator::new(robot);
-    let (mut q, mut qd) = (log.q(start).to_vec(), log.qd(start).to_vec());
     let substeps = (log.step / SIMULATION_STEP).ceil().max(1.0) as usize;
-    for k in start..start + length {
-        // The mean over the step: a torque held from its start would be half a step late.
-        let torque: Vec<f64> = log.tau(k).iter().zip(log.tau(k + 1)).map(|(a, b)| 0.5 * (a + b)).collect();
-        simulator.advance(&mut q, &mut qd, &torque, log.step, substeps);
-    }
+    // The mean over the step: a torque held from its start would be half a step late.
+    let mean = |k: usize| log.tau(k).iter().zip(log.tau(k + 1)).map(|(a, b)| 0.5 * (a + b)).collect();
+    let torques: Vec<Vec<f64>> = (start..start + length).map(mean).collect();
+    let motion = robot.simulate(log.q(start), log.qd(start), &torques, log.step, substeps);
+    let (q, qd) = (&motion.q[length], &motion.qd[length]);
     let end = start + length;
     let errors = q.iter().zip(log.q(end)).chain(qd.iter().zip(log.qd(end))).map(|(a, b)| a - b);
     let errors = DVector::from_vec(errors.collect::<Vec<f64>>());
