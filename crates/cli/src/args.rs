@@ -26,6 +26,7 @@ const MAIN_HELP: &str = "\
 Examples:
   reachtube demo --out demo                                   the whole job on a virtual arm
   reachtube inspect --data recordings                         what is in this data set
+  reachtube identify --robot arm.urdf --dynamic a.csv b.csv --validate c.csv --out arm.toml
   reachtube abstract --robot lwa4p --model 2 --order 5         a polynomial model of its forward dynamics
   reachtube conform --robot lwa4p --data recordings --suites A,B --torque compensated --out model.json
   reachtube check --model model.json --data recordings --suites C --torque compensated
@@ -49,6 +50,11 @@ pub enum Command {
     /// Make a simple model of a robot's forward dynamics: linear or polynomial, models 1, 2 and 3 of the paper
     #[command(after_help = ABSTRACT_HELP)]
     Abstract(AbstractArgs),
+    /// Design a motion that shows a robot's parameters, within its joint limits
+    #[command(
+        after_help = "Example:\n  reachtube excite --robot arm.urdf --period 20 --acceleration 4 --out excitation.csv\n\nOnly joint limits are looked at: check for collisions."
+    )]
+    Excite(ExciteArgs),
     /// Find a robot's gravity, friction and inertia from its recordings
     #[command(after_help = IDENTIFY_HELP)]
     Identify(IdentifyArgs),
@@ -197,7 +203,7 @@ pub struct DemoArgs {
 
 #[derive(Debug, Args)]
 pub struct IdentifyArgs {
-    /// An embedded robot (lwa4p) or a TOML file
+    /// An embedded robot (lwa4p), a TOML or a URDF file
     #[arg(long)]
     pub robot: Option<String>,
     /// A TOML file with all settings; its paths are relative to its folder
@@ -233,6 +239,37 @@ pub struct IdentifyArgs {
     /// Write the page and figures into this folder
     #[arg(long, value_name = "FOLDER")]
     pub report: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct ExciteArgs {
+    /// An embedded robot (lwa4p), a TOML or a URDF file
+    #[arg(long)]
+    pub robot: String,
+    /// Period of the motion, s
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
+    pub period: f64,
+    /// Harmonics of each joint
+    #[arg(long, default_value_t = 5)]
+    pub harmonics: usize,
+    /// Highest acceleration, rad/s^2: one for all joints, or one each
+    #[arg(long, value_delimiter = ',')]
+    pub acceleration: Vec<f64>,
+    /// Highest speed of joints without a limit, rad/s
+    #[arg(long, default_value_t = 1.0)]
+    pub speed: f64,
+    /// Make the condition number smallest instead of the determinant of the information largest
+    #[arg(long)]
+    pub condition: bool,
+    /// Samples a second
+    #[arg(long, value_name = "HZ", value_parser = seconds, default_value = "100")]
+    pub rate: f64,
+    /// Seed of the search
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// CSV file for the motion: t, q, qd, qdd
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@ mod r#abstract;
 mod check;
 mod conform;
 mod demo;
+mod excite;
 mod files;
 mod identify;
 mod inspect;
@@ -46,6 +47,7 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
         Command::Identify(args) => identify::run(args, cli.json),
         Command::Inspect(args) => inspect::run(args, cli.json),
         Command::Abstract(args) => r#abstract::run(args, cli.json),
+        Command::Excite(args) => excite::run(args, cli.json),
         Command::Prepare(args) => prepare::run(args, cli.json),
         Command::Conform(args) => conform::run(args, cli.json),
         Command::Check(args) => check::run(args, cli.json),

@@ -4,6 +4,7 @@ mod abstraction;
 mod browser;
 mod defects;
 mod fixture;
+mod identify;
 mod index;
 mod options;
 mod outputs;

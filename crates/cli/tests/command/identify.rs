@@ -1,0 +1,93 @@
+//! Identification from the command line, on a pendulum with a motor whose torque is known in closed form.
+
+use std::fmt::Write;
+
+use crate::fixture::Lab;
+
+/// A pendulum about a horizontal axis: (m l² + J) q̈ + v q̇ + f sign(q̇) + m g l sin q.
+const PENDULUM: &str = "schema_version = 1\nname = \"pendulum\"\n\n[[joint]]\nname = \"hinge\"\nplacement = { translation = [0.0, 0.0, 1.0] }\n\
+                        axis = [0.0, 1.0, 0.0]\nmass = 1.0\ncom = [0.0, 0.0, -0.3]\ninertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
+
+fn motion(t: f64, seed: f64) -> [f64; 3] {
+    let waves = [(0.6, 1.1 + seed, 0.0), (0.3, 2.3, seed), (0.1, 4.1 - seed, 1.0)];
+    let sum = |part: &dyn Fn(&(f64, f64, f64)) -> f64| waves.iter().map(part).sum();
+    [
+        sum(&|(a, w, p)| a * (w * t + p).sin()),
+        sum(&|(a, w, p)| a * w * (w * t + p).cos()),
+        sum(&|(a, w, p)| -a * w * w * (w * t + p).sin()),
+    ]
+}
+
+fn recording(seed: f64) -> String {
+    let mut text = String::from("t,q1,qd1,tau1\n");
+    for k in 0..4000 {
+        let t = 0.005 * k as f64;
+        let [q, qd, qdd] = motion(t, seed);
+        // 2 kg at 0.4 m, 0.5 kg m² in all, friction 1 N m and 0.8 N m s/rad.
+        let tau = 0.5 * qdd + 0.8 * qd + qd.signum() + 2.0 * 9.81 * 0.4 * q.sin();
+        writeln!(text, "{t:.3},{q:.9},{qd:.9},{tau:.9}").unwrap();
+    }
+    text
+}
+
+fn lab() -> Lab {
+    let lab = Lab::new();
+    lab.write("pendulum.toml", PENDULUM);
+    for (name, seed) in [("a", 0.1), ("b", 0.4), ("c", 0.7)] {
+        lab.write(&format!("{name}.csv"), recording(seed));
+    }
+    lab
+}
+
+#[test]
+fn a_pendulum_is_found_and_its_file_is_a_robot() {
+    let lab = lab();
+    let run = lab
+        .run("identify --robot pendulum.toml --dynamic a.csv b.csv --validate c.csv --out found.toml --report report --json")
+        .exits(0)
+        .notes("wrote found.toml")
+        .notes("were filtered forward and backward");
+    let found = run.json();
+    assert_eq!(found["kept_back"], true);
+    assert!(found["validation"][0]["joints"][0]["relative"].as_f64().unwrap() < 0.01, "{found}");
+    let viscous = found["robot"]["joint"][0]["friction"]["viscous"][0].as_f64().unwrap();
+    assert!((viscous - 0.8).abs() < 0.05, "{viscous}");
+    let moment = found["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "mz1").unwrap();
+    assert!((moment["value"].as_f64().unwrap() + 0.8).abs() < 0.01, "{moment}");
+    let html = lab.read("report/identify.html");
+    assert!(html.contains("pendulum: identified") && html.matches("<svg").count() == 1);
+    lab.run("robot show found.toml").exits(0);
+}
+
+#[test]
+fn settings_hold_all_of_it_and_mistakes_are_told() {
+    let lab = lab();
+    let settings = "robot = \"pendulum.toml\"\ndynamic = [\"a.csv\", { path = \"b.csv\", from = 2.0 }]\nvalidate = [\"c.csv\"]\n[prepare]\ncut_off = 8.0\n";
+    lab.write("job.toml", settings);
+    let words = lab.run("identify --settings job.toml").exits(0).stdout;
+    for part in ["3. inertial parameters", "combinations shown", "recordings kept back", "simulated"] {
+        assert!(words.contains(part), "{part} is not in\n{words}");
+    }
+    lab.write("job.toml", settings.replace("cut_off", "cutoff"));
+    lab.run("identify --settings job.toml").fails_with(&["job.toml", "line 5", "cutoff"]);
+    lab.run("identify --robot pendulum.toml").fails_with(&["--dynamic"]);
+    lab.run("identify --dynamic a.csv").fails_with(&["--robot"]);
+    lab.run("identify --robot pendulum.toml --dynamic nowhere.csv").fails_with(&["nowhere.csv", "CSV file"]);
+    lab.run("identify --robot pendulum.toml --dynamic a.csv --gains 1,2")
+        .fails_with(&["gains: 2 given", "each of the 1 joints"]);
+}
+
+#[test]
+fn windows_of_recordings_are_suites_and_motions_are_designed() {
+    let lab = lab();
+    lab.run("prepare --robot pendulum.toml --logs a.csv b.csv --window 2 --out windows")
+        .exits(0)
+        .notes("into windows");
+    let inspected = lab.run("inspect --data windows").exits(0).stdout;
+    assert!(inspected.contains("a_w01"), "{inspected}");
+    lab.run("excite --robot pendulum.toml --period 4 --harmonics 2 --out motion.csv")
+        .exits(0)
+        .notes("wrote motion.csv");
+    let motion = lab.read("motion.csv");
+    assert!(motion.starts_with("t,q1,qd1,qdd1\n") && motion.lines().count() == 402);
+}
