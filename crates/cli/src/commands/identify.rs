@@ -18,11 +18,12 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     })?;
     let name = from_folder(&name, args, &folder);
     let robot = Robot::load(&name)?;
+    check_urdf(args, &name)?;
     let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &UrdfEnds::default())).transpose()?;
     for path in [&args.out, &args.urdf].into_iter().flatten() {
         write::try_at(path)?;
     }
-    let bar = Progress::new();
+    let bar = Progress::of("identifying");
     let found = identify(&robot, &settings, &folder, &|done, total| bar.show(done, total))?;
     drop(bar);
     output::notes(&found.changes);
@@ -34,6 +35,24 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     }
     found.warnings.iter().for_each(|warning| output::note(&format!("warning: {warning}")));
     Ok(Outcome::Done)
+}
+
+/// Whether a URDF can be written: from one that was read, and with its companion beside it in place of no other output.
+fn check_urdf(args: &IdentifyArgs, robot: &str) -> Result<()> {
+    let Some(urdf) = &args.urdf else { return Ok(()) };
+    if Path::new(robot).extension().is_none_or(|extension| extension != "urdf") {
+        return Err(Error::Setting(format!(
+            "--urdf writes new values into the robot's URDF, and {robot} is none; give a robot from URDF, or leave --urdf out"
+        )));
+    }
+    let companion = urdf.with_extension("toml");
+    if args.out.as_ref() == Some(&companion) {
+        return Err(Error::Setting(format!(
+            "--out {} is where --urdf puts motors and friction; choose another name for one of them",
+            companion.display()
+        )));
+    }
+    Ok(())
 }
 
 fn files(args: &IdentifyArgs, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
