@@ -18,6 +18,12 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// A number as somebody wrote it, or with six digits where it has more.
+pub fn digits(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
+    if rounded != 0.0 && rounded.abs() < SMALL { format!("{rounded:e}") } else { rounded.to_string() }
+}
+
 /// An interval by its ends, or by centre and radius where its ends would look the same.
 pub fn interval((low, high): (f64, f64)) -> String {
     let (size, radius) = (low.abs().max(high.abs()), 0.5 * (high - low));
@@ -44,12 +50,18 @@ pub fn fixed(value: f64, decimals: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{interval, number};
+    use super::{digits, interval, number};
 
     #[test]
     fn small_numbers_keep_their_digits() {
         let shown = [0.0, 2.1e-9, -0.25, 12.34567, 3.2e7].map(number);
         assert_eq!(shown, ["0", "2.1e-9", "-0.2500", "12.3457", "3.2e7"]);
+    }
+
+    #[test]
+    fn long_numbers_are_cut_and_short_ones_kept() {
+        let shown = [0.0, 0.079, -23.13210017081165, 4.1e-18, 160.0].map(digits);
+        assert_eq!(shown, ["0", "0.079", "-23.1321", "4.1e-18", "160"]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::Outcome;
 use crate::args::RobotShowArgs;
-use crate::numbers::fixed;
+use crate::numbers::{digits, fixed};
 use crate::{output, words};
 
 pub fn show(args: &RobotShowArgs, json: bool) -> Result<Outcome> {
@@ -79,13 +79,13 @@ fn joint_row(joint: &reachtube_robot::Joint) -> Vec<String> {
         maybe(joint.velocity_limit),
         maybe(joint.gear_ratio),
         format!("{:.5}", joint.armature),
-        format!("{}, {}, {}", viscous.v1, viscous.v2, viscous.v3),
+        [viscous.v1, viscous.v2, viscous.v3].map(digits).join(", "),
     ]
 }
 
 /// What the description says of the link and its friction.
 fn link_row(joint: &JointDescription) -> Vec<String> {
-    let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    let list = |values: &[f64]| values.iter().map(|value| digits(*value)).collect::<Vec<_>>().join(" ");
     let moment = match (joint.first_moment, joint.com) {
         (Some(moment), _) => moment,
         (None, com) => com.unwrap_or_default().map(|c| joint.mass * c),
@@ -109,7 +109,7 @@ fn link_row(joint: &JointDescription) -> Vec<String> {
     };
     let coulomb = &joint.friction.coulomb;
     let coulomb = if coulomb.iter().all(|a| *a == 0.0) { "0".into() } else { list(coulomb) };
-    vec![joint.name.clone(), geometry, joint.mass.to_string(), list(&moment), list(&joint.inertia), coulomb]
+    vec![joint.name.clone(), geometry, digits(joint.mass), list(&moment), list(&joint.inertia), coulomb]
 }
 
 fn physicality_words(physicality: &Physicality, robot: &Robot) -> String {
