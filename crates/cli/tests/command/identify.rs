@@ -43,17 +43,18 @@ fn lab() -> Lab {
 fn a_pendulum_is_found_and_its_file_is_a_robot() {
     let lab = lab();
     let run = lab
-        .run("identify --robot pendulum.toml --dynamic a.csv b.csv --validate c.csv --out found.toml --report report --json")
+        .run("identify --robot pendulum.toml --dynamic a.csv b.csv --validate c.csv --cut-off 15 --out found.toml --report report --json")
         .exits(0)
         .notes("wrote found.toml")
         .notes("were filtered forward and backward");
     let found = run.json();
     assert_eq!(found["kept_back"], true);
-    assert!(found["validation"][0]["joints"][0]["relative"].as_f64().unwrap() < 0.01, "{found}");
+    // What the low-pass takes off the steps of Coulomb friction where the joint turns: 1 % of the torque.
+    assert!(found["validation"][0]["joints"][0]["relative"].as_f64().unwrap() < 0.02, "{found}");
     let viscous = found["robot"]["joint"][0]["friction"]["viscous"][0].as_f64().unwrap();
-    assert!((viscous - 0.8).abs() < 0.05, "{viscous}");
+    assert!((viscous - 0.8).abs() < 1e-3, "{viscous}");
     let moment = found["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "mz1").unwrap();
-    assert!((moment["value"].as_f64().unwrap() + 0.8).abs() < 0.01, "{moment}");
+    assert!((moment["value"].as_f64().unwrap() + 0.8).abs() < 1e-3, "{moment}");
     let html = lab.read("report/identify.html");
     assert!(html.contains("pendulum: identified") && html.matches("<svg").count() == 1);
     lab.run("robot show found.toml").exits(0);

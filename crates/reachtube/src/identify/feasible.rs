@@ -98,11 +98,8 @@ impl Feasible<'_> {
                 }
             }
             if barrier <= LAST_BARRIER {
-                return (decrement < NEARLY).then(|| FeasiblePoint {
-                    x,
-                    gap: barrier * inequalities as f64,
-                    steps,
-                });
+                let point = FeasiblePoint { x, gap: barrier * inequalities as f64, steps };
+                return (decrement < NEARLY).then_some(point);
             }
         }
     }

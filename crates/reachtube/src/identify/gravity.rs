@@ -2,6 +2,7 @@
 
 use super::fit::{Fit, JointFit};
 use super::friction::{self, FrictionFit, FrictionSample};
+use super::inertia::ILL_CONDITIONED;
 use super::prepare::Log;
 use super::samples::{Known, Samples, Sampling};
 use crate::error::Result;
@@ -149,7 +150,15 @@ fn fit_friction(robot: &Robot, slow: &[Log], sampling: &Sampling) -> (Vec<Fricti
         let samples: Vec<FrictionSample> =
             slow.iter().flat_map(|log| alone(robot, log, joint, sampling)).collect();
         match friction::fit(&own.name, &samples) {
-            Some(fit) => fits.push(fit),
+            Some(fit) => {
+                if fit.joint.condition > ILL_CONDITIONED {
+                    notes.push(format!(
+                        "friction of {}: the fit is ill-conditioned ({:.0e}), its coefficients mean little one by one; move it through more speeds and loads",
+                        own.name, fit.joint.condition
+                    ));
+                }
+                fits.push(fit);
+            }
             None => notes.push(format!(
                 "friction of {}: {} samples in which it moves alone are too few; it is fitted with the inertial parameters",
                 own.name,
@@ -162,9 +171,10 @@ fn fit_friction(robot: &Robot, slow: &[Log], sampling: &Sampling) -> (Vec<Fricti
 
 fn alone(robot: &Robot, log: &Log, joint: usize, sampling: &Sampling) -> Vec<FrictionSample> {
     let stride = (1.0 / (sampling.rate * log.step)).floor().max(1.0) as usize;
+    let moving = log.moves(&sampling.slow, sampling.margin);
+    let rest = |k: usize, j: usize| log.qd(k)[j].abs() < sampling.slow[j];
     let moves = |k: &usize| {
-        let speeds = log.qd(*k).iter().zip(&sampling.slow).enumerate();
-        speeds.into_iter().all(|(j, (v, slow))| (v.abs() >= *slow) == (j == joint))
+        (0..log.joints).all(|j| if j == joint { moving[k * log.joints + j] } else { rest(*k, j) })
     };
     let sample = |k: usize| {
         let load = robot.gravity_torque(log.q(k))[joint];

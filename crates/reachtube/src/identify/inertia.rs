@@ -14,7 +14,7 @@ use reachtube_robot::{
 use serde::Serialize;
 
 /// Condition beyond which a combination counts as not shown: one part in ten thousand of a column is below what a rigid robot's torque is known to.
-const ILL_CONDITIONED: f64 = 1e4;
+pub const ILL_CONDITIONED: f64 = 1e4;
 
 /// Radius of the balls that stand in for links of which nothing is known \[m\].
 const BALL_RADIUS: f64 = 0.1;

@@ -94,10 +94,12 @@ pub fn identify(
     progress(1, 4);
     let model = &settings.model;
     let slow = slow_speeds(&logs, robot.joint_count(), model.slow);
-    let sampling = Sampling { rate: SAMPLES_PER_CUT_OFF * cut_off, slow: slow.clone() };
+    let sampling =
+        Sampling { rate: SAMPLES_PER_CUT_OFF * cut_off, slow: slow.clone(), margin: 0.5 / cut_off };
     changes.push(format!(
-        "logs were thinned to {:.1} samples a second, and a joint's torque was left out where it is slower than {} rad/s",
+        "logs were thinned to {:.1} samples a second, and a joint's torque was left out where, within {:.0} ms, it is slower than {} rad/s",
         sampling.rate,
+        1e3 * sampling.margin,
         slow.iter().map(|slow| format!("{slow:.3}")).collect::<Vec<_>>().join(", ")
     ));
     let first = gravity::fit(robot, &logs.rest, &logs.friction, &sampling, model.rest_speed, model.robust)?;

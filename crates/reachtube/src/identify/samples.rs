@@ -31,6 +31,8 @@ pub struct Sampling {
     pub rate: f64,
     /// Speed below which a joint's row does not count \[rad/s\], n entries.
     pub slow: Vec<f64>,
+    /// Time before and after a joint is slow in which its row does not count either \[s\].
+    pub margin: f64,
 }
 
 impl Samples {
@@ -43,10 +45,11 @@ impl Samples {
     fn of_log(robot: &Robot, columns: &[Column], log: &Log, sampling: &Sampling, known: &Known) -> Self {
         let mut own = Self::empty(robot.joint_count(), columns);
         let mut regressor = Regressor::new(robot, columns);
+        let moves = log.moves(&sampling.slow, sampling.margin);
         let stride = (1.0 / (sampling.rate * log.step)).floor().max(1.0) as usize;
         for k in (0..log.len()).step_by(stride) {
             own.push(&mut regressor, [log.q(k), log.qd(k), log.qdd(k)], log.tau(k), known);
-            own.used.extend(log.qd(k).iter().zip(&sampling.slow).map(|(v, slow)| v.abs() >= *slow));
+            own.used.extend_from_slice(&moves[k * log.joints..(k + 1) * log.joints]);
         }
         own
     }

@@ -164,8 +164,8 @@ pub fn words(
              torque: a negative gain)"
         ));
     }
-    for j in 0..joints.len() {
-        let (coulomb, viscous) = plain_friction(fit, &known[j], j);
+    for (j, known) in known.iter().enumerate() {
+        let (coulomb, viscous) = plain_friction(fit, known, j);
         if coulomb < 0.0 && viscous < 0.0 {
             words.push(format!(
                 "least squares finds friction of {} that drives it (Coulomb {coulomb:.3} N m, viscous {viscous:.3} N m s/rad): the sign of its torque or of its velocity \

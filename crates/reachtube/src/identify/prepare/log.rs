@@ -64,6 +64,26 @@ impl Log {
         self.start + k as f64 * self.step
     }
 
+    /// Whether each joint moves, row-major K x n: not slower than `slow` \[rad/s\], and not for `margin` \[s\] before and after.
+    ///
+    /// A low-pass spreads the step of Coulomb friction where a joint turns over about half a period of its cut-off.
+    pub fn moves(&self, slow: &[f64], margin: f64) -> Vec<bool> {
+        let reach = (margin / self.step).round() as usize;
+        let mut moves = vec![true; self.qd.len()];
+        for (joint, slow) in slow.iter().enumerate() {
+            let forward: Vec<usize> = (0..self.len()).map(|k| k * self.joints + joint).collect();
+            let backward: Vec<usize> = forward.iter().rev().copied().collect();
+            for order in [forward, backward] {
+                let mut since = usize::MAX;
+                for at in order {
+                    since = if self.qd[at].abs() < *slow { 0 } else { since.saturating_add(1) };
+                    moves[at] &= since > reach;
+                }
+            }
+        }
+        moves
+    }
+
     /// The samples `range` alone.
     pub fn part(&self, range: std::ops::Range<usize>) -> Self {
         let n = self.joints;
@@ -99,5 +119,19 @@ impl RawLog {
         joint: usize,
     ) -> impl Fn(usize) -> f64 + 'a {
         move |k| which(&self.run, k)[joint]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_joint_moves_where_it_is_fast_and_does_not_turn_soon() {
+        let mut log = Log::blank("turns", 1, 20, 0.1);
+        log.qd = (0..20).map(|k| if k == 10 { 0.0 } else { 1.0 }).collect();
+        let at_rest: Vec<usize> = (0..20).filter(|k| !log.moves(&[0.5], 0.2)[*k]).collect();
+        assert_eq!(at_rest, [8, 9, 10, 11, 12]);
+        assert_eq!(log.moves(&[0.5], 0.0).iter().filter(|moves| !**moves).count(), 1);
     }
 }

@@ -1,5 +1,5 @@
 use super::{PrepareSettings, RawLog};
-use crate::data::{GapLimit, Run};
+use crate::data::{GapLimit, Run, check_limits};
 use crate::error::{Error, Result};
 use reachtube_robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ impl From<PathBuf> for LogEntry {
 ///
 /// # Errors
 ///
-/// Defects of the files, [`Error::Read`] for a path that is not there, [`Error::Setting`] for joints that the robot does not have.
+/// Defects of the files (units that cannot be the robot's among them), [`Error::Read`] for a path that is not there, [`Error::Setting`] for joints that the robot does not have.
 pub fn read(
     entries: &[LogEntry],
     folder: &Path,
@@ -58,7 +58,11 @@ pub fn read(
             let limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
             let run = Run::read(&file, Some(robot.joint_count()), limit, until).map_err(Error::Defects)?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            logs.push(RawLog { name, run: ordered(cut(run, from), &order) });
+            let run = ordered(cut(run, from), &order);
+            match check_limits(&file, &run, robot) {
+                defects if defects.is_empty() => logs.push(RawLog { name, run }),
+                defects => return Err(Error::Defects(defects)),
+            }
         }
     }
     Ok(logs)
