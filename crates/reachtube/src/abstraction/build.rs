@@ -40,14 +40,19 @@ impl PolynomialModel {
 
 /// M_m⁻¹(q_a).
 fn inverse_mass_matrix(robot: &Robot, point: &ExpansionPoint) -> Result<DMatrix<f64>> {
-    let factor = robot.mass_matrix(&point.q).cholesky();
-    factor.map(|factor| factor.inverse()).ok_or_else(|| {
-        Error::Setting(format!(
+    let n = robot.joint_count();
+    let mut factors = robot.mass_matrix(&point.q).as_slice().to_vec();
+    ltdl::factor(&mut factors, n);
+    if (0..n).any(|i| !(factors[i * n + i] > 0.0 && factors[i * n + i].is_finite())) {
+        return Err(Error::Setting(format!(
             "the mass matrix of {} is not positive definite at the expansion point q = {:?} rad; it is no physical robot there, choose another point",
             robot.name(),
             point.q
-        ))
-    })
+        )));
+    }
+    let mut inverse = DMatrix::identity(n, n);
+    inverse.column_iter_mut().for_each(|mut column| ltdl::solve(&factors, column.as_mut_slice()));
+    Ok(inverse)
 }
 
 /// Memory that the terms of a model may take, in bytes.

@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn a_pendulum_reads_as_its_equation() {
-        let text = "schema_version = 1\nname = \"p\"\n[[joint]]\nname = \"p\"\nplacement = {}\nmass = 2.0\ncom = [0.5, 0.0, 0.0]\nfriction = { viscous = [1.0, 0.0, -0.25] }\n";
+        let text = "schema_version = 1\nname = \"p\"\n[[joint]]\nname = \"p\"\nplacement = {}\narmature = 0.5\nfriction = { viscous = [1.0, 0.0, -0.25] }\n";
         let robot = Robot::from_toml(text, "p").unwrap();
         let point = ExpansionPoint::zero(1);
         let formula = |kind| PolynomialModel::new(&robot, kind, 3, &point).unwrap().to_string();
