@@ -30,6 +30,16 @@ pub enum ReachError {
         /// The entry.
         value: f64,
     },
+    /// A radius is below 0.
+    #[error("{what} has the entry {value} in row {row}; a radius is at least 0")]
+    Negative {
+        /// Which vector.
+        what: &'static str,
+        /// Row, from 0.
+        row: usize,
+        /// The entry.
+        value: f64,
+    },
     /// The sample times do not increase.
     #[error("sample {index} is at {time} s, not after the sample before it at {previous} s")]
     Times {

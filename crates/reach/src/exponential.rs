@@ -72,7 +72,7 @@ fn phi1_series(x: &IntervalMatrix, connected: &DMatrix<bool>) -> IntervalMatrix 
 
 /// The degree at which the series may stop, and an upper bound of what it leaves out:
 /// Σ_{i>p} xⁱ/(i+1)! <= x^{p+1}/(p+2)! / (1 - x/(p+3)), for x < p + 3.
-fn truncation(norm: f64) -> (usize, f64) {
+pub(crate) fn truncation(norm: f64) -> (usize, f64) {
     let mut term = div_up(norm, 2.0);
     for degree in 1..60 {
         term = div_up(mul_up(term, norm), degree as f64 + 2.0);

@@ -7,6 +7,7 @@ mod grid;
 mod hyperrectangle;
 mod linear;
 mod matrix;
+mod polynomial;
 mod propagation;
 mod reach_set;
 mod series;
@@ -20,6 +21,9 @@ pub use grid::TimeGrid;
 pub use hyperrectangle::Hyperrectangle;
 pub use linear::LinearSystem;
 pub use matrix::{IntervalMatrix, IntervalVector};
+pub use polynomial::{
+    Flowpipe, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput, Zonotope,
+};
 pub use propagation::Propagation;
 pub use reach_set::{ReachSets, Trajectory};
 pub use tube::{Tube, TubeRadii};

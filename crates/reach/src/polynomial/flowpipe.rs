@@ -1,0 +1,234 @@
+use reachtube_scalar::Interval;
+
+use super::PolynomialSystem;
+use super::linearisation::Linearisation;
+use super::set::Set;
+use super::step::Stepper;
+use crate::{Hyperrectangle, ReachError, TimeGrid, Zonotope};
+
+/// The input u(t) ∈ u_m(t) + U: what was measured, held from sample to sample, and a set that it may be off by at any time.
+#[derive(Debug, Clone, Copy)]
+pub struct UncertainInput<'a> {
+    /// Row-major, one row of m a sample, in effect until the next; the row of the last sample is not used and may be missing.
+    pub measured: &'a [f64],
+    /// U, m: any measurable function with values in it.
+    pub set: &'a Hyperrectangle,
+}
+
+/// How a flowpipe is computed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FlowpipeSettings {
+    /// Generators kept, in multiples of the number of states; beyond, the oldest become a box. `None` keeps all, which is the tightest.
+    pub order: Option<usize>,
+    /// Samples at which the zonotope itself is kept, increasing.
+    pub zonotopes: Vec<usize>,
+}
+
+/// How a flowpipe ended. A set that cannot be followed to the end is an answer, not an error.
+#[must_use]
+#[derive(Debug, Clone, PartialEq)]
+pub enum FlowpipeOutcome {
+    /// At the last sample.
+    Reached,
+    /// Before it: no remainder of the linearisation contained itself.
+    Failed {
+        /// The last sample time (s) up to which the sets hold.
+        time: f64,
+        /// The state whose tube grew the most over the step that failed.
+        state: usize,
+        /// The widths of the last tube tried, N; infinite where it has no bound.
+        widths: Vec<f64>,
+    },
+}
+
+/// The reachable set of a polynomial system under an uncertain input: an interval hull at each sample and over each step.
+///
+/// Conservative linearisation (Althoff, Stursberg, Buss, CDC 2008): in each step the system is its linear part about a point near the middle of the set plus
+/// what that leaves out, bounded over the step's own tube, which is proved by containment. For a polynomial the shift f(z* + d) = Σ c_α dᵅ is exact
+/// and finite.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput};
+/// use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
+///
+/// // A mass with cubic friction, v̇ = u - v - v³, pushed by 2 ± 0.1 N from rest.
+/// let space = TaylorSpace::new(2, 3).unwrap();
+/// let [v, u] = [0, 1].map(|i| TaylorPolynomial::<Interval>::variable(&space, i));
+/// let system = PolynomialSystem::new(1, 1, &[u - v.clone() - &(&v * &v) * &v])?;
+/// let input = UncertainInput { measured: &[2.0; 1000], set: &Hyperrectangle { center: vec![0.0], radius: vec![0.1] } };
+/// let rest = Hyperrectangle::zero(1);
+/// let grid = TimeGrid::uniform(0.01, 1001);
+/// let flowpipe = Flowpipe::new(&system, &grid, &[0.0], &rest, &input, &FlowpipeSettings::default())?;
+/// // It settles where v + v³ is 2 ± 0.1.
+/// assert!(flowpipe.is_reached());
+/// let end = flowpipe.sample(1000)[0];
+/// assert!(end.contains(0.9744) && end.contains(1.0247) && end.width() < 0.06);
+/// # Ok::<(), reachtube_reach::ReachError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flowpipe {
+    dimension: usize,
+    samples: Vec<Interval>,
+    steps: Vec<Interval>,
+    zonotopes: Vec<(usize, Zonotope)>,
+    generators: usize,
+    outcome: FlowpipeOutcome,
+}
+
+impl Flowpipe {
+    /// From x(0) ∈ `start` + X0 (N) over `grid`.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding: every solution from a start in the set, under an input whose values are in u_m + U, lies in the boxes, at the samples and
+    /// at all times of the steps, up to the time of the outcome; and in the zonotopes but for the rounding of their last generators'
+    /// lengths. Generators are multiplied in floating point; the rounding of each step, bounded by γ_n |Φ| times the radius of the
+    /// hull (Rump), is a generator of its own.
+    ///
+    /// # Errors
+    ///
+    /// [`ReachError::Shape`] where sizes do not fit, with the rows of the input counted against the grid; [`ReachError::NotFinite`].
+    pub fn new(
+        system: &PolynomialSystem,
+        grid: &TimeGrid,
+        start: &[f64],
+        initial_set: &Hyperrectangle,
+        input: &UncertainInput<'_>,
+        settings: &FlowpipeSettings,
+    ) -> Result<Self, ReachError> {
+        check(system, grid, start, initial_set, input)?;
+        let (n, m) = (system.states(), system.inputs());
+        let mut set = initial(system, start, initial_set);
+        let most = settings.order.map_or(usize::MAX, |order| order * n);
+        let mut stepper = Stepper::new(Linearisation::new(system), most);
+        let mut flowpipe = Self::start(n, grid.len());
+        flowpipe.keep(&set, &stepper, settings);
+        let mut u = vec![Interval::ZERO; m];
+        for k in 1..grid.len() {
+            for (j, u) in u.iter_mut().enumerate() {
+                let center = Interval::point(input.measured[(k - 1) * m + j]) + input.set.center[j];
+                *u = center + Interval::centered(0.0, input.set.radius[j]);
+            }
+            if let Err(exhausted) = stepper.advance(&mut set, grid.interval(k - 1), &u) {
+                let (state, widths) = (exhausted.state, exhausted.widths);
+                flowpipe.outcome = FlowpipeOutcome::Failed { time: grid.times()[k - 1], state, widths };
+                break;
+            }
+            flowpipe.steps.extend(stepper.tube());
+            flowpipe.keep(&set, &stepper, settings);
+        }
+        Ok(flowpipe)
+    }
+
+    fn start(n: usize, samples: usize) -> Self {
+        Self {
+            dimension: n,
+            samples: Vec::with_capacity(n * samples),
+            steps: Vec::with_capacity(n * samples),
+            zonotopes: Vec::new(),
+            generators: 0,
+            outcome: FlowpipeOutcome::Reached,
+        }
+    }
+
+    fn keep(&mut self, set: &Set, stepper: &Stepper<'_>, settings: &FlowpipeSettings) {
+        let k = self.len();
+        let hull = set.center.iter().zip(&set.radius);
+        self.samples.extend(hull.map(|(center, radius)| Interval::centered(*center, *radius)));
+        self.generators = set.generators.len();
+        if settings.zonotopes.contains(&k) {
+            self.zonotopes.push((k, set.zonotope(stepper.directions())));
+        }
+    }
+
+    /// Number of samples up to which the sets hold.
+    pub fn len(&self) -> usize {
+        self.samples.len() / self.dimension.max(1)
+    }
+
+    /// Whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+
+    /// The hull at sample k, N intervals.
+    pub fn sample(&self, k: usize) -> &[Interval] {
+        &self.samples[k * self.dimension..(k + 1) * self.dimension]
+    }
+
+    /// The hull of all states over the step from sample k to k + 1, N intervals.
+    pub fn step(&self, k: usize) -> &[Interval] {
+        &self.steps[k * self.dimension..(k + 1) * self.dimension]
+    }
+
+    /// The zonotope at sample k, if it was asked for.
+    pub fn zonotope(&self, k: usize) -> Option<&Zonotope> {
+        self.zonotopes.iter().find(|(sample, _)| *sample == k).map(|(_, zonotope)| zonotope)
+    }
+
+    /// Generators that were stored at the last sample.
+    pub fn generators(&self) -> usize {
+        self.generators
+    }
+
+    /// How it ended.
+    pub fn outcome(&self) -> &FlowpipeOutcome {
+        &self.outcome
+    }
+
+    /// Whether the last sample was reached.
+    #[must_use]
+    pub fn is_reached(&self) -> bool {
+        self.outcome == FlowpipeOutcome::Reached
+    }
+}
+
+fn initial(system: &PolynomialSystem, start: &[f64], initial_set: &Hyperrectangle) -> Set {
+    let side = |i: usize| {
+        Interval::point(start[i]) + Interval::centered(initial_set.center[i], initial_set.radius[i])
+    };
+    let sides: Vec<Interval> = (0..start.len()).map(side).collect();
+    let (center, radius) = sides.iter().map(|x| (x.mid(), x.rad())).unzip();
+    Set::new(center, radius, system.inputs(), system.directions.len())
+}
+
+fn check(
+    system: &PolynomialSystem,
+    grid: &TimeGrid,
+    start: &[f64],
+    initial_set: &Hyperrectangle,
+    input: &UncertainInput<'_>,
+) -> Result<(), ReachError> {
+    let (n, m) = (system.states(), system.inputs());
+    let rows = grid.len().saturating_sub(1);
+    check_vector("the start", start, n)?;
+    for (set, centre, radius, size) in [
+        (initial_set, "the centre of the initial set", "the radius of the initial set", n),
+        (input.set, "the centre of the input set", "the radius of the input set", m),
+    ] {
+        check_vector(centre, &set.center, size)?;
+        check_vector(radius, &set.radius, size)?;
+        if let Some(row) = set.radius.iter().position(|r| *r < 0.0) {
+            return Err(ReachError::Negative { what: radius, row, value: set.radius[row] });
+        }
+    }
+    let found = input.measured.len();
+    if found != rows * m && found != (rows + 1) * m {
+        let (found_rows, found_columns) = (found.checked_div(m).unwrap_or(found), m);
+        return Err(ReachError::Shape { what: "the input", rows, columns: m, found_rows, found_columns });
+    }
+    check_vector("the input", input.measured, found)
+}
+
+fn check_vector(what: &'static str, vector: &[f64], rows: usize) -> Result<(), ReachError> {
+    if vector.len() != rows {
+        let found_rows = vector.len();
+        return Err(ReachError::Shape { what, rows, columns: 1, found_rows, found_columns: 1 });
+    }
+    match vector.iter().position(|x| !x.is_finite()) {
+        Some(row) => Err(ReachError::NotFinite { what, row, column: 0, value: vector[row] }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,184 @@
+//! f about a point: f* + A d + B e and what is of degree 2 and above.
+
+use reachtube_scalar::Interval;
+
+use super::PolynomialSystem;
+use super::rounded::{Square, raised};
+use super::shift::{PowerTable, Shift};
+
+/// f(x* + d, u* + e) = f* + A d + B e + remainder, with A and B in floating point and their error in the remainder.
+#[derive(Debug)]
+pub(super) struct Linearisation<'a> {
+    pub system: &'a PolynomialSystem,
+    /// (x*, u*).
+    point: Vec<f64>,
+    /// f*.
+    pub rate: Vec<Interval>,
+    pub a: Square,
+    /// B without the inputs that a direction carries, column by column.
+    b: Vec<f64>,
+    /// Bounds of |e|, m.
+    pub input_radius: Vec<f64>,
+    /// Enclosed derivatives, row by row, and their distance from A and B.
+    gradient: Vec<Interval>,
+    defect: Vec<f64>,
+    rows: Vec<Shift>,
+    directions: Vec<Shift>,
+    powers: PowerTable,
+    centers: Vec<Interval>,
+}
+
+impl<'a> Linearisation<'a> {
+    pub fn new(system: &'a PolynomialSystem) -> Self {
+        let (n, m) = (system.states(), system.inputs());
+        Self {
+            system,
+            point: vec![0.0; n + m],
+            rate: vec![Interval::ZERO; n],
+            a: Square::zero(n),
+            b: vec![0.0; n * m],
+            input_radius: vec![0.0; m],
+            gradient: vec![Interval::ZERO; n * (n + m)],
+            defect: vec![0.0; n * (n + m)],
+            rows: system.rows.iter().map(|row| row.workspace()).collect(),
+            directions: system.directions.iter().map(|d| d.polynomial.workspace()).collect(),
+            powers: PowerTable::new(&system.highest),
+            centers: vec![Interval::ZERO; n],
+        }
+    }
+
+    /// x*.
+    pub fn point(&self) -> &[f64] {
+        &self.point[..self.system.states()]
+    }
+
+    /// Column j of B; zero for an input that a direction carries.
+    pub fn column(&self, j: usize) -> &[f64] {
+        let n = self.system.states();
+        &self.b[j * n..(j + 1) * n]
+    }
+
+    /// About the point x* and the middle of the input.
+    ///
+    /// # Guarantee
+    ///
+    /// f* and the derivatives are enclosed; A and B are their midpoints, exact as numbers.
+    pub fn linearise(&mut self, point: impl Iterator<Item = f64>, input: &[Interval]) {
+        let n = self.system.states();
+        self.point[..n].iter_mut().zip(point).for_each(|(own, x)| *own = x);
+        for (j, u) in input.iter().enumerate() {
+            self.point[n + j] = u.mid();
+            self.input_radius[j] = u.rad();
+            self.powers.set(n + j, *u - u.mid());
+        }
+        self.gradient.fill(Interval::ZERO);
+        self.differentiate_rows();
+        self.differentiate_directions();
+        self.round();
+    }
+
+    fn differentiate_rows(&mut self) {
+        let variables = self.point.len();
+        for (i, (row, shift)) in self.system.rows.iter().zip(&mut self.rows).enumerate() {
+            row.shift(&self.point, shift);
+            self.rate[i] = row.constant(shift);
+            row.gradient(shift).for_each(|(z, slope)| self.gradient[i * variables + z] = slope);
+        }
+    }
+
+    fn differentiate_directions(&mut self) {
+        let (n, variables) = (self.system.states(), self.point.len());
+        for (g, (direction, shift)) in self.system.directions.iter().zip(&mut self.directions).enumerate() {
+            direction.polynomial.shift(&self.point, shift);
+            let is_carried = |z: usize| {
+                z >= n && self.system.carriers[z - n].is_some_and(|carrier| carrier.direction == g)
+            };
+            for (i, &entry) in direction.column.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
+                self.rate[i] += direction.polynomial.constant(shift) * entry;
+                let slopes = direction.polynomial.gradient(shift).filter(|(z, _)| !is_carried(*z));
+                slopes.for_each(|(z, slope)| self.gradient[i * variables + z] += slope * entry);
+            }
+        }
+    }
+
+    fn round(&mut self) {
+        let (n, variables) = (self.system.states(), self.point.len());
+        for i in 0..n {
+            for z in 0..variables {
+                let (at, slope) = (i * variables + z, self.gradient[i * variables + z]);
+                self.defect[at] = slope.rad();
+                if z < n {
+                    self.a.entries[i * n + z] = slope.mid();
+                } else if self.system.carriers[z - n].is_none() {
+                    self.b[(z - n) * n + i] = slope.mid();
+                } else {
+                    self.defect[at] = slope.mag();
+                }
+            }
+        }
+    }
+
+    /// The remainder over the offsets `tube` (N) and the input: along the axes (N), then along the directions.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub fn remainder(&mut self, tube: &[Interval], out: &mut [Interval]) {
+        let (n, variables) = (tube.len(), self.point.len());
+        tube.iter().enumerate().for_each(|(i, side)| self.powers.set(i, *side));
+        let (rows, directions) = out.split_at_mut(n);
+        for (i, out) in rows.iter_mut().enumerate() {
+            let defect = &self.defect[i * variables..(i + 1) * variables];
+            let states = defect.iter().zip(tube).map(|(defect, d)| defect * d.mag());
+            let inputs = defect[n..].iter().zip(&self.input_radius).map(|(defect, r)| defect * r);
+            let rounding = raised(states.chain(inputs).sum(), variables);
+            let range = self.system.rows[i].remainder(&self.powers, &mut self.rows[i]);
+            *out = range + Interval::centered(0.0, rounding);
+        }
+        for ((out, direction), shift) in
+            directions.iter_mut().zip(&self.system.directions).zip(&mut self.directions)
+        {
+            *out = direction.polynomial.remainder(&self.powers, shift);
+        }
+    }
+
+    /// A bound of what input and remainder can be along direction g: the inputs it carries and the radius of its remainder.
+    pub fn along_direction(&self, g: usize, remainder: &[Interval]) -> f64 {
+        raised(self.carried(g) + remainder[self.system.states() + g].rad(), 1)
+    }
+
+    fn carried(&self, g: usize) -> f64 {
+        let inputs = self.system.carriers.iter().zip(&self.input_radius);
+        let own = inputs.filter_map(|(carrier, r)| carrier.filter(|c| c.direction == g).map(|c| (c, r)));
+        raised(own.map(|(carrier, r)| carrier.factor.abs() * r).sum(), self.input_radius.len())
+    }
+
+    /// `out` >= |B| r + |N| |l|, with the `size` of each l.
+    pub fn magnitude(&self, remainder: &[Interval], size: impl Fn(Interval) -> f64, out: &mut [f64]) {
+        let n = out.len();
+        out.iter_mut().zip(remainder).for_each(|(out, l)| *out = size(*l));
+        for (column, r) in self.b.chunks_exact(n.max(1)).zip(&self.input_radius) {
+            out.iter_mut().zip(column).for_each(|(out, b)| *out += b.abs() * r);
+        }
+        for (g, direction) in self.system.directions.iter().enumerate() {
+            let length = raised(self.carried(g) + size(remainder[n + g]), 1);
+            out.iter_mut().zip(&direction.column).for_each(|(out, x)| *out += x.abs() * length);
+        }
+        let terms = self.input_radius.len() + self.system.directions.len();
+        out.iter_mut().for_each(|out| *out = raised(*out, terms));
+    }
+
+    /// The middle of the remainder as a part of ẋ, enclosed.
+    pub fn center(&mut self, remainder: &[Interval]) -> &[Interval] {
+        let n = self.centers.len();
+        for (i, center) in self.centers.iter_mut().enumerate() {
+            *center = Interval::point(remainder[i].mid());
+            for (direction, l) in self.system.directions.iter().zip(&remainder[n..]) {
+                if direction.column[i] != 0.0 {
+                    *center += Interval::point(direction.column[i]) * l.mid();
+                }
+            }
+        }
+        &self.centers
+    }
+}

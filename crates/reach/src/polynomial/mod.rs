@@ -1,0 +1,17 @@
+//! Reachable sets of polynomial systems with uncertain input.
+
+mod directions;
+mod exponential;
+mod flowpipe;
+mod generators;
+mod linearisation;
+mod rounded;
+mod set;
+mod shift;
+mod step;
+mod system;
+mod zonotope;
+
+pub use flowpipe::{Flowpipe, FlowpipeOutcome, FlowpipeSettings, UncertainInput};
+pub use system::PolynomialSystem;
+pub use zonotope::Zonotope;

@@ -1,0 +1,249 @@
+//! A polynomial about a point that changes from step to step: p(z + d) = Σ c_α dᵅ, exact and finite.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use reachtube_scalar::{Interval, TaylorTerm};
+
+/// A polynomial prepared for being shifted and bounded again and again without allocation.
+#[derive(Debug, Clone)]
+pub(super) struct ShiftedPolynomial {
+    /// Coefficients about 0, of a set of monomials that holds every divisor of a member, by degree: the constant is first.
+    start: Vec<Interval>,
+    operations: Vec<Operation>,
+    /// Monomials of degree 1: the variable and the place.
+    linear: Vec<(usize, usize)>,
+    /// Monomials of degree 2 and above, in the order of their places.
+    nodes: Vec<Node>,
+    /// Place of the first monomial of degree 2.
+    first_node: usize,
+}
+
+/// c\[to\] += z\[variable\] c\[to x_variable\]: one step of Horner's shift.
+#[derive(Debug, Clone, Copy)]
+struct Operation {
+    to: u32,
+    from: u32,
+    variable: u32,
+}
+
+/// A monomial: the one at `parent` times a power of a variable.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    parent: u32,
+    variable: u32,
+    exponent: u32,
+}
+
+/// The coefficients about the present point, and scratch memory.
+#[derive(Debug, Clone)]
+pub(super) struct Shift {
+    coefficients: Vec<Interval>,
+    values: Vec<Interval>,
+}
+
+impl ShiftedPolynomial {
+    pub fn new(variables: usize, terms: &[TaylorTerm<Interval>]) -> Self {
+        let mut monomials: BTreeSet<(u32, Vec<u8>)> = BTreeSet::from([(0, vec![0; variables])]);
+        for term in terms {
+            insert_divisors(&mut monomials, &term.exponents);
+        }
+        let place: BTreeMap<&[u8], usize> =
+            monomials.iter().enumerate().map(|(at, (_, m))| (m.as_slice(), at)).collect();
+        let mut start = vec![Interval::ZERO; monomials.len()];
+        for term in terms {
+            start[place[term.exponents.as_slice()]] += term.coefficient;
+        }
+        let linear = monomials.iter().enumerate().filter(|(_, (degree, _))| *degree == 1);
+        let linear: Vec<_> = linear.map(|(at, (_, m))| (first_variable(m), at)).collect();
+        let node = |m: &Vec<u8>| {
+            let variable = first_variable(m);
+            let parent = place[with(m, variable, 0).as_slice()] as u32;
+            Node { parent, variable: variable as u32, exponent: u32::from(m[variable]) }
+        };
+        let nodes = monomials.iter().filter(|(degree, _)| *degree >= 2).map(|(_, m)| node(m)).collect();
+        let operations = operations(variables, &monomials, &place);
+        Self { first_node: 1 + linear.len(), start, operations, linear, nodes }
+    }
+
+    /// Scratch memory for this polynomial.
+    pub fn workspace(&self) -> Shift {
+        Shift { coefficients: self.start.clone(), values: vec![Interval::ZERO; self.start.len()] }
+    }
+
+    /// The highest exponent of each variable, where it is above that in `highest`.
+    pub fn raise_exponents(&self, highest: &mut [u32]) {
+        for node in &self.nodes {
+            let highest = &mut highest[node.variable as usize];
+            *highest = (*highest).max(node.exponent);
+        }
+    }
+
+    /// About the point z.
+    ///
+    /// # Guarantee
+    ///
+    /// Each coefficient encloses the exact one.
+    pub fn shift(&self, z: &[f64], work: &mut Shift) {
+        work.coefficients.copy_from_slice(&self.start);
+        let c = &mut work.coefficients;
+        for op in &self.operations {
+            let z = z[op.variable as usize];
+            if z != 0.0 {
+                let higher = c[op.from as usize];
+                c[op.to as usize] += higher * z;
+            }
+        }
+    }
+
+    /// The value at the present point.
+    pub fn constant(&self, work: &Shift) -> Interval {
+        work.coefficients[0]
+    }
+
+    /// The derivatives at the present point: variable and coefficient.
+    pub fn gradient<'a>(&'a self, work: &'a Shift) -> impl Iterator<Item = (usize, Interval)> + 'a {
+        self.linear.iter().map(|&(variable, at)| (variable, work.coefficients[at]))
+    }
+
+    /// The sum of all terms of degree 2 and above over a box, given by the powers of its sides.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub fn remainder(&self, powers: &PowerTable, work: &mut Shift) -> Interval {
+        let (values, coefficients) = (&mut work.values, &work.coefficients);
+        values[0] = Interval::ONE;
+        for &(variable, at) in &self.linear {
+            values[at] = powers.get(variable, 1);
+        }
+        let mut sum = Interval::ZERO;
+        for (at, node) in (self.first_node..).zip(&self.nodes) {
+            let power = powers.get(node.variable as usize, node.exponent);
+            values[at] = if node.parent == 0 { power } else { values[node.parent as usize] * power };
+            sum += coefficients[at] * values[at];
+        }
+        sum
+    }
+}
+
+fn insert_divisors(monomials: &mut BTreeSet<(u32, Vec<u8>)>, monomial: &[u8]) {
+    let degree = monomial.iter().map(|e| u32::from(*e)).sum();
+    if monomials.insert((degree, monomial.to_vec())) {
+        for i in (0..monomial.len()).filter(|i| monomial[*i] > 0) {
+            insert_divisors(monomials, &with(monomial, i, monomial[i] - 1));
+        }
+    }
+}
+
+fn with(monomial: &[u8], variable: usize, exponent: u8) -> Vec<u8> {
+    let mut other = monomial.to_vec();
+    other[variable] = exponent;
+    other
+}
+
+fn first_variable(monomial: &[u8]) -> usize {
+    monomial.iter().position(|e| *e > 0).expect("not a constant")
+}
+
+/// Horner's shift, variable after variable, chain after chain of monomials that differ in that variable alone.
+fn operations(
+    variables: usize,
+    monomials: &BTreeSet<(u32, Vec<u8>)>,
+    place: &BTreeMap<&[u8], usize>,
+) -> Vec<Operation> {
+    let mut operations = Vec::new();
+    for variable in 0..variables {
+        let ends = |m: &Vec<u8>| !place.contains_key(with(m, variable, m[variable] + 1).as_slice());
+        for (_, m) in monomials.iter().filter(|(_, m)| m[variable] > 0 && ends(m)) {
+            let at = |exponent: u8| place[with(m, variable, exponent).as_slice()] as u32;
+            for lowest in 0..m[variable] {
+                for exponent in (lowest..m[variable]).rev() {
+                    let (to, from) = (at(exponent), at(exponent + 1));
+                    operations.push(Operation { to, from, variable: variable as u32 });
+                }
+            }
+        }
+    }
+    operations
+}
+
+/// The powers of the sides of a box; even ones are not negative.
+#[derive(Debug, Clone)]
+pub(super) struct PowerTable {
+    starts: Vec<usize>,
+    powers: Vec<Interval>,
+}
+
+impl PowerTable {
+    /// For exponents up to `highest`, one a variable, and at least 1.
+    pub fn new(highest: &[u32]) -> Self {
+        let mut starts = vec![0];
+        for highest in highest {
+            starts.push(starts[starts.len() - 1] + (*highest).max(1) as usize);
+        }
+        Self { powers: vec![Interval::ZERO; starts[highest.len()]], starts }
+    }
+
+    /// Of variable i over `side`.
+    pub fn set(&mut self, i: usize, side: Interval) {
+        let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
+        own.iter_mut().zip(1..).for_each(|(power, exponent)| *power = side.powi(exponent));
+    }
+
+    fn get(&self, i: usize, exponent: u32) -> Interval {
+        self.powers[self.starts[i] + exponent as usize - 1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use reachtube_scalar::{TaylorPolynomial, TaylorSpace};
+
+    use super::*;
+
+    fn terms() -> impl Strategy<Value = Vec<TaylorTerm<Interval>>> {
+        let term = (prop::collection::vec(0..4_u8, 3), -2.0..2.0_f64)
+            .prop_map(|(exponents, c)| TaylorTerm { exponents, coefficient: Interval::point(c) });
+        prop::collection::vec(term, 1..8)
+    }
+
+    proptest! {
+        #[test]
+        fn a_shift_is_the_polynomial_about_another_point(
+            terms in terms(), z in [-2.0..2.0_f64, -2.0..2.0, -2.0..2.0], d in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0],
+        ) {
+            let space = TaylorSpace::new(3, 12).unwrap();
+            let shifted = ShiftedPolynomial::new(3, &terms);
+            let mut work = shifted.workspace();
+            shifted.shift(&z, &mut work);
+            let exact = TaylorPolynomial::from_terms(&space, terms).shifted(&z.map(Interval::point));
+            prop_assert!(exact.constant_term().intersection(shifted.constant(&work)).is_some());
+            for (variable, slope) in shifted.gradient(&work) {
+                let unit: Vec<u8> = (0..3).map(|i| u8::from(i == variable)).collect();
+                prop_assert!(exact.coefficient(&unit).intersection(slope).is_some());
+            }
+            let mut highest = [0; 3];
+            shifted.raise_exponents(&mut highest);
+            let mut powers = PowerTable::new(&highest);
+            for i in 0..3 {
+                powers.set(i, Interval::point(d[i]));
+            }
+            let rest = exact.evaluate(&d.map(Interval::point)) - exact.truncated(1).evaluate(&d.map(Interval::point));
+            prop_assert!(rest.intersection(shifted.remainder(&powers, &mut work)).is_some());
+            prop_assert!(shifted.remainder(&powers, &mut work).width() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_square_is_not_negative() {
+        let square = TaylorTerm { exponents: vec![2], coefficient: Interval::ONE };
+        let shifted = ShiftedPolynomial::new(1, &[square]);
+        let mut powers = PowerTable::new(&[2]);
+        powers.set(0, Interval::new(-1.0, 1.0).unwrap());
+        let mut work = shifted.workspace();
+        shifted.shift(&[3.0], &mut work);
+        let range = shifted.remainder(&powers, &mut work);
+        assert!(range.lo() == 0.0 && (1.0..1.0 + 1e-12).contains(&range.hi()));
+    }
+}

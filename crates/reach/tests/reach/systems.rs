@@ -1,0 +1,76 @@
+//! Polynomial systems to look at: an arm, and the problems of the ARCH competition.
+
+use nalgebra::DMatrix;
+use reachtube_reach::{LinearSystem, PolynomialSystem};
+use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
+
+use crate::arm::arm;
+
+pub type Polynomial = TaylorPolynomial<Interval>;
+
+pub fn constant(x: f64) -> Polynomial {
+    Polynomial::constant(Interval::point(x))
+}
+
+/// Variables of a space to the given order.
+pub fn variables(count: usize, order: u32) -> Vec<Polynomial> {
+    let space = TaylorSpace::new(count, order).unwrap();
+    (0..count).map(|i| Polynomial::variable(&space, i)).collect()
+}
+
+/// A x + B u + d as polynomials.
+pub fn linear(system: &LinearSystem) -> Vec<Polynomial> {
+    let z = variables(system.states() + system.inputs(), 3);
+    let row = |i: usize| {
+        let coefficients = system.a().row(i).iter().chain(&system.b().row(i)).copied().collect::<Vec<_>>();
+        let terms = z.iter().zip(coefficients).map(|(z, c)| z * &constant(c));
+        terms.fold(constant(system.drift()[i]), |sum, term| sum + term)
+    };
+    (0..system.states()).map(row).collect()
+}
+
+/// The arm with a friction torque of -c q̇³ beside the viscous one: c > 0 weakens friction at speed, as the paper's cubic does.
+pub fn cubic_arm(softening: f64) -> PolynomialSystem {
+    let system = arm();
+    let mut f = linear(&system);
+    let z = variables(18, 3);
+    for (i, f) in f.iter_mut().enumerate().skip(6) {
+        for j in 0..6 {
+            let cube = &(&z[6 + j] * &z[6 + j]) * &z[6 + j];
+            *f += &(&constant(system.b()[(i, j)]) * &constant(softening * FRICTION[j])) * &cube;
+        }
+    }
+    PolynomialSystem::new(12, 6, &f).unwrap()
+}
+
+/// Relative size of the cubic term for each joint.
+const FRICTION: [f64; 6] = [0.8, 1.0, 1.5, 0.1, 0.2, 0.1];
+
+/// M⁻¹ of the arm.
+pub fn inverse_mass() -> DMatrix<f64> {
+    arm().b().rows(6, 6).into_owned()
+}
+
+/// ẋ = y, ẏ = (1 - x²) y - x.
+pub fn van_der_pol() -> PolynomialSystem {
+    let z = variables(2, 3);
+    let (x, y) = (&z[0], &z[1]);
+    PolynomialSystem::new(2, 0, &[y.clone(), y - &(&(x * x) * y) - x.clone()]).unwrap()
+}
+
+/// The enzymatic network of Laub and Loomis, 7 states.
+pub fn laub_loomis() -> PolynomialSystem {
+    let z = variables(7, 2);
+    let x = |i: usize| &z[i - 1];
+    let times = |c: f64, p: &Polynomial| &constant(c) * p;
+    let f = [
+        times(1.4, x(3)) - times(0.9, x(1)),
+        times(2.5, x(5)) - times(1.5, x(2)),
+        times(0.6, x(7)) - times(0.8, &(x(2) * x(3))),
+        constant(2.0) - times(1.3, &(x(3) * x(4))),
+        times(0.7, x(1)) - x(4) * x(5),
+        times(0.3, x(1)) - times(3.1, x(6)),
+        times(1.8, x(6)) - times(1.5, &(x(2) * x(7))),
+    ];
+    PolynomialSystem::new(7, 0, &f).unwrap()
+}
