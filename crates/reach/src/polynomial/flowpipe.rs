@@ -1,3 +1,4 @@
+use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
 use super::PolynomialSystem;
@@ -20,7 +21,9 @@ pub struct UncertainInput<'a> {
 pub struct FlowpipeSettings {
     /// Generators kept, in multiples of the number of states; beyond, the oldest become a box. `None` keeps all, which is the tightest.
     pub order: Option<usize>,
-    /// Samples at which the zonotope itself is kept, increasing.
+    /// Parts into which the initial set is divided along each state, N; empty for none. Each is followed alone, and the hull of all is given.
+    pub pieces: Vec<usize>,
+    /// Samples at which the zonotopes themselves are kept, one a piece.
     pub zonotopes: Vec<usize>,
 }
 
@@ -98,10 +101,26 @@ impl Flowpipe {
         input: &UncertainInput<'_>,
         settings: &FlowpipeSettings,
     ) -> Result<Self, ReachError> {
-        check(system, grid, start, initial_set, input)?;
+        check(system, grid, start, initial_set, input, settings)?;
+        let sides: Vec<Interval> = (0..system.states()).map(|i| side(start, initial_set, i)).collect();
+        let pieces = pieces(&sides, &settings.pieces);
+        let follow = |piece: Vec<Interval>| Self::of_piece(system, grid, &piece, input, settings);
+        let whole = pieces.into_par_iter().map(follow).reduce_with(Self::hull);
+        Ok(whole.expect("a piece at least"))
+    }
+
+    /// From one box.
+    fn of_piece(
+        system: &PolynomialSystem,
+        grid: &TimeGrid,
+        sides: &[Interval],
+        input: &UncertainInput<'_>,
+        settings: &FlowpipeSettings,
+    ) -> Self {
         let (n, m) = (system.states(), system.inputs());
-        let mut set = initial(system, start, initial_set);
-        let most = settings.order.map_or(usize::MAX, |order| order * n);
+        let (center, radius) = sides.iter().map(|x| (x.mid(), x.rad())).unzip();
+        let mut set = Set::new(center, radius, m, system.directions.len());
+        let most = settings.order.map_or(usize::MAX, |order| order.saturating_mul(n));
         let mut stepper = Stepper::new(Linearisation::new(system), most);
         let mut flowpipe = Self::start(n, grid.len());
         flowpipe.keep(&set, &stepper, settings);
@@ -119,7 +138,19 @@ impl Flowpipe {
             flowpipe.steps.extend(stepper.tube());
             flowpipe.keep(&set, &stepper, settings);
         }
-        Ok(flowpipe)
+        flowpipe
+    }
+
+    /// The union, up to the time of the shorter one.
+    fn hull(mut self, other: Self) -> Self {
+        if other.len() < self.len() {
+            return other.hull(self);
+        }
+        self.samples.iter_mut().zip(&other.samples).for_each(|(own, other)| *own = own.hull(*other));
+        self.steps.iter_mut().zip(&other.steps).for_each(|(own, other)| *own = own.hull(*other));
+        self.zonotopes.extend(other.zonotopes);
+        self.generators = self.generators.max(other.generators);
+        self
     }
 
     fn start(n: usize, samples: usize) -> Self {
@@ -163,12 +194,12 @@ impl Flowpipe {
         &self.steps[k * self.dimension..(k + 1) * self.dimension]
     }
 
-    /// The zonotope at sample k, if it was asked for.
-    pub fn zonotope(&self, k: usize) -> Option<&Zonotope> {
-        self.zonotopes.iter().find(|(sample, _)| *sample == k).map(|(_, zonotope)| zonotope)
+    /// The zonotopes at sample k, one a piece of the initial set, if they were asked for.
+    pub fn zonotopes(&self, k: usize) -> impl Iterator<Item = &Zonotope> {
+        self.zonotopes.iter().filter(move |(sample, _)| *sample == k).map(|(_, zonotope)| zonotope)
     }
 
-    /// Generators that were stored at the last sample.
+    /// Generators that were stored at the last sample, of the piece with most.
     pub fn generators(&self) -> usize {
         self.generators
     }
@@ -185,13 +216,31 @@ impl Flowpipe {
     }
 }
 
-fn initial(system: &PolynomialSystem, start: &[f64], initial_set: &Hyperrectangle) -> Set {
-    let side = |i: usize| {
-        Interval::point(start[i]) + Interval::centered(initial_set.center[i], initial_set.radius[i])
-    };
-    let sides: Vec<Interval> = (0..start.len()).map(side).collect();
-    let (center, radius) = sides.iter().map(|x| (x.mid(), x.rad())).unzip();
-    Set::new(center, radius, system.inputs(), system.directions.len())
+/// Side i of the set of initial states.
+fn side(start: &[f64], initial_set: &Hyperrectangle, i: usize) -> Interval {
+    Interval::point(start[i]) + Interval::centered(initial_set.center[i], initial_set.radius[i])
+}
+
+/// The box divided into so many parts along each side. Neighbours share an end, so that none is left out.
+fn pieces(sides: &[Interval], parts: &[usize]) -> Vec<Vec<Interval>> {
+    let mut pieces = vec![Vec::with_capacity(sides.len())];
+    for (i, side) in sides.iter().enumerate() {
+        let parts = parts.get(i).copied().unwrap_or(1);
+        let end = |at: usize| match at {
+            0 => side.lo(),
+            at if at == parts => side.hi(),
+            at => {
+                (side.lo() + (side.hi() - side.lo()) * (at as f64 / parts as f64)).clamp(side.lo(), side.hi())
+            }
+        };
+        let own = |at: usize| Interval::new(end(at), end(at + 1)).unwrap_or(*side);
+        let longer = |piece: &Vec<Interval>| {
+            let piece = piece.clone();
+            (0..parts).map(move |at| [piece.clone(), vec![own(at)]].concat()).collect::<Vec<_>>()
+        };
+        pieces = pieces.iter().flat_map(longer).collect();
+    }
+    pieces
 }
 
 fn check(
@@ -200,6 +249,7 @@ fn check(
     start: &[f64],
     initial_set: &Hyperrectangle,
     input: &UncertainInput<'_>,
+    settings: &FlowpipeSettings,
 ) -> Result<(), ReachError> {
     let (n, m) = (system.states(), system.inputs());
     let rows = grid.len().saturating_sub(1);
@@ -213,6 +263,11 @@ fn check(
         if let Some(row) = set.radius.iter().position(|r| *r < 0.0) {
             return Err(ReachError::Negative { what: radius, row, value: set.radius[row] });
         }
+    }
+    let found_rows = settings.pieces.len();
+    if found_rows != 0 && found_rows != n || settings.pieces.contains(&0) {
+        let what = "the list of pieces, each at least 1,";
+        return Err(ReachError::Shape { what, rows: n, columns: 1, found_rows, found_columns: 1 });
     }
     let found = input.measured.len();
     if found != rows * m && found != (rows + 1) * m {

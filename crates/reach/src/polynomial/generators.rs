@@ -10,8 +10,8 @@ const LANES: usize = 16;
 /// One coordinate of as many generators.
 type Lanes = [f64; LANES];
 
-/// Blocks that one thread takes at a time.
-const BLOCKS: usize = 32;
+/// Blocks that one thread takes at a time: as much work as it costs to wake it up, a few times over.
+const BLOCKS: usize = 64;
 
 /// A list of generators, oldest first; the last block may be filled up with zeros.
 #[derive(Debug, Clone)]
@@ -60,8 +60,12 @@ impl Generators {
         let chunks = self.blocks.len().div_ceil(BLOCKS * n.max(1));
         self.partial.resize_with(chunks, || vec![0.0; n]);
         let work = |(blocks, sums): (&mut [Lanes], &mut Vec<f64>)| rows.map(blocks, n, sums);
-        let chunks = self.blocks.par_chunks_mut((BLOCKS * n).max(1)).zip(&mut self.partial);
-        chunks.for_each(work);
+        let chunk = (BLOCKS * n).max(1);
+        if chunks > 1 {
+            self.blocks.par_chunks_mut(chunk).zip(&mut self.partial).for_each(work);
+        } else {
+            self.blocks.chunks_mut(chunk).zip(&mut self.partial).for_each(work);
+        }
         sums.fill(0.0);
         for partial in &self.partial {
             sums.iter_mut().zip(partial).for_each(|(sum, x)| *sum += x);
@@ -70,7 +74,7 @@ impl Generators {
 
     /// Removes the first `surplus` generators, whole blocks of them, and adds the box around them to `radius`, rounded upward.
     pub fn absorb_oldest(&mut self, surplus: usize, radius: &mut [f64]) {
-        let blocks = surplus / LANES;
+        let blocks = surplus.min(self.count) / LANES;
         for (i, radius) in radius.iter_mut().enumerate() {
             let lanes = self.blocks[..blocks * self.n].iter().skip(i).step_by(self.n);
             let sum = lanes.map(|lanes| lanes.iter().map(|x| x.abs()).sum::<f64>()).sum::<f64>();

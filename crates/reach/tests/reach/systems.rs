@@ -1,6 +1,5 @@
 //! Polynomial systems to look at: an arm, and the problems of the ARCH competition.
 
-use nalgebra::DMatrix;
 use reachtube_reach::{LinearSystem, PolynomialSystem};
 use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
 
@@ -31,6 +30,11 @@ pub fn linear(system: &LinearSystem) -> Vec<Polynomial> {
 
 /// The arm with a friction torque of -c q̇³ beside the viscous one: c > 0 weakens friction at speed, as the paper's cubic does.
 pub fn cubic_arm(softening: f64) -> PolynomialSystem {
+    PolynomialSystem::new(12, 6, &cubic_arm_components(softening)).unwrap()
+}
+
+/// ẋ of [`cubic_arm`].
+pub fn cubic_arm_components(softening: f64) -> Vec<Polynomial> {
     let system = arm();
     let mut f = linear(&system);
     let z = variables(18, 3);
@@ -40,30 +44,35 @@ pub fn cubic_arm(softening: f64) -> PolynomialSystem {
             *f += &(&constant(system.b()[(i, j)]) * &constant(softening * FRICTION[j])) * &cube;
         }
     }
-    PolynomialSystem::new(12, 6, &f).unwrap()
+    f
 }
 
 /// Relative size of the cubic term for each joint.
 const FRICTION: [f64; 6] = [0.8, 1.0, 1.5, 0.1, 0.2, 0.1];
 
-/// M⁻¹ of the arm.
-pub fn inverse_mass() -> DMatrix<f64> {
-    arm().b().rows(6, 6).into_owned()
-}
-
 /// ẋ = y, ẏ = (1 - x²) y - x.
 pub fn van_der_pol() -> PolynomialSystem {
+    PolynomialSystem::new(2, 0, &van_der_pol_components()).unwrap()
+}
+
+/// ẋ of [`van_der_pol`].
+pub fn van_der_pol_components() -> Vec<Polynomial> {
     let z = variables(2, 3);
     let (x, y) = (&z[0], &z[1]);
-    PolynomialSystem::new(2, 0, &[y.clone(), y - &(&(x * x) * y) - x.clone()]).unwrap()
+    vec![y.clone(), y - &(&(x * x) * y) - x.clone()]
 }
 
 /// The enzymatic network of Laub and Loomis, 7 states.
 pub fn laub_loomis() -> PolynomialSystem {
+    PolynomialSystem::new(7, 0, &laub_loomis_components()).unwrap()
+}
+
+/// ẋ of [`laub_loomis`].
+pub fn laub_loomis_components() -> Vec<Polynomial> {
     let z = variables(7, 2);
     let x = |i: usize| &z[i - 1];
     let times = |c: f64, p: &Polynomial| &constant(c) * p;
-    let f = [
+    vec![
         times(1.4, x(3)) - times(0.9, x(1)),
         times(2.5, x(5)) - times(1.5, x(2)),
         times(0.6, x(7)) - times(0.8, &(x(2) * x(3))),
@@ -71,6 +80,5 @@ pub fn laub_loomis() -> PolynomialSystem {
         times(0.7, x(1)) - x(4) * x(5),
         times(0.3, x(1)) - times(3.1, x(6)),
         times(1.8, x(6)) - times(1.5, &(x(2) * x(7))),
-    ];
-    PolynomialSystem::new(7, 0, &f).unwrap()
+    ]
 }
