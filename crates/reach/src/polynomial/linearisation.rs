@@ -1,4 +1,4 @@
-//! f about a point: f* + A d + B e and what is of degree 2 and above.
+//! f about a point: f* + A d + B e and what that leaves out.
 
 use reachtube_scalar::Interval;
 
@@ -12,6 +12,8 @@ pub(super) struct Linearisation<'a> {
     pub system: &'a PolynomialSystem,
     /// (x*, u*).
     point: Vec<f64>,
+    /// How far (x, u) is from there, about.
+    radius: Vec<f64>,
     /// f*.
     pub rate: Vec<Interval>,
     pub a: Square,
@@ -34,6 +36,7 @@ impl<'a> Linearisation<'a> {
         Self {
             system,
             point: vec![0.0; n + m],
+            radius: vec![0.0; n + m],
             rate: vec![Interval::ZERO; n],
             a: Square::zero(n),
             b: vec![0.0; n * m],
@@ -58,17 +61,20 @@ impl<'a> Linearisation<'a> {
         &self.b[j * n..(j + 1) * n]
     }
 
-    /// About the point x* and the middle of the input.
+    /// About the point x* and the middle of the input. Over a set of that `radius` (N), a power of one variable is close to a line
+    /// steeper than its derivative, and A has that slope.
     ///
     /// # Guarantee
     ///
-    /// f* and the derivatives are enclosed; A and B are their midpoints, exact as numbers.
-    pub fn linearise(&mut self, point: impl Iterator<Item = f64>, input: &[Interval]) {
+    /// f* and the slopes are enclosed; A and B are their midpoints, exact as numbers.
+    pub fn linearise(&mut self, point: impl Iterator<Item = f64>, radius: &[f64], input: &[Interval]) {
         let n = self.system.states();
         self.point[..n].iter_mut().zip(point).for_each(|(own, x)| *own = x);
+        self.radius[..n].copy_from_slice(radius);
         for (j, u) in input.iter().enumerate() {
             self.point[n + j] = u.mid();
             self.input_radius[j] = u.rad();
+            self.radius[n + j] = u.rad();
             self.powers.set(n + j, *u - u.mid());
         }
         self.gradient.fill(Interval::ZERO);
@@ -80,16 +86,16 @@ impl<'a> Linearisation<'a> {
     fn differentiate_rows(&mut self) {
         let variables = self.point.len();
         for (i, (row, shift)) in self.system.rows.iter().zip(&mut self.rows).enumerate() {
-            row.shift(&self.point, shift);
+            row.shift(&self.point, &self.radius, shift);
             self.rate[i] = row.constant(shift);
-            row.gradient(shift).for_each(|(z, slope)| self.gradient[i * variables + z] = slope);
+            row.gradient(shift).for_each(|(z, slope)| self.gradient[i * variables + z] += slope);
         }
     }
 
     fn differentiate_directions(&mut self) {
         let (n, variables) = (self.system.states(), self.point.len());
         for (g, (direction, shift)) in self.system.directions.iter().zip(&mut self.directions).enumerate() {
-            direction.polynomial.shift(&self.point, shift);
+            direction.polynomial.shift(&self.point, &self.radius, shift);
             let is_carried = |z: usize| {
                 z >= n && self.system.carriers[z - n].is_some_and(|carrier| carrier.direction == g)
             };

@@ -10,6 +10,7 @@ mod set;
 mod shift;
 mod step;
 mod system;
+mod univariate;
 mod zonotope;
 
 pub use flowpipe::{Flowpipe, FlowpipeOutcome, FlowpipeSettings, UncertainInput};

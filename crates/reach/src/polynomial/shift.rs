@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
+use super::univariate::Univariate;
+
 /// A polynomial prepared for being shifted and bounded again and again without allocation.
 #[derive(Debug, Clone)]
 pub(super) struct ShiftedPolynomial {
@@ -16,6 +18,7 @@ pub(super) struct ShiftedPolynomial {
     nodes: Vec<Node>,
     /// Place of the first monomial of degree 2.
     first_node: usize,
+    univariate: Vec<Univariate>,
 }
 
 /// c\[to\] += z\[variable\] c\[to x_variable\]: one step of Horner's shift.
@@ -32,6 +35,8 @@ struct Node {
     parent: u32,
     variable: u32,
     exponent: u32,
+    /// Whether it is one of those bounded together as [`Univariate`].
+    is_power: bool,
 }
 
 /// The coefficients about the present point, and scratch memory.
@@ -39,6 +44,8 @@ struct Node {
 pub(super) struct Shift {
     coefficients: Vec<Interval>,
     values: Vec<Interval>,
+    /// What is added to the derivative and taken from the remainder, one a list of powers.
+    slopes: Vec<f64>,
 }
 
 impl ShiftedPolynomial {
@@ -58,16 +65,19 @@ impl ShiftedPolynomial {
         let node = |m: &Vec<u8>| {
             let variable = first_variable(m);
             let parent = place[with(m, variable, 0).as_slice()] as u32;
-            Node { parent, variable: variable as u32, exponent: u32::from(m[variable]) }
+            let exponent = u32::from(m[variable]);
+            Node { parent, variable: variable as u32, exponent, is_power: parent == 0 }
         };
+        let univariate = (0..variables).filter_map(|variable| Univariate::of(variable, &place)).collect();
         let nodes = monomials.iter().filter(|(degree, _)| *degree >= 2).map(|(_, m)| node(m)).collect();
         let operations = operations(variables, &monomials, &place);
-        Self { first_node: 1 + linear.len(), start, operations, linear, nodes }
+        Self { first_node: 1 + linear.len(), start, operations, linear, nodes, univariate }
     }
 
     /// Scratch memory for this polynomial.
     pub fn workspace(&self) -> Shift {
-        Shift { coefficients: self.start.clone(), values: vec![Interval::ZERO; self.start.len()] }
+        let values = vec![Interval::ZERO; self.start.len()];
+        Shift { coefficients: self.start.clone(), values, slopes: vec![0.0; self.univariate.len()] }
     }
 
     /// The highest exponent of each variable, where it is above that in `highest`.
@@ -78,12 +88,12 @@ impl ShiftedPolynomial {
         }
     }
 
-    /// About the point z.
+    /// About the point z; with slopes for offsets of about `radius`.
     ///
     /// # Guarantee
     ///
     /// Each coefficient encloses the exact one.
-    pub fn shift(&self, z: &[f64], work: &mut Shift) {
+    pub fn shift(&self, z: &[f64], radius: &[f64], work: &mut Shift) {
         work.coefficients.copy_from_slice(&self.start);
         let c = &mut work.coefficients;
         for op in &self.operations {
@@ -93,6 +103,9 @@ impl ShiftedPolynomial {
                 c[op.to as usize] += higher * z;
             }
         }
+        for (slope, powers) in work.slopes.iter_mut().zip(&self.univariate) {
+            *slope = powers.slope(c, radius[powers.variable]);
+        }
     }
 
     /// The value at the present point.
@@ -100,12 +113,14 @@ impl ShiftedPolynomial {
         work.coefficients[0]
     }
 
-    /// The derivatives at the present point: variable and coefficient.
+    /// The derivatives at the present point and the slopes: variables and what is to be added up for each.
     pub fn gradient<'a>(&'a self, work: &'a Shift) -> impl Iterator<Item = (usize, Interval)> + 'a {
-        self.linear.iter().map(|&(variable, at)| (variable, work.coefficients[at]))
+        let derivatives = self.linear.iter().map(|&(variable, at)| (variable, work.coefficients[at]));
+        let slopes = self.univariate.iter().zip(&work.slopes);
+        derivatives.chain(slopes.map(|(powers, slope)| (powers.variable, Interval::point(*slope))))
     }
 
-    /// The sum of all terms of degree 2 and above over a box, given by the powers of its sides.
+    /// The sum of all terms of degree 2 and above, less the slopes, over a box, given by the powers of its sides.
     ///
     /// # Guarantee
     ///
@@ -120,7 +135,12 @@ impl ShiftedPolynomial {
         for (at, node) in (self.first_node..).zip(&self.nodes) {
             let power = powers.get(node.variable as usize, node.exponent);
             values[at] = if node.parent == 0 { power } else { values[node.parent as usize] * power };
-            sum += coefficients[at] * values[at];
+            if !node.is_power {
+                sum += coefficients[at] * values[at];
+            }
+        }
+        for (univariate, slope) in self.univariate.iter().zip(&work.slopes) {
+            sum += univariate.range(coefficients, *slope, powers.get(univariate.variable, 1));
         }
         sum
     }
@@ -216,22 +236,17 @@ mod tests {
             let space = TaylorSpace::new(3, 12).unwrap();
             let shifted = ShiftedPolynomial::new(3, &terms);
             let mut work = shifted.workspace();
-            shifted.shift(&z, &mut work);
+            shifted.shift(&z, &[0.5; 3], &mut work);
             let exact = TaylorPolynomial::from_terms(&space, terms).shifted(&z.map(Interval::point));
             prop_assert!(exact.constant_term().intersection(shifted.constant(&work)).is_some());
-            for (variable, slope) in shifted.gradient(&work) {
-                let unit: Vec<u8> = (0..3).map(|i| u8::from(i == variable)).collect();
-                prop_assert!(exact.coefficient(&unit).intersection(slope).is_some());
-            }
             let mut highest = [0; 3];
             shifted.raise_exponents(&mut highest);
             let mut powers = PowerTable::new(&highest);
-            for i in 0..3 {
-                powers.set(i, Interval::point(d[i]));
-            }
-            let rest = exact.evaluate(&d.map(Interval::point)) - exact.truncated(1).evaluate(&d.map(Interval::point));
-            prop_assert!(rest.intersection(shifted.remainder(&powers, &mut work)).is_some());
-            prop_assert!(shifted.remainder(&powers, &mut work).width() < 1e-9);
+            d.iter().enumerate().for_each(|(i, d)| powers.set(i, Interval::point(*d)));
+            let linear = shifted.gradient(&work).fold(shifted.constant(&work), |sum, (i, slope)| sum + slope * d[i]);
+            let sum = linear + shifted.remainder(&powers, &mut work);
+            prop_assert!(exact.evaluate(&d.map(Interval::point)).intersection(sum).is_some());
+            prop_assert!(sum.width() < 1e-9);
         }
     }
 
@@ -242,7 +257,7 @@ mod tests {
         let mut powers = PowerTable::new(&[2]);
         powers.set(0, Interval::new(-1.0, 1.0).unwrap());
         let mut work = shifted.workspace();
-        shifted.shift(&[3.0], &mut work);
+        shifted.shift(&[3.0], &[1.0], &mut work);
         let range = shifted.remainder(&powers, &mut work);
         assert!(range.lo() == 0.0 && (1.0..1.0 + 1e-12).contains(&range.hi()));
     }

@@ -91,7 +91,7 @@ impl<'a> Stepper<'a> {
     /// since e^{As} b is within s (h - s)/2 sup |A² e^{Aσ} b| of its chord, whose two weights s/h and 1 - s/h have integrals of h/2.
     pub fn advance(&mut self, set: &mut Set, h: Interval, input: &[Interval]) -> Result<(), Exhausted> {
         let point = set.center.iter().zip(&self.last_move).map(|(c, moved)| c + 0.5 * moved);
-        self.linear.linearise(point, input);
+        self.linear.linearise(point, &set.radius, input);
         if !self.exponential.update(&self.linear.a, h) {
             return Err(self.exhausted(set));
         }

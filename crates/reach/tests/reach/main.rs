@@ -6,6 +6,7 @@ mod edges;
 mod exponential;
 mod gains;
 mod grid;
+mod lwa4p;
 mod polynomial;
 mod propagation;
 mod random;

@@ -1,0 +1,78 @@
+//! Reachable sets of polynomial systems: a six-joint arm over 5 s at 250 Hz, and problems of the ARCH competition, whose final widths are printed.
+
+#[path = "../tests/reach/arm.rs"]
+mod arm;
+#[path = "../tests/reach/lwa4p.rs"]
+mod lwa4p;
+#[path = "../tests/reach/systems.rs"]
+#[allow(dead_code)]
+mod systems;
+
+use divan::{Bencher, black_box};
+use reachtube_reach::{
+    Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput,
+};
+
+const SAMPLES: usize = 1251;
+
+fn main() {
+    print_widths();
+    divan::main();
+}
+
+/// 12 states, 6 inputs, the paper's sets, no measured input.
+#[divan::bench(args = [None, Some(60)])]
+fn lwa4p_model_1_of_order_3(bencher: Bencher, order: Option<usize>) {
+    let (system, grid) = (lwa4p::model1(), TimeGrid::uniform(0.004, SAMPLES));
+    let (initial, torque) = lwa4p::table2(1.0);
+    let held = vec![0.0; 6 * SAMPLES];
+    let input = UncertainInput { measured: &held, set: &torque };
+    let settings = FlowpipeSettings { order, ..FlowpipeSettings::default() };
+    bencher.bench(|| Flowpipe::new(black_box(&system), &grid, &[0.0; 12], &initial, &input, &settings));
+}
+
+/// A published problem: its name, system, initial set, step and number of samples, and pieces.
+type Problem = (String, PolynomialSystem, Hyperrectangle, (f64, usize), Vec<usize>);
+
+fn problems() -> Vec<Problem> {
+    let van_der_pol = |pieces: Vec<usize>| {
+        let start = Hyperrectangle { center: vec![1.4, 2.4], radius: vec![0.15, 0.05] };
+        (format!("Van der Pol {pieces:?}"), systems::van_der_pol(), start, (0.01, 701), pieces)
+    };
+    let laub_loomis = |w: f64, pieces: Vec<usize>| {
+        let start = Hyperrectangle { center: vec![1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], radius: vec![w; 7] };
+        (format!("Laub-Loomis {w} {pieces:?}"), systems::laub_loomis(), start, (0.02, 1001), pieces)
+    };
+    vec![
+        van_der_pol(vec![6, 3]),
+        van_der_pol(vec![16, 8]),
+        laub_loomis(0.01, vec![]),
+        laub_loomis(0.05, vec![]),
+        laub_loomis(0.1, vec![1, 1, 2, 2, 1, 1, 1]),
+        laub_loomis(0.1, vec![2, 2, 2, 2, 2, 1, 2]),
+    ]
+}
+
+fn solve((_, system, start, (step, samples), pieces): &Problem) -> Flowpipe {
+    let none = Hyperrectangle::zero(0);
+    let input = UncertainInput { measured: &[], set: &none };
+    let settings = FlowpipeSettings { pieces: pieces.clone(), ..FlowpipeSettings::default() };
+    let zero = vec![0.0; start.dimension()];
+    Flowpipe::new(system, &TimeGrid::uniform(*step, *samples), &zero, start, &input, &settings)
+        .expect("sizes fit")
+}
+
+fn print_widths() {
+    for problem in problems() {
+        let flowpipe = solve(&problem);
+        let end = flowpipe.sample(flowpipe.len() - 1);
+        let sides: Vec<String> = end.iter().map(|x| format!("[{:.4}, {:.4}]", x.lo(), x.hi())).collect();
+        println!("{}: {:?}, {}", problem.0, flowpipe.outcome(), sides.join(" x "));
+    }
+}
+
+#[divan::bench(args = 0..problems().len())]
+fn published(bencher: Bencher, which: usize) {
+    let problem = &problems()[which];
+    bencher.bench(|| solve(black_box(problem)));
+}
