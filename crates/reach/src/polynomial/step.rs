@@ -158,11 +158,9 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Finds the range of the remainder over the step; whether it was found.
+    /// Finds the range of the remainder over the step, from that of the step before; whether it was found.
     fn contain(&mut self, h: Interval) -> bool {
-        self.guess.fill(Interval::ZERO);
-        self.surround(h);
-        self.linear.remainder(&self.tube, &mut self.guess);
+        self.guess.copy_from_slice(&self.found);
         for _ in 0..TRIES {
             self.guess.iter_mut().for_each(|x| *x = enlarged(*x));
             self.surround(h);
