@@ -127,18 +127,19 @@ pub fn identify(
     let windows = validate::simulate(&found, tried, &model.windows);
     let moving = Samples::of(robot, &inertia.columns, &logs.dynamic, &sampling, &Known::Friction(&known));
     let consistency = suspect::Consistency::of(&moving, &inertia.joints);
-    let gains = consistency.gains(robot);
+    let gains = suspect::gains(robot, &moving, &consistency);
     let mut warnings = first.notes;
     warnings.extend(inertia.not_shown());
     warnings.extend(suspect::words(
         robot,
         &inertia,
         &coefficients,
-        &consistency,
+        (&consistency, &gains),
         &logs.dynamic,
         &moving,
         &sampling,
     ));
+    warnings.extend(kept_back.then(|| validate::poor(robot, &validation)).into_iter().flatten());
     progress(4, 4);
     let (gravity, friction) = (first.gravity, first.friction);
     Ok(Identification {

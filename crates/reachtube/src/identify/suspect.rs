@@ -17,7 +17,7 @@ const GAIN_OFF: f64 = 0.1;
 const SURE: f64 = 4.0;
 
 /// A joint whose torque is left unexplained by more than this part is looked at for a wrong sign.
-const POOR: f64 = 0.3;
+pub const POOR: f64 = 0.3;
 
 /// A turned sign must bring the sum of squares below this part.
 const BETTER: f64 = 0.5;
@@ -39,6 +39,33 @@ pub struct Gain {
     pub standard_error: f64,
 }
 
+/// Rounds in which gains that contradict each other are applied and the errors of the joints found again.
+const GAIN_ROUNDS: usize = 4;
+
+/// The gains of the joints' torques against each other, relative to the joint with the largest torque.
+///
+/// What a joint's errors are is only known once its gain is right, so that gains that are off are applied, and found again.
+pub fn gains(robot: &Robot, samples: &Samples, first: &Consistency) -> Vec<Gain> {
+    let mut found = first.gains(robot);
+    let mut scaled = samples.clone();
+    let mut latest = found.clone();
+    for _ in 0..GAIN_ROUNDS {
+        if latest.iter().all(|gain| (gain.gain - 1.0).abs() < GAIN_OFF) {
+            break;
+        }
+        let n = samples.joints;
+        scaled.torque.iter_mut().enumerate().for_each(|(r, tau)| *tau *= latest[r % n].gain);
+        scaled.recorded.iter_mut().enumerate().for_each(|(r, tau)| *tau *= latest[r % n].gain);
+        latest = Consistency::with_reference(&scaled, &Fit::of(&[&scaled], false).joints[0], first.reference)
+            .gains(robot);
+        for (found, latest) in found.iter_mut().zip(&latest) {
+            (found.gain, found.standard_error) =
+                (found.gain * latest.gain, latest.standard_error * found.gain);
+        }
+    }
+    found
+}
+
 /// How much the joints' torques contradict each other: a link's mass and inertia act on its own joint and on all before it.
 ///
 /// With the parameters eliminated the misfit of torques scaled by g is gᵀ S g.
@@ -53,6 +80,12 @@ pub struct Consistency {
 impl Consistency {
     /// Of samples that were fitted with such residuals.
     pub fn of(samples: &Samples, joints: &[JointFit]) -> Self {
+        let size = |j: &usize| joints[*j].torque;
+        let reference = (0..joints.len()).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
+        Self::with_reference(samples, joints, reference)
+    }
+
+    fn with_reference(samples: &Samples, joints: &[JointFit], reference: usize) -> Self {
         let (n, p) = (samples.joints, samples.columns.len());
         let used: Vec<usize> = (0..samples.len()).filter(|r| samples.used[*r]).collect();
         // With the root mean square, not the robust deviation: outliers must not pull a gain down.
@@ -65,8 +98,6 @@ impl Consistency {
             out[..p].iter_mut().zip(samples.row(r)).for_each(|(o, y)| *o = w * y);
             out[p + joint] = w * samples.torque[r];
         });
-        let size = |j: &usize| joints[*j].torque;
-        let reference = (0..n).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
         Self {
             misfit: eliminated(&whole, p),
             counts: joints.iter().map(|joint| joint.independent).collect(),
@@ -75,7 +106,7 @@ impl Consistency {
     }
 
     /// The most likely gains relative to the joint with the largest torque: a gain scales a joint's errors too, which its likelihood has as Σ N_j log g_j.
-    pub fn gains(&self, robot: &Robot) -> Vec<Gain> {
+    fn gains(&self, robot: &Robot) -> Vec<Gain> {
         let Some((gains, errors)) = most_likely(&self.misfit, &self.counts, self.reference) else {
             return Vec::new();
         };
@@ -147,7 +178,7 @@ pub fn words(
     robot: &Robot,
     fit: &InertiaFit,
     known: &[FrictionDescription],
-    consistency: &Consistency,
+    (consistency, gains): (&Consistency, &[Gain]),
     logs: &[Log],
     samples: &Samples,
     sampling: &Sampling,
@@ -175,7 +206,7 @@ pub fn words(
         }
     }
     // A turned sign makes nonsense of the gains.
-    for gain in consistency.gains(robot).iter().filter(|_| turned.is_none()) {
+    for gain in gains.iter().filter(|_| turned.is_none()) {
         let off = (gain.gain - 1.0).abs();
         if off > GAIN_OFF && off > SURE * gain.standard_error {
             words.push(format!(

@@ -148,6 +148,21 @@ fn trace(samples: &Samples, residuals: &[f64], log: &Log, rows: std::ops::Range<
     }
 }
 
+/// The joints of which more than 30 % of the torque on recordings kept back is not predicted, in words.
+pub fn poor(robot: &Robot, validation: &[LogValidation]) -> Vec<String> {
+    let joints = validation.last().map_or(&[][..], |all| &all.joints);
+    let words = |(joint, error): (&reachtube_robot::Joint, &JointError)| {
+        (error.relative > super::suspect::POOR).then(|| {
+            format!(
+                "{}: {:.0} % of the torque on recordings kept back is not explained; friction that no law describes looks like this, or a motion far from those fitted",
+                joint.name,
+                100.0 * error.relative
+            )
+        })
+    };
+    robot.joints().iter().zip(joints).filter_map(words).collect()
+}
+
 /// Simulates the robot under the recorded torque over windows of each length and compares the states at their ends.
 pub fn simulate(robot: &Robot, logs: &[Log], durations: &[f64]) -> Vec<WindowErrors> {
     durations.iter().map(|duration| simulate_windows(robot, logs, *duration)).collect()
