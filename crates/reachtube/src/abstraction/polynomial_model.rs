@@ -1,9 +1,9 @@
 //! The polynomial models ẋ = f_p(x, u).
 
 use nalgebra::{DMatrix, DVector};
-use reachtube_reach::LinearSystem;
+use reachtube_reach::{LinearSystem, PolynomialSystem};
 use reachtube_robot::{Robot, RobotDescription};
-use reachtube_scalar::{MapWorkspace, PolynomialMap, Powers, TaylorPolynomial};
+use reachtube_scalar::{Interval, MapWorkspace, PolynomialMap, Powers, TaylorPolynomial, TaylorSpace};
 use serde::{Deserialize, Serialize};
 
 use super::layout::Layout;
@@ -266,6 +266,35 @@ impl PolynomialModel {
             drift[n + i] -= offset;
         }
         Ok(LinearSystem::new(a, b, drift)?)
+    }
+
+    /// The model as a polynomial system of its states and inputs, whose reachable sets [`Flowpipe`](reachtube_reach::Flowpipe) encloses.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer: where polynomials in offsets are written in the states themselves, each coefficient encloses the exact one.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Space`] where states, inputs and order together do not fit.
+    pub fn polynomial_system(&self) -> Result<PolynomialSystem> {
+        let (n, states) = (self.layout.joints, self.states());
+        let space = TaylorSpace::new(states + n, self.degree().max(2))?;
+        let variable = |i| TaylorPolynomial::<Interval>::variable(&space, i);
+        // The variables are the states but q, then the inputs.
+        let places: Vec<usize> = (n..states + n).collect();
+        let offset: Vec<Interval> = self.origin.iter().map(|origin| Interval::point(-origin)).collect();
+        let mut components: Vec<_> = (0..n).map(|i| variable(n + i)).collect();
+        components.extend(
+            self.acceleration.iter().map(|f| {
+                f.map_coefficients(|c| Interval::point(*c)).shifted(&offset).embedded(&space, &places)
+            }),
+        );
+        if self.layout.trigonometric {
+            components.extend((0..n).map(|i| &variable(n + i) * &variable(3 * n + i)));
+            components.extend((0..n).map(|i| -(&variable(n + i) * &variable(2 * n + i))));
+        }
+        Ok(PolynomialSystem::new(states, n, &components)?)
     }
 
     fn not_linear(&self, joint: usize, names: &[String]) -> Error {
