@@ -60,6 +60,51 @@ fn a_pendulum_is_found_and_its_file_is_a_robot() {
     lab.run("robot show found.toml").exits(0);
 }
 
+/// The same pendulum as URDF, with a picture that identification has no business with.
+const URDF: &str = r#"<robot name="pendulum">
+  <link name="base"/>
+  <joint name="hinge" type="revolute">
+    <parent link="base"/>
+    <child link="arm"/>
+    <origin xyz="0 0 1"/>
+    <axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" velocity="5" effort="50"/>
+  </joint>
+  <link name="arm">
+    <inertial>
+      <origin xyz="0 0 -0.3"/>
+      <mass value="1"/>
+      <inertia ixx="0.02" iyy="0.02" izz="0.01" ixy="0" ixz="0" iyz="0"/>
+    </inertial>
+    <visual><geometry><mesh filename="arm.stl"/></geometry></visual>
+  </link>
+</robot>
+"#;
+
+#[test]
+fn a_urdf_gets_the_values_found_and_keeps_the_rest() {
+    let lab = lab();
+    lab.write("arm.urdf", URDF);
+    let job = "identify --robot arm.urdf --dynamic a.csv b.csv --cut-off 15";
+    lab.run(&format!("{job} --out found.toml --urdf new.urdf")).exits(0).notes("wrote new.urdf");
+    assert!(
+        lab.read("new.urdf").contains(r#"<visual><geometry><mesh filename="arm.stl"/></geometry></visual>"#)
+    );
+    let shown = |robot: &str| lab.run(&format!("robot show {robot} --at 0.5 --json")).exits(0).json();
+    let (new, found) = (shown("new.urdf"), shown("found.toml"));
+    for part in ["mass_matrix", "gravity_torque"] {
+        let value =
+            |of: &serde_json::Value| of[part].to_string().trim_matches(['[', ']']).parse::<f64>().unwrap();
+        assert!((value(&new) - value(&found)).abs() < 1e-9, "{part}: {new} {found}");
+    }
+    let gravity = new["gravity_torque"][0].as_f64().unwrap();
+    assert!((gravity - 2.0 * 9.81 * 0.4 * 0.5f64.sin()).abs() < 0.01, "{gravity}");
+    // The companion of new.urdf, with motor and friction, would take the place of the robot file.
+    lab.run(&format!("{job} --out new.toml --urdf new.urdf")).fails_with(&["--out new.toml", "another name"]);
+    lab.run("identify --robot pendulum.toml --dynamic a.csv --urdf new.urdf")
+        .fails_with(&["pendulum.toml is none"]);
+}
+
 #[test]
 fn settings_hold_all_of_it_and_mistakes_are_told() {
     let lab = lab();
