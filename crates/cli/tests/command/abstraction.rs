@@ -74,7 +74,9 @@ fn nothing_is_left_out_of_an_arm_that_is_linear() {
 #[test]
 fn what_cannot_be_made_is_refused() {
     let lab = Lab::new();
-    lab.write("bent.toml", crate::fixture::robot_toml().replace("[2.0, 0.0, 0.0]", "[2.0, 0.5, -0.1]"));
+    let (straight, bent) = ("viscous = [2, 0.0, 0.0]", "viscous = [2, 0.5, -0.1]");
+    assert!(crate::fixture::robot_toml().contains(straight));
+    lab.write("bent.toml", crate::fixture::robot_toml().replace(straight, bent));
     let refused = |arguments: &str, parts: &[&str]| {
         lab.run(arguments).fails_with(parts);
     };

@@ -34,7 +34,7 @@ fn defects_are_found_with_line_and_joint() {
         "armatur = 0.5",
         &["arm.toml: TOML parse error at line 15", "unknown field `armatur`"],
     );
-    refused("schema_version = 1\n", "", &["missing field `schema_version`", "README"]);
+    refused("schema_version = 1\n", "", &["missing field `schema_version`", "docs/robot.md"]);
     refused("axis2", "axis1", &["arm.toml:13: joint `axis1`: the name occurs twice"]);
 }
 
@@ -51,6 +51,6 @@ fn a_singular_model_is_refused() {
 fn a_robot_that_is_not_there() {
     let lab = Lab::new();
     lab.run("robot show nobody")
-        .fails_with(&["cannot read robot `nobody`", "TOML file or an embedded name (lwa4p)"]);
+        .fails_with(&["cannot read robot `nobody`", "TOML or URDF file or an embedded name (lwa4p)"]);
     lab.run("conform --robot data --data data --torque motor").fails_with(&["cannot read robot `data`"]);
 }
