@@ -37,7 +37,9 @@ pub fn huber_weight(residual: f64, deviation: f64) -> f64 {
 /// ```
 /// use reachtube::identify::regression::samples_per_independent_one;
 ///
-/// let slow: Vec<f64> = (0..8000).map(|k| ((k / 10 * 7919) % 1009) as f64 / 1009.0 - 0.5).collect();
+/// // Each of 800 numbers without order, ten times.
+/// let number = |i: u64| ((7 * i * i * i + 13 * i * i) % 1009) as f64 / 1009.0 - 0.5;
+/// let slow: Vec<f64> = (0..8000).map(|k| number(k / 10)).collect();
 /// assert!((samples_per_independent_one(&[&slow]) - 10.0).abs() < 1.5);
 /// ```
 pub fn samples_per_independent_one(series: &[&[f64]]) -> f64 {
