@@ -45,6 +45,9 @@ fn term(sign: f64, what: &str, first: bool) -> String {
     }
 }
 
+/// Digits of a length that is divided by or squared; with more, chance gives any number such a form.
+const LENGTH: i32 = 5;
+
 /// A positive coefficient as people write it.
 #[derive(Debug, PartialEq)]
 enum Factor {
@@ -61,10 +64,10 @@ impl Factor {
         let (inverse, root) = (1.0 / size, size.sqrt());
         let squared = |(cost, text): (i32, String)| (cost + 1, format!("{text}²"));
         let ways = [
-            shortest(size).map(|(cost, text)| (cost, Self::Times(text))),
-            shortest(inverse).map(|(cost, text)| (cost + 1, Self::Over(text))),
-            shortest(root).map(squared).map(|(cost, text)| (cost, Self::Times(text))),
-            shortest(1.0 / root).map(squared).map(|(cost, text)| (cost + 1, Self::Over(text))),
+            shortest(size, 7).map(|(cost, text)| (cost, Self::Times(text))),
+            shortest(inverse, LENGTH).map(|(cost, text)| (cost + 1, Self::Over(text))),
+            shortest(root, LENGTH).map(squared).map(|(cost, text)| (cost, Self::Times(text))),
+            shortest(1.0 / root, LENGTH).map(squared).map(|(cost, text)| (cost + 1, Self::Over(text))),
         ];
         let best = ways.into_iter().flatten().min_by_key(|(cost, _)| *cost);
         best.map_or_else(|| Self::Times(((size * 1e6).round() / 1e6).to_string()), |(_, factor)| factor)
@@ -79,9 +82,9 @@ impl Factor {
     }
 }
 
-/// The fewest digits, up to 7, that give a number, and the number in them.
-fn shortest(x: f64) -> Option<(i32, String)> {
-    (1..=7).find_map(|digits| {
+/// The fewest digits, up to `most`, that give a number, and the number in them.
+fn shortest(x: f64, most: i32) -> Option<(i32, String)> {
+    (1..=most).find_map(|digits| {
         let unit = 10f64.powi(digits - 1 - x.log10().floor() as i32);
         let rounded = (x * unit).round() / unit;
         ((rounded - x).abs() <= SNAP * x).then(|| (digits, rounded.to_string()))
@@ -102,6 +105,7 @@ mod tests {
             (0.3012 * 0.3012, "0.3012² x"),
             (2.0, "2 x"),
             (1.0 / 0.35, "x/0.35"),
+            (0.384 * 0.384 + 0.0825 * 0.0825, "0.154262 x"),
         ];
         cases.iter().for_each(|(x, w)| assert_eq!(words(*x), *w));
         assert_eq!(words(1.0 / (0.35 * 0.35)), "x/0.35²");
