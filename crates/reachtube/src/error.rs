@@ -57,6 +57,14 @@ pub enum Error {
         /// What is wrong and what to do.
         problem: String,
     },
+    /// The model's own motion, without any disturbance, leaves every bound.
+    #[error("{case}: the model runs away after {time:.3} s under the recorded input alone, so no sets can be found for it; use --until {time:.3}, another order or another model")]
+    RunsAway {
+        /// The suite or run.
+        case: String,
+        /// The last sample time it could be followed to, s.
+        time: f64,
+    },
     /// The solver of the linear program gave up.
     #[error("the linear program was not solved: {0}")]
     Program(String),

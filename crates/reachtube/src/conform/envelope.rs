@@ -1,3 +1,5 @@
+use super::Side;
+
 /// The highest and lowest value over many runs, for each sample and state, and which run has it. It streams, and two envelopes merge into the envelope of
 /// the whole; its size is that of one run.
 ///
@@ -104,6 +106,15 @@ impl Envelope {
             values.iter().enumerate().map(|(at, &v)| f(at / dimension, at % dimension, v)).collect()
         };
         Self { upper: shift(&self.upper, &upper), lower: shift(&self.lower, &lower), ..self.clone() }
+    }
+
+    /// Moves one bound outward.
+    pub(crate) fn widen(&mut self, k: usize, i: usize, side: Side, by: f64) {
+        let at = k * self.dimension + i;
+        match side {
+            Side::Upper => self.upper[at] += by,
+            Side::Lower => self.lower[at] -= by,
+        }
     }
 
     fn extend(&mut self, entries: usize) {

@@ -5,15 +5,12 @@ use reachtube_robot::Robot;
 use serde::{Deserialize, Serialize};
 
 use super::deviation::{Deviation, Grids, suite_deviations};
-use super::program::{Program, Solution};
+use super::program::{Block, Program, Solution, TIGHT};
 use super::recordings::{Progress, Recordings};
 use super::verify::{Row, check_rows};
 use super::{Settings, Trust, UncertaintySets, Weights};
 use crate::data::DataSet;
 use crate::error::Result;
-
-/// A row within this part of the radius of the reachable set is called tight.
-const TIGHT: f64 = 1e-6;
 
 /// Inflations tried after the first repair, each twice the one before.
 const REPAIRS: i32 = 60;
@@ -103,10 +100,11 @@ pub fn conform(
         .collect::<Result<Vec<_>>>()?;
     let all: Vec<Deviation> = deviations.iter().flatten().cloned().collect();
     let weights = weights(settings, &all, robot.joint_count());
-    let program = Program::new(settings, &weights, grids.as_slice(), &all);
+    let blocks = Block::of_grids(grids.as_slice(), &all, robot.joint_count());
+    let program = Program::new(settings, &weights, blocks);
     let solution = program.solve()?;
     let (sets, checked) = repair(&program, &solution.sets, &grids, settings, &deviations);
-    let (paper_cost, hull_volume) = program.paper_sums(grids.as_slice(), &sets);
+    let (paper_cost, hull_volume) = program.paper_sums(&sets);
     Ok(Conformance {
         cost: program.cost(&sets),
         lower_bound: solution.lower_bound,

@@ -6,7 +6,7 @@
 //! -  (E_k c)_i + (R_k r)_i + r_v,i >= max d_i(t_k)
 //! - -(E_k c)_i + (R_k r)_i + r_v,i >= max -d_i(t_k)
 //!
-//! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, corrections A, E and F of the method.
+//! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, at which blocks count by their mean, corrections A, E and F of the method.
 
 use reachtube_reach::Hyperrectangle;
 
@@ -18,6 +18,9 @@ use crate::error::{Error, Result};
 /// A row counts as violated beyond this part of its own size.
 const TOLERANCE: f64 = 1e-10;
 
+/// A row within this part of the radius of the reachable set is called tight.
+pub(super) const TIGHT: f64 = 1e-6;
+
 /// What is below this part of the largest deviation is rounding.
 const ROUNDING: f64 = 1e-14;
 
@@ -27,11 +30,29 @@ const WINDOWS: usize = 24;
 /// Rounds of row generation at most.
 const ROUNDS: usize = 200;
 
-/// The rows of one sample grid, ready to be evaluated at the speed of memory.
-struct Block {
+/// The rows of one sample grid of one linear system, ready to be evaluated at the speed of memory.
+#[derive(Debug, Clone)]
+pub struct Block {
+    /// Sample times, s.
+    pub times: Vec<f64>,
     /// Samples x states x (unknown centres, then radii): the entries of E_k, then of R_k.
-    coefficients: Vec<f64>,
-    envelope: Envelope,
+    pub coefficients: Vec<f64>,
+    /// What must be covered.
+    pub envelope: Envelope,
+}
+
+impl Block {
+    /// One for each grid, with the deviations on it merged.
+    pub fn of_grids(grids: &[Grid], deviations: &[Deviation], joints: usize) -> Vec<Self> {
+        let mut merged: Vec<Envelope> = grids.iter().map(|_| Envelope::new(2 * joints)).collect();
+        deviations.iter().for_each(|deviation| merged[deviation.grid].merge(&deviation.envelope));
+        let block = |(grid, envelope): (&Grid, Envelope)| Self {
+            times: grid.propagation.grid().times().to_vec(),
+            coefficients: coefficients(grid),
+            envelope,
+        };
+        grids.iter().zip(merged).map(block).collect()
+    }
 }
 
 /// The program.
@@ -39,6 +60,8 @@ pub struct Program<'a> {
     settings: &'a Settings,
     joints: usize,
     blocks: Vec<Block>,
+    /// For each block and sample, how much its widths count.
+    shares: Vec<Vec<f64>>,
     /// Cost of each radius (r_x, r_u).
     cost: Vec<f64>,
     /// Cost of each noise radius.
@@ -63,22 +86,15 @@ pub struct Solution {
 }
 
 /// A row's place: block, sample, state, side.
-type Place = (usize, usize, usize, Side);
+pub(super) type Place = (usize, usize, usize, Side);
 
 impl<'a> Program<'a> {
-    /// The program for the merged deviations on each grid; `weights` are s, 2n.
-    pub fn new(settings: &'a Settings, weights: &[f64], grids: &[Grid], deviations: &[Deviation]) -> Self {
+    /// The program of some blocks; `weights` are s, 2n.
+    pub fn new(settings: &'a Settings, weights: &[f64], blocks: Vec<Block>) -> Self {
         let joints = weights.len() / 2;
-        let mut merged: Vec<Envelope> = grids.iter().map(|_| Envelope::new(2 * joints)).collect();
-        deviations.iter().for_each(|deviation| merged[deviation.grid].merge(&deviation.envelope));
-        let blocks: Vec<Block> = grids
-            .iter()
-            .zip(merged)
-            .map(|(grid, envelope)| Block { coefficients: coefficients(grid), envelope })
-            .collect();
-        let counted = distinct_times(grids);
-        let (cost, noise_cost) = cost(&blocks, &counted, weights);
-        let mut program = Self { settings, joints, blocks, cost, noise_cost, scale: f64::MIN_POSITIVE };
+        let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
+        let (cost, noise_cost) = cost(&blocks, &shares, weights);
+        let mut program = Self { settings, joints, blocks, shares, cost, noise_cost, scale: f64::MIN_POSITIVE };
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
     }
@@ -257,22 +273,34 @@ impl<'a> Program<'a> {
         self.places(1).map(ratio).fold(1.0, f64::max)
     }
 
+    /// The rows that touch the hull of the sets' reach, to a part of [`TIGHT`] of its radius.
+    pub(super) fn tight(&self, sets: &UncertaintySets) -> Vec<Place> {
+        let unknowns = self.unknowns(sets);
+        let touches = |place: &Place| {
+            let (b, k, i, _) = *place;
+            let radius = dot(self.row(b, k, i).1, &unknowns.radius) + unknowns.free_noise[i];
+            self.excess(*place, &unknowns) >= -TIGHT * radius
+        };
+        self.places(1).filter(touches).collect()
+    }
+
     /// Largest |d| among the rows.
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
     /// The interval hull of the reachable set in the units of the paper: (Σ_k Σ_i (E_k (y1 - y2))_i of eq. (21), Σ_k Δt Π_i 2 (R_k r)_i of eq. (2)).
-    pub fn paper_sums(&self, grids: &[Grid], sets: &UncertaintySets) -> (f64, f64) {
+    pub fn paper_sums(&self, sets: &UncertaintySets) -> (f64, f64) {
         let unknowns = self.unknowns(sets);
         let (mut signed, mut volume) = (0.0, 0.0);
-        for (b, counted) in distinct_times(grids).iter().enumerate() {
-            let times = grids[b].propagation.grid().times();
-            for (k, _) in counted.iter().enumerate().filter(|(_, counted)| **counted) {
+        for (b, shares) in self.shares.iter().enumerate() {
+            let times = &self.blocks[b].times;
+            for (k, share) in shares.iter().enumerate() {
                 let rows = (0..2 * self.joints).map(|i| self.row(b, k, i));
-                signed += rows.clone().map(|(center, _)| 2.0 * dot(center, &unknowns.radius)).sum::<f64>();
+                let edges = rows.clone().map(|(center, _)| 2.0 * dot(center, &unknowns.radius));
+                signed += share * edges.sum::<f64>();
                 let product: f64 = rows.map(|(_, radius)| 2.0 * dot(radius, &unknowns.radius)).product();
-                volume += product * (times.get(k + 1).unwrap_or(&times[k]) - times[k]);
+                volume += share * product * (times.get(k + 1).unwrap_or(&times[k]) - times[k]);
             }
         }
         (signed, volume)
@@ -376,25 +404,24 @@ fn coefficients(grid: &Grid) -> Vec<f64> {
     all
 }
 
-/// For each grid and sample: whether its time counts in the cost, each distinct time counting once.
-fn distinct_times(grids: &[Grid]) -> Vec<Vec<bool>> {
-    let mut seen = std::collections::HashSet::new();
+/// For each of several lists of sample times, what each sample counts: those at one time together 1.
+pub(super) fn shares<'t>(lists: impl Iterator<Item = &'t [f64]> + Clone) -> Vec<Vec<f64>> {
     let nanoseconds = |t: &f64| (t * 1e9).round() as i64;
-    grids
-        .iter()
-        .map(|grid| grid.propagation.grid().times().iter().map(|t| seen.insert(nanoseconds(t))).collect())
-        .collect()
+    let mut counts = std::collections::HashMap::new();
+    lists.clone().flatten().for_each(|t| *counts.entry(nanoseconds(t)).or_insert(0.0) += 1.0);
+    lists.map(|times| times.iter().map(|t| 1.0 / counts[&nanoseconds(t)]).collect()).collect()
 }
 
-fn cost(blocks: &[Block], counted: &[Vec<bool>], weights: &[f64]) -> (Vec<f64>, Vec<f64>) {
+fn cost(blocks: &[Block], shares: &[Vec<f64>], weights: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let (states, unknowns) = (weights.len(), weights.len() / 2 * 3);
     let (mut cost, mut noise) = (vec![0.0; unknowns], vec![0.0; states]);
-    for (block, counted) in blocks.iter().zip(counted) {
+    for (block, shares) in blocks.iter().zip(shares) {
         let samples = block.coefficients.chunks_exact(states * 2 * unknowns);
-        for (rows, _) in samples.zip(counted).filter(|(_, counted)| **counted) {
+        for (rows, share) in samples.zip(shares) {
             for (i, row) in rows.chunks_exact(2 * unknowns).enumerate() {
-                row[unknowns..].iter().zip(&mut cost).for_each(|(a, w)| *w += 2.0 * weights[i] * a);
-                noise[i] += 2.0 * weights[i];
+                let weight = 2.0 * share * weights[i];
+                row[unknowns..].iter().zip(&mut cost).for_each(|(a, w)| *w += weight * a);
+                noise[i] += weight;
             }
         }
     }

@@ -1,0 +1,226 @@
+//! Uncertainty sets of a model that is not linear, by successive linearisation (correction K of the method).
+//!
+//! Each round linearises the model along every nominal, about the centres found so far, and solves one linear program over all cases. What the model itself does beyond its linearisation is
+//! found by simulating the extremal motions, and moves the rows of the next round. When the sets have settled, the reachable sets are enclosed; a row that they leave out is asked for with a margin, and so on
+//! until every recording is enclosed.
+
+use rayon::prelude::*;
+use reachtube_reach::{Flowpipe, Hyperrectangle, PolynomialSystem};
+use serde::{Deserialize, Serialize};
+
+use super::case::Case;
+use super::extremal::Correction;
+use super::outer::{check_outer, flowpipes};
+use super::sensitivity::Sensitivity;
+use crate::abstraction::PolynomialModel;
+use crate::conform::program::{Block, Place, Program, Solution};
+use crate::conform::{Settings, Side, UncertaintySets};
+use crate::error::{Error, Result};
+
+/// Rounds of linearisation at most.
+const ROUNDS: usize = 20;
+
+/// The sets have settled when no radius or centre changes by more than this part of the largest.
+const SETTLED: f64 = 1e-6;
+
+/// Rows that are not enclosed are asked for with this much more than what is missing.
+const MARGIN: f64 = 1.1;
+
+/// What is searched for, and over what.
+#[derive(Debug)]
+pub(super) struct Search<'a> {
+    pub model: &'a PolynomialModel,
+    pub system: &'a PolynomialSystem,
+    pub cases: &'a [Case],
+    pub settings: &'a Settings,
+    /// s, 2n.
+    pub weights: Vec<f64>,
+}
+
+/// How far the search has come: all that the next round depends on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Progress {
+    /// Rounds done.
+    pub rounds: usize,
+    /// The sets after them.
+    pub sets: UncertaintySets,
+    /// By how much more than the recordings ask for the rows that were not enclosed must be reached.
+    pub margins: Vec<Margin>,
+}
+
+/// A row that must be reached with a margin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Margin {
+    case: usize,
+    sample: usize,
+    state: usize,
+    side: Side,
+    /// rad or rad/s.
+    margin: f64,
+}
+
+/// What a search came to.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub progress: Progress,
+    pub round: Round,
+    pub flowpipes: Vec<Flowpipe>,
+}
+
+/// One linearisation, and what its program gave.
+#[derive(Debug)]
+pub(super) struct Round {
+    pub solution: Solution,
+    /// Σ s 2 R_k r of the linearised sets.
+    pub cost: f64,
+    /// The rows that touch them; a block is a case.
+    pub tight: Vec<Place>,
+    /// Where an extremal motion under the sets of the round before ran away: case and time, s.
+    pub runs_away: Option<(usize, f64)>,
+}
+
+impl Progress {
+    /// Before the first round: no uncertainty.
+    pub fn start(joints: usize) -> Self {
+        let (initial_set, input_set) = (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
+        let sets = UncertaintySets { initial_set, input_set, noise_set: None };
+        Self { rounds: 0, sets, margins: Vec::new() }
+    }
+
+    /// Margins of one row add up.
+    fn add(&mut self, missing: Vec<Margin>) {
+        for new in missing {
+            match self.margins.iter_mut().find(|known| known.row() == new.row()) {
+                Some(known) => known.margin += new.margin,
+                None => self.margins.push(new),
+            }
+        }
+    }
+}
+
+impl Margin {
+    fn row(&self) -> (usize, usize, usize, Side) {
+        (self.case, self.sample, self.state, self.side)
+    }
+}
+
+impl Search<'_> {
+    /// Runs rounds until every row is enclosed, or no more can be done; `finished` is given the progress after each, and what it came to in words.
+    ///
+    /// # Errors
+    ///
+    /// Where the model cannot be followed along a case, a program is not solved, or `finished` fails.
+    pub fn run(
+        &self,
+        mut progress: Progress,
+        finished: &mut dyn FnMut(&Progress, &str) -> Result<()>,
+    ) -> Result<Found> {
+        loop {
+            let round = self.round(&progress)?;
+            let change = change(&progress.sets, &round.solution.sets);
+            progress.sets = round.solution.sets.clone();
+            progress.rounds += 1;
+            let words = format!(
+                "round {}: the linearised sets cost {:.4}, radii and centres changed by {change:.1e}",
+                progress.rounds, round.cost
+            );
+            finished(&progress, &words)?;
+            let is_last = progress.rounds >= ROUNDS;
+            if change > SETTLED && !is_last {
+                continue;
+            }
+            let flowpipes = flowpipes(self.system, self.cases, &progress.sets)?;
+            let missing = self.missing(&flowpipes, &progress.sets);
+            let is_lost = missing.iter().any(|margin| margin.margin.is_infinite());
+            if missing.is_empty() || is_last || is_lost {
+                return Ok(Found { progress, round, flowpipes });
+            }
+            let rows = missing.len();
+            progress.add(missing);
+            finished(&progress, &format!("{rows} rows are not enclosed and are asked for with a margin"))?;
+        }
+    }
+
+    fn round(&self, progress: &Progress) -> Result<Round> {
+        let sets = &progress.sets;
+        let sensitivities = self.sensitivities(sets)?;
+        let corrections = self.corrections(progress, &sensitivities);
+        let ran_away = corrections.iter().enumerate();
+        let runs_away = ran_away.filter_map(|(case, c)| c.runs_away.map(|time| (case, time))).next();
+        let parts = self.cases.iter().zip(sensitivities).zip(&corrections);
+        let mut blocks: Vec<Block> =
+            parts.map(|((case, sensitivity), correction)| block(case, sensitivity, correction, sets)).collect();
+        for margin in &progress.margins {
+            let envelope = &mut blocks[margin.case].envelope;
+            envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
+        }
+        let program = Program::new(self.settings, &self.weights, blocks);
+        let solution = program.solve()?;
+        let (cost, tight) = (program.cost(&solution.sets), program.tight(&solution.sets));
+        Ok(Round { solution, cost, tight, runs_away })
+    }
+
+    fn sensitivities(&self, sets: &UncertaintySets) -> Result<Vec<Sensitivity>> {
+        let of = |case: &Case| {
+            Sensitivity::new(self.model, case, sets, self.settings.disturbance)
+                .map_err(|time| Error::RunsAway { case: case.name.clone(), time })
+        };
+        self.cases.par_iter().map(of).collect()
+    }
+
+    /// None in the first round, which has no sets yet.
+    fn corrections(&self, progress: &Progress, sensitivities: &[Sensitivity]) -> Vec<Correction> {
+        let of = |(case, sensitivity): (&Case, &Sensitivity)| match progress.rounds {
+            0 => Correction::none(case.grid.len(), 2 * case.joints()),
+            _ => Correction::new(self.model, case, &progress.sets, sensitivity),
+        };
+        self.cases.par_iter().zip(sensitivities).map(of).collect()
+    }
+
+    /// The rows that the reachable sets leave out, with what they miss and a little more.
+    fn missing(&self, flowpipes: &[Flowpipe], sets: &UncertaintySets) -> Vec<Margin> {
+        let mut missing = Vec::new();
+        for (index, (case, flowpipe)) in self.cases.iter().zip(flowpipes).enumerate() {
+            check_outer(case, flowpipe, sets, self.settings.states, |row| {
+                if row.excess > 0.0 {
+                    let (sample, state, side) = (row.sample, row.state, row.side);
+                    missing.push(Margin { case: index, sample, state, side, margin: MARGIN * row.excess });
+                }
+            });
+        }
+        missing
+    }
+}
+
+/// The rows of one case. With x̂ the motion from the centres c of the sets of the round before, the new ones must satisfy
+/// x̂ + E (c' - c) + R r' + further >= x_m, and the like below.
+fn block(case: &Case, sensitivity: Sensitivity, correction: &Correction, sets: &UncertaintySets) -> Block {
+    let (n, states) = (case.joints(), 2 * case.joints());
+    let center: Vec<f64> = sets.initial_set.center.iter().chain(&sets.input_set.center).copied().collect();
+    let from_nominal = |k: usize, i: usize, x: f64| {
+        let (row, _) = sensitivity.row(n, k, i);
+        let moved: f64 = row.iter().zip(&center).map(|(e, c)| e * c).sum();
+        x - sensitivity.nominal[k * states + i] + moved
+    };
+    let envelope = case.measured.map(
+        |k, i, upper| from_nominal(k, i, upper) - correction.at(k, i, Side::Upper),
+        |k, i, lower| from_nominal(k, i, lower) + correction.at(k, i, Side::Lower),
+    );
+    Block { times: case.grid.times().to_vec(), coefficients: sensitivity.coefficients, envelope }
+}
+
+/// The largest change of a centre or radius, in parts of the largest of its kind: positions, velocities, inputs.
+fn change(old: &UncertaintySets, new: &UncertaintySets) -> f64 {
+    let n = new.input_set.dimension();
+    let group = |old: &Hyperrectangle, new: &Hyperrectangle, range: std::ops::Range<usize>| {
+        let all = |set: &Hyperrectangle| [&set.center[range.clone()], &set.radius[range.clone()]].concat();
+        let (old, new) = (all(old), all(new));
+        let largest = new.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
+        let change = old.iter().zip(&new).fold(0.0, |max: f64, (x, y)| max.max((x - y).abs()));
+        if change == 0.0 { 0.0 } else { change / largest }
+    };
+    let (x, u) = ((&old.initial_set, &new.initial_set), (&old.input_set, &new.input_set));
+    [group(x.0, x.1, 0..n), group(x.0, x.1, n..2 * n), group(u.0, u.1, 0..n)].into_iter().fold(0.0, f64::max)
+}
