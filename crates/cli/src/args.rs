@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use reachtube::abstraction::ModelKind;
-use reachtube::conform::{Centre, NominalStart, States};
+use reachtube::conform::{Centre, Method, NominalStart, States};
 use reachtube::data::{GapLimit, Torque};
 use reachtube_reach::Disturbance;
 use serde::de::DeserializeOwned;
@@ -63,7 +63,7 @@ pub enum Command {
         after_help = "Example:\n  reachtube prepare --robot arm.toml --logs repeated --repeats --window 1 --cut-off 6 --out windows"
     )]
     Prepare(PrepareArgs),
-    /// Find the smallest sets for which a linear model encloses every recording, and prove it
+    /// Find the smallest sets for which a model encloses every recording, and prove it
     #[command(after_help = CONFORM_HELP)]
     Conform(ConformArgs),
     /// Check other recordings against a model
@@ -93,7 +93,7 @@ Examples:
   reachtube abstract --robot lwa4p --model 3 --order 3 --box 0.2,0.3,2    with a proved bound of what is left out
 
 Model 1: M(q_a)^-1 (u - tau_v(qd)); model 2: also Coriolis terms, polynomial in sin q and cos q; model 3: the Taylor polynomial of the whole forward dynamics.
-`conform --abstraction FILE` finds the uncertainty sets of a linear one.";
+`conform --abstraction FILE` finds the uncertainty sets.";
 
 const CONFORM_HELP: &str = "\
 Examples:
@@ -101,6 +101,7 @@ Examples:
   reachtube conform --robot arm.toml --data recordings --torque motor --disturbance measurable --report report
   reachtube conform --robot lwa4p --data recordings --torque compensated --centre origin --disturbance constant
                                                               the settings of Liu and Althoff (2018)
+  reachtube conform --robot lwa4p --model 2 --order 5 --data recordings --torque compensated --resume search.json
 Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
 
 const IDENTIFY_HELP: &str = "\
@@ -335,12 +336,24 @@ pub struct DataArgs {
 
 #[derive(Debug, Args)]
 pub struct ConformArgs {
-    /// An embedded robot (lwa4p), or a TOML or URDF file, to take model 1 of order 1 of
+    /// An embedded robot (lwa4p), or a TOML or URDF file
     #[arg(long, required_unless_present = "abstraction")]
     pub robot: Option<String>,
-    /// A linear model that `abstract --out` wrote
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["robot", "expansion"])]
+    /// Which of the paper's models of the robot
+    #[arg(long, default_value = "1", value_parser = word_of_number::<ModelKind>(&["1", "2", "3"]))]
+    pub model: ModelKind,
+    /// Order p of the model
+    #[arg(long, default_value_t = 1, value_name = "P")]
+    pub order: u32,
+    /// A model that `abstract --out` wrote, in place of a robot
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["robot", "expansion", "model", "order"])]
     pub abstraction: Option<PathBuf>,
+    /// How the sets are found: by linear programs, for a model that is not linear one after the other; or by bisection of one radius after the other, the paper's way, as a baseline
+    #[arg(long, default_value = "program", value_parser = word_of::<Method>(&["program", "bisection"]))]
+    pub method: Method,
+    /// Keep what is finished of a long search in this file, and go on from it where it is there
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArgs,
     /// How the disturbance may change in time

@@ -1,13 +1,15 @@
 //! A progress bar on a terminal, for jobs of over a second.
 
 use std::io::IsTerminal;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::output;
 
 /// A job that takes less shows no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -20,6 +22,8 @@ struct Count {
     doing: &'static str,
     done: AtomicUsize,
     total: AtomicUsize,
+    /// Lines that wait to be written above the bar.
+    told: Mutex<Vec<String>>,
 }
 
 /// Progress of one job; nothing is shown unless standard error is a terminal. The bar has a thread of its own, so that it moves on while recordings
@@ -36,7 +40,8 @@ impl Progress {
     }
 
     pub fn of(doing: &'static str) -> Self {
-        let count = Arc::new(Count { doing, done: AtomicUsize::new(0), total: AtomicUsize::new(0) });
+        let (done, total, told) = Default::default();
+        let count = Arc::new(Count { doing, done, total, told });
         let watcher = std::io::stderr().is_terminal().then(|| {
             let (stop, stopped) = channel();
             let watched = Arc::clone(&count);
@@ -49,6 +54,20 @@ impl Progress {
         self.count.total.store(total, Relaxed);
         self.count.done.fetch_max(done, Relaxed);
     }
+
+    /// What was finished, a line on standard error, above the bar where there is one.
+    pub fn tell(&self, words: &str) {
+        match &self.watcher {
+            Some(_) => self.count.told().push(words.into()),
+            None => output::note(words),
+        }
+    }
+}
+
+impl Count {
+    fn told(&self) -> MutexGuard<'_, Vec<String>> {
+        self.told.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 impl Drop for Progress {
@@ -57,6 +76,7 @@ impl Drop for Progress {
             drop(stop);
             let _ = thread.join();
         }
+        self.count.told().drain(..).for_each(|words| output::note(&words));
     }
 }
 
@@ -75,6 +95,7 @@ fn watch(count: &Count, stopped: &Receiver<()>) {
         } else {
             bar.set_style(style("{spinner} computing, {elapsed}"));
         }
+        count.told().drain(..).for_each(|words| bar.println(format!("note: {words}")));
         bar.tick();
         if stopped.recv_timeout(REFRESH) != Err(RecvTimeoutError::Timeout) {
             return bar.finish_and_clear();

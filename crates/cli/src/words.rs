@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use reachtube::Model;
 use reachtube::abstraction::{ModelKind, PolynomialModel};
-use reachtube::conform::{Check, Place, Trust};
+use reachtube::conform::{Check, Enclosure, Lost, Place, Trust};
 use reachtube::data::{Group, Inspection};
 use reachtube::model::MOST_TIGHT;
 use reachtube::reproduce::{Cell, Paper, Speed, Table1};
@@ -146,25 +146,20 @@ pub fn model(model: &Model) -> String {
     let mut text = String::new();
     let verdict = if model.verified { "conformant" } else { "NOT PROVED conformant" };
     let (suites, proof) = (model.data.suites.len(), &model.proof);
+    let how = match proof.enclosure {
+        Enclosure::Inner => "proved with directed rounding",
+        Enclosure::Outer => "in the computed reachable set, an outer enclosure with directed rounding",
+    };
     let _ = writeln!(
         text,
-        "{verdict}: {runs} {} in {suites} {}; {} of {} bounds (suite, sample, state, side) proved with directed rounding, \
-         at samples",
+        "{verdict}: {runs} {} in {suites} {}; {} of {} bounds (suite, sample, state, side) {how}, at samples",
         plural(runs, "recording"),
         plural(suites, "suite"),
         proof.proved,
         proof.rows
     );
-    let gap = (model.cost - model.cost_lower_bound).max(0.0);
-    let gap = match gap / model.cost {
-        part if part > 0.0 => format!("at most {part:.0e} above the least"),
-        _ => "the least there is to the solver's accuracy".into(),
-    };
-    let _ = writeln!(
-        text,
-        "cost {} (weighted widths of the reachable set, summed over states and samples), {gap}\n",
-        number(model.cost)
-    );
+    proof.lost.iter().for_each(|lost| text.push_str(&format!("{}\n", self::lost(lost))));
+    let _ = writeln!(text, "{}\n", cost(model));
     text.push_str(&sets(model));
     let _ = writeln!(
         text,
@@ -178,6 +173,41 @@ pub fn model(model: &Model) -> String {
     text.push_str(&places(&model.tight, 6));
     let _ = writeln!(text, "\n{}", trust(&model.trust, "touch the set"));
     text
+}
+
+/// What the sets cost, and how near that is to the least.
+fn cost(model: &Model) -> String {
+    let Some(cost) = model.cost else { return "no cost: a reachable set was lost".into() };
+    let widths = "weighted widths of the reachable set, summed over states and samples";
+    match (model.cost_lower_bound, &model.search) {
+        (Some(bound), _) => {
+            let gap = match (cost - bound).max(0.0) / cost {
+                part if part > 0.0 => format!("at most {part:.0e} above the least"),
+                _ => "the least there is to the solver's accuracy".into(),
+            };
+            format!("cost {} ({widths}), {gap}", number(cost))
+        }
+        (None, Some(search)) => {
+            let linearised =
+                search.linearised_cost.map(|cost| format!(", {} of the linearised set", number(cost)));
+            format!(
+                "cost {} ({widths}){}; {} rounds, {} times the reachable sets of all suites",
+                number(cost),
+                linearised.unwrap_or_default(),
+                search.rounds,
+                search.reachable_sets
+            )
+        }
+        (None, None) => format!("cost {} ({widths})", number(cost)),
+    }
+}
+
+/// Where a reachable set ended.
+pub fn lost(lost: &Lost) -> String {
+    format!(
+        "{}: the reachable set could not be followed beyond {:.3} s, where {} grew fastest; what is recorded later is not enclosed",
+        lost.case, lost.time, lost.state
+    )
 }
 
 /// The sets, joint by joint, as in Table II of the paper.
@@ -255,6 +285,7 @@ pub fn check(check: &Check) -> String {
     };
     let rows: Vec<_> = check.suites.iter().map(row).collect();
     text.push_str(&table(&["suite", "runs", "values", "outside", "furthest"], &rows));
+    check.lost.iter().for_each(|lost| text.push_str(&format!("{}\n", self::lost(lost))));
     match &check.trust {
         Some(held_out) => {
             let _ = writeln!(text, "\n{}", trust(held_out, "leave the set"));

@@ -49,6 +49,16 @@ impl Tube {
         Self { dimension: n, bounds }
     }
 
+    /// The tube of these boxes, row-major, steps x N: as good an enclosure as they are.
+    ///
+    /// # Panics
+    ///
+    /// Where they are not whole rows.
+    pub fn from_boxes(dimension: usize, bounds: Vec<Interval>) -> Self {
+        assert_eq!(bounds.len() % dimension.max(1), 0, "rows of {dimension} intervals");
+        Self { dimension, bounds }
+    }
+
     /// Number of steps.
     pub fn len(&self) -> usize {
         self.bounds.len() / self.dimension.max(1)

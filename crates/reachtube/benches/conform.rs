@@ -4,7 +4,7 @@ use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use reachtube::abstraction::{ExpansionPoint, linear_model};
-use reachtube::conform::{Block, Deviation, Envelope, Grid, Program, Settings, conform};
+use reachtube::conform::{Block, Deviation, Envelope, Grid, Program, Settings, Watch, conform};
 use reachtube::data::{DataSet, Torque};
 use reachtube_reach::{Disturbance, Propagation, TimeGrid};
 use reachtube_robot::Robot;
@@ -104,7 +104,8 @@ fn program_of_152_suites(bencher: Bencher, disturbance: Disturbance) {
     let deviations = [Deviation { grid: 0, envelope }];
     let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
     bencher.bench(|| {
-        let program = Program::new(&settings, &[1.0; STATES], Block::of_grids(&grids, &deviations, STATES / 2));
+        let program =
+            Program::new(&settings, &[1.0; STATES], Block::of_grids(&grids, &deviations, STATES / 2));
         program.solve().unwrap()
     });
 }
@@ -123,5 +124,5 @@ fn conform_schunk(bencher: Bencher) {
         return;
     };
     let (robot, settings) = (Robot::lwa4p(), Settings::new(Torque::Compensated, 6));
-    bencher.bench(|| conform(&robot, &data, &[], &settings, &|_, _| {}).unwrap());
+    bencher.bench(|| conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap());
 }

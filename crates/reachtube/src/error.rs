@@ -58,7 +58,9 @@ pub enum Error {
         problem: String,
     },
     /// The model's own motion, without any disturbance, leaves every bound.
-    #[error("{case}: the model runs away after {time:.3} s under the recorded input alone, so no sets can be found for it; use --until {time:.3}, another order or another model")]
+    #[error(
+        "{case}: the model runs away after {time:.3} s under the recorded input alone, so no sets can be found for it; use --until {time:.3}, another order or another model"
+    )]
     RunsAway {
         /// The suite or run.
         case: String,

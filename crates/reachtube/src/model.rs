@@ -9,7 +9,10 @@ use reachtube_robot::{Robot, RobotDescription};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::conform::{Conformance, Place, Proof, Recordings, Settings, TightRow, Trust, UncertaintySets};
+use crate::abstraction::{PolynomialModel, Records, TermRecord};
+use crate::conform::{
+    Conformance, Dynamics, Place, Proof, Recordings, Search, Settings, TightRow, Trust, UncertaintySets,
+};
 use crate::data::DataSet;
 use crate::error::{Error, Result};
 use crate::json;
@@ -28,7 +31,7 @@ const MODEL_REMEDY: &str = "give a file that `conform --out` wrote";
 /// Tight rows kept in a file at most: as many as a degenerate program may have would make it unreadable.
 pub const MOST_TIGHT: usize = 500;
 
-/// A linear model with the uncertainty sets for which it is reachset conformant with the recordings named in it. SI units; states are ordered
+/// A model with the uncertainty sets for which it is reachset conformant with the recordings named in it. SI units; states are ordered
 /// q then q̇.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,14 +44,22 @@ pub struct Model {
     pub tool: String,
     /// Whether the sets were proved to enclose the recordings.
     pub verified: bool,
-    /// The cost of the sets: Σ_k Σ_i s_i 2 (R_k r)_i over all states and distinct sample times.
-    pub cost: f64,
-    /// The solver's dual objective: sets that satisfy the program cost no less, up to its tolerance.
-    pub cost_lower_bound: f64,
-    /// The paper's sum (21), with E where |E| is meant, for comparison.
-    pub cost_paper: f64,
-    /// Σ_k Δt Π_i of the hull's edges, eq. (2).
-    pub hull_volume: f64,
+    /// The cost of the sets: Σ_k Σ_i s_i times the width of the reachable set and the noise, over all states and distinct sample times; the mean where suites have different sets. None where a
+    /// reachable set was lost.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost: Option<f64>,
+    /// The solver's dual objective for a linear model: sets that satisfy the program cost no less, up to its tolerance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost_lower_bound: Option<f64>,
+    /// The paper's sum (21) for a linear model, with E where |E| is meant, for comparison.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost_paper: Option<f64>,
+    /// Σ_k Δt Π_i of the hull's edges, eq. (2). None where a reachable set was lost.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hull_volume: Option<f64>,
+    /// How the sets of a model that is not linear were found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub search: Option<Search>,
     /// X0 around the nominal initial state, 2n, rad and rad/s.
     pub initial_set: Hyperrectangle,
     /// U around the nominal input, n, N m.
@@ -64,12 +75,24 @@ pub struct Model {
     pub tight: Vec<Place>,
     /// How it was done.
     pub settings: Settings,
-    /// A, 2n x 2n, a row a line.
+    /// A, 2n x 2n, of a linear model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub a: Vec<Vec<f64>>,
     /// B, 2n x n.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub b: Vec<Vec<f64>>,
     /// d of ẋ = A x + B u + d, 2n; zero about q̇ = 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drift: Vec<f64>,
+    /// Names of the variables of the polynomials of a model that is not linear, as in the file of an abstraction.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<String>,
+    /// What the polynomials' variables are offsets from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub origin: Vec<f64>,
+    /// For each joint, the terms of its acceleration, rad/s².
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub acceleration: Vec<Vec<TermRecord>>,
     /// The recordings.
     pub data: DataRecord,
     /// The robot.
@@ -117,15 +140,23 @@ impl Model {
     /// The model that a conformance found.
     pub fn new(robot: &Robot, data: &DataSet, settings: &Settings, found: &Conformance) -> Self {
         let UncertaintySets { initial_set, input_set, noise_set } = found.sets.clone();
+        let finite = |value: f64| value.is_finite().then_some(value);
+        let (mut linear, mut polynomial) = (None, Records::default());
+        match &found.dynamics {
+            Dynamics::Linear(system) => linear = Some(system),
+            Dynamics::Polynomial(model) => polynomial = model.records(),
+        }
+        let matrix = |of: fn(&LinearSystem) -> &DMatrix<f64>| linear.map_or_else(Vec::new, |s| rows(of(s)));
         Self {
             format: FORMAT.into(),
             version: VERSION,
             tool: crate::TOOL.into(),
             verified: found.proof.verified,
-            cost: found.cost,
+            cost: finite(found.cost),
             cost_lower_bound: found.lower_bound,
             cost_paper: found.paper_cost,
-            hull_volume: found.hull_volume,
+            hull_volume: finite(found.hull_volume),
+            search: found.search.clone(),
             initial_set,
             input_set,
             noise_set,
@@ -133,9 +164,12 @@ impl Model {
             trust: found.trust.clone(),
             tight: tight(data, found, robot.joint_count()),
             settings: settings.clone(),
-            a: rows(found.system.a()),
-            b: rows(found.system.b()),
-            drift: found.system.drift().iter().copied().collect(),
+            a: matrix(LinearSystem::a),
+            b: matrix(LinearSystem::b),
+            drift: linear.map_or_else(Vec::new, |system| system.drift().iter().copied().collect()),
+            variables: polynomial.variables,
+            origin: polynomial.origin,
+            acceleration: polynomial.acceleration,
             data: DataRecord::new(data, &found.recordings),
             robot: robot.description().clone(),
         }
@@ -163,10 +197,7 @@ impl Model {
 
     /// The file's text: JSON, ending with a newline.
     pub fn to_json(&self) -> String {
-        let mut text =
-            serde_json::to_string_pretty(self).expect("a model has only finite numbers and string keys");
-        text.push('\n');
-        text
+        json::to_lines(self)
     }
 
     /// The robot.
@@ -178,12 +209,27 @@ impl Model {
         Ok(Robot::from_description(&self.robot)?)
     }
 
-    /// Model 1 as a linear system.
+    /// The model itself: bit by bit what its file says.
     ///
     /// # Errors
     ///
-    /// When the matrices do not fit together.
-    pub fn system(&self) -> Result<LinearSystem> {
+    /// When matrices or polynomials do not fit together, or are not those of the robot.
+    pub fn dynamics(&self) -> Result<Dynamics> {
+        if self.acceleration.is_empty() {
+            return Ok(Dynamics::Linear(self.system()?));
+        }
+        let records = Records {
+            variables: self.variables.clone(),
+            origin: self.origin.clone(),
+            acceleration: self.acceleration.clone(),
+        };
+        let Settings { abstraction, expansion_point, .. } = &self.settings;
+        PolynomialModel::of_records(&self.robot()?, *abstraction, expansion_point, records)
+            .map(|model| Dynamics::Polynomial(Box::new(model)))
+            .map_err(Error::Setting)
+    }
+
+    fn system(&self) -> Result<LinearSystem> {
         let matrix = |rows: &[Vec<f64>]| {
             DMatrix::from_row_iterator(
                 rows.len(),
@@ -221,7 +267,9 @@ impl Model {
             matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
         };
         let set = |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
-        let sizes = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
+        let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
+        let none = self.a.is_empty() && self.b.is_empty() && self.drift.is_empty();
+        let sizes = if self.acceleration.is_empty() { linear } else { none };
         let sets = set(&self.initial_set, 2 * n)
             && set(&self.input_set, n)
             && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
@@ -247,13 +295,18 @@ impl Model {
     fn check_parts(&self) -> Result<(), String> {
         let changed =
             |what: &str| Err(format!("{what}: the file was changed after it was written; run conform again"));
-        let model = self.robot().and_then(|robot| self.settings.linear_system(&robot));
-        let model = model.map_err(|error| error.to_string())?;
-        let system = self.system().map_err(|error| error.to_string())?;
+        let robot = self.robot().map_err(|error| error.to_string())?;
+        let made = Dynamics::new(&robot, &self.settings).map_err(|error| error.to_string())?;
         let near = |x: &DMatrix<f64>, y: &DMatrix<f64>| (x - y).amax() <= SAME * x.amax().max(y.amax());
-        let drift = (model.drift() - system.drift()).amax() <= SAME * model.drift().amax();
-        if !(near(model.a(), system.a()) && near(model.b(), system.b()) && drift) {
-            return changed("a, b or drift is not that of its robot at its expansion point");
+        match (&made, self.dynamics().map_err(|error| error.to_string())?) {
+            (Dynamics::Linear(made), Dynamics::Linear(own)) => {
+                let drift = (made.drift() - own.drift()).amax() <= SAME * made.drift().amax();
+                if !(near(made.a(), own.a()) && near(made.b(), own.b()) && drift) {
+                    return changed("a, b or drift is not that of its robot at its expansion point");
+                }
+            }
+            (Dynamics::Polynomial(_), Dynamics::Polynomial(_)) => {}
+            _ => return changed("it has not the matrices or polynomials that its settings ask for"),
         }
         if self.data.sha256 != self.data.digest() {
             return changed("data.sha256 is not that of the recordings it lists");

@@ -2,11 +2,14 @@
 
 use std::io::{self, Write};
 
-use reachtube_reach::{Hyperrectangle, ReachSets, Tube, TubeRadii};
+use reachtube_reach::{Flowpipe, Hyperrectangle, LinearSystem, ReachSets, Tube, TubeRadii};
 use reachtube_robot::Robot;
 use reachtube_scalar::rounding::{add_down, add_up};
 
-use crate::conform::{Grids, Recordings, RunNominal, Settings, UncertaintySets, nominals};
+use crate::conform::{
+    Case, Dynamics, Grids, Lost, Recordings, RunNominal, Settings, UncertaintySets, flowpipes, lost, nominal,
+    nominals,
+};
 use crate::data::{DataSet, state_name};
 use crate::error::Result;
 
@@ -29,6 +32,8 @@ pub struct SuiteReach {
     pub tube: Tube,
     /// Number of states 2n.
     pub dimension: usize,
+    /// Where the set could not be followed further, if so: times end there.
+    pub lost: Option<Lost>,
 }
 
 /// The reachable sets over the suites of `recordings`.
@@ -39,27 +44,50 @@ pub struct SuiteReach {
 ///
 /// # Errors
 ///
-/// Defects of a run that has changed since it was read.
+/// Defects of a run that has changed since it was read; a model that runs away without any uncertainty.
 pub fn reach(
     data: &DataSet,
     robot: &Robot,
     settings: &Settings,
+    dynamics: &Dynamics,
     sets: &UncertaintySets,
     recordings: &Recordings,
-    grids: &Grids,
 ) -> Result<Vec<SuiteReach>> {
+    match dynamics {
+        Dynamics::Linear(system) => linear(data, robot, settings, system, sets, recordings),
+        Dynamics::Polynomial(model) => {
+            let cases = Case::all(data, robot, settings, recordings)?;
+            let flowpipes = flowpipes(&model.polynomial_system()?, &cases, sets)?;
+            let of_case = |(case, flowpipe): (&Case, Flowpipe)| {
+                let nominal = nominal(model, case)?;
+                let suite = recordings.suites[case.suite].entry.name.clone();
+                Ok(SuiteReach::of_flowpipe(data, suite, case, nominal, &flowpipe))
+            };
+            cases.iter().zip(flowpipes).map(of_case).collect()
+        }
+    }
+}
+
+fn linear(
+    data: &DataSet,
+    robot: &Robot,
+    settings: &Settings,
+    system: &LinearSystem,
+    sets: &UncertaintySets,
+    recordings: &Recordings,
+) -> Result<Vec<SuiteReach>> {
+    let grids = Grids::new(recordings, system, settings.disturbance)?;
     let shared: Vec<(ReachSets, TubeRadii)> = grids
         .as_slice()
         .iter()
         .map(|grid| {
             let (x, u): (&Hyperrectangle, &Hyperrectangle) = (&sets.initial_set, &sets.input_set);
-            let radii = TubeRadii::new(&grid.propagation, settings.disturbance, x, u);
-            (ReachSets::new(&grid.propagation, &grid.gains, x, u), radii)
+            (grid.reach(sets), TubeRadii::new(&grid.propagation, settings.disturbance, x, u))
         })
         .collect();
     let mut all = Vec::new();
     for suite in &recordings.suites {
-        for nominal in nominals(data, robot, settings, grids, suite)? {
+        for nominal in nominals(data, robot, settings, &grids, suite)? {
             let (reach, radii) = &shared[nominal.grid];
             let propagation = &grids.as_slice()[nominal.grid].propagation;
             let tube =
@@ -82,8 +110,9 @@ impl SuiteReach {
         tube: Tube,
     ) -> Self {
         let dimension = nominal.trajectory.state(0).len();
+        let (nominals, lower, upper) = (Vec::new(), Vec::new(), Vec::new());
         let mut result =
-            Self { suite, run, times, nominal: vec![], lower: vec![], upper: vec![], tube, dimension };
+            Self { suite, run, times, nominal: nominals, lower, upper, tube, dimension, lost: None };
         for k in 0..result.times.len() {
             for (i, x) in nominal.trajectory.state(k).iter().enumerate() {
                 result.nominal.push(x.mid());
@@ -92,6 +121,31 @@ impl SuiteReach {
             }
         }
         result
+    }
+
+    /// Up to where the flowpipe goes.
+    fn of_flowpipe(
+        data: &DataSet,
+        suite: String,
+        case: &Case,
+        mut nominal: Vec<f64>,
+        flowpipe: &Flowpipe,
+    ) -> Self {
+        let (dimension, samples) = (2 * case.joints(), flowpipe.len());
+        nominal.truncate(samples * dimension);
+        let hulls = || (0..samples).flat_map(|k| flowpipe.sample(k));
+        let steps = (0..samples.saturating_sub(1)).flat_map(|k| flowpipe.step(k)).copied().collect();
+        Self {
+            suite,
+            run: case.run.map(|index| data.runs()[index].file.clone()),
+            times: case.grid.times()[..samples].to_vec(),
+            nominal,
+            lower: hulls().map(|hull| hull.lo()).collect(),
+            upper: hulls().map(|hull| hull.hi()).collect(),
+            tube: Tube::from_boxes(dimension, steps),
+            dimension,
+            lost: lost(case, flowpipe),
+        }
     }
 
     /// A name for files: the suite, and the run where it has its own nominal solution.

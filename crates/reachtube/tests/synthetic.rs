@@ -6,7 +6,9 @@ use common::{Disturbed, Random, Recorded, grid, two_joints, write_data_set};
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 use reachtube::Model;
 use reachtube::abstraction::{ExpansionPoint, linear_model};
-use reachtube::conform::{Centre, Conformance, Noise, NominalStart, Settings, Weights, check, conform};
+use reachtube::conform::{
+    Centre, Conformance, Dynamics, Grids, Noise, NominalStart, Settings, Watch, Weights, check, conform,
+};
 use reachtube::data::{DataSet, Torque};
 use reachtube_reach::{Disturbance, Propagation, TimeGrid};
 use reachtube_robot::Robot;
@@ -19,7 +21,7 @@ fn suite(robot: &Robot, times: &[f64], runs: usize, seed: u64) -> Vec<Recorded> 
 
 fn run(robot: &Robot, folder: &std::path::Path, settings: &Settings) -> (DataSet, Conformance) {
     let data = DataSet::open(folder).unwrap();
-    let found = conform(robot, &data, &[], settings, &|_, _| {}).unwrap();
+    let found = conform(robot, &data, &[], settings, &Watch::SILENT).unwrap();
     (data, found)
 }
 
@@ -212,7 +214,9 @@ fn suites_of_different_rates_share_a_model() {
         settings.disturbance = disturbance;
         let (data, found) = run(&robot, folder.path(), &settings);
         assert!(found.proof.verified);
-        assert_eq!(found.grids.as_slice().len(), 3);
+        let Dynamics::Linear(system) = &found.dynamics else { panic!("model 1 of order 1") };
+        let grids = Grids::new(&found.recordings, system, disturbance).unwrap();
+        assert_eq!(grids.as_slice().len(), 3);
         let model = Model::new(&robot, &data, &settings, &found);
         assert!(check(&model, &data, &[], &settings, &|_, _| {}).unwrap().conformant);
     }

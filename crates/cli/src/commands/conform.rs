@@ -1,5 +1,5 @@
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
-use reachtube::conform::{Noise, Settings, Weights, conform};
+use reachtube::conform::{Noise, Settings, Watch, Weights, conform};
 use reachtube::data::DataSet;
 use reachtube::{Error, Model, Result, write};
 use reachtube_robot::Robot;
@@ -21,7 +21,9 @@ pub fn run(args: &ConformArgs, json: bool) -> Result<Outcome> {
     }
     let bar = Progress::new();
     let show = |done: usize, total: usize| bar.show(done, total);
-    let found = conform(&robot, &data, &args.data.suites, &settings, &show)?;
+    let tell = |words: &str| bar.tell(words);
+    let watch = Watch { reading: &show, finished: &tell, resume: args.resume.as_deref() };
+    let found = conform(&robot, &data, &args.data.suites, &settings, &watch)?;
     drop(bar);
     output::notes(&found.recordings.notes);
     let model = Model::new(&robot, &data, &settings, &found);
@@ -61,7 +63,9 @@ fn robot_and_settings(args: &ConformArgs) -> Result<(Robot, Settings)> {
 
 fn settings(args: &ConformArgs, joints: usize) -> Result<Settings> {
     let settings = Settings {
+        abstraction: Abstraction { model: args.model, order: args.order },
         expansion_point: ExpansionPoint::from_values(&args.expansion, joints)?,
+        method: args.method,
         disturbance: args.disturbance,
         centre: args.centre,
         states: args.states,

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use reachtube::conform::{Check, Settings, conform};
+use reachtube::conform::{Check, Settings, Watch, conform};
 use reachtube::data::{DataSet, Torque};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::{Model, Result, write};
@@ -47,7 +47,8 @@ fn identify(robot: &Robot, folder: &Path, recorded: &RecordedDemo) -> Result<Mod
     let data = DataSet::open(folder)?;
     let bar = Progress::new();
     let show = |done: usize, total: usize| bar.show(done, total);
-    let found = conform(robot, &data, &recorded.training, &settings, &show)?;
+    let watch = Watch { reading: &show, ..Watch::SILENT };
+    let found = conform(robot, &data, &recorded.training, &settings, &watch)?;
     Ok(Model::new(robot, &data, &settings, &found))
 }
 

@@ -14,7 +14,7 @@ mod report;
 mod reproduce;
 mod robot;
 
-use reachtube::conform::{Check, Grids, Recordings, Settings, check as check_recordings};
+use reachtube::conform::{Check, Recordings, Settings, check as check_recordings};
 use reachtube::data::DataSet;
 use reachtube::reach::{SuiteReach, reach as reach_suites};
 use reachtube::report::Sources;
@@ -96,17 +96,16 @@ impl Opened {
         check_recordings(&self.model, &self.data, &self.suites, &self.settings, &show)
     }
 
-    fn recordings(&self) -> Result<(Recordings, Grids)> {
+    fn recordings(&self) -> Result<Recordings> {
         let bar = Progress::new();
         let show = |done: usize, total: usize| bar.show(done, total);
-        let recordings = Recordings::read(&self.data, &self.suites, &self.robot, &self.settings, &show)?;
-        let grids = Grids::new(&recordings, &self.model.system()?, self.settings.disturbance)?;
-        Ok((recordings, grids))
+        Recordings::read(&self.data, &self.suites, &self.robot, &self.settings, &show)
     }
 
-    fn reach(&self, recordings: &Recordings, grids: &Grids) -> Result<Vec<SuiteReach>> {
+    fn reach(&self, recordings: &Recordings) -> Result<Vec<SuiteReach>> {
         let _bar = Progress::new();
-        reach_suites(&self.data, &self.robot, &self.settings, &self.model.sets(), recordings, grids)
+        let Self { model, robot, settings, data, .. } = self;
+        reach_suites(data, robot, settings, &model.dynamics()?, &model.sets(), recordings)
     }
 
     /// What the page is made from.

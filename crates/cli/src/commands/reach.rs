@@ -20,9 +20,9 @@ struct Written<'a> {
 pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model)?;
     write::try_at(&args.out.join("A.csv"))?;
-    let (recordings, grids) = opened.recordings()?;
+    let recordings = opened.recordings()?;
     output::notes(&recordings.notes);
-    let reach = opened.reach(&recordings, &grids)?;
+    let reach = opened.reach(&recordings)?;
     let check = opened.check()?;
     let mut written = Vec::new();
     for (reach, name) in reach.iter().zip(files::of_reach(&reach)) {
@@ -44,7 +44,10 @@ pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
             words::table(&header, &rows)
         ))?;
     }
-    Ok(Outcome::Done)
+    for lost in reach.iter().filter_map(|reach| reach.lost.as_ref()) {
+        output::note(&words::lost(lost));
+    }
+    Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
 }
 
 impl Written<'_> {
@@ -61,6 +64,7 @@ impl Written<'_> {
             "samples": self.reach.times.len(),
             "duration": self.reach.times.last(),
             "final_width": self.final_width(),
+            "lost": self.reach.lost,
             "csv": self.samples,
             "tube_csv": self.tube,
         })

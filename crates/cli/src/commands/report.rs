@@ -25,8 +25,8 @@ pub fn write(opened: &Opened, folder: &Path) -> Result<(PathBuf, Vec<String>)> {
     let path = folder.join("report.html");
     write::try_at(&path)?;
     let check = opened.check()?;
-    let (recordings, grids) = opened.recordings()?;
-    let reach = opened.reach(&recordings, &grids)?;
+    let recordings = opened.recordings()?;
+    let reach = opened.reach(&recordings)?;
     let page = page(&opened.sources(&recordings, &reach, &check))?;
     let mut html = Vec::new();
     write_html(&page, &mut html)?;

@@ -7,7 +7,7 @@ use reachtube_scalar::{TaylorPolynomial, TaylorSpace, TaylorTerm};
 use serde::{Deserialize, Serialize};
 
 use super::layout::Layout;
-use super::{ExpansionPoint, ModelKind, PolynomialModel, Remainder};
+use super::{Abstraction, ExpansionPoint, ModelKind, PolynomialModel, Remainder};
 use crate::error::{Error, Result};
 use crate::json;
 
@@ -41,16 +41,25 @@ struct ModelFile {
     acceleration: Vec<Vec<TermRecord>>,
 }
 
-/// Exponents, one a variable, and coefficient.
-#[derive(Serialize, Deserialize)]
-struct TermRecord(Vec<u8>, f64);
+/// A term in a file: exponents, one a variable, and coefficient.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TermRecord(pub Vec<u8>, pub f64);
+
+/// The polynomials of a model in a file.
+#[derive(Default)]
+pub(crate) struct Records {
+    /// Names of the variables, in the order of the exponents.
+    pub variables: Vec<String>,
+    /// The terms are in offsets of the variables from here.
+    pub origin: Vec<f64>,
+    /// For each joint, the terms of its acceleration.
+    pub acceleration: Vec<Vec<TermRecord>>,
+}
 
 impl PolynomialModel {
     /// The model as JSON: a term a line, ending with a newline. Numbers read back are the same bit by bit.
     pub fn to_json(&self) -> String {
-        let records = |f: &TaylorPolynomial| {
-            f.terms().into_iter().map(|t| TermRecord(t.exponents, t.coefficient)).collect()
-        };
+        let Records { variables, origin, acceleration } = self.records();
         json::to_lines(&ModelFile {
             format: FORMAT.into(),
             version: VERSION,
@@ -58,12 +67,60 @@ impl PolynomialModel {
             model: self.kind(),
             order: self.order(),
             expansion_point: self.expansion_point().clone(),
-            variables: self.layout().names(),
-            origin: self.origin().to_vec(),
+            variables,
+            origin,
             remainder: self.remainder.clone(),
             robot: self.robot().clone(),
-            acceleration: self.acceleration().iter().map(records).collect(),
+            acceleration,
         })
+    }
+
+    pub(crate) fn records(&self) -> Records {
+        let terms = |f: &TaylorPolynomial| {
+            f.terms().into_iter().map(|t| TermRecord(t.exponents, t.coefficient)).collect()
+        };
+        Records {
+            variables: self.layout().names(),
+            origin: self.origin().to_vec(),
+            acceleration: self.acceleration().iter().map(terms).collect(),
+        }
+    }
+
+    /// The model of these records, bit by bit, once they have been compared with what the robot gives at the expansion point.
+    ///
+    /// # Errors
+    ///
+    /// What does not fit, in words.
+    pub(crate) fn of_records(
+        robot: &Robot,
+        abstraction: Abstraction,
+        point: &ExpansionPoint,
+        records: Records,
+    ) -> Result<Self, String> {
+        let Abstraction { model, order } = abstraction;
+        let n = robot.joint_count();
+        let layout = Layout::new(model, n);
+        if records.variables != layout.names() {
+            return Err(format!("its variables are not {}", layout.names().join(", ")));
+        }
+        if records.origin.len() != layout.variables() || records.acceleration.len() != n {
+            return Err(format!("origin or acceleration has not the size for {n} joints"));
+        }
+        if point.q.len() != n || point.qd.len() != n || point.input().len() != n {
+            return Err(format!("its expansion point is not one of {n} joints"));
+        }
+        let space = TaylorSpace::new(layout.variables(), order).map_err(|error| error.to_string())?;
+        let mut acceleration = Vec::with_capacity(n);
+        for (joint, terms) in records.acceleration.into_iter().enumerate() {
+            let wrong = |problem| format!("acceleration of joint {}: {problem}", joint + 1);
+            acceleration.push(polynomial(&space, terms).map_err(wrong)?);
+        }
+        let own = Self::assemble(robot, model, order, point.clone(), records.origin, acceleration);
+        let made = Self::new(robot, model, order, point).map_err(|error| error.to_string())?;
+        if !own.is_close_to(&made) {
+            return Err("its terms are not those of its robot at its expansion point: the file was changed after it was written".into());
+        }
+        Ok(own)
     }
 
     /// Reads a file that [`to_json`](Self::to_json) wrote.
@@ -91,48 +148,18 @@ impl ModelFile {
             |problem: String| Error::ModelFile { path: path.into(), problem: format!("{problem}; {REMEDY}") };
         let robot = Robot::from_description(&self.robot)?;
         let n = robot.joint_count();
-        let layout = Layout::new(self.model, n);
-        if self.variables != layout.names() {
-            return Err(wrong(format!("its variables are not {}", layout.names().join(", "))));
-        }
-        if self.origin.len() != layout.variables() || self.acceleration.len() != n {
-            return Err(wrong(format!("origin or acceleration has not the size for {n} joints")));
-        }
-        let point = &self.expansion_point;
-        if point.q.len() != n || point.qd.len() != n || point.input().len() != n {
-            return Err(wrong(format!("its expansion point is not one of {n} joints")));
-        }
         if let Some(remainder) = self.remainder.as_ref().filter(|remainder| !remainder.is_of(n)) {
             return Err(wrong(format!(
                 "its remainder has {} bounds, not one a joint, or an empty box",
                 remainder.bounds.len()
             )));
         }
-        let space = TaylorSpace::new(layout.variables(), self.order)?;
-        let mut acceleration = Vec::with_capacity(n);
-        for (joint, terms) in self.acceleration.into_iter().enumerate() {
-            acceleration.push(
-                polynomial(&space, terms)
-                    .map_err(|problem| wrong(format!("acceleration of joint {}: {problem}", joint + 1)))?,
-            );
-        }
-        let mut model = PolynomialModel::assemble(
-            &robot,
-            self.model,
-            self.order,
-            self.expansion_point,
-            self.origin,
-            acceleration,
-        );
+        let abstraction = Abstraction { model: self.model, order: self.order };
+        let Self { variables, origin, acceleration, .. } = self;
+        let records = Records { variables, origin, acceleration };
+        let mut model = PolynomialModel::of_records(&robot, abstraction, &self.expansion_point, records)
+            .map_err(wrong)?;
         model.remainder = self.remainder;
-        if !model.is_close_to(&PolynomialModel::new(
-            &robot,
-            model.kind(),
-            model.order(),
-            model.expansion_point(),
-        )?) {
-            return Err(wrong("its terms are not those of its robot at its expansion point: the file was changed after it was written".into()));
-        }
         Ok(model)
     }
 }

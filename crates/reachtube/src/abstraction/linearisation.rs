@@ -68,7 +68,8 @@ impl Linearisation {
         for (i, slopes) in self.slopes.chunks_exact(layout.variables()).enumerate() {
             for (j, q) in x[..n].iter().enumerate() {
                 if layout.trigonometric {
-                    self.a[(n + i, j)] = slopes[layout.sine(j)] * q.cos() - slopes[layout.cosine(j)] * q.sin();
+                    self.a[(n + i, j)] =
+                        slopes[layout.sine(j)] * q.cos() - slopes[layout.cosine(j)] * q.sin();
                 }
                 self.a[(n + i, n + j)] = slopes[layout.velocity(j)];
                 self.b[(n + i, j)] = slopes[layout.input(j)];

@@ -14,6 +14,8 @@ mod seen_error;
 
 pub use expansion_point::ExpansionPoint;
 pub use field::ModelField;
+pub(crate) use file::Records;
+pub use file::TermRecord;
 pub use layout::Layout;
 pub use linearisation::Linearisation;
 pub use operating_box::OperatingBox;

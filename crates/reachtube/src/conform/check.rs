@@ -1,12 +1,11 @@
 //! Whether other recordings lie in the hull of the reachable set of a model, and where not: the answer comes with a witness.
 
-use reachtube_reach::ReachSets;
 use serde::{Deserialize, Serialize};
 
-use super::deviation::{Grids, suite_deviations};
 use super::recordings::{Progress, Recordings, Suite};
-use super::verify::{Row, check_rows};
-use super::{Settings, Side, Trust};
+use super::rows::every_row;
+use super::verify::Row;
+use super::{Lost, Settings, Side, Trust};
 use crate::data::{DataSet, state_name};
 use crate::error::Result;
 use crate::model::Model;
@@ -18,6 +17,9 @@ pub struct Check {
     pub conformant: bool,
     /// Where not.
     pub violations: Violations,
+    /// Where a reachable set could not be followed to the end; what is recorded later counts as violated.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lost: Vec<Lost>,
     /// The same for each suite.
     pub suites: Vec<SuiteCheck>,
     /// Recordings checked.
@@ -35,7 +37,7 @@ pub struct Check {
 pub struct Violations {
     /// Violated (suite, time, state) rows.
     pub count: usize,
-    /// The row with the largest excess, rad or rad/s.
+    /// The row with the largest excess, rad or rad/s, among those that have a reachable set.
     pub worst: Option<Place>,
 }
 
@@ -112,7 +114,8 @@ impl Violations {
 ///
 /// # Guarantee
 ///
-/// When `conformant`, every recorded value was proved with directed rounding to lie in the interval hull of the reachable set, at samples. A row within rounding of the boundary
+/// When `conformant`, every recorded value was proved with directed rounding to lie in the interval hull of the reachable set, at samples; of the computed outer enclosure of that set where the model is
+/// not linear. A row within rounding of the boundary
 /// (about 1e-12 relative) that could not be proved counts as violated.
 ///
 /// # Errors
@@ -125,33 +128,25 @@ pub fn check(
     settings: &Settings,
     progress: Progress,
 ) -> Result<Check> {
-    let (robot, system, sets) = (model.robot()?, model.system()?, model.sets());
+    let (robot, sets) = (model.robot()?, model.sets());
     let recordings = Recordings::read(data, names, &robot, settings, progress)?;
-    let grids = Grids::new(&recordings, &system, settings.disturbance)?;
-    let reach: Vec<ReachSets> = grids
-        .as_slice()
-        .iter()
-        .map(|grid| ReachSets::new(&grid.propagation, &grid.gains, &sets.initial_set, &sets.input_set))
-        .collect();
-    let mut suites = Vec::new();
-    for suite in &recordings.suites {
-        let mut result = SuiteCheck {
-            suite: suite.entry.name.clone(),
-            runs: suite.runs.len(),
-            rows: 0,
-            violations: Violations::none(),
-            violating_runs: Vec::new(),
-        };
-        for deviation in suite_deviations(data, &robot, settings, &grids, suite)? {
-            let grid = &grids.as_slice()[deviation.grid];
-            let mut sides = Sides::default();
-            check_rows(grid, &reach[deviation.grid], &sets, settings.states, &deviation, |row| {
-                sides.take(row, &mut result, data, suite, robot.joint_count());
-            });
-        }
-        suites.push(result);
+    let mut suites: Vec<(SuiteCheck, Sides)> = recordings.suites.iter().map(SuiteCheck::start).collect();
+    let visit = |index: usize, row: Row| {
+        let (result, sides) = &mut suites[index];
+        sides.take(row, result, data, &recordings.suites[index], robot.joint_count());
+    };
+    let lost = every_row(&model.dynamics()?, data, &robot, settings, &sets, &recordings, visit)?;
+    let suites = suites.into_iter().map(|(suite, _)| suite).collect();
+    Ok(summary(&recordings, suites, lost, model))
+}
+
+impl SuiteCheck {
+    /// Before any row.
+    fn start(suite: &Suite) -> (Self, Sides) {
+        let (name, runs) = (suite.entry.name.clone(), suite.runs.len());
+        let violations = Violations::none();
+        (Self { suite: name, runs, rows: 0, violations, violating_runs: Vec::new() }, Sides::default())
     }
-    Ok(summary(&recordings, suites, model))
 }
 
 /// The two sides of a (time, state) row come one after the other and count once.
@@ -171,6 +166,9 @@ impl Sides {
         }
         result.violations.count += usize::from(!self.violated);
         self.violated = true;
+        if !row.excess.is_finite() {
+            return;
+        }
         let place = Place::new(data, suite, &row, joints);
         if !result.violating_runs.contains(&place.run) {
             result.violating_runs.push(place.run.clone());
@@ -179,7 +177,7 @@ impl Sides {
     }
 }
 
-fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>, model: &Model) -> Check {
+fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>, lost: Vec<Lost>, model: &Model) -> Check {
     let mut violations = Violations::none();
     for suite in &suites {
         violations.count += suite.violations.count;
@@ -203,6 +201,7 @@ fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>, model: &Model) -> C
         trust: held_out.then(|| Trust::of_check(distinct(false), distinct(true), known)),
         runs: recordings.run_count(),
         notes: recordings.notes.clone(),
+        lost,
         violations,
         suites,
         rows,

@@ -2,14 +2,14 @@
 
 use rayon::prelude::*;
 use reachtube_reach::{
-    Disturbance, IntervalMatrix, IntervalVector, LinearSystem, Propagation, TimeGrid, Trajectory,
+    Disturbance, IntervalMatrix, IntervalVector, LinearSystem, Propagation, ReachSets, TimeGrid, Trajectory,
 };
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{sub_down, sub_up};
 
 use super::recordings::{Recordings, RunSummary, SharedInput, Suite, read_run};
-use super::{Envelope, NominalStart, Settings};
+use super::{Envelope, NominalStart, Settings, UncertaintySets};
 use crate::data::{DataSet, Run};
 use crate::error::{Error, Result};
 
@@ -20,6 +20,17 @@ pub struct Grid {
     pub propagation: Propagation,
     /// κ(t_k).
     pub gains: Vec<IntervalMatrix>,
+}
+
+impl Grid {
+    /// The reachable sets of the deviation on this grid.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`ReachSets::new`].
+    pub fn reach(&self, sets: &UncertaintySets) -> ReachSets {
+        ReachSets::new(&self.propagation, &self.gains, &sets.initial_set, &sets.input_set)
+    }
 }
 
 /// The distinct grids of some recordings; a grid that is the beginning of another is not distinct.

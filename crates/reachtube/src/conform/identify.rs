@@ -1,14 +1,17 @@
 //! The whole of a conformance: from recordings to sets that have been proved to enclose them.
 
+use std::path::Path;
+
 use reachtube_reach::{LinearSystem, ReachSets};
 use reachtube_robot::Robot;
 use serde::{Deserialize, Serialize};
 
 use super::deviation::{Deviation, Grids, suite_deviations};
-use super::program::{Block, Program, Solution, TIGHT};
+use super::program::{Block, Program};
+use super::proof::{Checked, Enclosure, Proof, TightRow};
 use super::recordings::{Progress, Recordings};
-use super::verify::{Row, check_rows};
-use super::{Settings, Trust, UncertaintySets, Weights};
+use super::verify::check_rows;
+use super::{Dynamics, Envelope, Settings, Trust, UncertaintySets, Weights, nonlinear};
 use crate::data::DataSet;
 use crate::error::Result;
 
@@ -18,80 +21,97 @@ const REPAIRS: i32 = 60;
 /// The result of [`conform`].
 #[derive(Debug)]
 pub struct Conformance {
-    /// Model 1.
-    pub system: LinearSystem,
+    /// The model.
+    pub dynamics: Dynamics,
     /// X0, U, V.
     pub sets: UncertaintySets,
-    /// Cost of the sets: Σ_k Σ_i s_i 2 (R_k r)_i.
+    /// Cost of the sets: Σ_k Σ_i s_i width_i(t_k) of the reachable set and the noise, at each distinct sample time; suites whose sets differ count by their mean. Infinite where a set was lost.
     pub cost: f64,
-    /// What the solver says no sets can cost less than.
-    pub lower_bound: f64,
-    /// The paper's sum, eq. (21), which adds E where it should add |E|.
-    pub paper_cost: f64,
-    /// Σ_k Δt Π_i 2 (R_k r)_i, eq. (2).
+    /// What the solver says no sets can cost less than, for a linear model.
+    pub lower_bound: Option<f64>,
+    /// The paper's sum, eq. (21), which adds E where it should add |E|, for a linear model.
+    pub paper_cost: Option<f64>,
+    /// Σ_k Δt Π_i width_i(t_k), eq. (2).
     pub hull_volume: f64,
     /// What was proved.
     pub proof: Proof,
     /// What may be expected of motions that were not recorded.
     pub trust: Trust,
-    /// Rows of the program, rows handed to the solver, and rounds.
-    pub program: Solution,
-    /// The rows that touch the reachable set, the closest first.
+    /// How the sets of a model that is not linear were found.
+    pub search: Option<Search>,
+    /// The rows that touch the reachable set, the closest first; that of the linearisation where the model is not linear.
     pub tight: Vec<TightRow>,
     /// The recordings as read.
     pub recordings: Recordings,
-    /// The grids of the recordings.
-    pub grids: Grids,
 }
 
-/// What was proved about the recordings, and how.
+/// How the sets of a model that is not linear were found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Proof {
-    /// Whether every row was proved to hold.
-    pub verified: bool,
-    /// The claim in words.
-    pub claim: String,
-    /// Rows checked: suite x sample x state x side.
-    pub rows: usize,
-    /// Rows that were proved.
-    pub proved: usize,
-    /// Recordings behind the rows.
-    pub runs: usize,
-    /// The largest excess of a row, rad or rad/s: not above 0 when all rows hold.
-    pub largest_excess: f64,
+pub struct Search {
+    /// Linearisations, each with its program.
+    pub rounds: usize,
+    /// How often the reachable sets of all suites were computed.
+    pub reachable_sets: usize,
+    /// The cost of the linearised sets, Σ_k Σ_i s_i 2 (R_k r)_i, which the programs minimise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linearised_cost: Option<f64>,
+    /// The case and the time (s) at which a simulated motion under the last sets but one left every bound.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub runs_away: Option<(String, f64)>,
 }
 
-/// A row in which a run touches the reachable set.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TightRow {
-    /// Index of the suite in the recordings.
-    pub suite: usize,
-    /// The row.
-    pub row: Row,
+/// What a long job tells while it runs, and where it keeps what is finished.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Of recordings that are read.
+    pub reading: Progress<'a>,
+    /// Of rounds or bisections that are finished, in words.
+    pub finished: &'a (dyn Fn(&str) + Sync),
+    /// A file that holds what is finished, to go on from: read where it is there, written after each round, removed at the end.
+    pub resume: Option<&'a Path>,
 }
 
-/// Identifies the smallest uncertainty sets for which model 1 of `robot` is reachset conformant with the suites `names` of `data` (all suites when none is named), repairs the
-/// solver's answer, and proves the result with directed rounding.
+impl Watch<'_> {
+    /// Nobody watches.
+    pub const SILENT: Watch<'static> = Watch { reading: &|_, _| {}, finished: &|_| {}, resume: None };
+}
+
+/// Identifies the smallest uncertainty sets for which the model of `robot` that `settings` ask for is reachset conformant with the suites `names` of `data` (all suites when none is named), and
+/// proves the result with directed rounding. A linear model's sets are those of one linear program; for others see [`Method`](super::Method).
 ///
 /// # Guarantee
 ///
-/// When `proof.verified`, for every run, sample and state of the notion used, the recorded value lies in the interval hull of the reachable set of the model at that sample.
-/// The reachable set is taken from inside and the deviation from outside, with directed rounding. Nothing is said between samples.
+/// When `proof.verified`, for every run, sample and state of the notion used, the recorded value lies in the interval hull of the reachable set of the model at that sample: for a linear model of the set
+/// itself, taken from inside, with the deviation taken from outside; for another of the computed outer enclosure. Directed rounding. Nothing is said between samples.
 ///
 /// # Errors
 ///
-/// Defects of the recordings, settings that do not fit, a program that the solver gives up on. A model that could not be proved conformant is no error.
+/// Defects of the recordings, settings that do not fit, a model that runs away without any disturbance, a program that the solver gives up on, a `resume` file of another job or that cannot be
+/// written. A model that could not be proved conformant is no error.
 pub fn conform(
     robot: &Robot,
     data: &DataSet,
     names: &[String],
     settings: &Settings,
-    progress: Progress,
+    watch: &Watch,
 ) -> Result<Conformance> {
     settings.validate(robot.joint_count())?;
-    let system = settings.linear_system(robot)?;
-    let recordings = Recordings::read(data, names, robot, settings, progress)?;
+    let dynamics = Dynamics::new(robot, settings)?;
+    let recordings = Recordings::read(data, names, robot, settings, watch.reading)?;
+    match dynamics {
+        Dynamics::Linear(system) => linear(robot, data, settings, system, recordings),
+        Dynamics::Polynomial(model) => nonlinear::conform(robot, data, settings, *model, recordings, watch),
+    }
+}
+
+fn linear(
+    robot: &Robot,
+    data: &DataSet,
+    settings: &Settings,
+    system: LinearSystem,
+    recordings: Recordings,
+) -> Result<Conformance> {
     let grids = Grids::new(&recordings, &system, settings.disturbance)?;
     let deviations = recordings
         .suites
@@ -99,7 +119,8 @@ pub fn conform(
         .map(|suite| suite_deviations(data, robot, settings, &grids, suite))
         .collect::<Result<Vec<_>>>()?;
     let all: Vec<Deviation> = deviations.iter().flatten().cloned().collect();
-    let weights = weights(settings, &all, robot.joint_count());
+    let envelopes: Vec<&Envelope> = all.iter().map(|deviation| &deviation.envelope).collect();
+    let weights = weights(settings, &envelopes, robot.joint_count());
     let blocks = Block::of_grids(grids.as_slice(), &all, robot.joint_count());
     let program = Program::new(settings, &weights, blocks);
     let solution = program.solve()?;
@@ -107,21 +128,21 @@ pub fn conform(
     let (paper_cost, hull_volume) = program.paper_sums(&sets);
     Ok(Conformance {
         cost: program.cost(&sets),
-        lower_bound: solution.lower_bound,
-        paper_cost,
+        lower_bound: Some(solution.lower_bound),
+        paper_cost: Some(paper_cost),
         hull_volume,
-        proof: checked.proof(settings, recordings.run_count()),
+        proof: checked.proof(settings, recordings.run_count(), Enclosure::Inner, Vec::new()),
         trust: trust(&recordings, &checked.tight),
+        search: None,
         tight: checked.tight,
-        program: solution,
-        system,
+        dynamics: Dynamics::Linear(system),
         sets,
         recordings,
-        grids,
     })
 }
 
-fn weights(settings: &Settings, deviations: &[Deviation], joints: usize) -> Vec<f64> {
+/// s, 2n, for these deviations.
+pub(super) fn weights(settings: &Settings, deviations: &[&Envelope], joints: usize) -> Vec<f64> {
     match &settings.weights {
         Weights::Unit => vec![1.0; 2 * joints],
         Weights::Given(weights) => weights.clone(),
@@ -130,9 +151,8 @@ fn weights(settings: &Settings, deviations: &[Deviation], joints: usize) -> Vec<
 }
 
 /// The largest |d| of state `i`; 1 where there is none.
-fn largest_deviation(deviations: &[Deviation], i: usize) -> f64 {
-    let of = |deviation: &Deviation| {
-        let envelope = &deviation.envelope;
+fn largest_deviation(deviations: &[&Envelope], i: usize) -> f64 {
+    let of = |envelope: &&Envelope| {
         (0..envelope.len()).map(|k| envelope.upper(k, i).max(-envelope.lower(k, i))).fold(0.0, f64::max)
     };
     let largest = deviations.iter().map(of).fold(0.0, f64::max);
@@ -162,72 +182,28 @@ fn repair(
     (sets, checked)
 }
 
-/// What the check of all rows came to.
-#[derive(Debug, Clone)]
-struct Checked {
-    rows: usize,
-    failed: usize,
-    largest_excess: f64,
-    tight: Vec<TightRow>,
-}
-
 fn check_all(
     sets: &UncertaintySets,
     grids: &Grids,
     settings: &Settings,
     deviations: &[Vec<Deviation>],
 ) -> Checked {
-    let reach: Vec<ReachSets> = grids
-        .as_slice()
-        .iter()
-        .map(|grid| ReachSets::new(&grid.propagation, &grid.gains, &sets.initial_set, &sets.input_set))
-        .collect();
-    let mut checked = Checked { rows: 0, failed: 0, largest_excess: f64::NEG_INFINITY, tight: Vec::new() };
+    let reach: Vec<ReachSets> = grids.as_slice().iter().map(|grid| grid.reach(sets)).collect();
+    let mut checked = Checked::new();
     for (suite, deviations) in deviations.iter().enumerate() {
         for deviation in deviations {
             let grid = &grids.as_slice()[deviation.grid];
             check_rows(grid, &reach[deviation.grid], sets, settings.states, deviation, |row| {
-                checked.take(suite, row);
+                checked.take_tight(suite, row);
             });
         }
     }
-    checked.tight.sort_by(|a, b| b.row.excess.total_cmp(&a.row.excess));
+    checked.sort();
     checked
 }
 
-impl Checked {
-    fn take(&mut self, suite: usize, row: Row) {
-        self.rows += 1;
-        // A NaN would be no proof.
-        let proved = row.excess <= 0.0;
-        self.failed += usize::from(!proved);
-        self.largest_excess = self.largest_excess.max(row.excess);
-        if row.excess >= -TIGHT * row.radius {
-            self.tight.push(TightRow { suite, row });
-        }
-    }
-
-    fn proof(&self, settings: &Settings, runs: usize) -> Proof {
-        let states = match settings.states {
-            super::States::All => "position and velocity",
-            super::States::Positions => "position",
-        };
-        Proof {
-            verified: self.failed == 0 && self.rows > 0,
-            claim: format!(
-                "for each of the {runs} recordings, at each of its samples, the recorded {states} of every joint lies in the interval hull of the model's \
-                 reachable set; checked with directed rounding, at samples"
-            ),
-            rows: self.rows,
-            proved: self.rows - self.failed,
-            runs,
-            largest_excess: self.largest_excess,
-        }
-    }
-}
-
 /// Motions that touch the reachable set, among all motions: the rows of support are among the tight ones.
-fn trust(recordings: &Recordings, tight: &[TightRow]) -> Trust {
+pub(super) fn trust(recordings: &Recordings, tight: &[TightRow]) -> Trust {
     let motion_of =
         |suite: &super::Suite| suite.entry.motion.clone().unwrap_or_else(|| suite.entry.name.clone());
     let known = recordings.suites.iter().all(|suite| suite.entry.motion.is_some());

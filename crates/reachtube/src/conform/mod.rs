@@ -2,11 +2,14 @@
 
 mod check;
 mod deviation;
+mod dynamics;
 mod envelope;
 mod identify;
-pub mod nonlinear;
+mod nonlinear;
 mod program;
+mod proof;
 mod recordings;
+mod rows;
 mod sets;
 mod settings;
 mod solver;
@@ -15,13 +18,17 @@ mod verify;
 
 pub use check::{Check, Place, SuiteCheck, Violations, check};
 pub use deviation::{Deviation, Grid, Grids, RunNominal, nominals, suite_deviations};
+pub use dynamics::Dynamics;
 pub use envelope::Envelope;
-pub use identify::{Conformance, Proof, TightRow, conform};
+pub use identify::{Conformance, Search, Watch, conform};
+pub use nonlinear::Case;
+pub(crate) use nonlinear::{flowpipes, lost, nominal};
 pub use program::{Block, Program, Solution};
+pub use proof::{Enclosure, Lost, Proof, TightRow};
 pub use recordings::{Progress, Recordings, RunSummary, SharedInput, Suite};
 use serde::{Deserialize, Serialize};
 pub use sets::UncertaintySets;
-pub use settings::{Centre, Noise, NominalStart, Notion, Settings, States, Weights};
+pub use settings::{Centre, Method, Noise, NominalStart, Notion, Settings, States, Weights};
 pub use trust::{Trust, clopper_pearson, scenario_bound};
 pub use verify::{Row, check_rows};
 

@@ -94,7 +94,8 @@ impl<'a> Program<'a> {
         let joints = weights.len() / 2;
         let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
         let (cost, noise_cost) = cost(&blocks, &shares, weights);
-        let mut program = Self { settings, joints, blocks, shares, cost, noise_cost, scale: f64::MIN_POSITIVE };
+        let mut program =
+            Self { settings, joints, blocks, shares, cost, noise_cost, scale: f64::MIN_POSITIVE };
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
     }

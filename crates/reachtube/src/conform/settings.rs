@@ -1,12 +1,21 @@
 use reachtube_reach::Disturbance;
 use serde::{Deserialize, Serialize};
 
-use reachtube_reach::LinearSystem;
-use reachtube_robot::Robot;
-
-use crate::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
+use crate::abstraction::{Abstraction, ExpansionPoint};
 use crate::data::{GapLimit, Torque};
 use crate::error::{Error, Result};
+
+/// How the smallest sets are found (correction K of the method).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// By linear programs over all suites: one for a linear model; for another one after the other, each linearised along every nominal about the sets of the one before.
+    #[default]
+    Program,
+    /// By bisection of one radius after the other, the paper's way for models that are not linear. The result depends on their order and is not the smallest together; it is there to
+    /// be compared with.
+    Bisection,
+}
 
 /// In which directions the reachable set must reach as far as the recordings (correction C of the method).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -94,10 +103,13 @@ pub enum Weights {
 pub struct Settings {
     /// What the recorded torques are.
     pub torque: Torque,
-    /// Which of the paper's models; it must be linear.
+    /// Which of the paper's models.
     pub abstraction: Abstraction,
     /// Where the model is expanded.
     pub expansion_point: ExpansionPoint,
+    /// How the sets are found.
+    #[serde(default)]
+    pub method: Method,
     /// The notion of conformance.
     pub notion: Notion,
     /// How the disturbance may change in time.
@@ -127,6 +139,7 @@ impl Settings {
             torque,
             abstraction: Abstraction::default(),
             expansion_point: ExpansionPoint::zero(joints),
+            method: Method::default(),
             notion: Notion::default(),
             disturbance: Disturbance::default(),
             centre: Centre::default(),
@@ -137,16 +150,6 @@ impl Settings {
             until: None,
             gap_limit: GapLimit::default(),
         }
-    }
-
-    /// The linear system of a robot that these settings ask for.
-    ///
-    /// # Errors
-    ///
-    /// Where the abstraction is not linear, or the robot not physical at the expansion point.
-    pub fn linear_system(&self, robot: &Robot) -> Result<LinearSystem> {
-        let Abstraction { model, order } = self.abstraction;
-        PolynomialModel::new(robot, model, order, &self.expansion_point)?.linear_system()
     }
 
     /// Checks sizes and signs for a robot of `joints` joints.

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::hidden::{ENCODER_STEP, SCATTER_Q, SCATTER_QD};
 use super::*;
-use crate::conform::{Settings, conform};
+use crate::conform::{Settings, Watch, conform};
 use crate::data::{DataSet, GapLimit, Run, Torque};
 
 fn small(seed: u64) -> DemoOptions {
@@ -75,7 +75,7 @@ fn conformance_of_a_small_demo_is_verified() {
     let (folder, demo) = recorded(&small(1));
     let data = DataSet::open(folder.path()).unwrap();
     let settings = Settings::new(Torque::Compensated, 6);
-    let result = conform(&Robot::lwa4p(), &data, &demo.training, &settings, &|_, _| {}).unwrap();
+    let result = conform(&Robot::lwa4p(), &data, &demo.training, &settings, &Watch::SILENT).unwrap();
     assert!(result.proof.verified);
     assert_eq!(result.proof.runs, 10);
     assert!(result.recordings.suites.iter().all(|suite| suite.shared.is_some()));

@@ -1,7 +1,7 @@
 //! From a model and recordings to the page.
 
 use super::{Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict};
-use crate::conform::{self, Check, Recordings, Settings, States};
+use crate::conform::{self, Check, Enclosure, Lost, Recordings, Settings, States};
 use crate::data::DataSet;
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -59,15 +59,15 @@ pub fn page(sources: &Sources) -> Result<Page> {
 }
 
 fn verdict(model: &Model, check: &Check) -> Verdict {
+    let outer = model.proof.enclosure == Enclosure::Outer;
+    let set = if outer { "computed reachable set" } else { "reachable set" };
     let words = match &check.violations.worst {
-        None => {
-            format!(
-                "All {} recordings lie in the interval hull of the reachable set at every sample.",
-                check.runs
-            )
+        _ if check.conformant => {
+            format!("All {} recordings lie in the interval hull of the {set} at every sample.", check.runs)
         }
+        None => format!("{} of {} rows have no {set} to lie in.", check.violations.count, check.rows),
         Some(worst) => format!(
-            "{} of {} rows leave the reachable set, furthest {} at {:.3} s, {} by {:.3e}.",
+            "{} of {} rows leave the {set}, furthest {} at {:.3} s, {} by {:.3e}.",
             check.violations.count, check.rows, worst.run, worst.time, worst.state, worst.excess
         ),
     };
@@ -77,16 +77,26 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     };
     let proved = vec![
         format!(
-            "{} of {} rows (suite, time, state) hold, checked with directed rounding: the recorded {states} lies in the interval hull of the reachable set.",
+            "{} of {} rows (suite, time, state) hold, checked with directed rounding: the recorded {states} lies in the interval hull of the {set}.",
             check.rows - check.violations.count,
             check.rows,
         ),
         "The grey band is an outer bound of the reachable set at the samples.".into(),
     ];
-    let not_proved = vec![
+    let mut not_proved = vec![
         "The recordings are compared with the set at samples; between samples only the model's own states are enclosed (the tube that the command reach writes).".into(),
         "The notion is the hull: each state for itself. Points inside the hull need not be reachable together.".into(),
     ];
+    if outer {
+        not_proved.push("The model is not linear: its reachable set was computed as an outer enclosure, which is what a formal analysis uses. A recording in it need not be a behaviour of the model itself.".into());
+    }
+    let end = |lost: &Lost| {
+        format!(
+            "{}: the reachable set could not be followed beyond {:.3} s ({}).",
+            lost.case, lost.time, lost.state
+        )
+    };
+    not_proved.extend(check.lost.iter().map(end));
     Verdict { ok: check.conformant, words, proved, not_proved }
 }
 
@@ -119,10 +129,19 @@ fn facts(model: &Model) -> Vec<(String, String)> {
     let settings = &model.settings;
     let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
     let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
+    let number = |value: Option<f64>| value.map_or_else(|| "none".into(), |value| format!("{value:.6}"));
+    let cost = match (model.cost_lower_bound, model.search.as_ref().and_then(|search| search.linearised_cost))
+    {
+        (Some(bound), _) => format!("{} (lower bound {bound:.6})", number(model.cost)),
+        (None, Some(linearised)) => format!("{} (linearised {linearised:.6})", number(model.cost)),
+        (None, None) => number(model.cost),
+    };
+    let volume = model.hull_volume.map_or_else(|| "none".into(), |volume| format!("{volume:.4e}"));
     [
-        ("Cost", format!("{:.6} (lower bound {:.6})", model.cost, model.cost_lower_bound)),
-        ("The paper's sum (21)", format!("{:.6}", model.cost_paper)),
-        ("Volume of the hull, eq. (2)", format!("{:.4e}", model.hull_volume)),
+        ("Cost", cost),
+        ("The paper's sum (21)", number(model.cost_paper)),
+        ("Volume of the hull, eq. (2)", volume),
+        ("Sets found by", word(settings.method)),
         ("Notion of conformance", word(settings.notion)),
         ("Disturbance", word(settings.disturbance)),
         ("Centres of the sets", word(settings.centre)),

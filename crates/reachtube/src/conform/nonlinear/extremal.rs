@@ -71,9 +71,9 @@ fn at_node(
     node: &Node,
 ) -> (Vec<f64>, bool) {
     let (n, states) = (case.joints(), 2 * case.joints());
-    let places: Vec<(usize, Side)> =
-        (0..states).flat_map(|i| [(i, Side::Upper), (i, Side::Lower)]).collect();
-    let motions: Vec<_> = places.iter().map(|&(i, side)| extremal(model, case, sets, node, i, side)).collect();
+    let places: Vec<(usize, Side)> = (0..states).flat_map(|i| [(i, Side::Upper), (i, Side::Lower)]).collect();
+    let motions: Vec<_> =
+        places.iter().map(|&(i, side)| extremal(model, case, sets, node, i, side)).collect();
     let runs: Vec<Run> = motions.iter().map(|(start, inputs)| Run { start, inputs }).collect();
     let radii: Vec<f64> = sets.initial_set.radius.iter().chain(&sets.input_set.radius).copied().collect();
     let mut further = vec![0.0; places.len()];

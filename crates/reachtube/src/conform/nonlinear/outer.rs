@@ -6,7 +6,8 @@ use reachtube_scalar::rounding::{add_down, sub_up};
 
 use super::case::Case;
 use crate::conform::program::shares;
-use crate::conform::{Row, Side, States, UncertaintySets};
+use crate::conform::{Lost, Row, Side, States, UncertaintySets};
+use crate::data::state_name;
 use crate::error::Result;
 
 /// The flowpipe of each case under `sets`, on all cores.
@@ -18,11 +19,7 @@ use crate::error::Result;
 /// # Errors
 ///
 /// Where sizes do not fit.
-pub fn flowpipes(
-    system: &PolynomialSystem,
-    cases: &[Case],
-    sets: &UncertaintySets,
-) -> Result<Vec<Flowpipe>> {
+pub fn flowpipes(system: &PolynomialSystem, cases: &[Case], sets: &UncertaintySets) -> Result<Vec<Flowpipe>> {
     let follow = |case: &Case| {
         let input = UncertainInput { measured: &case.inputs, set: &sets.input_set };
         let settings = FlowpipeSettings::default();
@@ -32,10 +29,13 @@ pub fn flowpipes(
 }
 
 /// Where the reachable set of a case could not be followed further.
-pub fn lost(flowpipe: &Flowpipe) -> Option<(f64, usize)> {
+pub fn lost(case: &Case, flowpipe: &Flowpipe) -> Option<Lost> {
     match flowpipe.outcome() {
         FlowpipeOutcome::Reached => None,
-        FlowpipeOutcome::Failed { time, state, .. } => Some((*time, *state)),
+        FlowpipeOutcome::Failed { time, state, .. } => {
+            let (case, state) = (case.name.clone(), state_name(*state, case.joints()));
+            Some(Lost { case, time: *time, state })
+        }
     }
 }
 

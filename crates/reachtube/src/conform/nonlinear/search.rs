@@ -10,12 +10,14 @@ use serde::{Deserialize, Serialize};
 
 use super::case::Case;
 use super::extremal::Correction;
+use super::journal::Journal;
 use super::outer::{check_outer, flowpipes};
 use super::sensitivity::Sensitivity;
+use super::{Found, runs_away};
 use crate::abstraction::PolynomialModel;
 use crate::conform::program::{Block, Place, Program, Solution};
-use crate::conform::{Settings, Side, UncertaintySets};
-use crate::error::{Error, Result};
+use crate::conform::{Search as Record, Settings, Side, UncertaintySets};
+use crate::error::Result;
 
 /// Rounds of linearisation at most.
 const ROUNDS: usize = 20;
@@ -43,6 +45,8 @@ pub(super) struct Search<'a> {
 pub(super) struct Progress {
     /// Rounds done.
     pub rounds: usize,
+    /// How often the reachable sets were computed.
+    pub reachable_sets: usize,
     /// The sets after them.
     pub sets: UncertaintySets,
     /// By how much more than the recordings ask for the rows that were not enclosed must be reached.
@@ -59,14 +63,6 @@ pub(super) struct Margin {
     side: Side,
     /// rad or rad/s.
     margin: f64,
-}
-
-/// What a search came to.
-#[derive(Debug)]
-pub(super) struct Found {
-    pub progress: Progress,
-    pub round: Round,
-    pub flowpipes: Vec<Flowpipe>,
 }
 
 /// One linearisation, and what its program gave.
@@ -86,7 +82,7 @@ impl Progress {
     pub fn start(joints: usize) -> Self {
         let (initial_set, input_set) = (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
-        Self { rounds: 0, sets, margins: Vec::new() }
+        Self { rounds: 0, reachable_sets: 0, sets, margins: Vec::new() }
     }
 
     /// Margins of one row add up.
@@ -107,51 +103,62 @@ impl Margin {
 }
 
 impl Search<'_> {
-    /// Runs rounds until every row is enclosed, or no more can be done; `finished` is given the progress after each, and what it came to in words.
+    /// Runs rounds until every row is enclosed, or no more can be done; `finished` is told what each came to.
     ///
     /// # Errors
     ///
-    /// Where the model cannot be followed along a case, a program is not solved, or `finished` fails.
-    pub fn run(
-        &self,
-        mut progress: Progress,
-        finished: &mut dyn FnMut(&Progress, &str) -> Result<()>,
-    ) -> Result<Found> {
+    /// Where the model cannot be followed along a case, a program is not solved, or the journal cannot be written.
+    pub fn run(&self, journal: &Journal, finished: &dyn Fn(&str)) -> Result<Found> {
+        let mut progress: Progress = journal.load()?.unwrap_or_else(|| Progress::start(self.model.joints()));
         loop {
             let round = self.round(&progress)?;
             let change = change(&progress.sets, &round.solution.sets);
             progress.sets = round.solution.sets.clone();
             progress.rounds += 1;
-            let words = format!(
+            journal.save(&progress)?;
+            finished(&format!(
                 "round {}: the linearised sets cost {:.4}, radii and centres changed by {change:.1e}",
                 progress.rounds, round.cost
-            );
-            finished(&progress, &words)?;
+            ));
             let is_last = progress.rounds >= ROUNDS;
             if change > SETTLED && !is_last {
                 continue;
             }
+            progress.reachable_sets += 1;
             let flowpipes = flowpipes(self.system, self.cases, &progress.sets)?;
             let missing = self.missing(&flowpipes, &progress.sets);
             let is_lost = missing.iter().any(|margin| margin.margin.is_infinite());
             if missing.is_empty() || is_last || is_lost {
-                return Ok(Found { progress, round, flowpipes });
+                return Ok(self.found(&progress, round, flowpipes));
             }
-            let rows = missing.len();
+            finished(&format!("{} rows are not enclosed and are asked for with a margin", missing.len()));
             progress.add(missing);
-            finished(&progress, &format!("{rows} rows are not enclosed and are asked for with a margin"))?;
+            journal.save(&progress)?;
         }
     }
 
-    fn round(&self, progress: &Progress) -> Result<Round> {
+    fn found(&self, progress: &Progress, round: Round, flowpipes: Vec<Flowpipe>) -> Found {
+        let runs_away = round.runs_away.map(|(case, time)| (self.cases[case].name.clone(), time));
+        let (rounds, reachable_sets) = (progress.rounds, progress.reachable_sets);
+        let search = Record { rounds, reachable_sets, linearised_cost: Some(round.cost), runs_away };
+        Found { sets: round.solution.sets, flowpipes, deciding: round.tight, search }
+    }
+
+    /// Linearises, and solves the program.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn round(&self, progress: &Progress) -> Result<Round> {
         let sets = &progress.sets;
         let sensitivities = self.sensitivities(sets)?;
         let corrections = self.corrections(progress, &sensitivities);
         let ran_away = corrections.iter().enumerate();
         let runs_away = ran_away.filter_map(|(case, c)| c.runs_away.map(|time| (case, time))).next();
         let parts = self.cases.iter().zip(sensitivities).zip(&corrections);
-        let mut blocks: Vec<Block> =
-            parts.map(|((case, sensitivity), correction)| block(case, sensitivity, correction, sets)).collect();
+        let mut blocks: Vec<Block> = parts
+            .map(|((case, sensitivity), correction)| block(case, sensitivity, correction, sets))
+            .collect();
         for margin in &progress.margins {
             let envelope = &mut blocks[margin.case].envelope;
             envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
@@ -165,7 +172,7 @@ impl Search<'_> {
     fn sensitivities(&self, sets: &UncertaintySets) -> Result<Vec<Sensitivity>> {
         let of = |case: &Case| {
             Sensitivity::new(self.model, case, sets, self.settings.disturbance)
-                .map_err(|time| Error::RunsAway { case: case.name.clone(), time })
+                .map_err(|time| runs_away(case, time))
         };
         self.cases.par_iter().map(of).collect()
     }

@@ -1,13 +1,15 @@
 //! A model linearised along its motion: how far X0 and U move each state, to first order.
 
 use nalgebra::DMatrix;
-use reachtube_ode::{Ensemble, Run};
+use reachtube_ode::{Ensemble, Outcome, Run};
 use reachtube_reach::Disturbance;
 use reachtube_scalar::Lanes;
 
 use super::case::Case;
+use super::runs_away;
 use crate::abstraction::{Linearisation, ModelField, PolynomialModel};
 use crate::conform::UncertaintySets;
+use crate::error::Result;
 
 /// A Runge-Kutta step is so short that h |A| stays below this: its error is then below 1e-7 of the change.
 const STEP_NORM: f64 = 0.1;
@@ -42,26 +44,6 @@ pub(super) struct Node {
     pub input: Vec<f64>,
 }
 
-/// (q, q̇) of all samples up to which the model follows `inputs` from `start`; all of them unless it runs away.
-pub(super) fn simulate(
-    model: &PolynomialModel,
-    times: &[f64],
-    substeps: usize,
-    start: &[f64],
-    inputs: &[f64],
-) -> Vec<f64> {
-    let n = model.joints();
-    let start = model.state(&start[..n], &start[n..]);
-    let inputs = &inputs[..n * times.len().saturating_sub(1)];
-    let mut states = Vec::with_capacity(times.len() * 2 * n);
-    let run = [Run { start: &start, inputs }];
-    let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
-    let _ = ensemble.integrate(&mut ModelField::new(model), times, substeps, &run, |_, _, x| {
-        states.extend(&x[..2 * n]);
-    });
-    states
-}
-
 /// Beyond this |x| a motion has run away, rad or rad/s.
 pub(super) const BOUND: f64 = 1e4;
 
@@ -81,13 +63,8 @@ impl Sensitivity {
         let start = shifted(&case.start, &sets.initial_set.center);
         let inputs = shifted(&case.inputs, &sets.input_set.center);
         let mut linearisation = Linearisation::new(model);
-        let norm = linearisation.at(&start, &inputs[..n]).0.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
-        let substeps = (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize;
-        let nominal = simulate(model, times, substeps, &start, &inputs);
-        let reached = nominal.len() / (2 * n);
-        if reached < times.len() {
-            return Err(times[reached.saturating_sub(1)]);
-        }
+        let substeps = substeps(&mut linearisation, case, &start);
+        let nominal = simulate(model, times, substeps, &start, &inputs)?;
         let mut tracks = Tracks::new(n, times.len(), disturbance);
         let stride = times.len().div_ceil(NODES).max(1);
         let mut found = Self { nominal, substeps, coefficients: Vec::new(), nodes: Vec::new() };
@@ -110,6 +87,47 @@ impl Sensitivity {
         let width = 3 * joints;
         let start = (k * 2 * joints + i) * 2 * width;
         self.coefficients[start..start + 2 * width].split_at(width)
+    }
+}
+
+/// The motion of a model along a case from its start under its inputs, samples x 2n, without any uncertainty. Unrounded.
+///
+/// # Errors
+///
+/// [`Error::RunsAway`](crate::Error::RunsAway).
+pub(crate) fn nominal(model: &PolynomialModel, case: &Case) -> Result<Vec<f64>> {
+    let substeps = substeps(&mut Linearisation::new(model), case, &case.start);
+    simulate(model, case.grid.times(), substeps, &case.start, &case.inputs)
+        .map_err(|time| runs_away(case, time))
+}
+
+fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> usize {
+    let rest = vec![0.0; case.joints()];
+    let (a, _) = linearisation.at(start, case.inputs.get(..case.joints()).unwrap_or(&rest));
+    let norm = a.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
+    (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
+}
+
+/// (q, q̇) of all samples under `inputs` from `start`; the time, s, up to which the model could be followed where it runs away.
+fn simulate(
+    model: &PolynomialModel,
+    times: &[f64],
+    substeps: usize,
+    start: &[f64],
+    inputs: &[f64],
+) -> Result<Vec<f64>, f64> {
+    let n = model.joints();
+    let start = model.state(&start[..n], &start[n..]);
+    let inputs = &inputs[..n * times.len().saturating_sub(1)];
+    let mut states = Vec::with_capacity(times.len() * 2 * n);
+    let run = [Run { start: &start, inputs }];
+    let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
+    let outcomes = ensemble.integrate(&mut ModelField::new(model), times, substeps, &run, |_, _, x| {
+        states.extend(&x[..2 * n]);
+    });
+    match outcomes[0] {
+        Outcome::Reached => Ok(states),
+        Outcome::Diverged { time, .. } => Err(time),
     }
 }
 
