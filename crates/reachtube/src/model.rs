@@ -287,6 +287,9 @@ impl Model {
         if point.q.len() != n || point.qd.len() != n {
             return Err(format!("its expansion point is not one of {n} joints; run conform again"));
         }
+        if self.settings.operating_box.as_ref().is_some_and(|operating_box| !operating_box.is_of(n)) {
+            return Err(format!("its operating box is not one of {n} joints; run conform again"));
+        }
         self.settings.validate(n).map_err(|error| error.to_string())?;
         self.check_parts()
     }

@@ -53,11 +53,7 @@ fn robot_and_settings(args: &ConformArgs) -> Result<(Robot, Settings)> {
         return Ok((robot, settings));
     };
     let model = PolynomialModel::load(path)?;
-    let settings = Settings {
-        abstraction: Abstraction { model: model.kind(), order: model.order() },
-        expansion_point: model.expansion_point().clone(),
-        ..settings(args, model.joints())?
-    };
+    let settings = settings(args, model.joints())?.with_abstraction(&model)?;
     Ok((Robot::from_description(model.robot())?, settings))
 }
 

@@ -57,7 +57,7 @@ impl OperatingBox {
         all.map(|[low, high]| Interval::point(*low).hull(Interval::point(*high))).collect()
     }
 
-    pub(super) fn is_of(&self, n: usize) -> bool {
+    pub(crate) fn is_of(&self, n: usize) -> bool {
         let is = |sides: &[[f64; 2]]| {
             sides.len() == n
                 && sides.iter().all(|[low, high]| low <= high && low.is_finite() && high.is_finite())

@@ -11,7 +11,7 @@ use super::program::{Block, Program};
 use super::proof::{Checked, Enclosure, Proof, TightRow};
 use super::recordings::{Progress, Recordings};
 use super::verify::check_rows;
-use super::{Dynamics, Envelope, Settings, Trust, UncertaintySets, Weights, nonlinear};
+use super::{Dynamics, Envelope, Settings, Trust, UncertaintySets, Weights, nonlinear, within_box};
 use crate::data::DataSet;
 use crate::error::Result;
 
@@ -98,7 +98,9 @@ pub fn conform(
 ) -> Result<Conformance> {
     settings.validate(robot.joint_count())?;
     let dynamics = Dynamics::new(robot, settings)?;
-    let recordings = Recordings::read(data, names, robot, settings, watch.reading)?;
+    let mut recordings = Recordings::read(data, names, robot, settings, watch.reading)?;
+    within_box::check_starts(data, settings, &recordings)?;
+    recordings.notes.extend(within_box::notes(settings, &recordings));
     match dynamics {
         Dynamics::Linear(system) => linear(robot, data, settings, system, recordings),
         Dynamics::Polynomial(model) => nonlinear::conform(robot, data, settings, *model, recordings, watch),

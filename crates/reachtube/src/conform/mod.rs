@@ -15,6 +15,7 @@ mod settings;
 mod solver;
 mod trust;
 mod verify;
+mod within_box;
 
 pub use check::{Check, Place, SuiteCheck, Violations, check};
 pub use deviation::{Deviation, Grid, Grids, RunNominal, nominals, suite_deviations};

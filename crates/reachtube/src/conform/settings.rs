@@ -1,7 +1,7 @@
 use reachtube_reach::Disturbance;
 use serde::{Deserialize, Serialize};
 
-use crate::abstraction::{Abstraction, ExpansionPoint};
+use crate::abstraction::{Abstraction, ExpansionPoint, OperatingBox, PolynomialModel, Remainder};
 use crate::data::{GapLimit, Torque};
 use crate::error::{Error, Result};
 
@@ -107,6 +107,9 @@ pub struct Settings {
     pub abstraction: Abstraction,
     /// Where the model is expanded.
     pub expansion_point: ExpansionPoint,
+    /// The box over which what the model leaves out was bounded, where that was done; recordings must start in it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operating_box: Option<OperatingBox>,
     /// How the sets are found.
     #[serde(default)]
     pub method: Method,
@@ -139,6 +142,7 @@ impl Settings {
             torque,
             abstraction: Abstraction::default(),
             expansion_point: ExpansionPoint::zero(joints),
+            operating_box: None,
             method: Method::default(),
             notion: Notion::default(),
             disturbance: Disturbance::default(),
@@ -150,6 +154,27 @@ impl Settings {
             until: None,
             gap_limit: GapLimit::default(),
         }
+    }
+
+    /// Takes model, expansion point and operating box from an abstraction.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Setting`] where what the model leaves out was found to have no bound over its box.
+    pub fn with_abstraction(self, model: &PolynomialModel) -> Result<Self> {
+        let unbounded = |remainder: &Remainder| remainder.bounds.iter().position(Option::is_none);
+        if let Some(joint) = model.remainder().and_then(unbounded) {
+            return Err(Error::Setting(format!(
+                "what the model leaves out of the acceleration of joint {} has no bound over its box; give `abstract` a smaller --box or more --most-boxes, or no box at all",
+                joint + 1
+            )));
+        }
+        Ok(Self {
+            abstraction: Abstraction { model: model.kind(), order: model.order() },
+            expansion_point: model.expansion_point().clone(),
+            operating_box: model.remainder().map(|remainder| remainder.operating_box.clone()),
+            ..self
+        })
     }
 
     /// Checks sizes and signs for a robot of `joints` joints.
