@@ -308,14 +308,11 @@ fn flowpipes_of_the_models_hold_their_behaviours() {
         let (q, qd) = (numbers(&mut seed, 6, 0.2), numbers(&mut seed, 6, 0.3));
         let nominal = numbers(&mut seed, 6 * 25, 2.0);
         let (initial, disturbance) = (0.003, 0.2);
-        let mut radius = vec![initial; model.states()];
-        radius[12..].fill(1.01 * initial); // sin and cos of positions move no further than these
-        let center = vec![0.0; model.states()];
         let flowpipe = Flowpipe::new(
             &system,
             &TimeGrid::uniform(0.004, 26),
-            &model.state(&q, &qd),
-            &Hyperrectangle { center, radius },
+            &[q.clone(), qd.clone()].concat(),
+            &Hyperrectangle { center: vec![0.0; 12], radius: vec![initial; 12] },
             &UncertainInput {
                 measured: &nominal,
                 set: &Hyperrectangle { center: vec![0.0; 6], radius: vec![disturbance; 6] },

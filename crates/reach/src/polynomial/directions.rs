@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
+use super::angles::Angles;
 use super::shift::ShiftedPolynomial;
 
 /// How far the coefficients of a monomial may be from a multiple of a direction, relative to the largest: rounding of products of a few factors,
 /// far below any real difference.
 const PARALLEL: f64 = 1e-12;
 
-/// A part of f that is a fixed vector times a polynomial in (x, u).
+/// A part of f that is a fixed vector times a polynomial in (x, u, sin, cos).
 #[derive(Debug, Clone)]
 pub(super) struct Direction {
     /// N entries, the largest 1.
@@ -28,10 +29,11 @@ type Columns = BTreeMap<Vec<u8>, Vec<Interval>>;
 /// # Guarantee
 ///
 /// Rows and directions together enclose f as it was.
-pub(super) fn directions(variables: usize, terms: &mut [Vec<TaylorTerm<Interval>>]) -> Vec<Direction> {
+pub(super) fn directions(angles: &Angles, terms: &mut [Vec<TaylorTerm<Interval>>]) -> Vec<Direction> {
     let states = terms.len();
     let columns = columns(terms);
-    let nonlinear = columns.iter().filter(|(m, c)| degree(m) >= 2 && entries(c) >= 2);
+    let is_nonlinear = |m: &[u8]| degree(m) >= 2 || degree(&m[angles.plain..]) > 0;
+    let nonlinear = columns.iter().filter(|(m, c)| is_nonlinear(m) && entries(c) >= 2);
     let mut found: Vec<Vec<f64>> = Vec::new();
     for (_, column) in nonlinear {
         let unit = unit(column);
@@ -45,8 +47,8 @@ pub(super) fn directions(variables: usize, terms: &mut [Vec<TaylorTerm<Interval>
     let mut parts: Vec<Vec<TaylorTerm<Interval>>> = vec![Vec::new(); found.len()];
     let mut rest = vec![Vec::new(); states];
     for (exponents, column) in columns {
-        let is_input = degree(&exponents) == 1 && exponents[states..].iter().any(|e| *e > 0);
-        let along = if degree(&exponents) >= 2 || is_input { factor(&column, &found) } else { None };
+        let is_input = degree(&exponents) == 1 && exponents[states..angles.plain].iter().any(|e| *e > 0);
+        let along = if is_nonlinear(&exponents) || is_input { factor(&column, &found) } else { None };
         if let Some((at, factor)) = along {
             parts[at].push(TaylorTerm { exponents: exponents.clone(), coefficient: Interval::point(factor) });
         }
@@ -62,7 +64,7 @@ pub(super) fn directions(variables: usize, terms: &mut [Vec<TaylorTerm<Interval>
     terms.iter_mut().zip(rest).for_each(|(terms, rest)| *terms = rest);
     let direction = |(column, terms): (Vec<f64>, Vec<_>)| Direction {
         column,
-        polynomial: ShiftedPolynomial::new(variables, &terms),
+        polynomial: ShiftedPolynomial::new(angles, &terms),
         terms,
     };
     found.into_iter().zip(parts).map(direction).collect()

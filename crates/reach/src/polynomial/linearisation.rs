@@ -3,6 +3,7 @@
 use reachtube_scalar::Interval;
 
 use super::PolynomialSystem;
+use super::angles::sine_slope;
 use super::rounded::{Square, raised};
 use super::shift::{PowerTable, Shift};
 
@@ -12,8 +13,12 @@ pub(super) struct Linearisation<'a> {
     pub system: &'a PolynomialSystem,
     /// (x*, u*).
     point: Vec<f64>,
+    /// (x*, u*) and the turns of the angles, as the shifts take them.
+    factors: Vec<Interval>,
     /// How far (x, u) is from there, about.
     radius: Vec<f64>,
+    /// The slopes of the lines of the angles' sines.
+    lines: Vec<f64>,
     /// f*.
     pub rate: Vec<Interval>,
     pub a: Square,
@@ -36,7 +41,9 @@ impl<'a> Linearisation<'a> {
         Self {
             system,
             point: vec![0.0; n + m],
+            factors: system.angles.factors(),
             radius: vec![0.0; n + m],
+            lines: vec![0.0; system.angles.states.len()],
             rate: vec![Interval::ZERO; n],
             a: Square::zero(n),
             b: vec![0.0; n * m],
@@ -77,6 +84,11 @@ impl<'a> Linearisation<'a> {
             self.radius[n + j] = u.rad();
             self.powers.set(n + j, *u - u.mid());
         }
+        self.factors.iter_mut().zip(&self.point).for_each(|(factor, z)| *factor = Interval::point(*z));
+        for (i, &state) in self.system.angles.states.iter().enumerate() {
+            self.system.angles.turn(i, self.point[state], &mut self.factors);
+            self.lines[i] = sine_slope(radius[state]);
+        }
         self.gradient.fill(Interval::ZERO);
         self.differentiate_rows();
         self.differentiate_directions();
@@ -84,25 +96,31 @@ impl<'a> Linearisation<'a> {
     }
 
     fn differentiate_rows(&mut self) {
-        let variables = self.point.len();
+        let (variables, angles) = (self.point.len(), &self.system.angles);
         for (i, (row, shift)) in self.system.rows.iter().zip(&mut self.rows).enumerate() {
-            row.shift(&self.point, &self.radius, shift);
+            row.shift(&self.factors, &self.radius, shift);
             self.rate[i] = row.constant(shift);
-            row.gradient(shift).for_each(|(z, slope)| self.gradient[i * variables + z] += slope);
+            for (z, slope) in row.gradient(shift) {
+                let (z, slope) = angles.along_line(z, slope, &self.lines);
+                self.gradient[i * variables + z] += slope;
+            }
         }
     }
 
     fn differentiate_directions(&mut self) {
-        let (n, variables) = (self.system.states(), self.point.len());
+        let (n, variables, angles) = (self.system.states(), self.point.len(), &self.system.angles);
         for (g, (direction, shift)) in self.system.directions.iter().zip(&mut self.directions).enumerate() {
-            direction.polynomial.shift(&self.point, &self.radius, shift);
+            direction.polynomial.shift(&self.factors, &self.radius, shift);
             let is_carried = |z: usize| {
                 z >= n && self.system.carriers[z - n].is_some_and(|carrier| carrier.direction == g)
             };
             for (i, &entry) in direction.column.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
                 self.rate[i] += direction.polynomial.constant(shift) * entry;
-                let slopes = direction.polynomial.gradient(shift).filter(|(z, _)| !is_carried(*z));
-                slopes.for_each(|(z, slope)| self.gradient[i * variables + z] += slope * entry);
+                let slopes = direction.polynomial.gradient(shift);
+                let slopes = slopes.map(|(z, slope)| angles.along_line(z, slope, &self.lines));
+                for (z, slope) in slopes.filter(|(z, _)| !is_carried(*z)) {
+                    self.gradient[i * variables + z] += slope * entry;
+                }
             }
         }
     }
@@ -132,6 +150,9 @@ impl<'a> Linearisation<'a> {
     pub fn remainder(&mut self, tube: &[Interval], out: &mut [Interval]) {
         let (n, variables) = (tube.len(), self.point.len());
         tube.iter().enumerate().for_each(|(i, side)| self.powers.set(i, *side));
+        for (i, (&state, line)) in self.system.angles.states.iter().zip(&self.lines).enumerate() {
+            self.powers.set_angle(variables + i, tube[state], *line);
+        }
         let (rows, directions) = out.split_at_mut(n);
         for (i, out) in rows.iter_mut().enumerate() {
             let defect = &self.defect[i * variables..(i + 1) * variables];

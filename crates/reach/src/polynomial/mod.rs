@@ -1,5 +1,6 @@
 //! Reachable sets of polynomial systems with uncertain input.
 
+mod angles;
 mod directions;
 mod exponential;
 mod flowpipe;

@@ -1,15 +1,18 @@
-//! A polynomial about a point that changes from step to step: p(z + d) = Σ c_α dᵅ, exact and finite.
+//! A polynomial about a point that changes from step to step: p(z + d) = Σ c_α dᵅ, exact and finite. An angle has its φ_l (see
+//! [`angles`](super::angles)) in place of the powers of d.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
+use super::angles::{Angles, sine_defect, versed};
 use super::univariate::Univariate;
 
 /// A polynomial prepared for being shifted and bounded again and again without allocation.
 #[derive(Debug, Clone)]
 pub(super) struct ShiftedPolynomial {
-    /// Coefficients about 0, of a set of monomials that holds every divisor of a member, by degree: the constant is first.
+    /// Coefficients: first those about the point, still zero, of a set of monomials that holds every divisor of a member, by degree, the
+    /// constant first; then those of the terms with sines and cosines, which become the former angle after angle.
     start: Vec<Interval>,
     operations: Vec<Operation>,
     /// Monomials of degree 1: the variable and the place.
@@ -18,15 +21,17 @@ pub(super) struct ShiftedPolynomial {
     nodes: Vec<Node>,
     /// Place of the first monomial of degree 2.
     first_node: usize,
+    /// Variables that are no angles.
+    plain: usize,
     univariate: Vec<Univariate>,
 }
 
-/// c\[to\] += z\[variable\] c\[to x_variable\]: one step of Horner's shift.
+/// c\[to\] += factors\[factor\] c\[from\]: one step of Horner's shift, or of the turn of an angle.
 #[derive(Debug, Clone, Copy)]
 struct Operation {
     to: u32,
     from: u32,
-    variable: u32,
+    factor: u32,
 }
 
 /// A monomial: the one at `parent` times a power of a variable.
@@ -49,34 +54,33 @@ pub(super) struct Shift {
 }
 
 impl ShiftedPolynomial {
-    pub fn new(variables: usize, terms: &[TaylorTerm<Interval>]) -> Self {
+    pub fn new(angles: &Angles, terms: &[TaylorTerm<Interval>]) -> Self {
+        let (plain, variables) = (angles.plain, angles.plain + angles.states.len());
+        let stages = stages(angles, terms);
         let mut monomials: BTreeSet<(u32, Vec<u8>)> = BTreeSet::from([(0, vec![0; variables])]);
-        for term in terms {
-            insert_divisors(&mut monomials, &term.exponents);
+        for monomial in &stages[stages.len() - 1].monomials {
+            insert_divisors(&mut monomials, &monomial[..variables]);
         }
         let place: BTreeMap<&[u8], usize> =
             monomials.iter().enumerate().map(|(at, (_, m))| (m.as_slice(), at)).collect();
-        let mut start = vec![Interval::ZERO; monomials.len()];
-        for term in terms {
-            start[place[term.exponents.as_slice()]] += term.coefficient;
-        }
+        let (start, mut operations) = turns(angles, &stages, &place, terms);
+        operations.extend(shifts(plain, &monomials, &place));
         let linear = monomials.iter().enumerate().filter(|(_, (degree, _))| *degree == 1);
         let linear: Vec<_> = linear.map(|(at, (_, m))| (first_variable(m), at)).collect();
         let node = |m: &Vec<u8>| {
             let variable = first_variable(m);
             let parent = place[with(m, variable, 0).as_slice()] as u32;
             let exponent = u32::from(m[variable]);
-            Node { parent, variable: variable as u32, exponent, is_power: parent == 0 }
+            Node { parent, variable: variable as u32, exponent, is_power: parent == 0 && variable < plain }
         };
-        let univariate = (0..variables).filter_map(|variable| Univariate::of(variable, &place)).collect();
+        let univariate = (0..plain).filter_map(|variable| Univariate::of(variable, &place)).collect();
         let nodes = monomials.iter().filter(|(degree, _)| *degree >= 2).map(|(_, m)| node(m)).collect();
-        let operations = operations(variables, &monomials, &place);
-        Self { first_node: 1 + linear.len(), start, operations, linear, nodes, univariate }
+        Self { first_node: 1 + linear.len(), plain, start, operations, linear, nodes, univariate }
     }
 
     /// Scratch memory for this polynomial.
     pub fn workspace(&self) -> Shift {
-        let values = vec![Interval::ZERO; self.start.len()];
+        let values = vec![Interval::ZERO; self.first_node + self.nodes.len()];
         Shift { coefficients: self.start.clone(), values, slopes: vec![0.0; self.univariate.len()] }
     }
 
@@ -88,19 +92,19 @@ impl ShiftedPolynomial {
         }
     }
 
-    /// About the point z; with slopes for offsets of about `radius`.
+    /// About the point that the factors are of: its plain variables, and what its angles turn by; with slopes for offsets of about `radius`.
     ///
     /// # Guarantee
     ///
     /// Each coefficient encloses the exact one.
-    pub fn shift(&self, z: &[f64], radius: &[f64], work: &mut Shift) {
+    pub fn shift(&self, factors: &[Interval], radius: &[f64], work: &mut Shift) {
         work.coefficients.copy_from_slice(&self.start);
         let c = &mut work.coefficients;
         for op in &self.operations {
-            let z = z[op.variable as usize];
-            if z != 0.0 {
+            let factor = factors[op.factor as usize];
+            if factor != Interval::ZERO {
                 let higher = c[op.from as usize];
-                c[op.to as usize] += higher * z;
+                c[op.to as usize] += higher * factor;
             }
         }
         for (slope, powers) in work.slopes.iter_mut().zip(&self.univariate) {
@@ -113,14 +117,15 @@ impl ShiftedPolynomial {
         work.coefficients[0]
     }
 
-    /// The derivatives at the present point and the slopes: variables and what is to be added up for each.
+    /// The derivatives at the present point and the slopes: variables, φ₁ that of an angle, and what is to be added up for each.
     pub fn gradient<'a>(&'a self, work: &'a Shift) -> impl Iterator<Item = (usize, Interval)> + 'a {
         let derivatives = self.linear.iter().map(|&(variable, at)| (variable, work.coefficients[at]));
         let slopes = self.univariate.iter().zip(&work.slopes);
         derivatives.chain(slopes.map(|(powers, slope)| (powers.variable, Interval::point(*slope))))
     }
 
-    /// The sum of all terms of degree 2 and above, less the slopes, over a box, given by the powers of its sides.
+    /// The sum of all terms of degree 2 and above, less the slopes, over a box, given by the powers of its sides; with what sines differ from
+    /// their lines.
     ///
     /// # Guarantee
     ///
@@ -132,6 +137,9 @@ impl ShiftedPolynomial {
             values[at] = powers.get(variable, 1);
         }
         let mut sum = Interval::ZERO;
+        for &(variable, at) in self.linear.iter().filter(|(variable, _)| *variable >= self.plain) {
+            sum += coefficients[at] * powers.defect(variable);
+        }
         for (at, node) in (self.first_node..).zip(&self.nodes) {
             let power = powers.get(node.variable as usize, node.exponent);
             values[at] = if node.parent == 0 { power } else { values[node.parent as usize] * power };
@@ -165,21 +173,81 @@ fn first_variable(monomial: &[u8]) -> usize {
     monomial.iter().position(|e| *e > 0).expect("not a constant")
 }
 
+/// The monomials before an angle is turned, each with its place among all coefficients; none is turned after the last.
+struct Stage {
+    monomials: BTreeSet<Vec<u8>>,
+    angle: Option<usize>,
+}
+
+/// The monomials of the terms, and what they become as angle after angle is turned: the place of its sine then has the l of φ_l.
+fn stages(angles: &Angles, terms: &[TaylorTerm<Interval>]) -> Vec<Stage> {
+    let mut stages = Vec::new();
+    let mut monomials: BTreeSet<Vec<u8>> = terms.iter().map(|term| term.exponents.clone()).collect();
+    for i in 0..angles.states.len() {
+        if monomials.iter().any(|m| angles.exponents(m, i) != [0; 2]) {
+            let turned = monomials.iter().flat_map(|m| turned(angles, i, m)).collect();
+            stages.push(Stage { monomials, angle: Some(i) });
+            monomials = turned;
+        }
+    }
+    stages.push(Stage { monomials, angle: None });
+    stages
+}
+
+/// What a monomial becomes when angle i is turned: its terms in φ₀, φ₁, ...
+fn turned(angles: &Angles, i: usize, monomial: &[u8]) -> impl Iterator<Item = Vec<u8>> {
+    let ([sine, cosine], [a, b]) = (angles.places(i), angles.exponents(monomial, i));
+    let monomial = with(monomial, cosine, 0);
+    (0..=2 * (a + b)).map(move |l| with(&monomial, sine, l))
+}
+
+/// The coefficients to begin with, and the operations that turn one angle after the other, ending at `place`.
+fn turns(
+    angles: &Angles,
+    stages: &[Stage],
+    place: &BTreeMap<&[u8], usize>,
+    terms: &[TaylorTerm<Interval>],
+) -> (Vec<Interval>, Vec<Operation>) {
+    let variables = angles.plain + angles.states.len();
+    let (mut count, mut operations) = (place.len(), Vec::new());
+    let mut places: Vec<BTreeMap<&[u8], usize>> = Vec::new();
+    for stage in &stages[..stages.len() - 1] {
+        places.push(stage.monomials.iter().zip(count..).map(|(m, at)| (m.as_slice(), at)).collect());
+        count += stage.monomials.len();
+    }
+    let at = |stage: usize, m: &[u8]| places.get(stage).map_or_else(|| place[&m[..variables]], |own| own[m]);
+    for (number, stage) in stages.iter().enumerate() {
+        let Some(i) = stage.angle else { break };
+        for monomial in &stage.monomials {
+            let exponents = angles.exponents(monomial, i);
+            for (l, next) in turned(angles, i, monomial).enumerate() {
+                let (to, from) = (at(number + 1, &next) as u32, at(number, monomial) as u32);
+                operations.push(Operation { to, from, factor: angles.factor(i, exponents, l) as u32 });
+            }
+        }
+    }
+    let mut start = vec![Interval::ZERO; count];
+    for term in terms {
+        start[at(0, &term.exponents)] += term.coefficient;
+    }
+    (start, operations)
+}
+
 /// Horner's shift, variable after variable, chain after chain of monomials that differ in that variable alone.
-fn operations(
-    variables: usize,
+fn shifts(
+    plain: usize,
     monomials: &BTreeSet<(u32, Vec<u8>)>,
     place: &BTreeMap<&[u8], usize>,
 ) -> Vec<Operation> {
     let mut operations = Vec::new();
-    for variable in 0..variables {
+    for variable in 0..plain {
         let ends = |m: &Vec<u8>| !place.contains_key(with(m, variable, m[variable] + 1).as_slice());
         for (_, m) in monomials.iter().filter(|(_, m)| m[variable] > 0 && ends(m)) {
             let at = |exponent: u8| place[with(m, variable, exponent).as_slice()] as u32;
             for lowest in 0..m[variable] {
                 for exponent in (lowest..m[variable]).rev() {
                     let (to, from) = (at(exponent), at(exponent + 1));
-                    operations.push(Operation { to, from, variable: variable as u32 });
+                    operations.push(Operation { to, from, factor: variable as u32 });
                 }
             }
         }
@@ -187,11 +255,12 @@ fn operations(
     operations
 }
 
-/// The powers of the sides of a box; even ones are not negative.
+/// The powers of the sides of a box, even ones not negative; for an angle its φ_l, and sin d less its line.
 #[derive(Debug, Clone)]
 pub(super) struct PowerTable {
     starts: Vec<usize>,
     powers: Vec<Interval>,
+    defects: Vec<Interval>,
 }
 
 impl PowerTable {
@@ -201,13 +270,28 @@ impl PowerTable {
         for highest in highest {
             starts.push(starts[starts.len() - 1] + (*highest).max(1) as usize);
         }
-        Self { powers: vec![Interval::ZERO; starts[highest.len()]], starts }
+        let powers = vec![Interval::ZERO; starts[highest.len()]];
+        Self { starts, powers, defects: vec![Interval::ZERO; highest.len()] }
     }
 
     /// Of variable i over `side`.
     pub fn set(&mut self, i: usize, side: Interval) {
         let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
         own.iter_mut().zip(1..).for_each(|(power, exponent)| *power = side.powi(exponent));
+    }
+
+    /// Of angle variable i over `side`, whose sine has a line of that slope.
+    pub fn set_angle(&mut self, i: usize, side: Interval, slope: f64) {
+        let (sine, versine) = versed(side);
+        let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
+        for (phi, l) in own.iter_mut().zip(1..) {
+            *phi = versine.powi(l / 2) * if l % 2 == 0 { Interval::ONE } else { sine };
+        }
+        self.defects[i] = sine_defect(side, slope);
+    }
+
+    fn defect(&self, i: usize) -> Interval {
+        self.defects[i]
     }
 
     fn get(&self, i: usize, exponent: u32) -> Interval {
@@ -234,9 +318,9 @@ mod tests {
             terms in terms(), z in [-2.0..2.0_f64, -2.0..2.0, -2.0..2.0], d in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0],
         ) {
             let space = TaylorSpace::new(3, 12).unwrap();
-            let shifted = ShiftedPolynomial::new(3, &terms);
+            let shifted = ShiftedPolynomial::new(&Angles::new(3, &[], terms.iter()), &terms);
             let mut work = shifted.workspace();
-            shifted.shift(&z, &[0.5; 3], &mut work);
+            shifted.shift(&z.map(Interval::point), &[0.5; 3], &mut work);
             let exact = TaylorPolynomial::from_terms(&space, terms).shifted(&z.map(Interval::point));
             prop_assert!(exact.constant_term().intersection(shifted.constant(&work)).is_some());
             let mut highest = [0; 3];
@@ -253,11 +337,11 @@ mod tests {
     #[test]
     fn a_square_is_not_negative() {
         let square = TaylorTerm { exponents: vec![2], coefficient: Interval::ONE };
-        let shifted = ShiftedPolynomial::new(1, &[square]);
+        let shifted = ShiftedPolynomial::new(&Angles::new(1, &[], [].iter()), &[square]);
         let mut powers = PowerTable::new(&[2]);
         powers.set(0, Interval::new(-1.0, 1.0).unwrap());
         let mut work = shifted.workspace();
-        shifted.shift(&[3.0], &[1.0], &mut work);
+        shifted.shift(&[Interval::point(3.0)], &[1.0], &mut work);
         let range = shifted.remainder(&powers, &mut work);
         assert!(range.lo() == 0.0 && (1.0..1.0 + 1e-12).contains(&range.hi()));
     }

@@ -1,10 +1,11 @@
 use reachtube_scalar::{Interval, TaylorPolynomial, TaylorTerm};
 
+use super::angles::Angles;
 use super::directions::{Direction, directions};
 use super::shift::ShiftedPolynomial;
 use crate::ReachError;
 
-/// The polynomial system ẋ = f(x, u) with N states x and m inputs u.
+/// The polynomial system ẋ = f(x, u) with N states x and m inputs u; polynomials may be in sines and cosines of states too.
 ///
 /// Coefficients are intervals: a system whose coefficients are known to an ulp only is enclosed with all systems within. Points are
 /// exact numbers ([`Interval::point`]).
@@ -32,7 +33,8 @@ pub struct PolynomialSystem {
     pub(super) directions: Vec<Direction>,
     /// For each input, the direction that carries it, and the factor.
     pub(super) carriers: Vec<Option<Carrier>>,
-    /// The highest exponent of each of the N + m variables.
+    pub(super) angles: Angles,
+    /// The highest exponent of each of the N + m variables, and the highest φ_l of each angle.
     pub(super) highest: Vec<u32>,
 }
 
@@ -58,7 +60,44 @@ impl PolynomialSystem {
         inputs: usize,
         components: &[TaylorPolynomial<Interval>],
     ) -> Result<Self, ReachError> {
-        let variables = states + inputs;
+        Self::trigonometric(states, inputs, &[], components)
+    }
+
+    /// The system with the given components, N polynomials in (x, u, s, c): the states, the inputs, then s_i = sin x_j and then c_i = cos x_j for each state j
+    /// of `angles` (rad).
+    ///
+    /// The sets stay on the circle: s and c are no states but functions of them, and are bounded as such.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); [`ReachError::Shape`] for an angle that is no state.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput};
+    /// use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
+    ///
+    /// // A pendulum, q̈ = -sin q; the variables are q, q̇, sin q and cos q.
+    /// let space = TaylorSpace::new(4, 2).unwrap();
+    /// let [_, velocity, sine, _] = [0, 1, 2, 3].map(|i| TaylorPolynomial::<Interval>::variable(&space, i));
+    /// let pendulum = PolynomialSystem::trigonometric(2, 0, &[0], &[velocity, -sine])?;
+    /// let (grid, at_rest) = (TimeGrid::uniform(0.01, 301), Hyperrectangle { center: vec![0.0; 2], radius: vec![0.01, 0.0] });
+    /// let input = UncertainInput { measured: &[], set: &Hyperrectangle::zero(0) };
+    /// let flowpipe = Flowpipe::new(&pendulum, &grid, &[1.0, 0.0], &at_rest, &input, &FlowpipeSettings::default())?;
+    /// // Its energy stays q̇²/2 - cos q = -cos 1 about.
+    /// let [q, velocity] = flowpipe.sample(300) else { unreachable!() };
+    /// let energy = velocity.sqr() * 0.5 - q.cos();
+    /// assert!(energy.contains(-1f64.cos()) && energy.width() < 0.1);
+    /// # Ok::<(), reachtube_reach::ReachError>(())
+    /// ```
+    pub fn trigonometric(
+        states: usize,
+        inputs: usize,
+        angles: &[usize],
+        components: &[TaylorPolynomial<Interval>],
+    ) -> Result<Self, ReachError> {
+        let variables = states + inputs + 2 * angles.len();
         let shape = |what, rows, found_rows| ReachError::Shape {
             what,
             rows,
@@ -66,6 +105,9 @@ impl PolynomialSystem {
             found_rows,
             found_columns: 1,
         };
+        if let Some(angle) = angles.iter().find(|angle| **angle >= states) {
+            return Err(shape("the state that an angle is, with all before it,", states, angle + 1));
+        }
         if components.len() != states {
             return Err(shape("the list of components of f", states, components.len()));
         }
@@ -76,18 +118,23 @@ impl PolynomialSystem {
             }
             terms.push(checked_terms(row, variables, component)?);
         }
-        Ok(Self::from_terms(states, inputs, terms))
+        let angles = Angles::new(states + inputs, angles, terms.iter().flatten());
+        Ok(Self::from_terms(states, inputs, angles, terms))
     }
 
-    fn from_terms(states: usize, inputs: usize, mut terms: Vec<Vec<TaylorTerm<Interval>>>) -> Self {
-        let variables = states + inputs;
-        let directions = directions(variables, &mut terms);
+    fn from_terms(
+        states: usize,
+        inputs: usize,
+        angles: Angles,
+        mut terms: Vec<Vec<TaylorTerm<Interval>>>,
+    ) -> Self {
+        let directions = directions(&angles, &mut terms);
         let carriers = (0..inputs).map(|j| carrier(states + j, &directions, &terms)).collect();
-        let rows: Vec<_> = terms.iter().map(|terms| ShiftedPolynomial::new(variables, terms)).collect();
-        let mut highest = vec![1; variables];
+        let rows: Vec<_> = terms.iter().map(|terms| ShiftedPolynomial::new(&angles, terms)).collect();
+        let mut highest = vec![1; angles.plain + angles.states.len()];
         rows.iter().for_each(|row| row.raise_exponents(&mut highest));
         directions.iter().for_each(|direction| direction.polynomial.raise_exponents(&mut highest));
-        Self { states, inputs, rows, directions, carriers, highest }
+        Self { states, inputs, rows, directions, carriers, angles, highest }
     }
 
     /// Number of states N.

@@ -48,16 +48,17 @@ fn a_linear_system_has_the_exact_hull_to_a_few_thousandths() {
     }
 }
 
-/// ẋ = f(x, u) over any lanes.
+/// ẋ = f(x, u), with the sines and cosines of the first states as further variables, over any lanes.
 struct Field<'a, S> {
     map: &'a PolynomialMap,
+    angles: usize,
     ws: MapWorkspace<S>,
     at: Vec<S>,
 }
 
 impl<'a, S: Lanewise + Powers> Field<'a, S> {
-    fn new(map: &'a PolynomialMap) -> Self {
-        Self { map, ws: map.workspace(), at: Vec::new() }
+    fn new(map: &'a PolynomialMap, angles: usize) -> Self {
+        Self { map, angles, ws: map.workspace(), at: Vec::new() }
     }
 }
 
@@ -65,6 +66,8 @@ impl<S: Lanewise + Powers> VectorField<S> for Field<'_, S> {
     fn rate(&mut self, _: f64, x: &[S], u: &[S], dx: &mut [S]) {
         self.at.clear();
         self.at.extend(x.iter().chain(u).cloned());
+        self.at.extend(x[..self.angles].iter().map(|x| x.sin_cos().0));
+        self.at.extend(x[..self.angles].iter().map(|x| x.sin_cos().1));
         self.map.evaluate_into(&self.at, &mut self.ws, dx);
     }
 }
@@ -77,6 +80,8 @@ fn map(variables: usize, f: &[Polynomial]) -> PolynomialMap {
 /// Sets, a grid, and how they are sampled.
 struct Case {
     map: PolynomialMap,
+    /// The first states, whose sines and cosines f has.
+    angles: usize,
     flowpipe: Flowpipe,
     start: Hyperrectangle,
     input: Hyperrectangle,
@@ -128,7 +133,8 @@ impl Case {
             }
         };
         let mut ensemble = Ensemble::<Lanes<8>>::new(n);
-        let outcomes = ensemble.integrate(&mut Field::new(&self.map), &times, self.substeps, &all, look);
+        let outcomes =
+            ensemble.integrate(&mut Field::new(&self.map, self.angles), &times, self.substeps, &all, look);
         assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
         let used =
             |(seen, side): (&Option<Interval>, &Interval)| seen.map_or(0.0, |x| x.width() / side.width());
@@ -153,7 +159,10 @@ fn random_polynomial(random: &mut Random, z: &[Polynomial]) -> Polynomial {
 fn random_case(seed: u64) -> Case {
     let mut random = Random::new(seed);
     let (n, m) = (1 + random.bits() as usize % 4, random.bits() as usize % 3);
-    let z = variables(n + m, 3);
+    // Every other system has sines and cosines.
+    let angles = if random.sign() > 0.0 { 0 } else { 1 + random.bits() as usize % n };
+    let variables_of_f = n + m + 2 * angles;
+    let z = variables(variables_of_f, 3);
     let mut f: Vec<Polynomial> = (0..n).map(|_| random_polynomial(&mut random, &z)).collect();
     if random.sign() > 0.0 {
         let shared = random_polynomial(&mut random, &z);
@@ -167,7 +176,7 @@ fn random_case(seed: u64) -> Case {
     };
     let (start, input) = (boxed(n, 0.5, 0.1), boxed(m, 1.0, 0.2));
     let step = 0.01 + 0.01 * f64::from(seed as u32 % 3);
-    let system = PolynomialSystem::new(n, m, &f).unwrap();
+    let system = PolynomialSystem::trigonometric(n, m, &(0..angles).collect::<Vec<_>>(), &f).unwrap();
     let settings = FlowpipeSettings {
         order: [None, Some(8)][seed as usize % 2],
         pieces: if seed.is_multiple_of(3) { vec![2; n] } else { vec![] },
@@ -176,7 +185,7 @@ fn random_case(seed: u64) -> Case {
     let uncertain = UncertainInput { measured: &vec![0.0; 12 * m], set: &input };
     let grid = TimeGrid::uniform(step, 13);
     let flowpipe = Flowpipe::new(&system, &grid, &vec![0.0; n], &start, &uncertain, &settings).unwrap();
-    Case { map: map(n + m, &f), flowpipe, start, input, step, parts: 2, substeps: 1 }
+    Case { map: map(variables_of_f, &f), angles, flowpipe, start, input, step, parts: 2, substeps: 1 }
 }
 
 #[test]
@@ -207,7 +216,8 @@ fn simulations_are_as_exact_as_is_assumed() {
             let mut end = corner.clone();
             let mut ensemble = Ensemble::<f64>::new(corner.len());
             let keep = |_: usize, _: usize, x: &[f64]| end.copy_from_slice(x);
-            let _ = ensemble.integrate(&mut Field::new(&case.map), &times, substeps, &[run], keep);
+            let _ =
+                ensemble.integrate(&mut Field::new(&case.map, case.angles), &times, substeps, &[run], keep);
             end
         };
         for (coarse, fine) in end(case.substeps).iter().zip(end(8 * case.substeps)) {
@@ -233,7 +243,7 @@ fn behaviours_of_the_cubic_arm_stay_within() {
         assert!(side.contains(highest) && side.hi() - highest < 1e-9 * side.width());
     }
     let map = map(18, &systems::cubic_arm_components(1.0));
-    let case = Case { map, flowpipe, start, input, step: 0.004, parts: 1, substeps: 1 };
+    let case = Case { map, angles: 0, flowpipe, start, input, step: 0.004, parts: 1, substeps: 1 };
     assert!(case.simulate(1000, 1) > 0.2);
 }
 
@@ -253,6 +263,7 @@ fn cubic_friction_at_the_papers_own_sets_is_followed_for_five_seconds() {
     }
     let case = Case {
         map: map(18, &lwa4p::components()),
+        angles: 0,
         flowpipe,
         start: initial,
         input: torque,
@@ -279,7 +290,7 @@ fn contain_ten_thousand(
     let flowpipe = Flowpipe::new(system, &grid, &zero, &start, &uncertain, &settings).unwrap();
     assert!(flowpipe.is_reached(), "{:?}", flowpipe.outcome());
     let map = map(start.dimension(), f);
-    let case = Case { map, flowpipe, start, input: none, step, parts: 1, substeps: 1 };
+    let case = Case { map, angles: 0, flowpipe, start, input: none, step, parts: 1, substeps: 1 };
     (0..10_u64).into_par_iter().for_each(|seed| assert!(case.simulate(1000, seed + 1) > 0.02));
     case.flowpipe
 }
@@ -303,6 +314,71 @@ fn laub_loomis_keeps_below_the_published_bounds() {
         let highest = (0..1000).map(|k| flowpipe.step(k)[3].hi()).fold(f64::MIN, f64::max);
         assert!(highest < bound, "W = {w}: x4 up to {highest}");
     }
+}
+
+/// q̈ = u - sin q - q̇/10 in (q, q̇, u, sin q, cos q).
+fn pendulum() -> Vec<Polynomial> {
+    let z = variables(5, 2);
+    vec![z[1].clone(), z[2].clone() - z[3].clone() - &z[1] * &constant(0.1)]
+}
+
+#[test]
+fn a_pendulum_that_turns_over_is_enclosed() {
+    let (f, grid) = (pendulum(), TimeGrid::uniform(0.01, 401));
+    let system = PolynomialSystem::trigonometric(2, 1, &[0], &f).unwrap();
+    let (start, input) = (set(&[0.0, 2.6], &[0.01, 0.01]), set(&[0.0], &[0.002]));
+    let uncertain = UncertainInput { measured: &vec![0.0; 400], set: &input };
+    let flowpipe =
+        Flowpipe::new(&system, &grid, &[0.0; 2], &start, &uncertain, &FlowpipeSettings::default()).unwrap();
+    assert!(flowpipe.is_reached());
+    let end = flowpipe.sample(400)[0];
+    assert!(end.lo() > std::f64::consts::PI && end.width() < 1.0, "{end:?}");
+    let case = Case { map: map(5, &f), angles: 1, flowpipe, start, input, step: 0.01, parts: 1, substeps: 1 };
+    assert!(case.simulate(10_000, 3) > 0.5);
+}
+
+/// Sine and cosine as states of their own are the same system.
+#[test]
+fn sines_as_functions_are_within_sines_as_states() {
+    let grid = TimeGrid::uniform(0.01, 101);
+    let own = PolynomialSystem::trigonometric(2, 1, &[0], &pendulum()).unwrap();
+    let z = variables(5, 2);
+    let f =
+        [z[1].clone(), z[4].clone() - z[2].clone() - &z[1] * &constant(0.1), &z[1] * &z[3], -(&z[1] * &z[2])];
+    let lifted = PolynomialSystem::new(4, 1, &f).unwrap();
+    let input = UncertainInput { measured: &vec![0.1; 100], set: &set(&[0.0], &[1e-3]) };
+    let follow = |system: &PolynomialSystem, start: &[f64], radius: &[f64]| {
+        let initial = set(&vec![0.0; start.len()], radius);
+        Flowpipe::new(system, &grid, start, &initial, &input, &FlowpipeSettings::default()).unwrap()
+    };
+    let (q, r) = (0.7_f64, 1e-3);
+    let functions = follow(&own, &[q, 0.5], &[r, r]);
+    let states = follow(&lifted, &[q, 0.5, q.sin(), q.cos()], &[r, r, r, r]);
+    assert!(functions.is_reached() && states.is_reached());
+    for k in 1..101 {
+        for (own, other) in functions.sample(k).iter().zip(states.sample(k)) {
+            assert!(
+                other.encloses(own) && own.width() > 0.3 * other.width(),
+                "sample {k}: {own:?} {other:?}"
+            );
+        }
+    }
+}
+
+/// Where the angle may be anything its sine is between -1 and 1: the sets grow no faster than that lets them.
+#[test]
+fn an_angle_that_may_be_anything_has_bounded_sets() {
+    let system = PolynomialSystem::trigonometric(2, 1, &[0], &pendulum()).unwrap();
+    let (grid, start) = (TimeGrid::uniform(0.01, 301), set(&[0.0; 2], &[4.0, 1.0]));
+    let input = UncertainInput { measured: &vec![0.0; 300], set: &set(&[0.0], &[0.0]) };
+    let flowpipe =
+        Flowpipe::new(&system, &grid, &[0.0; 2], &start, &input, &FlowpipeSettings::default()).unwrap();
+    assert!(flowpipe.is_reached());
+    let velocity = flowpipe.sample(300)[1];
+    let most = 1.0 + 3.0;
+    assert!(velocity.hi() > 1.0 && velocity.hi() < most, "{velocity:?}");
+    let beyond = PolynomialSystem::trigonometric(2, 1, &[2], &pendulum());
+    assert!(matches!(beyond, Err(ReachError::Shape { rows: 2, found_rows: 3, .. })));
 }
 
 #[test]

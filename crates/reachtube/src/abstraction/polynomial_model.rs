@@ -268,33 +268,33 @@ impl PolynomialModel {
         Ok(LinearSystem::new(a, b, drift)?)
     }
 
-    /// The model as a polynomial system of its states and inputs, whose reachable sets [`Flowpipe`](reachtube_reach::Flowpipe) encloses.
+    /// The model as a system whose reachable sets [`Flowpipe`](reachtube_reach::Flowpipe) encloses: the 2n states (q, q̇) for every model, in which
+    /// models 2 and 3 are polynomials of sines and cosines too; n inputs.
     ///
     /// # Guarantee
     ///
-    /// Outer: where polynomials in offsets are written in the states themselves, each coefficient encloses the exact one.
+    /// Outer: where polynomials in offsets are written in the variables themselves, each coefficient encloses the exact one.
     ///
     /// # Errors
     ///
     /// [`Error::Space`] where states, inputs and order together do not fit.
     pub fn polynomial_system(&self) -> Result<PolynomialSystem> {
-        let (n, states) = (self.layout.joints, self.states());
-        let space = TaylorSpace::new(states + n, self.degree().max(2))?;
-        let variable = |i| TaylorPolynomial::<Interval>::variable(&space, i);
-        // The variables are the states but q, then the inputs.
-        let places: Vec<usize> = (n..states + n).collect();
+        let (n, layout) = (self.layout.joints, self.layout);
+        // The model's variables but its inputs come after q, the inputs after q̇.
+        let place = |z: usize| match z {
+            z if z < n => n + z,
+            z if z >= layout.input(0) => 2 * n + z - layout.input(0),
+            z => 2 * n + z,
+        };
+        let places: Vec<usize> = (0..layout.variables()).map(place).collect();
+        let space = TaylorSpace::new(n + layout.variables(), self.degree().max(1))?;
         let offset: Vec<Interval> = self.origin.iter().map(|origin| Interval::point(-origin)).collect();
-        let mut components: Vec<_> = (0..n).map(|i| variable(n + i)).collect();
-        components.extend(
-            self.acceleration.iter().map(|f| {
-                f.map_coefficients(|c| Interval::point(*c)).shifted(&offset).embedded(&space, &places)
-            }),
-        );
-        if self.layout.trigonometric {
-            components.extend((0..n).map(|i| &variable(n + i) * &variable(3 * n + i)));
-            components.extend((0..n).map(|i| -(&variable(n + i) * &variable(2 * n + i))));
-        }
-        Ok(PolynomialSystem::new(states, n, &components)?)
+        let about_zero = |f: &TaylorPolynomial| f.map_coefficients(|c| Interval::point(*c)).shifted(&offset);
+        let velocities = (0..n).map(|i| TaylorPolynomial::variable(&space, n + i));
+        let accelerations = self.acceleration.iter().map(|f| about_zero(f).embedded(&space, &places));
+        let components: Vec<_> = velocities.chain(accelerations).collect();
+        let angles: Vec<usize> = (0..if layout.trigonometric { n } else { 0 }).collect();
+        Ok(PolynomialSystem::trigonometric(2 * n, n, &angles, &components)?)
     }
 
     fn not_linear(&self, joint: usize, names: &[String]) -> Error {
