@@ -95,3 +95,13 @@ fn tube(bencher: Bencher) {
     let nominal = propagation.solve(&IntervalVector::from_element(12, Interval::point(0.1)), &inputs);
     bencher.bench(|| Tube::new(black_box(&propagation), &nominal, &inputs, &reach, &input, &radii));
 }
+
+/// The model and its sets in, the hulls at all samples out.
+#[divan::bench]
+fn linear_reachable_set(bencher: Bencher) {
+    let (system, grid, (initial, input)) = (arm(), uniform(), sets());
+    bencher.bench(|| {
+        let propagation = Propagation::new(black_box(&system), black_box(&grid)).expect("a short horizon");
+        ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &input)
+    });
+}

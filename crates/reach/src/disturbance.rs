@@ -1,9 +1,7 @@
-use rayon::prelude::*;
-use reachtube_scalar::Interval;
 use serde::{Deserialize, Serialize};
 
 use crate::Propagation;
-use crate::matrix::{IntervalMatrix, absolute, product};
+use crate::matrix::{IntervalMatrix, absolute};
 use crate::variation::{measurable_gains, sample_gains_on_any_grid};
 
 /// How the disturbance of the input may change over time. It decides κ, the gain from the radius of the input set to the radius of the
@@ -32,31 +30,10 @@ impl Disturbance {
             Self::Constant => {
                 (0..propagation.grid().len()).map(|k| absolute(propagation.integral(k))).collect()
             }
-            Self::Sample if propagation.grid().step().is_some() => sample_gains(propagation),
+            // On a uniform grid the increments Γ((j+1)h) - Γ(jh) do not depend on k, and κ is their running sum.
+            Self::Sample if propagation.grid().step().is_some() => propagation.absolute_sums(),
             Self::Sample => sample_gains_on_any_grid(propagation),
             Self::Measurable => measurable_gains(propagation),
         }
     }
-}
-
-/// On a uniform grid the increments Γ((j+1)h) - Γ(jh) = e^{A jh} Γ(h) do not depend on k, and κ is their running sum.
-fn sample_gains(propagation: &Propagation) -> Vec<IntervalMatrix> {
-    let increment = |k: usize| absolute(&product(propagation.exponential(k), &propagation.step(k).gamma));
-    let increments: Vec<_> =
-        (1..propagation.grid().len()).into_par_iter().map(|k| increment(k - 1)).collect();
-    running_sum(propagation, &increments)
-}
-
-/// Σ_{j<k} of the increments, at every sample k.
-pub(crate) fn running_sum(propagation: &Propagation, increments: &[IntervalMatrix]) -> Vec<IntervalMatrix> {
-    let system = propagation.system();
-    let mut sum = IntervalMatrix::from_element(system.states(), system.inputs(), Interval::ZERO);
-    let mut gains = Vec::with_capacity(propagation.grid().len());
-    for k in 0..propagation.grid().len() {
-        if k > 0 {
-            sum += &increments[k - 1];
-        }
-        gains.push(sum.clone());
-    }
-    gains
 }

@@ -91,7 +91,7 @@ pub(crate) fn norm_upper(magnitudes: &DMatrix<f64>) -> f64 {
 }
 
 /// Which entries of some power of A can be non-zero: j can be reached from i through entries of A.
-fn connected(a: &DMatrix<f64>) -> DMatrix<bool> {
+pub(crate) fn connected(a: &DMatrix<f64>) -> DMatrix<bool> {
     let n = a.nrows();
     let mut linked = DMatrix::from_fn(n, n, |i, j| i == j || a[(i, j)] != 0.0);
     for via in 0..n {

@@ -8,6 +8,7 @@ mod hyperrectangle;
 mod linear;
 mod matrix;
 mod polynomial;
+mod powers;
 mod propagation;
 mod reach_set;
 mod series;

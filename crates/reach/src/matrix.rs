@@ -2,7 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 use reachtube_scalar::Interval;
-use reachtube_scalar::rounding::{add_up, mul_up};
+use reachtube_scalar::rounding::{add_up, mul_up, sub_down};
+
+use crate::LinearSystem;
 
 /// A matrix of intervals; products and sums are those of nalgebra, evaluated with outward rounding.
 pub type IntervalMatrix = DMatrix<Interval>;
@@ -126,6 +128,90 @@ fn sum_upward<'a>(nearest: f64, count: usize, terms: impl Iterator<Item = (f64, 
 /// `sum += term` for entries >= 0, rounded upward.
 pub(crate) fn accumulate_upward(sum: &mut DMatrix<f64>, term: &DMatrix<f64>) {
     sum.zip_apply(term, |s, t| *s = add_up(*s, t));
+}
+
+/// At so many samples, the sum of f of the `terms` before each, one a step and of the shape of B.
+pub(crate) fn running_sum(
+    system: &LinearSystem,
+    samples: usize,
+    terms: &[IntervalMatrix],
+    f: impl Fn(Interval) -> Interval,
+) -> Vec<IntervalMatrix> {
+    let mut sums: Vec<IntervalMatrix> = Vec::with_capacity(samples);
+    for k in 0..samples {
+        sums.push(match k {
+            0 => IntervalMatrix::from_element(system.states(), system.inputs(), Interval::ZERO),
+            _ => sums[k - 1].zip_map(&terms[k - 1], |sum, x| sum + f(x)),
+        });
+    }
+    sums
+}
+
+/// Sums of columns of intervals times numbers, in floating point, with a bound of their error. A sum all of whose terms are zero is 0.
+///
+/// The error of n terms is at most n u / (1 - n u) times the sum of their sizes (Higham, Accuracy and Stability of Numerical Algorithms,
+/// section 3.1), and what underflows.
+pub(crate) struct ColumnSums {
+    terms: usize,
+    lo: Vec<f64>,
+    hi: Vec<f64>,
+    /// Of the absolute values of the terms.
+    size: Vec<f64>,
+}
+
+impl ColumnSums {
+    pub(crate) fn new(rows: usize) -> Self {
+        let zero = vec![0.0; rows];
+        Self { terms: 0, lo: zero.clone(), hi: zero.clone(), size: zero }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.terms = 0;
+        for sums in [&mut self.lo, &mut self.hi, &mut self.size] {
+            sums.fill(0.0);
+        }
+    }
+
+    /// Adds f of each entry of `matrix`, times the `vector`.
+    pub(crate) fn add(&mut self, matrix: &IntervalMatrix, f: impl Fn(Interval) -> Interval, vector: &[f64]) {
+        let rows = self.lo.len();
+        for (j, &y) in vector.iter().enumerate().filter(|(_, y)| **y != 0.0) {
+            self.terms += 1;
+            let column = &matrix.as_slice()[j * rows..(j + 1) * rows];
+            let sums = self.lo.iter_mut().zip(&mut self.hi).zip(&mut self.size);
+            for (((lo, hi), size), &x) in sums.zip(column) {
+                let x = f(x);
+                let (below, above) = if y < 0.0 { (x.hi(), x.lo()) } else { (x.lo(), x.hi()) };
+                let least = if x.mag() > 0.0 { f64::MIN_POSITIVE } else { 0.0 };
+                *lo += below * y;
+                *hi += above * y;
+                *size += x.mag() * y.abs() + least;
+            }
+        }
+    }
+
+    /// The sums.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer.
+    pub(crate) fn enclosed(&self) -> impl Iterator<Item = Interval> {
+        let relative = relative_error(self.terms);
+        self.lo.iter().zip(&self.hi).zip(&self.size).map(move |((&lo, &hi), &size)| {
+            let error = if size == 0.0 { 0.0 } else { relative * size + UNDERFLOW };
+            Interval::new(sub_down(lo, error), add_up(hi, error)).unwrap_or(Interval::ENTIRE)
+        })
+    }
+}
+
+/// Added to a bound of non-zero terms: far above the sum of all that underflow can take from it.
+pub(crate) const UNDERFLOW: f64 = 1e-300;
+
+/// The error of the sum of n products in floating point, in any order and with or without fused operations, over the sum of their sizes:
+/// n u / (1 - n u) with the unit roundoff u at most (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1), and less than
+/// n + 1 units even where the sizes are summed in floating point.
+pub(crate) fn relative_error(n: usize) -> f64 {
+    (n + 1) as f64 * f64::EPSILON / 2.0
 }
 
 #[cfg(test)]

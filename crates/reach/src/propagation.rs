@@ -1,30 +1,14 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
-use reachtube_scalar::rounding::{add_up, mul_up};
+use reachtube_scalar::rounding::add_up;
 
-use crate::exponential::{Step, norm_upper, step};
-use crate::matrix::{
-    IntervalMatrix, IntervalVector, accumulate_upward, ball, dot_upward, magnitude, midpoint, mul_upward,
-    point, product, radius,
-};
+use crate::exponential::{Step, step};
+use crate::matrix::{IntervalMatrix, IntervalVector, dot_upward, mul_upward, running_sum};
+use crate::powers::{Samples, bound_within_step};
 use crate::{LinearSystem, ReachError, TimeGrid, Trajectory};
 
-/// Norm of A s up to which e^{As} is enclosed for all shorter times at once.
-const SHORT_STEP_NORM: f64 = 0.5;
-
-/// Parts of one step at most; beyond, the bound is valid but large.
-const MOST_SHORT_STEPS: f64 = 4096.0;
-
 /// e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, and the solutions of the system on it.
-///
-/// Intervals are never multiplied step after step, which would let them grow with every step. The steps are done in floating point, the
-/// defect of each is bounded, δ_k = Ẽ_k Φ_k - Ẽ_{k+1}, and the error of Ẽ_k is e_k = Σ_j δ_j e^{A(t_k - t_{j+1})}. Two bounds hold, and the
-/// smaller one is taken entry by entry:
-///
-/// - |e_k| <= (Σ_j |δ_j|) M with M >= |e^{Aτ}| over the whole horizon, which grows linearly (M is found a posteriori, see
-///   `bound_exponential`);
-/// - |e_{k+1}| <= |e_k| |Φ_k| + |δ_k|, which follows the growth or decay of a system whose entries keep their signs.
 ///
 /// # Examples
 ///
@@ -44,7 +28,10 @@ pub struct Propagation {
     grid: TimeGrid,
     steps: Vec<Step>,
     exponential: Vec<IntervalMatrix>,
+    /// e^{A t_k} Γ(h_k), by which Γ grows over step k.
+    increments: Vec<IntervalMatrix>,
     integral: Vec<IntervalMatrix>,
+    /// M >= |e^{A(t_k - t_j)}| for every j <= k.
     bound: DMatrix<f64>,
 }
 
@@ -56,19 +43,24 @@ impl Propagation {
     /// [`ReachError::Horizon`] when no finite enclosure is found.
     pub fn new(system: &LinearSystem, grid: &TimeGrid) -> Result<Self, ReachError> {
         let steps = steps_of(system, grid);
-        let step_at = |k: usize| if grid.step().is_some() { &steps[0] } else { &steps[k] };
-        let powers = RoundedPowers::new(system.states(), grid.len(), &step_at);
-        let bound = bound_exponential(&powers, &bound_within_step(system, grid.longest_step()));
-        let errors = powers.errors(&step_at, &bound);
-        let mut exponential: Vec<_> =
-            powers.mid.iter().zip(&errors).map(|(mid, rad)| ball(mid, rad)).collect();
-        exponential.truncate(grid.len());
-        let integral = integrals(system, &exponential, &step_at);
-        let finite = |m: &IntervalMatrix| m.iter().all(|x| x.mag().is_finite());
-        if !exponential.iter().chain(&integral).all(finite) {
+        let (Samples { exponential, increments }, within_step) = match grid.step() {
+            Some(_) => {
+                let samples = Samples::uniform(system, &steps[0], grid.len());
+                (samples, DMatrix::identity(system.states(), system.states()))
+            }
+            None => {
+                let within_step = bound_within_step(system, grid.longest_step());
+                (Samples::after(&steps, grid.len(), &within_step), within_step)
+            }
+        };
+        let bound = mul_upward(&largest(system, &exponential), &within_step);
+        let integral = running_sum(system, grid.len(), &increments, |x| x);
+        let last = integral.last().into_iter().flat_map(|last| last.iter().map(|x| x.mag()));
+        if !bound.iter().copied().chain(last).all(f64::is_finite) {
             return Err(ReachError::Horizon { time: grid.times().last().copied().unwrap_or(0.0) });
         }
-        Ok(Self { system: system.clone(), grid: grid.clone(), steps, exponential, integral, bound })
+        let (system, grid) = (system.clone(), grid.clone());
+        Ok(Self { system, grid, steps, exponential, increments, integral, bound })
     }
 
     /// The system.
@@ -97,6 +89,20 @@ impl Propagation {
     /// Outer, directed rounding.
     pub fn integral(&self, k: usize) -> &IntervalMatrix {
         &self.integral[k]
+    }
+
+    /// e^{A t_k} Γ(h_k) = ∫ e^{Aτ} B dτ over step k, N x m.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub(crate) fn increment(&self, k: usize) -> &IntervalMatrix {
+        &self.increments[k]
+    }
+
+    /// Σ_{j<k} |e^{A t_j} Γ(h_j)| at every sample k.
+    pub(crate) fn absolute_sums(&self) -> Vec<IntervalMatrix> {
+        running_sum(&self.system, self.grid.len(), &self.increments, Interval::abs)
     }
 
     /// Φ, Γ and γ of the step from sample k to k + 1.
@@ -184,104 +190,13 @@ fn steps_of(system: &LinearSystem, grid: &TimeGrid) -> Vec<Step> {
     (0..count).into_par_iter().map(|k| step(system, grid.interval(k))).collect()
 }
 
-/// Floating-point e^{A t_k}, and bounds of the defects |δ_k| of its steps.
-struct RoundedPowers {
-    mid: Vec<DMatrix<f64>>,
-    defects: Vec<DMatrix<f64>>,
-}
-
-impl RoundedPowers {
-    fn new<'a>(states: usize, samples: usize, step_at: &impl Fn(usize) -> &'a Step) -> Self {
-        let mut mid = vec![DMatrix::identity(states, states)];
-        let mut defects = Vec::new();
-        for k in 1..samples {
-            let phi = &step_at(k - 1).phi;
-            defects.push(mul_upward(&mid[k - 1].abs(), &product_error(phi)));
-            mid.push(&mid[k - 1] * midpoint(phi));
-        }
-        Self { mid, defects }
+/// The largest absolute value of each entry over all of the `matrices`, N x N.
+fn largest(system: &LinearSystem, matrices: &[IntervalMatrix]) -> DMatrix<f64> {
+    let mut largest = DMatrix::zeros(system.states(), system.states());
+    for matrix in matrices {
+        largest.zip_apply(matrix, |max: &mut f64, x| *max = max.max(x.mag()));
     }
-
-    /// The bounds of |e_k|.
-    fn errors<'a>(&self, step_at: &impl Fn(usize) -> &'a Step, bound: &DMatrix<f64>) -> Vec<DMatrix<f64>> {
-        let mut total = self.mid[0].map(|_| 0.0);
-        let mut errors = vec![total.clone()];
-        for (k, defect) in self.defects.iter().enumerate() {
-            accumulate_upward(&mut total, defect);
-            let mut followed = mul_upward(&errors[k], &magnitude(&step_at(k).phi));
-            accumulate_upward(&mut followed, defect);
-            errors.push(followed.zip_map(&mul_upward(&total, bound), f64::min));
-        }
-        errors
-    }
-}
-
-/// W >= 0 such that the floating-point product of any matrix X with the midpoint of Φ is within |X| W of the exact X Φ.
-///
-/// W = (N + 1) u |mid Φ| + rad Φ with the unit roundoff u: the sum of N products, in any order and with or without fused operations, has
-/// an error of at most N u / (1 - N u) times the sum of the absolute products (Higham, Accuracy and Stability of Numerical Algorithms,
-/// section 3.1). Where a product underflows, the rounding of |X| W by at least one unit for each product covers it.
-fn product_error(phi: &IntervalMatrix) -> DMatrix<f64> {
-    let relative = (phi.nrows() + 1) as f64 * f64::EPSILON / 2.0;
-    phi.map(|x| add_up(mul_up(relative, x.mid().abs()), x.rad()))
-}
-
-/// P >= |e^{As}| entrywise for 0 <= s <= h: a horizon in itself, of steps so short that one enclosure over each is good enough.
-fn bound_within_step(system: &LinearSystem, h: f64) -> DMatrix<f64> {
-    let norm = norm_upper(&magnitude(&point(system.a())));
-    // `max` is 1 for NaN too: an infinite norm over no time.
-    let parts = MOST_SHORT_STEPS.min((norm * h / SHORT_STEP_NORM).ceil().max(1.0));
-    let short = Interval::point(h) / parts;
-    let short_step = step(system, short);
-    let powers = RoundedPowers::new(system.states(), parts as usize, &|_| &short_step);
-    bound_exponential(&powers, &magnitude(&step(system, Interval::ZERO.hull(short)).phi))
-}
-
-/// M >= |e^{Aτ}| entrywise for every τ of the horizon; infinite when none is found.
-///
-/// With P >= |e^{As}| over one step, D = Σ|δ_j| and M̃ = max_k |Ẽ_k|, any M with (M̃ + D M) P <= M bounds it, by induction over the samples:
-/// |e^{A t_k}| <= |Ẽ_k| + D M as long as M holds up to t_k, and from there to the next sample another factor P covers it. The left side
-/// of the inequality then is such an M as well, and a smaller one.
-fn bound_exponential(powers: &RoundedPowers, within_step: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut largest = powers.mid[0].clone();
-    let mut defects = powers.mid[0].map(|_| 0.0);
-    for (mid, defect) in powers.mid.iter().skip(1).zip(&powers.defects) {
-        largest.zip_apply(mid, |max, x| *max = max.max(x.abs()));
-        accumulate_upward(&mut defects, defect);
-    }
-    let mut candidate = mul_upward(&largest, within_step) * 2.0;
-    for _ in 0..8 {
-        let mut inside = mul_upward(&defects, &candidate);
-        accumulate_upward(&mut inside, &largest);
-        let image = mul_upward(&inside, within_step);
-        if image.iter().zip(&candidate).all(|(i, c)| i <= c && c.is_finite()) {
-            return image;
-        }
-        candidate = candidate.sup(&image) * 2.0;
-    }
-    candidate.map(|_| f64::INFINITY)
-}
-
-/// Γ(t_{k+1}) = Γ(t_k) + e^{A t_k} Γ(h_k), again with the error apart from a floating-point sum.
-fn integrals<'a>(
-    system: &LinearSystem,
-    exponential: &[IntervalMatrix],
-    step_at: &(impl Fn(usize) -> &'a Step + Sync),
-) -> Vec<IntervalMatrix> {
-    let increment = |k: usize| product(&exponential[k], &step_at(k).gamma);
-    let increments: Vec<_> =
-        (0..exponential.len().saturating_sub(1)).into_par_iter().map(increment).collect();
-    let zero = DMatrix::zeros(system.states(), system.inputs());
-    let (mut mid, mut rad) = (zero.clone(), zero);
-    let mut integral = vec![ball(&mid, &rad)];
-    for increment in increments {
-        let sum = point(&mid) + increment;
-        mid = midpoint(&sum);
-        accumulate_upward(&mut rad, &radius(&sum));
-        integral.push(ball(&mid, &rad));
-    }
-    integral.truncate(exponential.len());
-    integral
+    largest
 }
 
 #[cfg(test)]
@@ -296,23 +211,16 @@ mod tests {
 
     #[test]
     fn the_bound_holds_over_the_horizon_and_is_close() {
-        let propagation = Propagation::new(&rotation(2.0), &TimeGrid::uniform(0.01, 400)).unwrap();
-        assert!(propagation.bound.iter().all(|&m| (1.0..1.1).contains(&m)), "{}", propagation.bound);
-    }
-
-    #[test]
-    fn the_bound_within_a_long_step_does_not_grow_with_its_norm() {
-        let bound = bound_within_step(&rotation(100.0), 0.5);
-        assert!(bound.iter().all(|&p| (1.0..2.0).contains(&p)), "{bound}");
-        let decay = LinearSystem::new(dmatrix![-80.0], dmatrix![1.0], dvector![0.0]).unwrap();
-        assert!((1.0..2.0).contains(&bound_within_step(&decay, 1.0)[(0, 0)]));
-    }
-
-    #[test]
-    fn no_bound_is_infinite_not_wrong() {
-        let growth = LinearSystem::new(dmatrix![60.0], dmatrix![1.0], dvector![0.0]).unwrap();
-        let propagation = Propagation::new(&growth, &TimeGrid::uniform(0.01, 101)).unwrap();
-        assert_eq!(propagation.bound[(0, 0)], f64::INFINITY);
-        assert!(propagation.exponential(100)[(0, 0)].contains(60f64.exp()));
+        let times: Vec<f64> = (0..400).map(|k| 0.01 * f64::from(k)).chain([3.999]).collect();
+        let recorded = TimeGrid::from_times(&times).unwrap();
+        for (grid, least) in [(recorded, 1.0), (TimeGrid::uniform(0.01, 400), 0.9999)] {
+            let propagation = Propagation::new(&rotation(2.0), &grid).unwrap();
+            assert!(propagation.bound.iter().all(|m| (least..1.1).contains(m)), "{}", propagation.bound);
+            for k in 0..grid.len() {
+                let below =
+                    propagation.exponential(k).zip_map(&propagation.bound, |x, bound| x.mag() <= bound);
+                assert!(below.iter().all(|&holds| holds), "sample {k}");
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
+use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
-use crate::matrix::{IntervalMatrix, absolute, add_product, points};
+use crate::matrix::{ColumnSums, IntervalMatrix};
 use crate::{Hyperrectangle, Propagation};
 
 /// An enclosed solution at the samples of a grid.
@@ -56,17 +57,20 @@ impl ReachSets {
         input_set: &Hyperrectangle,
     ) -> Self {
         let dimension = propagation.system().states();
-        let (initial_center, initial_radius) = (points(&initial_set.center), points(&initial_set.radius));
-        let (input_center, input_radius) = (points(&input_set.center), points(&input_set.radius));
-        let mut center = vec![Interval::ZERO; gains.len() * dimension];
-        let mut radius = center.clone();
-        for (k, gain) in gains.iter().enumerate() {
-            let states = k * dimension..(k + 1) * dimension;
-            add_product(&mut center[states.clone()], propagation.exponential(k), &initial_center);
-            add_product(&mut center[states.clone()], propagation.integral(k), &input_center);
-            add_product(&mut radius[states.clone()], &absolute(propagation.exponential(k)), &initial_radius);
-            add_product(&mut radius[states], gain, &input_radius);
-        }
+        let hull = |sums: &mut ColumnSums, k: usize| {
+            let (exponential, integral) = (propagation.exponential(k), propagation.integral(k));
+            sums.clear();
+            sums.add(exponential, |x| x, &initial_set.center);
+            sums.add(integral, |x| x, &input_set.center);
+            let center: Vec<_> = sums.enclosed().collect();
+            sums.clear();
+            sums.add(exponential, Interval::abs, &initial_set.radius);
+            sums.add(&gains[k], |x| x, &input_set.radius);
+            center.into_iter().zip(sums.enclosed().collect::<Vec<_>>())
+        };
+        let samples = (0..gains.len()).into_par_iter();
+        let hulls = samples.map_init(|| ColumnSums::new(dimension), hull).flat_map_iter(|hull| hull);
+        let (center, radius) = hulls.unzip();
         Self { dimension, center, radius }
     }
 

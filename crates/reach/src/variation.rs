@@ -8,9 +8,8 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
-use crate::disturbance::running_sum;
 use crate::exponential::{norm_upper, step};
-use crate::matrix::{IntervalMatrix, magnitude, point, product};
+use crate::matrix::{IntervalMatrix, magnitude, point, product, running_sum};
 use crate::series::{Polynomial, Series};
 use crate::{LinearSystem, Propagation};
 
@@ -69,7 +68,7 @@ impl<'a> Cells<'a> {
         let start = self.propagation.exponential(k);
         let h = self.propagation.grid().interval(k);
         let range = self.within.range(start);
-        let change = product(start, &self.propagation.step(k).gamma);
+        let change = self.propagation.increment(k);
         let scale = range.iter().fold(0.0, |max: f64, x| max.max(x.mag()));
         let negligible = NEGLIGIBLE * scale * h.hi();
         let mut turns = Vec::new();
@@ -89,7 +88,8 @@ impl<'a> Cells<'a> {
 
     /// The sum of the cells up to each sample.
     fn gains(&self) -> Vec<IntervalMatrix> {
-        let fine = running_sum(&self.propagation, &self.integrals);
+        let fine =
+            running_sum(self.propagation.system(), self.propagation.grid().len(), &self.integrals, |x| x);
         fine.into_iter().step_by(self.parts).collect()
     }
 
