@@ -22,7 +22,7 @@ pub use deviation::{Deviation, Grid, Grids, RunNominal, nominals, suite_deviatio
 pub use dynamics::Dynamics;
 pub use envelope::Envelope;
 pub use identify::{Conformance, Search, Watch, conform};
-pub use nonlinear::Case;
+pub use nonlinear::{Case, Explanation, explain};
 pub(crate) use nonlinear::{flowpipes, lost, nominal};
 pub use program::{Block, Program, Solution};
 pub use proof::{Enclosure, Lost, Proof, TightRow};

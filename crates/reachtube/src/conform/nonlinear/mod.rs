@@ -2,6 +2,7 @@
 
 mod bisection;
 mod case;
+mod explain;
 mod extremal;
 mod journal;
 mod outer;
@@ -9,6 +10,7 @@ mod search;
 mod sensitivity;
 
 pub use case::Case;
+pub use explain::{Explanation, explain};
 pub(crate) use outer::{check_outer, flowpipes, lost};
 use reachtube_reach::Flowpipe;
 use reachtube_robot::Robot;

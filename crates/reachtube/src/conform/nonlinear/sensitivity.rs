@@ -109,7 +109,7 @@ fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> us
 }
 
 /// (q, q̇) of all samples under `inputs` from `start`; the time, s, up to which the model could be followed where it runs away.
-fn simulate(
+pub(super) fn simulate(
     model: &PolynomialModel,
     times: &[f64],
     substeps: usize,
