@@ -97,7 +97,22 @@ pub fn conform(
     watch: &Watch,
 ) -> Result<Conformance> {
     settings.validate(robot.joint_count())?;
-    let dynamics = Dynamics::new(robot, settings)?;
+    conform_dynamics(robot, data, names, settings, Dynamics::new(robot, settings)?, watch)
+}
+
+/// As [`conform`], with a model that is at hand. A linear one that is given as a polynomial goes the way of those that are not linear.
+///
+/// # Errors
+///
+/// As [`conform`].
+pub fn conform_dynamics(
+    robot: &Robot,
+    data: &DataSet,
+    names: &[String],
+    settings: &Settings,
+    dynamics: Dynamics,
+    watch: &Watch,
+) -> Result<Conformance> {
     let mut recordings = Recordings::read(data, names, robot, settings, watch.reading)?;
     within_box::check_starts(data, settings, &recordings)?;
     recordings.notes.extend(within_box::notes(settings, &recordings));

@@ -21,7 +21,7 @@ pub use check::{Check, Place, SuiteCheck, Violations, check};
 pub use deviation::{Deviation, Grid, Grids, RunNominal, nominals, suite_deviations};
 pub use dynamics::Dynamics;
 pub use envelope::Envelope;
-pub use identify::{Conformance, Search, Watch, conform};
+pub use identify::{Conformance, Search, Watch, conform, conform_dynamics};
 pub use nonlinear::{Case, Explanation, explain};
 pub(crate) use nonlinear::{flowpipes, lost, nominal};
 pub use program::{Block, Program, Solution};

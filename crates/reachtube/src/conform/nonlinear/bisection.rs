@@ -47,24 +47,25 @@ pub(super) fn run(search: &Search, journal: &Journal, finished: &dyn Fn(&str)) -
         let factor = FACTORS[progress.factor];
         progress.sets = linearised.inflated(factor, 0.0);
         progress.enclosed = encloses(search, &progress.sets)?;
+        progress.first = progress.radius_now();
         (progress.factor, progress.reachable_sets) = (progress.factor + 1, progress.reachable_sets + 1);
         journal.save(&progress)?;
         let words =
             if progress.enclosed { "enclose every recording" } else { "do not enclose every recording" };
         finished(&format!("{factor} times the linearised radii {words}"));
     }
-    progress.first = if progress.first > 0.0 { progress.first } else { progress.radius_now() };
     while progress.enclosed && progress.radius < progress.count() {
-        progress.halve(search)?;
-        journal.save(&progress)?;
-        if progress.is_narrow() {
-            let (done, count, radius) = (progress.radius + 1, progress.count(), progress.radius_now());
-            finished(&format!(
-                "radius {done} of {count}: {radius:.6}, {} reachable sets",
-                progress.reachable_sets
-            ));
-            progress.next();
+        while !progress.is_narrow() {
+            progress.halve(search)?;
+            journal.save(&progress)?;
         }
+        let (done, count, radius) = (progress.radius + 1, progress.count(), progress.radius_now());
+        progress.next();
+        journal.save(&progress)?;
+        finished(&format!(
+            "radius {done} of {count}: {radius:.6}, {} reachable sets",
+            progress.reachable_sets
+        ));
     }
     progress.found(search)
 }
@@ -111,9 +112,6 @@ impl Progress {
 
     /// One bisection.
     fn halve(&mut self, search: &Search) -> Result<()> {
-        if self.is_narrow() {
-            return Ok(());
-        }
         // None at all is the first guess.
         let guess = if self.low == 0.0 && self.radius_now() == self.first {
             0.0

@@ -8,6 +8,9 @@ use super::sensitivity::{BOUND, Many, Node, Sensitivity};
 use crate::abstraction::{ModelField, PolynomialModel};
 use crate::conform::{Side, UncertaintySets};
 
+/// Rows whose recordings stay below this part of the linearised radius are left as they are: a small correction does not make them decide.
+const NEAR: f64 = 0.5;
+
 /// For each sample, state and side, by how much the model reaches further than its linearisation; negative where it reaches less far. Found at some samples, and
 /// interpolated between them.
 #[derive(Debug, Clone)]
@@ -70,25 +73,48 @@ fn at_node(
     sensitivity: &Sensitivity,
     node: &Node,
 ) -> (Vec<f64>, bool) {
-    let (n, states) = (case.joints(), 2 * case.joints());
-    let places: Vec<(usize, Side)> = (0..states).flat_map(|i| [(i, Side::Upper), (i, Side::Lower)]).collect();
+    let (k, states) = (node.sample, 2 * case.joints());
+    let radii = reach(case, sets, sensitivity, k);
+    let nominal = &sensitivity.nominal[k * states..(k + 1) * states];
+    let is_near = |&(i, side): &(usize, Side)| {
+        let measured = match side {
+            Side::Upper => case.measured.upper(k, i),
+            Side::Lower => case.measured.lower(k, i),
+        };
+        side.sign() * (measured - nominal[i]) > NEAR * radii[i]
+    };
+    let all = (0..states).flat_map(|i| [(i, Side::Upper), (i, Side::Lower)]);
+    let places: Vec<(usize, Side)> = all.filter(is_near).collect();
     let motions: Vec<_> =
         places.iter().map(|&(i, side)| extremal(model, case, sets, node, i, side)).collect();
     let runs: Vec<Run> = motions.iter().map(|(start, inputs)| Run { start, inputs }).collect();
-    let radii: Vec<f64> = sets.initial_set.radius.iter().chain(&sets.input_set.radius).copied().collect();
-    let mut further = vec![0.0; places.len()];
+    let mut further = vec![0.0; 2 * states];
     let mut ensemble = Ensemble::<Many>::new(model.states()).bounded_by(BOUND);
-    let times = &case.grid.times()[..=node.sample];
-    let outcomes =
-        ensemble.integrate(&mut ModelField::new(model), times, sensitivity.substeps, &runs, |run, k, x| {
-            if k == node.sample {
+    let times = &case.grid.times()[..=k];
+    let outcomes = ensemble.integrate(
+        &mut ModelField::new(model),
+        times,
+        sensitivity.substeps,
+        &runs,
+        |run, sample, x| {
+            if sample == k {
                 let (i, side) = places[run];
-                let reached = side.sign() * (x[i] - sensitivity.nominal[k * states + i]);
-                let (_, gains) = sensitivity.row(n, k, i);
-                further[run] = reached - gains.iter().zip(&radii).map(|(gain, r)| gain * r).sum::<f64>();
+                let at = 2 * i + usize::from(side == Side::Lower);
+                further[at] = side.sign() * (x[i] - nominal[i]) - radii[i];
             }
-        });
+        },
+    );
     (further, outcomes.iter().any(|outcome| !outcome.is_reached()))
+}
+
+/// (R_k r)_i for each state i.
+fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usize) -> Vec<f64> {
+    let radii = || sets.initial_set.radius.iter().chain(&sets.input_set.radius);
+    let of_state = |i: usize| {
+        let (_, gains) = sensitivity.row(case.joints(), k, i);
+        gains.iter().zip(radii()).map(|(gain, r)| gain * r).sum()
+    };
+    (0..2 * case.joints()).map(of_state).collect()
 }
 
 /// The start and inputs that take the linearisation furthest.

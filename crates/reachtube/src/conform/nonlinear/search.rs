@@ -23,7 +23,7 @@ use crate::error::Result;
 const ROUNDS: usize = 20;
 
 /// The sets have settled when no radius or centre changes by more than this part of the largest.
-const SETTLED: f64 = 1e-6;
+const SETTLED: f64 = 1e-5;
 
 /// Rows that are not enclosed are asked for with this much more than what is missing.
 const MARGIN: f64 = 1.1;
