@@ -11,7 +11,8 @@ use sha2::{Digest, Sha256};
 
 use crate::abstraction::{PolynomialModel, Records, TermRecord};
 use crate::conform::{
-    Conformance, Dynamics, Place, Proof, Recordings, Search, Settings, TightRow, Trust, UncertaintySets,
+    Conformance, Dynamics, Explanation, Place, Proof, Recordings, Search, Settings, TightRow, Tolerance,
+    Trust, UncertaintySets,
 };
 use crate::data::DataSet;
 use crate::error::{Error, Result};
@@ -60,6 +61,9 @@ pub struct Model {
     /// How the sets of a model that is not linear were found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<Search>,
+    /// Which recordings a motion of the model itself reproduces, where that was looked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explained: Option<Explained>,
     /// X0 around the nominal initial state, 2n, rad and rad/s.
     pub initial_set: Hyperrectangle,
     /// U around the nominal input, n, N m.
@@ -97,6 +101,28 @@ pub struct Model {
     pub data: DataRecord,
     /// The robot.
     pub robot: RobotDescription,
+}
+
+/// Recordings beside the closest motions of the model that were found: a start in X0 and an input in U, held over each sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Explained {
+    /// Recordings that are reproduced within the tolerance of the settings.
+    pub runs: usize,
+    /// Each recording.
+    pub residuals: Vec<Residual>,
+}
+
+/// The largest difference of a recording to the closest motion found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Residual {
+    /// Path in the data set.
+    pub file: String,
+    /// rad; none where the motion ran away.
+    pub position: Option<f64>,
+    /// rad/s; none where the motion ran away.
+    pub velocity: Option<f64>,
 }
 
 /// The recordings that a model encloses.
@@ -157,6 +183,7 @@ impl Model {
             cost_paper: found.paper_cost,
             hull_volume: finite(found.hull_volume),
             search: found.search.clone(),
+            explained: settings.explain.map(|tolerance| Explained::new(data, tolerance, found)),
             initial_set,
             input_set,
             noise_set,
@@ -267,6 +294,10 @@ impl Model {
             matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
         };
         let set = |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
+        let costs = [self.cost, self.cost_lower_bound, self.cost_paper, self.hull_volume];
+        if self.acceleration.is_empty() && costs.contains(&None) {
+            return Err("it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model does; run conform again".into());
+        }
         let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
         let none = self.a.is_empty() && self.b.is_empty() && self.drift.is_empty();
         let sizes = if self.acceleration.is_empty() { linear } else { none };
@@ -318,6 +349,23 @@ impl Model {
             return changed("verified does not agree with proof");
         }
         Ok(())
+    }
+}
+
+impl Explained {
+    fn new(data: &DataSet, tolerance: Tolerance, found: &Conformance) -> Self {
+        let is_within =
+            |e: &&Explanation| e.position <= tolerance.position && e.velocity <= tolerance.velocity;
+        let finite = |value: f64| value.is_finite().then_some(value);
+        let residual = |e: &Explanation| Residual {
+            file: data.runs()[e.run].file.clone(),
+            position: finite(e.position),
+            velocity: finite(e.velocity),
+        };
+        Self {
+            runs: found.explanations.iter().filter(is_within).count(),
+            residuals: found.explanations.iter().map(residual).collect(),
+        }
     }
 }
 

@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use reachtube_reach::LinearSystem;
 use reachtube_robot::Robot;
 
@@ -23,6 +25,21 @@ impl Dynamics {
     pub fn new(robot: &Robot, settings: &Settings) -> Result<Self> {
         let Abstraction { model, order } = settings.abstraction;
         Ok(Self::of(PolynomialModel::new(robot, model, order, &settings.expansion_point)?, settings.method))
+    }
+
+    /// The polynomials of the model; those of a linear one are made of `robot` again.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn polynomials(&self, robot: &Robot, settings: &Settings) -> Result<Cow<'_, PolynomialModel>> {
+        let Abstraction { model, order } = settings.abstraction;
+        match self {
+            Self::Linear(_) => {
+                Ok(Cow::Owned(PolynomialModel::new(robot, model, order, &settings.expansion_point)?))
+            }
+            Self::Polynomial(model) => Ok(Cow::Borrowed(model)),
+        }
     }
 
     /// A model, by the method that its sets are found by.

@@ -11,7 +11,10 @@ use super::program::{Block, Program};
 use super::proof::{Checked, Enclosure, Proof, TightRow};
 use super::recordings::{Progress, Recordings};
 use super::verify::check_rows;
-use super::{Dynamics, Envelope, Settings, Trust, UncertaintySets, Weights, nonlinear, within_box};
+use super::{
+    Case, Dynamics, Envelope, Explanation, Settings, Trust, UncertaintySets, Weights, explain, nonlinear,
+    within_box,
+};
 use crate::data::DataSet;
 use crate::error::Result;
 
@@ -41,6 +44,8 @@ pub struct Conformance {
     pub search: Option<Search>,
     /// The rows that touch the reachable set, the closest first; that of the linearisation where the model is not linear.
     pub tight: Vec<TightRow>,
+    /// How close a motion of the model comes to each run, where that was asked for.
+    pub explanations: Vec<Explanation>,
     /// The recordings as read.
     pub recordings: Recordings,
 }
@@ -116,10 +121,17 @@ pub fn conform_dynamics(
     let mut recordings = Recordings::read(data, names, robot, settings, watch.reading)?;
     within_box::check_starts(data, settings, &recordings)?;
     recordings.notes.extend(within_box::notes(settings, &recordings));
-    match dynamics {
-        Dynamics::Linear(system) => linear(robot, data, settings, system, recordings),
-        Dynamics::Polynomial(model) => nonlinear::conform(robot, data, settings, *model, recordings, watch),
+    let mut found = match dynamics {
+        Dynamics::Linear(system) => linear(robot, data, settings, system, recordings)?,
+        Dynamics::Polynomial(model) => nonlinear::conform(robot, data, settings, *model, recordings, watch)?,
+    };
+    if settings.explain.is_some() {
+        let Conformance { dynamics, recordings, sets, .. } = &found;
+        let model = dynamics.polynomials(robot, settings)?;
+        let cases = Case::all(data, robot, settings, recordings)?;
+        found.explanations = explain(data, robot, settings, &model, &cases, recordings, sets)?;
     }
+    Ok(found)
 }
 
 fn linear(
@@ -152,6 +164,7 @@ fn linear(
         trust: trust(&recordings, &checked.tight),
         search: None,
         tight: checked.tight,
+        explanations: Vec::new(),
         dynamics: Dynamics::Linear(system),
         sets,
         recordings,

@@ -97,6 +97,16 @@ pub enum Weights {
     Given(Vec<f64>),
 }
 
+/// Within what largest difference a motion of the model counts as an explanation of a recording.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tolerance {
+    /// rad.
+    pub position: f64,
+    /// rad/s.
+    pub velocity: f64,
+}
+
 /// All that decides a conformance result besides robot and recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -127,6 +137,9 @@ pub struct Settings {
     pub noise: Noise,
     /// Where nominal solutions start.
     pub nominal: NominalStart,
+    /// Whether each run's own explanation is looked for, and what counts as one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explain: Option<Tolerance>,
     /// Samples later than this many seconds after the first are not used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
@@ -151,6 +164,7 @@ impl Settings {
             weights: Weights::default(),
             noise: Noise::default(),
             nominal: NominalStart::default(),
+            explain: None,
             until: None,
             gap_limit: GapLimit::default(),
         }
@@ -188,6 +202,9 @@ impl Settings {
         }
         if let Noise::Fixed(radii) = &self.noise {
             check_list("noise radius", radii, 2 * joints, |r| (0.0..=1e9).contains(&r), "between 0 and 1e9")?;
+        }
+        if let Some(Tolerance { position, velocity }) = self.explain {
+            check_list("tolerance", &[position, velocity], 2, |t| t >= 0.0, "0 or more")?;
         }
         match self.until {
             Some(until) if !(until >= 0.0 && until.is_finite()) => {

@@ -67,6 +67,7 @@ pub(super) fn conform(
         trust: trust(&recordings, &checked.tight),
         search: Some(found.search),
         tight: checked.tight,
+        explanations: Vec::new(),
         sets: found.sets,
         recordings,
     })
