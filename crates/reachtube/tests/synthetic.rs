@@ -5,12 +5,13 @@ mod common;
 use common::{Disturbed, Random, Recorded, grid, two_joints, write_data_set};
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 use reachtube::Model;
-use reachtube::abstraction::{ExpansionPoint, linear_model};
+use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel, linear_model};
 use reachtube::conform::{
-    Centre, Conformance, Dynamics, Grids, Noise, NominalStart, Settings, Watch, Weights, check, conform,
+    Case, Centre, Conformance, Dynamics, Grids, Noise, NominalStart, Recordings, Settings, UncertaintySets,
+    Watch, Weights, check, conform, explain,
 };
 use reachtube::data::{DataSet, Torque};
-use reachtube_reach::{Disturbance, Propagation, TimeGrid};
+use reachtube_reach::{Disturbance, Hyperrectangle, Propagation, TimeGrid};
 use reachtube_robot::Robot;
 
 fn suite(robot: &Robot, times: &[f64], runs: usize, seed: u64) -> Vec<Recorded> {
@@ -51,6 +52,36 @@ fn sets_cost_no_more_than_the_disturbances_that_were_there() {
     };
     assert!(found.cost <= truth(0.02, 0.5), "{} > {}", found.cost, truth(0.02, 0.5));
     assert!(found.cost > 0.2 * truth(0.01, 0.5));
+}
+
+#[test]
+fn each_run_is_explained_by_sets_that_hold_its_disturbances() {
+    let folder = tempfile::tempdir().unwrap();
+    let (robot, settings) = (two_joints(), Settings::new(Torque::Compensated, 2));
+    write_data_set(
+        folder.path(),
+        &[("a", suite(&robot, &grid(0.01, 80), 12, 3)), ("b", suite(&robot, &grid(0.01, 50), 9, 4))],
+    );
+    let data = DataSet::open(folder.path()).unwrap();
+    let names = ["b".to_owned(), "a".to_owned()];
+    let recordings = Recordings::read(&data, &names, &robot, &settings, &|_, _| {}).unwrap();
+    let cases = Case::all(&data, &robot, &settings, &recordings).unwrap();
+    let model = PolynomialModel::new(&robot, ModelKind::One, 1, &ExpansionPoint::zero(2)).unwrap();
+    let explained = |start: f64, input: f64| {
+        let set = |dimension, radius| Hyperrectangle {
+            center: vec![0.0; dimension],
+            radius: vec![radius; dimension],
+        };
+        let sets = UncertaintySets { initial_set: set(4, start), input_set: set(2, input), noise_set: None };
+        explain(&data, &robot, &settings, &model, &cases, &recordings, &sets).unwrap()
+    };
+    // The starts lie within 0.01 of 0, and so within 0.02 of their mean.
+    let found = explained(0.02, 0.5);
+    let expected: Vec<usize> =
+        recordings.suites.iter().flat_map(|suite| suite.runs.iter().map(|run| run.index)).collect();
+    assert_eq!(found.iter().map(|explanation| explanation.run).collect::<Vec<_>>(), expected);
+    assert!(found.iter().all(|run| run.position < 1e-7 && run.velocity < 1e-6), "{found:?}");
+    assert!(explained(0.02, 0.1).iter().all(|run| run.position > 1e-4 || run.velocity > 1e-3));
 }
 
 #[test]

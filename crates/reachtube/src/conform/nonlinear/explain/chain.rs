@@ -1,11 +1,11 @@
 //! States that follow from one another and from moves, and what moves cost least.
 
-use nalgebra::linalg::Cholesky;
-use nalgebra::{DMatrix, DVector, DVectorView, DVectorViewMut, Dyn};
+use std::ops::Range;
 
-/// x_k = Φ_k x_{k-1} + G_k y_k + d_k with x_{-1} = 0: states x_k of one dimension, moves y_k of any.
-#[derive(Debug, Default)]
+/// x_k = G_k y_k + Φ_k x_{k-1} + d_k with x_{-1} = 0: states x_k of one dimension, moves y_k of any.
+#[derive(Debug)]
 pub(super) struct Chain {
+    states: usize,
     links: Vec<Link>,
     /// d, one entry a state of each link.
     pub drift: Vec<f64>,
@@ -14,21 +14,24 @@ pub(super) struct Chain {
 
 #[derive(Debug)]
 struct Link {
-    /// Φ.
-    transition: DMatrix<f64>,
-    /// G.
-    gain: DMatrix<f64>,
-    /// Where its moves begin.
-    moves: usize,
+    /// (G, Φ), row-major.
+    rows: Vec<f64>,
+    /// Its own moves among all.
+    moves: Range<usize>,
 }
 
 impl Chain {
-    /// One more link.
-    pub fn push(&mut self, transition: DMatrix<f64>, gain: DMatrix<f64>, drift: &DVector<f64>) {
-        let moves = self.moves;
-        self.moves += gain.ncols();
-        self.links.push(Link { transition, gain, moves });
-        self.drift.extend(drift.iter());
+    /// No link yet; states of dimension `states`.
+    pub fn new(states: usize) -> Self {
+        Self { states, links: Vec::new(), drift: Vec::new(), moves: 0 }
+    }
+
+    /// One more link: a row (G, Φ) and a drift for each state.
+    pub fn push(&mut self, rows: Vec<f64>, drift: impl IntoIterator<Item = f64>) {
+        let moves = self.moves..self.moves + rows.len() / self.states - self.states;
+        self.moves = moves.end;
+        self.links.push(Link { rows, moves });
+        self.drift.extend(drift);
     }
 
     /// Number of all moves.
@@ -36,17 +39,20 @@ impl Chain {
         self.moves
     }
 
-    /// Adds to the states `x`, link after link, what follows from the states before.
-    pub fn roll(&self, x: &mut [f64]) {
-        let states = self.states();
+    /// The states without moves.
+    pub fn rest(&self) -> Vec<f64> {
+        let mut x = self.drift.clone();
         for (k, link) in self.links.iter().enumerate().skip(1) {
-            let (before, after) = x[(k - 1) * states..(k + 1) * states].split_at_mut(states);
-            view_mut(after).gemv(1.0, &link.transition, &view(before), 1.0);
+            let (before, after) = x[(k - 1) * self.states..(k + 1) * self.states].split_at_mut(self.states);
+            for (x, row) in after.iter_mut().zip(link.rows.chunks_exact(link.rows.len() / self.states)) {
+                *x += dot(&row[link.moves.len()..], before);
+            }
         }
+        x
     }
 
-    fn states(&self) -> usize {
-        self.links.first().map_or(0, |link| link.transition.nrows())
+    fn widest(&self) -> usize {
+        self.states + self.links.iter().map(|link| link.moves.len()).max().unwrap_or(0)
     }
 }
 
@@ -54,107 +60,146 @@ impl Chain {
 #[derive(Debug)]
 pub(super) struct Riccati<'a> {
     chain: &'a Chain,
-    /// Of S_k = R_k + G_kᵀ P_k G_k.
-    factors: Vec<Cholesky<f64, Dyn>>,
-    /// S_k⁻¹ G_kᵀ P_k Φ_k.
-    feedback: Vec<DMatrix<f64>>,
-    /// P_k, and what is on the way to it.
-    cost: DMatrix<f64>,
-    carried: DMatrix<f64>,
-    spare: DMatrix<f64>,
+    /// For each link the upper rows of the Cholesky factor of what (y_k, x_{k-1}) cost, as many as it has moves, row-major.
+    eliminated: Vec<Vec<f64>>,
+    /// P_k, of which x_k cost ½ xᵀ P x.
+    cost: Vec<f64>,
+    /// P (G, Φ), then (G, Φ)ᵀ P (G, Φ).
+    carried: Vec<f64>,
+    square: Vec<f64>,
+    /// (y_k, x_{k-1}), and what multiplies x_k.
+    both: Vec<f64>,
+    slope: Vec<f64>,
 }
 
 impl<'a> Riccati<'a> {
     /// Room for `chain`.
     pub fn new(chain: &'a Chain) -> Self {
-        let states = chain.states();
-        let one = |link: &Link| Cholesky::pack_dirty(DMatrix::identity(link.gain.ncols(), link.gain.ncols()));
-        let none = |link: &Link| DMatrix::zeros(link.gain.ncols(), states);
-        let square = DMatrix::zeros(states, states);
+        let (states, widest) = (chain.states, chain.widest());
+        let rows = |link: &Link| vec![0.0; link.moves.len() * (link.moves.len() + states)];
         Self {
-            factors: chain.links.iter().map(one).collect(),
-            feedback: chain.links.iter().map(none).collect(),
             chain,
-            cost: square.clone(),
-            carried: square.clone(),
-            spare: square,
+            eliminated: chain.links.iter().map(rows).collect(),
+            cost: vec![0.0; states * states],
+            carried: vec![0.0; states * widest],
+            square: vec![0.0; widest * widest],
+            both: vec![0.0; widest],
+            slope: vec![0.0; states],
         }
     }
 
     /// Takes new Q, one entry a state, and R, one a move; whether the recursion came through.
     pub fn factor(&mut self, q: &[f64], r: &[f64]) -> bool {
-        let states = self.chain.states();
+        let states = self.chain.states;
         self.cost.fill(0.0);
         for (k, link) in self.chain.links.iter().enumerate().rev() {
             for (i, q) in q[k * states..(k + 1) * states].iter().enumerate() {
-                self.cost[(i, i)] += q;
+                self.cost[i * states + i] += q;
             }
-            if !self.eliminate(k, link, &r[link.moves..link.moves + link.gain.ncols()]) {
+            self.carry(link);
+            let all = link.moves.len() + states;
+            for (i, r) in r[link.moves.clone()].iter().enumerate() {
+                self.square[i * all + i] += r;
+            }
+            if !eliminate(&mut self.square[..all * all], all, link.moves.len()) {
                 return false;
+            }
+            self.eliminated[k].copy_from_slice(&self.square[..link.moves.len() * all]);
+            for i in 0..states {
+                for j in i..states {
+                    let cost = self.square[(link.moves.len() + i) * all + link.moves.len() + j];
+                    (self.cost[i * states + j], self.cost[j * states + i]) = (cost, cost);
+                }
             }
         }
         true
     }
 
-    /// From P_k to what it makes x_{k-1} cost: Φᵀ P Φ - (Gᵀ P Φ)ᵀ S⁻¹ (Gᵀ P Φ).
-    fn eliminate(&mut self, k: usize, link: &Link, r: &[f64]) -> bool {
-        let feedback = &mut self.feedback[k];
-        let mut pivot = std::mem::replace(&mut self.factors[k], Cholesky::pack_dirty(DMatrix::zeros(0, 0)))
-            .unpack_dirty();
-        self.carried.columns_mut(0, link.gain.ncols()).gemm(1.0, &self.cost, &link.gain, 0.0);
-        pivot.gemm_tr(1.0, &link.gain, &self.carried.columns(0, link.gain.ncols()), 0.0);
-        for (i, r) in r.iter().enumerate() {
-            pivot[(i, i)] += r;
+    /// The upper triangle of what (y_k, x_{k-1}) cost through x_k.
+    fn carry(&mut self, link: &Link) {
+        let (states, all) = (self.chain.states, link.moves.len() + self.chain.states);
+        self.carried.fill(0.0);
+        self.square.fill(0.0);
+        for (i, carried) in self.carried.chunks_exact_mut(all).take(states).enumerate() {
+            for (cost, row) in self.cost[i * states..].iter().zip(link.rows.chunks_exact(all)) {
+                add_scaled(carried, *cost, row);
+            }
         }
-        let Some(factor) = Cholesky::new(pivot) else { return false };
-        feedback.gemm_tr(1.0, &self.carried.columns(0, link.gain.ncols()), &link.transition, 0.0);
-        self.carried.gemm(1.0, &self.cost, &link.transition, 0.0);
-        self.spare.gemm_tr(1.0, &link.transition, &self.carried, 0.0);
-        // With L Lᵀ = S, what is taken away is the square of L⁻¹ Gᵀ P Φ, which keeps the cost symmetric.
-        factor.l_dirty().solve_lower_triangular_mut(feedback);
-        self.spare.gemm_tr(-1.0, feedback, feedback, 1.0);
-        factor.l_dirty().tr_solve_lower_triangular_mut(feedback);
-        std::mem::swap(&mut self.cost, &mut self.spare);
-        self.factors[k] = factor;
-        true
+        for (row, carried) in link.rows.chunks_exact(all).zip(self.carried.chunks_exact(all)) {
+            for (i, square) in self.square.chunks_exact_mut(all).take(all).enumerate() {
+                add_scaled(&mut square[i..], row[i], &carried[i..]);
+            }
+        }
     }
 
     /// States `x` and moves `y` of the chain without drift that make the quadratic cost + q·x + r·y least.
-    pub fn solve(&self, q: &[f64], r: &[f64], x: &mut [f64], y: &mut [f64]) {
-        let states = self.chain.states();
-        let mut slope = DVector::zeros(states);
-        let mut carried = slope.clone();
-        y.copy_from_slice(r);
-        for (k, link) in self.chain.links.iter().enumerate().rev() {
-            slope += view(&q[k * states..(k + 1) * states]);
-            let mut y = view_mut(&mut y[link.moves..link.moves + link.gain.ncols()]);
-            y.gemv_tr(1.0, &link.gain, &slope, 1.0);
-            carried.gemv_tr(1.0, &link.transition, &slope, 0.0);
-            carried.gemv_tr(-1.0, &self.feedback[k], &y, 1.0);
-            self.factors[k].solve_mut(&mut y);
-            y.neg_mut();
-            std::mem::swap(&mut slope, &mut carried);
-        }
-        x.fill(0.0);
-        for (k, link) in self.chain.links.iter().enumerate() {
-            let mut y = view_mut(&mut y[link.moves..link.moves + link.gain.ncols()]);
-            let (before, after) =
-                x[k.saturating_sub(1) * states..(k + 1) * states].split_at_mut(k.min(1) * states);
-            let mut after = view_mut(after);
-            if k > 0 {
-                y.gemv(-1.0, &self.feedback[k], &view(before), 1.0);
-                after.gemv(1.0, &link.transition, &view(before), 0.0);
+    pub fn solve(&mut self, q: &[f64], r: &[f64], x: &mut [f64], y: &mut [f64]) {
+        self.backward(q, r, y);
+        let states = self.chain.states;
+        let before = &mut self.slope;
+        before.fill(0.0);
+        for ((link, rows), x) in self.chain.links.iter().zip(&self.eliminated).zip(x.chunks_exact_mut(states))
+        {
+            let width = link.moves.len();
+            let both = &mut self.both[..width + states];
+            both[width..].copy_from_slice(before);
+            for (j, row) in rows.chunks_exact(both.len()).enumerate().rev() {
+                both[j] = -(y[link.moves.start + j] + dot(&row[j + 1..], &both[j + 1..])) / row[j];
             }
-            after.gemv(1.0, &link.gain, &y, 1.0);
+            y[link.moves.clone()].copy_from_slice(&both[..width]);
+            for (x, row) in x.iter_mut().zip(link.rows.chunks_exact(both.len())) {
+                *x = dot(row, both);
+            }
+            before.copy_from_slice(x);
+        }
+    }
+
+    /// Into `y` what is left of r once the moves before are eliminated.
+    fn backward(&mut self, q: &[f64], r: &[f64], y: &mut [f64]) {
+        let states = self.chain.states;
+        self.slope.fill(0.0);
+        for ((link, rows), q) in
+            self.chain.links.iter().zip(&self.eliminated).zip(q.chunks_exact(states)).rev()
+        {
+            let width = link.moves.len();
+            let both = &mut self.both[..width + states];
+            add_scaled(&mut self.slope, 1.0, q);
+            both[..width].copy_from_slice(&r[link.moves.clone()]);
+            both[width..].fill(0.0);
+            for (slope, row) in self.slope.iter().zip(link.rows.chunks_exact(both.len())) {
+                add_scaled(both, *slope, row);
+            }
+            for (j, row) in rows.chunks_exact(both.len()).enumerate() {
+                both[j] /= row[j];
+                let done = both[j];
+                add_scaled(&mut both[j + 1..], -done, &row[j + 1..]);
+            }
+            y[link.moves.clone()].copy_from_slice(&both[..width]);
+            self.slope.copy_from_slice(&both[width..]);
         }
     }
 }
 
-fn view(values: &[f64]) -> DVectorView<'_, f64> {
-    DVectorView::from_slice(values, values.len())
+/// The first `count` steps of Cholesky's factorisation of a symmetric matrix, in its upper triangle; false where it is not positive definite.
+fn eliminate(matrix: &mut [f64], size: usize, count: usize) -> bool {
+    for j in 0..count {
+        let (done, left) = matrix[j * size..].split_at_mut(size);
+        let root = done[j].sqrt();
+        if !root.is_normal() {
+            return false;
+        }
+        done[j..].iter_mut().for_each(|x| *x /= root);
+        for (i, row) in (j + 1..size).zip(left.chunks_exact_mut(size)) {
+            add_scaled(&mut row[i..], -done[i], &done[i..]);
+        }
+    }
+    true
 }
 
-fn view_mut(values: &mut [f64]) -> DVectorViewMut<'_, f64> {
-    let length = values.len();
-    DVectorViewMut::from_slice(values, length)
+fn add_scaled(to: &mut [f64], k: f64, from: &[f64]) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += k * from);
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

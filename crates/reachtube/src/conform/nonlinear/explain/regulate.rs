@@ -1,6 +1,6 @@
 //! The moves within bounds that keep a chain closest to zero.
 
-use super::chain::{Chain, Riccati};
+use super::chain::{Chain, Riccati, dot};
 
 /// Moves in [-1, 1], and the largest |x| of the states that follow.
 #[derive(Debug)]
@@ -10,7 +10,7 @@ pub(super) struct Regulated {
 }
 
 /// How far above the least the largest |x| may be, in parts of itself.
-const ACCURACY: f64 = 0.01;
+const ACCURACY: f64 = 0.02;
 
 /// Beyond this many iterations nothing is gained.
 const ITERATIONS: usize = 60;
@@ -39,8 +39,7 @@ pub(super) fn regulate(chain: &Chain, enough: f64) -> Regulated {
 
 /// No moves, with multipliers as on the central path.
 fn start(chain: &Chain) -> (Band, Band) {
-    let mut rest = chain.drift.clone();
-    chain.roll(&mut rest);
+    let rest = chain.rest();
     let largest: f64 = rest.iter().fold(0.0, |max, x| max.max(x.abs()));
     let mut states = Band::new(1.1 * largest, rest);
     let mut moves = Band::new(1.0, vec![0.0; chain.moves()]);
@@ -85,12 +84,12 @@ impl Band {
 
     /// That after a step.
     fn gap_after(&self, change: &Self, primal: f64, dual: f64) -> f64 {
-        let product =
-            |((slack, multiplier), (more, change)): (([f64; 2], [f64; 2]), ([f64; 2], [f64; 2]))| {
-                let side = |i: usize| (slack[i] + primal * more[i]) * (multiplier[i] + dual * change[i]);
-                side(0) + side(1)
-            };
-        self.pairs().zip(change.pairs()).map(product).sum()
+        let pairs = self.pairs().zip(change.pairs());
+        pairs
+            .flat_map(|(own, change)| {
+                [0, 1].map(|i| (own.0[i] + primal * change.0[i]) * (own.1[i] + dual * change.1[i]))
+            })
+            .sum()
     }
 
     /// How far `change` may be followed until a slack is used up.
@@ -162,10 +161,9 @@ impl<'a> Step<'a> {
 
     /// Towards products of zero.
     fn predict(&mut self, states: &Band, moves: &Band, curvature: f64) {
-        for (change, own) in [(&mut self.states, states), (&mut self.moves, moves)] {
+        for change in [&mut self.states, &mut self.moves] {
             change.multipliers.fill([0.0; 2]);
             change.values.fill(0.0);
-            debug_assert_eq!(change.values.len(), own.values.len());
         }
         self.follow(states, moves, -1.0 / curvature);
     }
@@ -214,8 +212,4 @@ impl Band {
 
 fn fill(to: &mut [f64], from: impl Iterator<Item = f64>) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to = from);
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
