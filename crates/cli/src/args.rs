@@ -371,6 +371,9 @@ pub struct ConformArgs {
     /// Measurement noise: none, free (found by the program), or its radius in rad and rad/s: 2 or 2n numbers
     #[arg(long, default_value = "none", value_name = "none|free|R,R,..", allow_hyphen_values = true)]
     pub noise: String,
+    /// Look for motions of the model itself that come within so many rad and rad/s of each recording: 2 numbers, or none [default: 0.001,0.01 for a model that is not linear]
+    #[arg(long, value_name = "none|Q,QD")]
+    pub explain: Option<String>,
     /// Where nominal solutions start: at the mean of the runs' first states, or at each run's own
     #[arg(long, default_value = "mean", value_parser = word_of::<NominalStart>(&["mean", "own"]))]
     pub nominal: NominalStart,

@@ -161,9 +161,13 @@ pub fn model(model: &Model) -> String {
     proof.lost.iter().for_each(|lost| text.push_str(&format!("{}\n", self::lost(lost))));
     let _ = writeln!(text, "{}\n", cost(model));
     text.push_str(&sets(model));
+    let touched = match proof.enclosure {
+        Enclosure::Inner => "the reachable set",
+        Enclosure::Outer => "the reachable set of the model, or nearly so,",
+    };
     let _ = writeln!(
         text,
-        "\n{} the reachable set and decide X0 and U:",
+        "\n{} {touched} and decide X0 and U:",
         match model.tight.len() {
             1 => "1 recorded value touches".into(),
             MOST_TIGHT => format!("{MOST_TIGHT} recorded values or more touch"),
@@ -171,6 +175,9 @@ pub fn model(model: &Model) -> String {
         }
     );
     text.push_str(&places(&model.tight, 6));
+    if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
+        let _ = writeln!(text, "\n{}", explained.words(tolerance));
+    }
     let _ = writeln!(text, "\n{}", trust(&model.trust, "touch the set"));
     text
 }
@@ -191,11 +198,13 @@ fn cost(model: &Model) -> String {
             let linearised =
                 search.linearised_cost.map(|cost| format!(", {} of the linearised set", number(cost)));
             format!(
-                "cost {} ({widths}){}; {} rounds, {} times the reachable sets of all suites",
+                "cost {} ({widths}){}; {} {}, the reachable sets of all suites computed {} {}",
                 number(cost),
                 linearised.unwrap_or_default(),
                 search.rounds,
-                search.reachable_sets
+                plural(search.rounds, "round"),
+                search.reachable_sets,
+                plural(search.reachable_sets, "time")
             )
         }
         (None, None) => format!("cost {} ({widths})", number(cost)),
@@ -239,7 +248,7 @@ fn places(places: &[Place], most: usize) -> String {
             format!("{:.3} s", place.time),
             place.state.clone(),
             format!("{:?}", place.side).to_lowercase(),
-            format!("{:.1e}", -place.excess),
+            format!("{:.1e}", 0.0 - place.excess),
         ]
     };
     let rows: Vec<_> = places.iter().take(most).map(row).collect();

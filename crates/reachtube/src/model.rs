@@ -353,6 +353,37 @@ impl Model {
 }
 
 impl Explained {
+    /// In one sentence, for people; `tolerance` is that of the settings.
+    pub fn words(&self, tolerance: Tolerance) -> String {
+        let worst = self
+            .residuals
+            .iter()
+            .max_by(|a, b| a.in_tolerances(tolerance).total_cmp(&b.in_tolerances(tolerance)));
+        let Some(worst) = worst else { return "no recording to explain".into() };
+        let median = |of: fn(&Residual) -> Option<f64>| {
+            let mut values: Vec<f64> =
+                self.residuals.iter().map(|r| of(r).unwrap_or(f64::INFINITY)).collect();
+            values.sort_by(f64::total_cmp);
+            format!("{:.2e}", values[values.len() / 2])
+        };
+        let of = |value: Option<f64>| {
+            value.map_or_else(|| "infinitely far".into(), |value| format!("{value:.2e}"))
+        };
+        format!(
+            "a motion of the model itself (start in X0, input in U, held over each sample) was found within {} rad and {} rad/s of {} of the {} recordings; \
+             the closest found differ by {} rad and {} rad/s in the median, and by {} rad and {} rad/s for {}",
+            tolerance.position,
+            tolerance.velocity,
+            self.runs,
+            self.residuals.len(),
+            median(|r| r.position),
+            median(|r| r.velocity),
+            of(worst.position),
+            of(worst.velocity),
+            worst.file
+        )
+    }
+
     fn new(data: &DataSet, tolerance: Tolerance, found: &Conformance) -> Self {
         let is_within =
             |e: &&Explanation| e.position <= tolerance.position && e.velocity <= tolerance.velocity;
@@ -366,6 +397,14 @@ impl Explained {
             runs: found.explanations.iter().filter(is_within).count(),
             residuals: found.explanations.iter().map(residual).collect(),
         }
+    }
+}
+
+impl Residual {
+    /// The larger difference in parts of the tolerance.
+    fn in_tolerances(&self, tolerance: Tolerance) -> f64 {
+        let part = |value: Option<f64>, of: f64| value.unwrap_or(f64::INFINITY) / of.max(f64::MIN_POSITIVE);
+        part(self.position, tolerance.position).max(part(self.velocity, tolerance.velocity))
     }
 }
 

@@ -1,5 +1,5 @@
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
-use reachtube::conform::{Noise, Settings, Watch, Weights, conform};
+use reachtube::conform::{Dynamics, Noise, Settings, Tolerance, Watch, Weights, conform};
 use reachtube::data::DataSet;
 use reachtube::{Error, Model, Result, write};
 use reachtube_robot::Robot;
@@ -10,8 +10,10 @@ use crate::progress::Progress;
 use crate::{output, words};
 
 pub fn run(args: &ConformArgs, json: bool) -> Result<Outcome> {
-    let (robot, settings) = robot_and_settings(args)?;
+    let (robot, mut settings) = robot_and_settings(args)?;
     robot.check_physical()?;
+    settings.explain = explain(args, &robot, &settings)?;
+    settings.validate(robot.joint_count())?;
     let data = DataSet::open(&args.data.data)?;
     if let Some(path) = &args.out {
         write::try_at(path)?;
@@ -55,6 +57,27 @@ fn robot_and_settings(args: &ConformArgs) -> Result<(Robot, Settings)> {
     let model = PolynomialModel::load(path)?;
     let settings = settings(args, model.joints())?.with_abstraction(&model)?;
     Ok((Robot::from_description(model.robot())?, settings))
+}
+
+/// Explanations cost little beside the search for the sets of a model that is not linear, and its verdict needs them more.
+fn explain(args: &ConformArgs, robot: &Robot, settings: &Settings) -> Result<Option<Tolerance>> {
+    match args.explain.as_deref() {
+        Some("none") => Ok(None),
+        Some(list) => {
+            let wrong = || {
+                Error::Setting(format!(
+                    "--explain: \"{list}\"; give none, or 2 numbers, rad and rad/s, separated by a comma"
+                ))
+            };
+            let (position, velocity) = list.split_once(',').ok_or_else(wrong)?;
+            let parse = |text: &str| text.trim().parse().map_err(|_| wrong());
+            Ok(Some(Tolerance { position: parse(position)?, velocity: parse(velocity)? }))
+        }
+        None => match Dynamics::new(robot, settings)? {
+            Dynamics::Linear(_) => Ok(None),
+            Dynamics::Polynomial(_) => Ok(Some(Tolerance::default())),
+        },
+    }
 }
 
 fn settings(args: &ConformArgs, joints: usize) -> Result<Settings> {

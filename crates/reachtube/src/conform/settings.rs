@@ -107,6 +107,13 @@ pub struct Tolerance {
     pub velocity: f64,
 }
 
+impl Default for Tolerance {
+    /// A little more than the noise of the paper's recordings: 0.0002 rad and 0.009 rad/s at most.
+    fn default() -> Self {
+        Self { position: 1e-3, velocity: 1e-2 }
+    }
+}
+
 /// All that decides a conformance result besides robot and recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

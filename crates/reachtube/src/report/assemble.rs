@@ -90,6 +90,10 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     if outer {
         not_proved.push("The model is not linear: its reachable set was computed as an outer enclosure, which is what a formal analysis uses. A recording in it need not be a behaviour of the model itself.".into());
     }
+    if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
+        not_proved
+            .push(format!("Explanations were searched for, not proved: {}.", explained.words(tolerance)));
+    }
     let end = |lost: &Lost| {
         format!(
             "{}: the reachable set could not be followed beyond {:.3} s ({}).",
