@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{DMatrix, DVector};
 use reachtube_scalar::{Interval, TaylorTerm};
 
 use super::angles::Angles;
 use super::shift::ShiftedPolynomial;
 
-/// How far the coefficients of a monomial may be from a multiple of a direction, relative to the largest: rounding of products of a few factors,
-/// far below any real difference.
+/// How far the coefficients of a monomial may be from a multiple of a direction, relative to the largest of all: rounding of products and of sums
+/// that cancel, far below any real difference.
 const PARALLEL: f64 = 1e-12;
 
 /// A part of f that is a fixed vector times a polynomial in (x, u, sin, cos).
@@ -23,51 +24,131 @@ pub(super) struct Direction {
 /// The monomials of f with the column of their coefficients.
 type Columns = BTreeMap<Vec<u8>, Vec<Interval>>;
 
-/// The directions of the nonlinear terms that are in several components, if they are at most as many as components; their terms, and those
-/// linear in an input along them, are taken out of `terms`, which keeps what rounding leaves.
+/// The directions of the nonlinear terms: those of the inputs, if they span them; or those that they themselves have in several components, if they are at most
+/// as many as components. Their terms, and those linear in an input along them, are taken out of `terms`, which keeps what rounding leaves.
 ///
 /// # Guarantee
 ///
-/// Rows and directions together enclose f as it was.
+/// Rows and directions together enclose f as it was, for coefficients that may be others of their intervals at each time.
 pub(super) fn directions(angles: &Angles, terms: &mut [Vec<TaylorTerm<Interval>>]) -> Vec<Direction> {
     let states = terms.len();
     let columns = columns(terms);
     let is_nonlinear = |m: &[u8]| degree(m) >= 2 || degree(&m[angles.plain..]) > 0;
-    let nonlinear = columns.iter().filter(|(m, c)| is_nonlinear(m) && entries(c) >= 2);
-    let mut found: Vec<Vec<f64>> = Vec::new();
-    for (_, column) in nonlinear {
-        let unit = unit(column);
-        if factor(column, &found).is_none() {
-            found.push(unit);
-        }
-        if found.len() > states {
-            return Vec::new();
-        }
-    }
-    let mut parts: Vec<Vec<TaylorTerm<Interval>>> = vec![Vec::new(); found.len()];
-    let mut rest = vec![Vec::new(); states];
-    for (exponents, column) in columns {
-        let is_input = degree(&exponents) == 1 && exponents[states..angles.plain].iter().any(|e| *e > 0);
-        let along = if is_nonlinear(&exponents) || is_input { factor(&column, &found) } else { None };
-        if let Some((at, factor)) = along {
-            parts[at].push(TaylorTerm { exponents: exponents.clone(), coefficient: Interval::point(factor) });
-        }
-        for (i, mut coefficient) in column.into_iter().enumerate() {
-            if let Some((at, factor)) = along {
-                coefficient -= Interval::point(factor) * found[at][i];
-            }
-            if coefficient != Interval::ZERO {
-                rest[i].push(TaylorTerm { exponents: exponents.clone(), coefficient });
+    let is_input = |m: &[u8]| degree(m) == 1 && degree(&m[states..angles.plain]) == 1;
+    let mut nonlinear: Vec<&[Interval]> =
+        columns.iter().filter(|(m, _)| is_nonlinear(m)).map(|(_, column)| column.as_slice()).collect();
+    // The largest are the least blurred by rounding.
+    nonlinear.sort_by(|a, b| largest(b).abs().total_cmp(&largest(a).abs()));
+    let inputs = columns.iter().filter(|(m, _)| is_input(m)).map(|(_, column)| unit(column)).collect();
+    let Some(basis) = Basis::of_inputs(inputs, &nonlinear).or_else(|| Basis::of_parallels(&nonlinear)) else {
+        return Vec::new();
+    };
+    let mut parts: Vec<Vec<TaylorTerm<Interval>>> = vec![Vec::new(); basis.columns.len()];
+    let mut rest = Columns::new();
+    for (exponents, mut column) in columns {
+        if is_nonlinear(&exponents) || is_input(&exponents) {
+            for (at, factor) in basis.coordinates(&column).unwrap_or_default() {
+                let coefficient = Interval::point(factor);
+                parts[at].push(TaylorTerm { exponents: exponents.clone(), coefficient });
+                let along = basis.columns[at].iter().map(|x| coefficient * *x);
+                column.iter_mut().zip(along).for_each(|(own, along)| *own -= along);
             }
         }
+        add_rest(angles, exponents, column, basis.tolerance, &mut rest);
     }
-    terms.iter_mut().zip(rest).for_each(|(terms, rest)| *terms = rest);
+    for (row, terms) in terms.iter_mut().enumerate() {
+        let own = rest.iter().filter(|(_, column)| column[row] != Interval::ZERO);
+        let term =
+            |(m, c): (&Vec<u8>, &Vec<Interval>)| TaylorTerm { exponents: m.clone(), coefficient: c[row] };
+        *terms = own.map(term).collect();
+    }
     let direction = |(column, terms): (Vec<f64>, Vec<_>)| Direction {
         column,
         polynomial: ShiftedPolynomial::new(angles, &terms),
         terms,
     };
-    found.into_iter().zip(parts).map(direction).collect()
+    basis.columns.into_iter().zip(parts).map(direction).collect()
+}
+
+/// Directions, and how a column is written in them.
+struct Basis {
+    /// The largest entry of each is 1.
+    columns: Vec<Vec<f64>>,
+    /// From a column to its coordinates, where the directions are taken together.
+    inverse: Option<DMatrix<f64>>,
+    /// What an entry may be off by.
+    tolerance: f64,
+}
+
+impl Basis {
+    /// The columns of the inputs, if they are independent and span all the others.
+    fn of_inputs(columns: Vec<Vec<f64>>, nonlinear: &[&[Interval]]) -> Option<Self> {
+        let tolerance = tolerance(nonlinear);
+        let states = columns.first()?.len();
+        let matrix = DMatrix::from_fn(states, columns.len(), |i, j| columns[j][i]);
+        let inverse = Some((matrix.transpose() * &matrix).cholesky()?.solve(&matrix.transpose()));
+        let basis = Self { columns, inverse, tolerance };
+        nonlinear.iter().all(|column| basis.coordinates(column).is_some()).then_some(basis)
+    }
+
+    /// The columns themselves that have several entries and are no multiples of each other, if they are at most as many as components.
+    fn of_parallels(nonlinear: &[&[Interval]]) -> Option<Self> {
+        let mut basis = Self { columns: Vec::new(), inverse: None, tolerance: tolerance(nonlinear) };
+        for column in nonlinear {
+            let entries = column.iter().filter(|x| x.mid().abs() > basis.tolerance).count();
+            if entries >= 2 && basis.coordinates(column).is_none() {
+                basis.columns.push(unit(column));
+            }
+            if basis.columns.len() > column.len() {
+                return None;
+            }
+        }
+        Some(basis)
+    }
+
+    /// The directions that a column is a sum of and the factors, up to the tolerance.
+    fn coordinates(&self, column: &[Interval]) -> Option<Vec<(usize, f64)>> {
+        let Some(inverse) = &self.inverse else {
+            return self.columns.iter().enumerate().find_map(|(at, direction)| {
+                let pivot = direction.iter().position(|x| *x == 1.0).expect("the largest entry is 1");
+                let factors = vec![(at, column[pivot].mid())];
+                self.is_sum(column, &factors).then_some(factors)
+            });
+        };
+        let factors = inverse * DVector::from_iterator(column.len(), column.iter().map(|x| x.mid()));
+        let factors: Vec<_> =
+            factors.iter().copied().enumerate().filter(|(_, factor)| factor.abs() > self.tolerance).collect();
+        self.is_sum(column, &factors).then_some(factors)
+    }
+
+    fn is_sum(&self, column: &[Interval], factors: &[(usize, f64)]) -> bool {
+        let sum = |i: usize| factors.iter().map(|(at, factor)| factor * self.columns[*at][i]).sum::<f64>();
+        // The factors left out are up to the tolerance each.
+        let near = (self.columns.len() + 1) as f64 * self.tolerance;
+        column.iter().enumerate().all(|(i, x)| (x.mid() - sum(i)).abs() <= near)
+    }
+}
+
+/// Of columns of which the first is the largest.
+fn tolerance(columns: &[&[Interval]]) -> f64 {
+    PARALLEL * columns.first().map_or(0.0, |column| largest(column).abs())
+}
+
+/// Adds a monomial to the rest; where it is rounding, its sines and cosines are any numbers within ±1, so that it costs no more than their factor.
+fn add_rest(
+    angles: &Angles,
+    mut exponents: Vec<u8>,
+    mut column: Vec<Interval>,
+    tolerance: f64,
+    rest: &mut Columns,
+) {
+    let is_rounding = column.iter().all(|x| x.mag() <= tolerance);
+    if is_rounding && degree(&exponents[angles.plain..]) > 0 {
+        exponents[angles.plain..].fill(0);
+        column.iter_mut().for_each(|x| *x = Interval::centered(0.0, x.mag()));
+    }
+    let own = rest.entry(exponents).or_insert_with(|| vec![Interval::ZERO; column.len()]);
+    own.iter_mut().zip(column).for_each(|(own, x)| *own += x);
 }
 
 fn columns(terms: &[Vec<TaylorTerm<Interval>>]) -> Columns {
@@ -86,10 +167,6 @@ fn degree(exponents: &[u8]) -> u32 {
     exponents.iter().map(|e| u32::from(*e)).sum()
 }
 
-fn entries(column: &[Interval]) -> usize {
-    column.iter().filter(|x| x.mid() != 0.0).count()
-}
-
 fn largest(column: &[Interval]) -> f64 {
     let middle = column.iter().map(|x| x.mid());
     middle.fold(0.0, |largest: f64, x| if x.abs() > largest.abs() { x } else { largest })
@@ -100,14 +177,67 @@ fn unit(column: &[Interval]) -> Vec<f64> {
     column.iter().map(|x| x.mid() / largest).collect()
 }
 
-/// The direction that the column is a multiple of, and the multiple.
-fn factor(column: &[Interval], found: &[Vec<f64>]) -> Option<(usize, f64)> {
-    let largest = largest(column);
-    let is_parallel = |direction: &Vec<f64>| {
-        let pivot = direction.iter().position(|x| *x == 1.0).expect("the largest entry is 1");
-        let multiple = column[pivot].mid();
-        let near = |(x, d): (&Interval, &f64)| (x.mid() - multiple * d).abs() <= PARALLEL * largest.abs();
-        column.iter().zip(direction).all(near).then_some(multiple)
-    };
-    found.iter().enumerate().find_map(|(at, direction)| Some((at, is_parallel(direction)?)))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMNS: [[f64; 2]; 2] = [[0.7, 0.1], [0.1, 0.3]];
+
+    /// Terms of two components in two states, two inputs and the sine and cosine of one, which two loads drive along two columns; each coefficient is
+    /// rounded.
+    fn terms() -> Vec<Vec<TaylorTerm<Interval>>> {
+        let loads = [
+            (vec![0, 0, 1, 0, 0, 0], [1.0, 0.0]),
+            (vec![0, 0, 0, 1, 0, 0], [0.0, 1.0]),
+            (vec![1, 1, 0, 0, 1, 0], [0.3, -0.9]),
+            (vec![2, 0, 0, 0, 0, 1], [1.1, 1e-17]),
+            (vec![0, 0, 0, 0, 0, 2], [-0.2, 0.6]),
+        ];
+        let component = |i: usize| {
+            let term = |(exponents, load): &(Vec<u8>, [f64; 2])| TaylorTerm {
+                exponents: exponents.clone(),
+                coefficient: Interval::point(COLUMNS[0][i] * load[0] + COLUMNS[1][i] * load[1]),
+            };
+            loads.iter().map(term).collect()
+        };
+        vec![component(0), component(1)]
+    }
+
+    fn value(terms: &[TaylorTerm<Interval>], at: &[f64; 6]) -> Interval {
+        let power = |(x, e): (&f64, &u8)| Interval::point(*x).powi((*e).into());
+        terms.iter().map(|t| at.iter().zip(&t.exponents).map(power).fold(t.coefficient, |p, x| p * x)).sum()
+    }
+
+    #[test]
+    fn what_drives_along_the_inputs_is_found_where_monomials_are_shared() {
+        let (before, mut rest) = (terms(), terms());
+        let angles = Angles::new(4, &[0], before.iter().flatten());
+        let found = directions(&angles, &mut rest);
+        assert_eq!(found.len(), 2);
+        // What is left is rounding, without sines and cosines.
+        for term in rest.iter().flatten() {
+            assert!(term.coefficient.mag() < 1e-15 && term.exponents[4..] == [0, 0], "{term:?}");
+        }
+        let at = [0.4, -0.7, 1.3, 0.2, 0.4f64.sin(), 0.4f64.cos()];
+        for i in 0..2 {
+            let along: Interval = found.iter().map(|d| value(&d.terms, &at) * d.column[i]).sum();
+            let (own, after) = (value(&before[i], &at), value(&rest[i], &at) + along);
+            assert!(
+                after.encloses(&Interval::point(own.mid())) && after.width() < 1e-14,
+                "{own:?} {after:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn many_unlike_columns_stay_components() {
+        let term = |a: u8, c: f64| TaylorTerm { exponents: vec![a, 2], coefficient: Interval::point(c) };
+        let before = vec![
+            vec![term(0, 1.0), term(1, 1.0), term(2, 1.0)],
+            vec![term(0, 1.0), term(1, 2.0), term(2, 3.0)],
+        ];
+        let mut rest = before.clone();
+        assert!(directions(&Angles::new(2, &[], [].iter()), &mut rest).is_empty());
+        assert_eq!(rest, before);
+    }
 }

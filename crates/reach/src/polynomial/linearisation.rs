@@ -19,8 +19,9 @@ pub(super) struct Linearisation<'a> {
     radius: Vec<f64>,
     /// The slopes of the lines of the angles' sines.
     lines: Vec<f64>,
-    /// f*.
+    /// f*, and what it may be off by at each time.
     pub rate: Vec<Interval>,
+    rate_radius: Vec<f64>,
     pub a: Square,
     /// B without the inputs that a direction carries, column by column.
     b: Vec<f64>,
@@ -45,6 +46,7 @@ impl<'a> Linearisation<'a> {
             radius: vec![0.0; n + m],
             lines: vec![0.0; system.angles.states.len()],
             rate: vec![Interval::ZERO; n],
+            rate_radius: vec![0.0; n],
             a: Square::zero(n),
             b: vec![0.0; n * m],
             input_radius: vec![0.0; m],
@@ -73,7 +75,7 @@ impl<'a> Linearisation<'a> {
     ///
     /// # Guarantee
     ///
-    /// f* and the slopes are enclosed; A and B are their midpoints, exact as numbers.
+    /// f* and the slopes are enclosed, whichever of their intervals coefficients are at each time; f*, A and B are midpoints, exact as numbers.
     pub fn linearise(&mut self, point: impl Iterator<Item = f64>, radius: &[f64], input: &[Interval]) {
         let n = self.system.states();
         self.point[..n].iter_mut().zip(point).for_each(|(own, x)| *own = x);
@@ -128,6 +130,8 @@ impl<'a> Linearisation<'a> {
     fn round(&mut self) {
         let (n, variables) = (self.system.states(), self.point.len());
         for i in 0..n {
+            self.rate_radius[i] = self.rate[i].rad();
+            self.rate[i] = Interval::point(self.rate[i].mid());
             for z in 0..variables {
                 let (at, slope) = (i * variables + z, self.gradient[i * variables + z]);
                 self.defect[at] = slope.rad();
@@ -158,7 +162,7 @@ impl<'a> Linearisation<'a> {
             let defect = &self.defect[i * variables..(i + 1) * variables];
             let states = defect.iter().zip(tube).map(|(defect, d)| defect * d.mag());
             let inputs = defect[n..].iter().zip(&self.input_radius).map(|(defect, r)| defect * r);
-            let rounding = raised(states.chain(inputs).sum(), variables);
+            let rounding = raised(states.chain(inputs).sum::<f64>() + self.rate_radius[i], variables + 1);
             let range = self.system.rows[i].remainder(&self.powers, &mut self.rows[i]);
             *out = range + Interval::centered(0.0, rounding);
         }
