@@ -6,6 +6,9 @@
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
+/// What a factor of an angle may be off by, in roundings of the bound of its magnitude.
+pub(super) const TURN_ROUNDINGS: f64 = 256.0;
+
 /// States whose sine and cosine a polynomial has: its variables are others, `plain` of them, then the sines, then the cosines.
 #[derive(Debug, Clone)]
 pub(super) struct Angles {
@@ -58,6 +61,13 @@ impl Angles {
         vec![Interval::ZERO; self.starts[self.states.len()]]
     }
 
+    /// Bounds of the magnitudes of the factors at any angle; zero for the plain variables.
+    pub fn magnitudes(&self) -> Vec<f64> {
+        let (mut factors, any) = (self.factors(), Interval::centered(0.0, 1.0));
+        (0..self.states.len()).for_each(|i| self.columns(i, [any, any], &mut factors));
+        factors.iter().map(|factor| factor.mag()).collect()
+    }
+
     /// Where the factor of φ_l is in sin^a cos^b of angle i.
     pub fn factor(&self, i: usize, [sine, cosine]: [u8; 2], l: usize) -> usize {
         self.column(i, sine.into(), cosine.into()) + l
@@ -74,7 +84,10 @@ impl Angles {
     ///
     /// Each encloses the exact one.
     pub fn turn(&self, i: usize, q: f64, factors: &mut [Interval]) {
-        let (sin, cos) = Interval::point(q).sin_cos();
+        self.columns(i, Interval::point(q).sin_cos().into(), factors);
+    }
+
+    fn columns(&self, i: usize, [sin, cos]: [Interval; 2], factors: &mut [Interval]) {
         let [sines, cosines] = self.highest[i];
         factors[self.starts[i]..self.starts[i + 1]].fill(Interval::ZERO);
         factors[self.starts[i]] = Interval::ONE;

@@ -3,9 +3,12 @@
 use reachtube_scalar::Interval;
 
 use super::PolynomialSystem;
-use super::angles::sine_slope;
+use super::angles::{TURN_ROUNDINGS, sine_slope};
 use super::rounded::{Square, raised};
 use super::shift::{PowerTable, Shift};
+
+/// Bounds of variables begin here, so that they do not have to grow often.
+const LEAST_BOUND: f64 = 1e-3;
 
 /// f(x* + d, u* + e) = f* + A d + B e + remainder, with A and B in floating point and their error in the remainder.
 #[derive(Debug)]
@@ -14,7 +17,10 @@ pub(super) struct Linearisation<'a> {
     /// (x*, u*).
     point: Vec<f64>,
     /// (x*, u*) and the turns of the angles, as the shifts take them.
-    factors: Vec<Interval>,
+    factors: Vec<f64>,
+    turns: Vec<Interval>,
+    /// Bounds of their magnitudes that the errors of the shifts rest on.
+    bounds: Vec<f64>,
     /// How far (x, u) is from there, about.
     radius: Vec<f64>,
     /// The slopes of the lines of the angles' sines.
@@ -39,10 +45,12 @@ pub(super) struct Linearisation<'a> {
 impl<'a> Linearisation<'a> {
     pub fn new(system: &'a PolynomialSystem) -> Self {
         let (n, m) = (system.states(), system.inputs());
-        Self {
+        let mut own = Self {
             system,
             point: vec![0.0; n + m],
-            factors: system.angles.factors(),
+            factors: vec![0.0; system.angles.factors().len()],
+            turns: system.angles.factors(),
+            bounds: system.angles.magnitudes(),
             radius: vec![0.0; n + m],
             lines: vec![0.0; system.angles.states.len()],
             rate: vec![Interval::ZERO; n],
@@ -56,7 +64,9 @@ impl<'a> Linearisation<'a> {
             directions: system.directions.iter().map(|d| d.polynomial.workspace()).collect(),
             powers: PowerTable::new(&system.highest),
             centers: vec![Interval::ZERO; n],
-        }
+        };
+        own.bound_errors();
+        own
     }
 
     /// x*.
@@ -86,15 +96,39 @@ impl<'a> Linearisation<'a> {
             self.radius[n + j] = u.rad();
             self.powers.set(n + j, *u - u.mid());
         }
-        self.factors.iter_mut().zip(&self.point).for_each(|(factor, z)| *factor = Interval::point(*z));
-        for (i, &state) in self.system.angles.states.iter().enumerate() {
-            self.system.angles.turn(i, self.point[state], &mut self.factors);
-            self.lines[i] = sine_slope(radius[state]);
-        }
+        self.turn();
         self.gradient.fill(Interval::ZERO);
         self.differentiate_rows();
         self.differentiate_directions();
         self.round();
+    }
+
+    /// The factors at the point. An angle so large that its sine is not known has none.
+    fn turn(&mut self) {
+        let variables = self.point.len();
+        self.factors[..variables].copy_from_slice(&self.point);
+        for (i, &state) in self.system.angles.states.iter().enumerate() {
+            self.system.angles.turn(i, self.point[state], &mut self.turns);
+            self.lines[i] = sine_slope(self.radius[state]);
+        }
+        for (at, turn) in self.turns.iter().enumerate().skip(variables) {
+            let is_known = turn.rad() <= TURN_ROUNDINGS * f64::EPSILON * self.bounds[at];
+            self.factors[at] = if is_known { turn.mid() } else { f64::NAN };
+        }
+        let beyond = |(z, bound): (&f64, &f64)| z.abs() > *bound;
+        if self.point.iter().zip(&self.bounds).any(beyond) {
+            let grown = self.bounds.iter_mut().zip(&self.point).filter(|(bound, z)| z.abs() > **bound);
+            grown.for_each(|(bound, z)| *bound = (2.0 * z.abs()).max(LEAST_BOUND));
+            self.bound_errors();
+        }
+    }
+
+    fn bound_errors(&mut self) {
+        let bounds = &self.bounds;
+        let rows = self.system.rows.iter().zip(&mut self.rows);
+        rows.for_each(|(row, shift)| row.bound_errors(bounds, shift));
+        let directions = self.system.directions.iter().zip(&mut self.directions);
+        directions.for_each(|(direction, shift)| direction.polynomial.bound_errors(bounds, shift));
     }
 
     fn differentiate_rows(&mut self) {
@@ -153,6 +187,10 @@ impl<'a> Linearisation<'a> {
     /// Outer, directed rounding.
     pub fn remainder(&mut self, tube: &[Interval], out: &mut [Interval]) {
         let (n, variables) = (tube.len(), self.point.len());
+        if tube.iter().any(|side| !side.mag().is_finite()) {
+            out.fill(Interval::ENTIRE);
+            return;
+        }
         tube.iter().enumerate().for_each(|(i, side)| self.powers.set(i, *side));
         for (i, (&state, line)) in self.system.angles.states.iter().zip(&self.lines).enumerate() {
             self.powers.set_angle(variables + i, tube[state], *line);

@@ -5,16 +5,24 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
-use super::angles::{Angles, sine_defect, versed};
+use super::angles::{Angles, TURN_ROUNDINGS, sine_defect, versed};
+use super::rounded::raised;
 use super::univariate::Univariate;
+
+/// Added to the magnitude of each monomial, so that products that underflow are within its rounding.
+const SMALLEST: f64 = 1e-290;
 
 /// A polynomial prepared for being shifted and bounded again and again without allocation.
 #[derive(Debug, Clone)]
 pub(super) struct ShiftedPolynomial {
     /// Coefficients: first those about the point, still zero, of a set of monomials that holds every divisor of a member, by degree, the
     /// constant first; then those of the terms with sines and cosines, which become the former angle after angle.
-    start: Vec<Interval>,
+    start: Vec<f64>,
+    /// What those may be off by.
+    start_error: Vec<f64>,
     operations: Vec<Operation>,
+    /// How often each term of a coefficient about the point is rounded at most, factors included.
+    roundings: Vec<f64>,
     /// Monomials of degree 1: the variable and the place.
     linear: Vec<(usize, usize)>,
     /// Monomials of degree 2 and above, in the order of their places.
@@ -44,13 +52,22 @@ struct Node {
     is_power: bool,
 }
 
-/// The coefficients about the present point, and scratch memory.
+/// The coefficients about the present point in floating point, and scratch memory.
 #[derive(Debug, Clone)]
 pub(super) struct Shift {
-    coefficients: Vec<Interval>,
-    values: Vec<Interval>,
+    coefficients: Vec<f64>,
+    /// What those about the point may be off by.
+    errors: Vec<f64>,
+    /// Bounds \[lo, hi\] of the monomials, up to rounding.
+    values: Vec<[f64; 2]>,
     /// What is added to the derivative and taken from the remainder, one a list of powers.
     slopes: Vec<f64>,
+}
+
+impl Shift {
+    fn coefficient(&self, at: usize) -> Interval {
+        Interval::centered(self.coefficients[at], self.errors[at])
+    }
 }
 
 impl ShiftedPolynomial {
@@ -75,13 +92,22 @@ impl ShiftedPolynomial {
         };
         let univariate = (0..plain).filter_map(|variable| Univariate::of(variable, &place)).collect();
         let nodes = monomials.iter().filter(|(degree, _)| *degree >= 2).map(|(_, m)| node(m)).collect();
-        Self { first_node: 1 + linear.len(), plain, start, operations, linear, nodes, univariate }
+        let roundings = roundings(plain, &start, &operations, monomials.len());
+        let start_error = start.iter().map(|x| x.rad()).collect();
+        let start = start.iter().map(|x| x.mid()).collect();
+        let first_node = 1 + linear.len();
+        Self { start, start_error, operations, roundings, linear, nodes, first_node, plain, univariate }
     }
 
     /// Scratch memory for this polynomial.
     pub fn workspace(&self) -> Shift {
-        let values = vec![Interval::ZERO; self.first_node + self.nodes.len()];
-        Shift { coefficients: self.start.clone(), values, slopes: vec![0.0; self.univariate.len()] }
+        let own = self.roundings.len();
+        Shift {
+            coefficients: self.start.clone(),
+            errors: vec![0.0; own],
+            values: vec![[1.0; 2]; own],
+            slopes: vec![0.0; self.univariate.len()],
+        }
     }
 
     /// The highest exponent of each variable, where it is above that in `highest`.
@@ -96,30 +122,52 @@ impl ShiftedPolynomial {
     ///
     /// # Guarantee
     ///
-    /// Each coefficient encloses the exact one.
-    pub fn shift(&self, factors: &[Interval], radius: &[f64], work: &mut Shift) {
+    /// None for itself: each coefficient is off by [`bound_errors`](Self::bound_errors) at most.
+    pub fn shift(&self, factors: &[f64], radius: &[f64], work: &mut Shift) {
         work.coefficients.copy_from_slice(&self.start);
         let c = &mut work.coefficients;
-        for op in &self.operations {
-            let factor = factors[op.factor as usize];
-            if factor != Interval::ZERO {
-                let higher = c[op.from as usize];
-                c[op.to as usize] += higher * factor;
-            }
-        }
+        self.operate(factors, c);
         for (slope, powers) in work.slopes.iter_mut().zip(&self.univariate) {
             *slope = powers.slope(c, radius[powers.variable]);
         }
     }
 
+    fn operate(&self, factors: &[f64], coefficients: &mut [f64]) {
+        for op in &self.operations {
+            coefficients[op.to as usize] += coefficients[op.from as usize] * factors[op.factor as usize];
+        }
+    }
+
+    /// Bounds the errors of all shifts whose factors are within `bounds`, those of angles known to [`TURN_ROUNDINGS`] of them.
+    ///
+    /// # Guarantee
+    ///
+    /// Each coefficient is a sum of products of factors and a coefficient to begin with. Each of these is rounded at most so many times, so that the sum is
+    /// off by at most γ of that number times the same sum of magnitudes (Higham, section 3.1); what the first coefficients are off by is carried
+    /// through.
+    pub fn bound_errors(&self, bounds: &[f64], work: &mut Shift) {
+        let mut magnitudes: Vec<f64> = self.start.iter().map(|x| x.abs()).collect();
+        let mut carried = self.start_error.clone();
+        self.operate(bounds, &mut magnitudes);
+        self.operate(bounds, &mut carried);
+        for (at, (error, roundings)) in work.errors.iter_mut().zip(&self.roundings).enumerate() {
+            let own = roundings * f64::EPSILON * (magnitudes[at] + carried[at]);
+            *error = if own + carried[at] == 0.0 {
+                0.0
+            } else {
+                raised(carried[at] + own, 2 * *roundings as usize)
+            };
+        }
+    }
+
     /// The value at the present point.
     pub fn constant(&self, work: &Shift) -> Interval {
-        work.coefficients[0]
+        work.coefficient(0)
     }
 
     /// The derivatives at the present point and the slopes: variables, φ₁ that of an angle, and what is to be added up for each.
     pub fn gradient<'a>(&'a self, work: &'a Shift) -> impl Iterator<Item = (usize, Interval)> + 'a {
-        let derivatives = self.linear.iter().map(|&(variable, at)| (variable, work.coefficients[at]));
+        let derivatives = self.linear.iter().map(|&(variable, at)| (variable, work.coefficient(at)));
         let slopes = self.univariate.iter().zip(&work.slopes);
         derivatives.chain(slopes.map(|(powers, slope)| (powers.variable, Interval::point(*slope))))
     }
@@ -131,27 +179,71 @@ impl ShiftedPolynomial {
     ///
     /// Outer, directed rounding.
     pub fn remainder(&self, powers: &PowerTable, work: &mut Shift) -> Interval {
-        let (values, coefficients) = (&mut work.values, &work.coefficients);
-        values[0] = Interval::ONE;
-        for &(variable, at) in &self.linear {
-            values[at] = powers.get(variable, 1);
-        }
-        let mut sum = Interval::ZERO;
+        let mut sum = self.mixed(powers, work);
         for &(variable, at) in self.linear.iter().filter(|(variable, _)| *variable >= self.plain) {
-            sum += coefficients[at] * powers.defect(variable);
-        }
-        for (at, node) in (self.first_node..).zip(&self.nodes) {
-            let power = powers.get(node.variable as usize, node.exponent);
-            values[at] = if node.parent == 0 { power } else { values[node.parent as usize] * power };
-            if !node.is_power {
-                sum += coefficients[at] * values[at];
-            }
+            sum += work.coefficient(at) * powers.defect(variable);
         }
         for (univariate, slope) in self.univariate.iter().zip(&work.slopes) {
-            sum += univariate.range(coefficients, *slope, powers.get(univariate.variable, 1));
+            let coefficient = |at: usize| work.coefficient(at);
+            sum += univariate.range(&coefficient, *slope, powers.get(univariate.variable, 1));
         }
         sum
     }
+
+    /// The sum of all terms but those of one variable that is no angle, in floating point; its rounding is bounded in the end. A product of intervals is off
+    /// by one rounding a factor relative to its magnitude, the sum by one a term.
+    fn mixed(&self, powers: &PowerTable, work: &mut Shift) -> Interval {
+        for &(variable, at) in &self.linear {
+            work.values[at] = powers.ends(variable, 1);
+        }
+        let ([mut low, mut high], [mut magnitudes, mut errors], mut terms) = ([0.0; 2], [0.0; 2], 0);
+        for (at, node) in (self.first_node..).zip(&self.nodes) {
+            let value =
+                times(work.values[node.parent as usize], powers.ends(node.variable as usize, node.exponent));
+            work.values[at] = value;
+            if !node.is_power {
+                let (c, magnitude) = (work.coefficients[at], value[0].abs().max(value[1].abs()) + SMALLEST);
+                let ends = [c * value[0], c * value[1]];
+                low += ends[0].min(ends[1]);
+                high += ends[0].max(ends[1]);
+                magnitudes += c.abs() * magnitude;
+                errors += work.errors[at] * magnitude;
+                terms += 1;
+            }
+        }
+        if terms == 0 {
+            return Interval::ZERO;
+        }
+        let roundings = (terms + 2 * usize::from(u8::MAX)) as f64;
+        let error = raised(errors + magnitudes * (roundings * f64::EPSILON), 2 * terms);
+        let sum = Interval::new(low, high).filter(|_| (magnitudes + errors).is_finite());
+        sum.map_or(Interval::ENTIRE, |sum| sum + Interval::centered(0.0, error))
+    }
+}
+
+/// The product of two intervals, in floating point.
+#[inline]
+fn times([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    let products = [a * c, a * d, b * c, b * d];
+    let smaller = |x: f64, y: f64| if x < y { x } else { y };
+    let larger = |x: f64, y: f64| if x > y { x } else { y };
+    [
+        smaller(smaller(products[0], products[1]), smaller(products[2], products[3])),
+        larger(larger(products[0], products[1]), larger(products[2], products[3])),
+    ]
+}
+
+/// The largest number of roundings of a term of each of the first coefficients: two an operation, those of its factor, and one of a sum for each that follows.
+fn roundings(plain: usize, start: &[Interval], operations: &[Operation], own: usize) -> Vec<f64> {
+    let mut counts = vec![0.0_f64; start.len()];
+    for op in operations {
+        let factor = if op.factor as usize >= plain { TURN_ROUNDINGS } else { 0.0 };
+        let added = counts[op.from as usize] + factor + 2.0;
+        let to = &mut counts[op.to as usize];
+        *to = added.max(*to + 1.0);
+    }
+    counts.truncate(own);
+    counts
 }
 
 fn insert_divisors(monomials: &mut BTreeSet<(u32, Vec<u8>)>, monomial: &[u8]) {
@@ -294,6 +386,11 @@ impl PowerTable {
         self.defects[i]
     }
 
+    fn ends(&self, i: usize, exponent: u32) -> [f64; 2] {
+        let power = self.get(i, exponent);
+        [power.lo(), power.hi()]
+    }
+
     fn get(&self, i: usize, exponent: u32) -> Interval {
         self.powers[self.starts[i] + exponent as usize - 1]
     }
@@ -320,7 +417,8 @@ mod tests {
             let space = TaylorSpace::new(3, 12).unwrap();
             let shifted = ShiftedPolynomial::new(&Angles::new(3, &[], terms.iter()), &terms);
             let mut work = shifted.workspace();
-            shifted.shift(&z.map(Interval::point), &[0.5; 3], &mut work);
+            shifted.shift(&z, &[0.5; 3], &mut work);
+            shifted.bound_errors(&[2.0; 3], &mut work);
             let exact = TaylorPolynomial::from_terms(&space, terms).shifted(&z.map(Interval::point));
             prop_assert!(exact.constant_term().intersection(shifted.constant(&work)).is_some());
             let mut highest = [0; 3];
@@ -341,7 +439,8 @@ mod tests {
         let mut powers = PowerTable::new(&[2]);
         powers.set(0, Interval::new(-1.0, 1.0).unwrap());
         let mut work = shifted.workspace();
-        shifted.shift(&[Interval::point(3.0)], &[1.0], &mut work);
+        shifted.shift(&[3.0], &[1.0], &mut work);
+        shifted.bound_errors(&[3.0], &mut work);
         let range = shifted.remainder(&powers, &mut work);
         assert!(range.lo() == 0.0 && (1.0..1.0 + 1e-12).contains(&range.hi()));
     }
