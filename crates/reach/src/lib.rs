@@ -11,6 +11,7 @@ mod polynomial;
 mod powers;
 mod propagation;
 mod reach_set;
+mod samples;
 mod series;
 mod tube;
 mod variation;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use reachtube_scalar::Interval;
-use reachtube_scalar::rounding::{add_up, mul_up, sub_down};
+use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::LinearSystem;
 
@@ -130,21 +130,22 @@ pub(crate) fn accumulate_upward(sum: &mut DMatrix<f64>, term: &DMatrix<f64>) {
     sum.zip_apply(term, |s, t| *s = add_up(*s, t));
 }
 
-/// At so many samples, the sum of f of the `terms` before each, one a step and of the shape of B.
-pub(crate) fn running_sum(
+/// At so many samples, the sum of the terms before each, one a step and of the shape of B, of which `term(k)` are the lower and upper ends,
+/// column by column.
+pub(crate) fn running_sum<I: Iterator<Item = (f64, f64)>>(
     system: &LinearSystem,
     samples: usize,
-    terms: &[IntervalMatrix],
-    f: impl Fn(Interval) -> Interval,
+    term: impl Fn(usize) -> I,
 ) -> Vec<IntervalMatrix> {
-    let mut sums: Vec<IntervalMatrix> = Vec::with_capacity(samples);
-    for k in 0..samples {
-        sums.push(match k {
-            0 => IntervalMatrix::from_element(system.states(), system.inputs(), Interval::ZERO),
-            _ => sums[k - 1].zip_map(&terms[k - 1], |sum, x| sum + f(x)),
-        });
-    }
-    sums
+    let (rows, columns) = (system.states(), system.inputs());
+    let mut sums = ColumnSums::new(rows * columns);
+    let sum = |k: usize| {
+        if k > 0 {
+            sums.add(&[1.0], |_| term(k - 1));
+        }
+        IntervalMatrix::from_iterator(rows, columns, sums.enclosed())
+    };
+    (0..samples).map(sum).collect()
 }
 
 /// Sums of columns of intervals times numbers, in floating point, with a bound of their error. A sum all of whose terms are zero is 0.
@@ -172,20 +173,19 @@ impl ColumnSums {
         }
     }
 
-    /// Adds f of each entry of `matrix`, times the `vector`.
-    pub(crate) fn add(&mut self, matrix: &IntervalMatrix, f: impl Fn(Interval) -> Interval, vector: &[f64]) {
-        let rows = self.lo.len();
+    /// Adds the `vector` times a matrix, of which `ends(j)` are the lower and upper ends of column j.
+    pub(crate) fn add<I: Iterator<Item = (f64, f64)>>(&mut self, vector: &[f64], ends: impl Fn(usize) -> I) {
         for (j, &y) in vector.iter().enumerate().filter(|(_, y)| **y != 0.0) {
             self.terms += 1;
-            let column = &matrix.as_slice()[j * rows..(j + 1) * rows];
-            let sums = self.lo.iter_mut().zip(&mut self.hi).zip(&mut self.size);
-            for (((lo, hi), size), &x) in sums.zip(column) {
-                let x = f(x);
-                let (below, above) = if y < 0.0 { (x.hi(), x.lo()) } else { (x.lo(), x.hi()) };
-                let least = if x.mag() > 0.0 { f64::MIN_POSITIVE } else { 0.0 };
-                *lo += below * y;
-                *hi += above * y;
-                *size += x.mag() * y.abs() + least;
+            let (first, second) =
+                if y < 0.0 { (&mut self.hi, &mut self.lo) } else { (&mut self.lo, &mut self.hi) };
+            for (((first, second), size), (lo, hi)) in
+                first.iter_mut().zip(second).zip(&mut self.size).zip(ends(j))
+            {
+                let mag = larger(lo.abs(), hi.abs());
+                *first += lo * y;
+                *second += hi * y;
+                *size += mag * y.abs() + if mag > 0.0 { f64::MIN_POSITIVE } else { 0.0 };
             }
         }
     }
@@ -196,12 +196,34 @@ impl ColumnSums {
     ///
     /// Outer.
     pub(crate) fn enclosed(&self) -> impl Iterator<Item = Interval> {
-        let relative = relative_error(self.terms);
+        // One unit more for the rounding of the two ends.
+        let relative = relative_error(self.terms + 1);
         self.lo.iter().zip(&self.hi).zip(&self.size).map(move |((&lo, &hi), &size)| {
             let error = if size == 0.0 { 0.0 } else { relative * size + UNDERFLOW };
-            Interval::new(sub_down(lo, error), add_up(hi, error)).unwrap_or(Interval::ENTIRE)
+            Interval::new(lo - error, hi + error).unwrap_or(Interval::ENTIRE)
         })
     }
+}
+
+/// The lower and upper end of each.
+pub(crate) fn ends(intervals: &[Interval]) -> impl Iterator<Item = (f64, f64)> {
+    intervals.iter().map(|x| (x.lo(), x.hi()))
+}
+
+/// The lower and upper ends of column j.
+pub(crate) fn column_ends(matrix: &IntervalMatrix, j: usize) -> impl Iterator<Item = (f64, f64)> {
+    let rows = matrix.nrows();
+    ends(&matrix.as_slice()[j * rows..(j + 1) * rows])
+}
+
+/// The ends of the absolute values of the numbers from `lo` to `hi`.
+pub(crate) fn absolute_ends((lo, hi): (f64, f64)) -> (f64, f64) {
+    (larger(larger(lo, -hi), 0.0), larger(lo.abs(), hi.abs()))
+}
+
+/// `f64::max` without its care for NaN: one instruction.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// Added to a bound of non-zero terms: far above the sum of all that underflow can take from it.

@@ -4,8 +4,9 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::add_up;
 
 use crate::exponential::{Step, step};
-use crate::matrix::{IntervalMatrix, IntervalVector, dot_upward, mul_upward, running_sum};
-use crate::powers::{Samples, bound_within_step};
+use crate::matrix::{IntervalMatrix, IntervalVector, absolute_ends, dot_upward, mul_upward, running_sum};
+use crate::powers::bound_within_step;
+use crate::samples::Samples;
 use crate::{LinearSystem, ReachError, TimeGrid, Trajectory};
 
 /// e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, and the solutions of the system on it.
@@ -27,9 +28,7 @@ pub struct Propagation {
     system: LinearSystem,
     grid: TimeGrid,
     steps: Vec<Step>,
-    exponential: Vec<IntervalMatrix>,
-    /// e^{A t_k} Γ(h_k), by which Γ grows over step k.
-    increments: Vec<IntervalMatrix>,
+    samples: Samples,
     integral: Vec<IntervalMatrix>,
     /// M >= |e^{A(t_k - t_j)}| for every j <= k.
     bound: DMatrix<f64>,
@@ -43,24 +42,23 @@ impl Propagation {
     /// [`ReachError::Horizon`] when no finite enclosure is found.
     pub fn new(system: &LinearSystem, grid: &TimeGrid) -> Result<Self, ReachError> {
         let steps = steps_of(system, grid);
-        let (Samples { exponential, increments }, within_step) = match grid.step() {
-            Some(_) => {
-                let samples = Samples::uniform(system, &steps[0], grid.len());
+        let (samples, within_step) = match grid.step() {
+            Some(h) => {
+                let samples = Samples::uniform(system, &steps[0], Interval::point(h), grid.len());
                 (samples, DMatrix::identity(system.states(), system.states()))
             }
             None => {
                 let within_step = bound_within_step(system, grid.longest_step());
-                (Samples::after(&steps, grid.len(), &within_step), within_step)
+                (Samples::after(system, &steps, grid.len(), &within_step), within_step)
             }
         };
-        let bound = mul_upward(&largest(system, &exponential), &within_step);
-        let integral = running_sum(system, grid.len(), &increments, |x| x);
+        let bound = mul_upward(&samples.largest(), &within_step);
+        let integral = running_sum(system, grid.len(), |k| samples.increment_ends(k));
         let last = integral.last().into_iter().flat_map(|last| last.iter().map(|x| x.mag()));
         if !bound.iter().copied().chain(last).all(f64::is_finite) {
             return Err(ReachError::Horizon { time: grid.times().last().copied().unwrap_or(0.0) });
         }
-        let (system, grid) = (system.clone(), grid.clone());
-        Ok(Self { system, grid, steps, exponential, increments, integral, bound })
+        Ok(Self { system: system.clone(), grid: grid.clone(), steps, samples, integral, bound })
     }
 
     /// The system.
@@ -78,8 +76,8 @@ impl Propagation {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn exponential(&self, k: usize) -> &IntervalMatrix {
-        &self.exponential[k]
+    pub fn exponential(&self, k: usize) -> IntervalMatrix {
+        self.samples.exponential(k)
     }
 
     /// Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ, N x m.
@@ -96,13 +94,18 @@ impl Propagation {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub(crate) fn increment(&self, k: usize) -> &IntervalMatrix {
-        &self.increments[k]
+    pub(crate) fn increment(&self, k: usize) -> IntervalMatrix {
+        self.samples.increment(k)
     }
 
     /// Σ_{j<k} |e^{A t_j} Γ(h_j)| at every sample k.
     pub(crate) fn absolute_sums(&self) -> Vec<IntervalMatrix> {
-        running_sum(&self.system, self.grid.len(), &self.increments, Interval::abs)
+        running_sum(&self.system, self.grid.len(), |k| self.samples.increment_ends(k).map(absolute_ends))
+    }
+
+    /// The ends of e^{A t_k}, column by column.
+    pub(crate) fn exponential_ends(&self, k: usize) -> (&[f64], &[f64]) {
+        self.samples.ends(k)
     }
 
     /// Φ, Γ and γ of the step from sample k to k + 1.
@@ -171,7 +174,7 @@ impl SolutionError {
 
     /// To sample k + 1, where the rounded step was `next`.
     fn advance(&mut self, propagation: &Propagation, k: usize, next: &[Interval]) {
-        let (phi, exponential) = (&propagation.step(k).phi, &propagation.exponential[k + 1]);
+        let (phi, exponential) = (&propagation.step(k).phi, propagation.exponential(k + 1));
         for (i, next) in next.iter().enumerate() {
             self.defects[i] = add_up(self.defects[i], next.rad());
             self.followed[i] =
@@ -188,15 +191,6 @@ impl SolutionError {
 fn steps_of(system: &LinearSystem, grid: &TimeGrid) -> Vec<Step> {
     let count = if grid.step().is_some() { 1 } else { grid.len().saturating_sub(1) };
     (0..count).into_par_iter().map(|k| step(system, grid.interval(k))).collect()
-}
-
-/// The largest absolute value of each entry over all of the `matrices`, N x N.
-fn largest(system: &LinearSystem, matrices: &[IntervalMatrix]) -> DMatrix<f64> {
-    let mut largest = DMatrix::zeros(system.states(), system.states());
-    for matrix in matrices {
-        largest.zip_apply(matrix, |max: &mut f64, x| *max = max.max(x.mag()));
-    }
-    largest
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
-use crate::matrix::{ColumnSums, IntervalMatrix};
+use crate::matrix::{ColumnSums, IntervalMatrix, absolute_ends, column_ends};
 use crate::{Hyperrectangle, Propagation};
 
 /// An enclosed solution at the samples of a grid.
@@ -58,14 +58,18 @@ impl ReachSets {
     ) -> Self {
         let dimension = propagation.system().states();
         let hull = |sums: &mut ColumnSums, k: usize| {
-            let (exponential, integral) = (propagation.exponential(k), propagation.integral(k));
+            let (lo, hi) = propagation.exponential_ends(k);
+            let exponential = |j: usize| {
+                let column = j * dimension..(j + 1) * dimension;
+                lo[column.clone()].iter().copied().zip(hi[column].iter().copied())
+            };
             sums.clear();
-            sums.add(exponential, |x| x, &initial_set.center);
-            sums.add(integral, |x| x, &input_set.center);
+            sums.add(&initial_set.center, exponential);
+            sums.add(&input_set.center, |j| column_ends(propagation.integral(k), j));
             let center: Vec<_> = sums.enclosed().collect();
             sums.clear();
-            sums.add(exponential, Interval::abs, &initial_set.radius);
-            sums.add(&gains[k], |x| x, &input_set.radius);
+            sums.add(&initial_set.radius, |j| exponential(j).map(absolute_ends));
+            sums.add(&input_set.radius, |j| column_ends(&gains[k], j));
             center.into_iter().zip(sums.enclosed().collect::<Vec<_>>())
         };
         let samples = (0..gains.len()).into_par_iter();

@@ -111,12 +111,14 @@ impl TubeRadii {
         let (initial_radius, input_radius) = (points(&initial_set.radius), points(&input_set.radius));
         let step_radius = |k: usize| {
             let mut radius = vec![Interval::ZERO; system.states()];
-            let initial = over_step(propagation, k, Propagation::exponential, &second_of_initial);
+            let exponential = [k, k + 1].map(|k| propagation.exponential(k));
+            let initial = over_step(propagation, k, exponential.each_ref(), &second_of_initial);
             add_product(&mut radius, &initial, &initial_radius);
             match &variation {
                 Some(gains) => add_product(&mut radius, &gains[k + 1], &input_radius),
                 None => {
-                    let input = over_step(propagation, k, Propagation::integral, &second_of_input);
+                    let integral = [k, k + 1].map(|k| propagation.integral(k));
+                    let input = over_step(propagation, k, integral, &second_of_input);
                     add_product(&mut radius, &input, &input_radius);
                 }
             }
@@ -132,16 +134,16 @@ impl TubeRadii {
     }
 }
 
-/// |F(t)| over step k of a matrix function F with F̈ = e^{A t_k} `second` within it.
+/// |F(t)| over step k of a matrix function F between its values at the `ends`, with F̈ = e^{A t_k} `second` within it.
 fn over_step(
     propagation: &Propagation,
     k: usize,
-    samples: impl Fn(&Propagation, usize) -> &IntervalMatrix,
+    ends: [&IntervalMatrix; 2],
     second: &IntervalMatrix,
 ) -> IntervalMatrix {
     let eighth = eighth(propagation, k);
-    let bulge = product(propagation.exponential(k), second).map(|x| x.abs() * eighth);
-    largest(samples(propagation, k), samples(propagation, k + 1)) + bulge
+    let bulge = product(&propagation.exponential(k), second).map(|x| x.abs() * eighth);
+    largest(ends[0], ends[1]) + bulge
 }
 
 /// h²/8 of step k.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
 use crate::exponential::{norm_upper, step};
-use crate::matrix::{IntervalMatrix, magnitude, point, product, running_sum};
+use crate::matrix::{IntervalMatrix, ends, magnitude, point, product, running_sum};
 use crate::series::{Polynomial, Series};
 use crate::{LinearSystem, Propagation};
 
@@ -65,7 +65,7 @@ impl<'a> Cells<'a> {
 
     /// ∫ |e^{Aτ} B| over cell k, and the entries that may change sign in it.
     fn cell(&self, k: usize) -> (IntervalMatrix, Vec<(usize, usize)>) {
-        let start = self.propagation.exponential(k);
+        let start = &self.propagation.exponential(k);
         let h = self.propagation.grid().interval(k);
         let range = self.within.range(start);
         let change = self.propagation.increment(k);
@@ -88,8 +88,9 @@ impl<'a> Cells<'a> {
 
     /// The sum of the cells up to each sample.
     fn gains(&self) -> Vec<IntervalMatrix> {
-        let fine =
-            running_sum(self.propagation.system(), self.propagation.grid().len(), &self.integrals, |x| x);
+        let fine = running_sum(self.propagation.system(), self.propagation.grid().len(), |k| {
+            ends(self.integrals[k].as_slice())
+        });
         fine.into_iter().step_by(self.parts).collect()
     }
 
@@ -205,7 +206,7 @@ impl IntegralEntry<'_> {
             return integral;
         }
         let (i, j) = self.entry;
-        let series = || self.cells.series.entry(propagation.exponential(base), i, j);
+        let series = || self.cells.series.entry(&propagation.exponential(base), i, j);
         integral + self.polynomials.entry(base).or_insert_with(series).integral(sigma)
     }
 }

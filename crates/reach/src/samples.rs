@@ -1,0 +1,210 @@
+//! e^{A t_k} and e^{A t_k} Γ(h_k) at the samples of a grid.
+
+use nalgebra::{DMatrix, DMatrixViewMut};
+use rayon::prelude::*;
+use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::{add_up, mul_up};
+
+use crate::LinearSystem;
+use crate::exponential::{self, Step, connected};
+use crate::matrix::{IntervalMatrix, UNDERFLOW, larger, midpoint, product, radius, relative_error};
+use crate::powers::Powers;
+
+/// Where the bound of an error is less, the products it belongs to did not overflow.
+const FAR_FROM_OVERFLOW: f64 = 1e280;
+
+/// The pairs [e^{A t_k}, e^{A t_k} Γ(h_k)], N x (N + m), at the samples of a grid; by the second, Γ grows over step k.
+///
+/// Their ends are apart and side by side, column by column: what is done to all is done to long rows of numbers.
+#[derive(Debug, Clone)]
+pub(crate) struct Samples {
+    states: usize,
+    inputs: usize,
+    lo: Vec<f64>,
+    hi: Vec<f64>,
+}
+
+impl Samples {
+    /// Of so many samples, `steps` between them, with P = `within_step` >= |e^{As}| for every s up to the longest. After the last sample there
+    /// is no step, and no increment.
+    pub(crate) fn after(
+        system: &LinearSystem,
+        steps: &[Step],
+        count: usize,
+        within_step: &DMatrix<f64>,
+    ) -> Self {
+        let powers = Powers::of_steps(steps, within_step);
+        let none = IntervalMatrix::from_element(system.states(), system.inputs(), Interval::ZERO);
+        let pair = |k: usize| {
+            let start = powers.at(k);
+            let increment = steps.get(k).map_or_else(|| none.clone(), |step| product(&start, &step.gamma));
+            [start, increment]
+        };
+        Self::from_pairs(system, (0..count).into_par_iter().map(pair).collect())
+    }
+
+    fn from_pairs(system: &LinearSystem, pairs: Vec<[IntervalMatrix; 2]>) -> Self {
+        let entries = pairs.iter().flatten().flat_map(|matrix| matrix.iter());
+        let (lo, hi) = entries.map(|x| (x.lo(), x.hi())).unzip();
+        Self { states: system.states(), inputs: system.inputs(), lo, hi }
+    }
+
+    /// At t_k = k h for k < count; `step` is that of length h.
+    ///
+    /// With k = b L + j, L about √count, the pair is the product of e^{A b L h} with the pair at j: neither factor takes more than √count
+    /// steps, and the products, which are most of the work, are large and independent of each other.
+    pub(crate) fn uniform(system: &LinearSystem, step: &Step, h: Interval, count: usize) -> Self {
+        let length = count.isqrt().max(1);
+        let short = Powers::uniform(&step.phi, length + 1);
+        let leap = exponential::step(system, h * length as f64).phi;
+        let leap =
+            short.at(length).zip_map(&leap, |x, y| x.intersection(y).expect("both hold the exact entry"));
+        let long = Powers::uniform(&leap, count.div_ceil(length));
+        let pair = |j: usize| [short.at(j), product(&short.at(j), &step.gamma)];
+        let mut samples = Self::from_pairs(system, (0..length).map(pair).collect());
+        let first = Block::new(system, &samples);
+        let size = samples.lo.len();
+        samples.lo.resize(size * long.mid.len(), 0.0);
+        samples.hi.resize(size * long.mid.len(), 0.0);
+        let later =
+            samples.lo.par_chunks_exact_mut(size.max(1)).zip(samples.hi.par_chunks_exact_mut(size.max(1)));
+        let factors = long.mid.par_iter().zip(&long.rad);
+        later.zip(factors).skip(1).for_each(|((lo, hi), (mid, rad))| first.after(mid, rad, lo, hi));
+        let kept = count * first.zero.len();
+        samples.lo.truncate(kept);
+        samples.hi.truncate(kept);
+        samples
+    }
+
+    /// e^{A t_k}, N x N.
+    pub(crate) fn exponential(&self, k: usize) -> IntervalMatrix {
+        let (lo, hi) = self.ends(k);
+        IntervalMatrix::from_iterator(
+            self.states,
+            self.states,
+            intervals(lo, hi).take(self.states * self.states),
+        )
+    }
+
+    /// e^{A t_k} Γ(h_k), N x m.
+    pub(crate) fn increment(&self, k: usize) -> IntervalMatrix {
+        let ((lo, hi), start) = (self.ends(k), self.states * self.states);
+        IntervalMatrix::from_iterator(self.states, self.inputs, intervals(&lo[start..], &hi[start..]))
+    }
+
+    /// Its lower and upper ends, column by column.
+    pub(crate) fn increment_ends(&self, k: usize) -> impl Iterator<Item = (f64, f64)> {
+        let ((lo, hi), start) = (self.ends(k), self.states * self.states);
+        lo[start..].iter().copied().zip(hi[start..].iter().copied())
+    }
+
+    /// The lower and the upper ends of pair k, column by column.
+    pub(crate) fn ends(&self, k: usize) -> (&[f64], &[f64]) {
+        let size = self.states * (self.states + self.inputs);
+        let pair = k * size..(k + 1) * size;
+        (&self.lo[pair.clone()], &self.hi[pair])
+    }
+
+    /// The largest absolute value of each entry of the exponential over all samples, N x N.
+    pub(crate) fn largest(&self) -> DMatrix<f64> {
+        let n = self.states;
+        let mut largest = vec![0.0; n * n];
+        for ends in [&self.lo, &self.hi] {
+            for pair in ends.chunks_exact((n * (n + self.inputs)).max(1)) {
+                largest.iter_mut().zip(pair).for_each(|(max, x)| *max = larger(x.abs(), *max));
+            }
+        }
+        DMatrix::from_vec(n, n, largest)
+    }
+}
+
+fn intervals(lo: &[f64], hi: &[f64]) -> impl Iterator<Item = Interval> {
+    lo.iter().zip(hi).map(|(&lo, &hi)| Interval::new(lo, hi).unwrap_or(Interval::ENTIRE))
+}
+
+/// The pairs of the first samples, to be multiplied with later exponentials.
+struct Block {
+    mid: DMatrix<f64>,
+    /// rad + (N + 2) u |mid| above |mid| + rad.
+    spread: DMatrix<f64>,
+    /// Which entries of a pair are zero whatever the time, N x (N + m).
+    zero: DMatrix<bool>,
+}
+
+impl Block {
+    fn new(system: &LinearSystem, samples: &Samples) -> Self {
+        let n = system.states();
+        let entries = intervals(&samples.lo, &samples.hi);
+        let all = IntervalMatrix::from_iterator(n, samples.lo.len() / n.max(1), entries);
+        let (mid, rad) = (midpoint(&all), radius(&all));
+        // One unit more for the rounding of the two ends.
+        let relative = relative_error(n + 1);
+        let mut spread = DMatrix::zeros(2 * n, all.ncols());
+        spread.rows_mut(0, n).copy_from(&mid.zip_map(&rad, |m, r| add_up(r, mul_up(relative, m.abs()))));
+        spread.rows_mut(n, n).copy_from(&mid.zip_map(&rad, |m, r| add_up(r, m.abs())));
+        Self { mid, spread, zero: unlinked(system) }
+    }
+
+    /// The ends of the products of E, within `rad` of `mid`, with each pair P.
+    ///
+    /// |E P - Ẽ P̃| <= |Ẽ| (rad P + (N + 1) u |P̃|) + rad E (|P̃| + rad P) where Ẽ P̃ is taken in floating point. One more u |Ẽ| |P̃| is above
+    /// the rounding of Ẽ P̃ ± that.
+    fn after(&self, mid: &DMatrix<f64>, rad: &DMatrix<f64>, lo: &mut [f64], hi: &mut [f64]) {
+        let (n, columns) = self.mid.shape();
+        let mut sizes = DMatrix::zeros(n, 2 * n);
+        sizes.columns_mut(0, n).copy_from(&mid.abs());
+        sizes.columns_mut(n, n).copy_from(rad);
+        DMatrixViewMut::from_slice(lo, n, columns).gemm(1.0, mid, &self.mid, 0.0);
+        DMatrixViewMut::from_slice(hi, n, columns).gemm(1.0, &sizes, &self.spread, 0.0);
+        let upward = 1.0 + 2.0 * relative_error(2 * n);
+        let pairs = lo.chunks_exact_mut(self.zero.len()).zip(hi.chunks_exact_mut(self.zero.len()));
+        for (lo, hi) in pairs {
+            for ((lo, hi), &zero) in lo.iter_mut().zip(hi).zip(&self.zero) {
+                let (mid, rad) = (*lo, if zero { 0.0 } else { *hi * upward + UNDERFLOW });
+                let known = rad < FAR_FROM_OVERFLOW;
+                *lo = if known { mid - rad } else { f64::NEG_INFINITY };
+                *hi = if known { mid + rad } else { f64::INFINITY };
+            }
+        }
+    }
+}
+
+/// Which entries of [e^{Aτ}, e^{Aτ} B] are zero for every τ.
+fn unlinked(system: &LinearSystem) -> DMatrix<bool> {
+    let (n, m) = (system.states(), system.inputs());
+    let linked = connected(system.a());
+    let reached = |i: usize, j: usize| (0..n).any(|via| linked[(i, via)] && system.b()[(via, j)] != 0.0);
+    DMatrix::from_fn(n, n + m, |i, j| if j < n { !linked[(i, j)] } else { !reached(i, j - n) })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{dmatrix, dvector};
+
+    use super::*;
+    use crate::step;
+
+    #[test]
+    fn products_of_two_powers_hold_what_steps_one_by_one_reach() {
+        let system = LinearSystem::new(
+            dmatrix![0.0, 1.0, 0.0; -4.0, -0.1, 0.0; 0.0, 0.0, -2.0],
+            dmatrix![0.0; 1.0; 0.5],
+            dvector![0.0, 0.0, 0.0],
+        )
+        .unwrap();
+        let step = step(&system, Interval::point(0.01));
+        let one_by_one = Powers::uniform(&step.phi, 1000);
+        let samples = Samples::uniform(&system, &step, Interval::point(0.01), 1000);
+        for k in 0..1000 {
+            let (exponential, increment) = (samples.exponential(k), samples.increment(k));
+            let other = one_by_one.at(k);
+            for (x, y) in exponential.iter().zip(&other) {
+                assert!(x.intersection(*y).is_some() && x.width() <= y.width() + 1e-14, "{k}: {x:?} {y:?}");
+            }
+            for (x, y) in increment.iter().zip(&product(&other, &step.gamma)) {
+                assert!(x.intersection(*y).is_some() && x.hull(*y).width() < 1e-13, "{k}: {x:?} {y:?}");
+            }
+            assert_eq!(exponential[(0, 2)], Interval::ZERO);
+        }
+    }
+}
