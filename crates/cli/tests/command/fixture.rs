@@ -144,6 +144,14 @@ impl Run {
         self
     }
 
+    /// As [`fails_with`](Self::fails_with), where notes came before the error.
+    #[track_caller]
+    pub fn fails_with_last(mut self, parts: &[&str]) -> Self {
+        self.stderr =
+            self.stderr.lines().filter(|line| !line.starts_with("note: ")).collect::<Vec<_>>().join("\n");
+        self.fails_with(parts)
+    }
+
     /// Asserts that `part` is said on standard error.
     #[track_caller]
     pub fn notes(self, part: &str) -> Self {

@@ -6,6 +6,7 @@ mod defects;
 mod fixture;
 mod identify;
 mod index;
+mod nonlinear;
 mod options;
 mod outputs;
 mod reach;

@@ -63,8 +63,11 @@ impl<'a> Journal<'a> {
             remedy,
         })?;
         let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
-        let value = json::versioned(&text, FORMAT, VERSION, "conform").map_err(wrong)?;
-        if value["job"] != self.job.as_str() {
+        let value: serde_json::Value =
+            serde_json::from_str(&text).map_err(|error| wrong(format!("not JSON: {error}; {remedy}")))?;
+        let is_ours =
+            value["format"] == FORMAT && value["version"] == VERSION && value["job"] == self.job.as_str();
+        if !is_ours {
             let what =
                 "it holds the progress of another job: the robot, the settings or the recordings differ";
             return Err(wrong(format!("{what}; {remedy}")));

@@ -1,0 +1,173 @@
+//! Models that are not linear: `conform`, `check`, `reach` and `report` on them.
+
+use serde_json::{Value, json};
+
+use crate::fixture::{Lab, Run, SAMPLES, cell, robot_toml};
+
+/// The arm of the recordings, but for friction that bends.
+fn bent() -> Lab {
+    let lab = Lab::new();
+    let (straight, bent) = ("viscous = [2, 0.0, 0.0]", "viscous = [2, 0.5, -0.1]");
+    assert!(robot_toml().contains(straight));
+    lab.write("bent.toml", robot_toml().replace(straight, bent));
+    lab
+}
+
+fn conform(lab: &Lab, more: &str) -> Run {
+    lab.run(&format!("conform --robot bent.toml --order 3 --data data --torque compensated {more}"))
+}
+
+fn schema() -> jsonschema::Validator {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/model.schema.json");
+    let schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    jsonschema::draft202012::meta::validate(&schema).unwrap();
+    jsonschema::draft202012::new(&schema).unwrap()
+}
+
+#[track_caller]
+fn fits(schema: &jsonschema::Validator, model: &Value) {
+    let complaints: Vec<String> =
+        schema.iter_errors(model).map(|error| format!("{}: {error}", error.instance_path())).collect();
+    assert_eq!(complaints, Vec::<String>::new());
+}
+
+#[test]
+fn a_model_that_is_not_linear_goes_through_every_command() {
+    let lab = bent();
+    let run =
+        conform(&lab, "--out model.json --report report").exits(0).notes("round 1: the linearised sets cost");
+    for part in [
+        "conformant: 6 recordings in 2 suites; 816 of 816 bounds (suite, sample, state, side) in the computed reachable set, an outer enclosure",
+        "of the linearised set",
+        "decide X0 and U",
+        "a motion of the model itself (start in X0, input in U, held over each sample) was found within 0.001 rad and 0.01 rad/s of",
+    ] {
+        assert!(run.stdout.contains(part), "{part:?} is not in\n{}", run.stdout);
+    }
+    let model: Value = serde_json::from_str(&lab.read("model.json")).unwrap();
+    fits(&schema(), &model);
+    assert_eq!(
+        (&model["proof"]["enclosure"], &model["settings"]["method"]),
+        (&json!("outer"), &json!("program"))
+    );
+    assert_eq!(model["acceleration"].as_array().unwrap().len(), 2);
+    assert_eq!(model["explained"]["residuals"].as_array().unwrap().len(), 6);
+    let check = lab.check("--json").exits(0).json();
+    assert_eq!((&check["rows"], &check["violations"]["count"]), (&408.into(), &0.into()));
+    lab.run("reach --model model.json --data data --torque compensated --out reach").exits(0);
+    let (samples, tube) = (lab.read("reach/A.csv"), lab.read("reach/A_tube.csv"));
+    assert_eq!((samples.lines().count(), tube.lines().count()), (SAMPLES + 1, SAMPLES));
+    for (k, row) in samples.lines().skip(1).enumerate() {
+        for (run, i) in (1..=3).flat_map(|run| (0..4).map(move |i| (run, i))) {
+            let text = lab.read(&format!("data/A_{run}.csv"));
+            let recorded = cell(text.lines().nth(k + 1).unwrap(), i + 1);
+            assert!(cell(row, 3 * i + 1) <= recorded && recorded <= cell(row, 3 * i + 3));
+        }
+    }
+    let page = lab.read("report/report.html");
+    for part in ["computed reachable set", "outer enclosure", "Explanations were searched for"] {
+        assert!(page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn a_model_of_an_abstraction_is_that_of_its_robot() {
+    let lab = bent();
+    let direct = conform(&lab, "--json").exits(0).json();
+    lab.run("abstract --robot bent.toml --order 3 --out bent.json").exits(0);
+    let run = lab.run("conform --abstraction bent.json --data data --torque compensated --json").exits(0);
+    assert_eq!(direct, run.json());
+}
+
+#[test]
+fn bisection_is_a_baseline_that_costs_more() {
+    let lab = bent();
+    let program = conform(&lab, "--json --explain none").exits(0).json();
+    let run = conform(&lab, "--json --explain none --method bisection").exits(0).notes("radius 6 of 6");
+    let bisection = run.json();
+    fits(&schema(), &bisection);
+    assert!(program.get("explained").is_none());
+    let cost = |model: &Value| model["cost"].as_f64().unwrap();
+    assert!(cost(&bisection) > 0.999 * cost(&program), "{} for {}", cost(&bisection), cost(&program));
+    let sets = |model: &Value| model["search"]["reachable_sets"].as_u64().unwrap();
+    assert!(sets(&bisection) > 20 && sets(&program) < 5);
+    // The linear model has a baseline too.
+    let linear = lab.conform("--json --method bisection").exits(0).json();
+    assert!(cost(&linear) > 0.999 * cost(&lab.conform("--json").exits(0).json()));
+}
+
+#[test]
+fn progress_of_another_job_is_refused_and_a_finished_one_leaves_none() {
+    let lab = bent();
+    conform(&lab, "--resume progress.json").exits(0);
+    assert!(!lab.path("progress.json").exists());
+    let progress = json!({
+        "format": "reachtube-progress", "version": 1, "tool": "", "job": "0", "progress": {}
+    });
+    lab.write("progress.json", progress.to_string());
+    conform(&lab, "--resume progress.json").fails_with_last(&[
+        "progress.json: it holds the progress of another job",
+        "give the file of this job",
+    ]);
+    lab.write("progress.json", "{");
+    conform(&lab, "--resume progress.json").fails_with_last(&["progress.json: not JSON"]);
+    conform(&lab, "--resume nowhere/deep/progress.json").exits(0);
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let lab = bent();
+    conform(&lab, "--explain 1").fails_with(&["--explain: \"1\"", "2 numbers"]);
+    conform(&lab, "--explain 1,-1").fails_with(&["tolerance 2 is -1"]);
+    lab.run("abstract --robot bent.toml --order 3 --box 0.05,0.5,1 --out small.json").exits(0);
+    lab.run("conform --abstraction small.json --data data --torque compensated").fails_with(&[
+        "A_1.csv: q1 starts at 0.098",
+        "outside the box [-0.05, 0.05]",
+        "larger --box",
+    ]);
+    lab.run("abstract --robot bent.toml --order 3 --box 0.3,0.1,1 --out slow.json").exits(0);
+    lab.run("conform --abstraction slow.json --data data --torque compensated")
+        .exits(0)
+        .notes("suite A: qd2 leaves the box at sample 3;");
+    let mut unbounded: Value = serde_json::from_str(&lab.read("slow.json")).unwrap();
+    unbounded["remainder"]["bounds"][1] = Value::Null;
+    lab.write("unbounded.json", unbounded.to_string());
+    lab.run("conform --abstraction unbounded.json --data data --torque compensated")
+        .fails_with(&["acceleration of joint 2 has no bound over its box", "smaller --box"]);
+}
+
+#[test]
+fn a_changed_model_is_refused() {
+    let lab = bent();
+    let model = conform(&lab, "--json").exits(0).json();
+    for (path, value, words) in [
+        ("/acceleration/0/0/1", json!(-2.5), "changed after it was written"),
+        ("/variables/0", json!("q1"), "its variables are not"),
+        ("/settings/method", json!("guess"), "unknown variant `guess`"),
+        ("/settings/abstraction/order", json!(1), "there are 4 variables and order 1"),
+    ] {
+        let mut changed = model.clone();
+        *changed.pointer_mut(path).unwrap() = value;
+        lab.write("model.json", changed.to_string());
+        lab.check("").fails_with(&["model.json: ", words]);
+    }
+}
+
+/// Friction that peaks at 0.24 N m: under 3 N m the joint runs away.
+#[test]
+fn a_model_that_runs_away_is_refused_and_a_lost_set_is_an_answer() {
+    let lab = bent();
+    lab.write("weak.toml", robot_toml().replace("viscous = [2, 0.0, 0.0]", "viscous = [2, 0.0, -20.0]"));
+    let weak = "conform --robot weak.toml --order 3 --data data --torque compensated --json";
+    lab.run(weak).fails_with(&["suite", "the model runs away after", "--until"]);
+    let mut model = conform(&lab, "--json").exits(0).json();
+    for radius in model["input_set"]["radius"].as_array_mut().unwrap() {
+        *radius = json!(30.0);
+    }
+    lab.write("model.json", model.to_string());
+    let check = lab.check("").exits(1);
+    assert!(check.stdout.contains("the reachable set could not be followed beyond"), "{}", check.stdout);
+    lab.run("reach --model model.json --data data --torque compensated --out reach")
+        .exits(1)
+        .notes("the reachable set could not be followed beyond");
+}
