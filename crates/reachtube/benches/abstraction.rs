@@ -1,9 +1,11 @@
-//! Models of the LWA 4P: how long they take to make, and their evaluation beside the dynamics that they stand for, sine and cosine given.
+//! Models of the LWA 4P: how long they take to make, their evaluation beside the dynamics that they stand for, sine and cosine given, and their reachable
+//! sets.
 //! `cargo bench -p reachtube --bench abstraction`.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
+use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, TimeGrid, UncertainInput};
 use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::{Lanes, Lanewise, Powers};
 
@@ -77,4 +79,24 @@ fn aba<S: Lanewise>(bencher: Bencher) {
         t.robot.aba(sin, cos, qd, tau, &mut t.ws, &mut t.qdd);
         black_box(&t.qdd);
     });
+}
+
+/// Radii of U, N m: about those that the linear model needs for the recordings of the paper, and of the states, in rad and rad/s.
+const INPUT: [f64; 6] = [1.2, 2.2, 2.5, 0.7, 0.16, 0.5];
+const STATE: [f64; 2] = [0.005, 0.03];
+
+/// Samples at 250 Hz that a model at rest is followed for, with all generators; each item is one that was reached.
+#[divan::bench(args = [(1, 3, 1251), (2, 5, 1251), (2, 5, 251), (2, 12, 251), (3, 3, 251)], sample_count = 10)]
+fn flowpipe(bencher: Bencher, (kind, order, samples): (u32, u32, usize)) {
+    let system = model(kind, order).polynomial_system().unwrap();
+    let radius = [[STATE[0]; 6], [STATE[1]; 6]].concat();
+    let initial = Hyperrectangle { center: vec![0.0; 12], radius };
+    let set = Hyperrectangle { center: vec![0.0; 6], radius: INPUT.to_vec() };
+    let (grid, held) = (TimeGrid::uniform(0.004, samples), vec![0.0; 6 * samples]);
+    let input = UncertainInput { measured: &held, set: &set };
+    let follow = || {
+        Flowpipe::new(black_box(&system), &grid, &[0.0; 12], &initial, &input, &FlowpipeSettings::default())
+            .unwrap()
+    };
+    bencher.counter(ItemsCount::new(follow().len())).bench(follow);
 }

@@ -1,8 +1,8 @@
 //! Sines and cosines about a point, as functions of how far the angle is from there.
 //!
 //! With σ = sin d and κ = 1 - cos d, sin(q + d) = sin q (1 - κ) + cos q σ and cos(q + d) = cos q (1 - κ) - sin q σ; and σ² = 2κ - κ². So a polynomial of
-//! degree D in sine and cosine is a combination of φ₀ .. φ₂_D, where φ₂ₖ = κᵏ and φ₂ₖ₊₁ = σ κᵏ are of the orders 2k and 2k + 1 in d: exact and finite, as the
-//! shift of a polynomial is.
+//! degree D in sine and cosine is a combination of φ₀ .. φ₂_D, where φ₂ₖ = (κ - m)ᵏ and φ₂ₖ₊₁ = σ (κ - m)ᵏ: exact and finite, as the shift of a polynomial is.
+//! The middle m of κ over the set halves what products with it are, and what it takes from them is linear.
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
@@ -64,7 +64,7 @@ impl Angles {
     /// Bounds of the magnitudes of the factors at any angle; zero for the plain variables.
     pub fn magnitudes(&self) -> Vec<f64> {
         let (mut factors, any) = (self.factors(), Interval::centered(0.0, 1.0));
-        (0..self.states.len()).for_each(|i| self.columns(i, [any, any], &mut factors));
+        (0..self.states.len()).for_each(|i| self.columns(i, [any, any, any.abs()], &mut factors));
         factors.iter().map(|factor| factor.mag()).collect()
     }
 
@@ -78,26 +78,32 @@ impl Angles {
         self.starts[i] + (sine * (highest[1] + 1) + cosine) * (2 * (highest[0] + highest[1]) + 1)
     }
 
-    /// The factors of angle i at q (rad).
+    /// The factors of angle i at q (rad), for a middle of κ from 0 to 1.
     ///
     /// # Guarantee
     ///
     /// Each encloses the exact one.
-    pub fn turn(&self, i: usize, q: f64, factors: &mut [Interval]) {
-        self.columns(i, Interval::point(q).sin_cos().into(), factors);
+    pub fn turn(&self, i: usize, q: f64, middle: f64, factors: &mut [Interval]) {
+        let (sin, cos) = Interval::point(q).sin_cos();
+        self.columns(i, [sin, cos, Interval::point(middle)], factors);
     }
 
-    fn columns(&self, i: usize, [sin, cos]: [Interval; 2], factors: &mut [Interval]) {
+    fn columns(&self, i: usize, [sin, cos, middle]: [Interval; 3], factors: &mut [Interval]) {
         let [sines, cosines] = self.highest[i];
         factors[self.starts[i]..self.starts[i + 1]].fill(Interval::ZERO);
         factors[self.starts[i]] = Interval::ONE;
         for sine in 0..=sines {
             if sine > 0 {
-                self.multiply(i, [self.column(i, sine - 1, 0), self.column(i, sine, 0)], [sin, cos], factors);
+                self.multiply(
+                    i,
+                    [self.column(i, sine - 1, 0), self.column(i, sine, 0)],
+                    [sin, cos, middle],
+                    factors,
+                );
             }
             for cosine in 1..=cosines {
                 let columns = [self.column(i, sine, cosine - 1), self.column(i, sine, cosine)];
-                self.multiply(i, columns, [cos, -sin], factors);
+                self.multiply(i, columns, [cos, -sin, middle], factors);
             }
         }
     }
@@ -111,19 +117,28 @@ impl Angles {
     }
 
     /// Adds x (1 - κ) + y σ times one column to another one.
-    fn multiply(&self, i: usize, [from, to]: [usize; 2], [x, y]: [Interval; 2], factors: &mut [Interval]) {
+    fn multiply(
+        &self,
+        i: usize,
+        [from, to]: [usize; 2],
+        [x, y, middle]: [Interval; 3],
+        factors: &mut [Interval],
+    ) {
         let [sines, cosines] = self.highest[i];
         for l in 0..2 * (sines + cosines) {
             let own = factors[from + l];
             if own == Interval::ZERO {
                 continue;
             }
-            factors[to + l] += x * own;
+            factors[to + l] += x * (Interval::ONE - middle) * own;
             factors[to + l + 2] -= x * own;
             if l % 2 == 0 {
                 factors[to + l + 1] += y * own;
             } else {
-                factors[to + l + 1] += y * own * 2.0;
+                // σ² about the middle.
+                let rest = Interval::ONE - middle;
+                factors[to + l - 1] += y * own * (Interval::ONE - rest.sqr());
+                factors[to + l + 1] += y * own * rest * 2.0;
                 factors[to + l + 3] -= y * own;
             }
         }
@@ -137,6 +152,11 @@ impl Angles {
 /// Outer, directed rounding; beyond the circle by rounding at most.
 pub(super) fn versed(d: Interval) -> (Interval, Interval) {
     (d.sin(), (d * 0.5).sin().sqr() * 2.0)
+}
+
+/// The middle of κ over |d| <= r, about.
+pub(super) fn versine_middle(r: f64) -> f64 {
+    (0.5 * r.min(std::f64::consts::PI)).sin().powi(2)
 }
 
 /// The slope of the line that fits sin d best over |d| <= r, about: 2 J₁(r)/r, that of the first Chebyshev polynomial, and 0 where it
@@ -177,15 +197,15 @@ mod tests {
 
     proptest! {
         #[test]
-        fn sines_and_cosines_are_those_of_the_sum(q in -9.0..9.0_f64, d in -1.0..1.0_f64) {
+        fn sines_and_cosines_are_those_of_the_sum(q in -9.0..9.0_f64, d in -1.0..1.0_f64, middle in 0.0..=1.0_f64) {
             let highest = TaylorTerm { exponents: vec![0, 3, 2], coefficient: Interval::ONE };
             let angles = Angles::new(1, &[0], [highest].iter());
             let mut factors = angles.factors();
-            angles.turn(0, q, &mut factors);
+            angles.turn(0, q, middle, &mut factors);
             let (sine, versine) = versed(Interval::point(d));
             let (sin, cos) = (Interval::point(q) + d).sin_cos();
             for (a, b) in (0..=3_u8).flat_map(|a| (0..=2).map(move |b| (a, b))) {
-                let phi = |l: i32| versine.powi(l / 2) * if l % 2 == 0 { Interval::ONE } else { sine };
+                let phi = |l: i32| (versine - middle).powi(l / 2) * if l % 2 == 0 { Interval::ONE } else { sine };
                 let sum: Interval =
                     (0..=2 * (a + b)).map(|l| factors[angles.factor(0, [a, b], l.into())] * phi(l.into())).sum();
                 let exact = sin.powi(a.into()) * cos.powi(b.into());

@@ -3,7 +3,7 @@
 use reachtube_scalar::Interval;
 
 use super::PolynomialSystem;
-use super::angles::{TURN_ROUNDINGS, sine_slope};
+use super::angles::{TURN_ROUNDINGS, sine_slope, versine_middle};
 use super::rounded::{Square, raised};
 use super::shift::{PowerTable, Shift};
 
@@ -25,6 +25,8 @@ pub(super) struct Linearisation<'a> {
     radius: Vec<f64>,
     /// The slopes of the lines of the angles' sines.
     lines: Vec<f64>,
+    /// The middles of their κ.
+    middles: Vec<f64>,
     /// f*, and what it may be off by at each time.
     pub rate: Vec<Interval>,
     rate_radius: Vec<f64>,
@@ -53,6 +55,7 @@ impl<'a> Linearisation<'a> {
             bounds: system.angles.magnitudes(),
             radius: vec![0.0; n + m],
             lines: vec![0.0; system.angles.states.len()],
+            middles: vec![0.0; system.angles.states.len()],
             rate: vec![Interval::ZERO; n],
             rate_radius: vec![0.0; n],
             a: Square::zero(n),
@@ -108,8 +111,9 @@ impl<'a> Linearisation<'a> {
         let variables = self.point.len();
         self.factors[..variables].copy_from_slice(&self.point);
         for (i, &state) in self.system.angles.states.iter().enumerate() {
-            self.system.angles.turn(i, self.point[state], &mut self.turns);
             self.lines[i] = sine_slope(self.radius[state]);
+            self.middles[i] = versine_middle(self.radius[state]);
+            self.system.angles.turn(i, self.point[state], self.middles[i], &mut self.turns);
         }
         for (at, turn) in self.turns.iter().enumerate().skip(variables) {
             let is_known = turn.rad() <= TURN_ROUNDINGS * f64::EPSILON * self.bounds[at];
@@ -192,8 +196,8 @@ impl<'a> Linearisation<'a> {
             return;
         }
         tube.iter().enumerate().for_each(|(i, side)| self.powers.set(i, *side));
-        for (i, (&state, line)) in self.system.angles.states.iter().zip(&self.lines).enumerate() {
-            self.powers.set_angle(variables + i, tube[state], *line);
+        for (i, &state) in self.system.angles.states.iter().enumerate() {
+            self.powers.set_angle(variables + i, tube[state], [self.lines[i], self.middles[i]]);
         }
         let (rows, directions) = out.split_at_mut(n);
         for (i, out) in rows.iter_mut().enumerate() {

@@ -372,9 +372,10 @@ impl PowerTable {
         own.iter_mut().zip(1..).for_each(|(power, exponent)| *power = side.powi(exponent));
     }
 
-    /// Of angle variable i over `side`, whose sine has a line of that slope.
-    pub fn set_angle(&mut self, i: usize, side: Interval, slope: f64) {
+    /// Of angle variable i over `side`, whose sine has a line of that slope, and whose κ that middle.
+    pub fn set_angle(&mut self, i: usize, side: Interval, [slope, middle]: [f64; 2]) {
         let (sine, versine) = versed(side);
+        let versine = versine - middle;
         let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
         for (phi, l) in own.iter_mut().zip(1..) {
             *phi = versine.powi(l / 2) * if l % 2 == 0 { Interval::ONE } else { sine };
