@@ -7,7 +7,7 @@
 use reachtube_scalar::{Interval, TaylorTerm};
 
 /// What a factor of an angle may be off by, in roundings of the bound of its magnitude.
-pub(super) const TURN_ROUNDINGS: f64 = 256.0;
+pub(super) const TURN_ROUNDINGS: f64 = 16.0;
 
 /// States whose sine and cosine a polynomial has: its variables are others, `plain` of them, then the sines, then the cosines.
 #[derive(Debug, Clone)]

@@ -431,6 +431,38 @@ mod tests {
             prop_assert!(exact.evaluate(&d.map(Interval::point)).intersection(sum).is_some());
             prop_assert!(sum.width() < 1e-9);
         }
+
+        /// In an angle x, its sine and its cosine.
+        #[test]
+        fn so_is_one_with_sine_and_cosine(
+            terms in terms(), z in -2.0..2.0_f64, d in -1.0..1.0_f64, line in 0.0..=1.0_f64, middle in 0.0..=1.0_f64,
+        ) {
+            let angles = Angles::new(1, &[0], terms.iter());
+            let (mut turns, mut bounds) = (angles.factors(), angles.magnitudes());
+            angles.turn(0, z, middle, &mut turns);
+            let mut factors: Vec<f64> = turns.iter().map(|x| x.mid()).collect();
+            (factors[0], bounds[0]) = (z, 2.0);
+            let shifted = ShiftedPolynomial::new(&angles, &terms);
+            let mut work = shifted.workspace();
+            shifted.shift(&factors, &[0.5], &mut work);
+            shifted.bound_errors(&bounds, &mut work);
+            let mut highest = [0; 2];
+            shifted.raise_exponents(&mut highest);
+            let (mut powers, offset) = (PowerTable::new(&highest), Interval::point(d));
+            powers.set(0, offset);
+            powers.set_angle(1, offset, [line, middle]);
+            let linear = shifted.gradient(&work).fold(shifted.constant(&work), |sum, (i, slope)| {
+                sum + angles.along_line(i, slope, &[line]).1 * d
+            });
+            let sum = linear + shifted.remainder(&powers, &mut work);
+            let (x, (sine, cosine)) = (offset + z, (offset + z).sin_cos());
+            let power = |t: &TaylorTerm<Interval>| {
+                let [a, b, c] = [0, 1, 2].map(|i| i32::from(t.exponents[i]));
+                t.coefficient * x.powi(a) * sine.powi(b) * cosine.powi(c)
+            };
+            let exact: Interval = terms.iter().map(power).sum();
+            prop_assert!(exact.intersection(sum).is_some() && sum.width() < 1e-9, "{exact:?} {sum:?}");
+        }
     }
 
     #[test]
