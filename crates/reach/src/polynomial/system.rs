@@ -66,7 +66,7 @@ impl PolynomialSystem {
     /// The system with the given components, N polynomials in (x, u, s, c): the states, the inputs, then s_i = sin x_j and then c_i = cos x_j for each state j
     /// of `angles` (rad).
     ///
-    /// The sets stay on the circle: s and c are no states but functions of them, and are bounded as such.
+    /// The sets stay on the circle: s and c are no states but functions of them, and are bounded as such, for angles up to 10⁶ rad.
     ///
     /// # Errors
     ///
