@@ -10,7 +10,7 @@ mod systems;
 
 use divan::{Bencher, black_box};
 use reachtube_reach::{
-    Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput,
+    Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput,
 };
 
 const SAMPLES: usize = 1251;
@@ -31,34 +31,52 @@ fn lwa4p_model_1_of_order_3(bencher: Bencher, order: Option<usize>) {
     bencher.bench(|| Flowpipe::new(black_box(&system), &grid, &[0.0; 12], &initial, &input, &settings));
 }
 
-/// A published problem: its name, system, initial set, step and number of samples, and pieces.
-type Problem = (String, PolynomialSystem, Hyperrectangle, (f64, usize), Vec<usize>);
+/// A published problem and how it is solved: its name, system, initial set, step and number of samples, and settings.
+type Problem = (String, PolynomialSystem, Hyperrectangle, (f64, usize), FlowpipeSettings);
+
+fn in_pieces(pieces: &[usize]) -> FlowpipeSettings {
+    FlowpipeSettings { pieces: pieces.to_vec(), ..FlowpipeSettings::default() }
+}
+
+fn taylor_models(order: u32) -> FlowpipeSettings {
+    FlowpipeSettings { method: FlowpipeMethod::TaylorModels { order }, ..FlowpipeSettings::default() }
+}
 
 fn problems() -> Vec<Problem> {
-    let van_der_pol = |pieces: Vec<usize>| {
-        let start = Hyperrectangle { center: vec![1.4, 2.4], radius: vec![0.15, 0.05] };
-        (format!("Van der Pol {pieces:?}"), systems::van_der_pol(), start, (0.01, 701), pieces)
+    let name = |problem: &str, settings: &FlowpipeSettings| {
+        format!("{problem}, {:?} {:?}", settings.method, settings.pieces)
     };
-    let laub_loomis = |w: f64, pieces: Vec<usize>| {
+    let van_der_pol = |settings| {
+        let start = Hyperrectangle { center: vec![1.4, 2.4], radius: vec![0.15, 0.05] };
+        (name("Van der Pol", &settings), systems::van_der_pol(), start, (0.01, 701), settings)
+    };
+    let laub_loomis = |w: f64, settings| {
         let start = Hyperrectangle { center: vec![1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], radius: vec![w; 7] };
-        (format!("Laub-Loomis {w} {pieces:?}"), systems::laub_loomis(), start, (0.02, 1001), pieces)
+        let name = name(&format!("Laub-Loomis {w}"), &settings);
+        (name, systems::laub_loomis(), start, (0.02, 1001), settings)
     };
     vec![
-        van_der_pol(vec![6, 3]),
-        van_der_pol(vec![16, 8]),
-        laub_loomis(0.01, vec![]),
-        laub_loomis(0.05, vec![]),
-        laub_loomis(0.1, vec![1, 1, 2, 2, 1, 1, 1]),
-        laub_loomis(0.1, vec![2, 2, 2, 2, 2, 1, 2]),
+        van_der_pol(in_pieces(&[6, 3])),
+        van_der_pol(in_pieces(&[16, 8])),
+        van_der_pol(taylor_models(6)),
+        van_der_pol(taylor_models(8)),
+        laub_loomis(0.01, in_pieces(&[])),
+        laub_loomis(0.01, taylor_models(3)),
+        laub_loomis(0.05, in_pieces(&[])),
+        laub_loomis(0.05, taylor_models(3)),
+        laub_loomis(0.05, taylor_models(4)),
+        laub_loomis(0.1, in_pieces(&[1, 1, 2, 2, 1, 1, 1])),
+        laub_loomis(0.1, in_pieces(&[2, 2, 2, 2, 2, 1, 2])),
+        laub_loomis(0.1, taylor_models(4)),
+        laub_loomis(0.1, taylor_models(5)),
     ]
 }
 
-fn solve((_, system, start, (step, samples), pieces): &Problem) -> Flowpipe {
+fn solve((_, system, start, (step, samples), settings): &Problem) -> Flowpipe {
     let none = Hyperrectangle::zero(0);
     let input = UncertainInput { measured: &[], set: &none };
-    let settings = FlowpipeSettings { pieces: pieces.clone(), ..FlowpipeSettings::default() };
     let zero = vec![0.0; start.dimension()];
-    Flowpipe::new(system, &TimeGrid::uniform(*step, *samples), &zero, start, &input, &settings)
+    Flowpipe::new(system, &TimeGrid::uniform(*step, *samples), &zero, start, &input, settings)
         .expect("sizes fit")
 }
 

@@ -1,3 +1,4 @@
+use reachtube_scalar::TaylorSpaceError;
 use thiserror::Error;
 
 /// What can be wrong with the input of a reachability computation.
@@ -50,6 +51,14 @@ pub enum ReachError {
         /// The time before it in s.
         previous: f64,
     },
+    /// Taylor models were asked for of a system with trigonometric variables.
+    #[error(
+        "Taylor models follow polynomials in states and inputs alone; give sin x and cos x as states of their own, with rates ẋ cos x and -ẋ sin x, or use linearisation"
+    )]
+    Trigonometric,
+    /// Taylor models of that order do not exist.
+    #[error(transparent)]
+    Order(#[from] TaylorSpaceError),
     /// The enclosure of e^{At} grew without bound.
     #[error(
         "the solution cannot be enclosed up to {time} s: rounding errors grow as fast as the system itself; \

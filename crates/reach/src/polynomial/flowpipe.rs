@@ -2,9 +2,8 @@ use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
 use super::PolynomialSystem;
-use super::linearisation::Linearisation;
-use super::set::Set;
-use super::step::Stepper;
+use super::follower::{Follower, follower};
+use super::step::Exhausted;
 use crate::{Hyperrectangle, ReachError, TimeGrid, Zonotope};
 
 /// The input u(t) ∈ u_m(t) + U: what was measured, held from sample to sample, and a set that it may be off by at any time.
@@ -16,9 +15,39 @@ pub struct UncertainInput<'a> {
     pub set: &'a Hyperrectangle,
 }
 
+impl UncertainInput<'_> {
+    /// All values over step k, m intervals.
+    fn over_step(&self, k: usize, out: &mut [Interval]) {
+        let m = out.len();
+        for (j, out) in out.iter_mut().enumerate() {
+            let center = Interval::point(self.measured[k * m + j]) + self.set.center[j];
+            *out = center + Interval::centered(0.0, self.set.radius[j]);
+        }
+    }
+}
+
+/// How sets are followed from step to step.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum FlowpipeMethod {
+    /// Conservative linearisation of zonotopes (Althoff, Stursberg, Buss, CDC 2008), which carries a large uncertain input best: in each step the system is
+    /// its linear part about a point near the middle of the set plus what that leaves out, bounded over the step's own tube, which is proved by containment.
+    /// For a polynomial the shift f(z* + d) = Σ c_α dᵅ is exact and finite.
+    #[default]
+    Linearisation,
+    /// Taylor models, which carry a large initial set best: the state is a polynomial in where it started, of degree `order` (1 at least) in that and in
+    /// time over each step, plus an offset. The offset obeys ė = A e + B (u - u*) + d, where A and B enclose the derivatives of f over the step's tube, which
+    /// is proved by containment, and d is what the polynomial lacks of the solution; it is kept as a zonotope.
+    TaylorModels {
+        /// The degree: 3 to 5 for 7 states, to 12 for 2.
+        order: u32,
+    },
+}
+
 /// How a flowpipe is computed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct FlowpipeSettings {
+    /// How sets are followed.
+    pub method: FlowpipeMethod,
     /// Generators kept, in multiples of the number of states; beyond, the oldest become a box. `None` keeps all, which is the tightest.
     pub order: Option<usize>,
     /// Parts into which the initial set is divided along each state, N; empty for none. Each is followed alone, and the hull of all is given.
@@ -46,9 +75,7 @@ pub enum FlowpipeOutcome {
 
 /// The reachable set of a polynomial system under an uncertain input: an interval hull at each sample and over each step.
 ///
-/// Conservative linearisation (Althoff, Stursberg, Buss, CDC 2008): in each step the system is its linear part about a point near the middle of the set plus
-/// what that leaves out, bounded over the step's own tube, which is proved by containment. For a polynomial the shift f(z* + d) = Σ c_α dᵅ is exact
-/// and finite.
+/// [`FlowpipeMethod`] says how it is found.
 ///
 /// # Examples
 ///
@@ -92,7 +119,8 @@ impl Flowpipe {
     ///
     /// # Errors
     ///
-    /// [`ReachError::Shape`] where sizes do not fit, with the rows of the input counted against the grid; [`ReachError::NotFinite`].
+    /// [`ReachError::Shape`] where sizes do not fit, with the rows of the input counted against the grid; [`ReachError::NotFinite`]; [`ReachError::Order`] for Taylor models of
+    /// an order that does not fit the number of states; [`ReachError::Trigonometric`] for those of a system with sines and cosines.
     pub fn new(
         system: &PolynomialSystem,
         grid: &TimeGrid,
@@ -103,40 +131,33 @@ impl Flowpipe {
     ) -> Result<Self, ReachError> {
         check(system, grid, start, initial_set, input, settings)?;
         let sides: Vec<Interval> = (0..system.states()).map(|i| side(start, initial_set, i)).collect();
-        let pieces = pieces(&sides, &settings.pieces);
-        let follow = |piece: Vec<Interval>| Self::of_piece(system, grid, &piece, input, settings);
-        let whole = pieces.into_par_iter().map(follow).reduce_with(Self::hull);
-        Ok(whole.expect("a piece at least"))
+        let of_piece = |piece: Vec<Interval>| {
+            Ok(Self::of(follower(system, &piece, settings)?.as_mut(), system, grid, input, settings))
+        };
+        let pieces = pieces(&sides, &settings.pieces).into_par_iter().map(of_piece);
+        let whole = pieces.reduce_with(|left, right| Ok(left?.hull(right?)));
+        whole.expect("a piece at least")
     }
 
     /// From one box.
-    fn of_piece(
+    fn of(
+        follower: &mut dyn Follower,
         system: &PolynomialSystem,
         grid: &TimeGrid,
-        sides: &[Interval],
         input: &UncertainInput<'_>,
         settings: &FlowpipeSettings,
     ) -> Self {
-        let (n, m) = (system.states(), system.inputs());
-        let (center, radius) = sides.iter().map(|x| (x.mid(), x.rad())).unzip();
-        let mut set = Set::new(center, radius, m, system.directions.len());
-        let most = settings.order.map_or(usize::MAX, |order| order.saturating_mul(n));
-        let mut stepper = Stepper::new(Linearisation::new(system), most);
-        let mut flowpipe = Self::start(n, grid.len());
-        flowpipe.keep(&set, &stepper, settings);
-        let mut u = vec![Interval::ZERO; m];
+        let mut flowpipe = Self::start(system.states(), grid.len());
+        flowpipe.keep(follower, settings);
+        let mut u = vec![Interval::ZERO; system.inputs()];
         for k in 1..grid.len() {
-            for (j, u) in u.iter_mut().enumerate() {
-                let center = Interval::point(input.measured[(k - 1) * m + j]) + input.set.center[j];
-                *u = center + Interval::centered(0.0, input.set.radius[j]);
-            }
-            if let Err(exhausted) = stepper.advance(&mut set, grid.interval(k - 1), &u) {
-                let (state, widths) = (exhausted.state, exhausted.widths);
+            input.over_step(k - 1, &mut u);
+            if let Err(Exhausted { state, widths }) = follower.advance(grid.interval(k - 1), &u) {
                 flowpipe.outcome = FlowpipeOutcome::Failed { time: grid.times()[k - 1], state, widths };
                 break;
             }
-            flowpipe.steps.extend(stepper.tube());
-            flowpipe.keep(&set, &stepper, settings);
+            follower.tube(&mut flowpipe.steps);
+            flowpipe.keep(follower, settings);
         }
         flowpipe
     }
@@ -164,14 +185,12 @@ impl Flowpipe {
         }
     }
 
-    fn keep(&mut self, set: &Set, stepper: &Stepper<'_>, settings: &FlowpipeSettings) {
-        let k = self.len();
-        let hull = set.center.iter().zip(&set.radius);
-        self.samples.extend(hull.map(|(center, radius)| Interval::centered(*center, *radius)));
-        self.generators = set.generators.len();
-        if settings.zonotopes.contains(&k) {
-            self.zonotopes.push((k, set.zonotope(stepper.directions())));
+    fn keep(&mut self, follower: &dyn Follower, settings: &FlowpipeSettings) {
+        if settings.zonotopes.contains(&self.len()) {
+            self.zonotopes.push((self.len(), follower.zonotope()));
         }
+        follower.hull(&mut self.samples);
+        self.generators = follower.generators();
     }
 
     /// Number of samples up to which the sets hold.

@@ -27,6 +27,8 @@ use crate::ReachError;
 pub struct PolynomialSystem {
     states: usize,
     inputs: usize,
+    /// f as it was given, in (x, u).
+    pub(super) components: Vec<TaylorPolynomial<Interval>>,
     /// What of each component no direction has.
     pub(super) rows: Vec<ShiftedPolynomial>,
     /// f = rows + Σ direction · polynomial.
@@ -119,13 +121,14 @@ impl PolynomialSystem {
             terms.push(checked_terms(row, variables, component)?);
         }
         let angles = Angles::new(states + inputs, angles, terms.iter().flatten());
-        Ok(Self::from_terms(states, inputs, angles, terms))
+        Ok(Self::from_terms(states, inputs, angles, components.to_vec(), terms))
     }
 
     fn from_terms(
         states: usize,
         inputs: usize,
         angles: Angles,
+        components: Vec<TaylorPolynomial<Interval>>,
         mut terms: Vec<Vec<TaylorTerm<Interval>>>,
     ) -> Self {
         let directions = directions(&angles, &mut terms);
@@ -134,7 +137,7 @@ impl PolynomialSystem {
         let mut highest = vec![1; angles.plain + angles.states.len()];
         rows.iter().for_each(|row| row.raise_exponents(&mut highest));
         directions.iter().for_each(|direction| direction.polynomial.raise_exponents(&mut highest));
-        Self { states, inputs, rows, directions, carriers, angles, highest }
+        Self { states, inputs, components, rows, directions, carriers, angles, highest }
     }
 
     /// Number of states N.

@@ -13,4 +13,5 @@ mod random;
 mod rational;
 mod simulation;
 mod systems;
+mod taylor_models;
 mod tube;

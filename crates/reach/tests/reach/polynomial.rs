@@ -4,8 +4,10 @@ use proptest::prelude::*;
 use rayon::prelude::*;
 use reachtube_ode::{Ensemble, Run, VectorField};
 use reachtube_reach::{
-    Disturbance, Flowpipe, FlowpipeOutcome, FlowpipeSettings, Hyperrectangle, PolynomialSystem, Propagation,
-    ReachError, ReachSets, TimeGrid, UncertainInput,
+    Disturbance, Flowpipe,
+    FlowpipeMethod::{self, Linearisation},
+    FlowpipeOutcome, FlowpipeSettings, Hyperrectangle, PolynomialSystem, Propagation, ReachError, ReachSets,
+    TimeGrid, UncertainInput,
 };
 use reachtube_scalar::{Interval, Lanes, Lanewise, MapWorkspace, PolynomialMap, Powers};
 
@@ -14,7 +16,7 @@ use crate::lwa4p;
 use crate::random::Random;
 use crate::systems::{self, Polynomial, constant, cubic_arm, laub_loomis, linear, van_der_pol, variables};
 
-fn set(center: &[f64], radius: &[f64]) -> Hyperrectangle {
+pub fn set(center: &[f64], radius: &[f64]) -> Hyperrectangle {
     Hyperrectangle { center: center.to_vec(), radius: radius.to_vec() }
 }
 
@@ -72,13 +74,13 @@ impl<S: Lanewise + Powers> VectorField<S> for Field<'_, S> {
     }
 }
 
-fn map(variables: usize, f: &[Polynomial]) -> PolynomialMap {
+pub fn map(variables: usize, f: &[Polynomial]) -> PolynomialMap {
     let f: Vec<_> = f.iter().map(|f| f.map_coefficients(|c| c.mid())).collect();
     PolynomialMap::new(variables, &f)
 }
 
 /// Sets, a grid, and how they are sampled.
-struct Case {
+pub struct Case {
     map: PolynomialMap,
     /// The first states, whose sines and cosines f has.
     angles: usize,
@@ -97,7 +99,7 @@ const SLACK: f64 = 1e-7;
 impl Case {
     /// Simulates so many behaviours from `seed` on; each state at each sample and in between is in the sets. The largest part of a
     /// width at the end that was seen.
-    fn simulate(&self, runs: usize, seed: u64) -> f64 {
+    pub fn simulate(&self, runs: usize, seed: u64) -> f64 {
         let mut random = Random::new(seed);
         let steps = self.flowpipe.len() - 1;
         let times: Vec<f64> =
@@ -156,7 +158,7 @@ fn random_polynomial(random: &mut Random, z: &[Polynomial]) -> Polynomial {
 }
 
 /// Random numbers of states and inputs, f with and without terms along common directions, sets, grids.
-fn random_case(seed: u64) -> Case {
+pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     let mut random = Random::new(seed);
     let (n, m) = (1 + random.bits() as usize % 4, random.bits() as usize % 3);
     // Every other system has sines and cosines.
@@ -178,6 +180,7 @@ fn random_case(seed: u64) -> Case {
     let step = 0.01 + 0.01 * f64::from(seed as u32 % 3);
     let system = PolynomialSystem::trigonometric(n, m, &(0..angles).collect::<Vec<_>>(), &f).unwrap();
     let settings = FlowpipeSettings {
+        method,
         order: [None, Some(8)][seed as usize % 2],
         pieces: if seed.is_multiple_of(3) { vec![2; n] } else { vec![] },
         zonotopes: vec![],
@@ -191,8 +194,10 @@ fn random_case(seed: u64) -> Case {
 #[test]
 fn none_of_a_million_behaviours_of_random_systems_leaves_its_sets() {
     let runs = 5_000;
-    let used: Vec<f64> =
-        (1..=200_u64).into_par_iter().map(|seed| random_case(seed).simulate(runs, seed)).collect();
+    let used: Vec<f64> = (1..=200_u64)
+        .into_par_iter()
+        .map(|seed| random_case(seed, Linearisation).simulate(runs, seed))
+        .collect();
     // Some of them come close to the sides of the sets, which are thus not just large.
     let close = used.iter().filter(|used| **used > 0.9).count();
     assert!(close > 100, "{close} of 200 came close");
@@ -201,7 +206,7 @@ fn none_of_a_million_behaviours_of_random_systems_leaves_its_sets() {
 #[test]
 fn simulations_are_as_exact_as_is_assumed() {
     for seed in 1..=200 {
-        let case = random_case(seed);
+        let case = random_case(seed, Linearisation);
         let steps = case.flowpipe.len() - 1;
         let times: Vec<f64> = (0..=2 * steps).map(|k| 0.5 * k as f64 * case.step).collect();
         let corner: Vec<f64> = case.start.center.iter().zip(&case.start.radius).map(|(c, r)| c + r).collect();
@@ -275,19 +280,18 @@ fn cubic_friction_at_the_papers_own_sets_is_followed_for_five_seconds() {
 }
 
 /// A published problem: 10,000 simulated trajectories lie in the flowpipe.
-fn contain_ten_thousand(
+pub fn contain_ten_thousand(
     system: &PolynomialSystem,
     f: &[Polynomial],
     start: Hyperrectangle,
     (step, samples): (f64, usize),
-    pieces: Vec<usize>,
+    settings: &FlowpipeSettings,
 ) -> Flowpipe {
     let none = Hyperrectangle::zero(0);
     let uncertain = UncertainInput { measured: &[], set: &none };
-    let settings = FlowpipeSettings { pieces, ..FlowpipeSettings::default() };
     let zero = vec![0.0; start.dimension()];
     let grid = TimeGrid::uniform(step, samples);
-    let flowpipe = Flowpipe::new(system, &grid, &zero, &start, &uncertain, &settings).unwrap();
+    let flowpipe = Flowpipe::new(system, &grid, &zero, &start, &uncertain, settings).unwrap();
     assert!(flowpipe.is_reached(), "{:?}", flowpipe.outcome());
     let map = map(start.dimension(), f);
     let case = Case { map, angles: 0, flowpipe, start, input: none, step, parts: 1, substeps: 1 };
@@ -295,11 +299,15 @@ fn contain_ten_thousand(
     case.flowpipe
 }
 
+fn in_pieces(pieces: Vec<usize>) -> FlowpipeSettings {
+    FlowpipeSettings { pieces, ..FlowpipeSettings::default() }
+}
+
 #[test]
 fn van_der_pol_is_enclosed() {
     let start = set(&[1.4, 2.4], &[0.15, 0.05]);
     let f = systems::van_der_pol_components();
-    let flowpipe = contain_ten_thousand(&van_der_pol(), &f, start, (0.01, 701), vec![6, 3]);
+    let flowpipe = contain_ten_thousand(&van_der_pol(), &f, start, (0.01, 701), &in_pieces(vec![6, 3]));
     let [x, y] = flowpipe.sample(700) else { unreachable!() };
     assert!(x.width() < 0.13 && y.width() < 0.55, "{x:?} {y:?}");
 }
@@ -309,8 +317,8 @@ fn laub_loomis_keeps_below_the_published_bounds() {
     for (w, bound, pieces) in [(0.01, 4.5, 1), (0.05, 4.5, 1), (0.1, 5.0, 2)] {
         let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[w; 7]);
         let f = systems::laub_loomis_components();
-        let pieces = vec![1, 1, pieces, pieces, 1, 1, 1];
-        let flowpipe = contain_ten_thousand(&laub_loomis(), &f, start, (0.02, 1001), pieces);
+        let pieces = in_pieces(vec![1, 1, pieces, pieces, 1, 1, 1]);
+        let flowpipe = contain_ten_thousand(&laub_loomis(), &f, start, (0.02, 1001), &pieces);
         let highest = (0..1000).map(|k| flowpipe.step(k)[3].hi()).fold(f64::MIN, f64::max);
         assert!(highest < bound, "W = {w}: x4 up to {highest}");
     }
@@ -448,4 +456,15 @@ proptest! {
             prop_assert!(flowpipe.step(k)[0].contains(middle));
         }
     }
+}
+
+#[test]
+fn taylor_models_refuse_sines_as_functions() {
+    let system = PolynomialSystem::trigonometric(2, 1, &[0], &pendulum()).unwrap();
+    let settings =
+        FlowpipeSettings { method: FlowpipeMethod::TaylorModels { order: 3 }, ..FlowpipeSettings::default() };
+    let input = UncertainInput { measured: &[0.0; 2], set: &Hyperrectangle::zero(1) };
+    let grid = TimeGrid::uniform(0.01, 3);
+    let refused = Flowpipe::new(&system, &grid, &[0.1, 0.0], &Hyperrectangle::zero(2), &input, &settings);
+    assert_eq!(refused.unwrap_err(), ReachError::Trigonometric);
 }

@@ -38,6 +38,11 @@ impl Packing {
         (key >> (self.bits * i as u32)) as u32 & self.largest_exponent()
     }
 
+    /// The bits of the exponent of variable i.
+    pub fn bits_of(self, i: usize) -> u128 {
+        u128::from(self.largest_exponent()) << (self.bits * i as u32)
+    }
+
     /// The monomial without what it has of variable i.
     pub fn without(self, key: u128, i: usize) -> u128 {
         key - u128::from(self.exponent(key, i)) * self.variable(i)
@@ -71,6 +76,6 @@ impl Packing {
 }
 
 /// The key without its degree: the order by exponents of the last variables first.
-pub(super) fn exponents_only(key: u128) -> u128 {
+pub(crate) fn exponents_only(key: u128) -> u128 {
     key & ((1 << DEGREE_SHIFT) - 1)
 }

@@ -113,7 +113,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
     }
 
     /// Calls `visit` with the packed monomial and coefficient of each non-zero term, in order.
-    pub(super) fn for_each_term(&self, mut visit: impl FnMut(u128, &C)) {
+    pub(crate) fn for_each_term(&self, mut visit: impl FnMut(u128, &C)) {
         match &self.form {
             Form::Constant(c) if c.is_zero() => {}
             Form::Constant(c) => visit(0, c),

@@ -98,7 +98,7 @@ fn times_term_lazily<'a, C: Scalar>(
 }
 
 /// Terms in any order, with repetitions, as a list.
-pub(super) fn collected<C: Scalar>(mut all: Vec<Term<C>>) -> Vec<Term<C>> {
+pub(crate) fn collected<C: Scalar>(mut all: Vec<Term<C>>) -> Vec<Term<C>> {
     all.sort_by_key(|term| term.0);
     all.dedup_by(|next, kept| {
         let same = next.0 == kept.0;

@@ -7,6 +7,7 @@ mod functions;
 mod polarisation;
 mod product;
 mod taylor_box;
+mod tight;
 
 pub use taylor_box::TaylorBox;
 
@@ -102,6 +103,13 @@ impl From<f64> for TaylorModel {
         } else {
             Self::unknown()
         }
+    }
+}
+
+impl From<TaylorPolynomial> for TaylorModel {
+    /// The polynomial in t exactly; nothing is known where a coefficient is infinite or NaN.
+    fn from(polynomial: TaylorPolynomial) -> Self {
+        if polynomial.is_finite() { Self { polynomial, remainder: Interval::ZERO } } else { Self::unknown() }
     }
 }
 

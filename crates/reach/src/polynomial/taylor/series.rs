@@ -1,0 +1,193 @@
+//! f along a solution, as a series in time: its monomials, each a product of two before it, term by term.
+
+use std::collections::BTreeMap;
+
+use reachtube_scalar::{Interval, TaylorModel, TaylorPolynomial};
+
+use super::TaylorSet;
+
+/// The monomials of f and how its components are summed from them. The first N + m are the variables themselves.
+#[derive(Debug)]
+pub(super) struct Monomials {
+    variables: usize,
+    /// Of each further monomial, two that it is the product of.
+    products: Vec<[usize; 2]>,
+    constants: Vec<Interval>,
+    rows: Vec<Vec<(usize, Interval)>>,
+}
+
+impl Monomials {
+    pub fn new(variables: usize, components: &[TaylorPolynomial<Interval>]) -> Self {
+        let unit = |i: usize| (0..variables).map(|j| u8::from(i == j)).collect::<Vec<_>>();
+        let mut places: BTreeMap<Vec<u8>, usize> = (0..variables).map(|i| (unit(i), i)).collect();
+        let mut all = Self { variables, products: vec![], constants: vec![], rows: vec![] };
+        for component in components {
+            all.constants.push(component.constant_term());
+            let terms = component.terms().into_iter().filter(|term| term.exponents.iter().any(|e| *e > 0));
+            let row = terms.map(|term| (all.place(term.exponents, &mut places), term.coefficient)).collect();
+            all.rows.push(row);
+        }
+        all
+    }
+
+    /// Where the monomial is; it is appended, after what divides it, if it is new.
+    fn place(&mut self, exponents: Vec<u8>, places: &mut BTreeMap<Vec<u8>, usize>) -> usize {
+        if let Some(place) = places.get(&exponents) {
+            return *place;
+        }
+        let variable = exponents.iter().position(|e| *e > 0).expect("not a constant");
+        let mut rest = exponents.clone();
+        rest[variable] -= 1;
+        let rest = self.place(rest, places);
+        self.products.push([rest, variable]);
+        let place = self.variables + self.products.len() - 1;
+        places.insert(exponents, place);
+        place
+    }
+
+    fn count(&self) -> usize {
+        self.variables + self.products.len()
+    }
+}
+
+/// The solution over one step from x(0) = X₀(s), as P(τ, s) = Σ X_i(s) τⁱ, i <= K, with time τ in steps, 0 <= τ <= 1.
+///
+/// What P leaves out is its defect h f(P) - dP/dτ, for a fixed input: the terms below τᴷ agree but for what polynomials in s to a given order, and
+/// rounding, leave out of them; those from τᴷ on are bounded.
+#[derive(Debug)]
+pub(super) struct TimeSeries {
+    /// For each monomial its terms below τᴷ; of the variables that are states, those up to τᴷ.
+    terms: Vec<Vec<TaylorModel>>,
+    ranges: Vec<Vec<Interval>>,
+    /// What follows, over τᴷ.
+    tails: Vec<Interval>,
+    /// Of each state, i ρ_i with the remainder ρ_i that X_i would have, 0 < i <= K.
+    defects: Vec<Vec<Interval>>,
+    /// Of each state, the defect from τᴷ on, over τᴷ.
+    defect_tails: Vec<Interval>,
+    order: usize,
+}
+
+impl TimeSeries {
+    /// From the polynomials of `start` (N), under the fixed `input` (m), over steps of length h, to the order K in time.
+    pub fn new(monomials: &Monomials, start: &TaylorSet, input: &[f64], h: Interval, order: usize) -> Self {
+        let states = start.polynomials.len();
+        let inputs = input.iter().map(|u| TaylorModel::from(*u));
+        let mut series = Self {
+            terms: start.polynomials.iter().cloned().chain(inputs).map(|term| vec![term]).collect(),
+            ranges: Vec::new(),
+            tails: vec![Interval::ZERO; monomials.count()],
+            defects: vec![Vec::with_capacity(order); states],
+            defect_tails: vec![Interval::ZERO; states],
+            order,
+        };
+        series.terms.resize(monomials.count(), Vec::with_capacity(order));
+        let h = TaylorModel::from(h);
+        for i in 0..order {
+            series.multiply(monomials, i);
+            series.extend(monomials, i, &h);
+        }
+        series.bound(monomials, &start.ranges, &h);
+        series
+    }
+
+    /// The terms at τⁱ of the products.
+    fn multiply(&mut self, monomials: &Monomials, i: usize) {
+        for (at, [left, right]) in monomials.products.iter().enumerate() {
+            let mut sum = TaylorModel::from(0.0);
+            for j in 0..=i {
+                if let (Some(x), Some(y)) = (self.terms[*left].get(j), self.terms[*right].get(i - j)) {
+                    sum += x * y;
+                }
+            }
+            self.terms[monomials.variables + at].push(sum);
+        }
+    }
+
+    /// X_{i+1} = h f_i / (i + 1), of which the polynomial is kept, and what it lacks is known.
+    fn extend(&mut self, monomials: &Monomials, i: usize, h: &TaylorModel) {
+        for (state, row) in monomials.rows.iter().enumerate() {
+            let mut sum =
+                if i == 0 { TaylorModel::from(monomials.constants[state]) } else { TaylorModel::from(0.0) };
+            for (place, coefficient) in row {
+                if let Some(term) = self.terms[*place].get(i) {
+                    sum += term * &TaylorModel::from(*coefficient);
+                }
+            }
+            let count = i as f64 + 1.0;
+            let next = &(&sum * h) / &TaylorModel::from(count);
+            self.defects[state].push(next.remainder() * count);
+            self.terms[state].push(TaylorModel::from(next.polynomial().clone()));
+        }
+    }
+
+    /// The ranges of all terms, those of the first known already, and the tails.
+    fn bound(&mut self, monomials: &Monomials, first: &[Interval], h: &TaylorModel) {
+        self.ranges = self.terms.iter().map(|terms| terms.iter().map(TaylorModel::range).collect()).collect();
+        for ((ranges, tail), first) in self.ranges.iter_mut().zip(&mut self.tails).zip(first) {
+            *tail = ranges[self.order];
+            ranges.truncate(self.order);
+            ranges[0] = *first;
+        }
+        for (at, [left, right]) in monomials.products.iter().enumerate() {
+            self.tails[monomials.variables + at] = self.tail_of_product(*left, *right);
+        }
+        for (state, row) in monomials.rows.iter().enumerate() {
+            let sum: Interval =
+                row.iter().map(|(place, coefficient)| self.tails[*place] * *coefficient).sum();
+            self.defect_tails[state] = sum * h.range();
+        }
+    }
+
+    fn tail_of_product(&self, left: usize, right: usize) -> Interval {
+        let (x, y) = (&self.ranges[left], &self.ranges[right]);
+        let mut sum = Interval::ZERO;
+        for (i, x) in x.iter().enumerate() {
+            for y in y.iter().skip(self.order - i) {
+                sum += (*x * *y).hull(Interval::ZERO);
+            }
+        }
+        let (below, tail) =
+            ([left, right].map(|at| over_step(&self.ranges[at])), [left, right].map(|at| self.tails[at]));
+        sum + below[0] * tail[1] + below[1] * tail[0] + (tail[0] * tail[1]).hull(Interval::ZERO)
+    }
+
+    /// P over the step: N intervals.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub fn range(&self, state: usize) -> Interval {
+        over_step(&self.ranges[state]) + self.tails[state].hull(Interval::ZERO)
+    }
+
+    /// P at the end of the step.
+    pub fn end(&self, state: usize) -> TaylorModel {
+        self.terms[state].iter().rev().fold(TaylorModel::from(0.0), |sum, term| &sum + term)
+    }
+
+    /// The defect at any time of the step.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub fn defect(&self, state: usize) -> Interval {
+        over_step(&self.defects[state]) + self.defect_tails[state].hull(Interval::ZERO)
+    }
+
+    /// Its integral over the step.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub fn defect_integral(&self, state: usize) -> Interval {
+        let terms = self.defects[state].iter().chain([&self.defect_tails[state]]).enumerate();
+        terms.map(|(i, defect)| *defect / Interval::point(i as f64 + 1.0)).sum()
+    }
+}
+
+/// Σ c_i τⁱ for 0 <= τ <= 1.
+fn over_step(terms: &[Interval]) -> Interval {
+    let later = terms.iter().skip(1).map(|c| c.hull(Interval::ZERO)).sum::<Interval>();
+    terms.first().map_or(later, |first| *first + later)
+}
