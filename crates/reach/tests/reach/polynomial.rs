@@ -161,8 +161,9 @@ fn random_polynomial(random: &mut Random, z: &[Polynomial]) -> Polynomial {
 pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     let mut random = Random::new(seed);
     let (n, m) = (1 + random.bits() as usize % 4, random.bits() as usize % 3);
-    // Every other system has sines and cosines.
-    let angles = if random.sign() > 0.0 { 0 } else { 1 + random.bits() as usize % n };
+    // Every other system has sines and cosines, where they can be followed.
+    let plain = random.sign() > 0.0 || method != Linearisation;
+    let angles = if plain { 0 } else { 1 + random.bits() as usize % n };
     let variables_of_f = n + m + 2 * angles;
     let z = variables(variables_of_f, 3);
     let mut f: Vec<Polynomial> = (0..n).map(|_| random_polynomial(&mut random, &z)).collect();

@@ -191,3 +191,69 @@ fn over_step(terms: &[Interval]) -> Interval {
     let later = terms.iter().skip(1).map(|c| c.hull(Interval::ZERO)).sum::<Interval>();
     terms.first().map_or(later, |first| *first + later)
 }
+
+#[cfg(test)]
+mod tests {
+    use reachtube_scalar::TaylorSpace;
+
+    use super::*;
+
+    /// ẋ = x² + u over a step of length h from 1 + [-r, r], to the given orders in s and in time.
+    fn square(h: f64, r: f64, orders: (u32, usize), u: f64) -> TimeSeries {
+        let space = TaylorSpace::new(2, 2).unwrap();
+        let [x, u_variable] = [0, 1].map(|i| TaylorPolynomial::<Interval>::variable(&space, i));
+        let monomials = Monomials::new(2, &[&x * &x + u_variable]);
+        let start = TaylorSet::new(
+            &TaylorSpace::new(1, orders.0).unwrap(),
+            &[Interval::centered(1.0, r)],
+            usize::MAX,
+        );
+        TimeSeries::new(&monomials, &start, &[u], Interval::point(h), orders.1)
+    }
+
+    #[test]
+    fn the_series_is_that_of_the_solution() {
+        // 1 / (1 - t) = 1 + t + t² + ..
+        let series = square(0.125, 0.0, (1, 6), 0.0);
+        for (i, term) in series.terms[0].iter().enumerate() {
+            assert!((term.range() - 0.125f64.powi(i as i32)).mag() < 1e-16, "{term:?}");
+        }
+        let end: f64 = (0..=6).map(|i| 0.125f64.powi(i)).sum();
+        assert!((series.end(0).range() - end).mag() < 1e-15);
+    }
+
+    #[test]
+    fn the_defect_is_what_the_series_lacks() {
+        // h f(P) - P' is exactly known: a polynomial in τ for each start.
+        for (h, r, orders, u) in [(0.1, 0.0, (1, 3), 0.0), (0.1, 0.2, (2, 4), 0.5), (0.05, 0.3, (1, 5), -1.0)]
+        {
+            let series = square(h, r, orders, u);
+            let (bound, integral) = (series.defect(0), series.defect_integral(0));
+            let mut largest: f64 = 0.0;
+            for s in [-1.0, -0.3, 0.0, 0.8, 1.0] {
+                let c: Vec<f64> =
+                    series.terms[0].iter().map(|term| term.polynomial().evaluate(&[s])).collect();
+                let p = |tau: f64| c.iter().rev().fold(0.0, |sum, c| sum * tau + c);
+                let slope =
+                    |tau: f64| (1..c.len()).map(|i| i as f64 * c[i] * tau.powi(i as i32 - 1)).sum::<f64>();
+                let defect = |tau: f64| h * (p(tau).powi(2) + u) - slope(tau);
+                let taus: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
+                for tau in &taus {
+                    let near = bound + Interval::centered(0.0, 1e-14);
+                    assert!(near.contains(defect(*tau)), "{} is not in {bound:?}", defect(*tau));
+                    assert!((series.range(0) + Interval::centered(0.0, 1e-14)).contains(p(*tau)));
+                    largest = largest.max(defect(*tau).abs());
+                }
+                // Simpson's rule, whose error is below 1e-12 here.
+                let weight = |k: usize| if k == 0 || k == 1000 { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
+                let sum =
+                    taus.iter().enumerate().map(|(k, tau)| weight(k) * defect(*tau)).sum::<f64>() / 3000.0;
+                assert!(
+                    (integral + Interval::centered(0.0, 1e-12)).contains(sum),
+                    "{sum} is not in {integral:?}"
+                );
+            }
+            assert!(bound.mag() < 4.0 * largest, "{bound:?} {largest}");
+        }
+    }
+}
