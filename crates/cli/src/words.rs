@@ -159,6 +159,12 @@ pub fn model(model: &Model) -> String {
         proof.rows
     );
     proof.lost.iter().for_each(|lost| text.push_str(&format!("{}\n", self::lost(lost))));
+    if let Some((case, time)) = model.search.as_ref().and_then(|search| search.runs_away.as_ref()) {
+        let _ = writeln!(
+            text,
+            "{case}: a simulated motion under nearly these sets ran away before {time:.3} s: the model is unstable there"
+        );
+    }
     let _ = writeln!(text, "{}\n", cost(model));
     text.push_str(&sets(model));
     let touched = match proof.enclosure {
@@ -214,8 +220,8 @@ fn cost(model: &Model) -> String {
 /// Where a reachable set ended.
 pub fn lost(lost: &Lost) -> String {
     format!(
-        "{}: the reachable set could not be followed beyond {:.3} s, where {} grew fastest; what is recorded later is not enclosed",
-        lost.case, lost.time, lost.state
+        "{}: the reachable set could not be followed beyond {:.3} s, where {} grew fastest; what is recorded later is not enclosed (--until {:.3} leaves it out)",
+        lost.case, lost.time, lost.state, lost.time
     )
 }
 

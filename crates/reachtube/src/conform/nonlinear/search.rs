@@ -4,6 +4,8 @@
 //! found by simulating the extremal motions, and moves the rows of the next round. When the sets have settled, the reachable sets are enclosed; a row that they leave out is asked for with a margin, and so on
 //! until every recording is enclosed.
 
+use std::collections::HashMap;
+
 use rayon::prelude::*;
 use reachtube_reach::{Flowpipe, Hyperrectangle, PolynomialSystem};
 use serde::{Deserialize, Serialize};
@@ -19,11 +21,14 @@ use crate::conform::program::{Block, Place, Program, Solution};
 use crate::conform::{Search as Record, Settings, Side, UncertaintySets};
 use crate::error::Result;
 
-/// Rounds of linearisation at most.
+/// Rounds of linearisation after which the sets are taken as they are; twice as many with margins at most.
 const ROUNDS: usize = 20;
 
 /// The sets have settled when no radius or centre changes by more than this part of the largest.
 const SETTLED: f64 = 1e-5;
+
+/// Or when the cost of the linearised sets changes by less than this part: where the program has several answers, the sets may wander among them.
+const SAME_COST: f64 = 1e-7;
 
 /// Rows that are not enclosed are asked for with this much more than what is missing.
 const MARGIN: f64 = 1.1;
@@ -47,6 +52,8 @@ pub(super) struct Progress {
     pub rounds: usize,
     /// How often the reachable sets were computed.
     pub reachable_sets: usize,
+    /// The cost of the linearised sets after the last round.
+    pub cost: f64,
     /// The sets after them.
     pub sets: UncertaintySets,
     /// By how much more than the recordings ask for the rows that were not enclosed must be reached.
@@ -82,14 +89,16 @@ impl Progress {
     pub fn start(joints: usize) -> Self {
         let (initial_set, input_set) = (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
-        Self { rounds: 0, reachable_sets: 0, sets, margins: Vec::new() }
+        Self { rounds: 0, reachable_sets: 0, cost: 0.0, sets, margins: Vec::new() }
     }
 
     /// Margins of one row add up.
     fn add(&mut self, missing: Vec<Margin>) {
+        let places = self.margins.iter().enumerate().map(|(at, margin)| (margin.row(), at));
+        let known: HashMap<_, usize> = places.collect();
         for new in missing {
-            match self.margins.iter_mut().find(|known| known.row() == new.row()) {
-                Some(known) => known.margin += new.margin,
+            match known.get(&new.row()) {
+                Some(&at) => self.margins[at].margin += new.margin,
                 None => self.margins.push(new),
             }
         }
@@ -113,22 +122,24 @@ impl Search<'_> {
         loop {
             let round = self.round(&progress)?;
             let change = change(&progress.sets, &round.solution.sets);
+            let is_settled =
+                change <= SETTLED || (round.cost - progress.cost).abs() <= SAME_COST * round.cost;
             progress.sets = round.solution.sets.clone();
+            progress.cost = round.cost;
             progress.rounds += 1;
             journal.save(&progress)?;
             finished(&format!(
                 "round {}: the linearised sets cost {:.4}, radii and centres changed by {change:.1e}",
                 progress.rounds, round.cost
             ));
-            let is_last = progress.rounds >= ROUNDS;
-            if change > SETTLED && !is_last {
+            if !is_settled && progress.rounds < ROUNDS {
                 continue;
             }
             progress.reachable_sets += 1;
             let flowpipes = flowpipes(self.system, self.cases, &progress.sets)?;
             let missing = self.missing(&flowpipes, &progress.sets);
             let is_lost = missing.iter().any(|margin| margin.margin.is_infinite());
-            if missing.is_empty() || is_last || is_lost {
+            if missing.is_empty() || is_lost || progress.rounds >= 2 * ROUNDS {
                 return Ok(self.found(&progress, round, flowpipes));
             }
             finished(&format!("{} rows are not enclosed and are asked for with a margin", missing.len()));
