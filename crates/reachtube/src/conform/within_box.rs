@@ -21,7 +21,7 @@ pub(super) fn check_starts(data: &DataSet, settings: &Settings, recordings: &Rec
     for run in recordings.suites.iter().flat_map(|suite| &suite.runs) {
         for (i, x) in run.start.iter().enumerate() {
             let [low, high] = side(operating_box, i);
-            if !(low..=high).contains(&x) {
+            if !(low..=high).contains(x) {
                 return Err(Error::Setting(format!(
                     "{}: {} starts at {x}, outside the box [{low}, {high}] over which what the model leaves out was bounded; give `abstract` a larger --box, or another --at",
                     data.runs()[run.index].file,
