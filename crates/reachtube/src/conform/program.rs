@@ -62,6 +62,8 @@ pub struct Program<'a> {
     blocks: Vec<Block>,
     /// For each block and sample, how much its widths count.
     shares: Vec<Vec<f64>>,
+    /// Between what each centre (c_x, c_u) must lie, where that is restricted.
+    centers: Vec<[f64; 2]>,
     /// Cost of each radius (r_x, r_u).
     cost: Vec<f64>,
     /// Cost of each noise radius.
@@ -94,10 +96,15 @@ impl<'a> Program<'a> {
         let joints = weights.len() / 2;
         let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
         let (cost, noise_cost) = cost(&blocks, &shares, weights);
-        let mut program =
-            Self { settings, joints, blocks, shares, cost, noise_cost, scale: f64::MIN_POSITIVE };
+        let (centers, scale) = (Vec::new(), f64::MIN_POSITIVE);
+        let mut program = Self { settings, joints, blocks, shares, centers, cost, noise_cost, scale };
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
+    }
+
+    /// The same with each centre (c_x, c_u) between two numbers.
+    pub(super) fn with_centers(self, centers: Vec<[f64; 2]>) -> Self {
+        Self { centers, ..self }
     }
 
     /// The cost of some sets.
@@ -235,6 +242,12 @@ impl<'a> Program<'a> {
             bounds.push(-self.bound(place) / (scale * self.scale));
         }
         layout.restrictions(self.settings.centre, &mut triplets, &mut bounds, &unit);
+        for (center, [low, high]) in self.centers.iter().enumerate().take(layout.radii()) {
+            for (sign, bound) in [(1.0, *high), (-1.0, -low)] {
+                triplets.row([(center, sign)]);
+                bounds.push(bound / (unit[center] * self.scale));
+            }
+        }
         let objective: Vec<f64> = layout
             .cost
             .iter()

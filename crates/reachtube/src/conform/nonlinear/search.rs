@@ -5,6 +5,7 @@
 //! until every recording is enclosed.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use rayon::prelude::*;
 use reachtube_reach::{Flowpipe, Hyperrectangle, PolynomialSystem};
@@ -17,7 +18,7 @@ use super::outer::{check_outer, flowpipes};
 use super::sensitivity::Sensitivity;
 use super::{Found, runs_away};
 use crate::abstraction::PolynomialModel;
-use crate::conform::program::{Block, Place, Program, Solution};
+use crate::conform::program::{Block, Program, Solution};
 use crate::conform::{Search as Record, Settings, Side, UncertaintySets};
 use crate::error::Result;
 
@@ -28,7 +29,10 @@ const ROUNDS: usize = 20;
 const SETTLED: f64 = 1e-5;
 
 /// Or when the cost of the linearised sets changes by less than this part: where the program has several answers, the sets may wander among them.
-const SAME_COST: f64 = 1e-7;
+const SAME_COST: f64 = 1e-6;
+
+/// The change of a round is this part of the one before at most, or centres get less freedom.
+const SHRINKS: f64 = 0.8;
 
 /// Rows that are not enclosed are asked for with this much more than what is missing.
 const MARGIN: f64 = 1.1;
@@ -54,6 +58,10 @@ pub(super) struct Progress {
     pub reachable_sets: usize,
     /// The cost of the linearised sets after the last round.
     pub cost: f64,
+    /// How far that round's program was from the sets before it.
+    pub change: f64,
+    /// How far centres may move in the next round, in parts of the largest centre or radius of their kind.
+    pub freedom: f64,
     /// The sets after them.
     pub sets: UncertaintySets,
     /// By how much more than the recordings ask for the rows that were not enclosed must be reached.
@@ -73,13 +81,10 @@ pub(super) struct Margin {
 }
 
 /// One linearisation, and what its program gave.
-#[derive(Debug)]
-pub(super) struct Round {
+pub(super) struct Round<'a> {
+    /// A block is a case.
+    program: Program<'a>,
     pub solution: Solution,
-    /// Σ s 2 R_k r of the linearised sets.
-    pub cost: f64,
-    /// The rows that touch them; a block is a case.
-    pub tight: Vec<Place>,
     /// Where an extremal motion under the sets of the round before ran away: case and time, s.
     pub runs_away: Option<(usize, f64)>,
 }
@@ -89,11 +94,47 @@ impl Progress {
     pub fn start(joints: usize) -> Self {
         let (initial_set, input_set) = (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
-        Self { rounds: 0, reachable_sets: 0, cost: 0.0, sets, margins: Vec::new() }
+        Self {
+            rounds: 0,
+            reachable_sets: 0,
+            cost: 0.0,
+            change: f64::MAX,
+            freedom: f64::MAX,
+            sets,
+            margins: Vec::new(),
+        }
+    }
+
+    /// Takes the answer of a program; whether the sets have settled. Where answers jump back and forth, as those that are worth the same may do, centres get less freedom.
+    fn take(&mut self, round: &Round) -> bool {
+        let (change, cost) =
+            (change(&self.sets, &round.solution.sets), round.program.cost(&round.solution.sets));
+        if change > SHRINKS * self.change {
+            self.freedom = 0.5 * self.freedom.min(change);
+        }
+        let is_settled = change <= SETTLED || (cost - self.cost).abs() <= SAME_COST * cost;
+        self.sets = round.solution.sets.clone();
+        (self.change, self.cost, self.rounds) = (change, cost, self.rounds + 1);
+        is_settled
+    }
+
+    /// Where the centres of X0 and U may be in the next round; empty for anywhere.
+    fn centers(&self) -> Vec<[f64; 2]> {
+        if self.freedom == f64::MAX {
+            return Vec::new();
+        }
+        let n = self.sets.input_set.dimension();
+        let around = |set: &Hyperrectangle, kind: Range<usize>| {
+            let reach = self.freedom * largest(set, kind.clone());
+            set.center[kind].iter().map(|c| [c - reach, c + reach]).collect::<Vec<_>>()
+        };
+        let (x, u) = (&self.sets.initial_set, &self.sets.input_set);
+        [around(x, 0..n), around(x, n..2 * n), around(u, 0..n)].concat()
     }
 
     /// Margins of one row add up.
     fn add(&mut self, missing: Vec<Margin>) {
+        self.change = f64::MAX;
         let places = self.margins.iter().enumerate().map(|(at, margin)| (margin.row(), at));
         let known: HashMap<_, usize> = places.collect();
         for new in missing {
@@ -121,16 +162,11 @@ impl Search<'_> {
         let mut progress: Progress = journal.load()?.unwrap_or_else(|| Progress::start(self.model.joints()));
         loop {
             let round = self.round(&progress)?;
-            let change = change(&progress.sets, &round.solution.sets);
-            let is_settled =
-                change <= SETTLED || (round.cost - progress.cost).abs() <= SAME_COST * round.cost;
-            progress.sets = round.solution.sets.clone();
-            progress.cost = round.cost;
-            progress.rounds += 1;
+            let is_settled = progress.take(&round);
             journal.save(&progress)?;
+            let Progress { rounds, cost, change, .. } = &progress;
             finished(&format!(
-                "round {}: the linearised sets cost {:.4}, radii and centres changed by {change:.1e}",
-                progress.rounds, round.cost
+                "round {rounds}: the linearised sets cost {cost:.4}, radii and centres changed by {change:.1e}"
             ));
             if !is_settled && progress.rounds < ROUNDS {
                 continue;
@@ -149,10 +185,12 @@ impl Search<'_> {
     }
 
     fn found(&self, progress: &Progress, round: Round, flowpipes: Vec<Flowpipe>) -> Found {
+        let sets = progress.sets.clone();
         let runs_away = round.runs_away.map(|(case, time)| (self.cases[case].name.clone(), time));
         let (rounds, reachable_sets) = (progress.rounds, progress.reachable_sets);
-        let search = Record { rounds, reachable_sets, linearised_cost: Some(round.cost), runs_away };
-        Found { sets: round.solution.sets, flowpipes, deciding: round.tight, search }
+        let linearised_cost = Some(round.program.cost(&sets));
+        let search = Record { rounds, reachable_sets, linearised_cost, runs_away };
+        Found { deciding: round.program.tight(&sets), sets, flowpipes, search }
     }
 
     /// Linearises, and solves the program.
@@ -160,7 +198,7 @@ impl Search<'_> {
     /// # Errors
     ///
     /// As [`run`](Self::run).
-    pub fn round(&self, progress: &Progress) -> Result<Round> {
+    pub fn round(&self, progress: &Progress) -> Result<Round<'_>> {
         let sets = &progress.sets;
         let sensitivities = self.sensitivities(sets)?;
         let corrections = self.corrections(progress, &sensitivities);
@@ -174,10 +212,9 @@ impl Search<'_> {
             let envelope = &mut blocks[margin.case].envelope;
             envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
         }
-        let program = Program::new(self.settings, &self.weights, blocks);
+        let program = Program::new(self.settings, &self.weights, blocks).with_centers(progress.centers());
         let solution = program.solve()?;
-        let (cost, tight) = (program.cost(&solution.sets), program.tight(&solution.sets));
-        Ok(Round { solution, cost, tight, runs_away })
+        Ok(Round { program, solution, runs_away })
     }
 
     fn sensitivities(&self, sets: &UncertaintySets) -> Result<Vec<Sensitivity>> {
@@ -232,13 +269,19 @@ fn block(case: &Case, sensitivity: Sensitivity, correction: &Correction, sets: &
 /// The largest change of a centre or radius, in parts of the largest of its kind: positions, velocities, inputs.
 fn change(old: &UncertaintySets, new: &UncertaintySets) -> f64 {
     let n = new.input_set.dimension();
-    let group = |old: &Hyperrectangle, new: &Hyperrectangle, range: std::ops::Range<usize>| {
-        let all = |set: &Hyperrectangle| [&set.center[range.clone()], &set.radius[range.clone()]].concat();
-        let (old, new) = (all(old), all(new));
-        let largest = new.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
-        let change = old.iter().zip(&new).fold(0.0, |max: f64, (x, y)| max.max((x - y).abs()));
-        if change == 0.0 { 0.0 } else { change / largest }
+    let of_kind = |old: &Hyperrectangle, new: &Hyperrectangle, kind: Range<usize>| {
+        let pairs =
+            |x: &[f64], y: &[f64]| -> f64 { kind.clone().map(|i| (x[i] - y[i]).abs()).fold(0.0, f64::max) };
+        let change = pairs(&old.center, &new.center).max(pairs(&old.radius, &new.radius));
+        if change == 0.0 { 0.0 } else { change / largest(new, kind) }
     };
     let (x, u) = ((&old.initial_set, &new.initial_set), (&old.input_set, &new.input_set));
-    [group(x.0, x.1, 0..n), group(x.0, x.1, n..2 * n), group(u.0, u.1, 0..n)].into_iter().fold(0.0, f64::max)
+    [of_kind(x.0, x.1, 0..n), of_kind(x.0, x.1, n..2 * n), of_kind(u.0, u.1, 0..n)]
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+/// The largest magnitude of a centre or radius.
+fn largest(set: &Hyperrectangle, kind: Range<usize>) -> f64 {
+    set.center[kind.clone()].iter().chain(&set.radius[kind]).fold(0.0, |max, x| max.max(x.abs()))
 }
