@@ -13,6 +13,7 @@ mod propagation;
 mod reach_set;
 mod samples;
 mod series;
+mod sums;
 mod tube;
 mod variation;
 

@@ -4,8 +4,6 @@ use nalgebra::{DMatrix, DVector};
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up};
 
-use crate::LinearSystem;
-
 /// A matrix of intervals; products and sums are those of nalgebra, evaluated with outward rounding.
 pub type IntervalMatrix = DMatrix<Interval>;
 
@@ -121,109 +119,15 @@ const FAR_FROM_UNDERFLOW: f64 = 1e-280;
 fn sum_upward<'a>(nearest: f64, count: usize, terms: impl Iterator<Item = (f64, &'a f64)>) -> f64 {
     match nearest {
         FAR_FROM_UNDERFLOW..f64::INFINITY => mul_up(nearest, 1.0 + (count + 1) as f64 * f64::EPSILON),
-        _ => terms.filter(|(_, y)| **y != 0.0).fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y))),
+        _ => {
+            terms.filter(|(x, y)| *x != 0.0 && **y != 0.0).fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y)))
+        }
     }
 }
 
 /// `sum += term` for entries >= 0, rounded upward.
 pub(crate) fn accumulate_upward(sum: &mut DMatrix<f64>, term: &DMatrix<f64>) {
     sum.zip_apply(term, |s, t| *s = add_up(*s, t));
-}
-
-/// At so many samples, the sum of the terms before each, one a step and of the shape of B, of which `term(k)` are the lower and upper ends,
-/// column by column.
-pub(crate) fn running_sum<I: Iterator<Item = (f64, f64)>>(
-    system: &LinearSystem,
-    samples: usize,
-    term: impl Fn(usize) -> I,
-) -> Vec<IntervalMatrix> {
-    let (rows, columns) = (system.states(), system.inputs());
-    let mut sums = ColumnSums::new(rows * columns);
-    let sum = |k: usize| {
-        if k > 0 {
-            sums.add(&[1.0], |_| term(k - 1));
-        }
-        IntervalMatrix::from_iterator(rows, columns, sums.enclosed())
-    };
-    (0..samples).map(sum).collect()
-}
-
-/// Sums of columns of intervals times numbers, in floating point, with a bound of their error. A sum all of whose terms are zero is 0.
-///
-/// The error of n terms is at most n u / (1 - n u) times the sum of their sizes (Higham, Accuracy and Stability of Numerical Algorithms,
-/// section 3.1), and what underflows.
-pub(crate) struct ColumnSums {
-    terms: usize,
-    lo: Vec<f64>,
-    hi: Vec<f64>,
-    /// Of the absolute values of the terms.
-    size: Vec<f64>,
-}
-
-impl ColumnSums {
-    pub(crate) fn new(rows: usize) -> Self {
-        let zero = vec![0.0; rows];
-        Self { terms: 0, lo: zero.clone(), hi: zero.clone(), size: zero }
-    }
-
-    pub(crate) fn clear(&mut self) {
-        self.terms = 0;
-        for sums in [&mut self.lo, &mut self.hi, &mut self.size] {
-            sums.fill(0.0);
-        }
-    }
-
-    /// Adds the `vector` times a matrix, of which `ends(j)` are the lower and upper ends of column j.
-    pub(crate) fn add<I: Iterator<Item = (f64, f64)>>(&mut self, vector: &[f64], ends: impl Fn(usize) -> I) {
-        for (j, &y) in vector.iter().enumerate().filter(|(_, y)| **y != 0.0) {
-            self.terms += 1;
-            let (first, second) =
-                if y < 0.0 { (&mut self.hi, &mut self.lo) } else { (&mut self.lo, &mut self.hi) };
-            for (((first, second), size), (lo, hi)) in
-                first.iter_mut().zip(second).zip(&mut self.size).zip(ends(j))
-            {
-                let mag = larger(lo.abs(), hi.abs());
-                *first += lo * y;
-                *second += hi * y;
-                *size += mag * y.abs() + if mag > 0.0 { f64::MIN_POSITIVE } else { 0.0 };
-            }
-        }
-    }
-
-    /// The sums.
-    ///
-    /// # Guarantee
-    ///
-    /// Outer.
-    pub(crate) fn enclosed(&self) -> impl Iterator<Item = Interval> {
-        // One unit more for the rounding of the two ends.
-        let relative = relative_error(self.terms + 1);
-        self.lo.iter().zip(&self.hi).zip(&self.size).map(move |((&lo, &hi), &size)| {
-            let error = if size == 0.0 { 0.0 } else { relative * size + UNDERFLOW };
-            Interval::new(lo - error, hi + error).unwrap_or(Interval::ENTIRE)
-        })
-    }
-}
-
-/// The lower and upper end of each.
-pub(crate) fn ends(intervals: &[Interval]) -> impl Iterator<Item = (f64, f64)> {
-    intervals.iter().map(|x| (x.lo(), x.hi()))
-}
-
-/// The lower and upper ends of column j.
-pub(crate) fn column_ends(matrix: &IntervalMatrix, j: usize) -> impl Iterator<Item = (f64, f64)> {
-    let rows = matrix.nrows();
-    ends(&matrix.as_slice()[j * rows..(j + 1) * rows])
-}
-
-/// The ends of the absolute values of the numbers from `lo` to `hi`.
-pub(crate) fn absolute_ends((lo, hi): (f64, f64)) -> (f64, f64) {
-    (larger(larger(lo, -hi), 0.0), larger(lo.abs(), hi.abs()))
-}
-
-/// `f64::max` without its care for NaN: one instruction.
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 /// Added to a bound of non-zero terms: far above the sum of all that underflow can take from it.

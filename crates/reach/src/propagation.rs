@@ -4,9 +4,10 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::add_up;
 
 use crate::exponential::{Step, step};
-use crate::matrix::{IntervalMatrix, IntervalVector, absolute_ends, dot_upward, mul_upward, running_sum};
+use crate::matrix::{IntervalMatrix, IntervalVector, dot_upward, mul_upward};
 use crate::powers::bound_within_step;
 use crate::samples::Samples;
+use crate::sums::{absolute_ends, running_sum};
 use crate::{LinearSystem, ReachError, TimeGrid, Trajectory};
 
 /// e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, and the solutions of the system on it.
@@ -52,8 +53,11 @@ impl Propagation {
                 (Samples::after(system, &steps, grid.len(), &within_step), within_step)
             }
         };
-        let bound = mul_upward(&samples.largest(), &within_step);
-        let integral = running_sum(system, grid.len(), |k| samples.increment_ends(k));
+        let (largest, integral) = rayon::join(
+            || samples.largest(),
+            || running_sum(system, grid.len(), |k| samples.increment_ends(k)),
+        );
+        let bound = mul_upward(&largest, &within_step);
         let last = integral.last().into_iter().flat_map(|last| last.iter().map(|x| x.mag()));
         if !bound.iter().copied().chain(last).all(f64::is_finite) {
             return Err(ReachError::Horizon { time: grid.times().last().copied().unwrap_or(0.0) });

@@ -1,8 +1,12 @@
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
-use crate::matrix::{ColumnSums, IntervalMatrix, absolute_ends, column_ends};
+use crate::matrix::IntervalMatrix;
+use crate::sums::{ColumnSums, absolute_ends, column_ends};
 use crate::{Hyperrectangle, Propagation};
+
+/// So many samples at least are worth a thread.
+const TOGETHER: usize = 64;
 
 /// An enclosed solution at the samples of a grid.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +61,10 @@ impl ReachSets {
         input_set: &Hyperrectangle,
     ) -> Self {
         let dimension = propagation.system().states();
-        let hull = |sums: &mut ColumnSums, k: usize| {
+        let mut center = vec![Interval::ZERO; gains.len() * dimension];
+        let mut radius = center.clone();
+        let hull = |sums: &mut ColumnSums,
+                    (k, (center, radius)): (usize, (&mut [Interval], &mut [Interval]))| {
             let (lo, hi) = propagation.exponential_ends(k);
             let exponential = |j: usize| {
                 let column = j * dimension..(j + 1) * dimension;
@@ -66,15 +73,16 @@ impl ReachSets {
             sums.clear();
             sums.add(&initial_set.center, exponential);
             sums.add(&input_set.center, |j| column_ends(propagation.integral(k), j));
-            let center: Vec<_> = sums.enclosed().collect();
+            center.iter_mut().zip(sums.enclosed()).for_each(|(center, sum)| *center = sum);
             sums.clear();
             sums.add(&initial_set.radius, |j| exponential(j).map(absolute_ends));
             sums.add(&input_set.radius, |j| column_ends(&gains[k], j));
-            center.into_iter().zip(sums.enclosed().collect::<Vec<_>>())
+            radius.iter_mut().zip(sums.enclosed()).for_each(|(radius, sum)| *radius = sum);
         };
-        let samples = (0..gains.len()).into_par_iter();
-        let hulls = samples.map_init(|| ColumnSums::new(dimension), hull).flat_map_iter(|hull| hull);
-        let (center, radius) = hulls.unzip();
+        let states = dimension.max(1);
+        let samples =
+            center.par_chunks_exact_mut(states).zip(radius.par_chunks_exact_mut(states)).enumerate();
+        samples.with_min_len(TOGETHER).for_each_init(|| ColumnSums::new(dimension), hull);
         Self { dimension, center, radius }
     }
 

@@ -7,8 +7,9 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::LinearSystem;
 use crate::exponential::{self, Step, connected};
-use crate::matrix::{IntervalMatrix, UNDERFLOW, larger, midpoint, product, radius, relative_error};
+use crate::matrix::{IntervalMatrix, UNDERFLOW, midpoint, product, radius, relative_error};
 use crate::powers::Powers;
+use crate::sums::larger;
 
 /// Where the bound of an error is less, the products it belongs to did not overflow.
 const FAR_FROM_OVERFLOW: f64 = 1e280;
@@ -56,21 +57,22 @@ impl Samples {
     pub(crate) fn uniform(system: &LinearSystem, step: &Step, h: Interval, count: usize) -> Self {
         let length = count.isqrt().max(1);
         let short = Powers::uniform(&step.phi, length + 1);
-        let leap = exponential::step(system, h * length as f64).phi;
-        let leap =
-            short.at(length).zip_map(&leap, |x, y| x.intersection(y).expect("both hold the exact entry"));
-        let long = Powers::uniform(&leap, count.div_ceil(length));
         let pair = |j: usize| [short.at(j), product(&short.at(j), &step.gamma)];
-        let mut samples = Self::from_pairs(system, (0..length).map(pair).collect());
-        let first = Block::new(system, &samples);
-        let size = samples.lo.len();
-        samples.lo.resize(size * long.mid.len(), 0.0);
-        samples.hi.resize(size * long.mid.len(), 0.0);
-        let later =
+        let (first, long) = rayon::join(
+            || Self::from_pairs(system, (0..length).map(pair).collect()),
+            || Powers::uniform(&leap(system, &short.at(length), h * length as f64), count.div_ceil(length)),
+        );
+        let (block, size) = (Block::new(system, &first), first.lo.len());
+        // Zeros that nobody has written yet cost nothing until the threads come to them.
+        let all = || vec![0.0; size * long.mid.len()];
+        let mut samples = Self { lo: all(), hi: all(), ..first };
+        samples.lo[..size].copy_from_slice(&first.lo);
+        samples.hi[..size].copy_from_slice(&first.hi);
+        let blocks =
             samples.lo.par_chunks_exact_mut(size.max(1)).zip(samples.hi.par_chunks_exact_mut(size.max(1)));
         let factors = long.mid.par_iter().zip(&long.rad);
-        later.zip(factors).skip(1).for_each(|((lo, hi), (mid, rad))| first.after(mid, rad, lo, hi));
-        let kept = count * first.zero.len();
+        blocks.zip(factors).skip(1).for_each(|((lo, hi), (mid, rad))| block.after(mid, rad, lo, hi));
+        let kept = count * block.zero.len();
         samples.lo.truncate(kept);
         samples.hi.truncate(kept);
         samples
@@ -118,6 +120,12 @@ impl Samples {
     }
 }
 
+/// e^{At}, which lies in `steps`, the power of one step, and in what its own series says.
+fn leap(system: &LinearSystem, steps: &IntervalMatrix, t: Interval) -> IntervalMatrix {
+    let whole = exponential::step(system, t).phi;
+    steps.zip_map(&whole, |x, y| x.intersection(y).expect("both hold the exact entry"))
+}
+
 fn intervals(lo: &[f64], hi: &[f64]) -> impl Iterator<Item = Interval> {
     lo.iter().zip(hi).map(|(&lo, &hi)| Interval::new(lo, hi).unwrap_or(Interval::ENTIRE))
 }
@@ -159,7 +167,7 @@ impl Block {
         let upward = 1.0 + 2.0 * relative_error(2 * n);
         let pairs = lo.chunks_exact_mut(self.zero.len()).zip(hi.chunks_exact_mut(self.zero.len()));
         for (lo, hi) in pairs {
-            for ((lo, hi), &zero) in lo.iter_mut().zip(hi).zip(&self.zero) {
+            for ((lo, hi), &zero) in lo.iter_mut().zip(hi).zip(self.zero.as_slice()) {
                 let (mid, rad) = (*lo, if zero { 0.0 } else { *hi * upward + UNDERFLOW });
                 let known = rad < FAR_FROM_OVERFLOW;
                 *lo = if known { mid - rad } else { f64::NEG_INFINITY };

@@ -9,8 +9,9 @@ use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
 use crate::exponential::{norm_upper, step};
-use crate::matrix::{IntervalMatrix, ends, magnitude, point, product, running_sum};
+use crate::matrix::{IntervalMatrix, magnitude, point, product};
 use crate::series::{Polynomial, Series};
+use crate::sums::{ends, running_sum};
 use crate::{LinearSystem, Propagation};
 
 /// A piece of the integral is left as an interval once its outer bound is below this part of the largest entry of its cell.
