@@ -25,11 +25,6 @@ pub(crate) fn midpoint(matrix: &IntervalMatrix) -> DMatrix<f64> {
     matrix.map(|x| x.mid())
 }
 
-/// Radii about the midpoints, entry by entry.
-pub(crate) fn radius(matrix: &IntervalMatrix) -> DMatrix<f64> {
-    matrix.map(|x| x.rad())
-}
-
 /// Largest absolute values, entry by entry.
 pub(crate) fn magnitude(matrix: &IntervalMatrix) -> DMatrix<f64> {
     matrix.map(|x| x.mag())

@@ -7,12 +7,15 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::LinearSystem;
 use crate::exponential::{self, Step, connected};
-use crate::matrix::{IntervalMatrix, UNDERFLOW, midpoint, product, radius, relative_error};
+use crate::matrix::{IntervalMatrix, UNDERFLOW, midpoint, product, relative_error};
 use crate::powers::Powers;
 use crate::sums::larger;
 
 /// Where the bound of an error is less, the products it belongs to did not overflow.
 const FAR_FROM_OVERFLOW: f64 = 1e280;
+
+/// So many samples, one after another, share the bounds of their errors.
+const TOGETHER: usize = 6;
 
 /// The pairs [e^{A t_k}, e^{A t_k} Γ(h_k)], N x (N + m), at the samples of a grid; by the second, Γ grows over step k.
 ///
@@ -133,7 +136,7 @@ fn intervals(lo: &[f64], hi: &[f64]) -> impl Iterator<Item = Interval> {
 /// The pairs of the first samples, to be multiplied with later exponentials.
 struct Block {
     mid: DMatrix<f64>,
-    /// rad + (N + 2) u |mid| above |mid| + rad.
+    /// The largest of each entry over [`TOGETHER`] pairs: rad + (N + 2) u |mid| above |mid| + rad.
     spread: DMatrix<f64>,
     /// Which entries of a pair are zero whatever the time, N x (N + m).
     zero: DMatrix<bool>,
@@ -141,16 +144,22 @@ struct Block {
 
 impl Block {
     fn new(system: &LinearSystem, samples: &Samples) -> Self {
-        let n = system.states();
+        let zero = unlinked(system);
+        let (n, width) = zero.shape();
         let entries = intervals(&samples.lo, &samples.hi);
         let all = IntervalMatrix::from_iterator(n, samples.lo.len() / n.max(1), entries);
-        let (mid, rad) = (midpoint(&all), radius(&all));
         // One unit more for the rounding of the two ends.
         let relative = relative_error(n + 1);
-        let mut spread = DMatrix::zeros(2 * n, all.ncols());
-        spread.rows_mut(0, n).copy_from(&mid.zip_map(&rad, |m, r| add_up(r, mul_up(relative, m.abs()))));
-        spread.rows_mut(n, n).copy_from(&mid.zip_map(&rad, |m, r| add_up(r, m.abs())));
-        Self { mid, spread, zero: unlinked(system) }
+        let mut spread = DMatrix::zeros(2 * n, all.ncols().div_ceil(width * TOGETHER) * width);
+        for (at, column) in all.column_iter().enumerate() {
+            let mut group = spread.column_mut(at / (width * TOGETHER) * width + at % width);
+            for (i, x) in column.iter().enumerate() {
+                let (mid, rad) = (x.mid().abs(), x.rad());
+                group[i] = larger(group[i], add_up(rad, mul_up(relative, mid)));
+                group[n + i] = larger(group[n + i], add_up(rad, mid));
+            }
+        }
+        Self { mid: midpoint(&all), spread, zero }
     }
 
     /// The ends of the products of E, within `rad` of `mid`, with each pair P.
@@ -162,16 +171,36 @@ impl Block {
         let mut sizes = DMatrix::zeros(n, 2 * n);
         sizes.columns_mut(0, n).copy_from(&mid.abs());
         sizes.columns_mut(n, n).copy_from(rad);
+        let mut errors = sizes * &self.spread;
+        self.raise(&mut errors);
         DMatrixViewMut::from_slice(lo, n, columns).gemm(1.0, mid, &self.mid, 0.0);
-        DMatrixViewMut::from_slice(hi, n, columns).gemm(1.0, &sizes, &self.spread, 0.0);
-        let upward = 1.0 + 2.0 * relative_error(2 * n);
-        let pairs = lo.chunks_exact_mut(self.zero.len()).zip(hi.chunks_exact_mut(self.zero.len()));
-        for (lo, hi) in pairs {
-            for ((lo, hi), &zero) in lo.iter_mut().zip(hi).zip(self.zero.as_slice()) {
-                let (mid, rad) = (*lo, if zero { 0.0 } else { *hi * upward + UNDERFLOW });
-                let known = rad < FAR_FROM_OVERFLOW;
-                *lo = if known { mid - rad } else { f64::NEG_INFINITY };
-                *hi = if known { mid + rad } else { f64::INFINITY };
+        let size = self.zero.len();
+        let groups = lo.chunks_mut(size * TOGETHER).zip(hi.chunks_mut(size * TOGETHER));
+        for ((lo, hi), errors) in groups.zip(errors.as_slice().chunks_exact(size)) {
+            for (lo, hi) in lo.chunks_exact_mut(size).zip(hi.chunks_exact_mut(size)) {
+                for ((lo, hi), &error) in lo.iter_mut().zip(hi).zip(errors) {
+                    let is_known = error < FAR_FROM_OVERFLOW;
+                    let mid = if is_known { *lo } else { 0.0 };
+                    (*lo, *hi) = (mid - error, mid + error);
+                }
+            }
+        }
+    }
+
+    /// Sums of products of sizes become upper bounds: ∞ where products may have overflowed, 0 where there are none.
+    fn raise(&self, errors: &mut DMatrix<f64>) {
+        let upward = 1.0 + 2.0 * relative_error(2 * self.mid.nrows());
+        for pair in errors.as_mut_slice().chunks_exact_mut(self.zero.len()) {
+            for (error, &zero) in pair.iter_mut().zip(self.zero.as_slice()) {
+                let raised = *error * upward + UNDERFLOW;
+                let is_known = raised < FAR_FROM_OVERFLOW;
+                *error = if zero {
+                    0.0
+                } else if is_known {
+                    raised
+                } else {
+                    f64::INFINITY
+                };
             }
         }
     }
