@@ -163,3 +163,15 @@ fn the_worst_disturbance_touches_every_face() {
         }
     }
 }
+
+#[test]
+fn hulls_over_five_seconds_are_known_to_ten_digits() {
+    let propagation = Propagation::new(&arm(), &TimeGrid::uniform(0.004, 1251)).unwrap();
+    let (initial, input) = sets();
+    let reach = ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &input);
+    for (k, i) in (0..1251).flat_map(|k| (0..12).map(move |i| (k, i))) {
+        let (outer, inner) = (reach.upper_outer(k, i), reach.upper_inner(k, i));
+        let radius = reach.radius(k, i);
+        assert!(outer - inner <= 1e-10 * radius.lo() && radius.width() <= 1e-11 * radius.lo(), "{k} {i}");
+    }
+}
