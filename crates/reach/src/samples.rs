@@ -7,7 +7,7 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::LinearSystem;
 use crate::exponential::{self, Step, connected};
-use crate::matrix::{IntervalMatrix, UNDERFLOW, midpoint, product, relative_error};
+use crate::matrix::{IntervalMatrix, UNDERFLOW, product, relative_error};
 use crate::powers::Powers;
 use crate::sums::larger;
 
@@ -48,9 +48,14 @@ impl Samples {
     }
 
     fn from_pairs(system: &LinearSystem, pairs: Vec<[IntervalMatrix; 2]>) -> Self {
-        let entries = pairs.iter().flatten().flat_map(|matrix| matrix.iter());
-        let (lo, hi) = entries.map(|x| (x.lo(), x.hi())).unzip();
-        Self { states: system.states(), inputs: system.inputs(), lo, hi }
+        let (states, inputs) = (system.states(), system.inputs());
+        let size = pairs.len() * states * (states + inputs);
+        let mut samples = Self { states, inputs, lo: Vec::with_capacity(size), hi: Vec::with_capacity(size) };
+        for matrix in pairs.iter().flatten() {
+            samples.lo.extend(matrix.as_slice().iter().map(|x| x.lo()));
+            samples.hi.extend(matrix.as_slice().iter().map(|x| x.hi()));
+        }
+        samples
     }
 
     /// At t_k = k h for k < count; `step` is that of length h.
@@ -146,20 +151,23 @@ impl Block {
     fn new(system: &LinearSystem, samples: &Samples) -> Self {
         let zero = unlinked(system);
         let (n, width) = zero.shape();
-        let entries = intervals(&samples.lo, &samples.hi);
-        let all = IntervalMatrix::from_iterator(n, samples.lo.len() / n.max(1), entries);
+        let columns = samples.lo.len() / n.max(1);
+        let mid = DMatrix::from_iterator(n, columns, intervals(&samples.lo, &samples.hi).map(Interval::mid));
         // One unit more for the rounding of the two ends.
         let relative = relative_error(n + 1);
-        let mut spread = DMatrix::zeros(2 * n, all.ncols().div_ceil(width * TOGETHER) * width);
-        for (at, column) in all.column_iter().enumerate() {
-            let mut group = spread.column_mut(at / (width * TOGETHER) * width + at % width);
-            for (i, x) in column.iter().enumerate() {
+        let mut spread = DMatrix::zeros(2 * n, columns.div_ceil(width * TOGETHER) * width);
+        let (groups, rows) = (spread.as_mut_slice(), 2 * n);
+        let ends = samples.lo.chunks_exact(n.max(1)).zip(samples.hi.chunks_exact(n.max(1)));
+        for (at, (lo, hi)) in ends.enumerate() {
+            let group = at / (width * TOGETHER) * width + at % width;
+            let (of_errors, of_sizes) = groups[group * rows..(group + 1) * rows].split_at_mut(n);
+            for ((x, error), size) in intervals(lo, hi).zip(of_errors).zip(of_sizes) {
                 let (mid, rad) = (x.mid().abs(), x.rad());
-                group[i] = larger(group[i], add_up(rad, mul_up(relative, mid)));
-                group[n + i] = larger(group[n + i], add_up(rad, mid));
+                *error = larger(*error, add_up(rad, mul_up(relative, mid)));
+                *size = larger(*size, add_up(rad, mid));
             }
         }
-        Self { mid: midpoint(&all), spread, zero }
+        Self { mid, spread, zero }
     }
 
     /// The ends of the products of E, within `rad` of `mid`, with each pair P.
