@@ -107,9 +107,9 @@ impl Propagation {
         running_sum(&self.system, self.grid.len(), |k| self.samples.increment_ends(k).map(absolute_ends))
     }
 
-    /// The ends of e^{A t_k}, column by column.
-    pub(crate) fn exponential_ends(&self, k: usize) -> (&[f64], &[f64]) {
-        self.samples.ends(k)
+    /// The lower and upper ends of column j of e^{A t_k}.
+    pub(crate) fn exponential_ends(&self, k: usize, j: usize) -> impl Iterator<Item = (f64, f64)> {
+        self.samples.ends(k, j..j + 1)
     }
 
     /// Φ, Γ and γ of the step from sample k to k + 1.

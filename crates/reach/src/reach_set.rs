@@ -65,11 +65,7 @@ impl ReachSets {
         let mut radius = center.clone();
         let hull = |sums: &mut ColumnSums,
                     (k, (center, radius)): (usize, (&mut [Interval], &mut [Interval]))| {
-            let (lo, hi) = propagation.exponential_ends(k);
-            let exponential = |j: usize| {
-                let column = j * dimension..(j + 1) * dimension;
-                lo[column.clone()].iter().copied().zip(hi[column].iter().copied())
-            };
+            let exponential = |j: usize| propagation.exponential_ends(k, j);
             sums.clear();
             sums.add(&initial_set.center, exponential);
             sums.add(&input_set.center, |j| column_ends(propagation.integral(k), j));

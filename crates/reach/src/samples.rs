@@ -1,5 +1,7 @@
 //! e^{A t_k} and e^{A t_k} Γ(h_k) at the samples of a grid.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DMatrixViewMut};
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
@@ -14,18 +16,21 @@ use crate::sums::larger;
 /// Where the bound of an error is less, the products it belongs to did not overflow.
 const FAR_FROM_OVERFLOW: f64 = 1e280;
 
-/// So many samples, one after another, share the bounds of their errors.
+/// So many samples, one after another, share the bounds of their errors, but for the first ones.
 const TOGETHER: usize = 6;
 
 /// The pairs [e^{A t_k}, e^{A t_k} Γ(h_k)], N x (N + m), at the samples of a grid; by the second, Γ grows over step k.
 ///
-/// Their ends are apart and side by side, column by column: what is done to all is done to long rows of numbers.
+/// Numbers and their radii are apart and side by side, column by column: what is done to all is done to long rows of numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct Samples {
     states: usize,
     inputs: usize,
-    lo: Vec<f64>,
-    hi: Vec<f64>,
+    /// So many samples have radii of their own.
+    first: usize,
+    mid: Vec<f64>,
+    /// Such that mid ± rad holds the exact number also where it is rounded.
+    rad: Vec<f64>,
 }
 
 impl Samples {
@@ -48,14 +53,16 @@ impl Samples {
     }
 
     fn from_pairs(system: &LinearSystem, pairs: Vec<[IntervalMatrix; 2]>) -> Self {
-        let (states, inputs) = (system.states(), system.inputs());
-        let size = pairs.len() * states * (states + inputs);
-        let mut samples = Self { states, inputs, lo: Vec::with_capacity(size), hi: Vec::with_capacity(size) };
-        for matrix in pairs.iter().flatten() {
-            samples.lo.extend(matrix.as_slice().iter().map(|x| x.lo()));
-            samples.hi.extend(matrix.as_slice().iter().map(|x| x.hi()));
-        }
-        samples
+        let (states, inputs, first) = (system.states(), system.inputs(), pairs.len());
+        let entries = || pairs.iter().flatten().flat_map(|matrix| matrix.as_slice());
+        let size = first * states * (states + inputs);
+        let (mut mid, mut rad) = (Vec::with_capacity(size), Vec::with_capacity(size));
+        mid.extend(entries().map(|x| x.mid()));
+        rad.extend(entries().map(|x| match x.rad() {
+            0.0 => 0.0,
+            rad => add_up(rad, mul_up(f64::EPSILON, x.mag())),
+        }));
+        Self { states, inputs, first, mid, rad }
     }
 
     /// At t_k = k h for k < count; `step` is that of length h.
@@ -63,68 +70,76 @@ impl Samples {
     /// With k = b L + j, L about √count, the pair is the product of e^{A b L h} with the pair at j: neither factor takes more than √count
     /// steps, and the products, which are most of the work, are large and independent of each other.
     pub(crate) fn uniform(system: &LinearSystem, step: &Step, h: Interval, count: usize) -> Self {
-        let length = count.isqrt().max(1);
+        let length = count.isqrt().max(1).next_multiple_of(TOGETHER);
         let short = Powers::uniform(&step.phi, length + 1);
         let pair = |j: usize| [short.at(j), product(&short.at(j), &step.gamma)];
         let (first, long) = rayon::join(
             || Self::from_pairs(system, (0..length).map(pair).collect()),
             || Powers::uniform(&leap(system, &short.at(length), h * length as f64), count.div_ceil(length)),
         );
-        let (block, size) = (Block::new(system, &first), first.lo.len());
-        // Zeros that nobody has written yet cost nothing until the threads come to them.
-        let all = || vec![0.0; size * long.mid.len()];
-        let mut samples = Self { lo: all(), hi: all(), ..first };
-        samples.lo[..size].copy_from_slice(&first.lo);
-        samples.hi[..size].copy_from_slice(&first.hi);
-        let blocks =
-            samples.lo.par_chunks_exact_mut(size.max(1)).zip(samples.hi.par_chunks_exact_mut(size.max(1)));
-        let factors = long.mid.par_iter().zip(&long.rad);
-        blocks.zip(factors).skip(1).for_each(|((lo, hi), (mid, rad))| block.after(mid, rad, lo, hi));
-        let kept = count * block.zero.len();
-        samples.lo.truncate(kept);
-        samples.hi.truncate(kept);
+        let (block, size) = (Block::new(system, &first), first.mid.len());
+        let mut samples = first.extended(long.mid.len());
+        let shared = samples.rad[size..].par_chunks_exact_mut((size / TOGETHER).max(1));
+        let blocks = samples.mid[size..].par_chunks_exact_mut(size.max(1)).zip(shared);
+        let factors = long.mid[1..].par_iter().zip(&long.rad[1..]);
+        blocks.zip(factors).for_each(|((mid, rad), (left, error))| block.after(left, error, mid, rad));
+        samples.mid.truncate(count * block.zero.len());
         samples
+    }
+
+    /// With room for so many blocks like this one, which nobody touches before the threads come to them.
+    fn extended(self, blocks: usize) -> Self {
+        let size = self.mid.len();
+        let mut all = Self {
+            mid: vec![0.0; size * blocks],
+            rad: vec![0.0; size + size / TOGETHER * (blocks - 1)],
+            ..self
+        };
+        all.mid[..size].copy_from_slice(&self.mid);
+        all.rad[..size].copy_from_slice(&self.rad);
+        all
     }
 
     /// e^{A t_k}, N x N.
     pub(crate) fn exponential(&self, k: usize) -> IntervalMatrix {
-        let (lo, hi) = self.ends(k);
-        IntervalMatrix::from_iterator(
-            self.states,
-            self.states,
-            intervals(lo, hi).take(self.states * self.states),
-        )
+        let entries = intervals(self.ends(k, 0..self.states));
+        IntervalMatrix::from_iterator(self.states, self.states, entries)
     }
 
     /// e^{A t_k} Γ(h_k), N x m.
     pub(crate) fn increment(&self, k: usize) -> IntervalMatrix {
-        let ((lo, hi), start) = (self.ends(k), self.states * self.states);
-        IntervalMatrix::from_iterator(self.states, self.inputs, intervals(&lo[start..], &hi[start..]))
+        IntervalMatrix::from_iterator(self.states, self.inputs, intervals(self.increment_ends(k)))
     }
 
     /// Its lower and upper ends, column by column.
     pub(crate) fn increment_ends(&self, k: usize) -> impl Iterator<Item = (f64, f64)> {
-        let ((lo, hi), start) = (self.ends(k), self.states * self.states);
-        lo[start..].iter().copied().zip(hi[start..].iter().copied())
+        self.ends(k, self.states..self.states + self.inputs)
     }
 
-    /// The lower and the upper ends of pair k, column by column.
-    pub(crate) fn ends(&self, k: usize) -> (&[f64], &[f64]) {
-        let size = self.states * (self.states + self.inputs);
-        let pair = k * size..(k + 1) * size;
-        (&self.lo[pair.clone()], &self.hi[pair])
+    /// The lower and upper ends of some columns of pair k.
+    pub(crate) fn ends(&self, k: usize, columns: Range<usize>) -> impl Iterator<Item = (f64, f64)> {
+        let n = self.states;
+        let start = |pair: usize| pair * n * (n + self.inputs);
+        let shared = |k: usize| if k < self.first { k } else { self.first + (k - self.first) / TOGETHER };
+        let columns = |pair: usize| start(pair) + columns.start * n..start(pair) + columns.end * n;
+        self.mid[columns(k)]
+            .iter()
+            .zip(&self.rad[columns(shared(k))])
+            .map(|(mid, rad)| (mid - rad, mid + rad))
     }
 
-    /// The largest absolute value of each entry of the exponential over all samples, N x N.
+    /// At least the largest absolute value of each entry of the exponential over all samples, N x N.
     pub(crate) fn largest(&self) -> DMatrix<f64> {
         let n = self.states;
-        let mut largest = vec![0.0; n * n];
-        for ends in [&self.lo, &self.hi] {
-            for pair in ends.chunks_exact((n * (n + self.inputs)).max(1)) {
-                largest.iter_mut().zip(pair).for_each(|(max, x)| *max = larger(x.abs(), *max));
+        let largest = |all: &[f64]| {
+            let mut largest = DMatrix::zeros(n, n);
+            for pair in all.chunks_exact((n * (n + self.inputs)).max(1)) {
+                let entries = largest.as_mut_slice().iter_mut().zip(pair);
+                entries.for_each(|(max, x): (&mut f64, &f64)| *max = larger(x.abs(), *max));
             }
-        }
-        DMatrix::from_vec(n, n, largest)
+            largest
+        };
+        largest(&self.mid).zip_map(&largest(&self.rad), add_up)
     }
 }
 
@@ -134,8 +149,8 @@ fn leap(system: &LinearSystem, steps: &IntervalMatrix, t: Interval) -> IntervalM
     steps.zip_map(&whole, |x, y| x.intersection(y).expect("both hold the exact entry"))
 }
 
-fn intervals(lo: &[f64], hi: &[f64]) -> impl Iterator<Item = Interval> {
-    lo.iter().zip(hi).map(|(&lo, &hi)| Interval::new(lo, hi).unwrap_or(Interval::ENTIRE))
+fn intervals(ends: impl Iterator<Item = (f64, f64)>) -> impl Iterator<Item = Interval> {
+    ends.map(|(lo, hi)| Interval::new(lo, hi).unwrap_or(Interval::ENTIRE))
 }
 
 /// The pairs of the first samples, to be multiplied with later exponentials.
@@ -151,54 +166,40 @@ impl Block {
     fn new(system: &LinearSystem, samples: &Samples) -> Self {
         let zero = unlinked(system);
         let (n, width) = zero.shape();
-        let columns = samples.lo.len() / n.max(1);
-        let mid = DMatrix::from_iterator(n, columns, intervals(&samples.lo, &samples.hi).map(Interval::mid));
+        let mid = DMatrix::from_column_slice(n, width * samples.first, &samples.mid);
         // One unit more for the rounding of the two ends.
         let relative = relative_error(n + 1);
-        let mut spread = DMatrix::zeros(2 * n, columns.div_ceil(width * TOGETHER) * width);
-        let (groups, rows) = (spread.as_mut_slice(), 2 * n);
-        let ends = samples.lo.chunks_exact(n.max(1)).zip(samples.hi.chunks_exact(n.max(1)));
-        for (at, (lo, hi)) in ends.enumerate() {
-            let group = at / (width * TOGETHER) * width + at % width;
-            let (of_errors, of_sizes) = groups[group * rows..(group + 1) * rows].split_at_mut(n);
-            for ((x, error), size) in intervals(lo, hi).zip(of_errors).zip(of_sizes) {
-                let (mid, rad) = (x.mid().abs(), x.rad());
-                *error = larger(*error, add_up(rad, mul_up(relative, mid)));
-                *size = larger(*size, add_up(rad, mid));
+        let mut spread = DMatrix::zeros(2 * n, width * samples.first / TOGETHER);
+        let columns = samples.mid.chunks_exact(n.max(1)).zip(samples.rad.chunks_exact(n.max(1)));
+        for (at, (mid, rad)) in columns.enumerate() {
+            let group = (at / (width * TOGETHER) * width + at % width) * 2 * n;
+            let (of_errors, of_sizes) = spread.as_mut_slice()[group..group + 2 * n].split_at_mut(n);
+            for (((mid, rad), error), size) in mid.iter().zip(rad).zip(of_errors).zip(of_sizes) {
+                *error = larger(*error, add_up(*rad, mul_up(relative, mid.abs())));
+                *size = larger(*size, add_up(*rad, mid.abs()));
             }
         }
         Self { mid, spread, zero }
     }
 
-    /// The ends of the products of E, within `rad` of `mid`, with each pair P.
+    /// The products of E, within `error` of `left`, with each pair P, and their radii.
     ///
     /// |E P - Ẽ P̃| <= |Ẽ| (rad P + (N + 1) u |P̃|) + rad E (|P̃| + rad P) where Ẽ P̃ is taken in floating point. One more u |Ẽ| |P̃| is above
     /// the rounding of Ẽ P̃ ± that.
-    fn after(&self, mid: &DMatrix<f64>, rad: &DMatrix<f64>, lo: &mut [f64], hi: &mut [f64]) {
-        let (n, columns) = self.mid.shape();
+    fn after(&self, left: &DMatrix<f64>, error: &DMatrix<f64>, mid: &mut [f64], rad: &mut [f64]) {
+        let n = left.nrows();
         let mut sizes = DMatrix::zeros(n, 2 * n);
-        sizes.columns_mut(0, n).copy_from(&mid.abs());
-        sizes.columns_mut(n, n).copy_from(rad);
-        let mut errors = sizes * &self.spread;
-        self.raise(&mut errors);
-        DMatrixViewMut::from_slice(lo, n, columns).gemm(1.0, mid, &self.mid, 0.0);
-        let size = self.zero.len();
-        let groups = lo.chunks_mut(size * TOGETHER).zip(hi.chunks_mut(size * TOGETHER));
-        for ((lo, hi), errors) in groups.zip(errors.as_slice().chunks_exact(size)) {
-            for (lo, hi) in lo.chunks_exact_mut(size).zip(hi.chunks_exact_mut(size)) {
-                for ((lo, hi), &error) in lo.iter_mut().zip(hi).zip(errors) {
-                    let is_known = error < FAR_FROM_OVERFLOW;
-                    let mid = if is_known { *lo } else { 0.0 };
-                    (*lo, *hi) = (mid - error, mid + error);
-                }
-            }
-        }
+        sizes.columns_mut(0, n).copy_from(&left.abs());
+        sizes.columns_mut(n, n).copy_from(error);
+        DMatrixViewMut::from_slice(mid, n, self.mid.ncols()).gemm(1.0, left, &self.mid, 0.0);
+        DMatrixViewMut::from_slice(rad, n, self.spread.ncols()).gemm(1.0, &sizes, &self.spread, 0.0);
+        self.raise(rad);
     }
 
     /// Sums of products of sizes become upper bounds: ∞ where products may have overflowed, 0 where there are none.
-    fn raise(&self, errors: &mut DMatrix<f64>) {
+    fn raise(&self, errors: &mut [f64]) {
         let upward = 1.0 + 2.0 * relative_error(2 * self.mid.nrows());
-        for pair in errors.as_mut_slice().chunks_exact_mut(self.zero.len()) {
+        for pair in errors.chunks_exact_mut(self.zero.len()) {
             for (error, &zero) in pair.iter_mut().zip(self.zero.as_slice()) {
                 let raised = *error * upward + UNDERFLOW;
                 let is_known = raised < FAR_FROM_OVERFLOW;
