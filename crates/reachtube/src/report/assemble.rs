@@ -212,10 +212,14 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
         runs.push(trace(sources, summary.index, order, of_run.filter(|_| !shared).copied())?);
     }
     let nominal = columns(&longest.nominal, 2 * joints);
-    let relative = |values: &[f64]| {
-        let shifted: Vec<f64> =
-            values.iter().zip(&longest.nominal).map(|(v, x)| if shared { *v } else { v - x }).collect();
-        columns(&shifted, 2 * joints)
+    // Runs with nominals of their own share the hull of their deviations.
+    let relative = |of: fn(&SuiteReach) -> &[f64], further: fn(f64, f64) -> f64| {
+        let deviation = |reach: &&SuiteReach, at: usize| {
+            of(reach).get(at).map(|x| if shared { *x } else { x - reach.nominal[at] })
+        };
+        let hull = |at: usize| own.iter().filter_map(|reach| deviation(reach, at)).reduce(further);
+        let values: Vec<f64> = (0..longest.nominal.len()).filter_map(hull).collect();
+        columns(&values, 2 * joints)
     };
     let name = |file: &String| suite.runs.iter().position(|run| data.runs()[run.index].file == *file);
     let tight = model.tight.iter().filter(|place| place.suite == suite.entry.name);
@@ -232,8 +236,8 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
         times: longest.times.clone(),
         band: Band {
             label: "reachable set".into(),
-            lower: relative(&longest.lower),
-            upper: relative(&longest.upper),
+            lower: relative(|reach| &reach.lower, f64::min),
+            upper: relative(|reach| &reach.upper, f64::max),
         },
         inner: None,
         nominal: if shared { Nominal::Shared(nominal) } else { Nominal::PerRun },
