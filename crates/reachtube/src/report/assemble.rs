@@ -81,7 +81,10 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
             check.rows - check.violations.count,
             check.rows,
         ),
-        "The grey band is an outer bound of the reachable set at the samples.".into(),
+        match model.noise_set {
+            None => "The grey band is an outer bound of the reachable set at the samples.".into(),
+            Some(_) => "The grey band is an outer bound of the reachable set at the samples, without the measurement noise V: recordings may leave it by V.".into(),
+        },
     ];
     let mut not_proved = vec![
         "The recordings are compared with the set at samples; between samples only the model's own states are enclosed (the tube that the command reach writes).".into(),
