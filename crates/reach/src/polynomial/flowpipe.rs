@@ -44,16 +44,26 @@ pub enum FlowpipeMethod {
 }
 
 /// How a flowpipe is computed.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FlowpipeSettings {
     /// How sets are followed.
     pub method: FlowpipeMethod,
+    /// Variables and squares, n, at whose 2ⁿ corners [`Linearisation`](FlowpipeMethod::Linearisation) bounds what it leaves out. The terms of a polynomial with
+    /// many are seldom all large together: where sets get lost, more corners may keep them. 0 is none, and the most that are taken are 20.
+    pub corners: usize,
     /// Generators kept, in multiples of the number of states; beyond, the oldest become a box. `None` keeps all, which is the tightest.
     pub order: Option<usize>,
     /// Parts into which the initial set is divided along each state, N; empty for none. Each is followed alone, and the hull of all is given.
     pub pieces: Vec<usize>,
     /// Samples at which the zonotopes themselves are kept, one a piece.
     pub zonotopes: Vec<usize>,
+}
+
+impl Default for FlowpipeSettings {
+    fn default() -> Self {
+        let method = FlowpipeMethod::default();
+        Self { method, corners: 8, order: None, pieces: Vec::new(), zonotopes: Vec::new() }
+    }
 }
 
 /// How a flowpipe ended. A set that cannot be followed to the end is an answer, not an error.

@@ -38,7 +38,10 @@ pub(super) fn follower<'a>(
         FlowpipeMethod::Linearisation => {
             let (center, radius) = sides.iter().map(|x| (x.mid(), x.rad())).unzip();
             let set = Set::new(center, radius, system.inputs(), system.directions.len());
-            Box::new(Zonotopes { set, stepper: Stepper::new(Linearisation::new(system), most) })
+            Box::new(Zonotopes {
+                set,
+                stepper: Stepper::new(Linearisation::new(system, settings.corners), most),
+            })
         }
         FlowpipeMethod::TaylorModels { .. } if !system.angles.states.is_empty() => {
             return Err(ReachError::Trigonometric);

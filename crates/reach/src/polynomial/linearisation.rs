@@ -4,11 +4,16 @@ use reachtube_scalar::Interval;
 
 use super::PolynomialSystem;
 use super::angles::{TURN_ROUNDINGS, sine_slope, versine_middle};
+use super::corners::Corners;
+use super::powers::PowerTable;
 use super::rounded::{Square, raised};
-use super::shift::{PowerTable, Shift};
+use super::shift::Shift;
 
 /// Bounds of variables begin here, so that they do not have to grow often.
 const LEAST_BOUND: f64 = 1e-3;
+
+/// Steps over which corners are taken of the same factors.
+const CHOICE_STEPS: u32 = 8;
 
 /// f(x* + d, u* + e) = f* + A d + B e + remainder, with A and B in floating point and their error in the remainder.
 #[derive(Debug)]
@@ -41,12 +46,16 @@ pub(super) struct Linearisation<'a> {
     rows: Vec<Shift>,
     directions: Vec<Shift>,
     powers: PowerTable,
+    corners: Corners,
+    /// Steps until the factors whose corners are taken are chosen again.
+    until_choice: u32,
     centers: Vec<Interval>,
 }
 
 impl<'a> Linearisation<'a> {
-    pub fn new(system: &'a PolynomialSystem) -> Self {
+    pub fn new(system: &'a PolynomialSystem, corners: usize) -> Self {
         let (n, m) = (system.states(), system.inputs());
+        let powers = PowerTable::new(&system.highest);
         let mut own = Self {
             system,
             point: vec![0.0; n + m],
@@ -65,7 +74,9 @@ impl<'a> Linearisation<'a> {
             defect: vec![0.0; n * (n + m)],
             rows: system.rows.iter().map(|row| row.workspace()).collect(),
             directions: system.directions.iter().map(|d| d.polynomial.workspace()).collect(),
-            powers: PowerTable::new(&system.highest),
+            corners: Corners::new(corners, &powers),
+            powers,
+            until_choice: 0,
             centers: vec![Interval::ZERO; n],
         };
         own.bound_errors();
@@ -104,6 +115,7 @@ impl<'a> Linearisation<'a> {
         self.differentiate_rows();
         self.differentiate_directions();
         self.round();
+        self.until_choice = self.until_choice.saturating_sub(1);
     }
 
     /// The factors at the point. An angle so large that its sine is not known has none.
@@ -205,13 +217,28 @@ impl<'a> Linearisation<'a> {
             let states = defect.iter().zip(tube).map(|(defect, d)| defect * d.mag());
             let inputs = defect[n..].iter().zip(&self.input_radius).map(|(defect, r)| defect * r);
             let rounding = raised(states.chain(inputs).sum::<f64>() + self.rate_radius[i], variables + 1);
-            let range = self.system.rows[i].remainder(&self.powers, &mut self.rows[i]);
+            let range = self.system.rows[i].remainder(&self.powers, &mut self.corners, &mut self.rows[i]);
             *out = range + Interval::centered(0.0, rounding);
         }
         for ((out, direction), shift) in
             directions.iter_mut().zip(&self.system.directions).zip(&mut self.directions)
         {
-            *out = direction.polynomial.remainder(&self.powers, shift);
+            *out = direction.polynomial.remainder(&self.powers, &mut self.corners, shift);
+        }
+        self.choose();
+    }
+
+    /// The factors whose corners are taken, now and then.
+    fn choose(&mut self) {
+        if self.until_choice > 0 {
+            return;
+        }
+        self.until_choice = CHOICE_STEPS;
+        for (row, shift) in self.system.rows.iter().zip(&mut self.rows) {
+            row.choose(&self.powers, &mut self.corners, shift);
+        }
+        for (direction, shift) in self.system.directions.iter().zip(&mut self.directions) {
+            direction.polynomial.choose(&self.powers, &mut self.corners, shift);
         }
     }
 

@@ -1,12 +1,14 @@
 //! Reachable sets of polynomial systems with uncertain input.
 
 mod angles;
+mod corners;
 mod directions;
 mod exponential;
 mod flowpipe;
 mod follower;
 mod generators;
 mod linearisation;
+mod powers;
 mod rounded;
 mod set;
 mod shift;

@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
-use super::angles::{Angles, TURN_ROUNDINGS, sine_defect, versed};
+use super::angles::{Angles, TURN_ROUNDINGS};
+use super::corners::{Corners, Monomial};
+use super::powers::PowerTable;
 use super::rounded::raised;
 use super::univariate::Univariate;
 
@@ -58,8 +60,12 @@ pub(super) struct Shift {
     coefficients: Vec<f64>,
     /// What those about the point may be off by.
     errors: Vec<f64>,
-    /// Bounds \[lo, hi\] of the monomials, up to rounding.
-    values: Vec<[f64; 2]>,
+    /// The monomials over the box, up to rounding.
+    monomials: Vec<Monomial>,
+    /// Sums over all monomials that one is a part of.
+    sums: Vec<f64>,
+    /// The factors whose corners are taken, places among the powers.
+    pub chosen: Vec<usize>,
     /// What is added to the derivative and taken from the remainder, one a list of powers.
     slopes: Vec<f64>,
 }
@@ -105,7 +111,9 @@ impl ShiftedPolynomial {
         Shift {
             coefficients: self.start.clone(),
             errors: vec![0.0; own],
-            values: vec![[1.0; 2]; own],
+            monomials: vec![Monomial::ONE; own],
+            sums: vec![0.0; own],
+            chosen: Vec::new(),
             slopes: vec![0.0; self.univariate.len()],
         }
     }
@@ -178,8 +186,8 @@ impl ShiftedPolynomial {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn remainder(&self, powers: &PowerTable, work: &mut Shift) -> Interval {
-        let mut sum = self.mixed(powers, work);
+    pub fn remainder(&self, powers: &PowerTable, corners: &mut Corners, work: &mut Shift) -> Interval {
+        let mut sum = self.mixed(powers, corners, work);
         for &(variable, at) in self.linear.iter().filter(|(variable, _)| *variable >= self.plain) {
             sum += work.coefficient(at) * powers.defect(variable);
         }
@@ -191,21 +199,20 @@ impl ShiftedPolynomial {
     }
 
     /// The sum of all terms but those of one variable that is no angle, in floating point; its rounding is bounded in the end. A product of intervals is off
-    /// by one rounding a factor relative to its magnitude, the sum by one a term.
-    fn mixed(&self, powers: &PowerTable, work: &mut Shift) -> Interval {
+    /// by one rounding a factor relative to its magnitude, the sum by one a term, and the corners by three a factor.
+    fn mixed(&self, powers: &PowerTable, corners: &mut Corners, work: &mut Shift) -> Interval {
+        corners.divide(powers, &work.chosen);
         for &(variable, at) in &self.linear {
-            work.values[at] = powers.ends(variable, 1);
+            work.monomials[at] = corners.part(powers.place(variable, 1));
         }
-        let ([mut low, mut high], [mut magnitudes, mut errors], mut terms) = ([0.0; 2], [0.0; 2], 0);
+        let ([mut magnitudes, mut errors], mut terms) = ([0.0; 2], 0);
         for (at, node) in (self.first_node..).zip(&self.nodes) {
-            let value =
-                times(work.values[node.parent as usize], powers.ends(node.variable as usize, node.exponent));
-            work.values[at] = value;
+            let part = corners.part(powers.place(node.variable as usize, node.exponent));
+            let monomial = work.monomials[node.parent as usize].times(part);
+            work.monomials[at] = monomial;
             if !node.is_power {
-                let (c, magnitude) = (work.coefficients[at], value[0].abs().max(value[1].abs()) + SMALLEST);
-                let ends = [c * value[0], c * value[1]];
-                low += ends[0].min(ends[1]);
-                high += ends[0].max(ends[1]);
+                let (c, magnitude) = (work.coefficients[at], monomial.magnitude() + SMALLEST);
+                corners.add(c, monomial);
                 magnitudes += c.abs() * magnitude;
                 errors += work.errors[at] * magnitude;
                 terms += 1;
@@ -214,23 +221,29 @@ impl ShiftedPolynomial {
         if terms == 0 {
             return Interval::ZERO;
         }
-        let roundings = (terms + 2 * usize::from(u8::MAX)) as f64;
+        let roundings = (terms + 4 * usize::from(u8::MAX) + 3 * work.chosen.len()) as f64;
         let error = raised(errors + magnitudes * (roundings * f64::EPSILON), 2 * terms);
-        let sum = Interval::new(low, high).filter(|_| (magnitudes + errors).is_finite());
-        sum.map_or(Interval::ENTIRE, |sum| sum + Interval::centered(0.0, error))
+        let range = corners.range().filter(|_| (magnitudes + errors).is_finite());
+        range.map_or(Interval::ENTIRE, |range| range + Interval::centered(0.0, error))
     }
-}
 
-/// The product of two intervals, in floating point.
-#[inline]
-fn times([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
-    let products = [a * c, a * d, b * c, b * d];
-    let smaller = |x: f64, y: f64| if x < y { x } else { y };
-    let larger = |x: f64, y: f64| if x > y { x } else { y };
-    [
-        smaller(smaller(products[0], products[1]), smaller(products[2], products[3])),
-        larger(larger(products[0], products[1]), larger(products[2], products[3])),
-    ]
+    /// Chooses the factors whose corners are taken from now on: those that most of the sum has, over the box bounded last.
+    pub fn choose(&self, powers: &PowerTable, corners: &mut Corners, work: &mut Shift) {
+        work.sums.fill(0.0);
+        for (i, node) in self.nodes.iter().enumerate().rev() {
+            let at = self.first_node + i;
+            if !node.is_power {
+                work.sums[at] += work.coefficients[at].abs() * work.monomials[at].magnitude();
+            }
+            let sum = work.sums[at];
+            work.sums[node.parent as usize] += sum;
+            corners.weigh(powers.place(node.variable as usize, 1), node.exponent, sum);
+        }
+        for &(variable, at) in &self.linear {
+            corners.weigh(powers.place(variable, 1), 1, work.sums[at]);
+        }
+        corners.choose(&mut work.chosen);
+    }
 }
 
 /// The largest number of roundings of a term of each of the first coefficients: two an operation, those of its factor, and one of a sum for each that follows.
@@ -347,56 +360,6 @@ fn shifts(
     operations
 }
 
-/// The powers of the sides of a box, even ones not negative; for an angle its φ_l, and sin d less its line.
-#[derive(Debug, Clone)]
-pub(super) struct PowerTable {
-    starts: Vec<usize>,
-    powers: Vec<Interval>,
-    defects: Vec<Interval>,
-}
-
-impl PowerTable {
-    /// For exponents up to `highest`, one a variable, and at least 1.
-    pub fn new(highest: &[u32]) -> Self {
-        let mut starts = vec![0];
-        for highest in highest {
-            starts.push(starts[starts.len() - 1] + (*highest).max(1) as usize);
-        }
-        let powers = vec![Interval::ZERO; starts[highest.len()]];
-        Self { starts, powers, defects: vec![Interval::ZERO; highest.len()] }
-    }
-
-    /// Of variable i over `side`.
-    pub fn set(&mut self, i: usize, side: Interval) {
-        let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
-        own.iter_mut().zip(1..).for_each(|(power, exponent)| *power = side.powi(exponent));
-    }
-
-    /// Of angle variable i over `side`, whose sine has a line of that slope, and whose κ that middle.
-    pub fn set_angle(&mut self, i: usize, side: Interval, [slope, middle]: [f64; 2]) {
-        let (sine, versine) = versed(side);
-        let versine = versine - middle;
-        let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
-        for (phi, l) in own.iter_mut().zip(1..) {
-            *phi = versine.powi(l / 2) * if l % 2 == 0 { Interval::ONE } else { sine };
-        }
-        self.defects[i] = sine_defect(side, slope);
-    }
-
-    fn defect(&self, i: usize) -> Interval {
-        self.defects[i]
-    }
-
-    fn ends(&self, i: usize, exponent: u32) -> [f64; 2] {
-        let power = self.get(i, exponent);
-        [power.lo(), power.hi()]
-    }
-
-    fn get(&self, i: usize, exponent: u32) -> Interval {
-        self.powers[self.starts[i] + exponent as usize - 1]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
@@ -427,7 +390,7 @@ mod tests {
             let mut powers = PowerTable::new(&highest);
             d.iter().enumerate().for_each(|(i, d)| powers.set(i, Interval::point(*d)));
             let linear = shifted.gradient(&work).fold(shifted.constant(&work), |sum, (i, slope)| sum + slope * d[i]);
-            let sum = linear + shifted.remainder(&powers, &mut work);
+            let sum = linear + shifted.remainder(&powers, &mut Corners::new(0, &powers), &mut work);
             prop_assert!(exact.evaluate(&d.map(Interval::point)).intersection(sum).is_some());
             prop_assert!(sum.width() < 1e-9);
         }
@@ -454,7 +417,7 @@ mod tests {
             let linear = shifted.gradient(&work).fold(shifted.constant(&work), |sum, (i, slope)| {
                 sum + angles.along_line(i, slope, &[line]).1 * d
             });
-            let sum = linear + shifted.remainder(&powers, &mut work);
+            let sum = linear + shifted.remainder(&powers, &mut Corners::new(0, &powers), &mut work);
             let (x, (sine, cosine)) = (offset + z, (offset + z).sin_cos());
             let power = |t: &TaylorTerm<Interval>| {
                 let [a, b, c] = [0, 1, 2].map(|i| i32::from(t.exponents[i]));
@@ -474,7 +437,7 @@ mod tests {
         let mut work = shifted.workspace();
         shifted.shift(&[3.0], &[1.0], &mut work);
         shifted.bound_errors(&[3.0], &mut work);
-        let range = shifted.remainder(&powers, &mut work);
+        let range = shifted.remainder(&powers, &mut Corners::new(0, &powers), &mut work);
         assert!(range.lo() == 0.0 && (1.0..1.0 + 1e-12).contains(&range.hi()));
     }
 }

@@ -182,6 +182,7 @@ pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     let system = PolynomialSystem::trigonometric(n, m, &(0..angles).collect::<Vec<_>>(), &f).unwrap();
     let settings = FlowpipeSettings {
         method,
+        corners: seed as usize / 6 % 4 * 3,
         order: [None, Some(8)][seed as usize % 2],
         pieces: if seed.is_multiple_of(3) { vec![2; n] } else { vec![] },
         zonotopes: vec![],
@@ -230,6 +231,48 @@ fn simulations_are_as_exact_as_is_assumed() {
             assert!((coarse - fine).abs() <= 0.5 * SLACK * (1.0 + fine.abs()), "{seed}: {coarse} {fine}");
         }
     }
+}
+
+/// ẋ = u - x + p (1, 1, 1, 1) with p = x₁x₂ + x₂x₃ + x₃x₄ - x₄x₁: three of the products are large together at most.
+fn frustrated() -> Vec<Polynomial> {
+    let z = variables(5, 2);
+    let products = &z[0] * &z[1] + &z[1] * &z[2] + &z[2] * &z[3] - &z[3] * &z[0];
+    z[..4].iter().map(|x| &z[4] + &products - x.clone()).collect()
+}
+
+#[test]
+fn corners_give_smaller_sets_and_keep_some_that_are_lost_without() {
+    let (f, grid, rest) = (frustrated(), TimeGrid::uniform(0.05, 201), set(&[0.0; 4], &[0.0; 4]));
+    let system = PolynomialSystem::new(4, 1, &f).unwrap();
+    let follow = |corners: usize, input: &Hyperrectangle| {
+        let uncertain = UncertainInput { measured: &vec![0.0; 200], set: input };
+        let settings = FlowpipeSettings { corners, ..FlowpipeSettings::default() };
+        Flowpipe::new(&system, &grid, &[0.0; 4], &rest, &uncertain, &settings).unwrap()
+    };
+    let small = set(&[0.0], &[0.05]);
+    let (with, without) = (follow(4, &small), follow(0, &small));
+    for k in 0..201 {
+        let sides = without.sample(k).iter().zip(with.sample(k));
+        sides.for_each(|(outer, inner)| {
+            assert!((*outer + Interval::centered(0.0, 1e-12)).encloses(inner), "{k}")
+        });
+    }
+    assert!(with.sample(200)[0].width() < 0.9 * without.sample(200)[0].width());
+    let large = set(&[0.0], &[0.09]);
+    assert!(!follow(0, &large).is_reached());
+    let flowpipe = follow(4, &large);
+    assert!(flowpipe.is_reached());
+    let case = Case {
+        map: map(5, &f),
+        angles: 0,
+        flowpipe,
+        start: rest,
+        input: large,
+        step: 0.05,
+        parts: 1,
+        substeps: 4,
+    };
+    assert!(case.simulate(1000, 1) > 0.2);
 }
 
 #[test]
