@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use reachtube_scalar::{Interval, TaylorTerm};
 
 use super::angles::{Angles, TURN_ROUNDINGS};
-use super::corners::{Corners, Monomial};
+use super::corners::{Corners, Monomial, ROUNDINGS};
 use super::powers::PowerTable;
 use super::rounded::raised;
 use super::univariate::Univariate;
@@ -199,7 +199,7 @@ impl ShiftedPolynomial {
     }
 
     /// The sum of all terms but those of one variable that is no angle, in floating point; its rounding is bounded in the end. A product of intervals is off
-    /// by one rounding a factor relative to its magnitude, the sum by one a term, and the corners by three a factor.
+    /// by one rounding a factor relative to its magnitude, the sum by one a term, and the corners by [`ROUNDINGS`] a factor.
     fn mixed(&self, powers: &PowerTable, corners: &mut Corners, work: &mut Shift) -> Interval {
         corners.divide(powers, &work.chosen);
         for &(variable, at) in &self.linear {
@@ -221,7 +221,7 @@ impl ShiftedPolynomial {
         if terms == 0 {
             return Interval::ZERO;
         }
-        let roundings = (terms + 4 * usize::from(u8::MAX) + 3 * work.chosen.len()) as f64;
+        let roundings = (terms + 4 * usize::from(u8::MAX) + ROUNDINGS * work.chosen.len()) as f64;
         let error = raised(errors + magnitudes * (roundings * f64::EPSILON), 2 * terms);
         let range = corners.range().filter(|_| (magnitudes + errors).is_finite());
         range.map_or(Interval::ENTIRE, |range| range + Interval::centered(0.0, error))
@@ -242,7 +242,7 @@ impl ShiftedPolynomial {
         for &(variable, at) in &self.linear {
             corners.weigh(powers.place(variable, 1), 1, work.sums[at]);
         }
-        corners.choose(&mut work.chosen);
+        corners.choose(powers, &mut work.chosen);
     }
 }
 
