@@ -7,8 +7,8 @@ use reachtube_robot::Robot;
 use reachtube_scalar::rounding::{add_down, add_up};
 
 use crate::conform::{
-    Case, Dynamics, Grids, Lost, Recordings, RunNominal, Settings, UncertaintySets, flowpipes, lost, nominal,
-    nominals,
+    Case, Dynamics, Effort, Grids, Lost, Recordings, RunNominal, Settings, UncertaintySets, flowpipes, lost,
+    nominal, nominals,
 };
 use crate::data::{DataSet, state_name};
 use crate::error::Result;
@@ -57,7 +57,7 @@ pub fn reach(
         Dynamics::Linear(system) => linear(data, robot, settings, system, sets, recordings),
         Dynamics::Polynomial(model) => {
             let cases = Case::all(data, robot, settings, recordings)?;
-            let flowpipes = flowpipes(&model.polynomial_system()?, &cases, sets)?;
+            let flowpipes = flowpipes(&model.polynomial_system()?, &cases, sets, Effort::Whole)?;
             let of_case = |(case, flowpipe): (&Case, Flowpipe)| {
                 let nominal = nominal(model, case)?;
                 let suite = recordings.suites[case.suite].entry.name.clone();

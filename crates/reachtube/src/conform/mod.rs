@@ -23,7 +23,7 @@ pub use dynamics::Dynamics;
 pub use envelope::Envelope;
 pub use identify::{Conformance, Search, Watch, conform, conform_dynamics};
 pub use nonlinear::{Case, Explanation, explain};
-pub(crate) use nonlinear::{flowpipes, lost, nominal};
+pub(crate) use nonlinear::{Effort, flowpipes, lost, nominal};
 pub use program::{Block, Program, Solution};
 pub use proof::{Enclosure, Lost, Proof, TightRow};
 pub use recordings::{Progress, Recordings, RunSummary, SharedInput, Suite};

@@ -4,7 +4,7 @@ use reachtube_reach::ReachSets;
 use reachtube_robot::Robot;
 
 use super::deviation::{Grids, suite_deviations};
-use super::nonlinear::{Case, check_outer, flowpipes, lost};
+use super::nonlinear::{Case, Effort, check_outer, flowpipes, lost};
 use super::verify::{Row, check_rows};
 use super::{Dynamics, Lost, Recordings, Settings, UncertaintySets};
 use crate::data::DataSet;
@@ -42,7 +42,7 @@ pub(super) fn every_row(
         }
         Dynamics::Polynomial(model) => {
             let cases = Case::all(data, robot, settings, recordings)?;
-            let flowpipes = flowpipes(&model.polynomial_system()?, &cases, sets)?;
+            let flowpipes = flowpipes(&model.polynomial_system()?, &cases, sets, Effort::Whole)?;
             for (case, flowpipe) in cases.iter().zip(&flowpipes) {
                 check_outer(case, flowpipe, sets, settings.states, |row| visit(case.suite, row));
             }

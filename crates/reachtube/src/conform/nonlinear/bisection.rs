@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::case::Case;
 use super::journal::Journal;
-use super::outer::{check_outer, flowpipes};
+use super::outer::{Effort, check_outer, flowpipes};
 use super::search::Search;
 use super::{Found, search};
 use crate::conform::{Search as Record, UncertaintySets};
@@ -72,7 +72,7 @@ pub(super) fn run(search: &Search, journal: &Journal, finished: &dyn Fn(&str)) -
 
 fn encloses(search: &Search, sets: &UncertaintySets) -> Result<bool> {
     let of_case = |case: &Case| -> Result<bool> {
-        let flowpipe = flowpipes(search.system, std::slice::from_ref(case), sets)?;
+        let flowpipe = flowpipes(search.system, std::slice::from_ref(case), sets, Effort::Quick)?;
         let mut all = true;
         check_outer(case, &flowpipe[0], sets, search.settings.states, |row| all &= row.excess <= 0.0);
         Ok(all)
@@ -135,7 +135,7 @@ impl Progress {
     }
 
     fn found(self, search: &Search) -> Result<Found> {
-        let flowpipes = flowpipes(search.system, search.cases, &self.sets)?;
+        let flowpipes = flowpipes(search.system, search.cases, &self.sets, Effort::Whole)?;
         let mut deciding = Vec::new();
         for (index, (case, flowpipe)) in search.cases.iter().zip(&flowpipes).enumerate() {
             check_outer(case, flowpipe, &self.sets, search.settings.states, |row| {

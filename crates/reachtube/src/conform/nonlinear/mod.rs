@@ -11,7 +11,7 @@ mod sensitivity;
 
 pub use case::Case;
 pub use explain::{Explanation, explain};
-pub(crate) use outer::{check_outer, flowpipes, lost};
+pub(crate) use outer::{Effort, check_outer, flowpipes, lost};
 use reachtube_reach::Flowpipe;
 use reachtube_robot::Robot;
 pub(crate) use sensitivity::nominal;

@@ -10,10 +10,19 @@ use crate::conform::{Lost, Row, Side, States, UncertaintySets};
 use crate::data::state_name;
 use crate::error::Result;
 
-/// Corners at which remainders are bounded where a set was lost with the usual number: four times the time.
-const MORE_CORNERS: usize = 14;
+/// Corners at which remainders are bounded, one number after the other while a set is lost: with 14 a step takes four times as long as with 8, with 18 a hundred times.
+const CORNERS: [usize; 3] = [8, 14, 18];
 
-/// The flowpipe of each case under `sets`, on all cores; tried again with tighter remainders where it is lost.
+/// How hard to try where a set is lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Once: for candidates.
+    Quick,
+    /// With tighter and tighter remainders: for what decides.
+    Whole,
+}
+
+/// The flowpipe of each case under `sets`, on all cores.
 ///
 /// # Guarantee
 ///
@@ -22,20 +31,38 @@ const MORE_CORNERS: usize = 14;
 /// # Errors
 ///
 /// Where sizes do not fit.
-pub fn flowpipes(system: &PolynomialSystem, cases: &[Case], sets: &UncertaintySets) -> Result<Vec<Flowpipe>> {
-    let with = |case: &Case, settings: &FlowpipeSettings| {
-        let input = UncertainInput { measured: &case.inputs, set: &sets.input_set };
-        Flowpipe::new(system, &case.grid, &case.start, &sets.initial_set, &input, settings)
+pub fn flowpipes(
+    system: &PolynomialSystem,
+    cases: &[Case],
+    sets: &UncertaintySets,
+    effort: Effort,
+) -> Result<Vec<Flowpipe>> {
+    cases.par_iter().map(|case| flowpipe(system, case, sets, effort)).collect()
+}
+
+/// That which comes furthest.
+fn flowpipe(
+    system: &PolynomialSystem,
+    case: &Case,
+    sets: &UncertaintySets,
+    effort: Effort,
+) -> Result<Flowpipe> {
+    let input = UncertainInput { measured: &case.inputs, set: &sets.input_set };
+    let with = |corners: usize| {
+        let settings = FlowpipeSettings { corners, ..FlowpipeSettings::default() };
+        Flowpipe::new(system, &case.grid, &case.start, &sets.initial_set, &input, &settings)
     };
-    let follow = |case: &Case| {
-        let usual = with(case, &FlowpipeSettings::default())?;
-        if usual.is_reached() {
-            return Ok(usual);
+    let mut furthest = with(CORNERS[0])?;
+    for corners in &CORNERS[1..] {
+        if furthest.is_reached() || effort == Effort::Quick {
+            break;
         }
-        let tighter = with(case, &FlowpipeSettings { corners: MORE_CORNERS, ..FlowpipeSettings::default() })?;
-        Ok(if tighter.len() > usual.len() { tighter } else { usual })
-    };
-    cases.par_iter().map(follow).collect()
+        let tighter = with(*corners)?;
+        if tighter.len() > furthest.len() {
+            furthest = tighter;
+        }
+    }
+    Ok(furthest)
 }
 
 /// Where the reachable set of a case could not be followed further.

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::case::Case;
 use super::extremal::Correction;
 use super::journal::Journal;
-use super::outer::{check_outer, flowpipes};
+use super::outer::{Effort, check_outer, flowpipes};
 use super::sensitivity::Sensitivity;
 use super::{Found, runs_away};
 use crate::abstraction::PolynomialModel;
@@ -172,7 +172,7 @@ impl Search<'_> {
                 continue;
             }
             progress.reachable_sets += 1;
-            let flowpipes = flowpipes(self.system, self.cases, &progress.sets)?;
+            let flowpipes = flowpipes(self.system, self.cases, &progress.sets, Effort::Whole)?;
             let missing = self.missing(&flowpipes, &progress.sets);
             let is_lost = missing.iter().any(|margin| margin.margin.is_infinite());
             if missing.is_empty() || is_lost || progress.rounds >= 2 * ROUNDS {
