@@ -14,4 +14,5 @@ mod rational;
 mod simulation;
 mod systems;
 mod taylor_models;
+mod trigonometric;
 mod tube;

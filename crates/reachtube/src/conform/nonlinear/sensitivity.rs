@@ -12,7 +12,7 @@ use crate::conform::UncertaintySets;
 use crate::error::Result;
 
 /// A Runge-Kutta step is so short that h |A| stays below this: its error is then below 1e-7 of the change.
-const STEP_NORM: f64 = 0.1;
+pub(super) const STEP_NORM: f64 = 0.1;
 
 /// Runs that are simulated at once.
 pub(super) type Many = Lanes<8>;

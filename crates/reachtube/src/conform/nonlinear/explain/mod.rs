@@ -15,7 +15,7 @@ use reachtube_scalar::rounding::{add_down, add_up, sub_up};
 use self::chain::Chain;
 use self::regulate::regulate;
 use super::case::Case;
-use super::sensitivity::simulate;
+use super::sensitivity::{STEP_NORM, simulate};
 use crate::abstraction::{Linearisation, ModelField, PolynomialModel};
 use crate::conform::recordings::read_run;
 use crate::conform::{Recordings, Settings, UncertaintySets};
@@ -34,9 +34,6 @@ const SLACK: f64 = 1.02;
 
 /// Linearisations of one run.
 const PASSES: usize = 4;
-
-/// A Runge-Kutta step is so short that h |A| stays below this, as for the sensitivities.
-const STEP_NORM: f64 = 0.1;
 
 /// How close a model comes to a recorded run: the largest |recorded - simulated| over all samples and joints of the closest motion found, whose start lies in start + X0 and whose
 /// input lies in u_m + U and is held from each sample to the next. Infinite where the simulation ran away.
