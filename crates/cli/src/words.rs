@@ -169,7 +169,7 @@ pub fn model(model: &Model) -> String {
     text.push_str(&sets(model));
     let touched = match proof.enclosure {
         Enclosure::Inner => "the reachable set",
-        Enclosure::Outer => "the reachable set of the model, or nearly so,",
+        Enclosure::Outer => "the linearised set",
     };
     let _ = writeln!(
         text,

@@ -91,7 +91,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
         "The notion is the hull: each state for itself. Points inside the hull need not be reachable together.".into(),
     ];
     if outer {
-        not_proved.push("The model is not linear: its reachable set was computed as an outer enclosure, which is what a formal analysis uses. A recording in it need not be a behaviour of the model itself.".into());
+        not_proved.push("The model is not linear: its reachable set was computed as an outer enclosure, which is what a formal analysis uses. A recording in it need not be a behaviour of the model itself. The recordings that decide the sets touch the linearised set, not the wider band.".into());
     }
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         not_proved

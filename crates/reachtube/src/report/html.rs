@@ -136,7 +136,7 @@ fn caption(suite: &SuiteFigure, view: View) -> String {
     };
     let rings = match suite.tight.len() {
         0 => "",
-        _ => " Rings mark the samples that touch the boundary.",
+        _ => " Rings mark the samples that decide the sets, or leave them furthest.",
     };
     let outside = suite.tight.iter().filter(|spot| spot.margin < 0.0).count();
     let outside = match outside {
