@@ -10,8 +10,9 @@ use reachtube::data::{GapLimit, Torque};
 use reachtube_reach::Disturbance;
 use serde::de::DeserializeOwned;
 
-/// Reachset-conformant models of robots: from recordings to a simple model and the smallest uncertainty sets for which every recording lies in the interval hull of the model's reachable set,
-/// proved with directed rounding.
+/// Reachset-conformant models of robots: from recordings to a simple model and the smallest
+/// uncertainty sets for which every recording lies in the interval hull of the model's reachable
+/// set, proved with directed rounding.
 #[derive(Debug, Parser)]
 #[command(name = "reachtube", version, after_help = MAIN_HELP)]
 pub struct Cli {
@@ -39,7 +40,9 @@ Results go to standard output, everything else to standard error.";
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Record, identify, check and report a virtual arm
-    #[command(after_help = "Example:\n  reachtube demo --out demo    then open demo/report/report.html")]
+    #[command(
+        after_help = "Example:\n  reachtube demo --out demo    then open demo/report/report.html"
+    )]
     Demo(DemoArgs),
     /// Say what a robot's description was understood as
     #[command(subcommand)]
@@ -47,7 +50,8 @@ pub enum Command {
     /// Say what is in a data set
     #[command(after_help = "Example:\n  reachtube inspect --data recordings --json")]
     Inspect(InspectArgs),
-    /// Make a simple model of a robot's forward dynamics: linear or polynomial, models 1, 2 and 3 of the paper
+    /// Make a simple model of a robot's forward dynamics: linear or polynomial, models 1, 2 and 3
+    /// of the paper
     #[command(after_help = ABSTRACT_HELP)]
     Abstract(AbstractArgs),
     /// Design a motion that shows a robot's parameters, within its joint limits
@@ -132,7 +136,8 @@ pub struct RobotShowArgs {
 
 #[derive(Debug, Subcommand)]
 pub enum ReproduceCommand {
-    /// Table I: the velocity error of models 1, 2 and 3 in simulation, against forward dynamics by Featherstone's algorithm
+    /// Table I: the velocity error of models 1, 2 and 3 in simulation, against forward dynamics by
+    /// Featherstone's algorithm
     #[command(
         after_help = "Example:\n  reachtube reproduce table1 --motions 50 --seed 1 --out table1.csv\n\nThe paper's trajectories are unpublished: what can agree is the size and the order of the numbers."
     )]
@@ -175,16 +180,19 @@ pub struct AbstractArgs {
     /// Order p of the Taylor polynomials
     #[arg(long, default_value_t = 1, value_name = "P")]
     pub order: u32,
-    /// Expansion point: n positions (rad), also n velocities (rad/s), also n inputs (N m), separated by commas [default: 0]
+    /// Expansion point: n positions (rad), also n velocities (rad/s), also n inputs (N m),
+    /// separated by commas [default: 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,..")]
     pub at: Vec<f64>,
-    /// Bound what the model leaves out over a box about the expansion point: radii of positions (rad), velocities (rad/s) and inputs (N m), 3 or 3n numbers
+    /// Bound what the model leaves out over a box about the expansion point: radii of positions
+    /// (rad), velocities (rad/s) and inputs (N m), 3 or 3n numbers
     #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
     pub operating_box: Vec<f64>,
     /// Print the polynomials themselves, a line a joint, in place of the summary
     #[arg(long, conflicts_with = "json")]
     pub print: bool,
-    /// Boxes that the bound may cut the operating box into: more take longer and bound more tightly [default: 16 to 2000, by the model's size]
+    /// Boxes that the bound may cut the operating box into: more take longer and bound more tightly
+    /// [default: 16 to 2000, by the model's size]
     #[arg(long, value_name = "COUNT")]
     pub most_boxes: Option<usize>,
     /// Write the model to this file
@@ -281,7 +289,8 @@ pub struct PrepareArgs {
     /// Recordings: CSV files or folders
     #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
     pub logs: Vec<PathBuf>,
-    /// Logs whose names differ after the last _ only are repeats: align them, and put each window of all of them into one suite
+    /// Logs whose names differ after the last _ only are repeats: align them, and put each window
+    /// of all of them into one suite
     #[arg(long)]
     pub repeats: bool,
     /// Length of the windows, s [default: whole recordings]
@@ -323,7 +332,8 @@ pub struct DataArgs {
     /// Test suites, separated by commas [default: all]
     #[arg(long, value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// What the columns tau are: the input u itself (gravity and Coulomb friction taken off), motor torque, or link-side torque
+    /// What the columns tau are: the input u itself (gravity and Coulomb friction taken off), motor
+    /// torque, or link-side torque
     #[arg(long, value_parser = word_of::<Torque>(&["compensated", "motor", "link"]))]
     pub torque: Torque,
     /// Use samples up to this many seconds after the first
@@ -348,7 +358,8 @@ pub struct ConformArgs {
     /// A model that `abstract --out` wrote, in place of a robot
     #[arg(long, value_name = "FILE", conflicts_with_all = ["robot", "expansion", "model", "order"])]
     pub abstraction: Option<PathBuf>,
-    /// How the sets are found: by linear programs, for a model that is not linear one after the other; or by bisection of one radius after the other, the paper's way, as a baseline
+    /// How the sets are found: by linear programs, for a model that is not linear one after the
+    /// other; or by bisection of one radius after the other, the paper's way, as a baseline
     #[arg(long, default_value = "program", value_parser = word_of::<Method>(&["program", "bisection"]))]
     pub method: Method,
     /// Keep what is finished of a long search in this file, and go on from it where it is there
@@ -365,19 +376,33 @@ pub struct ConformArgs {
     /// Which states must be enclosed
     #[arg(long, default_value = "all", value_parser = word_of::<States>(&["all", "positions"]))]
     pub states: States,
-    /// Weights of the states in the cost: unit, spread (one over the largest deviation), or 2, or 2n numbers
-    #[arg(long, default_value = "unit", value_name = "unit|spread|W,W,..", allow_hyphen_values = true)]
+    /// Weights of the states in the cost: unit, spread (one over the largest deviation), or 2, or
+    /// 2n numbers
+    #[arg(
+        long,
+        default_value = "unit",
+        value_name = "unit|spread|W,W,..",
+        allow_hyphen_values = true
+    )]
     pub weights: String,
-    /// Measurement noise: none, free (found by the program), or its radius in rad and rad/s: 2 or 2n numbers
-    #[arg(long, default_value = "none", value_name = "none|free|R,R,..", allow_hyphen_values = true)]
+    /// Measurement noise: none, free (found by the program), or its radius in rad and rad/s: 2 or
+    /// 2n numbers
+    #[arg(
+        long,
+        default_value = "none",
+        value_name = "none|free|R,R,..",
+        allow_hyphen_values = true
+    )]
     pub noise: String,
-    /// Look for motions of the model itself that come within so many rad and rad/s of each recording: 2 numbers, or none [default: 0.001,0.01 for a model that is not linear]
+    /// Look for motions of the model itself that come within so many rad and rad/s of each
+    /// recording: 2 numbers, or none [default: 0.001,0.01 for a model that is not linear]
     #[arg(long, value_name = "none|Q,QD")]
     pub explain: Option<String>,
     /// Where nominal solutions start: at the mean of the runs' first states, or at each run's own
     #[arg(long, default_value = "mean", value_parser = word_of::<NominalStart>(&["mean", "own"]))]
     pub nominal: NominalStart,
-    /// Expansion point: n positions, or n positions and n velocities, separated by commas [default: 0]
+    /// Expansion point: n positions, or n positions and n velocities, separated by commas [default:
+    /// 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true)]
     pub expansion: Vec<f64>,
     /// Write the model to this file

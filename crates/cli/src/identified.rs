@@ -41,11 +41,19 @@ fn gravity(text: &mut String, found: &Identification) {
             Some(fit) => vec![number(fit.torque), number(fit.residual), percent(fit.relative())],
             None => vec!["-".into(); 3],
         };
-        [vec![names(found)[joint].to_string()], cells(&gravity.at_rest), cells(&gravity.in_motion)].concat()
+        [vec![names(found)[joint].to_string()], cells(&gravity.at_rest), cells(&gravity.in_motion)]
+            .concat()
     };
     let rows: Vec<Vec<String>> = (0..names(found).len()).map(row).collect();
-    let header =
-        ["joint", "at rest: tau rms [N m]", "residual", "part", "moving: tau rms", "residual", "part"];
+    let header = [
+        "joint",
+        "at rest: tau rms [N m]",
+        "residual",
+        "part",
+        "moving: tau rms",
+        "residual",
+        "part",
+    ];
     text.push_str(&table(&header, &rows));
 }
 
@@ -55,7 +63,8 @@ fn friction(text: &mut String, found: &Identification) {
         return;
     }
     text.push_str("\n2. friction, with the gravity torque as load\n");
-    let list = |values: &[f64]| values.iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
+    let list =
+        |values: &[f64]| values.iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
     let rows: Vec<Vec<String>> = found
         .friction
         .iter()
@@ -86,7 +95,8 @@ fn friction(text: &mut String, found: &Identification) {
 
 fn inertia(text: &mut String, found: &Identification) {
     let fit = &found.inertia;
-    let shown = fit.parameters.iter().filter(|parameter| parameter.standard_error.is_finite()).count();
+    let shown =
+        fit.parameters.iter().filter(|parameter| parameter.standard_error.is_finite()).count();
     let _ = writeln!(
         text,
         "\n3. inertial parameters: {shown} of {} combinations shown, condition {} (structure: relative singular values {:.0e} | {:.0e})",
@@ -101,8 +111,10 @@ fn inertia(text: &mut String, found: &Identification) {
         .zip(names(found))
         .enumerate()
         .map(|(j, (joint, name))| {
-            let physical =
-                fit.physical.as_ref().map_or("-".into(), |physical| number(physical.residuals[j][1]));
+            let physical = fit
+                .physical
+                .as_ref()
+                .map_or("-".into(), |physical| number(physical.residuals[j][1]));
             vec![
                 name.into(),
                 format!("{} ({:.0})", joint.rows, joint.independent),
@@ -153,19 +165,27 @@ fn parameters(text: &mut String, found: &Identification) {
         ]
     };
     let rows: Vec<Vec<String>> = found.inertia.parameters.iter().map(row).collect();
-    let header = ["value", "least squares", "standard error", "part", "described", "combination (SI units)"];
+    let header =
+        ["value", "least squares", "standard error", "part", "described", "combination (SI units)"];
     text.push_str(&table(&header, &rows));
 }
 
 fn gains(text: &mut String, found: &Identification) {
-    let gains: Vec<String> =
-        found.gains.iter().map(|gain| format!("{:.3} ± {:.3}", gain.gain, gain.standard_error)).collect();
-    let _ = writeln!(text, "gains by which the joints' torques would agree best: {}", gains.join(", "));
+    let gains: Vec<String> = found
+        .gains
+        .iter()
+        .map(|gain| format!("{:.3} ± {:.3}", gain.gain, gain.standard_error))
+        .collect();
+    let _ =
+        writeln!(text, "gains by which the joints' torques would agree best: {}", gains.join(", "));
 }
 
 fn validation(text: &mut String, found: &Identification) {
-    let which =
-        if found.kept_back { "recordings kept back" } else { "the recordings fitted to: none was kept back" };
+    let which = if found.kept_back {
+        "recordings kept back"
+    } else {
+        "the recordings fitted to: none was kept back"
+    };
     let _ = writeln!(
         text,
         "\n4. torque predicted on {which}: part not explained where a joint moves (plain least squares; with standstill), R2"
@@ -191,10 +211,17 @@ fn windows(text: &mut String, found: &Identification) {
     text.push_str("\n5. motion simulated from the recorded torque: rms position error at the end [rad] (motion; velocity error [rad/s])\n");
     let row = |windows: &WindowErrors| {
         let cell = |j: usize| {
-            format!("{} ({}; {})", number(windows.q[j]), number(windows.motion[j]), number(windows.qd[j]))
+            format!(
+                "{} ({}; {})",
+                number(windows.q[j]),
+                number(windows.motion[j]),
+                number(windows.qd[j])
+            )
         };
-        let head =
-            format!("{} s, {} windows, {} diverged", windows.duration, windows.windows, windows.diverged);
+        let head = format!(
+            "{} s, {} windows, {} diverged",
+            windows.duration, windows.windows, windows.diverged
+        );
         std::iter::once(head).chain((0..windows.q.len()).map(cell)).collect()
     };
     let rows: Vec<Vec<String>> = found.windows.iter().map(row).collect();

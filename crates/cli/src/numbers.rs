@@ -21,7 +21,11 @@ pub fn number(value: f64) -> String {
 /// A number as somebody wrote it, or with six digits where it has more.
 pub fn digits(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
-    if rounded != 0.0 && rounded.abs() < SMALL { format!("{rounded:e}") } else { rounded.to_string() }
+    if rounded != 0.0 && rounded.abs() < SMALL {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
 }
 
 /// An interval by its ends, or by centre and radius where its ends would look the same.

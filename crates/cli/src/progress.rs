@@ -26,8 +26,8 @@ struct Count {
     told: Mutex<Vec<String>>,
 }
 
-/// Progress of one job; nothing is shown unless standard error is a terminal. The bar has a thread of its own, so that it moves on while recordings
-/// have been read and the sets are computed.
+/// Progress of one job; nothing is shown unless standard error is a terminal. The bar has a thread
+/// of its own, so that it moves on while recordings have been read and the sets are computed.
 pub struct Progress {
     count: Arc<Count>,
     watcher: Option<(Sender<()>, JoinHandle<()>)>,
@@ -104,6 +104,7 @@ fn watch(count: &Count, stopped: &Receiver<()>) {
 }
 
 fn style(template: &str) -> ProgressStyle {
-    let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
+    let style =
+        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
     style.progress_chars("=> ")
 }

@@ -60,7 +60,8 @@ pub fn abstraction(model: &PolynomialModel, seconds: f64) -> String {
         model.term_count(),
         duration(seconds)
     );
-    let rows: Vec<Vec<String>> = (0..model.joints()).map(|i| joint_of_abstraction(model, i)).collect();
+    let rows: Vec<Vec<String>> =
+        (0..model.joints()).map(|i| joint_of_abstraction(model, i)).collect();
     match model.remainder() {
         Some(remainder) => {
             text.push_str(&table(&["joint", "terms", "left out [rad/s^2], proved", "seen"], &rows));
@@ -76,8 +77,10 @@ pub fn abstraction(model: &PolynomialModel, seconds: f64) -> String {
 }
 
 fn joint_of_abstraction(model: &PolynomialModel, i: usize) -> Vec<String> {
-    let mut row =
-        vec![model.robot().joints[i].name.clone(), model.acceleration()[i].term_count().to_string()];
+    let mut row = vec![
+        model.robot().joints[i].name.clone(),
+        model.acceleration()[i].term_count().to_string(),
+    ];
     if let Some(remainder) = model.remainder() {
         let bound = remainder.bounds[i].map(|[low, high]| interval((low, high)));
         row.push(bound.unwrap_or_else(|| "no bound found".into()));
@@ -108,7 +111,10 @@ pub fn table1(table: &Table1) -> String {
         .flat_map(|order| Speed::ALL.map(|speed| (*order, speed)))
         .map(|(order, speed)| {
             let cells = kinds.map(|kind| table1_cell(table.cell(kind, order, speed)));
-            [order.to_string(), speed.name().into()].into_iter().chain(cells.into_iter().flatten()).collect()
+            [order.to_string(), speed.name().into()]
+                .into_iter()
+                .chain(cells.into_iter().flatten())
+                .collect()
         })
         .collect();
     let header = ["p", "speed", "model 1", "paper", "model 2", "paper", "model 3", "paper"];
@@ -148,7 +154,9 @@ pub fn model(model: &Model) -> String {
     let (suites, proof) = (model.data.suites.len(), &model.proof);
     let how = match proof.enclosure {
         Enclosure::Inner => "proved with directed rounding",
-        Enclosure::Outer => "in the computed reachable set, an outer enclosure with directed rounding",
+        Enclosure::Outer => {
+            "in the computed reachable set, an outer enclosure with directed rounding"
+        }
     };
     let _ = writeln!(
         text,
@@ -201,8 +209,9 @@ fn cost(model: &Model) -> String {
             format!("cost {} ({widths}), {gap}", number(cost))
         }
         (None, Some(search)) => {
-            let linearised =
-                search.linearised_cost.map(|cost| format!(", {} of the linearised set", number(cost)));
+            let linearised = search
+                .linearised_cost
+                .map(|cost| format!(", {} of the linearised set", number(cost)));
             format!(
                 "cost {} ({widths}){}; {} {}, the reachable sets of all suites computed {} {}",
                 number(cost),
@@ -355,7 +364,8 @@ fn group_words(group: &Group) -> String {
         None => format!(" every {} to {} s", number(group.steps[0]), number(group.steps[1])),
     };
     let kind = if group.suite { "suite" } else { "no suite:" };
-    let motion = group.motion.as_ref().map_or_else(String::new, |motion| format!(" (motion {motion})"));
+    let motion =
+        group.motion.as_ref().map_or_else(String::new, |motion| format!(" (motion {motion})"));
     let torque = match group.same_torque {
         _ if group.runs == 1 => "",
         true => ", the same torques in all",
@@ -383,8 +393,17 @@ fn group_words(group: &Group) -> String {
         ]
     };
     let rows: Vec<_> = group.joints.iter().enumerate().map(row).collect();
-    let header =
-        ["joint", "q [rad]", "|qd| [rad/s]", "|tau| [N m]", "start", "end", "drift", "sticks", "q - int qd"];
+    let header = [
+        "joint",
+        "q [rad]",
+        "|qd| [rad/s]",
+        "|tau| [N m]",
+        "start",
+        "end",
+        "drift",
+        "sticks",
+        "q - int qd",
+    ];
     text.push_str(&table(&header, &rows));
     text
 }

@@ -20,8 +20,15 @@ const STAGES: [[f64; 6]; 7] = [
 ];
 
 /// Solution of order 5 less that of order 4.
-const ERROR: [f64; 7] =
-    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+const ERROR: [f64; 7] = [
+    71.0 / 57600.0,
+    0.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+];
 
 /// Highest coefficient of the interpolant.
 const DENSE: [f64; 7] = [
@@ -34,9 +41,9 @@ const DENSE: [f64; 7] = [
     69997945.0 / 29380423.0,
 ];
 
-/// The pair of orders 5 and 4 of Dormand & Prince (J. Comput. Appl. Math. 6, 1980) with step control and an interpolant of
-/// order 4 (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, sec. II.6); it does not allocate
-/// after construction.
+/// The pair of orders 5 and 4 of Dormand & Prince (J. Comput. Appl. Math. 6, 1980) with step
+/// control and an interpolant of order 4 (Hairer, Nørsett & Wanner, Solving Ordinary Differential
+/// Equations I, 1993, sec. II.6); it does not allocate after construction.
 ///
 /// # Examples
 ///
@@ -78,11 +85,13 @@ pub struct DenseStep<'a> {
 }
 
 impl DormandPrince {
-    /// An integrator of states of `dimension` entries; no bound on |x| but that it be finite, at most 100 000 steps a span.
+    /// An integrator of states of `dimension` entries; no bound on |x| but that it be finite, at
+    /// most 100 000 steps a span.
     ///
     /// # Panics
     ///
-    /// When the absolute tolerance is not positive, or the relative one negative: an entry of 0 would never meet them.
+    /// When the absolute tolerance is not positive, or the relative one negative: an entry of 0
+    /// would never meet them.
     pub fn new(dimension: usize, tolerance: Tolerance) -> Self {
         assert!(
             tolerance.absolute > 0.0 && tolerance.relative >= 0.0,
@@ -100,7 +109,8 @@ impl DormandPrince {
         }
     }
 
-    /// The same with a bound on the |x| of each entry, beyond which the solution counts as diverged.
+    /// The same with a bound on the |x| of each entry, beyond which the solution counts as
+    /// diverged.
     #[must_use]
     pub fn bounded_by(self, bound: f64) -> Self {
         Self { bound, ..self }
@@ -112,9 +122,11 @@ impl DormandPrince {
         Self { step_limit, ..self }
     }
 
-    /// Takes x (n) over [t0, t1] \[s\], t0 ≤ t1, under a held input u (m). Where the solution diverges, x is the last good state.
+    /// Takes x (n) over [t0, t1] \[s\], t0 ≤ t1, under a held input u (m). Where the solution
+    /// diverges, x is the last good state.
     ///
-    /// The size of the last step is where the next call begins, so that a motion goes on over the jumps of its input.
+    /// The size of the last step is where the next call begins, so that a motion goes on over the
+    /// jumps of its input.
     ///
     /// # Panics
     ///
@@ -180,13 +192,14 @@ impl DormandPrince {
         Outcome::Diverged { time: t, cause: Cause::StepCount }
     }
 
-    /// Runs under an input held from sample to sample of `times` \[s\] (increasing); `observe` is given the index of each sample
-    /// reached, from 0 on, and the state there. Steps end at samples, because the input jumps there.
+    /// Runs under an input held from sample to sample of `times` \[s\] (increasing); `observe` is
+    /// given the index of each sample reached, from 0 on, and the state there. Steps end at
+    /// samples, because the input jumps there.
     ///
     /// # Panics
     ///
-    /// When the start has another length than the integrator's dimension, or the inputs are not a row for each sample but
-    /// the last.
+    /// When the start has another length than the integrator's dimension, or the inputs are not a
+    /// row for each sample but the last.
     pub fn follow<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -211,9 +224,10 @@ impl DormandPrince {
         outcome
     }
 
-    /// Samples the solution from x (n) at times\[0\] under one held input u (m), or one that the field generates: `observe` is
-    /// given the index of each sample of `times` \[s\] (increasing) and the state there. The interpolant gives it, so that
-    /// samples cost no steps. x is left at the last time.
+    /// Samples the solution from x (n) at times\[0\] under one held input u (m), or one that the
+    /// field generates: `observe` is given the index of each sample of `times` \[s\] (increasing)
+    /// and the state there. The interpolant gives it, so that samples cost no steps. x is left at
+    /// the last time.
     ///
     /// # Panics
     ///
@@ -226,7 +240,9 @@ impl DormandPrince {
         u: &[f64],
         mut observe: impl FnMut(usize, &[f64]),
     ) -> Outcome {
-        let (Some(start), Some(end)) = (times.first(), times.last()) else { return Outcome::Reached };
+        let (Some(start), Some(end)) = (times.first(), times.last()) else {
+            return Outcome::Reached;
+        };
         self.control = StepControl::new();
         let mut state = core::mem::take(&mut self.state);
         observe(0, x);
@@ -243,11 +259,20 @@ impl DormandPrince {
     }
 
     /// The stages of a step of h; the norm of its error.
-    fn attempt<F: VectorField<f64>>(&mut self, field: &mut F, t: f64, h: f64, x: &[f64], u: &[f64]) -> f64 {
+    fn attempt<F: VectorField<f64>>(
+        &mut self,
+        field: &mut F,
+        t: f64,
+        h: f64,
+        x: &[f64],
+        u: &[f64],
+    ) -> f64 {
         for stage in 1..7 {
             let (before, after) = self.slopes.split_at_mut(stage);
             self.next.copy_from_slice(x);
-            for (slope, weight) in before.iter().zip(&STAGES[stage]).filter(|(_, weight)| **weight != 0.0) {
+            for (slope, weight) in
+                before.iter().zip(&STAGES[stage]).filter(|(_, weight)| **weight != 0.0)
+            {
                 add_scaled(&mut self.next, h * weight, slope);
             }
             field.rate(t + NODES[stage] * h, &self.next, u, &mut after[0]);
@@ -274,9 +299,11 @@ impl DormandPrince {
         }
         let [first, second, ..] = &mut self.slopes;
         field.rate(t + guess, &self.next, u, second);
-        let bend = self.tolerance.norm(first.iter().zip(&*second).map(|(a, b)| b - a), x, x) / guess;
+        let bend =
+            self.tolerance.norm(first.iter().zip(&*second).map(|(a, b)| b - a), x, x) / guess;
         let fastest = speed.max(bend);
-        let step = if fastest <= 1e-15 { (1e-3 * guess).max(1e-6) } else { (0.01 / fastest).powf(0.2) };
+        let step =
+            if fastest <= 1e-15 { (1e-3 * guess).max(1e-6) } else { (0.01 / fastest).powf(0.2) };
         let step = step.min(100.0 * guess).min(end - t);
         // NaN where the rate is: any step then shows it.
         if step > 0.0 { step } else { end - t }

@@ -6,8 +6,9 @@ use reachtube_scalar::Lanewise;
 
 /// Many runs of one field with fixed steps, as many at a time as the number S has lanes.
 ///
-/// Each run has the states of the same run alone over `f64`, to the last bit, where the field's operations do. A run that
-/// diverges does not touch the others. For several threads, give each an ensemble, a field and a part of the runs.
+/// Each run has the states of the same run alone over `f64`, to the last bit, where the field's
+/// operations do. A run that diverges does not touch the others. For several threads, give each an
+/// ensemble, a field and a part of the runs.
 ///
 /// # Examples
 ///
@@ -54,20 +55,22 @@ impl<S: Lanewise> Ensemble<S> {
         }
     }
 
-    /// The same with a bound on the |x| of each entry at samples, beyond which a run counts as diverged.
+    /// The same with a bound on the |x| of each entry at samples, beyond which a run counts as
+    /// diverged.
     #[must_use]
     pub fn bounded_by(self, bound: f64) -> Self {
         Self { bound, ..self }
     }
 
-    /// Integrates every run over samples at `times` \[s\] (increasing), with `substeps` Runge-Kutta steps from one sample to
-    /// the next. `observe` is given run, sample (both from 0) and state (n), the samples of a run in their order, until the run
-    /// ends or diverges. The outcomes are those of the runs.
+    /// Integrates every run over samples at `times` \[s\] (increasing), with `substeps` Runge-Kutta
+    /// steps from one sample to the next. `observe` is given run, sample (both from 0) and state
+    /// (n), the samples of a run in their order, until the run ends or diverges. The outcomes are
+    /// those of the runs.
     ///
     /// # Panics
     ///
-    /// When a start has another length than the ensemble's dimension, or inputs differ in length or are not a row for each
-    /// sample but the last.
+    /// When a start has another length than the ensemble's dimension, or inputs differ in length or
+    /// are not a row for each sample but the last.
     pub fn integrate<F: VectorField<S>>(
         &mut self,
         field: &mut F,
@@ -87,7 +90,13 @@ impl<S: Lanewise> Ensemble<S> {
                     break;
                 }
                 self.hold(times, runs, k - 1);
-                self.method.integrate(field, [times[k - 1], times[k]], substeps, &mut self.x, &self.u);
+                self.method.integrate(
+                    field,
+                    [times[k - 1], times[k]],
+                    substeps,
+                    &mut self.x,
+                    &self.u,
+                );
                 self.report(times, k, outcomes, &mut |lane, x| observe(first + lane, k, x));
             }
         }
@@ -122,12 +131,15 @@ impl<S: Lanewise> Ensemble<S> {
         outcomes: &mut [Outcome],
         observe: &mut dyn FnMut(usize, &[f64]),
     ) {
-        for (lane, outcome) in outcomes.iter_mut().enumerate().filter(|(_, outcome)| outcome.is_reached()) {
+        for (lane, outcome) in
+            outcomes.iter_mut().enumerate().filter(|(_, outcome)| outcome.is_reached())
+        {
             self.row.iter_mut().zip(&self.x).for_each(|(row, x)| *row = x.lane(lane));
             if is_within(&self.row, self.bound) {
                 observe(lane, &self.row);
             } else {
-                *outcome = Outcome::Diverged { time: times[k.saturating_sub(1)], cause: Cause::Bound };
+                *outcome =
+                    Outcome::Diverged { time: times[k.saturating_sub(1)], cause: Cause::Bound };
             }
         }
     }

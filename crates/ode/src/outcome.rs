@@ -1,4 +1,5 @@
-/// How an integration ended. A solution that leaves every bound in finite time is an answer, not an error.
+/// How an integration ended. A solution that leaves every bound in finite time is an answer, not an
+/// error.
 #[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
@@ -18,7 +19,8 @@ pub enum Outcome {
 pub enum Cause {
     /// An entry of the state is NaN or beyond the bound on |x|.
     Bound,
-    /// No step that time can resolve meets the tolerance: the solution or its rate has a pole, or the rate is NaN.
+    /// No step that time can resolve meets the tolerance: the solution or its rate has a pole, or
+    /// the rate is NaN.
     StepSize,
     /// The limit of steps was met: the field is stiff, or it chatters across a discontinuity.
     StepCount,

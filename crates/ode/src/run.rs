@@ -5,8 +5,8 @@
 pub struct Run<'a> {
     /// x at the first sample (n).
     pub start: &'a [f64],
-    /// Row-major, m a row, one row for each sample but the last: row k acts from sample k to sample k + 1. Empty where there
-    /// is no input.
+    /// Row-major, m a row, one row for each sample but the last: row k acts from sample k to sample
+    /// k + 1. Empty where there is no input.
     pub inputs: &'a [f64],
 }
 

@@ -1,11 +1,12 @@
 use crate::VectorField;
 use reachtube_scalar::Scalar;
 
-/// The classical Runge-Kutta method of order 4 with fixed steps, over any [`Scalar`]; it does not allocate after
-/// construction.
+/// The classical Runge-Kutta method of order 4 with fixed steps, over any [`Scalar`]; it does not
+/// allocate after construction.
 ///
-/// Kutta, Z. Math. Phys. 46, 1901. Over lanes each lane is a run of its own and has the value of the same run over `f64`, to
-/// the last bit. Over `Interval` the result encloses what the method gives, not the solution.
+/// Kutta, Z. Math. Phys. 46, 1901. Over lanes each lane is a run of its own and has the value of
+/// the same run over `f64`, to the last bit. Over `Interval` the result encloses what the method
+/// gives, not the solution.
 ///
 /// # Examples
 ///

@@ -1,7 +1,7 @@
 //! The size of the next step, from the errors of the last ones.
 
-/// What an adaptive step may add to the error of each entry of the state: absolute + relative · |x|, in the root mean
-/// square over the entries.
+/// What an adaptive step may add to the error of each entry of the state: absolute + relative ·
+/// |x|, in the root mean square over the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Per |x| (dimensionless).
@@ -18,7 +18,8 @@ impl Default for Tolerance {
 }
 
 impl Tolerance {
-    /// Root mean square of `error` over the tolerated error at the larger of two states; at most 1 is good.
+    /// Root mean square of `error` over the tolerated error at the larger of two states; at most 1
+    /// is good.
     pub(crate) fn norm(&self, error: impl Iterator<Item = f64>, from: &[f64], to: &[f64]) -> f64 {
         let tolerated =
             from.iter().zip(to).map(|(a, b)| self.absolute + self.relative * a.abs().max(b.abs()));
@@ -27,8 +28,9 @@ impl Tolerance {
     }
 }
 
-/// Proportional-integral control of the step (Gustafsson, ACM TOMS 17, 1991), with the constants of the code DOPRI5 of
-/// Hairer & Wanner (Solving Ordinary Differential Equations II, 1996, sec. IV.2).
+/// Proportional-integral control of the step (Gustafsson, ACM TOMS 17, 1991), with the constants of
+/// the code DOPRI5 of Hairer & Wanner (Solving Ordinary Differential Equations II, 1996, sec.
+/// IV.2).
 #[derive(Clone, Debug)]
 pub(crate) struct StepControl {
     /// Size to try next \[s\]; `None` before the first step.
@@ -51,8 +53,8 @@ impl StepControl {
         Self { proposal: None, error_before: LEAST_ERROR, rejected: false }
     }
 
-    /// After a step of h whose error is within the tolerance. `cut` says that it was cut short to end where time ends: it
-    /// then does not speak against a longer proposal.
+    /// After a step of h whose error is within the tolerance. `cut` says that it was cut short to
+    /// end where time ends: it then does not speak against a longer proposal.
     pub fn accept(&mut self, h: f64, error: f64, cut: bool) {
         let ratio = SAFETY * self.error_before.powf(BETA) / error.powf(ALPHA);
         let most = if self.rejected { 1.0 } else { RATIO[1] };

@@ -1,6 +1,8 @@
-/// The right-hand side of ẋ = f(t, x, u) over numbers S, with x of n entries and an input u of m, held over a step.
+/// The right-hand side of ẋ = f(t, x, u) over numbers S, with x of n entries and an input u of m,
+/// held over a step.
 ///
-/// A field may keep scratch memory: it is taken by `&mut`, and each thread has its own. Closures are fields.
+/// A field may keep scratch memory: it is taken by `&mut`, and each thread has its own. Closures
+/// are fields.
 ///
 /// # Examples
 ///

@@ -1,4 +1,5 @@
-//! Reachable sets of polynomial systems: a six-joint arm over 5 s at 250 Hz, and problems of the ARCH competition, whose final widths are printed.
+//! Reachable sets of polynomial systems: a six-joint arm over 5 s at 250 Hz, and problems of the
+//! ARCH competition, whose final widths are printed.
 
 #[path = "../tests/reach/arm.rs"]
 mod arm;
@@ -10,7 +11,8 @@ mod systems;
 
 use divan::{Bencher, black_box};
 use reachtube_reach::{
-    Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput,
+    Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid,
+    UncertainInput,
 };
 
 const SAMPLES: usize = 1251;
@@ -28,10 +30,13 @@ fn lwa4p_model_1_of_order_3(bencher: Bencher, order: Option<usize>) {
     let held = vec![0.0; 6 * SAMPLES];
     let input = UncertainInput { measured: &held, set: &torque };
     let settings = FlowpipeSettings { order, ..FlowpipeSettings::default() };
-    bencher.bench(|| Flowpipe::new(black_box(&system), &grid, &[0.0; 12], &initial, &input, &settings));
+    bencher.bench(|| {
+        Flowpipe::new(black_box(&system), &grid, &[0.0; 12], &initial, &input, &settings)
+    });
 }
 
-/// A published problem and how it is solved: its name, system, initial set, step and number of samples, and settings.
+/// A published problem and how it is solved: its name, system, initial set, step and number of
+/// samples, and settings.
 type Problem = (String, PolynomialSystem, Hyperrectangle, (f64, usize), FlowpipeSettings);
 
 fn in_pieces(pieces: &[usize]) -> FlowpipeSettings {
@@ -39,7 +44,10 @@ fn in_pieces(pieces: &[usize]) -> FlowpipeSettings {
 }
 
 fn taylor_models(order: u32) -> FlowpipeSettings {
-    FlowpipeSettings { method: FlowpipeMethod::TaylorModels { order }, ..FlowpipeSettings::default() }
+    FlowpipeSettings {
+        method: FlowpipeMethod::TaylorModels { order },
+        ..FlowpipeSettings::default()
+    }
 }
 
 fn problems() -> Vec<Problem> {
@@ -51,7 +59,10 @@ fn problems() -> Vec<Problem> {
         (name("Van der Pol", &settings), systems::van_der_pol(), start, (0.01, 701), settings)
     };
     let laub_loomis = |w: f64, settings| {
-        let start = Hyperrectangle { center: vec![1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], radius: vec![w; 7] };
+        let start = Hyperrectangle {
+            center: vec![1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45],
+            radius: vec![w; 7],
+        };
         let name = name(&format!("Laub-Loomis {w}"), &settings);
         (name, systems::laub_loomis(), start, (0.02, 1001), settings)
     };
@@ -84,7 +95,8 @@ fn print_widths() {
     for problem in problems() {
         let flowpipe = solve(&problem);
         let end = flowpipe.sample(flowpipe.len() - 1);
-        let sides: Vec<String> = end.iter().map(|x| format!("[{:.4}, {:.4}]", x.lo(), x.hi())).collect();
+        let sides: Vec<String> =
+            end.iter().map(|x| format!("[{:.4}, {:.4}]", x.lo(), x.hi())).collect();
         println!("{}: {:?}, {}", problem.0, flowpipe.outcome(), sides.join(" x "));
     }
 }

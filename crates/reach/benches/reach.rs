@@ -12,7 +12,8 @@ use reachtube_scalar::Interval;
 
 const SAMPLES: usize = 1251;
 const STEP: f64 = 0.004;
-const DISTURBANCES: [Disturbance; 3] = [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable];
+const DISTURBANCES: [Disturbance; 3] =
+    [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable];
 
 fn main() {
     divan::main();
@@ -81,7 +82,8 @@ fn reach_sets(bencher: Bencher) {
 fn tube_radii(bencher: Bencher) {
     let propagation = propagation(&uniform());
     let (initial, input) = sets();
-    bencher.bench(|| TubeRadii::new(black_box(&propagation), Disturbance::Constant, &initial, &input));
+    bencher
+        .bench(|| TubeRadii::new(black_box(&propagation), Disturbance::Constant, &initial, &input));
 }
 
 #[divan::bench]
@@ -92,7 +94,8 @@ fn tube(bencher: Bencher) {
     let reach = ReachSets::new(&propagation, &gains, &initial, &input);
     let radii = TubeRadii::new(&propagation, Disturbance::Constant, &initial, &input);
     let inputs = vec![0.3; 6 * SAMPLES];
-    let nominal = propagation.solve(&IntervalVector::from_element(12, Interval::point(0.1)), &inputs);
+    let nominal =
+        propagation.solve(&IntervalVector::from_element(12, Interval::point(0.1)), &inputs);
     bencher.bench(|| Tube::new(black_box(&propagation), &nominal, &inputs, &reach, &input, &radii));
 }
 
@@ -101,7 +104,8 @@ fn tube(bencher: Bencher) {
 fn linear_reachable_set(bencher: Bencher) {
     let (system, grid, (initial, input)) = (arm(), uniform(), sets());
     bencher.bench(|| {
-        let propagation = Propagation::new(black_box(&system), black_box(&grid)).expect("a short horizon");
+        let propagation =
+            Propagation::new(black_box(&system), black_box(&grid)).expect("a short horizon");
         ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &input)
     });
 }

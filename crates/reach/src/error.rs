@@ -20,7 +20,9 @@ pub enum ReachError {
         found_columns: usize,
     },
     /// An entry is NaN or infinite.
-    #[error("{what} has the entry {value} in row {row}, column {column}; every entry must be finite")]
+    #[error(
+        "{what} has the entry {value} in row {row}, column {column}; every entry must be finite"
+    )]
     NotFinite {
         /// Which matrix or vector.
         what: &'static str,

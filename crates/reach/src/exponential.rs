@@ -7,7 +7,8 @@ use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_down};
 use crate::LinearSystem;
 use crate::matrix::{IntervalMatrix, IntervalVector, add_product, magnitude, point, product};
 
-/// Norm of A h below which the Taylor series is summed; above it, h is halved and the result squared.
+/// Norm of A h below which the Taylor series is summed; above it, h is halved and the result
+/// squared.
 const SERIES_NORM: f64 = 0.5;
 
 /// What one step of length h does to a linear system with constant input: x(h) = Φ x(0) + Γ u + γ.
@@ -25,8 +26,8 @@ pub struct Step {
 ///
 /// # Guarantee
 ///
-/// Outer, proved with directed rounding: for every real h in the interval, Φ, Γ and γ lie in the matrices returned. An entry
-/// that is zero for every h (no path through A) is the point 0.
+/// Outer, proved with directed rounding: for every real h in the interval, Φ, Γ and γ lie in the
+/// matrices returned. An entry that is zero for every h (no path through A) is the point 0.
 pub fn step(system: &LinearSystem, h: Interval) -> Step {
     let (halvings, small) = halve(system, h);
     let n = system.states();
@@ -122,8 +123,8 @@ mod tests {
     fn the_remainder_covers_the_terms_left_out() {
         for norm in [1e-300, 1e-9, 0.01, 0.3, 0.5] {
             let (degree, remainder) = truncation(norm);
-            let mut term =
-                (2..=degree + 2).fold(1.0, |term, i| term / i as f64) * norm.powi(degree as i32 + 1);
+            let mut term = (2..=degree + 2).fold(1.0, |term, i| term / i as f64)
+                * norm.powi(degree as i32 + 1);
             let mut rest = 0.0;
             for i in degree + 1..degree + 30 {
                 rest += term;

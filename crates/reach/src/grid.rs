@@ -2,14 +2,16 @@ use reachtube_scalar::Interval;
 
 use crate::ReachError;
 
-/// Relative deviation from k h up to which a grid counts as uniform: far below any real jitter, far above the rounding of a
-/// printed decimal.
+/// Relative deviation from k h up to which a grid counts as uniform: far below any real jitter, far
+/// above the rounding of a printed decimal.
 const UNIFORM_TOLERANCE: f64 = 1e-6;
 
-/// Sample times t_0 = 0 < t_1 < ... in s, measured from the first sample and kept to the picosecond.
+/// Sample times t_0 = 0 < t_1 < ... in s, measured from the first sample and kept to the
+/// picosecond.
 ///
-/// Where the times are those of a fixed rate, the grid is `uniform` and t_k is *exactly* k h with the step h rounded to
-/// 12 significant digits, so that 0.004, 0.008, 0.012 is the grid it was meant to be.
+/// Where the times are those of a fixed rate, the grid is `uniform` and t_k is *exactly* k h with
+/// the step h rounded to 12 significant digits, so that 0.004, 0.008, 0.012 is the grid it was
+/// meant to be.
 ///
 /// # Examples
 ///
@@ -32,7 +34,8 @@ impl TimeGrid {
     ///
     /// # Errors
     ///
-    /// [`ReachError::Times`] when a time is not after the one before it (by a picosecond), or not finite.
+    /// [`ReachError::Times`] when a time is not after the one before it (by a picosecond), or not
+    /// finite.
     pub fn from_times(recorded: &[f64]) -> Result<Self, ReachError> {
         let origin = recorded.first().copied().unwrap_or(0.0);
         let mut times: Vec<f64> = Vec::with_capacity(recorded.len());
@@ -88,7 +91,8 @@ impl TimeGrid {
     ///
     /// # Guarantee
     ///
-    /// Exact on a uniform grid; otherwise an outer enclosure of the difference of the two recorded times.
+    /// Exact on a uniform grid; otherwise an outer enclosure of the difference of the two recorded
+    /// times.
     pub fn interval(&self, k: usize) -> Interval {
         match self.step {
             Some(h) => Interval::point(h),
@@ -101,8 +105,8 @@ impl TimeGrid {
         (1..self.len()).map(|k| self.interval(k - 1).hi()).fold(0.0, f64::max)
     }
 
-    /// Whether every sample of `self` is the sample of the same index of `longer`, exactly: k h of a uniform grid with k > 1 may round to
-    /// a recorded time that it is not.
+    /// Whether every sample of `self` is the sample of the same index of `longer`, exactly: k h of
+    /// a uniform grid with k > 1 may round to a recorded time that it is not.
     pub fn is_prefix_of(&self, longer: &Self) -> bool {
         if self.len() > longer.len() {
             return false;
@@ -127,7 +131,9 @@ impl TimeGrid {
         }
         let time = |at: usize| match (at / parts, at % parts) {
             (k, 0) => self.times[k],
-            (k, part) => self.times[k] + (self.times[k + 1] - self.times[k]) * (part as f64 / parts as f64),
+            (k, part) => {
+                self.times[k] + (self.times[k + 1] - self.times[k]) * (part as f64 / parts as f64)
+            }
         };
         Self { times: (0..count).map(time).collect(), step: None }
     }

@@ -1,7 +1,8 @@
 use serde::{Deserialize, Serialize};
 
-/// An axis-aligned box {c + d : |d_i| <= r_i}, described by its centre and radius r >= 0 (correction A of the method:
-/// with centre and radius the image under E has centre E c and radius |E| r, whatever the signs in E).
+/// An axis-aligned box {c + d : |d_i| <= r_i}, described by its centre and radius r >= 0
+/// (correction A of the method: with centre and radius the image under E has centre E c and radius
+/// |E| r, whatever the signs in E).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hyperrectangle {

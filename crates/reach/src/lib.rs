@@ -25,7 +25,8 @@ pub use hyperrectangle::Hyperrectangle;
 pub use linear::LinearSystem;
 pub use matrix::{IntervalMatrix, IntervalVector};
 pub use polynomial::{
-    Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput, Zonotope,
+    Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,
+    Zonotope,
 };
 pub use propagation::Propagation;
 pub use reach_set::{ReachSets, Trajectory};

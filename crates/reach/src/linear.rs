@@ -31,7 +31,8 @@ impl LinearSystem {
     ///
     /// # Errors
     ///
-    /// [`ReachError::Shape`] when the sizes do not fit, [`ReachError::NotFinite`] for NaN or infinite entries.
+    /// [`ReachError::Shape`] when the sizes do not fit, [`ReachError::NotFinite`] for NaN or
+    /// infinite entries.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, drift: DVector<f64>) -> Result<Self, ReachError> {
         let states = a.nrows();
         check_shape("A", &a, states, states)?;

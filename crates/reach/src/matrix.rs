@@ -81,11 +81,13 @@ pub(crate) fn dot<'a>(
     left: impl IntoIterator<Item = &'a Interval>,
     right: impl IntoIterator<Item = &'a Interval>,
 ) -> Interval {
-    let terms = left.into_iter().zip(right).filter(|(x, y)| **x != Interval::ZERO && **y != Interval::ZERO);
+    let terms =
+        left.into_iter().zip(right).filter(|(x, y)| **x != Interval::ZERO && **y != Interval::ZERO);
     terms.fold(Interval::ZERO, |sum, (&x, &y)| sum + x * y)
 }
 
-/// An upper bound of the product of two matrices with entries >= 0; an entry all of whose terms are zero is 0.
+/// An upper bound of the product of two matrices with entries >= 0; an entry all of whose terms are
+/// zero is 0.
 pub(crate) fn mul_upward(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
     let mut product = left * right;
     for j in 0..product.ncols() {
@@ -109,14 +111,17 @@ const FAR_FROM_UNDERFLOW: f64 = 1e-280;
 
 /// An upper bound of the sum of so many products x y >= 0, which is `nearest` in floating point.
 ///
-/// In any order, `nearest` is at least 1 - N u / (1 - N u) times the exact sum, with the unit roundoff u (Higham, Accuracy and Stability
-/// of Numerical Algorithms, section 3.1). What is zero, infinite or near underflow is summed again, rounded upward.
+/// In any order, `nearest` is at least 1 - N u / (1 - N u) times the exact sum, with the unit
+/// roundoff u (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1). What is zero,
+/// infinite or near underflow is summed again, rounded upward.
 fn sum_upward<'a>(nearest: f64, count: usize, terms: impl Iterator<Item = (f64, &'a f64)>) -> f64 {
     match nearest {
-        FAR_FROM_UNDERFLOW..f64::INFINITY => mul_up(nearest, 1.0 + (count + 1) as f64 * f64::EPSILON),
-        _ => {
-            terms.filter(|(x, y)| *x != 0.0 && **y != 0.0).fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y)))
+        FAR_FROM_UNDERFLOW..f64::INFINITY => {
+            mul_up(nearest, 1.0 + (count + 1) as f64 * f64::EPSILON)
         }
+        _ => terms
+            .filter(|(x, y)| *x != 0.0 && **y != 0.0)
+            .fold(0.0, |sum, (x, &y)| add_up(sum, mul_up(x, y))),
     }
 }
 
@@ -128,9 +133,10 @@ pub(crate) fn accumulate_upward(sum: &mut DMatrix<f64>, term: &DMatrix<f64>) {
 /// Added to a bound of non-zero terms: far above the sum of all that underflow can take from it.
 pub(crate) const UNDERFLOW: f64 = 1e-300;
 
-/// The error of the sum of n products in floating point, in any order and with or without fused operations, over the sum of their sizes:
-/// n u / (1 - n u) with the unit roundoff u at most (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1), and less than
-/// n + 1 units even where the sizes are summed in floating point.
+/// The error of the sum of n products in floating point, in any order and with or without fused
+/// operations, over the sum of their sizes: n u / (1 - n u) with the unit roundoff u at most
+/// (Higham, Accuracy and Stability of Numerical Algorithms, section 3.1), and less than n + 1 units
+/// even where the sizes are summed in floating point.
 pub(crate) fn relative_error(n: usize) -> f64 {
     (n + 1) as f64 * f64::EPSILON / 2.0
 }
@@ -151,8 +157,13 @@ mod tests {
     fn products_are_those_of_nalgebra_and_keep_zeros() {
         let (left, right) = sample();
         let (ours, plain) = (product(&left, &right), &left * &right);
-        assert!(ours.iter().zip(&plain).all(|(x, y)| x.hull(*y).width() <= x.width() * (1.0 + 1e-9)));
-        assert_eq!(product(&point(&dmatrix![1.0, 0.0]), &point(&dmatrix![0.0; 5.0]))[(0, 0)], Interval::ZERO);
+        assert!(
+            ours.iter().zip(&plain).all(|(x, y)| x.hull(*y).width() <= x.width() * (1.0 + 1e-9))
+        );
+        assert_eq!(
+            product(&point(&dmatrix![1.0, 0.0]), &point(&dmatrix![0.0; 5.0]))[(0, 0)],
+            Interval::ZERO
+        );
         let row = left.row(0);
         assert_eq!(dot(row.iter(), right.column(1).iter()), ours[(0, 1)]);
     }
@@ -167,7 +178,10 @@ mod tests {
         assert!(bound[(0, 1)] > 0.2 * 1e-250 && bound[(1, 0)] > 0.7 * 1e-200);
         assert_eq!(bound[(1, 1)], 0.0);
         assert!(mul_upward(&dmatrix![1e-200], &dmatrix![1e-200])[(0, 0)] > 0.0);
-        assert_eq!(mul_upward(&dmatrix![0.0, 1.0], &dmatrix![f64::INFINITY; 2.0])[(0, 0)], 2f64.next_up());
+        assert_eq!(
+            mul_upward(&dmatrix![0.0, 1.0], &dmatrix![f64::INFINITY; 2.0])[(0, 0)],
+            2f64.next_up()
+        );
         assert_eq!(mul_upward(&dmatrix![1.0], &dmatrix![f64::INFINITY])[(0, 0)], f64::INFINITY);
     }
 }

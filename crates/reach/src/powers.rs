@@ -18,13 +18,15 @@ const MOST_SHORT_STEPS: f64 = 4096.0;
 
 /// e^{A t_k} at the samples of a grid, each within `rad` of `mid`.
 ///
-/// Intervals are never multiplied step after step, which would let them grow with every step. The steps are done in floating point, the
-/// defect of each is bounded, δ_k = Ẽ_k Φ_k - Ẽ_{k+1}, and the error of Ẽ_k is e_k = Σ_j δ_j e^{A(t_k - t_{j+1})}. Two bounds hold, and the
-/// smaller one is taken entry by entry:
+/// Intervals are never multiplied step after step, which would let them grow with every step. The
+/// steps are done in floating point, the defect of each is bounded, δ_k = Ẽ_k Φ_k - Ẽ_{k+1}, and
+/// the error of Ẽ_k is e_k = Σ_j δ_j e^{A(t_k - t_{j+1})}. Two bounds hold, and the smaller one is
+/// taken entry by entry:
 ///
-/// - |e_k| <= (Σ_j |δ_j|) M with M >= |e^{Aτ}| over the whole horizon, which grows linearly (M is found a posteriori, see
-///   [`Rounded::bound`]);
-/// - |e_{k+1}| <= |e_k| |Φ_k| + |δ_k|, which follows the growth or decay of a system whose entries keep their signs.
+/// - |e_k| <= (Σ_j |δ_j|) M with M >= |e^{Aτ}| over the whole horizon, which grows linearly (M is
+///   found a posteriori, see [`Rounded::bound`]);
+/// - |e_{k+1}| <= |e_k| |Φ_k| + |δ_k|, which follows the growth or decay of a system whose entries
+///   keep their signs.
 pub(crate) struct Powers {
     pub(crate) mid: Vec<DMatrix<f64>>,
     pub(crate) rad: Vec<DMatrix<f64>>,
@@ -90,10 +92,11 @@ impl Rounded {
         errors
     }
 
-    /// M >= |e^{Aτ}| entrywise for every time τ of the horizon that is at most one step, bounded by P = `within_step`, after a sample;
-    /// infinite when none is found.
+    /// M >= |e^{Aτ}| entrywise for every time τ of the horizon that is at most one step, bounded by
+    /// P = `within_step`, after a sample; infinite when none is found.
     ///
-    /// With P >= |e^{As}| over one step, D = Σ|δ_j| and M̃ = max_k |Ẽ_k|, any M with (M̃ + D M) P <= M bounds it, by induction over the samples:
+    /// With P >= |e^{As}| over one step, D = Σ|δ_j| and M̃ = max_k |Ẽ_k|, any M with (M̃ + D M) P
+    /// <= M bounds it, by induction over the samples:
     /// |e^{A t_k}| <= |Ẽ_k| + D M as long as M holds up to t_k, and from there to the next sample another factor P covers it. The left side
     /// of the inequality then is such an M as well, and a smaller one.
     fn bound(&self, within_step: &DMatrix<f64>) -> DMatrix<f64> {
@@ -117,15 +120,18 @@ impl Rounded {
     }
 }
 
-/// W >= 0 such that the floating-point product of any matrix X with the midpoint of Φ is within |X| W of the exact X Φ.
+/// W >= 0 such that the floating-point product of any matrix X with the midpoint of Φ is within |X|
+/// W of the exact X Φ.
 ///
-/// W = (N + 1) u |mid Φ| + rad Φ. Where a product underflows, the rounding of |X| W by at least one unit for each product covers it.
+/// W = (N + 1) u |mid Φ| + rad Φ. Where a product underflows, the rounding of |X| W by at least one
+/// unit for each product covers it.
 fn product_error(phi: &IntervalMatrix) -> DMatrix<f64> {
     let relative = relative_error(phi.nrows());
     phi.map(|x| add_up(mul_up(relative, x.mid().abs()), x.rad()))
 }
 
-/// P >= |e^{As}| entrywise for 0 <= s <= h: a horizon in itself, of steps so short that one enclosure over each is good enough.
+/// P >= |e^{As}| entrywise for 0 <= s <= h: a horizon in itself, of steps so short that one
+/// enclosure over each is good enough.
 pub(crate) fn bound_within_step(system: &LinearSystem, h: f64) -> DMatrix<f64> {
     let norm = norm_upper(&magnitude(&point(system.a())));
     // `max` is 1 for NaN too: an infinite norm over no time.
@@ -143,7 +149,8 @@ mod tests {
     use super::*;
 
     fn rotation(omega: f64) -> LinearSystem {
-        LinearSystem::new(dmatrix![0.0, omega; -omega, 0.0], dmatrix![0.0; 1.0], dvector![0.0, 0.0]).unwrap()
+        LinearSystem::new(dmatrix![0.0, omega; -omega, 0.0], dmatrix![0.0; 1.0], dvector![0.0, 0.0])
+            .unwrap()
     }
 
     #[test]

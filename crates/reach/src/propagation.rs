@@ -10,7 +10,8 @@ use crate::samples::Samples;
 use crate::sums::{absolute_ends, running_sum};
 use crate::{LinearSystem, ReachError, TimeGrid, Trajectory};
 
-/// e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, and the solutions of the system on it.
+/// e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, and the solutions of the
+/// system on it.
 ///
 /// # Examples
 ///
@@ -104,7 +105,9 @@ impl Propagation {
 
     /// Σ_{j<k} |e^{A t_j} Γ(h_j)| at every sample k.
     pub(crate) fn absolute_sums(&self) -> Vec<IntervalMatrix> {
-        running_sum(&self.system, self.grid.len(), |k| self.samples.increment_ends(k).map(absolute_ends))
+        running_sum(&self.system, self.grid.len(), |k| {
+            self.samples.increment_ends(k).map(absolute_ends)
+        })
     }
 
     /// The lower and upper ends of column j of e^{A t_k}.
@@ -117,13 +120,15 @@ impl Propagation {
         if self.grid.step().is_some() { &self.steps[0] } else { &self.steps[k] }
     }
 
-    /// The solution from `start` (N) under the piecewise constant input `inputs` (one row of m entries a sample, in effect until the next
-    /// sample; the row of the last sample is not used). Its length is the number of rows, at most that of the grid (without inputs,
-    /// that of the grid).
+    /// The solution from `start` (N) under the piecewise constant input `inputs` (one row of m
+    /// entries a sample, in effect until the next sample; the row of the last sample is not used).
+    /// Its length is the number of rows, at most that of the grid (without inputs, that of the
+    /// grid).
     ///
     /// # Guarantee
     ///
-    /// Outer, directed rounding: for every start in `start`, the exact solution at each sample lies in the trajectory.
+    /// Outer, directed rounding: for every start in `start`, the exact solution at each sample lies
+    /// in the trajectory.
     pub fn solve(&self, start: &IntervalVector, inputs: &[f64]) -> Trajectory {
         let (n, m) = (self.system.states(), self.system.inputs());
         let rows = inputs.len().checked_div(m).unwrap_or(usize::MAX);
@@ -133,7 +138,9 @@ impl Propagation {
         let mut states = Vec::with_capacity(samples * n);
         let mut next = vec![Interval::ZERO; n];
         for k in 0..samples {
-            states.extend(mid.iter().zip(&error.radius).map(|(&mid, &rad)| Interval::centered(mid, rad)));
+            states.extend(
+                mid.iter().zip(&error.radius).map(|(&mid, &rad)| Interval::centered(mid, rad)),
+            );
             if k + 1 < samples {
                 advance(self.step(k), &mid, &inputs[k * m..(k + 1) * m], &mut next);
                 error.advance(self, k, &next);
@@ -204,7 +211,8 @@ mod tests {
     use super::*;
 
     fn rotation(omega: f64) -> LinearSystem {
-        LinearSystem::new(dmatrix![0.0, omega; -omega, 0.0], dmatrix![0.0; 1.0], dvector![0.0, 0.0]).unwrap()
+        LinearSystem::new(dmatrix![0.0, omega; -omega, 0.0], dmatrix![0.0; 1.0], dvector![0.0, 0.0])
+            .unwrap()
     }
 
     #[test]
@@ -213,10 +221,15 @@ mod tests {
         let recorded = TimeGrid::from_times(&times).unwrap();
         for (grid, least) in [(recorded, 1.0), (TimeGrid::uniform(0.01, 400), 0.9999)] {
             let propagation = Propagation::new(&rotation(2.0), &grid).unwrap();
-            assert!(propagation.bound.iter().all(|m| (least..1.1).contains(m)), "{}", propagation.bound);
+            assert!(
+                propagation.bound.iter().all(|m| (least..1.1).contains(m)),
+                "{}",
+                propagation.bound
+            );
             for k in 0..grid.len() {
-                let below =
-                    propagation.exponential(k).zip_map(&propagation.bound, |x, bound| x.mag() <= bound);
+                let below = propagation
+                    .exponential(k)
+                    .zip_map(&propagation.bound, |x, bound| x.mag() <= bound);
                 assert!(below.iter().all(|&holds| holds), "sample {k}");
             }
         }

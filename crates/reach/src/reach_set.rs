@@ -36,8 +36,9 @@ impl Trajectory {
     }
 }
 
-/// The reachable set of the deviation δẋ = A δx + B δu, δx(0) ∈ X0, δu ∈ U, at the samples of a grid: the interval hull, centre c_k and
-/// radius r_k. Adding the nominal solution gives the reachable set of the system.
+/// The reachable set of the deviation δẋ = A δx + B δu, δx(0) ∈ X0, δu ∈ U, at the samples of a
+/// grid: the interval hull, centre c_k and radius r_k. Adding the nominal solution gives the
+/// reachable set of the system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReachSets {
     dimension: usize,
@@ -46,14 +47,17 @@ pub struct ReachSets {
 }
 
 impl ReachSets {
-    /// The hulls for the initial set X0 (N), the input set U (m), and the gains κ of a [`Disturbance`](crate::Disturbance) on the same grid:
-    /// c_k = e^{A t_k} c_x + Γ(t_k) c_u, r_k = |e^{A t_k}| r_x + κ(t_k) r_u.
+    /// The hulls for the initial set X0 (N), the input set U (m), and the gains κ of a
+    /// [`Disturbance`](crate::Disturbance) on the same grid: c_k = e^{A t_k} c_x + Γ(t_k) c_u, r_k
+    /// = |e^{A t_k}| r_x + κ(t_k) r_u.
     ///
     /// # Guarantee
     ///
-    /// Centre and radius of the exact hull are enclosed with directed rounding: [`upper_outer`](Self::upper_outer) and
-    /// [`lower_outer`](Self::lower_outer) bound the hull from outside, [`upper_inner`](Self::upper_inner) and
-    /// [`lower_inner`](Self::lower_inner) from inside. The hull itself is exact as a hull: each face is touched by some admissible disturbance.
+    /// Centre and radius of the exact hull are enclosed with directed rounding:
+    /// [`upper_outer`](Self::upper_outer) and [`lower_outer`](Self::lower_outer) bound the hull
+    /// from outside, [`upper_inner`](Self::upper_inner) and [`lower_inner`](Self::lower_inner) from
+    /// inside. The hull itself is exact as a hull: each face is touched by some admissible
+    /// disturbance.
     pub fn new(
         propagation: &Propagation,
         gains: &[IntervalMatrix],
@@ -63,21 +67,24 @@ impl ReachSets {
         let dimension = propagation.system().states();
         let mut center = vec![Interval::ZERO; gains.len() * dimension];
         let mut radius = center.clone();
-        let hull = |sums: &mut ColumnSums,
-                    (k, (center, radius)): (usize, (&mut [Interval], &mut [Interval]))| {
-            let exponential = |j: usize| propagation.exponential_ends(k, j);
-            sums.clear();
-            sums.add(&initial_set.center, exponential);
-            sums.add(&input_set.center, |j| column_ends(propagation.integral(k), j));
-            center.iter_mut().zip(sums.enclosed()).for_each(|(center, sum)| *center = sum);
-            sums.clear();
-            sums.add(&initial_set.radius, |j| exponential(j).map(absolute_ends));
-            sums.add(&input_set.radius, |j| column_ends(&gains[k], j));
-            radius.iter_mut().zip(sums.enclosed()).for_each(|(radius, sum)| *radius = sum);
-        };
+        let hull =
+            |sums: &mut ColumnSums,
+             (k, (center, radius)): (usize, (&mut [Interval], &mut [Interval]))| {
+                let exponential = |j: usize| propagation.exponential_ends(k, j);
+                sums.clear();
+                sums.add(&initial_set.center, exponential);
+                sums.add(&input_set.center, |j| column_ends(propagation.integral(k), j));
+                center.iter_mut().zip(sums.enclosed()).for_each(|(center, sum)| *center = sum);
+                sums.clear();
+                sums.add(&initial_set.radius, |j| exponential(j).map(absolute_ends));
+                sums.add(&input_set.radius, |j| column_ends(&gains[k], j));
+                radius.iter_mut().zip(sums.enclosed()).for_each(|(radius, sum)| *radius = sum);
+            };
         let states = dimension.max(1);
-        let samples =
-            center.par_chunks_exact_mut(states).zip(radius.par_chunks_exact_mut(states)).enumerate();
+        let samples = center
+            .par_chunks_exact_mut(states)
+            .zip(radius.par_chunks_exact_mut(states))
+            .enumerate();
         samples.with_min_len(TOGETHER).for_each_init(|| ColumnSums::new(dimension), hull);
         Self { dimension, center, radius }
     }
@@ -120,7 +127,8 @@ impl ReachSets {
         (self.center(k, i) - self.radius(k, i)).lo()
     }
 
-    /// A lower bound of the highest reachable deviation: what is below it is reachable in this state.
+    /// A lower bound of the highest reachable deviation: what is below it is reachable in this
+    /// state.
     ///
     /// # Guarantee
     ///

@@ -19,9 +19,11 @@ const FAR_FROM_OVERFLOW: f64 = 1e280;
 /// So many samples, one after another, share the bounds of their errors, but for the first ones.
 const TOGETHER: usize = 6;
 
-/// The pairs [e^{A t_k}, e^{A t_k} Γ(h_k)], N x (N + m), at the samples of a grid; by the second, Γ grows over step k.
+/// The pairs [e^{A t_k}, e^{A t_k} Γ(h_k)], N x (N + m), at the samples of a grid; by the second, Γ
+/// grows over step k.
 ///
-/// Numbers and their radii are apart and side by side, column by column: what is done to all is done to long rows of numbers.
+/// Numbers and their radii are apart and side by side, column by column: what is done to all is
+/// done to long rows of numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct Samples {
     states: usize,
@@ -34,8 +36,8 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
-    /// Of so many samples, `steps` between them, with P = `within_step` >= |e^{As}| for every s up to the longest. After the last sample there
-    /// is no step, and no increment.
+    /// Of so many samples, `steps` between them, with P = `within_step` >= |e^{As}| for every s up
+    /// to the longest. After the last sample there is no step, and no increment.
     pub(crate) fn after(
         system: &LinearSystem,
         steps: &[Step],
@@ -46,7 +48,8 @@ impl Samples {
         let none = IntervalMatrix::from_element(system.states(), system.inputs(), Interval::ZERO);
         let pair = |k: usize| {
             let start = powers.at(k);
-            let increment = steps.get(k).map_or_else(|| none.clone(), |step| product(&start, &step.gamma));
+            let increment =
+                steps.get(k).map_or_else(|| none.clone(), |step| product(&start, &step.gamma));
             [start, increment]
         };
         Self::from_pairs(system, (0..count).into_par_iter().map(pair).collect())
@@ -67,27 +70,36 @@ impl Samples {
 
     /// At t_k = k h for k < count; `step` is that of length h.
     ///
-    /// With k = b L + j, L about √count, the pair is the product of e^{A b L h} with the pair at j: neither factor takes more than √count
-    /// steps, and the products, which are most of the work, are large and independent of each other.
+    /// With k = b L + j, L about √count, the pair is the product of e^{A b L h} with the pair at j:
+    /// neither factor takes more than √count steps, and the products, which are most of the work,
+    /// are large and independent of each other.
     pub(crate) fn uniform(system: &LinearSystem, step: &Step, h: Interval, count: usize) -> Self {
         let length = count.isqrt().max(1).next_multiple_of(TOGETHER);
         let short = Powers::uniform(&step.phi, length + 1);
         let pair = |j: usize| [short.at(j), product(&short.at(j), &step.gamma)];
         let (first, long) = rayon::join(
             || Self::from_pairs(system, (0..length).map(pair).collect()),
-            || Powers::uniform(&leap(system, &short.at(length), h * length as f64), count.div_ceil(length)),
+            || {
+                Powers::uniform(
+                    &leap(system, &short.at(length), h * length as f64),
+                    count.div_ceil(length),
+                )
+            },
         );
         let (block, size) = (Block::new(system, &first), first.mid.len());
         let mut samples = first.extended(long.mid.len());
         let shared = samples.rad[size..].par_chunks_exact_mut((size / TOGETHER).max(1));
         let blocks = samples.mid[size..].par_chunks_exact_mut(size.max(1)).zip(shared);
         let factors = long.mid[1..].par_iter().zip(&long.rad[1..]);
-        blocks.zip(factors).for_each(|((mid, rad), (left, error))| block.after(left, error, mid, rad));
+        blocks
+            .zip(factors)
+            .for_each(|((mid, rad), (left, error))| block.after(left, error, mid, rad));
         samples.mid.truncate(count * block.zero.len());
         samples
     }
 
-    /// With room for so many blocks like this one, which nobody touches before the threads come to them.
+    /// With room for so many blocks like this one, which nobody touches before the threads come to
+    /// them.
     fn extended(self, blocks: usize) -> Self {
         let size = self.mid.len();
         let mut all = Self {
@@ -120,7 +132,8 @@ impl Samples {
     pub(crate) fn ends(&self, k: usize, columns: Range<usize>) -> impl Iterator<Item = (f64, f64)> {
         let n = self.states;
         let start = |pair: usize| pair * n * (n + self.inputs);
-        let shared = |k: usize| if k < self.first { k } else { self.first + (k - self.first) / TOGETHER };
+        let shared =
+            |k: usize| if k < self.first { k } else { self.first + (k - self.first) / TOGETHER };
         let columns = |pair: usize| start(pair) + columns.start * n..start(pair) + columns.end * n;
         self.mid[columns(k)]
             .iter()
@@ -128,7 +141,8 @@ impl Samples {
             .map(|(mid, rad)| (mid - rad, mid + rad))
     }
 
-    /// At least the largest absolute value of each entry of the exponential over all samples, N x N.
+    /// At least the largest absolute value of each entry of the exponential over all samples, N x
+    /// N.
     pub(crate) fn largest(&self) -> DMatrix<f64> {
         let n = self.states;
         let largest = |all: &[f64]| {
@@ -192,11 +206,17 @@ impl Block {
         sizes.columns_mut(0, n).copy_from(&left.abs());
         sizes.columns_mut(n, n).copy_from(error);
         DMatrixViewMut::from_slice(mid, n, self.mid.ncols()).gemm(1.0, left, &self.mid, 0.0);
-        DMatrixViewMut::from_slice(rad, n, self.spread.ncols()).gemm(1.0, &sizes, &self.spread, 0.0);
+        DMatrixViewMut::from_slice(rad, n, self.spread.ncols()).gemm(
+            1.0,
+            &sizes,
+            &self.spread,
+            0.0,
+        );
         self.raise(rad);
     }
 
-    /// Sums of products of sizes become upper bounds: ∞ where products may have overflowed, 0 where there are none.
+    /// Sums of products of sizes become upper bounds: ∞ where products may have overflowed, 0 where
+    /// there are none.
     fn raise(&self, errors: &mut [f64]) {
         let upward = 1.0 + 2.0 * relative_error(2 * self.mid.nrows());
         for pair in errors.chunks_exact_mut(self.zero.len()) {
@@ -219,7 +239,8 @@ impl Block {
 fn unlinked(system: &LinearSystem) -> DMatrix<bool> {
     let (n, m) = (system.states(), system.inputs());
     let linked = connected(system.a());
-    let reached = |i: usize, j: usize| (0..n).any(|via| linked[(i, via)] && system.b()[(via, j)] != 0.0);
+    let reached =
+        |i: usize, j: usize| (0..n).any(|via| linked[(i, via)] && system.b()[(via, j)] != 0.0);
     DMatrix::from_fn(n, n + m, |i, j| if j < n { !linked[(i, j)] } else { !reached(i, j - n) })
 }
 
@@ -245,10 +266,16 @@ mod tests {
             let (exponential, increment) = (samples.exponential(k), samples.increment(k));
             let other = one_by_one.at(k);
             for (x, y) in exponential.iter().zip(&other) {
-                assert!(x.intersection(*y).is_some() && x.width() <= y.width() + 1e-14, "{k}: {x:?} {y:?}");
+                assert!(
+                    x.intersection(*y).is_some() && x.width() <= y.width() + 1e-14,
+                    "{k}: {x:?} {y:?}"
+                );
             }
             for (x, y) in increment.iter().zip(&product(&other, &step.gamma)) {
-                assert!(x.intersection(*y).is_some() && x.hull(*y).width() < 1e-13, "{k}: {x:?} {y:?}");
+                assert!(
+                    x.intersection(*y).is_some() && x.hull(*y).width() < 1e-13,
+                    "{k}: {x:?} {y:?}"
+                );
             }
             assert_eq!(exponential[(0, 2)], Interval::ZERO);
         }

@@ -13,7 +13,8 @@ const MOST_TERMS: usize = 200;
 /// Halvings of one step at most when an entry changes sign in it.
 const DEEPEST: usize = 40;
 
-/// Where f is at most so many times as large as the width of its enclosure at a point, its sign is not to be had by halving.
+/// Where f is at most so many times as large as the width of its enclosure at a point, its sign is
+/// not to be had by halving.
 const NOISE: f64 = 4.0;
 
 /// The terms A^m B / m!, m < M, for steps up to a given length.
@@ -55,14 +56,16 @@ impl Series {
     }
 }
 
-/// f(τ) = Σ c_m τ^m + e(τ) with |e(τ)| <= tail τ^M, for 0 <= τ up to the length the series was made for.
+/// f(τ) = Σ c_m τ^m + e(τ) with |e(τ)| <= tail τ^M, for 0 <= τ up to the length the series was made
+/// for.
 pub(crate) struct Polynomial {
     coefficients: Vec<Interval>,
     tail: f64,
 }
 
 impl Polynomial {
-    /// f over `tau`, by the mean value form, and the width of f at one point: what of the range no halving of `tau` can remove.
+    /// f over `tau`, by the mean value form, and the width of f at one point: what of the range no
+    /// halving of `tau` can remove.
     ///
     /// # Guarantee
     ///
@@ -72,7 +75,8 @@ impl Polynomial {
         let terms = || self.coefficients.iter().enumerate();
         let sum = terms().rev().fold(Interval::ZERO, |sum, (_, c)| sum * middle + *c);
         let value = sum + self.error(tau);
-        let slope = terms().skip(1).rev().fold(Interval::ZERO, |sum, (m, c)| sum * tau + *c * m as f64);
+        let slope =
+            terms().skip(1).rev().fold(Interval::ZERO, |sum, (m, c)| sum * tau + *c * m as f64);
         (value + slope * (tau - middle), value.width())
     }
 
@@ -82,18 +86,25 @@ impl Polynomial {
     ///
     /// Outer, directed rounding.
     pub(crate) fn integral(&self, sigma: Interval) -> Interval {
-        let antiderivative =
-            |sum: Interval, (m, c): (usize, &Interval)| sum * sigma + *c / Interval::point(m as f64 + 1.0);
+        let antiderivative = |sum: Interval, (m, c): (usize, &Interval)| {
+            sum * sigma + *c / Interval::point(m as f64 + 1.0)
+        };
         let sum = self.coefficients.iter().enumerate().rev().fold(Interval::ZERO, antiderivative);
         (sum + self.error(sigma)) * sigma
     }
 
-    /// ∫_a^b |f|, by halving where f may change sign, until a piece is `negligible` or f is not known better than that.
+    /// ∫_a^b |f|, by halving where f may change sign, until a piece is `negligible` or f is not
+    /// known better than that.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub(crate) fn integral_of_absolute(&self, a: Interval, b: Interval, negligible: f64) -> Interval {
+    pub(crate) fn integral_of_absolute(
+        &self,
+        a: Interval,
+        b: Interval,
+        negligible: f64,
+    ) -> Interval {
         self.pieces(a, b, negligible, 0)
     }
 
@@ -116,7 +127,8 @@ impl Polynomial {
             return Interval::new(inner.lo().min(outer), outer).unwrap_or(Interval::ENTIRE);
         }
         let middle = (a + b) * 0.5;
-        self.pieces(a, middle, negligible, depth + 1) + self.pieces(middle, b, negligible, depth + 1)
+        self.pieces(a, middle, negligible, depth + 1)
+            + self.pieces(middle, b, negligible, depth + 1)
     }
 
     fn error(&self, tau: Interval) -> Interval {
@@ -154,7 +166,9 @@ mod tests {
             let (range, point_width) = sine.range(between(a, b));
             assert!(range.contains((1.5 * (a + b)).sin()) && point_width < 1e-14);
             assert!(
-                range.contains((3.0 * a).sin()) && range.contains((3.0 * b).sin()) && range.width() < 0.04
+                range.contains((3.0 * a).sin())
+                    && range.contains((3.0 * b).sin())
+                    && range.width() < 0.04
             );
             let integral = cosine.integral(Interval::point(b));
             assert!((integral - (3.0 * b).sin() / 3.0).mag() < 1e-14);
@@ -181,7 +195,10 @@ mod tests {
         let exact = (2.0 - 3.0f64.sin()) / 4.0;
         assert!(whole.contains(exact) || (whole - exact).mag() < 1e-15);
         assert!(whole.width() < 1e-12 && (whole - exact).mag() < 1e-12);
-        assert!(cosine.may_turn(between(0.0, 0.75), 1e-14) && !cosine.may_turn(between(0.0, 0.3), 1e-14));
+        assert!(
+            cosine.may_turn(between(0.0, 0.75), 1e-14)
+                && !cosine.may_turn(between(0.0, 0.3), 1e-14)
+        );
     }
 
     #[test]
@@ -196,6 +213,9 @@ mod tests {
     #[test]
     fn a_norm_beyond_every_series_gives_no_bound_but_no_wrong_one() {
         let [sine, _] = oscillation(1e4, 1.0);
-        assert_eq!(sine.integral_of_absolute(Interval::ZERO, Interval::ONE, 1e-10).hi(), f64::INFINITY);
+        assert_eq!(
+            sine.integral_of_absolute(Interval::ZERO, Interval::ONE, 1e-10).hi(),
+            f64::INFINITY
+        );
     }
 }

@@ -6,8 +6,8 @@ use reachtube_scalar::Interval;
 use crate::LinearSystem;
 use crate::matrix::{IntervalMatrix, UNDERFLOW, relative_error};
 
-/// At so many samples, the sum of the terms before each, one a step and of the shape of B, of which `term(k)` are the lower and upper ends,
-/// column by column.
+/// At so many samples, the sum of the terms before each, one a step and of the shape of B, of which
+/// `term(k)` are the lower and upper ends, column by column.
 ///
 /// # Guarantee
 ///
@@ -23,8 +23,9 @@ pub(crate) fn running_sum<I: Iterator<Item = (f64, f64)>>(
         sums.add(&[1.0], |_| term(k));
         sums
     };
-    let total =
-        |block: usize| (block * length..(block + 1) * length).fold(ColumnSums::new(rows * columns), add);
+    let total = |block: usize| {
+        (block * length..(block + 1) * length).fold(ColumnSums::new(rows * columns), add)
+    };
     let whole = samples.saturating_sub(1) / length;
     let totals: Vec<ColumnSums> = (0..whole).into_par_iter().map(total).collect();
     let mut before = vec![ColumnSums::new(rows * columns)];
@@ -43,10 +44,11 @@ pub(crate) fn running_sum<I: Iterator<Item = (f64, f64)>>(
     before.into_par_iter().enumerate().flat_map_iter(block).collect()
 }
 
-/// Sums of columns of intervals times numbers, in floating point, with a bound of their error. A sum all of whose terms are zero is 0.
+/// Sums of columns of intervals times numbers, in floating point, with a bound of their error. A
+/// sum all of whose terms are zero is 0.
 ///
-/// The error of n terms is at most n u / (1 - n u) times the sum of their sizes (Higham, Accuracy and Stability of Numerical Algorithms,
-/// section 3.1), and what underflows.
+/// The error of n terms is at most n u / (1 - n u) times the sum of their sizes (Higham, Accuracy
+/// and Stability of Numerical Algorithms, section 3.1), and what underflows.
 #[derive(Clone)]
 pub(crate) struct ColumnSums {
     terms: usize,
@@ -69,8 +71,13 @@ impl ColumnSums {
         }
     }
 
-    /// Adds the `vector` times a matrix, of which `ends(j)` are the lower and upper ends of column j.
-    pub(crate) fn add<I: Iterator<Item = (f64, f64)>>(&mut self, vector: &[f64], ends: impl Fn(usize) -> I) {
+    /// Adds the `vector` times a matrix, of which `ends(j)` are the lower and upper ends of column
+    /// j.
+    pub(crate) fn add<I: Iterator<Item = (f64, f64)>>(
+        &mut self,
+        vector: &[f64],
+        ends: impl Fn(usize) -> I,
+    ) {
         for (j, &y) in vector.iter().enumerate().filter(|(_, y)| **y != 0.0) {
             self.terms += 1;
             let (first, second) =

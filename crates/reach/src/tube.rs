@@ -6,7 +6,8 @@ use crate::matrix::{IntervalMatrix, absolute, add_product, point, points, produc
 use crate::variation::measurable_gains;
 use crate::{Disturbance, Hyperrectangle, Propagation, ReachSets, Trajectory};
 
-/// The continuous-time tube: one box for each step [t_k, t_{k+1}] that contains every reachable state at every time of the step.
+/// The continuous-time tube: one box for each step [t_k, t_{k+1}] that contains every reachable
+/// state at every time of the step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tube {
     dimension: usize,
@@ -14,10 +15,12 @@ pub struct Tube {
 }
 
 impl Tube {
-    /// The tube around the solution `nominal` (without the centres of the sets) of the system with the recorded `inputs`
-    /// (row-major, one row of m a sample). `radii` are shared by all suites of one grid.
+    /// The tube around the solution `nominal` (without the centres of the sets) of the system with
+    /// the recorded `inputs` (row-major, one row of m a sample). `radii` are shared by all suites
+    /// of one grid.
     ///
-    /// The centre y solves ẏ = A y + B (u + c_u) + d and stays within h²/8 sup|ÿ| of the chord between two samples; the radius likewise.
+    /// The centre y solves ẏ = A y + B (u + c_u) + d and stays within h²/8 sup|ÿ| of the chord
+    /// between two samples; the radius likewise.
     ///
     /// # Guarantee
     ///
@@ -36,8 +39,11 @@ impl Tube {
         let mut bounds = Vec::with_capacity(steps * n);
         for k in 0..steps {
             let y: Vec<Interval> = (0..n).map(|i| center(k, i)).collect();
-            let input = |j: usize| Interval::point(inputs[k * m + j]) + Interval::point(input_set.center[j]);
-            let velocity = derivative(propagation.system(), &y, &(0..m).map(input).collect::<Vec<_>>());
+            let input = |j: usize| {
+                Interval::point(inputs[k * m + j]) + Interval::point(input_set.center[j])
+            };
+            let velocity =
+                derivative(propagation.system(), &y, &(0..m).map(input).collect::<Vec<_>>());
             let mut acceleration = vec![Interval::ZERO; n];
             add_product(&mut acceleration, &radii.curvature, &velocity);
             let eighth = eighth(propagation, k);
@@ -75,7 +81,8 @@ impl Tube {
     }
 }
 
-/// Radii of the tube over each step of a grid: they depend on the sets, not on the nominal solution.
+/// Radii of the tube over each step of a grid: they depend on the sets, not on the nominal
+/// solution.
 #[derive(Debug, Clone)]
 pub struct TubeRadii {
     dimension: usize,
@@ -85,10 +92,11 @@ pub struct TubeRadii {
 }
 
 impl TubeRadii {
-    /// The radii for the initial set X0 and the input set U. The disturbance `Sample` is covered by the gain of `Measurable`, which contains it
-    /// between the samples too.
+    /// The radii for the initial set X0 and the input set U. The disturbance `Sample` is covered by
+    /// the gain of `Measurable`, which contains it between the samples too.
     ///
-    /// An entry of e^{At} (and of Γ(t), for `Constant`) stays within h²/8 sup|d²/dt²| of its chord, and the chord within its ends.
+    /// An entry of e^{At} (and of Γ(t), for `Constant`) stays within h²/8 sup|d²/dt²| of its chord,
+    /// and the chord within its ends.
     ///
     /// # Guarantee
     ///
@@ -103,12 +111,14 @@ impl TubeRadii {
         let (a, b) = (point(system.a()), point(system.b()));
         let longest = Interval::ZERO.hull(Interval::point(propagation.grid().longest_step()));
         let curvature = product(&step(system, longest).phi, &a);
-        let (second_of_initial, second_of_input) = (product(&curvature, &a), product(&curvature, &b));
+        let (second_of_initial, second_of_input) =
+            (product(&curvature, &a), product(&curvature, &b));
         let variation = match disturbance {
             Disturbance::Constant => None,
             Disturbance::Sample | Disturbance::Measurable => Some(measurable_gains(propagation)),
         };
-        let (initial_radius, input_radius) = (points(&initial_set.radius), points(&input_set.radius));
+        let (initial_radius, input_radius) =
+            (points(&initial_set.radius), points(&input_set.radius));
         let step_radius = |k: usize| {
             let mut radius = vec![Interval::ZERO; system.states()];
             let exponential = [k, k + 1].map(|k| propagation.exponential(k));

@@ -1,5 +1,6 @@
-//! ∫ |e^{Aτ} B| dτ, entry by entry: the total variation of Γ. Where an entry of e^{Aτ} B keeps its sign, the integral of its absolute value is the
-//! absolute value of its integral, in closed form; where it may change sign, the cell is halved until the rest does not matter.
+//! ∫ |e^{Aτ} B| dτ, entry by entry: the total variation of Γ. Where an entry of e^{Aτ} B keeps its
+//! sign, the integral of its absolute value is the absolute value of its integral, in closed form;
+//! where it may change sign, the cell is halved until the rest does not matter.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,10 +15,12 @@ use crate::series::{Polynomial, Series};
 use crate::sums::{ends, running_sum};
 use crate::{LinearSystem, Propagation};
 
-/// A piece of the integral is left as an interval once its outer bound is below this part of the largest entry of its cell.
+/// A piece of the integral is left as an interval once its outer bound is below this part of the
+/// largest entry of its cell.
 const NEGLIGIBLE: f64 = 1e-13;
 
-/// Norm of A h above which the series of one cell would lose digits to cancellation, and cells are made shorter than the step h.
+/// Norm of A h above which the series of one cell would lose digits to cancellation, and cells are
+/// made shorter than the step h.
 const CELL_NORM: f64 = 2.0;
 
 /// Cells of one step at most.
@@ -56,7 +59,8 @@ impl<'a> Cells<'a> {
         let turning = DMatrix::from_element(system.states(), system.inputs(), Vec::new());
         let mut cells = Self { parts, series, within, integrals: Vec::new(), turning, propagation };
         let count = cells.propagation.grid().len().saturating_sub(1);
-        let (integrals, turns): (Vec<_>, Vec<_>) = (0..count).into_par_iter().map(|k| cells.cell(k)).unzip();
+        let (integrals, turns): (Vec<_>, Vec<_>) =
+            (0..count).into_par_iter().map(|k| cells.cell(k)).unzip();
         cells.integrals = integrals;
         for (k, entries) in turns.into_iter().enumerate() {
             entries.into_iter().for_each(|entry| cells.turning[entry].push(k));
@@ -95,19 +99,24 @@ impl<'a> Cells<'a> {
         fine.into_iter().step_by(self.parts).collect()
     }
 
-    /// A lower bound of Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| in entry (i, j), for every sample k of a grid with these `times`.
+    /// A lower bound of Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| in entry (i, j), for every sample k
+    /// of a grid with these `times`.
     fn variation_at_least(&self, times: &[f64], (i, j): (usize, usize)) -> Vec<f64> {
-        let mut integral = IntegralEntry { cells: self, entry: (i, j), polynomials: BTreeMap::new() };
+        let mut integral =
+            IntegralEntry { cells: self, entry: (i, j), polynomials: BTreeMap::new() };
         let total = |k: usize| {
-            let nodes = nodes_around(times, k, &self.turning[(i, j)], self.propagation.grid().times());
-            let values: Vec<Interval> = nodes.iter().map(|&l| integral.between(times[l], times[k])).collect();
+            let nodes =
+                nodes_around(times, k, &self.turning[(i, j)], self.propagation.grid().times());
+            let values: Vec<Interval> =
+                nodes.iter().map(|&l| integral.between(times[l], times[k])).collect();
             values.windows(2).fold(Interval::ZERO, |sum, v| sum + (v[1] - v[0]).abs()).lo()
         };
         (0..times.len()).map(total).collect()
     }
 }
 
-/// e^{Aτ} B for 0 <= τ <= L, to second order about L/2: value + slope (τ - L/2) + bend (τ - L/2)²/2.
+/// e^{Aτ} B for 0 <= τ <= L, to second order about L/2: value + slope (τ - L/2) + bend (τ -
+/// L/2)²/2.
 struct Within {
     value: IntervalMatrix,
     slope: IntervalMatrix,
@@ -120,8 +129,14 @@ impl Within {
     fn new(system: &LinearSystem, longest: f64) -> Self {
         let (a, b) = (point(system.a()), point(system.b()));
         let value = product(&step(system, Interval::point(0.5 * longest)).phi, &b);
-        let over_cell = product(&step(system, Interval::ZERO.hull(Interval::point(longest))).phi, &b);
-        Self { slope: product(&a, &value), bend: product(&a, &product(&a, &over_cell)), value, longest }
+        let over_cell =
+            product(&step(system, Interval::ZERO.hull(Interval::point(longest))).phi, &b);
+        Self {
+            slope: product(&a, &value),
+            bend: product(&a, &product(&a, &over_cell)),
+            value,
+            longest,
+        }
     }
 
     /// `start` e^{Aτ} B over all of 0 <= τ <= L.
@@ -138,11 +153,13 @@ impl Within {
     }
 }
 
-/// The propagation on a grid of shorter steps where those given are long, and the number of steps that one becomes.
+/// The propagation on a grid of shorter steps where those given are long, and the number of steps
+/// that one becomes.
 fn refine(propagation: &Propagation) -> (Cow<'_, Propagation>, usize) {
     let system = propagation.system();
     let norm = norm_upper(&magnitude(&point(system.a()))) * propagation.grid().longest_step();
-    let parts = ((norm / CELL_NORM).ceil().clamp(1.0, MOST_CELLS as f64) as usize).next_power_of_two();
+    let parts =
+        ((norm / CELL_NORM).ceil().clamp(1.0, MOST_CELLS as f64) as usize).next_power_of_two();
     if parts > 1
         && let Ok(finer) = Propagation::new(system, &propagation.grid().refined(parts))
     {
@@ -153,12 +170,13 @@ fn refine(propagation: &Propagation) -> (Cow<'_, Propagation>, usize) {
 
 /// κ(t_k) = Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| on a grid that need not be uniform.
 ///
-/// The sum telescopes wherever the entry of Γ is monotonic, so it is enough to visit the nodes t_k - t_j around the sign changes of e^{Aτ} B.
+/// The sum telescopes wherever the entry of Γ is monotonic, so it is enough to visit the nodes t_k
+/// - t_j around the sign changes of e^{Aτ} B.
 ///
 /// # Guarantee
 ///
-/// Outer enclosure, directed rounding. The lower end is the sum itself up to rounding (leaving out a node can only lower it); the upper end is that of
-/// [`measurable_gains`].
+/// Outer enclosure, directed rounding. The lower end is the sum itself up to rounding (leaving out
+/// a node can only lower it); the upper end is that of [`measurable_gains`].
 pub(crate) fn sample_gains_on_any_grid(propagation: &Propagation) -> Vec<IntervalMatrix> {
     let cells = Cells::new(propagation);
     let (states, inputs) = cells.turning.shape();
@@ -168,13 +186,15 @@ pub(crate) fn sample_gains_on_any_grid(propagation: &Propagation) -> Vec<Interva
     let gain = |(k, upper): (usize, IntervalMatrix)| {
         IntervalMatrix::from_fn(states, inputs, |i, j| {
             let highest = upper[(i, j)].hi();
-            Interval::new(lower[i * inputs + j][k].clamp(0.0, highest), highest).unwrap_or(Interval::ENTIRE)
+            Interval::new(lower[i * inputs + j][k].clamp(0.0, highest), highest)
+                .unwrap_or(Interval::ENTIRE)
         })
     };
     cells.gains().into_iter().enumerate().map(gain).collect()
 }
 
-/// Indices l, descending, of the nodes s = t_k - t_l to visit: both ends, and those within and next to each turning cell.
+/// Indices l, descending, of the nodes s = t_k - t_l to visit: both ends, and those within and next
+/// to each turning cell.
 fn nodes_around(times: &[f64], k: usize, turning: &[usize], cells: &[f64]) -> Vec<usize> {
     let mut nodes = BTreeSet::from([0, k]);
     for &cell in turning.iter().take_while(|&&cell| cells[cell] < times[k]) {

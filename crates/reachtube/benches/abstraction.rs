@@ -1,5 +1,5 @@
-//! Models of the LWA 4P: how long they take to make, their evaluation beside the dynamics that they stand for, sine and cosine given, and their reachable
-//! sets.
+//! Models of the LWA 4P: how long they take to make, their evaluation beside the dynamics that they
+//! stand for, sine and cosine given, and their reachable sets.
 //! `cargo bench -p reachtube --bench abstraction`.
 
 use divan::counter::ItemsCount;
@@ -35,7 +35,8 @@ fn make((kind, order): (u32, u32)) -> PolynomialModel {
 fn evaluate<S: Lanewise + Powers>(bencher: Bencher, (kind, order): (u32, u32)) {
     let model = model(kind, order);
     let x: Vec<S> = model.state(&[0.3; 6], &[0.5; 6]).into_iter().map(S::from).collect();
-    let (u, mut ws, mut rate) = ([S::from(2.0); 6], model.workspace(), vec![S::zero(); model.states()]);
+    let (u, mut ws, mut rate) =
+        ([S::from(2.0); 6], model.workspace(), vec![S::zero(); model.states()]);
     bencher.counter(ItemsCount::new(model.term_count() * S::LANES)).bench_local(|| {
         model.rate_into(black_box(&x), black_box(&u), &mut ws, &mut rate);
         black_box(&rate);
@@ -81,11 +82,13 @@ fn aba<S: Lanewise>(bencher: Bencher) {
     });
 }
 
-/// Radii of U, N m: about those that the linear model needs for the recordings of the paper, and of the states, in rad and rad/s.
+/// Radii of U, N m: about those that the linear model needs for the recordings of the paper, and of
+/// the states, in rad and rad/s.
 const INPUT: [f64; 6] = [1.2, 2.2, 2.5, 0.7, 0.16, 0.5];
 const STATE: [f64; 2] = [0.005, 0.03];
 
-/// Samples at 250 Hz that a model at rest is followed for, with all generators; each item is one that was reached.
+/// Samples at 250 Hz that a model at rest is followed for, with all generators; each item is one
+/// that was reached.
 #[divan::bench(args = [(1, 3, 1251), (2, 5, 1251), (2, 5, 251), (2, 12, 251), (3, 3, 251)], sample_count = 10)]
 fn flowpipe(bencher: Bencher, (kind, order, samples): (u32, u32, usize)) {
     let system = model(kind, order).polynomial_system().unwrap();
@@ -95,8 +98,15 @@ fn flowpipe(bencher: Bencher, (kind, order, samples): (u32, u32, usize)) {
     let (grid, held) = (TimeGrid::uniform(0.004, samples), vec![0.0; 6 * samples]);
     let input = UncertainInput { measured: &held, set: &set };
     let follow = || {
-        Flowpipe::new(black_box(&system), &grid, &[0.0; 12], &initial, &input, &FlowpipeSettings::default())
-            .unwrap()
+        Flowpipe::new(
+            black_box(&system),
+            &grid,
+            &[0.0; 12],
+            &initial,
+            &input,
+            &FlowpipeSettings::default(),
+        )
+        .unwrap()
     };
     bencher.counter(ItemsCount::new(follow().len())).bench(follow);
 }

@@ -1,4 +1,5 @@
-//! The paper's size: 152 suites x 15 runs x 5 s at 250 Hz of a 6-joint arm. `cargo bench -p reachtube`.
+//! The paper's size: 152 suites x 15 runs x 5 s at 250 Hz of a 6-joint arm.
+//! `cargo bench -p reachtube`.
 
 use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
@@ -17,7 +18,8 @@ fn main() {
     divan::main();
 }
 
-/// Deviations like those of an arm that drifts: a smooth growth of its own in each run and state, with some noise.
+/// Deviations like those of an arm that drifts: a smooth growth of its own in each run and state,
+/// with some noise.
 fn deviations(run: usize) -> Vec<f64> {
     let mut noise = 0x9E37_79B9_7F4A_7C15u64.wrapping_mul(run as u64 + 1);
     let mut random = move || {
@@ -30,7 +32,8 @@ fn deviations(run: usize) -> Vec<f64> {
     (0..SAMPLES * STATES)
         .map(|at| {
             let (t, i) = ((at / STATES) as f64 * 0.004, at % STATES);
-            let growth = if i < 6 { 0.002 + 0.1 * t } else { 0.01 + 0.1 * (1.0 - (-5.0 * t).exp()) };
+            let growth =
+                if i < 6 { 0.002 + 0.1 * t } else { 0.01 + 0.1 * (1.0 - (-5.0 * t).exp()) };
             growth * (rates[i] + 0.05 * random())
         })
         .collect()
@@ -53,7 +56,9 @@ fn envelope_of_2280_runs(bencher: Bencher) {
     let bytes = runs.iter().map(|run| run.len() * 8).sum::<usize>();
     bencher.counter(BytesCount::new(bytes)).bench(|| {
         let mut envelope = Envelope::new(STATES);
-        runs.iter().enumerate().for_each(|(run, states)| envelope.include(run as u32, black_box(states)));
+        runs.iter()
+            .enumerate()
+            .for_each(|(run, states)| envelope.include(run as u32, black_box(states)));
         envelope
     });
 }
@@ -104,8 +109,11 @@ fn program_of_152_suites(bencher: Bencher, disturbance: Disturbance) {
     let deviations = [Deviation { grid: 0, envelope }];
     let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
     bencher.bench(|| {
-        let program =
-            Program::new(&settings, &[1.0; STATES], Block::of_grids(&grids, &deviations, STATES / 2));
+        let program = Program::new(
+            &settings,
+            &[1.0; STATES],
+            Block::of_grids(&grids, &deviations, STATES / 2),
+        );
         program.solve().unwrap()
     });
 }
@@ -115,7 +123,8 @@ fn matrices_of_5_s(bencher: Bencher) {
     bencher.bench(|| grid(Disturbance::Sample));
 }
 
-/// The whole of `conform` on the recordings of the paper's arm, where they are beside the repository.
+/// The whole of `conform` on the recordings of the paper's arm, where they are beside the
+/// repository.
 #[divan::bench(sample_count = 10)]
 fn conform_schunk(bencher: Bencher) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/schunk_lwa4p");

@@ -1,4 +1,5 @@
-//! Identification from recordings: all of the UR10e's (../shared/data/ur10e; without it there is nothing to measure).
+//! Identification from recordings: all of the UR10e's (../shared/data/ur10e; without it there is
+//! nothing to measure).
 
 use divan::Bencher;
 use reachtube::identify::{IdentifySettings, identify};

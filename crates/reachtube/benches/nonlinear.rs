@@ -1,4 +1,5 @@
-//! Conformance of models that are not linear, on the paper's recordings (../shared/data/schunk_lwa4p; without them there is nothing to measure).
+//! Conformance of models that are not linear, on the paper's recordings
+//! (../shared/data/schunk_lwa4p; without them there is nothing to measure).
 
 use std::path::Path;
 

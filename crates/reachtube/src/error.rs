@@ -5,7 +5,8 @@ use thiserror::Error;
 
 use crate::data::Defect;
 
-/// What can go wrong. A model that is not conformant is not an error, it is a value, as in [`Proof`](crate::conform::Proof) and [`Check`](crate::conform::Check).
+/// What can go wrong. A model that is not conformant is not an error, it is a value, as in
+/// [`Proof`](crate::conform::Proof) and [`Check`](crate::conform::Check).
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -28,7 +29,9 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A result could not be printed.
-    #[error("standard output: cannot write: {0}; make room or print elsewhere, and run the command again")]
+    #[error(
+        "standard output: cannot write: {0}; make room or print elsewhere, and run the command again"
+    )]
     Output(std::io::Error),
     /// The recordings have defects.
     #[error("{}", crate::data::list_defects(.0))]

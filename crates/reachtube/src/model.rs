@@ -11,8 +11,8 @@ use sha2::{Digest, Sha256};
 
 use crate::abstraction::{PolynomialModel, Records, TermRecord};
 use crate::conform::{
-    Conformance, Dynamics, Explanation, Place, Proof, Recordings, Search, Settings, TightRow, Tolerance,
-    Trust, UncertaintySets,
+    Conformance, Dynamics, Explanation, Place, Proof, Recordings, Search, Settings, TightRow,
+    Tolerance, Trust, UncertaintySets,
 };
 use crate::data::DataSet;
 use crate::error::{Error, Result};
@@ -21,7 +21,8 @@ use crate::json;
 /// What the field `format` of every model file says.
 pub const FORMAT: &str = "reachtube-model";
 
-/// The version of the format that this library writes and reads; the schema is `docs/model.schema.json`.
+/// The version of the format that this library writes and reads; the schema is
+/// `docs/model.schema.json`.
 pub const VERSION: u32 = 1;
 
 /// Numbers that are computed twice are the same to this part.
@@ -29,11 +30,12 @@ const SAME: f64 = 1e-9;
 
 const MODEL_REMEDY: &str = "give a file that `conform --out` wrote";
 
-/// Tight rows kept in a file at most: as many as a degenerate program may have would make it unreadable.
+/// Tight rows kept in a file at most: as many as a degenerate program may have would make it
+/// unreadable.
 pub const MOST_TIGHT: usize = 500;
 
-/// A model with the uncertainty sets for which it is reachset conformant with the recordings named in it. SI units; states are ordered
-/// q then q̇.
+/// A model with the uncertainty sets for which it is reachset conformant with the recordings named
+/// in it. SI units; states are ordered q then q̇.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
@@ -45,11 +47,13 @@ pub struct Model {
     pub tool: String,
     /// Whether the sets were proved to enclose the recordings.
     pub verified: bool,
-    /// The cost of the sets: Σ_k Σ_i s_i times the width of the reachable set and the noise, over all states and distinct sample times; the mean where suites have different sets. None where a
-    /// reachable set was lost.
+    /// The cost of the sets: Σ_k Σ_i s_i times the width of the reachable set and the noise, over
+    /// all states and distinct sample times; the mean where suites have different sets. None where
+    /// a reachable set was lost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
-    /// The solver's dual objective for a linear model: sets that satisfy the program cost no less, up to its tolerance.
+    /// The solver's dual objective for a linear model: sets that satisfy the program cost no less,
+    /// up to its tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost_lower_bound: Option<f64>,
     /// The paper's sum (21) for a linear model, with E where |E| is meant, for comparison.
@@ -75,7 +79,8 @@ pub struct Model {
     pub proof: Proof,
     /// What may be expected of the next motion.
     pub trust: Trust,
-    /// The recorded points that touch the reachable set and so decide the sets, the closest first, 500 at most.
+    /// The recorded points that touch the reachable set and so decide the sets, the closest first,
+    /// 500 at most.
     pub tight: Vec<Place>,
     /// How it was done.
     pub settings: Settings,
@@ -88,7 +93,8 @@ pub struct Model {
     /// d of ẋ = A x + B u + d, 2n; zero about q̇ = 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drift: Vec<f64>,
-    /// Names of the variables of the polynomials of a model that is not linear, as in the file of an abstraction.
+    /// Names of the variables of the polynomials of a model that is not linear, as in the file of
+    /// an abstraction.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub variables: Vec<String>,
     /// What the polynomials' variables are offsets from.
@@ -103,7 +109,8 @@ pub struct Model {
     pub robot: RobotDescription,
 }
 
-/// Recordings beside the closest motions of the model that were found: a start in X0 and an input in U, held over each sample.
+/// Recordings beside the closest motions of the model that were found: a start in X0 and an input
+/// in U, held over each sample.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Explained {
@@ -129,7 +136,8 @@ pub struct Residual {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataRecord {
-    /// SHA-256 over the lines `sha256  file` of all runs, as in the output of sha256sum, in this order.
+    /// SHA-256 over the lines `sha256  file` of all runs, as in the output of sha256sum, in this
+    /// order.
     pub sha256: String,
     /// The suites.
     pub suites: Vec<SuiteRecord>,
@@ -172,7 +180,8 @@ impl Model {
             Dynamics::Linear(system) => linear = Some(system),
             Dynamics::Polynomial(model) => polynomial = model.records(),
         }
-        let matrix = |of: fn(&LinearSystem) -> &DMatrix<f64>| linear.map_or_else(Vec::new, |s| rows(of(s)));
+        let matrix =
+            |of: fn(&LinearSystem) -> &DMatrix<f64>| linear.map_or_else(Vec::new, |s| rows(of(s)));
         Self {
             format: FORMAT.into(),
             version: VERSION,
@@ -216,7 +225,9 @@ impl Model {
         let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
         let value = json::versioned(&text, FORMAT, VERSION, "conform").map_err(wrong)?;
         let model: Self = serde_json::from_value(value).map_err(|error| {
-            wrong(format!("{error}; give the file as `conform --out` wrote it, or run conform again"))
+            wrong(format!(
+                "{error}; give the file as `conform --out` wrote it, or run conform again"
+            ))
         })?;
         model.check().map_err(wrong)?;
         Ok(model)
@@ -264,7 +275,11 @@ impl Model {
                 rows.iter().flatten().copied(),
             )
         };
-        Ok(LinearSystem::new(matrix(&self.a), matrix(&self.b), DVector::from_vec(self.drift.clone()))?)
+        Ok(LinearSystem::new(
+            matrix(&self.a),
+            matrix(&self.b),
+            DVector::from_vec(self.drift.clone()),
+        )?)
     }
 
     /// X0, U and V.
@@ -276,11 +291,21 @@ impl Model {
         }
     }
 
-    /// Whether one of these recordings, by its SHA-256, is among those that the model was fitted to.
+    /// Whether one of these recordings, by its SHA-256, is among those that the model was fitted
+    /// to.
     pub fn was_fitted_to(&self, recordings: &Recordings) -> bool {
-        let fitted: HashSet<&str> =
-            self.data.suites.iter().flat_map(|suite| &suite.runs).map(|run| run.sha256.as_str()).collect();
-        recordings.suites.iter().flat_map(|suite| &suite.runs).any(|run| fitted.contains(run.sha256.as_str()))
+        let fitted: HashSet<&str> = self
+            .data
+            .suites
+            .iter()
+            .flat_map(|suite| &suite.runs)
+            .map(|run| run.sha256.as_str())
+            .collect();
+        recordings
+            .suites
+            .iter()
+            .flat_map(|suite| &suite.runs)
+            .any(|run| fitted.contains(run.sha256.as_str()))
     }
 
     /// Number of joints n.
@@ -293,7 +318,8 @@ impl Model {
         let is = |matrix: &[Vec<f64>], columns: usize| {
             matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
         };
-        let set = |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
+        let set =
+            |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
         let costs = [self.cost, self.cost_lower_bound, self.cost_paper, self.hull_volume];
         if self.acceleration.is_empty() && costs.contains(&None) {
             return Err("it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model does; run conform again".into());
@@ -318,7 +344,8 @@ impl Model {
         if point.q.len() != n || point.qd.len() != n {
             return Err(format!("its expansion point is not one of {n} joints; run conform again"));
         }
-        if self.settings.operating_box.as_ref().is_some_and(|operating_box| !operating_box.is_of(n)) {
+        if self.settings.operating_box.as_ref().is_some_and(|operating_box| !operating_box.is_of(n))
+        {
             return Err(format!("its operating box is not one of {n} joints; run conform again"));
         }
         self.settings.validate(n).map_err(|error| error.to_string())?;
@@ -327,25 +354,33 @@ impl Model {
 
     /// What is in the file twice must be the same: where it is not, somebody has changed a part.
     fn check_parts(&self) -> Result<(), String> {
-        let changed =
-            |what: &str| Err(format!("{what}: the file was changed after it was written; run conform again"));
+        let changed = |what: &str| {
+            Err(format!("{what}: the file was changed after it was written; run conform again"))
+        };
         let robot = self.robot().map_err(|error| error.to_string())?;
         let made = Dynamics::new(&robot, &self.settings).map_err(|error| error.to_string())?;
-        let near = |x: &DMatrix<f64>, y: &DMatrix<f64>| (x - y).amax() <= SAME * x.amax().max(y.amax());
+        let near =
+            |x: &DMatrix<f64>, y: &DMatrix<f64>| (x - y).amax() <= SAME * x.amax().max(y.amax());
         match (&made, self.dynamics().map_err(|error| error.to_string())?) {
             (Dynamics::Linear(made), Dynamics::Linear(own)) => {
                 let drift = (made.drift() - own.drift()).amax() <= SAME * made.drift().amax();
                 if !(near(made.a(), own.a()) && near(made.b(), own.b()) && drift) {
-                    return changed("a, b or drift is not that of its robot at its expansion point");
+                    return changed(
+                        "a, b or drift is not that of its robot at its expansion point",
+                    );
                 }
             }
             (Dynamics::Polynomial(_), Dynamics::Polynomial(_)) => {}
-            _ => return changed("it has not the matrices or polynomials that its settings ask for"),
+            _ => {
+                return changed("it has not the matrices or polynomials that its settings ask for");
+            }
         }
         if self.data.sha256 != self.data.digest() {
             return changed("data.sha256 is not that of the recordings it lists");
         }
-        if self.verified != self.proof.verified || self.verified && self.proof.proved != self.proof.rows {
+        if self.verified != self.proof.verified
+            || self.verified && self.proof.proved != self.proof.rows
+        {
             return changed("verified does not agree with proof");
         }
         Ok(())
@@ -403,7 +438,9 @@ impl Explained {
 impl Residual {
     /// The larger difference in parts of the tolerance.
     fn in_tolerances(&self, tolerance: Tolerance) -> f64 {
-        let part = |value: Option<f64>, of: f64| value.unwrap_or(f64::INFINITY) / of.max(f64::MIN_POSITIVE);
+        let part = |value: Option<f64>, of: f64| {
+            value.unwrap_or(f64::INFINITY) / of.max(f64::MIN_POSITIVE)
+        };
         part(self.position, tolerance.position).max(part(self.velocity, tolerance.velocity))
     }
 }
@@ -439,8 +476,9 @@ impl DataRecord {
 
 /// The tight rows in the words of the recordings.
 fn tight(data: &DataSet, found: &Conformance, joints: usize) -> Vec<Place> {
-    let place =
-        |tight: &TightRow| Place::new(data, &found.recordings.suites[tight.suite], &tight.row, joints);
+    let place = |tight: &TightRow| {
+        Place::new(data, &found.recordings.suites[tight.suite], &tight.row, joints)
+    };
     found.tight.iter().take(MOST_TIGHT).map(place).collect()
 }
 

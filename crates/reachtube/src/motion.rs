@@ -25,7 +25,8 @@ pub(crate) struct Planned {
 }
 
 impl Motion {
-    /// The plan at time `t` s: q = start + s(t / T) travel with s = 10 x³ - 15 x⁴ + 6 x⁵; at rest outside [0, T].
+    /// The plan at time `t` s: q = start + s(t / T) travel with s = 10 x³ - 15 x⁴ + 6 x⁵; at rest
+    /// outside [0, T].
     pub fn at(&self, t: f64) -> Planned {
         let x = (t / self.duration).clamp(0.0, 1.0);
         let rest = 1.0 - x;
@@ -33,13 +34,19 @@ impl Motion {
         let rate = 30.0 * (x * rest).powi(2) / self.duration;
         let bend = 60.0 * x * rest * (1.0 - 2.0 * x) / self.duration.powi(2);
         Planned {
-            q: self.start.iter().zip(&self.travel).map(|(start, travel)| start + s * travel).collect(),
+            q: self
+                .start
+                .iter()
+                .zip(&self.travel)
+                .map(|(start, travel)| start + s * travel)
+                .collect(),
             qd: self.travel.iter().map(|travel| rate * travel).collect(),
             qdd: self.travel.iter().map(|travel| bend * travel).collect(),
         }
     }
 
-    /// The input (11) that moves the nominal robot along the plan at time `t` s: u = M_m q̈ + c + τ_v, N m.
+    /// The input (11) that moves the nominal robot along the plan at time `t` s: u = M_m q̈ + c +
+    /// τ_v, N m.
     pub fn input(&self, robot: &Robot, t: f64) -> Vec<f64> {
         let Planned { q, qd, qdd } = self.at(t);
         let link = robot.inverse_dynamics(&q, &qd, &qdd);
@@ -70,7 +77,9 @@ mod tests {
     fn the_motion_goes_from_rest_to_rest() {
         let motion = Motion::random(&Robot::lwa4p(), 3.0, &mut SplitMix64::new(1));
         assert_eq!(motion.at(0.0).q, motion.start);
-        for (end, (start, travel)) in motion.at(3.0).q.iter().zip(motion.start.iter().zip(&motion.travel)) {
+        for (end, (start, travel)) in
+            motion.at(3.0).q.iter().zip(motion.start.iter().zip(&motion.travel))
+        {
             assert!((end - start - travel).abs() < 1e-12);
         }
         for t in [0.0, 3.0, 4.0] {

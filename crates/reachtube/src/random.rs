@@ -1,6 +1,7 @@
 //! Numbers that look random and depend on a seed alone.
 
-/// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): a counter through a mixing function. Not for secrets.
+/// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): a counter through a mixing function. Not for
+/// secrets.
 pub(crate) struct SplitMix64(u64);
 
 impl SplitMix64 {
@@ -30,11 +31,13 @@ impl SplitMix64 {
 mod tests {
     use super::*;
 
-    /// The first numbers of seed 1234567 as Rosetta Code gives them (Pseudo-random numbers/Splitmix64).
+    /// The first numbers of seed 1234567 as Rosetta Code gives them (Pseudo-random
+    /// numbers/Splitmix64).
     #[test]
     fn it_is_splitmix64() {
         let mut random = SplitMix64::new(1_234_567);
-        let published = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
+        let published =
+            [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
         assert_eq!(published, [random.next(), random.next(), random.next()]);
     }
 

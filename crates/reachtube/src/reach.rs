@@ -7,8 +7,8 @@ use reachtube_robot::Robot;
 use reachtube_scalar::rounding::{add_down, add_up};
 
 use crate::conform::{
-    Case, Dynamics, Effort, Grids, Lost, Recordings, RunNominal, Settings, UncertaintySets, flowpipes, lost,
-    nominal, nominals,
+    Case, Dynamics, Effort, Grids, Lost, Recordings, RunNominal, Settings, UncertaintySets,
+    flowpipes, lost, nominal, nominals,
 };
 use crate::data::{DataSet, state_name};
 use crate::error::Result;
@@ -40,11 +40,13 @@ pub struct SuiteReach {
 ///
 /// # Guarantee
 ///
-/// Outer, directed rounding: `lower` and `upper` enclose the reachable set of the state at each sample, `tube` at every time of each step. The noise set is not part of it.
+/// Outer, directed rounding: `lower` and `upper` enclose the reachable set of the state at each
+/// sample, `tube` at every time of each step. The noise set is not part of it.
 ///
 /// # Errors
 ///
-/// Defects of a run that has changed since it was read; a model that runs away without any uncertainty.
+/// Defects of a run that has changed since it was read; a model that runs away without any
+/// uncertainty.
 pub fn reach(
     data: &DataSet,
     robot: &Robot,
@@ -90,8 +92,14 @@ fn linear(
         for nominal in nominals(data, robot, settings, &grids, suite)? {
             let (reach, radii) = &shared[nominal.grid];
             let propagation = &grids.as_slice()[nominal.grid].propagation;
-            let tube =
-                Tube::new(propagation, &nominal.trajectory, &nominal.inputs, reach, &sets.input_set, radii);
+            let tube = Tube::new(
+                propagation,
+                &nominal.trajectory,
+                &nominal.inputs,
+                reach,
+                &sets.input_set,
+                radii,
+            );
             let run = nominal.run.map(|index| data.runs()[index].file.clone());
             let times = propagation.grid().times()[..nominal.trajectory.len()].to_vec();
             all.push(SuiteReach::new(suite.entry.name.clone(), run, times, &nominal, reach, tube));
@@ -111,8 +119,17 @@ impl SuiteReach {
     ) -> Self {
         let dimension = nominal.trajectory.state(0).len();
         let (nominals, lower, upper) = (Vec::new(), Vec::new(), Vec::new());
-        let mut result =
-            Self { suite, run, times, nominal: nominals, lower, upper, tube, dimension, lost: None };
+        let mut result = Self {
+            suite,
+            run,
+            times,
+            nominal: nominals,
+            lower,
+            upper,
+            tube,
+            dimension,
+            lost: None,
+        };
         for k in 0..result.times.len() {
             for (i, x) in nominal.trajectory.state(k).iter().enumerate() {
                 result.nominal.push(x.mid());
@@ -134,7 +151,8 @@ impl SuiteReach {
         let (dimension, samples) = (2 * case.joints(), flowpipe.len());
         nominal.truncate(samples * dimension);
         let hulls = || (0..samples).flat_map(|k| flowpipe.sample(k));
-        let steps = (0..samples.saturating_sub(1)).flat_map(|k| flowpipe.step(k)).copied().collect();
+        let steps =
+            (0..samples.saturating_sub(1)).flat_map(|k| flowpipe.step(k)).copied().collect();
         Self {
             suite,
             run: case.run.map(|index| data.runs()[index].file.clone()),
@@ -153,8 +171,11 @@ impl SuiteReach {
         match &self.run {
             None => self.suite.clone(),
             Some(run) => {
-                let stem =
-                    std::path::Path::new(run).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+                let stem = std::path::Path::new(run)
+                    .file_stem()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned();
                 format!("{}_{stem}", self.suite)
             }
         }

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 
-/// Writes a file through a temporary one beside it that takes its name only when everything is on disk. The folder is made if it is missing. A device or a pipe (/dev/stdout) is written to as it is.
+/// Writes a file through a temporary one beside it that takes its name only when everything is on
+/// disk. The folder is made if it is missing. A device or a pipe (/dev/stdout) is written to as it
+/// is.
 ///
 /// # Errors
 ///
@@ -20,7 +22,10 @@ use crate::error::{Error, Result};
 /// assert_eq!(std::fs::read(&path).unwrap(), b"whole");
 /// # Ok::<(), reachtube::Error>(())
 /// ```
-pub fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>) -> Result<()> {
+pub fn atomically(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<()> {
     let attempt = || {
         if is_special(path) {
             return write(&mut std::fs::OpenOptions::new().write(true).open(path)?);
@@ -39,11 +44,13 @@ pub fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> std::io::Re
     attempt().map_err(|source| Error::Write { path: path.to_path_buf(), source })
 }
 
-/// Tries, before a long job, whether a file can be written at `path` when it is done. Nothing is left behind.
+/// Tries, before a long job, whether a file can be written at `path` when it is done. Nothing is
+/// left behind.
 ///
 /// # Errors
 ///
-/// [`Error::Write`] when `path` is a folder, or no file can be made in its folder or, where that is missing, in the nearest one above.
+/// [`Error::Write`] when `path` is a folder, or no file can be made in its folder or, where that is
+/// missing, in the nearest one above.
 pub fn try_at(path: &Path) -> Result<()> {
     let attempt = || {
         if path.is_dir() {

@@ -63,10 +63,13 @@ fn model_1_is_complete_at_order_3() {
     let robot = Robot::lwa4p();
     let (third, ninth) = (model(&robot, ModelKind::One, 3), model(&robot, ModelKind::One, 9));
     assert_eq!((third.degree(), ninth.degree()), (3, 3));
-    assert!(third.acceleration().iter().zip(ninth.acceleration()).all(|(a, b)| a.terms() == b.terms()));
+    assert!(
+        third.acceleration().iter().zip(ninth.acceleration()).all(|(a, b)| a.terms() == b.terms())
+    );
 }
 
-/// p_max = 12 for the LWA 4P: from there on M_m(q_a) q̈ = u - c - τ_v holds to rounding, and no earlier.
+/// p_max = 12 for the LWA 4P: from there on M_m(q_a) q̈ = u - c - τ_v holds to rounding, and no
+/// earlier.
 #[test]
 fn coriolis_terms_of_model_2_are_exact_from_order_12() {
     let robot = Robot::lwa4p();
@@ -77,12 +80,16 @@ fn coriolis_terms_of_model_2_are_exact_from_order_12() {
         assert_eq!(model.degree(), order.min(12));
         let mut worst: f64 = 0.0;
         for _ in 0..50 {
-            let (q, qd, u) =
-                (numbers(&mut seed, 6, 3.0), numbers(&mut seed, 6, 1.2), numbers(&mut seed, 6, 10.0));
+            let (q, qd, u) = (
+                numbers(&mut seed, 6, 3.0),
+                numbers(&mut seed, 6, 1.2),
+                numbers(&mut seed, 6, 10.0),
+            );
             let rate = model.rate(&model.state(&q, &qd), &u);
-            let expected = mass.clone().cholesky().unwrap().solve(&nalgebra::DVector::from_fn(6, |i, _| {
-                u[i] - robot.coriolis_torque(&q, &qd)[i] - robot.viscous_torque(&qd)[i]
-            }));
+            let expected =
+                mass.clone().cholesky().unwrap().solve(&nalgebra::DVector::from_fn(6, |i, _| {
+                    u[i] - robot.coriolis_torque(&q, &qd)[i] - robot.viscous_torque(&qd)[i]
+                }));
             let scale = largest(expected.iter().copied());
             worst = worst.max(largest((0..6).map(|i| rate[6 + i] - expected[i])) / scale);
         }
@@ -96,22 +103,26 @@ fn model_3_is_a_taylor_polynomial_of_the_forward_dynamics() {
     let robot = Robot::lwa4p();
     let mut seed = 8;
     let point = ExpansionPoint::from_values(
-        &[numbers(&mut seed, 6, 1.5), numbers(&mut seed, 6, 0.6), numbers(&mut seed, 6, 5.0)].concat(),
+        &[numbers(&mut seed, 6, 1.5), numbers(&mut seed, 6, 0.6), numbers(&mut seed, 6, 5.0)]
+            .concat(),
         6,
     )
     .unwrap();
-    let direction = [numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 5.0)];
+    let direction =
+        [numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 5.0)];
     for order in 1..=4u32 {
         let model = PolynomialModel::new(&robot, ModelKind::Three, order, &point).unwrap();
         let error = |t: f64| {
-            let along =
-                |at: &[f64], d: &[f64]| -> Vec<f64> { at.iter().zip(d).map(|(a, d)| a + t * d).collect() };
+            let along = |at: &[f64], d: &[f64]| -> Vec<f64> {
+                at.iter().zip(d).map(|(a, d)| a + t * d).collect()
+            };
             let (q, qd, u) = (
                 along(&point.q, &direction[0]),
                 along(&point.qd, &direction[1]),
                 along(&point.u, &direction[2]),
             );
-            let (rate, expected) = (model.rate(&model.state(&q, &qd), &u), truth(&robot, &q, &qd, &u));
+            let (rate, expected) =
+                (model.rate(&model.state(&q, &qd), &u), truth(&robot, &q, &qd, &u));
             largest((0..6).map(|i| rate[6 + i] - expected[i]))
         };
         let slope = (error(0.04) / error(0.02)).log2();
@@ -129,15 +140,19 @@ fn intervals_enclose_numbers_and_derivatives_are_slopes() {
         let model = model(&robot, kind, order);
         let derivatives = model.derivatives();
         for _ in 0..20 {
-            let (q, qd, u) =
-                (numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 1.0), numbers(&mut seed, 6, 5.0));
+            let (q, qd, u) = (
+                numbers(&mut seed, 6, 1.0),
+                numbers(&mut seed, 6, 1.0),
+                numbers(&mut seed, 6, 5.0),
+            );
             let x = model.state(&q, &qd);
             let wide = |values: &[f64]| -> Vec<Interval> {
                 values.iter().map(|v| Interval::centered(*v, 0.01)).collect()
             };
             let (rate, boxed) = (model.rate(&x, &u), model.rate(&wide(&x), &wide(&u)));
             assert!(rate.iter().zip(&boxed).all(|(r, b)| b.contains(*r)));
-            let z: Vec<f64> = x[6..].iter().chain(&u).zip(model.origin()).map(|(z, o)| z - o).collect();
+            let z: Vec<f64> =
+                x[6..].iter().chain(&u).zip(model.origin()).map(|(z, o)| z - o).collect();
             let (place, h) = ((number(&mut seed).abs() * z.len() as f64) as usize, 1e-5);
             let at = |sign: f64| {
                 let mut z = z.clone();
@@ -173,11 +188,16 @@ fn files_keep_every_bit() {
 fn what_does_not_fit_is_refused_with_a_remedy() {
     let robot = Robot::lwa4p();
     let zero = ExpansionPoint::zero(6);
-    let refusal = |kind, order| PolynomialModel::new(&robot, kind, order, &zero).unwrap_err().to_string();
+    let refusal =
+        |kind, order| PolynomialModel::new(&robot, kind, order, &zero).unwrap_err().to_string();
     assert!(refusal(ModelKind::One, 0).contains("order 1 at least"));
     let large = refusal(ModelKind::Three, 20);
     assert!(large.contains("GB for its terms") && large.contains("order 10 fits"), "{large}");
-    assert!(refusal(ModelKind::Two, 40).contains("order 31 at most"), "{}", refusal(ModelKind::Two, 40));
+    assert!(
+        refusal(ModelKind::Two, 40).contains("order 31 at most"),
+        "{}",
+        refusal(ModelKind::Two, 40)
+    );
 }
 
 /// The states at the samples of all runs, one after the other.
@@ -189,9 +209,10 @@ fn simulated<S: Lanewise + reachtube_scalar::Powers>(
     let mut states = vec![0.0; runs.len() * times.len() * model.states()];
     let place = |run: usize, sample: usize| (run * times.len() + sample) * model.states();
     let mut field = ModelField::<S>::new(model);
-    let outcomes = Ensemble::new(model.states()).integrate(&mut field, times, 4, runs, |run, sample, x| {
-        states[place(run, sample)..][..x.len()].copy_from_slice(x);
-    });
+    let outcomes =
+        Ensemble::new(model.states()).integrate(&mut field, times, 4, runs, |run, sample, x| {
+            states[place(run, sample)..][..x.len()].copy_from_slice(x);
+        });
     assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
     states
 }
@@ -203,8 +224,9 @@ fn simulated_models_are_one_motion_in_every_way() {
     let inputs = numbers(&mut seed, 6 * 25, 3.0);
     for (kind, order) in [(ModelKind::One, 3), (ModelKind::Two, 12), (ModelKind::Three, 4)] {
         let model = model(&robot, kind, order);
-        let starts: Vec<Vec<f64>> =
-            (0..6).map(|_| model.state(&numbers(&mut seed, 6, 0.1), &numbers(&mut seed, 6, 0.1))).collect();
+        let starts: Vec<Vec<f64>> = (0..6)
+            .map(|_| model.state(&numbers(&mut seed, 6, 0.1), &numbers(&mut seed, 6, 0.1)))
+            .collect();
         let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &inputs }).collect();
         let alone = simulated::<f64>(&model, &times, &runs);
         assert_eq!(alone, simulated::<Lanes<4>>(&model, &times, &runs), "{kind:?}");
@@ -276,7 +298,8 @@ fn what_models_leave_out_is_bounded() {
     }
 }
 
-/// Over a box so wide that the mass matrix is not known to be invertible there is no bound, and that is said.
+/// Over a box so wide that the mass matrix is not known to be invertible there is no bound, and
+/// that is said.
 #[test]
 fn no_bound_is_an_answer() {
     let robot = Robot::lwa4p();
@@ -325,9 +348,11 @@ fn flowpipes_of_the_models_hold_their_behaviours() {
             let moved = |values: &[f64], seed: &mut u64, size: f64| -> Vec<f64> {
                 values.iter().map(|v| v + size * number(seed).signum()).collect()
             };
-            let start = model.state(&moved(&q, &mut seed, initial), &moved(&qd, &mut seed, initial));
+            let start =
+                model.state(&moved(&q, &mut seed, initial), &moved(&qd, &mut seed, initial));
             let inputs = moved(&nominal, &mut seed, disturbance);
-            let behaviour = simulated::<f64>(&model, &times, &[Run { start: &start, inputs: &inputs }]);
+            let behaviour =
+                simulated::<f64>(&model, &times, &[Run { start: &start, inputs: &inputs }]);
             for (k, x) in behaviour.chunks(model.states()).enumerate() {
                 for (value, set) in x.iter().zip(flowpipe.sample(k)) {
                     // The integrator is exact to 1e-9 here.
@@ -347,8 +372,8 @@ fn flowpipes_of_the_models_hold_their_behaviours() {
 fn a_robot_of_seven_joints_has_28_variables() {
     let robot = Robot::from_toml(SEVEN_JOINTS, "seven joints").unwrap();
     let mut seed = 77;
-    let [two, three] =
-        [(ModelKind::Two, 14), (ModelKind::Three, 3)].map(|(kind, order)| model(&robot, kind, order));
+    let [two, three] = [(ModelKind::Two, 14), (ModelKind::Three, 3)]
+        .map(|(kind, order)| model(&robot, kind, order));
     assert_eq!((two.layout().variables(), three.states()), (28, 28));
     let [q, qd, u] = [0.05, 0.05, 0.5].map(|scale| numbers(&mut seed, 7, scale));
     let (rate, expected) = (three.rate(&three.state(&q, &qd), &u), truth(&robot, &q, &qd, &u));

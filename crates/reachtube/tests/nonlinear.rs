@@ -1,4 +1,5 @@
-//! Conformance of models that are not linear, on recordings whose disturbances are known and on the paper's own.
+//! Conformance of models that are not linear, on recordings whose disturbances are known and on the
+//! paper's own.
 
 mod common;
 
@@ -35,7 +36,10 @@ fn bent() -> Robot {
 }
 
 fn settings(kind: ModelKind, order: u32) -> Settings {
-    Settings { abstraction: Abstraction { model: kind, order }, ..Settings::new(Torque::Compensated, 2) }
+    Settings {
+        abstraction: Abstraction { model: kind, order },
+        ..Settings::new(Torque::Compensated, 2)
+    }
 }
 
 fn model_of(robot: &Robot, settings: &Settings) -> PolynomialModel {
@@ -43,7 +47,8 @@ fn model_of(robot: &Robot, settings: &Settings) -> PolynomialModel {
     PolynomialModel::new(robot, model, order, &settings.expansion_point).unwrap()
 }
 
-/// Runs of the model itself, from within ± `start` (rad, rad/s) under inputs that are off by ± `input` (N m).
+/// Runs of the model itself, from within ± `start` (rad, rad/s) under inputs that are off by ±
+/// `input` (N m).
 fn recorded(
     model: &PolynomialModel,
     times: &[f64],
@@ -62,7 +67,8 @@ fn recorded(
         let start = model.state(&x0[..2], &x0[2..]);
         let run = Run { start: &start, inputs: &inputs };
         let mut solver = DormandPrince::new(model.states(), Tolerance::default());
-        let outcome = solver.follow(&mut ModelField::new(model), times, run, |_, x| states.extend(&x[..4]));
+        let outcome =
+            solver.follow(&mut ModelField::new(model), times, run, |_, x| states.extend(&x[..4]));
         assert!(outcome.is_reached());
         Recorded { times: times.to_vec(), states, torques }
     };
@@ -94,10 +100,16 @@ fn assert_close(a: &UncertaintySets, b: &UncertaintySets, tolerance: f64) {
 }
 
 /// The route of models that are not linear, on a linear one.
-fn the_long_way(robot: &Robot, data: &DataSet, names: &[String], settings: &Settings) -> Conformance {
+fn the_long_way(
+    robot: &Robot,
+    data: &DataSet,
+    names: &[String],
+    settings: &Settings,
+) -> Conformance {
     let Abstraction { model, order } = settings.abstraction;
     let model =
-        PolynomialModel::new(robot, model, order, &ExpansionPoint::zero(robot.joint_count())).unwrap();
+        PolynomialModel::new(robot, model, order, &ExpansionPoint::zero(robot.joint_count()))
+            .unwrap();
     let dynamics = Dynamics::Polynomial(Box::new(model));
     conform_dynamics(robot, data, names, settings, dynamics, &Watch::SILENT).unwrap()
 }
@@ -113,13 +125,21 @@ fn a_linear_model_has_the_sets_of_the_one_program() {
         let short = conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap();
         let long = the_long_way(&robot, &data, &[], &settings);
         assert!(short.proof.verified && long.proof.verified);
-        assert_eq!((short.proof.enclosure, long.proof.enclosure), (Enclosure::Inner, Enclosure::Outer));
+        assert_eq!(
+            (short.proof.enclosure, long.proof.enclosure),
+            (Enclosure::Inner, Enclosure::Outer)
+        );
         let cost = long.search.as_ref().unwrap().linearised_cost.unwrap();
         assert!((cost / short.cost - 1.0).abs() < 1e-6, "{cost} for {}", short.cost);
         assert_close(&long.sets, &short.sets, 1e-6);
-        // The enclosure is wider than the hull, but not by much; a constant disturbance moves less than any.
+        // The enclosure is wider than the hull, but not by much; a constant disturbance moves less
+        // than any.
         assert!(long.cost > (1.0 - 1e-9) * short.cost);
-        assert!(disturbance == Disturbance::Constant || long.cost < 1.01 * short.cost, "{}", long.cost);
+        assert!(
+            disturbance == Disturbance::Constant || long.cost < 1.01 * short.cost,
+            "{}",
+            long.cost
+        );
     }
 }
 
@@ -143,9 +163,14 @@ fn sets_of_each_model_enclose_its_runs_and_are_not_wider_than_what_was_there() {
         let data = two_suites(folder.path(), &model_of(&robot, &settings));
         let found = conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap();
         let search = found.search.clone().unwrap();
-        assert!(found.proof.verified && found.proof.proved == 2 * 4 * 150, "{kind:?}: {:?}", found.proof);
+        assert!(
+            found.proof.verified && found.proof.proved == 2 * 4 * 150,
+            "{kind:?}: {:?}",
+            found.proof
+        );
         assert!(search.rounds < 20 && search.runs_away.is_none(), "{search:?}");
-        // Nominals start at the mean of the runs: sets that were there have at most twice the radius of the starts.
+        // Nominals start at the mean of the runs: sets that were there have at most twice the
+        // radius of the starts.
         let there = Settings { method: Method::Program, ..settings.clone() };
         let widest = |set: &Hyperrectangle| set.radius.iter().fold(0.0, |max: f64, r| max.max(*r));
         assert!(
@@ -162,7 +187,8 @@ fn sets_of_each_model_enclose_its_runs_and_are_not_wider_than_what_was_there() {
     }
 }
 
-/// Sets that are smaller in any radius by a few parts in a hundred leave a run out: the rows that decide are met by motions of the model itself.
+/// Sets that are smaller in any radius by a few parts in a hundred leave a run out: the rows that
+/// decide are met by motions of the model itself.
 #[test]
 fn no_radius_can_be_made_smaller_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -209,7 +235,13 @@ fn a_search_goes_on_where_it_was_interrupted() {
                 told.push(words.to_string());
                 assert!(told.len() < stop_after, "interrupted");
             };
-            conform(&robot, &data, &[], &settings, &Watch { finished: &finished, resume, ..Watch::SILENT })
+            conform(
+                &robot,
+                &data,
+                &[],
+                &settings,
+                &Watch { finished: &finished, resume, ..Watch::SILENT },
+            )
         };
         let whole = run(usize::MAX, None).unwrap();
         let all = told.lock().unwrap().clone();
@@ -219,7 +251,10 @@ fn a_search_goes_on_where_it_was_interrupted() {
         let other = Settings { disturbance: Disturbance::Constant, ..settings.clone() };
         let watch = Watch { resume: Some(&path), ..Watch::SILENT };
         let refused = conform(&robot, &data, &[], &other, &watch).unwrap_err().to_string();
-        assert!(refused.contains("progress.json: it holds the progress of another job"), "{refused}");
+        assert!(
+            refused.contains("progress.json: it holds the progress of another job"),
+            "{refused}"
+        );
         let resumed = run(usize::MAX, Some(&path)).unwrap();
         assert_eq!(resumed.sets, whole.sets);
         assert_eq!(*told.lock().unwrap(), all[3..]);
@@ -237,12 +272,17 @@ fn a_model_that_runs_away_is_refused_with_the_time() {
     runs.iter_mut().for_each(|run| run.torques.iter_mut().for_each(|u| *u = 40.0));
     write_data_set(folder.path(), &[("a", runs)]);
     let data = DataSet::open(folder.path()).unwrap();
-    let error = conform(&robot, &data, &[], &settings(ModelKind::One, 3), &Watch::SILENT).unwrap_err();
+    let error =
+        conform(&robot, &data, &[], &settings(ModelKind::One, 3), &Watch::SILENT).unwrap_err();
     let text = error.to_string();
-    assert!(text.contains("suite a: the model runs away after 0.") && text.contains("--until"), "{text}");
+    assert!(
+        text.contains("suite a: the model runs away after 0.") && text.contains("--until"),
+        "{text}"
+    );
 }
 
-/// Sets under which the model may run away have no reachable set to the end, and that is the answer.
+/// Sets under which the model may run away have no reachable set to the end, and that is the
+/// answer.
 #[test]
 fn a_reachable_set_that_is_lost_is_an_answer() {
     let folder = tempfile::tempdir().unwrap();

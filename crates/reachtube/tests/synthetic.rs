@@ -7,8 +7,8 @@ use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 use reachtube::Model;
 use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel, linear_model};
 use reachtube::conform::{
-    Case, Centre, Conformance, Dynamics, Grids, Noise, NominalStart, Recordings, Settings, UncertaintySets,
-    Watch, Weights, check, conform, explain,
+    Case, Centre, Conformance, Dynamics, Grids, Noise, NominalStart, Recordings, Settings,
+    UncertaintySets, Watch, Weights, check, conform, explain,
 };
 use reachtube::data::{DataSet, Torque};
 use reachtube_reach::{Disturbance, Hyperrectangle, Propagation, TimeGrid};
@@ -32,11 +32,15 @@ fn sets_cost_no_more_than_the_disturbances_that_were_there() {
     let robot = two_joints();
     write_data_set(
         folder.path(),
-        &[("a", suite(&robot, &grid(0.01, 80), 12, 3)), ("b", suite(&robot, &grid(0.01, 50), 9, 4))],
+        &[
+            ("a", suite(&robot, &grid(0.01, 80), 12, 3)),
+            ("b", suite(&robot, &grid(0.01, 50), 9, 4)),
+        ],
     );
     let (_, found) = run(&robot, folder.path(), &Settings::new(Torque::Compensated, 2));
     assert!(found.proof.verified);
-    // The nominal solution starts at the mean of the runs, so what was there lies in sets of twice the radius of the starts.
+    // The nominal solution starts at the mean of the runs, so what was there lies in sets of twice
+    // the radius of the starts.
     let truth = |start: f64, input: f64| {
         let propagation = Propagation::new(
             &linear_model(&robot, &ExpansionPoint::zero(2)).unwrap(),
@@ -60,7 +64,10 @@ fn each_run_is_explained_by_sets_that_hold_its_disturbances() {
     let (robot, settings) = (two_joints(), Settings::new(Torque::Compensated, 2));
     write_data_set(
         folder.path(),
-        &[("a", suite(&robot, &grid(0.01, 80), 12, 3)), ("b", suite(&robot, &grid(0.01, 50), 9, 4))],
+        &[
+            ("a", suite(&robot, &grid(0.01, 80), 12, 3)),
+            ("b", suite(&robot, &grid(0.01, 50), 9, 4)),
+        ],
     );
     let data = DataSet::open(folder.path()).unwrap();
     let names = ["b".to_owned(), "a".to_owned()];
@@ -72,7 +79,11 @@ fn each_run_is_explained_by_sets_that_hold_its_disturbances() {
             center: vec![0.0; dimension],
             radius: vec![radius; dimension],
         };
-        let sets = UncertaintySets { initial_set: set(4, start), input_set: set(2, input), noise_set: None };
+        let sets = UncertaintySets {
+            initial_set: set(4, start),
+            input_set: set(2, input),
+            noise_set: None,
+        };
         explain(&data, &robot, &settings, &model, &cases, &recordings, &sets).unwrap()
     };
     // The starts lie within 0.01 of 0, and so within 0.02 of their mean.
@@ -88,7 +99,8 @@ fn each_run_is_explained_by_sets_that_hold_its_disturbances() {
 fn one_sample_is_its_own_hull() {
     let folder = tempfile::tempdir().unwrap();
     let starts = [[0.1, 0.0, -0.2, 0.3], [0.3, 0.1, 0.0, 0.3], [-0.1, 0.2, 0.2, 0.3]];
-    let runs = starts.map(|x| Recorded { times: vec![0.0], states: x.to_vec(), torques: vec![0.0; 2] });
+    let runs =
+        starts.map(|x| Recorded { times: vec![0.0], states: x.to_vec(), torques: vec![0.0; 2] });
     write_data_set(folder.path(), &[("a", runs.to_vec())]);
     let (_, found) = run(&two_joints(), folder.path(), &Settings::new(Torque::Compensated, 2));
     assert!(found.proof.verified);
@@ -116,19 +128,27 @@ fn row_generation_finds_the_optimum_of_the_whole_program() {
     let robot = two_joints();
     write_data_set(
         folder.path(),
-        &[("a", suite(&robot, &grid(0.02, 40), 6, 11)), ("b", suite(&robot, &grid(0.02, 25), 5, 12))],
+        &[
+            ("a", suite(&robot, &grid(0.02, 40), 6, 11)),
+            ("b", suite(&robot, &grid(0.02, 25), 5, 12)),
+        ],
     );
     for disturbance in [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable] {
         for centre in [Centre::Free, Centre::Origin, Centre::Zero] {
             for noise in [Noise::None, Noise::Free, Noise::Fixed(vec![0.002, 0.002, 0.01, 0.01])] {
                 let mut settings = Settings::new(Torque::Compensated, 2);
-                (settings.disturbance, settings.centre, settings.noise) = (disturbance, centre, noise);
+                (settings.disturbance, settings.centre, settings.noise) =
+                    (disturbance, centre, noise);
                 settings.weights = Weights::Given(vec![1.0, 2.0, 0.5, 0.25]);
                 let (data, found) = run(&robot, folder.path(), &settings);
                 let simplex = whole_program(&robot, &data, &settings);
                 let case = format!("{disturbance:?} {centre:?} {:?}", settings.noise);
                 assert!(found.proof.verified, "{case}");
-                assert!((found.cost / simplex - 1.0).abs() < 1e-7, "{case}: {} for {simplex}", found.cost);
+                assert!(
+                    (found.cost / simplex - 1.0).abs() < 1e-7,
+                    "{case}: {} for {simplex}",
+                    found.cost
+                );
             }
         }
     }
@@ -151,7 +171,10 @@ fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
         if j < 4 { coefficient(k, i, j).abs() } else { gains[k][(i, j - 4)].mid() }
     };
     let cost = |j: usize| {
-        (0..40).flat_map(|k| (0..4).map(move |i| (k, i))).map(|(k, i)| 2.0 * weights[i] * gain(k, i, j)).sum()
+        (0..40)
+            .flat_map(|k| (0..4).map(move |i| (k, i)))
+            .map(|(k, i)| 2.0 * weights[i] * gain(k, i, j))
+            .sum()
     };
     let mut problem = Problem::new(OptimizationDirection::Minimize);
     let limit = if settings.centre == Centre::Zero { 0.0 } else { f64::INFINITY };
@@ -191,7 +214,12 @@ fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
                     problem.add_constraint(row, ComparisonOp::Ge, bound);
                 }
             }
-            x = common::step(&system, 0.02, &x, &nalgebra::DVector::from_column_slice(runs[0].torque(k)));
+            x = common::step(
+                &system,
+                0.02,
+                &x,
+                &nalgebra::DVector::from_column_slice(runs[0].torque(k)),
+            );
         }
     }
     if settings.centre == Centre::Origin {
@@ -213,13 +241,16 @@ fn runs_with_their_own_input_or_times_have_their_own_nominal_solution() {
     let same = tempfile::tempdir().unwrap();
     write_data_set(same.path(), &[("a", suite(&robot, &grid(0.01, 50), 5, 8))]);
     let (_, shared) = run(&robot, same.path(), &settings);
-    // The input of one run is changed in one sample by an amount that nothing can see: only the way of computing differs.
+    // The input of one run is changed in one sample by an amount that nothing can see: only the way
+    // of computing differs.
     let mut runs = suite(&robot, &grid(0.01, 50), 5, 8);
     runs[3].torques[20] += 1e-13;
     let other = tempfile::tempdir().unwrap();
     write_data_set(other.path(), &[("a", runs)]);
     let (_, own) = run(&robot, other.path(), &settings);
-    assert!(shared.recordings.suites[0].shared.is_some() && own.recordings.suites[0].shared.is_none());
+    assert!(
+        shared.recordings.suites[0].shared.is_some() && own.recordings.suites[0].shared.is_none()
+    );
     assert!((own.cost / shared.cost - 1.0).abs() < 1e-9 && own.proof.verified);
     assert!(own.recordings.notes.iter().any(|note| note.contains("own nominal")));
     // Started at its own first state, a run has no deviation there.
@@ -265,7 +296,8 @@ fn a_point_pushed_out_of_the_set_is_the_witness() {
     let (k, i) = (37, 1);
     runs[2].states[k * 4 + i] -= 0.5;
     write_data_set(folder.path(), &[("a", runs)]);
-    let checked = check(&model, &DataSet::open(folder.path()).unwrap(), &[], &settings, &|_, _| {}).unwrap();
+    let checked =
+        check(&model, &DataSet::open(folder.path()).unwrap(), &[], &settings, &|_, _| {}).unwrap();
     let worst = checked.violations.worst.unwrap();
     assert!(!checked.conformant && checked.violations.count == 1);
     assert_eq!(

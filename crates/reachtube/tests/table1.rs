@@ -9,7 +9,8 @@ fn table(orders: &[u32], motions: usize) -> Table1 {
 }
 
 fn table_within(range: f64, orders: &[u32], motions: usize) -> Table1 {
-    let options = Table1Options { motions, orders: orders.to_vec(), model3_up_to: 3, seed: 2, range };
+    let options =
+        Table1Options { motions, orders: orders.to_vec(), model3_up_to: 3, seed: 2, range };
     table1(&Robot::lwa4p(), &options, &|_, _| ()).unwrap()
 }
 
@@ -28,7 +29,8 @@ fn at_order_one_the_models_have_one_error() {
     }
 }
 
-/// The range that another simulation gave over three random motions within the joints' limits (lwa4p/README.md of the shared data), at p = 1 and 3.
+/// The range that another simulation gave over three random motions within the joints' limits
+/// (lwa4p/README.md of the shared data), at p = 1 and 3.
 #[test]
 fn the_error_of_model_1_has_its_known_size() {
     let table = table_within(4.0, &[1, 3], 16);
@@ -74,6 +76,9 @@ fn errors_depend_on_seed_and_motion_alone() {
     assert_eq!(csv.lines().nth(1), Some(&format!("3,1,slow,1,{error}")[..]));
     let nothing = Table1Options { motions: 0, ..Default::default() };
     assert!(
-        table1(&Robot::lwa4p(), &nothing, &|_, _| ()).unwrap_err().to_string().contains("give 1 at least")
+        table1(&Robot::lwa4p(), &nothing, &|_, _| ())
+            .unwrap_err()
+            .to_string()
+            .contains("give 1 at least")
     );
 }

@@ -1,7 +1,9 @@
-//! Time of one call of each algorithm over `f64` and over lanes, which is a state in each lane; sine and cosine apart.
+//! Time of one call of each algorithm over `f64` and over lanes, which is a state in each lane;
+//! sine and cosine apart.
 //!
-//! UR5 and the LWA 4P's geometry come from the shared oracle files where those are; `lwa4p` is embedded. Lanes gain by what
-//! vectors the target has: compare with RUSTFLAGS="-C target-cpu=native".
+//! UR5 and the LWA 4P's geometry come from the shared oracle files where those are; `lwa4p` is
+//! embedded. Lanes gain by what vectors the target has: compare with RUSTFLAGS="-C
+//! target-cpu=native".
 
 #[path = "../tests/dynamics/shared.rs"]
 mod shared;
@@ -45,7 +47,8 @@ fn each<S: Lanewise>(
     let robot = if name == "lwa4p" { Some(Robot::lwa4p()) } else { shared::oracle_robot(name) };
     let Some(robot) = robot else { return };
     let n = robot.joint_count();
-    let (states, mut ws, mut out, mut k) = (states(n), Workspace::new(&robot), vec![S::zero(); n * n], 0);
+    let (states, mut ws, mut out, mut k) =
+        (states(n), Workspace::new(&robot), vec![S::zero(); n * n], 0);
     bencher.counter(ItemsCount::new(S::LANES)).bench_local(|| {
         k = (k + 1) % states.len();
         call(black_box(&robot), &states[k], &mut ws, &mut out);

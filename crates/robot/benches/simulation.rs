@@ -44,9 +44,10 @@ fn adaptive<const MOTOR: bool>(bencher: Bencher, tolerance: f64) {
     let mut solver = DormandPrince::new(12, Tolerance { relative: tolerance, absolute: tolerance });
     bencher.counter(ItemsCount::new(RUNS)).bench_local(|| {
         for start in &starts {
-            let outcome = solver.follow(&mut field, &times, Run { start, inputs: &inputs }, |_, x| {
-                black_box(x);
-            });
+            let outcome =
+                solver.follow(&mut field, &times, Run { start, inputs: &inputs }, |_, x| {
+                    black_box(x);
+                });
             assert!(outcome.is_reached(), "{outcome:?}");
         }
     });

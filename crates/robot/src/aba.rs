@@ -8,10 +8,12 @@ use crate::{Robot, Workspace};
 use reachtube_scalar::Scalar;
 
 impl Robot {
-    /// Forward dynamics (4) by the articulated-body algorithm: q̈ \[rad/s²\], armature and gravity included.
+    /// Forward dynamics (4) by the articulated-body algorithm: q̈ \[rad/s²\], armature and gravity
+    /// included.
     ///
-    /// Slices have one entry a joint: `sin`, `cos` of q, `qd` \[rad/s\], link-side torque `tau` \[N m\]. Linear in the
-    /// number of joints (Featherstone, IJRR 1983); equals [`Robot::forward_dynamics`] on s² + c² = 1.
+    /// Slices have one entry a joint: `sin`, `cos` of q, `qd` \[rad/s\], link-side torque `tau` \[N
+    /// m\]. Linear in the number of joints (Featherstone, IJRR 1983); equals
+    /// [`Robot::forward_dynamics`] on s² + c² = 1.
     ///
     /// # Guarantee
     ///
@@ -43,13 +45,19 @@ impl Robot {
             Weight::Separate(_) => {
                 self.gravity_pass(sin, cos, links, torque);
                 torque.iter_mut().zip(tau).for_each(|(g, t)| *g = t.clone() - g.clone());
-                return self.articulated_bodies([sin, cos, qd, torque], Vec3::zero(), articulated, qdd);
+                return self.articulated_bodies(
+                    [sin, cos, qd, torque],
+                    Vec3::zero(),
+                    articulated,
+                    qdd,
+                );
             }
         };
         self.articulated_bodies([sin, cos, qd, tau], base_acceleration, articulated, qdd);
     }
 
-    /// The algorithm over [sin q, cos q, q̇, tau] with the inertial parameters, the base accelerating.
+    /// The algorithm over [sin q, cos q, q̇, tau] with the inertial parameters, the base
+    /// accelerating.
     fn articulated_bodies<S: Scalar>(
         &self,
         inputs: [&[S]; 4],
@@ -90,12 +98,16 @@ impl<S: Scalar> ArticulatedScratch<S> {
         let still = S::zero();
         let swing = parent.angular_velocity.cross(&parent.angular_velocity.cross(&pose.origin));
         let mut angular_velocity = pose.to_link(&parent.angular_velocity);
-        self.bias_angular = Vec3::new(mul(&angular_velocity.y, qd), -mul(&angular_velocity.x, qd), still);
+        self.bias_angular =
+            Vec3::new(mul(&angular_velocity.y, qd), -mul(&angular_velocity.x, qd), still);
         self.bias_linear = pose.to_link(&swing);
         self.pose = pose;
         angular_velocity.z += qd.clone();
-        let motion =
-            Motion { angular_velocity, angular_acceleration: Vec3::zero(), acceleration: Vec3::zero() };
+        let motion = Motion {
+            angular_velocity,
+            angular_acceleration: Vec3::zero(),
+            acceleration: Vec3::zero(),
+        };
         let (force, moment) = link_wrench(link, &motion, &motion.gradient());
         self.body = ArticulatedBody::rigid(link, force, moment);
         motion
@@ -227,8 +239,10 @@ impl<S: Scalar> Pose<S> {
     #[inline(always)]
     fn general_to_parent(&self, h: &[Vec3<S>; 3]) -> [Vec3<S>; 3] {
         let [x, y, z] = [0, 1, 2].map(|i| self.to_parent(&h[i]));
-        let column = |a: &S, b: &S, c: &S| self.to_parent(&Vec3::new(a.clone(), b.clone(), c.clone()));
-        let (a, b, c) = (column(&x.x, &y.x, &z.x), column(&x.y, &y.y, &z.y), column(&x.z, &y.z, &z.z));
+        let column =
+            |a: &S, b: &S, c: &S| self.to_parent(&Vec3::new(a.clone(), b.clone(), c.clone()));
+        let (a, b, c) =
+            (column(&x.x, &y.x, &z.x), column(&x.y, &y.y, &z.y), column(&x.z, &y.z, &z.z));
         [Vec3::new(a.x, b.x, c.x), Vec3::new(a.y, b.y, c.y), Vec3::new(a.z, b.z, c.z)]
     }
 }

@@ -1,4 +1,5 @@
-//! Vectors of three and symmetric matrices over any [`Scalar`], no more than rigid-body dynamics needs.
+//! Vectors of three and symmetric matrices over any [`Scalar`], no more than rigid-body dynamics
+//! needs.
 
 use reachtube_scalar::Scalar;
 
@@ -133,9 +134,11 @@ impl<S: Scalar> Sym3<S> {
     }
 }
 
-/// The pose of a link in its parent, at the joint's angle: x_parent = Rx(twist) Rz(angle) x_link + origin.
+/// The pose of a link in its parent, at the joint's angle: x_parent = Rx(twist) Rz(angle) x_link +
+/// origin.
 ///
-/// Two plane rotations cost 8 products a vector where a full matrix costs 9 and must be formed first.
+/// Two plane rotations cost 8 products a vector where a full matrix costs 9 and must be formed
+/// first.
 #[derive(Clone, Debug)]
 pub(crate) struct Pose<S> {
     pub sin: S,

@@ -4,10 +4,12 @@ use crate::placement::{Placement, rotation_from_z, rotation_x, rotation_z};
 use nalgebra::{Matrix3, Vector3};
 use reachtube_scalar::Scalar;
 
-/// How a joint and its link hang on the link before: x_before = before · Rot(axis, q) · after · x_link.
+/// How a joint and its link hang on the link before: x_before = before · Rot(axis, q) · after ·
+/// x_link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointGeometry {
-    /// Placement of the joint frame in the original frame of the link before (the base for the first joint).
+    /// Placement of the joint frame in the original frame of the link before (the base for the
+    /// first joint).
     pub before: Placement,
     /// Unit vector of the joint's axis in the joint frame.
     pub axis: Vector3<f64>,
@@ -16,7 +18,8 @@ pub struct JointGeometry {
 }
 
 impl JointGeometry {
-    /// Standard Denavit-Hartenberg parameters: Rz(q + theta) Tz(d) Tx(a) Rx(alpha); a, d in m, angles in rad.
+    /// Standard Denavit-Hartenberg parameters: Rz(q + theta) Tz(d) Tx(a) Rx(alpha); a, d in m,
+    /// angles in rad.
     ///
     /// Angles within 1e-12 of a multiple of pi/2 are taken as exactly that multiple.
     pub fn standard_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
@@ -26,7 +29,8 @@ impl JointGeometry {
         Self { before: Placement::identity(), axis: Vector3::z(), after }
     }
 
-    /// Modified (Craig) Denavit-Hartenberg parameters: Rx(alpha) Tx(a) Rz(q + theta) Tz(d); a, d in m, angles in rad.
+    /// Modified (Craig) Denavit-Hartenberg parameters: Rx(alpha) Tx(a) Rz(q + theta) Tz(d); a, d in
+    /// m, angles in rad.
     ///
     /// Angles within 1e-12 of a multiple of pi/2 are taken as exactly that multiple.
     pub fn modified_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
@@ -37,14 +41,15 @@ impl JointGeometry {
         Self { before, axis: Vector3::z(), after }
     }
 
-    /// A joint frame placed in the original frame of the link before; the link's frame is the turned joint frame.
+    /// A joint frame placed in the original frame of the link before; the link's frame is the
+    /// turned joint frame.
     pub fn explicit(placement: Placement, axis: Vector3<f64>) -> Self {
         Self { before: placement, axis, after: Placement::identity() }
     }
 }
 
-/// One link in the frame that the algorithms use: origin on the joint's axis, +z along it, turned about z so that
-/// the next axis differs by a twist about x alone.
+/// One link in the frame that the algorithms use: origin on the joint's axis, +z along it, turned
+/// about z so that the next axis differs by a twist about x alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Link {
     pub sin_twist: f64,
@@ -96,7 +101,8 @@ impl Zxz {
     fn of(r: &Matrix3<f64>) -> Self {
         let tilt = r[(0, 2)].hypot(r[(1, 2)]);
         let lead = if tilt == 0.0 { (0.0, 1.0) } else { (r[(0, 2)] / tilt, -r[(1, 2)] / tilt) };
-        // The first row of Rz(-lead) R is (cos lag, -sin lag, 0), well conditioned also for parallel axes.
+        // The first row of Rz(-lead) R is (cos lag, -sin lag, 0), well conditioned also for
+        // parallel axes.
         let rest = rotation_z(lead).transpose() * r;
         Self { lead, twist: (tilt, r[(2, 2)]), lag: (-rest[(0, 1)], rest[(0, 0)]) }
     }
@@ -107,14 +113,16 @@ fn turned((sa, ca): (f64, f64), (sb, cb): (f64, f64)) -> (f64, f64) {
     (sa * cb + ca * sb, ca * cb - sa * sb)
 }
 
-/// The links in their working frames, and the base frame's turn (the base's original axes are R_base x_working).
+/// The links in their working frames, and the base frame's turn (the base's original axes are
+/// R_base x_working).
 pub(crate) fn reorient(
     joints: &[JointGeometry],
     inertias: &[LinkInertia],
     gravity_inertias: &[LinkInertia],
     armatures: &[f64],
 ) -> (Vec<Link>, Matrix3<f64>) {
-    let axes: Vec<_> = joints.iter().map(|j| Placement::rotation(rotation_from_z(&j.axis))).collect();
+    let axes: Vec<_> =
+        joints.iter().map(|j| Placement::rotation(rotation_from_z(&j.axis))).collect();
     let mut before = Placement::identity();
     let mut constants = Vec::with_capacity(joints.len());
     let mut originals = Vec::with_capacity(joints.len());
@@ -128,7 +136,8 @@ pub(crate) fn reorient(
         .map(|i| {
             let next_lead = turns.get(i + 1).map_or((0.0, 1.0), |t| t.lead);
             let offset = turned(turns[i].lag, next_lead);
-            let original = Placement::rotation(rotation_z(next_lead).transpose()).then(&originals[i]);
+            let original =
+                Placement::rotation(rotation_z(next_lead).transpose()).then(&originals[i]);
             let inertia = inertias[i].moved(&original);
             let heavy = gravity_inertias[i].moved(&original);
             let later_mass: f64 = inertias[i..].iter().map(|l| l.mass).sum();

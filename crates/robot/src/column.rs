@@ -1,4 +1,5 @@
-//! The columns of a regressor by name: inertial parameters, motor inertia, friction and offset of each joint.
+//! The columns of a regressor by name: inertial parameters, motor inertia, friction and offset of
+//! each joint.
 
 use crate::inertia::LinkInertia;
 use crate::regressor::INERTIAL;
@@ -38,7 +39,8 @@ pub enum ColumnKind {
     MomentZ,
     /// Moment of inertia about the link's origin \[kg m²\].
     Ixx,
-    /// Entry xy of the inertia tensor about the link's origin \[kg m²\] (minus the product of inertia ∫ x y dm).
+    /// Entry xy of the inertia tensor about the link's origin \[kg m²\] (minus the product of
+    /// inertia ∫ x y dm).
     Ixy,
     /// Moment of inertia about the link's origin \[kg m²\].
     Iyy,
@@ -132,7 +134,8 @@ impl fmt::Display for Column {
     }
 }
 
-/// The regressor of chosen columns over f64: motor torque = Y θ with friction and offsets where they are chosen.
+/// The regressor of chosen columns over f64: motor torque = Y θ with friction and offsets where
+/// they are chosen.
 ///
 /// # Examples
 ///
@@ -180,7 +183,8 @@ impl<'a> Regressor<'a> {
         &self.columns
     }
 
-    /// Writes Y \[n x columns, row by row\] at q \[rad\], q̇ \[rad/s\], q̈ \[rad/s²\]; does not allocate.
+    /// Writes Y \[n x columns, row by row\] at q \[rad\], q̇ \[rad/s\], q̈ \[rad/s²\]; does not
+    /// allocate.
     ///
     /// # Panics
     ///
@@ -228,15 +232,16 @@ impl Robot {
         robot
     }
 
-    /// The ten inertial parameters of each link \[10 n\] in the order of [`Robot::inertial_regressor`], about the origin
-    /// of the link's own frame.
+    /// The ten inertial parameters of each link \[10 n\] in the order of
+    /// [`Robot::inertial_regressor`], about the origin of the link's own frame.
     pub fn inertial_parameters(&self) -> Vec<f64> {
         self.description.joints.iter().flat_map(|j| j.link_inertia().parameters()).collect()
     }
 
     /// The values of these parameters in the robot's description, each in its SI unit.
     ///
-    /// Coulomb friction and offset are those of its four quadrants at no load: with slopes they are not all of it.
+    /// Coulomb friction and offset are those of its four quadrants at no load: with slopes they are
+    /// not all of it.
     pub fn column_values(&self, columns: &[Column]) -> Vec<f64> {
         let inertial = self.inertial_parameters();
         let value = |c: &Column| {
@@ -259,11 +264,13 @@ impl Robot {
 }
 
 impl RobotDescription {
-    /// The description with other values of these parameters; what is not among them keeps its value.
+    /// The description with other values of these parameters; what is not among them keeps its
+    /// value.
     ///
-    /// Links that change are written with first moment and inertia about the origin of their frame; Coulomb friction
-    /// loses its dependence on load where it changes. Whether a robot results, [`Robot::from_description`] says;
-    /// combinations that no single body has need [`Parameters::Base`](crate::Parameters::Base).
+    /// Links that change are written with first moment and inertia about the origin of their frame;
+    /// Coulomb friction loses its dependence on load where it changes. Whether a robot results,
+    /// [`Robot::from_description`] says; combinations that no single body has need
+    /// [`Parameters::Base`](crate::Parameters::Base).
     ///
     /// # Errors
     ///
@@ -304,7 +311,9 @@ impl crate::JointDescription {
     /// Motor inertia on the link's side, kept as the rotor's where that is how it is given.
     fn set_armature(&mut self, armature: f64) {
         match (self.rotor_inertia, self.gear_ratio) {
-            (Some(_), Some(ratio)) if ratio != 0.0 => self.rotor_inertia = Some(armature / ratio.powi(2)),
+            (Some(_), Some(ratio)) if ratio != 0.0 => {
+                self.rotor_inertia = Some(armature / ratio.powi(2))
+            }
             _ => self.armature = Some(armature),
         }
     }
@@ -321,7 +330,8 @@ impl LinkInertia {
     /// m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's origin.
     pub fn parameters(&self) -> [f64; INERTIAL] {
         let (h, i) = (&self.first_moment, self.tensor());
-        let [xx, xy, yy, xz, yz, zz] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|k| i[k]);
+        let [xx, xy, yy, xz, yz, zz] =
+            [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|k| i[k]);
         [self.mass, h.x, h.y, h.z, xx, xy, yy, xz, yz, zz]
     }
 

@@ -6,11 +6,12 @@ use crate::{Robot, Workspace};
 use reachtube_scalar::Scalar;
 
 impl Robot {
-    /// Mass matrix M_m(q) = M(q) + diag(armature) of (3) \[kg m²\], n x n, row by row, both triangles.
+    /// Mass matrix M_m(q) = M(q) + diag(armature) of (3) \[kg m²\], n x n, row by row, both
+    /// triangles.
     ///
-    /// `sin` and `cos` of q have one entry a joint; `m` has n². Composite-rigid-body algorithm (Walker & Orin 1982;
-    /// Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6). With independent sine and cosine it is this
-    /// algorithm's polynomial.
+    /// `sin` and `cos` of q have one entry a joint; `m` has n². Composite-rigid-body algorithm
+    /// (Walker & Orin 1982; Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6). With
+    /// independent sine and cosine it is this algorithm's polynomial.
     ///
     /// # Guarantee
     ///
@@ -32,7 +33,8 @@ impl Robot {
             let inertia = second_moments.xx.clone() + second_moments.yy.clone();
             m[i * n + i] = inertia.clone() + S::from(self.links[i].armature);
             let mut force = Vec3::new(-first_moment.y.clone(), first_moment.x.clone(), S::zero());
-            let mut moment = Vec3::new(-second_moments.xz.clone(), -second_moments.yz.clone(), inertia);
+            let mut moment =
+                Vec3::new(-second_moments.xz.clone(), -second_moments.yz.clone(), inertia);
             for j in (1..=i).rev() {
                 let pose = &scratch[j].pose;
                 force = pose.to_parent(&force);
@@ -42,7 +44,8 @@ impl Robot {
             }
             if i > 0 {
                 let link = &self.links[i];
-                let shifted = scratch[i].pose.composite_to_parent(link, &first_moment, &second_moments);
+                let shifted =
+                    scratch[i].pose.composite_to_parent(link, &first_moment, &second_moments);
                 (first_moment, second_moments) = self.links[i - 1].moments();
                 first_moment.accumulate(&shifted.0);
                 second_moments.accumulate(&shifted.1);
@@ -52,8 +55,8 @@ impl Robot {
 }
 
 impl<S: Scalar> crate::algebra::Pose<S> {
-    /// Moments of a link and all later ones about the parent's origin: with h = E h_link and shift p, mass m,
-    /// h + m p and E Σ Eᵀ + p (h + m p / 2)ᵀ + (h + m p / 2) pᵀ.
+    /// Moments of a link and all later ones about the parent's origin: with h = E h_link and shift
+    /// p, mass m, h + m p and E Σ Eᵀ + p (h + m p / 2)ᵀ + (h + m p / 2) pᵀ.
     #[inline(always)]
     fn composite_to_parent(&self, link: &Link, h: &Vec3<S>, m: &Sym3<S>) -> (Vec3<S>, Sym3<S>) {
         let half_shift = Vec3::constant(link.half_shift);

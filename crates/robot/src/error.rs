@@ -11,7 +11,8 @@ pub enum RobotError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The text is not TOML or XML, or lacks a field; the parser's message names line, column and field.
+    /// The text is not TOML or XML, or lacks a field; the parser's message names line, column and
+    /// field.
     #[error("{origin}: {}\ncorrect it; docs/robot.md describes the format", message.trim_end())]
     Syntax {
         /// File or name the text came from.

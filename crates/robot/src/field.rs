@@ -8,17 +8,21 @@ use reachtube_scalar::Lanewise;
 /// What the torque is that drives a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrivenBy {
-    /// Motor torque tau_m on the link's side, (4) with (5): M_m q̈ = tau_m - tau_c(g(q), q̇) - tau_v(q̇) - c(q, q̇) - g(q).
+    /// Motor torque tau_m on the link's side, (4) with (5): M_m q̈ = tau_m - tau_c(g(q), q̇) -
+    /// tau_v(q̇) - c(q, q̇) - g(q).
     Motor,
-    /// The input u of (11), which has gravity and Coulomb friction in it, (10): M_m q̈ = u - tau_v(q̇) - c(q, q̇).
+    /// The input u of (11), which has gravity and Coulomb friction in it, (10): M_m q̈ = u -
+    /// tau_v(q̇) - c(q, q̇).
     Input,
 }
 
-/// The equation of motion of a robot with friction, for the integrators of `reachtube-ode`: x = (q, q̇) (2n; rad, rad/s), and the
-/// torque (n; N m) as the input. Over lanes each lane is a robot of its own; reused, it does not allocate.
+/// The equation of motion of a robot with friction, for the integrators of `reachtube-ode`: x = (q,
+/// q̇) (2n; rad, rad/s), and the torque (n; N m) as the input. Over lanes each lane is a robot of
+/// its own; reused, it does not allocate.
 ///
-/// Coulomb friction jumps where a joint turns and is 0 at rest. As such it has no stiction: a joint that would stick chatters about zero
-/// velocity, with an amplitude of Coulomb torque times step over inertia, and an adaptive method takes ever smaller steps there.
+/// Coulomb friction jumps where a joint turns and is 0 at rest. As such it has no stiction: a joint
+/// that would stick chatters about zero velocity, with an amplitude of Coulomb torque times step
+/// over inertia, and an adaptive method takes ever smaller steps there.
 /// [`sticking_below`](Self::sticking_below) makes it continuous.
 ///
 /// # Examples
@@ -65,17 +69,18 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
         }
     }
 
-    /// The same motion by Featherstone's articulated bodies, [`Robot::aba`], in place of [`Robot::forward_dynamics`].
+    /// The same motion by Featherstone's articulated bodies, [`Robot::aba`], in place of
+    /// [`Robot::forward_dynamics`].
     #[must_use]
     pub fn by_articulated_bodies(self) -> Self {
         Self { articulated: true, ..self }
     }
 
-    /// The same with Coulomb friction in proportion to |q̇| below a speed \[rad/s\], and as it is from there on: a joint that would stick
-    /// creeps, at that speed at most.
+    /// The same with Coulomb friction in proportion to |q̇| below a speed \[rad/s\], and as it is
+    /// from there on: a joint that would stick creeps, at that speed at most.
     ///
-    /// Near rest it damps a joint with about Coulomb torque over inertia and speed \[1/s\]; steps longer than about 2.5 over that do
-    /// not follow it.
+    /// Near rest it damps a joint with about Coulomb torque over inertia and speed \[1/s\]; steps
+    /// longer than about 2.5 over that do not follow it.
     #[must_use]
     pub fn sticking_below(self, sticking_speed: f64) -> Self {
         Self { sticking_speed, ..self }

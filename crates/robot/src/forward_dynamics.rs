@@ -6,10 +6,11 @@ use nalgebra::DVector;
 use reachtube_scalar::Scalar;
 
 impl Robot {
-    /// Forward dynamics (4): q̈ = M_m(q)⁻¹ (tau - c(q, q̇) - g(q)) \[rad/s²\] by [`Robot::crba`] and [`ltdl`].
+    /// Forward dynamics (4): q̈ = M_m(q)⁻¹ (tau - c(q, q̇) - g(q)) \[rad/s²\] by [`Robot::crba`]
+    /// and [`ltdl`].
     ///
-    /// Slices have one entry a joint: `sin`, `cos` of q, `qd` \[rad/s\], link-side torque `tau` \[N m\]. Faster than
-    /// [`Robot::aba`] up to about ten joints.
+    /// Slices have one entry a joint: `sin`, `cos` of q, `qd` \[rad/s\], link-side torque `tau` \[N
+    /// m\]. Faster than [`Robot::aba`] up to about ten joints.
     ///
     /// # Guarantee
     ///
@@ -65,7 +66,14 @@ impl Robot {
     pub fn forward_acceleration(&self, q: &[f64], qd: &[f64], tau_link: &[f64]) -> DVector<f64> {
         let (sin, cos) = self.sin_cos(q);
         let mut qdd = DVector::zeros(q.len());
-        self.forward_dynamics(&sin, &cos, qd, tau_link, &mut Workspace::new(self), qdd.as_mut_slice());
+        self.forward_dynamics(
+            &sin,
+            &cos,
+            qd,
+            tau_link,
+            &mut Workspace::new(self),
+            qdd.as_mut_slice(),
+        );
         qdd
     }
 

@@ -1,11 +1,12 @@
 use crate::placement::Placement;
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
 
-/// The ten inertial parameters of one link, as moments of its mass distribution about a frame's origin.
+/// The ten inertial parameters of one link, as moments of its mass distribution about a frame's
+/// origin.
 ///
-/// The second moments Σ = ∫ r rᵀ dm stand in for the inertia tensor I = tr(Σ) 1 - Σ: they move with a frame as
-/// R Σ Rᵀ + p hᵀ + h pᵀ + m p pᵀ, and the link is physical if and only if the pseudo-inertia [[Σ, h], [hᵀ, m]] is
-/// positive semidefinite (Wensing, Kim & Slotine, RA-L 2018).
+/// The second moments Σ = ∫ r rᵀ dm stand in for the inertia tensor I = tr(Σ) 1 - Σ: they move with
+/// a frame as R Σ Rᵀ + p hᵀ + h pᵀ + m p pᵀ, and the link is physical if and only if the
+/// pseudo-inertia [[Σ, h], [hᵀ, m]] is positive semidefinite (Wensing, Kim & Slotine, RA-L 2018).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkInertia {
     /// Mass m \[kg\].
@@ -23,7 +24,8 @@ impl LinkInertia {
         Self { mass, first_moment, second_moments }
     }
 
-    /// A link from its centre of mass \[m\] and its inertia tensor about that point \[kg m²\], in the frame's axes.
+    /// A link from its centre of mass \[m\] and its inertia tensor about that point \[kg m²\], in
+    /// the frame's axes.
     ///
     /// # Examples
     ///
@@ -47,16 +49,20 @@ impl LinkInertia {
         Matrix3::identity() * self.second_moments.trace() - self.second_moments
     }
 
-    /// Mass, centre of mass \[m\], and ixx, ixy, ixz, iyy, iyz, izz about it \[kg m²\]; about the origin where the mass is 0.
+    /// Mass, centre of mass \[m\], and ixx, ixy, ixz, iyy, iyz, izz about it \[kg m²\]; about the
+    /// origin where the mass is 0.
     pub(crate) fn about_own_com(&self) -> (f64, [f64; 3], [f64; 6]) {
         let c = if self.mass == 0.0 { Vector3::zeros() } else { self.first_moment / self.mass };
-        let t = self.tensor() - self.mass * (Matrix3::identity() * c.norm_squared() - c * c.transpose());
+        let t = self.tensor()
+            - self.mass * (Matrix3::identity() * c.norm_squared() - c * c.transpose());
         (self.mass, c.into(), [t[(0, 0)], t[(0, 1)], t[(0, 2)], t[(1, 1)], t[(1, 2)], t[(2, 2)]])
     }
 
-    /// The smallest eigenvalue of the pseudo-inertia [[Σ, h], [hᵀ, m]], relative to its largest magnitude.
+    /// The smallest eigenvalue of the pseudo-inertia [[Σ, h], [hᵀ, m]], relative to its largest
+    /// magnitude.
     ///
-    /// Zero or more (to rounding) if and only if some distribution of positive mass has these ten parameters.
+    /// Zero or more (to rounding) if and only if some distribution of positive mass has these ten
+    /// parameters.
     pub fn smallest_relative_eigenvalue(&self) -> f64 {
         let mut pseudo = Matrix4::zeros();
         pseudo.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.second_moments);

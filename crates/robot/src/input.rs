@@ -23,7 +23,8 @@ impl Robot {
         )
     }
 
-    /// The input (11): u = tau_m - tau_c(g(q), q̇) - g(q) \[N m\], for the torque of the motors on the link's side.
+    /// The input (11): u = tau_m - tau_c(g(q), q̇) - g(q) \[N m\], for the torque of the motors on
+    /// the link's side.
     ///
     /// # Examples
     ///
@@ -34,12 +35,18 @@ impl Robot {
     /// let tau_motor = robot.motor_torque_from_input(&q, &qd, u.as_slice());
     /// assert!((tau_motor.add_scalar(-3.0)).amax() < 1e-13);
     /// ```
-    pub fn input_from_motor_torque(&self, q: &[f64], qd: &[f64], tau_motor: &[f64]) -> DVector<f64> {
+    pub fn input_from_motor_torque(
+        &self,
+        q: &[f64],
+        qd: &[f64],
+        tau_motor: &[f64],
+    ) -> DVector<f64> {
         let g = self.gravity_torque(q);
         DVector::from_column_slice(tau_motor) - self.coulomb_under(&g, qd) - g
     }
 
-    /// The motor torque that gives an input: the inverse of [`Robot::input_from_motor_torque`] \[N m\].
+    /// The motor torque that gives an input: the inverse of [`Robot::input_from_motor_torque`] \[N
+    /// m\].
     pub fn motor_torque_from_input(&self, q: &[f64], qd: &[f64], u: &[f64]) -> DVector<f64> {
         let g = self.gravity_torque(q);
         DVector::from_column_slice(u) + self.coulomb_under(&g, qd) + g

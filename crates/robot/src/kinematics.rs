@@ -3,7 +3,8 @@ use crate::placement::{Placement, rotation_x, rotation_z};
 use nalgebra::Vector3;
 
 impl Robot {
-    /// Placement of each link's own frame (as described, not the working one) in the base frame, q in rad.
+    /// Placement of each link's own frame (as described, not the working one) in the base frame, q
+    /// in rad.
     ///
     /// # Examples
     ///
@@ -39,12 +40,20 @@ impl Robot {
         0.5 * (self.mass_matrix(q) * qd).dot(&qd)
     }
 
-    /// Potential energy of the gravity parameters \[J\], zero for masses at the base's origin, at q \[rad\].
+    /// Potential energy of the gravity parameters \[J\], zero for masses at the base's origin, at q
+    /// \[rad\].
     pub fn potential_energy(&self, q: &[f64]) -> f64 {
         let gravity = Vector3::from(self.gravity_acceleration());
         let moment = |(frame, link): (&Placement, &crate::chain::Link)| {
-            frame.rotation * Vector3::from(link.gravity_first_moment) + link.gravity_mass * frame.translation
+            frame.rotation * Vector3::from(link.gravity_first_moment)
+                + link.gravity_mass * frame.translation
         };
-        -self.working_placements(q).iter().zip(&self.links).map(moment).sum::<Vector3<f64>>().dot(&gravity)
+        -self
+            .working_placements(q)
+            .iter()
+            .zip(&self.links)
+            .map(moment)
+            .sum::<Vector3<f64>>()
+            .dot(&gravity)
     }
 }

@@ -34,11 +34,13 @@ pub use base_parameters::BaseParameters;
 pub use chain::JointGeometry;
 pub use column::{Column, ColumnKind, Regressor};
 pub use description::{
-    Convention, Dh, FrictionDescription, GravityMoments, InertiaPoint, JointDescription, Parameters,
-    PlacementDescription, RobotDescription, SCHEMA_VERSION,
+    Convention, Dh, FrictionDescription, GravityMoments, InertiaPoint, JointDescription,
+    Parameters, PlacementDescription, RobotDescription, SCHEMA_VERSION,
 };
 pub use error::RobotError;
-pub use excitation::{Criterion, Excitation, ExcitationSettings, FourierTrajectory, MotionSample, Quality};
+pub use excitation::{
+    Criterion, Excitation, ExcitationSettings, FourierTrajectory, MotionSample, Quality,
+};
 pub use field::{DrivenBy, RobotField};
 pub use inertia::LinkInertia;
 pub use physicality::Physicality;

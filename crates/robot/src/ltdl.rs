@@ -2,17 +2,20 @@
 
 use reachtube_scalar::Scalar;
 
-/// Factors the symmetric n x n matrix `m` (row by row; the lower triangle is read) in place as Lᵀ D L.
+/// Factors the symmetric n x n matrix `m` (row by row; the lower triangle is read) in place as Lᵀ D
+/// L.
 ///
-/// L is unit lower triangular and overwrites the strict lower triangle; D overwrites the diagonal. Pivot D_i equals
-/// the articulated inertia about joint i: what moves when torque acts on joint i while later joints are free. The upper
-/// triangle is left as it was. Featherstone, Rigid Body Dynamics Algorithms, 2008, table 6.3, for a serial chain.
+/// L is unit lower triangular and overwrites the strict lower triangle; D overwrites the diagonal.
+/// Pivot D_i equals the articulated inertia about joint i: what moves when torque acts on joint i
+/// while later joints are free. The upper triangle is left as it was. Featherstone, Rigid Body
+/// Dynamics Algorithms, 2008, table 6.3, for a serial chain.
 ///
 /// M is positive definite if and only if every pivot is positive; nothing is checked here.
 ///
 /// # Guarantee
 ///
-/// Over `Interval`: each entry encloses that of every symmetric matrix in `m`, or is all reals where a pivot encloses 0.
+/// Over `Interval`: each entry encloses that of every symmetric matrix in `m`, or is all reals
+/// where a pivot encloses 0.
 ///
 /// # Examples
 ///

@@ -36,8 +36,8 @@ impl Placement {
 
 /// Sine and cosine, exact where the angle is within 1e-12 of a multiple of pi/2.
 ///
-/// The snap keeps the zeros of a robot with right angles exact: its dynamics then has the fewest terms as polynomial
-/// and the narrowest enclosure as interval.
+/// The snap keeps the zeros of a robot with right angles exact: its dynamics then has the fewest
+/// terms as polynomial and the narrowest enclosure as interval.
 pub fn snapped_sin_cos(angle: f64) -> (f64, f64) {
     let quarter = (angle / core::f64::consts::FRAC_PI_2).round();
     if (angle - quarter * core::f64::consts::FRAC_PI_2).abs() > 1e-12 {
@@ -61,7 +61,8 @@ pub(crate) fn rotation_z((s, c): (f64, f64)) -> Matrix3<f64> {
     Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// A rotation that takes +z to the given unit vector, with exact entries where the vector lies on an axis.
+/// A rotation that takes +z to the given unit vector, with exact entries where the vector lies on
+/// an axis.
 pub(crate) fn rotation_from_z(axis: &Vector3<f64>) -> Matrix3<f64> {
     let (x, y, z) = (axis.x, axis.y, axis.z);
     let sin_tilt = x.hypot(y);

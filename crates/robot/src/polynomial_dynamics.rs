@@ -5,15 +5,18 @@ use std::sync::Arc;
 use crate::{Robot, Workspace};
 use reachtube_scalar::{Scalar, TaylorPolynomial, TaylorSpace, TaylorSpaceError};
 
-/// The dynamics of a robot as polynomials in (s_1..s_n, c_1..c_n), s_i = sin q_i and c_i = cos q_i taken as independent variables (Property A).
+/// The dynamics of a robot as polynomials in (s_1..s_n, c_1..c_n), s_i = sin q_i and c_i = cos q_i
+/// taken as independent variables (Property A).
 ///
-/// A polynomial on the circle s² + c² = 1 has many extensions off it. Here M is that of the composite-body algorithm ([`Robot::crba`]) and c follows
-/// from it by Christoffel symbols (12), of degree 2(n - 1) in (s, c) and so of the paper's p_max = 12 with q̇ for six joints; [`Robot::coriolis`] has
-/// another extension, of degree 13 for the LWA 4P.
+/// A polynomial on the circle s² + c² = 1 has many extensions off it. Here M is that of the
+/// composite-body algorithm ([`Robot::crba`]) and c follows from it by Christoffel symbols (12), of
+/// degree 2(n - 1) in (s, c) and so of the paper's p_max = 12 with q̇ for six joints;
+/// [`Robot::coriolis`] has another extension, of degree 13 for the LWA 4P.
 ///
 /// # Guarantee
 ///
-/// Nothing is cut off. Over `Interval`, each coefficient encloses the exact one for the robot's constants as loaded.
+/// Nothing is cut off. Over `Interval`, each coefficient encloses the exact one for the robot's
+/// constants as loaded.
 #[derive(Clone, Debug)]
 pub struct PolynomialDynamics<C = f64> {
     /// The space of the 2n variables.
@@ -41,9 +44,12 @@ impl Robot {
     /// assert_eq!(coriolis.iter().flatten().map(|c| c.degree()).max(), Some(10));
     /// # Ok::<(), reachtube_scalar::TaylorSpaceError>(())
     /// ```
-    pub fn polynomial_dynamics<C: Scalar>(&self) -> Result<PolynomialDynamics<C>, TaylorSpaceError> {
+    pub fn polynomial_dynamics<C: Scalar>(
+        &self,
+    ) -> Result<PolynomialDynamics<C>, TaylorSpaceError> {
         let n = self.joint_count();
-        // Each joint turns second moments once, in two factors, and forces once: no product has more than two of its s and c.
+        // Each joint turns second moments once, in two factors, and forces once: no product has
+        // more than two of its s and c.
         let space = TaylorSpace::new(2 * n, 2 * n as u32)?;
         let variable = |i| TaylorPolynomial::variable(&space, i);
         let (sin, cos): (Vec<_>, Vec<_>) = (0..n).map(|i| (variable(i), variable(n + i))).unzip();
@@ -64,8 +70,9 @@ impl<C: Scalar> PolynomialDynamics<C> {
         let slopes: Vec<Vec<_>> =
             (0..n).map(|k| self.mass_matrix.iter().map(|m| self.slope(m, k)).collect()).collect();
         let half = C::from(0.5);
-        let symbol =
-            |i: usize, j: usize, k: usize| &slopes[k][i * n + j] - &slopes[i][j * n + k].scaled(&half);
+        let symbol = |i: usize, j: usize, k: usize| {
+            &slopes[k][i * n + j] - &slopes[i][j * n + k].scaled(&half)
+        };
         let matrix = |i: usize| (0..n * n).map(|jk| symbol(i, jk / n, jk % n)).collect();
         (0..n).map(matrix).collect()
     }

@@ -12,8 +12,8 @@ pub(crate) const INERTIAL: usize = 10;
 
 /// Scratch memory and constants of [`Robot::inertial_regressor`] for one robot and one scalar.
 ///
-/// Where the other algorithms work in turned frames, the regressor works in the links' own: its columns are asked for
-/// there, and converting them would cost more than the recursion.
+/// Where the other algorithms work in turned frames, the regressor works in the links' own: its
+/// columns are asked for there, and converting them would cost more than the recursion.
 #[derive(Clone, Debug)]
 pub struct RegressorWorkspace<S> {
     frames: Vec<LinkFrame>,
@@ -23,13 +23,15 @@ pub struct RegressorWorkspace<S> {
 /// A link's own frame relative to that of the link before.
 #[derive(Clone, Debug)]
 struct LinkFrame {
-    /// x_before = E(q) x_link + ..., row by row; each entry constant + sine · sin q + cosine · cos q.
+    /// x_before = E(q) x_link + ..., row by row; each entry constant + sine · sin q + cosine · cos
+    /// q.
     rotation: [Wave; 9],
     /// A point of the joint's axis in the frame before \[m\].
     axis_point: [f64; 3],
     /// Unit vector of the joint's axis in the link's frame.
     axis: [f64; 3],
-    /// The frame's origin seen from the axis point, in the link's frame \[m\]; none where it lies there.
+    /// The frame's origin seen from the axis point, in the link's frame \[m\]; none where it lies
+    /// there.
     offset: Option<[f64; 3]>,
 }
 
@@ -41,7 +43,8 @@ struct Wave {
     cosine: f64,
 }
 
-/// How a link moves with one joint at 1 rad/s: angular velocity, and velocity of its frame's origin.
+/// How a link moves with one joint at 1 rad/s: angular velocity, and velocity of its frame's
+/// origin.
 #[derive(Clone, Debug)]
 struct Twist<S> {
     angular: Vec3<S>,
@@ -52,7 +55,8 @@ struct Twist<S> {
 struct Turn<S>([S; 9]);
 
 impl<S: Scalar> RegressorWorkspace<S> {
-    /// Scratch memory for a robot; it belongs to this robot's geometry, not only to its number of joints.
+    /// Scratch memory for a robot; it belongs to this robot's geometry, not only to its number of
+    /// joints.
     pub fn new(robot: &Robot) -> Self {
         let mut before = Placement::rotation(robot.base.transpose());
         let mut frames = Vec::with_capacity(robot.joint_count());
@@ -111,8 +115,10 @@ impl LinkFrame {
         let axis = Vec3::constant(self.axis);
         let carried = turn.to_link(&before.angular_velocity);
         let spin = axis.scaled(qd);
-        let angular_acceleration =
-            turn.to_link(&before.angular_acceleration).plus(&carried.cross(&spin)).plus(&axis.scaled(qdd));
+        let angular_acceleration = turn
+            .to_link(&before.angular_acceleration)
+            .plus(&carried.cross(&spin))
+            .plus(&axis.scaled(qdd));
         let at_axis = gradient.times(&Vec3::constant(self.axis_point)).plus(&before.acceleration);
         Motion {
             angular_velocity: carried.plus(&spin),
@@ -152,19 +158,22 @@ impl<S: Scalar> Turn<S> {
 impl Robot {
     /// The regressor Y of inverse dynamics \[n x 10 n, row by row\]: tau = Y(q, q̇, q̈) θ \[N m\].
     ///
-    /// θ holds for each link the ten inertial parameters m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy, Ixz, Iyz, Izz, the
-    /// inertia about the origin of the link's own frame, in its axes (see [`Robot::inertial_parameters`]). Gravity acts
-    /// on them; where a robot has `gravity_moments` of its own, Y of [`Robot::with_gravity`] zero times θ and Y at
-    /// rest times the gravity parameters give [`Robot::rnea`]. Motors are not in Y. All slices have one entry a joint:
+    /// θ holds for each link the ten inertial parameters m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy,
+    /// Ixz, Iyz, Izz, the inertia about the origin of the link's own frame, in its axes (see
+    /// [`Robot::inertial_parameters`]). Gravity acts on them; where a robot has `gravity_moments`
+    /// of its own, Y of [`Robot::with_gravity`] zero times θ and Y at rest times the gravity
+    /// parameters give [`Robot::rnea`]. Motors are not in Y. All slices have one entry a joint:
     /// `sin`, `cos` of q, `qd` \[rad/s\], `qdd` \[rad/s²\].
     ///
-    /// Links are carried outward with the twist that each joint gives them; the torque of joint j is the power of
-    /// link i's wrench on that twist (Atkeson, An & Hollerbach 1986, in the dual form). Columns of links before j are
-    /// zero. With independent sine and cosine Y θ is the polynomial of [`Robot::rnea`].
+    /// Links are carried outward with the twist that each joint gives them; the torque of joint j
+    /// is the power of link i's wrench on that twist (Atkeson, An & Hollerbach 1986, in the dual
+    /// form). Columns of links before j are zero. With independent sine and cosine Y θ is the
+    /// polynomial of [`Robot::rnea`].
     ///
     /// # Guarantee
     ///
-    /// Over `Interval`: an outer enclosure, entry by entry, for the link frames as computed in double precision.
+    /// Over `Interval`: an outer enclosure, entry by entry, for the link frames as computed in
+    /// double precision.
     ///
     /// # Panics
     ///
@@ -222,8 +231,14 @@ impl Robot {
         }
     }
 
-    /// The regressor at one state, \[n x 10 n\]; allocates, for q \[rad\], q̇ \[rad/s\], q̈ \[rad/s²\].
-    pub fn inertial_regressor_matrix(&self, q: &[f64], qd: &[f64], qdd: &[f64]) -> nalgebra::DMatrix<f64> {
+    /// The regressor at one state, \[n x 10 n\]; allocates, for q \[rad\], q̇ \[rad/s\], q̈
+    /// \[rad/s²\].
+    pub fn inertial_regressor_matrix(
+        &self,
+        q: &[f64],
+        qd: &[f64],
+        qdd: &[f64],
+    ) -> nalgebra::DMatrix<f64> {
         let (n, (sin, cos)) = (self.joint_count(), self.sin_cos(q));
         let mut y = vec![0.0; INERTIAL * n * n];
         self.inertial_regressor(&sin, &cos, qd, qdd, &mut RegressorWorkspace::new(self), &mut y);
@@ -232,7 +247,8 @@ impl Robot {
 }
 
 impl<S: Scalar> Twist<S> {
-    /// The power that a link's wrench has on this twist, for a unit of each of its ten inertial parameters.
+    /// The power that a link's wrench has on this twist, for a unit of each of its ten inertial
+    /// parameters.
     #[inline(always)]
     fn powers(&self, motion: &Motion<S>, gradient: &AccelerationGradient<S>, out: &mut [S]) {
         let (u, v, a) = (&self.angular, &self.linear, &motion.acceleration);

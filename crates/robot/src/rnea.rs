@@ -20,11 +20,13 @@ pub(crate) struct AccelerationGradient<S>([S; 9]);
 impl Robot {
     /// Inverse dynamics (3): link-side torque of a motion, armature and gravity included \[N m\].
     ///
-    /// `tau` = (M(q) + diag(armature)) q̈ + c(q, q̇) + g(q). All slices have one entry a joint: `sin`, `cos` of q, `qd`
-    /// \[rad/s\], `qdd` \[rad/s²\]. Sine and cosine may be independent variables: off the circle s² + c² = 1 the value is
-    /// this algorithm's polynomial extension, which differs from that of [`Robot::crba`].
+    /// `tau` = (M(q) + diag(armature)) q̈ + c(q, q̇) + g(q). All slices have one entry a joint:
+    /// `sin`, `cos` of q, `qd` \[rad/s\], `qdd` \[rad/s²\]. Sine and cosine may be independent
+    /// variables: off the circle s² + c² = 1 the value is this algorithm's polynomial extension,
+    /// which differs from that of [`Robot::crba`].
     ///
-    /// Recursive Newton-Euler (Luh, Walker & Paul 1980) with the link's second moments in place of its inertia tensor.
+    /// Recursive Newton-Euler (Luh, Walker & Paul 1980) with the link's second moments in place of
+    /// its inertia tensor.
     ///
     /// # Guarantee
     ///
@@ -48,10 +50,15 @@ impl Robot {
     /// Gravity as Newton-Euler takes it.
     pub(crate) fn weight<S: Scalar>(&self) -> Weight<S> {
         let acceleration = self.base_acceleration();
-        if self.separate_gravity { Weight::Separate(acceleration) } else { Weight::Inertial(acceleration) }
+        if self.separate_gravity {
+            Weight::Separate(acceleration)
+        } else {
+            Weight::Inertial(acceleration)
+        }
     }
 
-    /// The base's acceleration that acts on every mass as gravity does, in the working base frame \[m/s²\].
+    /// The base's acceleration that acts on every mass as gravity does, in the working base frame
+    /// \[m/s²\].
     pub(crate) fn base_acceleration<S: Scalar>(&self) -> Vec3<S> {
         Vec3::constant(self.working_gravity.map(|g| -g))
     }
@@ -162,7 +169,13 @@ impl<S: Scalar> Motion<S> {
     }
 
     #[inline(always)]
-    fn of_child(&self, gradient: &AccelerationGradient<S>, pose: &Pose<S>, qd: &S, qdd: &S) -> Self {
+    fn of_child(
+        &self,
+        gradient: &AccelerationGradient<S>,
+        pose: &Pose<S>,
+        qd: &S,
+        qdd: &S,
+    ) -> Self {
         let mut w = pose.to_link(&self.angular_velocity);
         let mut dw = pose.to_link(&self.angular_acceleration);
         dw.x += mul(&w.y, qd);

@@ -4,10 +4,11 @@ use crate::friction::Friction;
 use crate::inertia::LinkInertia;
 use nalgebra::{Matrix3, Vector3};
 
-/// A serial robot of revolute joints: its constants. Scratch memory is apart, in a [`Workspace`](crate::Workspace).
+/// A serial robot of revolute joints: its constants. Scratch memory is apart, in a
+/// [`Workspace`](crate::Workspace).
 ///
-/// At load every link frame is turned so that its joint's axis is +z and the next axis is a twist about x away; the
-/// algorithms work in these frames, results in joint space do not depend on them.
+/// At load every link frame is turned so that its joint's axis is +z and the next axis is a twist
+/// about x away; the algorithms work in these frames, results in joint space do not depend on them.
 ///
 /// # Examples
 ///

@@ -15,8 +15,9 @@ pub struct Trajectory {
 }
 
 impl Robot {
-    /// Simulates from q0 \[rad\], qd0 \[rad/s\] under motor torques \[N m\] on the link's side, row k held from sample k
-    /// to k + 1, with `substeps` Runge-Kutta steps a sample. The trajectory has one row more than `tau_motor`.
+    /// Simulates from q0 \[rad\], qd0 \[rad/s\] under motor torques \[N m\] on the link's side, row
+    /// k held from sample k to k + 1, with `substeps` Runge-Kutta steps a sample. The trajectory
+    /// has one row more than `tau_motor`.
     ///
     /// [`RobotField`] has more: other inputs, sample times and integrators, many runs at once.
     ///
@@ -40,7 +41,8 @@ impl Robot {
         let mut field = RobotField::new(self, DrivenBy::Motor);
         let mut method = RungeKutta4::new(2 * self.joint_count());
         let mut x = [q0, qd0].concat();
-        let mut trajectory = Trajectory { sample_time, q: vec![q0.to_vec()], qd: vec![qd0.to_vec()] };
+        let mut trajectory =
+            Trajectory { sample_time, q: vec![q0.to_vec()], qd: vec![qd0.to_vec()] };
         for tau in tau_motor {
             method.integrate(&mut field, [0.0, sample_time], substeps, &mut x, tau);
             let (q, qd) = x.split_at(self.joint_count());

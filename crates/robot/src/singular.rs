@@ -4,13 +4,17 @@ use nalgebra::{DMatrix, SVD};
 
 /// Singular values, descending.
 ///
-/// nalgebra's iteration need not end at its own threshold; when it does not within its steps it is given a wider one.
+/// nalgebra's iteration need not end at its own threshold; when it does not within its steps it is
+/// given a wider one.
 pub(crate) fn singular_values(matrix: &DMatrix<f64>) -> Vec<f64> {
     let steps = 100 * (1 + matrix.nrows().min(matrix.ncols()));
-    let attempt = |threshold| SVD::try_new_unordered(matrix.clone(), false, false, threshold, steps);
+    let attempt =
+        |threshold| SVD::try_new_unordered(matrix.clone(), false, false, threshold, steps);
     let found = [5.0, 50.0, 5e3].into_iter().find_map(|k| attempt(k * f64::EPSILON));
-    let mut values =
-        found.map_or_else(|| by_eigenvalues(matrix), |svd| svd.singular_values.iter().copied().collect());
+    let mut values = found.map_or_else(
+        || by_eigenvalues(matrix),
+        |svd| svd.singular_values.iter().copied().collect(),
+    );
     values.sort_by(|a, b| b.total_cmp(a));
     values
 }

@@ -28,7 +28,8 @@ impl Random {
     }
 }
 
-/// States (q, q̇, q̈) within the limits of position and speed; 2 rad/s where none is known, accelerations to 5 rad/s².
+/// States (q, q̇, q̈) within the limits of position and speed; 2 rad/s where none is known,
+/// accelerations to 5 rad/s².
 pub(crate) fn states(robot: &Robot, count: usize, random: &mut Random) -> Vec<[Vec<f64>; 3]> {
     let state = |_| {
         let q = robot
@@ -46,5 +47,8 @@ pub(crate) fn states(robot: &Robot, count: usize, random: &mut Random) -> Vec<[V
 /// States at rest.
 pub(crate) fn rest(robot: &Robot, count: usize, random: &mut Random) -> Vec<[Vec<f64>; 3]> {
     let still = vec![0.0; robot.joint_count()];
-    states(robot, count, random).into_iter().map(|[q, ..]| [q, still.clone(), still.clone()]).collect()
+    states(robot, count, random)
+        .into_iter()
+        .map(|[q, ..]| [q, still.clone(), still.clone()])
+        .collect()
 }

@@ -2,7 +2,8 @@ use crate::Robot;
 use crate::algebra::{Pose, Sym3, Vec3};
 use reachtube_scalar::Scalar;
 
-/// Scratch memory of the algorithms for one robot and one scalar: made once, reused, so that no call allocates.
+/// Scratch memory of the algorithms for one robot and one scalar: made once, reused, so that no
+/// call allocates.
 ///
 /// A workspace belongs to the number of joints it was made for; the algorithms panic with another.
 #[derive(Clone, Debug)]
@@ -39,7 +40,8 @@ pub(crate) struct ArticulatedScratch<S> {
     pub drive: S,
 }
 
-/// An articulated body: (moment, force) = [[I, H], [Hᵀ, M]] (angular, linear acceleration) + (moment, force) at rest.
+/// An articulated body: (moment, force) = [[I, H], [Hᵀ, M]] (angular, linear acceleration) +
+/// (moment, force) at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct ArticulatedBody<S> {
     pub inertia: Sym3<S>,

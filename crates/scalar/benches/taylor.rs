@@ -1,4 +1,5 @@
-//! Truncated Taylor polynomials: dense products, division, sparse products. Compare peers/README for what other libraries need.
+//! Truncated Taylor polynomials: dense products, division, sparse products. Compare peers/README
+//! for what other libraries need.
 
 use std::sync::Arc;
 
@@ -53,8 +54,9 @@ fn product_of_intervals(bencher: Bencher, (variables, order): (usize, u32)) {
 #[divan::bench]
 fn sparse_power(bencher: Bencher) {
     let space = TaylorSpace::new(24, 12).unwrap();
-    let sum = (0..24)
-        .fold(TaylorPolynomial::<f64>::from(1.0), |sum, i| sum + TaylorPolynomial::variable(&space, i));
+    let sum = (0..24).fold(TaylorPolynomial::<f64>::from(1.0), |sum, i| {
+        sum + TaylorPolynomial::variable(&space, i)
+    });
     let square = &sum * &sum;
     bencher.bench(|| black_box(&square) * black_box(&square));
 }

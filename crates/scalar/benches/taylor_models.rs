@@ -1,7 +1,9 @@
 //! Taylor models of low order in the variables of a robot, next to the polynomials they consist of.
 
 use divan::{Bencher, black_box};
-use reachtube_scalar::{Elementary, Interval, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace};
+use reachtube_scalar::{
+    Elementary, Interval, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace,
+};
 
 fn main() {
     divan::main();
@@ -17,8 +19,8 @@ fn model(order: u32, used: usize, shift: f64) -> TaylorModel {
         &[Interval::centered(0.3, 0.1); VARIABLES],
     );
     let number = |x: f64| TaylorModel::from(x);
-    let sum =
-        (0..used).fold(number(shift), |sum, i| sum + domain.variable(i) * number(0.1 + 0.01 * i as f64));
+    let sum = (0..used)
+        .fold(number(shift), |sum, i| sum + domain.variable(i) * number(0.1 + 0.01 * i as f64));
     let sum = sum + TaylorModel::from(Interval::centered(0.0, 1e-3));
     if used < VARIABLES { sum } else { sum.recip() }
 }

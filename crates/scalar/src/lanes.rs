@@ -4,12 +4,15 @@ use crate::{Elementary, Powers};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
-/// N numbers in place of one: every operation acts on each lane alone, as it would on an `f64`, to the last bit.
+/// N numbers in place of one: every operation acts on each lane alone, as it would on an `f64`, to
+/// the last bit.
 ///
-/// An algorithm over [`Scalar`](crate::Scalar) evaluated over lanes works on N arguments at once. The compiler turns the loops over the
-/// lanes into vector instructions of whatever the target has: nothing here depends on the platform.
+/// An algorithm over [`Scalar`](crate::Scalar) evaluated over lanes works on N arguments at once.
+/// The compiler turns the loops over the lanes into vector instructions of whatever the target has:
+/// nothing here depends on the platform.
 ///
-/// Nothing is done across lanes: a lane that overflows or is divided by zero leaves the others as they are.
+/// Nothing is done across lanes: a lane that overflows or is divided by zero leaves the others as
+/// they are.
 ///
 /// # Examples
 ///

@@ -1,11 +1,13 @@
 //! Directed rounding of single operations, on stable Rust and any platform with IEEE 754 `f64`.
 //!
-//! The processor's rounding mode is never touched: each operation is computed in round-to-nearest, which is within
-//! half a unit in the last place (ulp), and then widened to the neighbouring number unless it is known to be a bound: a
-//! sum tells on which side of the exact one it lies; a product with zero, zero divided and √0 are exact.
+//! The processor's rounding mode is never touched: each operation is computed in round-to-nearest,
+//! which is within half a unit in the last place (ulp), and then widened to the neighbouring number
+//! unless it is known to be a bound: a sum tells on which side of the exact one it lies; a product
+//! with zero, zero divided and √0 are exact.
 //!
-//! NaN in, NaN out: a bound that rests on a NaN never looks like a number. NaN also marks ∞ - ∞, ∞ / ∞, a division by
-//! zero and the root of a negative number. Only 0 · ∞ has a value: 0, as for sets of real numbers.
+//! NaN in, NaN out: a bound that rests on a NaN never looks like a number. NaN also marks ∞ - ∞, ∞
+//! / ∞, a division by zero and the root of a negative number. Only 0 · ∞ has a value: 0, as for
+//! sets of real numbers.
 //!
 //! # Examples
 //!
@@ -18,13 +20,15 @@
 //! assert_eq!(mul_up(0.0, 0.1), 0.0);
 //! ```
 
-/// x ± |x| · `STEP` rounds to the neighbours of x, for every |x| > [`TINY`]: |x| · `STEP` is a little above half an ulp
-/// and at most one.
+/// x ± |x| · `STEP` rounds to the neighbours of x, for every |x| > [`TINY`]: |x| · `STEP` is a
+/// little above half an ulp and at most one.
 ///
-/// Rump, Zimmermann, Boldo, Melquiond: Computing predecessor and successor in rounding to nearest, BIT 49 (2009).
+/// Rump, Zimmermann, Boldo, Melquiond: Computing predecessor and successor in rounding to nearest,
+/// BIT 49 (2009).
 const STEP: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
 
-/// Far above 2⁻⁹⁶⁹ = 2e-292, where |x| · [`STEP`] is a normal number and does not lose the little above half an ulp.
+/// Far above 2⁻⁹⁶⁹ = 2e-292, where |x| · [`STEP`] is a normal number and does not lose the little
+/// above half an ulp.
 const TINY: f64 = 1e-290;
 
 /// Whether [`bounds_of_rounded`] may be used for [lo, hi].
@@ -33,14 +37,15 @@ pub(crate) const fn is_far_from_underflow(lo: f64, hi: f64) -> bool {
     (lo.abs() > TINY) & (hi.abs() > TINY)
 }
 
-/// The number below `lo` < ∞ and the number above `hi` > -∞: as [`f64::next_down`] and [`f64::next_up`], without a branch.
+/// The number below `lo` < ∞ and the number above `hi` > -∞: as [`f64::next_down`] and
+/// [`f64::next_up`], without a branch.
 #[inline]
 pub(crate) const fn bounds_of_rounded(lo: f64, hi: f64) -> (f64, f64) {
     (lo - lo.abs() * STEP, hi + hi.abs() * STEP)
 }
 
-/// The number above x if `wanted`, which x = 0, ∞ and NaN must not be; else x. Without a branch, unlike
-/// [`f64::next_up`].
+/// The number above x if `wanted`, which x = 0, ∞ and NaN must not be; else x. Without a branch,
+/// unlike [`f64::next_up`].
 #[inline]
 const fn above_if(wanted: bool, x: f64) -> f64 {
     let bits = x.to_bits() as i64;
@@ -64,7 +69,8 @@ const fn below(x: f64) -> f64 {
 
 /// (s, e) with s = round(a + b) and s + e = a + b exactly, where nothing overflows.
 ///
-/// Knuth, The Art of Computer Programming 2, section 4.2.2, Theorem B. It holds for subnormal numbers too.
+/// Knuth, The Art of Computer Programming 2, section 4.2.2, Theorem B. It holds for subnormal
+/// numbers too.
 pub(crate) const fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let a_part = s - b;
@@ -80,10 +86,10 @@ pub(crate) const fn two_sum(a: f64, b: f64) -> (f64, f64) {
 #[must_use]
 pub const fn add_up(a: f64, b: f64) -> f64 {
     let s = a + b;
-    // s < a + b if and only if one of the comparisons holds: the difference of s and the larger of a and b has no
-    // rounding error (Dekker 1971), so its comparison is that of the exact numbers; the other one can only say the
-    // same, because rounding is monotone. None holds for s = 0, ∞ and NaN. `|` makes no branch, whose misprediction
-    // would cost more than the comparison.
+    // s < a + b if and only if one of the comparisons holds: the difference of s and the larger of
+    // a and b has no rounding error (Dekker 1971), so its comparison is that of the exact numbers;
+    // the other one can only say the same, because rounding is monotone. None holds for s = 0, ∞
+    // and NaN. `|` makes no branch, whose misprediction would cost more than the comparison.
     above_if((s - a < b) | (s - b < a), s)
 }
 
@@ -145,7 +151,8 @@ pub const fn mul_down(a: f64, b: f64) -> f64 {
 /// a / b rounded towards +∞; NaN for b = 0.
 ///
 /// # Guarantee
-/// An upper bound of the exact quotient, the number beside the rounded one; never of the wrong sign.
+/// An upper bound of the exact quotient, the number beside the rounded one; never of the wrong
+/// sign.
 #[inline]
 #[must_use]
 pub const fn div_up(a: f64, b: f64) -> f64 {

@@ -2,12 +2,12 @@ use core::fmt::Debug;
 use core::ops::{AddAssign, Div, DivAssign, MulAssign, Neg, SubAssign};
 use num_traits::{One, Zero};
 
-/// A number that the dynamics of a robot can be evaluated over: `f64`, [`Interval`](crate::Interval), SIMD
-/// [`Lanes`](crate::Lanes), and later Taylor polynomials.
+/// A number that the dynamics of a robot can be evaluated over: `f64`,
+/// [`Interval`](crate::Interval), SIMD [`Lanes`](crate::Lanes), and later Taylor polynomials.
 ///
-/// Only ring operations, division and conversion of constants are asked for. Sine and cosine are not: dynamics takes
-/// (sin q, cos q) as given, so that it can be evaluated over independent trigonometric variables (Property A of Liu &
-/// Althoff, IROS 2018).
+/// Only ring operations, division and conversion of constants are asked for. Sine and cosine are
+/// not: dynamics takes (sin q, cos q) as given, so that it can be evaluated over independent
+/// trigonometric variables (Property A of Liu & Althoff, IROS 2018).
 ///
 /// # Examples
 ///

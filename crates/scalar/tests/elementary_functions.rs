@@ -26,7 +26,8 @@ fn assert_sin_cos(x: f64) {
 
 fn assert_exp(x: f64) {
     let (m, k) = reference_exp(x, &LN_2);
-    let (lo, hi) = ((&m - reference_error()) * power_of_two(k), (&m + reference_error()) * power_of_two(k));
+    let (lo, hi) =
+        ((&m - reference_error()) * power_of_two(k), (&m + reference_error()) * power_of_two(k));
     assert_tight_enclosure(Interval::point(x).exp(), &lo, &hi, SLACK);
 }
 
@@ -60,7 +61,8 @@ proptest! {
     }
 }
 
-/// Where the reduction cancels most: the number rounded from k π/2, k < 660,000, that is nearest to a multiple of π/2.
+/// Where the reduction cancels most: the number rounded from k π/2, k < 660,000, that is nearest to
+/// a multiple of π/2.
 #[test]
 fn closest_to_multiples_of_half_pi() {
     let half_pi = std::f64::consts::FRAC_PI_2;
@@ -123,11 +125,15 @@ fn extrema_beside_the_ends() {
     let before = Interval::new(1.0, half_pi.lo()).unwrap();
     let beyond = Interval::new(1.0, half_pi.hi()).unwrap();
     let after = Interval::new(half_pi.hi(), 2.0).unwrap();
-    // π/2 is no f64: the sine's maximum lies in the second interval only, and there cos changes its sign.
+    // π/2 is no f64: the sine's maximum lies in the second interval only, and there cos changes its
+    // sign.
     assert_eq!(beyond.sin().hi(), 1.0);
     assert!(before.cos().lo() > 0.0 && after.cos().hi() < 0.0 && beyond.cos().contains_zero());
     let turn = Interval::new(-3.0, 4.0).unwrap();
-    assert_eq!(turn.sin_cos(), (Interval::new(-1.0, 1.0).unwrap(), Interval::new(-1.0, 1.0).unwrap()));
+    assert_eq!(
+        turn.sin_cos(),
+        (Interval::new(-1.0, 1.0).unwrap(), Interval::new(-1.0, 1.0).unwrap())
+    );
     let below = Interval::new(3.2, 6.2).unwrap();
     assert!(below.sin().lo() == -1.0 && below.sin().hi() < 0.0);
 }

@@ -1,4 +1,5 @@
-//! Arithmetic against exact rational numbers: enclosure, and tightness in numbers (ulps) beyond the tightest ends.
+//! Arithmetic against exact rational numbers: enclosure, and tightness in numbers (ulps) beyond the
+//! tightest ends.
 
 mod common;
 
@@ -150,7 +151,8 @@ fn products_beside_every_power_of_two() {
 /// The identities of matrices that must not grow: zeros are kept.
 #[test]
 fn zeros_are_exact() {
-    for x in [Interval::PI, -Interval::PI, Interval::new(-1e-310, 1e308).unwrap(), Interval::ENTIRE] {
+    for x in [Interval::PI, -Interval::PI, Interval::new(-1e-310, 1e308).unwrap(), Interval::ENTIRE]
+    {
         assert_eq!(x + 0.0, x);
         assert_eq!(x - 0.0, x);
         assert_eq!(x * 0.0, Interval::ZERO);
@@ -223,7 +225,10 @@ fn decimal_corner_cases() {
     assert_eq!(of("-0.000e5"), Interval::ZERO);
     assert_eq!(of("1e400"), Interval::new(f64::MAX, f64::INFINITY).unwrap());
     assert_eq!(of("-1e-400"), Interval::new(-5e-324, 0.0).unwrap());
-    assert_eq!(of("9007199254740993"), Interval::new(9007199254740992.0, 9007199254740994.0).unwrap());
+    assert_eq!(
+        of("9007199254740993"),
+        Interval::new(9007199254740992.0, 9007199254740994.0).unwrap()
+    );
     assert_eq!(of("1e99999999999999999999").hi(), f64::INFINITY);
     for bad in ["", "nan", "inf", "-Infinity", "0x10", "1,5", "1e", " 1", "."] {
         let error = Interval::try_from_decimal(bad).unwrap_err();

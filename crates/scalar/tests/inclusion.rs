@@ -98,7 +98,8 @@ proptest! {
         prop_assert!((sin_part.sqr() + cos_part.sqr()).contains(1.0));
     }
 
-    /// The hull of many samples is nearly the set: an enclosure that misses an extremum fails, so does a wide one.
+    /// The hull of many samples is nearly the set: an enclosure that misses an extremum fails, so
+    /// does a wide one.
     #[test]
     fn sine_of_a_set_is_its_hull((x, _) in angle_and_part()) {
         let samples = 400;

@@ -1,4 +1,5 @@
-//! Logarithm and angle against the exponential, sine and cosine in exact rational numbers, and as sets.
+//! Logarithm and angle against the exponential, sine and cosine in exact rational numbers, and as
+//! sets.
 
 mod common;
 
@@ -25,7 +26,8 @@ fn assert_ln(x: f64) {
     assert!(ln.width() <= 4e-15 * ln.mag().max(1.0), "ln {x}: {ln:?} is too wide");
 }
 
-/// sin(angle of (x, y) - θ) r = y cos θ - x sin θ, which is not negative as long as θ is below the angle by less than π.
+/// sin(angle of (x, y) - θ) r = y cos θ - x sin θ, which is not negative as long as θ is below the
+/// angle by less than π.
 fn turned(y: f64, x: f64, angle: f64) -> BigRational {
     exact(y) * reference_sin(angle, 1, &PI) - exact(x) * reference_sin(angle, 0, &PI)
 }
@@ -36,7 +38,10 @@ fn assert_angle(y: f64, x: f64) {
     assert!(turned(y, x, angle.lo()) >= -&error, "angle of ({x}, {y}) is below {angle:?}");
     assert!(turned(y, x, angle.hi()) <= error, "angle of ({x}, {y}) is above {angle:?}");
     // The quadrant: the sign alone could be that of the opposite angle.
-    assert!((angle.mid() - y.atan2(x)).abs() < 1e-14 && angle.width() < 4e-15, "({x}, {y}): {angle:?}");
+    assert!(
+        (angle.mid() - y.atan2(x)).abs() < 1e-14 && angle.width() < 4e-15,
+        "({x}, {y}): {angle:?}"
+    );
 }
 
 proptest! {

@@ -1,5 +1,6 @@
-//! Against an independent interval library: maryada 0.2, which computes + - * / √ exactly and rounds once (its mode
-//! "tightest"), exp within one number, and sin and cos by series with directed rounding.
+//! Against an independent interval library: maryada 0.2, which computes + - * / √ exactly and
+//! rounds once (its mode "tightest"), exp within one number, and sin and cos by series with
+//! directed rounding.
 
 mod common;
 
@@ -8,7 +9,8 @@ use maryada::{EnclosureOps, Interval as Other, IntervalOps};
 use proptest::prelude::*;
 use reachtube_scalar::Interval;
 
-/// Fails unless both enclosures have a common number, and ours is at most `slack` numbers wider at either end.
+/// Fails unless both enclosures have a common number, and ours is at most `slack` numbers wider at
+/// either end.
 fn assert_agree(name: &str, ours: Interval, other: Other, slack: i32) {
     let (lo, hi) = other.bounds();
     let theirs = Interval::new(lo, hi).unwrap();

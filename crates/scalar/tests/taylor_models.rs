@@ -36,7 +36,9 @@ macro_rules! functions {
 }
 
 fn sum_of<S: Scalar>(x: &[S]) -> S {
-    x.iter().enumerate().fold(S::from(0.25), |sum, (i, x)| sum + x.clone() * S::from(0.5 - 0.2 * i as f64))
+    x.iter()
+        .enumerate()
+        .fold(S::from(0.25), |sum, (i, x)| sum + x.clone() * S::from(0.5 - 0.2 * i as f64))
 }
 
 /// Positive over the box: 2 + small linear and quadratic parts.
@@ -77,8 +79,9 @@ fn points(sides: &[Interval], count: u32) -> Vec<Vec<f64>> {
         }
         value
     };
-    let inside =
-        |side: &Interval, s: f64| (side.lo() + s * (side.hi() - side.lo())).clamp(side.lo(), side.hi());
+    let inside = |side: &Interval, s: f64| {
+        (side.lo() + s * (side.hi() - side.lo())).clamp(side.lo(), side.hi())
+    };
     let corners = (0..1u32 << sides.len()).map(|bits| {
         sides
             .iter()
@@ -87,14 +90,16 @@ fn points(sides: &[Interval], count: u32) -> Vec<Vec<f64>> {
             .collect()
     });
     let base = [2, 3, 5, 7, 11];
-    let sequence = (1..count)
-        .map(|n| sides.iter().zip(base).map(|(side, base)| inside(side, radical(n, base))).collect());
+    let sequence = (1..count).map(|n| {
+        sides.iter().zip(base).map(|(side, base)| inside(side, radical(n, base))).collect()
+    });
     corners.chain(sequence).collect()
 }
 
 /// The model of F, and the largest distance of the true values from its polynomial.
 ///
-/// The truth is an enclosure itself, a few roundings wide: it and the model's set hold the same number.
+/// The truth is an enclosure itself, a few roundings wide: it and the model's set hold the same
+/// number.
 fn checked<F: Function>(order: u32, half: f64, count: u32) -> (TaylorModel, f64) {
     let sides = sides(half);
     let domain = TaylorBox::new(&TaylorSpace::new(3, order).unwrap(), &sides);
@@ -105,8 +110,14 @@ fn checked<F: Function>(order: u32, half: f64, count: u32) -> (TaylorModel, f64)
         let at: Vec<Interval> = at.into_iter().map(Interval::point).collect();
         let truth = F::at(&at);
         let enclosed = domain.evaluate(&model, &at);
-        assert!(enclosed.intersection(truth).is_some(), "{name} at {at:?}: {truth:?} is not in {enclosed:?}");
-        assert!(range.intersection(truth).is_some(), "{name} at {at:?}: {truth:?} is not in {range:?}");
+        assert!(
+            enclosed.intersection(truth).is_some(),
+            "{name} at {at:?}: {truth:?} is not in {enclosed:?}"
+        );
+        assert!(
+            range.intersection(truth).is_some(),
+            "{name} at {at:?}: {truth:?} is not in {range:?}"
+        );
         let polynomial = enclosed.mid() - model.remainder().mid();
         largest = largest.max((truth.mid() - polynomial).abs());
     }
@@ -122,11 +133,16 @@ fn models_enclose_the_truth() {
     for_all_functions!(encloses_samples((3, 0.2)));
 }
 
-/// Where cutting off is nearly all of the error, nearly all of it is found by sampling too: a remainder that were too small would be found out.
+/// Where cutting off is nearly all of the error, nearly all of it is found by sampling too: a
+/// remainder that were too small would be found out.
 fn is_tight<F: Function>((order, half, times): (u32, f64, f64)) {
     let (model, largest) = checked::<F>(order, half, 3_000);
     let remainder = model.remainder().mag();
-    assert!(remainder <= times * largest, "{}: remainder {remainder:e}, sampled error {largest:e}", F::NAME);
+    assert!(
+        remainder <= times * largest,
+        "{}: remainder {remainder:e}, sampled error {largest:e}",
+        F::NAME
+    );
 }
 
 #[test]
@@ -145,7 +161,8 @@ fn wide_boxes_and_low_orders_enclose_too() {
     }
 }
 
-/// Models with random polynomials of 3 variables to order 3, sparse and dense, at magnitudes where products underflow or overflow.
+/// Models with random polynomials of 3 variables to order 3, sparse and dense, at magnitudes where
+/// products underflow or overflow.
 fn any_model(space: Arc<TaylorSpace>) -> impl Strategy<Value = TaylorModel> {
     let coefficient =
         prop_oneof![4 => -3.0..3.0_f64, 1 => (-8..8_i32).prop_map(f64::from), 1 => any_number()];
@@ -156,7 +173,8 @@ fn any_model(space: Arc<TaylorSpace>) -> impl Strategy<Value = TaylorModel> {
         let t = domain.variables();
         terms.into_iter().fold(TaylorModel::from(remainder), |sum, (place, c)| {
             let monomial = exponents()[place];
-            let power = |i: usize| (0..monomial[i]).fold(TaylorModel::from(1.0), |p, _| p * t[i].clone());
+            let power =
+                |i: usize| (0..monomial[i]).fold(TaylorModel::from(1.0), |p, _| p * t[i].clone());
             sum + power(0) * power(1) * power(2) * TaylorModel::from(c)
         })
     })
@@ -189,8 +207,10 @@ fn exact_values(model: &TaylorModel, t: &[BigRational]) -> [BigRational; 2] {
 #[test]
 fn high_orders() {
     for order in [30, 31, 32, 61, 62, 70] {
-        let domain =
-            TaylorBox::new(&TaylorSpace::new(1, order).unwrap(), &[Interval::new(-1.0, 1.0).unwrap()]);
+        let domain = TaylorBox::new(
+            &TaylorSpace::new(1, order).unwrap(),
+            &[Interval::new(-1.0, 1.0).unwrap()],
+        );
         let power = |n: u32| (0..n).fold(TaylorModel::from(1.0), |p, _| p * domain.variable(0));
         let (low, high) = (order / 2, order / 2 + 1);
         let kept = power(low) * power(order - low);
@@ -208,7 +228,8 @@ fn high_orders() {
 proptest! {
     #![proptest_config(cases(400))]
 
-    /// Whatever the operands enclose, the result encloses its sum, difference, product and quotient, in exact rational numbers.
+    /// Whatever the operands enclose, the result encloses its sum, difference, product and
+    /// quotient, in exact rational numbers.
     #[test]
     fn arithmetic_encloses_exact_rationals(
         (a, b) in Just(TaylorSpace::new(3, 3).unwrap()).prop_flat_map(|s| (any_model(s.clone()), any_model(s))),
@@ -249,7 +270,10 @@ fn numbers_stay_exact() {
     assert_eq!(x.clone() + TaylorModel::zero(), x);
     assert_eq!(x.clone() * TaylorModel::one(), x);
     assert!((x.clone() * TaylorModel::zero()).is_zero() && (x.clone() - x.clone()).is_zero());
-    assert_eq!(x.clone() * TaylorModel::from(-4.0), -(x.clone() + x.clone() + x.clone() + x.clone()));
+    assert_eq!(
+        x.clone() * TaylorModel::from(-4.0),
+        -(x.clone() + x.clone() + x.clone() + x.clone())
+    );
     assert_eq!(TaylorModel::zero().sin_cos(), (TaylorModel::zero(), TaylorModel::one()));
     assert_eq!(x.clone() / TaylorModel::from(0.5), x.clone() + x);
     assert_eq!(TaylorModel::from(Interval::ENTIRE) * TaylorModel::zero(), TaylorModel::zero());
@@ -262,7 +286,8 @@ fn squares_at_first_order() {
     let domain = TaylorBox::new(&space, &[Interval::new(-1.0, 1.0).unwrap(); 4]);
     let t = domain.variables();
     let a = t[0].clone() * 0.3.into() - t[1].clone() * 0.2.into() + t[3].clone();
-    for (square, largest) in [(&a * &a, 2.25), (&a * &(a.clone() * TaylorModel::from(-7.0)), 15.75)] {
+    for (square, largest) in [(&a * &a, 2.25), (&a * &(a.clone() * TaylorModel::from(-7.0)), 15.75)]
+    {
         let (values, sign) = (square.remainder(), square.remainder().mid().signum());
         assert!(values.mag() < largest * 1.000001 && values.mag() >= largest);
         assert!((if sign > 0.0 { values.lo() } else { -values.hi() }) > -1e-12, "{values:?}");
@@ -289,11 +314,15 @@ fn what_is_not_known_is_entire() {
         (x.clone() + TaylorModel::from(f64::MAX)) + TaylorModel::from(f64::MAX),
         x.clone() * TaylorModel::from(1e200) * (x.clone() * TaylorModel::from(1e200)),
     ] {
-        assert!(model.remainder().mag() == f64::INFINITY && !model.range().width().is_nan(), "{model:?}");
+        assert!(
+            model.remainder().mag() == f64::INFINITY && !model.range().width().is_nan(),
+            "{model:?}"
+        );
         assert!(model.range().contains(1e308) || model.range().contains(-1e308), "{model:?}");
     }
     // Two coefficients of which each is a number and the sum is not.
-    let pair = TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centered(0.0, f64::MAX); 2]);
+    let pair =
+        TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centered(0.0, f64::MAX); 2]);
     assert_eq!((pair.variable(0) + pair.variable(1)).range(), Interval::ENTIRE);
     assert_eq!(x.ln().range().lo(), f64::NEG_INFINITY);
     assert!(x.sqrt().range().encloses(&Interval::new(0.0, 1.0).unwrap()));
@@ -309,12 +338,16 @@ fn what_is_not_known_is_entire() {
 #[test]
 fn angles_at_the_cut() {
     let space = TaylorSpace::new(2, 3).unwrap();
-    let across =
-        TaylorBox::new(&space, &[Interval::new(-2.0, -1.0).unwrap(), Interval::new(-0.1, 0.1).unwrap()]);
+    let across = TaylorBox::new(
+        &space,
+        &[Interval::new(-2.0, -1.0).unwrap(), Interval::new(-0.1, 0.1).unwrap()],
+    );
     let angle = across.variable(1).atan2(&across.variable(0)).range();
     assert!(angle.contains(3.1) && angle.contains(-3.1));
-    let beside =
-        TaylorBox::new(&space, &[Interval::new(-2.0, -1.0).unwrap(), Interval::new(0.0, 0.1).unwrap()]);
+    let beside = TaylorBox::new(
+        &space,
+        &[Interval::new(-2.0, -1.0).unwrap(), Interval::new(0.0, 0.1).unwrap()],
+    );
     let angle = beside.variable(1).atan2(&beside.variable(0));
     assert!(angle.range().encloses(&Interval::new(3.05, PI).unwrap()) && angle.range().lo() > 3.0);
     assert!(angle.remainder().mag() < 4e-3); // a value alone would have 0.05

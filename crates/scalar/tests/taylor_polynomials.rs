@@ -1,4 +1,5 @@
-//! Truncated polynomials: against naive exact rational arithmetic, and identities of rings and of calculus.
+//! Truncated polynomials: against naive exact rational arithmetic, and identities of rings and of
+//! calculus.
 
 mod common;
 
@@ -291,8 +292,9 @@ proptest! {
 #[test]
 fn twenty_eight_variables() {
     let space = TaylorSpace::new(28, 15).unwrap();
-    let sum =
-        (0..28).fold(TaylorPolynomial::<f64>::zero(), |sum, i| sum + TaylorPolynomial::variable(&space, i));
+    let sum = (0..28).fold(TaylorPolynomial::<f64>::zero(), |sum, i| {
+        sum + TaylorPolynomial::variable(&space, i)
+    });
     let cube = sum.powi(3);
     // C(30, 3) monomials, with coefficients 1, 3 and 6 of the multinomial theorem.
     assert_eq!(cube.term_count(), 4060);
@@ -306,8 +308,9 @@ fn twenty_eight_variables() {
     assert!(TaylorPolynomial::<f64>::variable(&space, 27).powi(16).is_zero());
 
     let small = TaylorSpace::new(28, 3).unwrap();
-    let one = (0..28)
-        .fold(TaylorPolynomial::<f64>::from(1.0), |sum, i| sum + TaylorPolynomial::variable(&small, i));
+    let one = (0..28).fold(TaylorPolynomial::<f64>::from(1.0), |sum, i| {
+        sum + TaylorPolynomial::variable(&small, i)
+    });
     // 1 / (1 + s) = 1 - s + s² - s³.
     let inverse = one.recip();
     assert_eq!(inverse.coefficient(&exponents_of(28, &[0, 5, 27])), -6.0);

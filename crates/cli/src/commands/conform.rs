@@ -59,7 +59,8 @@ fn robot_and_settings(args: &ConformArgs) -> Result<(Robot, Settings)> {
     Ok((Robot::from_description(model.robot())?, settings))
 }
 
-/// Explanations cost little beside the search for the sets of a model that is not linear, and its verdict needs them more.
+/// Explanations cost little beside the search for the sets of a model that is not linear, and its
+/// verdict needs them more.
 fn explain(args: &ConformArgs, robot: &Robot, settings: &Settings) -> Result<Option<Tolerance>> {
     match args.explain.as_deref() {
         Some("none") => Ok(None),
@@ -107,7 +108,8 @@ fn settings(args: &ConformArgs, joints: usize) -> Result<Settings> {
     Ok(settings)
 }
 
-/// 2n numbers, or 2: one for all positions and one for all velocities. `words` are what else the option takes.
+/// 2n numbers, or 2: one for all positions and one for all velocities. `words` are what else the
+/// option takes.
 fn numbers(option: &str, words: &str, list: &str, joints: usize) -> Result<Vec<f64>> {
     let all = 2 * joints;
     let wrong = |what: String| {
@@ -115,8 +117,9 @@ fn numbers(option: &str, words: &str, list: &str, joints: usize) -> Result<Vec<f
             "{option}: {what}; give {words}, 2 numbers (for positions, for velocities), or {all}"
         ))
     };
-    let parse =
-        |text: &str| text.trim().parse::<f64>().map_err(|_| wrong(format!("\"{text}\" is no number")));
+    let parse = |text: &str| {
+        text.trim().parse::<f64>().map_err(|_| wrong(format!("\"{text}\" is no number")))
+    };
     let values = list.split(',').map(parse).collect::<Result<Vec<_>>>()?;
     match values[..] {
         [position, velocity] => Ok([vec![position; joints], vec![velocity; joints]].concat()),

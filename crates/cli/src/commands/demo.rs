@@ -12,7 +12,8 @@ use crate::args::{DataArgs, DemoArgs};
 use crate::progress::Progress;
 use crate::{output, words};
 
-/// The whole job on a virtual arm. Its outcome is that of the model on the recordings it was made from; that motions held out leave its sets is part of what the demo shows.
+/// The whole job on a virtual arm. Its outcome is that of the model on the recordings it was made
+/// from; that motions held out leave its sets is part of what the demo shows.
 pub fn run(args: &DemoArgs, json: bool) -> Result<Outcome> {
     let robot = Robot::lwa4p();
     let folder = args.out.join("recordings");
@@ -35,8 +36,12 @@ pub fn run(args: &DemoArgs, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&json!({ "model": model, "held_out": held_out }))?;
     } else {
-        let words =
-            format!("{}\n{}\n{}", words::model(&model), held_out_words(&recorded), words::check(&held_out));
+        let words = format!(
+            "{}\n{}\n{}",
+            words::model(&model),
+            held_out_words(&recorded),
+            words::check(&held_out)
+        );
         output::print(&words)?;
     }
     Ok(Outcome::of(model.verified))
@@ -53,7 +58,13 @@ fn identify(robot: &Robot, folder: &Path, recorded: &RecordedDemo) -> Result<Mod
 }
 
 /// Checks the model on some suites and writes the page about them.
-fn page(model: &Model, robot: &Robot, folder: &Path, suites: &[String], to: &Path) -> Result<Check> {
+fn page(
+    model: &Model,
+    robot: &Robot,
+    folder: &Path,
+    suites: &[String],
+    to: &Path,
+) -> Result<Check> {
     let args = DataArgs {
         data: folder.to_path_buf(),
         suites: suites.to_vec(),

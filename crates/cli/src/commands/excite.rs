@@ -25,14 +25,17 @@ pub fn run(args: &ExciteArgs, json: bool) -> Result<Outcome> {
     let motor_and_friction =
         [ColumnKind::MotorInertia, ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1];
     let columns =
-        [Column::of_joints(n, &ColumnKind::INERTIAL), Column::of_joints(n, &motor_and_friction)].concat();
+        [Column::of_joints(n, &ColumnKind::INERTIAL), Column::of_joints(n, &motor_and_friction)]
+            .concat();
     let found = robot.excitation(&columns, &settings)?;
     let text = csv(&found, n, args.rate);
     write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
     output::note(&format!("wrote {}", args.out.display()));
     if json {
         let (now, before) = (found.quality.condition, found.before.condition);
-        output::print_json(&json!({ "condition": now, "condition_before": before, "period": args.period }))?;
+        output::print_json(
+            &json!({ "condition": now, "condition_before": before, "period": args.period }),
+        )?;
     } else {
         output::print(&words(&found, &robot))?;
     }
@@ -50,7 +53,8 @@ fn words(found: &Excitation, robot: &Robot) -> String {
     for (j, joint) in robot.joints().iter().enumerate() {
         let [low, high] = found.trajectory.position_range(j);
         let speed = found.trajectory.speed_bound(j);
-        let _ = writeln!(text, "  {}: {low:.3} to {high:.3} rad, at most {speed:.3} rad/s", joint.name);
+        let _ =
+            writeln!(text, "  {}: {low:.3} to {high:.3} rad, at most {speed:.3} rad/s", joint.name);
     }
     text.push_str(
         "only joint limits were looked at: check that the arm hits neither itself nor what is around it\n",

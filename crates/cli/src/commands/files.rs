@@ -5,7 +5,8 @@ use std::collections::HashSet;
 use reachtube::reach::SuiteReach;
 use reachtube::report::SuiteFigure;
 
-/// A name for the files of each of `reach`: the suite, and the run where it has its own nominal solution. All are different, and none leaves its folder.
+/// A name for the files of each of `reach`: the suite, and the run where it has its own nominal
+/// solution. All are different, and none leaves its folder.
 pub fn of_reach(reach: &[SuiteReach]) -> Vec<String> {
     distinct(reach.iter().map(SuiteReach::name), &["", "_tube"])
 }
@@ -21,7 +22,8 @@ fn distinct(names: impl Iterator<Item = String>, endings: &[&str]) -> Vec<String
     let mut choose = |name: String| {
         let name = path_safe(&name);
         let numbered = (2..).map(|number| format!("{name}_{number}"));
-        let free = |name: &String| endings.iter().all(|ending| !taken.contains(&lower(name, ending)));
+        let free =
+            |name: &String| endings.iter().all(|ending| !taken.contains(&lower(name, ending)));
         let chosen = std::iter::once(name.clone()).chain(numbered).find(free).unwrap_or_default();
         taken.extend(endings.iter().map(|ending| lower(&chosen, ending)));
         chosen

@@ -37,7 +37,8 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Whether a URDF can be written: from one that was read, and with its companion beside it in place of no other output.
+/// Whether a URDF can be written: from one that was read, and with its companion beside it in place
+/// of no other output.
 fn check_urdf(args: &IdentifyArgs, robot: &str) -> Result<()> {
     let Some(urdf) = &args.urdf else { return Ok(()) };
     if Path::new(robot).extension().is_none_or(|extension| extension != "urdf") {
@@ -80,13 +81,15 @@ fn files(args: &IdentifyArgs, found: &Identification, urdf: Option<&Urdf>) -> Re
     Ok(())
 }
 
-/// The settings of the file and the command line, and the folder that paths are relative to: that of the settings file, or the present one.
+/// The settings of the file and the command line, and the folder that paths are relative to: that
+/// of the settings file, or the present one.
 fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
     let mut settings = match &args.settings {
         Some(path) => IdentifySettings::load(path)?,
         None => IdentifySettings::default(),
     };
-    let folder = args.settings.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_path_buf();
+    let folder =
+        args.settings.as_deref().and_then(Path::parent).unwrap_or(Path::new("")).to_path_buf();
     let here = std::env::current_dir().unwrap_or_default();
     let given = [
         (&mut settings.rest, &args.rest),
@@ -109,7 +112,8 @@ fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
     Ok((settings, folder))
 }
 
-/// A robot of the settings file lies beside it; one of the command line, and an embedded one, is what it is.
+/// A robot of the settings file lies beside it; one of the command line, and an embedded one, is
+/// what it is.
 fn from_folder(name: &str, args: &IdentifyArgs, folder: &Path) -> String {
     let beside = folder.join(name);
     if args.robot.is_none() && beside.exists() { beside.display().to_string() } else { name.into() }

@@ -1,4 +1,6 @@
-use reachtube::identify::prepare::{LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, windows};
+use reachtube::identify::prepare::{
+    LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, windows,
+};
 use reachtube::{Result, write};
 use reachtube_robot::Robot;
 use serde_json::json;
@@ -24,7 +26,11 @@ pub fn run(args: &PrepareArgs, json: bool) -> Result<Outcome> {
     let cut = windows(&prepared.logs, args.window, args.repeats);
     cut.write(&args.out)?;
     output::notes(&[prepared.changes, cut.changes].concat());
-    output::note(&format!("wrote {} recordings and runs.csv into {}", cut.windows.len(), args.out.display()));
+    output::note(&format!(
+        "wrote {} recordings and runs.csv into {}",
+        cut.windows.len(),
+        args.out.display()
+    ));
     if json {
         output::print_json(&json!({ "cut_off": cut_off, "recordings": cut.windows.len() }))?;
     }

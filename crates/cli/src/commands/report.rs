@@ -20,7 +20,8 @@ pub fn run(args: &ReportArgs, json: bool) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Writes the page and its figures into `folder`; returns the page's path, and notes on the recordings.
+/// Writes the page and its figures into `folder`; returns the page's path, and notes on the
+/// recordings.
 pub fn write(opened: &Opened, folder: &Path) -> Result<(PathBuf, Vec<String>)> {
     let path = folder.join("report.html");
     write::try_at(&path)?;

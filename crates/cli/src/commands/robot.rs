@@ -15,7 +15,10 @@ pub fn show(args: &RobotShowArgs, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     let joints = robot.joint_count();
     if !args.at.is_empty() && args.at.len() != joints {
-        return Err(Error::Setting(format!("--at: {} given; give {joints} positions in rad", args.at.len())));
+        return Err(Error::Setting(format!(
+            "--at: {} given; give {joints} positions in rad",
+            args.at.len()
+        )));
     }
     let at = ExpansionPoint::from_values(&args.at, joints)?;
     let physicality = robot.check_physical()?;
@@ -44,8 +47,14 @@ fn describe(robot: &Robot, q: &[f64], mass: &DMatrix<f64>, physicality: &Physica
         robot.joint_count()
     );
     let rows: Vec<Vec<String>> = robot.joints().iter().map(joint_row).collect();
-    let header =
-        ["joint", "limits [rad]", "speed [rad/s]", "gear", "motor inertia [kg m^2]", "viscous v1, v2, v3"];
+    let header = [
+        "joint",
+        "limits [rad]",
+        "speed [rad/s]",
+        "gear",
+        "motor inertia [kg m^2]",
+        "viscous v1, v2, v3",
+    ];
     text.push_str(&words::table(&header, &rows));
     text.push_str("\nlinks, and Coulomb friction\n");
     let rows: Vec<Vec<String>> = robot.description().joints.iter().map(link_row).collect();
@@ -85,13 +94,16 @@ fn joint_row(joint: &reachtube_robot::Joint) -> Vec<String> {
 
 /// What the description says of the link and its friction.
 fn link_row(joint: &JointDescription) -> Vec<String> {
-    let list = |values: &[f64]| values.iter().map(|value| digits(*value)).collect::<Vec<_>>().join(" ");
+    let list =
+        |values: &[f64]| values.iter().map(|value| digits(*value)).collect::<Vec<_>>().join(" ");
     let moment = match (joint.first_moment, joint.com) {
         (Some(moment), _) => moment,
         (None, com) => com.unwrap_or_default().map(|c| joint.mass * c),
     };
     let geometry = match (joint.dh, joint.placement) {
-        (Some(dh), _) => format!("a {} alpha {:.4} theta {:.4} d {}", dh.a, dh.alpha, dh.theta, dh.d),
+        (Some(dh), _) => {
+            format!("a {} alpha {:.4} theta {:.4} d {}", dh.a, dh.alpha, dh.theta, dh.d)
+        }
         (None, placement) => {
             let placement = placement.unwrap_or_default();
             let axis = list(&joint.axis.unwrap_or([0.0, 0.0, 1.0]));
@@ -109,7 +121,14 @@ fn link_row(joint: &JointDescription) -> Vec<String> {
     };
     let coulomb = &joint.friction.coulomb;
     let coulomb = if coulomb.iter().all(|a| *a == 0.0) { "0".into() } else { list(coulomb) };
-    vec![joint.name.clone(), geometry, digits(joint.mass), list(&moment), list(&joint.inertia), coulomb]
+    vec![
+        joint.name.clone(),
+        geometry,
+        digits(joint.mass),
+        list(&moment),
+        list(&joint.inertia),
+        coulomb,
+    ]
 }
 
 fn physicality_words(physicality: &Physicality, robot: &Robot) -> String {

@@ -11,7 +11,8 @@ fn schema() -> jsonschema::Validator {
     jsonschema::draft202012::new(&schema).unwrap()
 }
 
-/// (degree, terms of all joints) by hand: model 1 of the LWA 4P has six q̇, six q̇², six q̇³ and six u a joint.
+/// (degree, terms of all joints) by hand: model 1 of the LWA 4P has six q̇, six q̇², six q̇³ and
+/// six u a joint.
 #[test]
 fn models_are_made_and_described() {
     let lab = Lab::new();
@@ -25,8 +26,11 @@ fn models_are_made_and_described() {
         let sum: u64 = made["terms"].as_array().unwrap().iter().map(|t| t.as_u64().unwrap()).sum();
         assert_eq!((made["degree"].as_u64().unwrap(), sum), (degree, terms), "{arguments}");
     }
-    let text = lab.run("abstract --robot lwa4p --model 2 --order 4 --box 0.05,0.1,1").exits(0).stdout;
-    for part in ["model 2 of order 4 of Schunk LWA 4P", "24 states", "joint6", "proved", "q = 0 rad"] {
+    let text =
+        lab.run("abstract --robot lwa4p --model 2 --order 4 --box 0.05,0.1,1").exits(0).stdout;
+    for part in
+        ["model 2 of order 4 of Schunk LWA 4P", "24 states", "joint6", "proved", "q = 0 rad"]
+    {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
 }
@@ -50,13 +54,18 @@ fn files_fit_the_schema_and_conform_takes_them() {
         let complaints: Vec<String> = schema.iter_errors(&file).map(|e| e.to_string()).collect();
         assert_eq!(complaints, Vec::<String>::new());
         let found = lab
-            .run(&format!("conform --abstraction m{model}.json --data data --torque compensated --json"))
+            .run(&format!(
+                "conform --abstraction m{model}.json --data data --torque compensated --json"
+            ))
             .exits(0)
             .json();
         assert_eq!(found["settings"]["abstraction"], json!({"model": model, "order": 1}));
-        assert!((found["cost"].as_f64().unwrap() / usual["cost"].as_f64().unwrap() - 1.0).abs() < 1e-9);
+        assert!(
+            (found["cost"].as_f64().unwrap() / usual["cost"].as_f64().unwrap() - 1.0).abs() < 1e-9
+        );
     }
-    lab.run("conform --abstraction m2.json --data data --torque compensated --out model.json").exits(0);
+    lab.run("conform --abstraction m2.json --data data --torque compensated --out model.json")
+        .exits(0);
     lab.check("").exits(0);
 }
 
@@ -66,7 +75,8 @@ fn nothing_is_left_out_of_an_arm_that_is_linear() {
     let lab = Lab::new();
     let made = lab.run("abstract --robot arm.toml --box 1,1,1 --json").exits(0).json();
     for bound in made["remainder"]["bounds"].as_array().unwrap() {
-        let largest = bound.as_array().unwrap().iter().map(|b| b.as_f64().unwrap().abs()).fold(0.0, f64::max);
+        let largest =
+            bound.as_array().unwrap().iter().map(|b| b.as_f64().unwrap().abs()).fold(0.0, f64::max);
         assert!(largest < 1e-12, "{bound}");
     }
 }
@@ -83,7 +93,10 @@ fn what_cannot_be_made_is_refused() {
     refused("abstract --robot lwa4p --model 3 --order 20", &["GB for its terms", "fits"]);
     refused("abstract --robot lwa4p --model 2 --order 40", &["order 31 at most"]);
     refused("abstract --robot lwa4p --at 1,2", &["expansion point has 2 values", "6 positions"]);
-    refused("abstract --robot lwa4p --box 0.1,1.3,1", &["joint `joint1`", "beyond the limits [-1.2, 1.2]"]);
+    refused(
+        "abstract --robot lwa4p --box 0.1,1.3,1",
+        &["joint `joint1`", "beyond the limits [-1.2, 1.2]"],
+    );
     refused("abstract --robot lwa4p --box 0.1,1", &["2 radii", "give 3"]);
     refused("abstract --robot lwa4p --box 0.1,nan,1", &["finite numbers"]);
     let neither = lab.run("conform --data data --torque compensated").exits(2).stderr;

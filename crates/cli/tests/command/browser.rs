@@ -1,4 +1,5 @@
-//! The page of `report` in a headless browser: its script runs to the end, and nothing is complained about.
+//! The page of `report` in a headless browser: its script runs to the end, and nothing is
+//! complained about.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -6,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use crate::fixture::Lab;
 
-const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+const BROWSERS: [&str; 4] =
+    ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 const PATIENCE: Duration = Duration::from_secs(120);
 const OPTIONS: [&str; 8] = [
     "--headless",

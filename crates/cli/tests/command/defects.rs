@@ -40,8 +40,14 @@ fn not_a_number() {
         |lines| set_cell(&mut lines[9], 3, "NaN"),
         &["data/A_2.csv:10: joint 1: qd1 is \"NaN\"", "cut the run"],
     );
-    refused(|lines| set_cell(&mut lines[9], 2, "inf"), &["data/A_2.csv:10: joint 2: q2 is \"inf\""]);
-    refused(|lines| set_cell(&mut lines[50], 6, "1.5V"), &["data/A_2.csv:51: joint 2: tau2 is \"1.5V\""]);
+    refused(
+        |lines| set_cell(&mut lines[9], 2, "inf"),
+        &["data/A_2.csv:10: joint 2: q2 is \"inf\""],
+    );
+    refused(
+        |lines| set_cell(&mut lines[50], 6, "1.5V"),
+        &["data/A_2.csv:51: joint 2: tau2 is \"1.5V\""],
+    );
 }
 
 #[test]
@@ -68,7 +74,8 @@ fn every_defect_is_listed_in_the_order_of_the_lines() {
     });
     lab.edit("data/B_3.csv", |lines| set_cell(&mut lines[1], 2, "z"));
     let run = lab.conform("").fails_with(&[]);
-    let places: Vec<&str> = run.stderr.lines().map(|line| line.split(": ").nth(1).unwrap()).collect();
+    let places: Vec<&str> =
+        run.stderr.lines().map(|line| line.split(": ").nth(1).unwrap()).collect();
     assert_eq!(places, ["data/A_2.csv:11", "data/A_2.csv:20", "data/A_2.csv:30", "data/B_3.csv:2"]);
 }
 
@@ -104,7 +111,8 @@ fn other_separators_and_encodings() {
         &["data/A_2.csv:1: the file is UTF-16", "UTF-8"],
     );
     refused_bytes(utf16, &["data/A_2.csv:1: the file is no text"]);
-    let latin1 = |text: String| text.replacen("0.010", "0.01\u{b0}", 1).chars().map(|c| c as u8).collect();
+    let latin1 =
+        |text: String| text.replacen("0.010", "0.01\u{b0}", 1).chars().map(|c| c as u8).collect();
     refused_bytes(latin1, &["data/A_2.csv:3: t is", "not a finite number"]);
 }
 
@@ -128,7 +136,11 @@ fn a_missing_sample() {
     let run = |lab: &Lab, more: &str| lab.conform(more);
     let lab = Lab::new();
     lab.edit("data/A_2.csv", |lines| drop(lines.remove(10)));
-    run(&lab, "").fails_with(&["data/A_2.csv:11: a gap of 0.02", "the limit is 0.019", "--max-gap"]);
+    run(&lab, "").fails_with(&[
+        "data/A_2.csv:11: a gap of 0.02",
+        "the limit is 0.019",
+        "--max-gap",
+    ]);
     run(&lab, "--max-gap 0.02").exits(0).notes("suite A: its runs differ in input or sample times");
 }
 
@@ -159,9 +171,15 @@ fn degrees() {
         }
     };
     let only_positions = |lines: &mut Vec<String>| in_degrees(lines, &[1, 2]);
-    refused_by_conform(only_positions, &["A_2.csv: joint 1: q moves 57.", "degrees", "give q in rad"]);
+    refused_by_conform(
+        only_positions,
+        &["A_2.csv: joint 1: q moves 57.", "degrees", "give q in rad"],
+    );
     let only_velocities = |lines: &mut Vec<String>| in_degrees(lines, &[3, 4]);
-    refused_by_conform(only_velocities, &["A_2.csv: joint 2: q moves 0.01", "degrees/s", "qd in rad/s"]);
+    refused_by_conform(
+        only_velocities,
+        &["A_2.csv: joint 2: q moves 0.01", "degrees/s", "qd in rad/s"],
+    );
     let both = |lines: &mut Vec<String>| in_degrees(lines, &[1, 2, 3, 4]);
     refused_by_conform(both, &["A_2.csv: joint 1: qd reaches", "the joint's limit is 3 rad/s"]);
 }
@@ -169,8 +187,8 @@ fn degrees() {
 #[test]
 fn positions_far_beyond_the_limits() {
     let lab = Lab::new();
-    let limited =
-        crate::fixture::robot_toml().replace("velocity_limit = 3.0", "position_limits = [-1.0, 1.0]");
+    let limited = crate::fixture::robot_toml()
+        .replace("velocity_limit = 3.0", "position_limits = [-1.0, 1.0]");
     lab.write("arm.toml", limited);
     lab.conform("").exits(0);
     lab.edit("data/A_2.csv", |lines| set_cell(&mut lines[30], 2, "-11.5"));
@@ -204,7 +222,11 @@ fn other_ways_to_write_the_same() {
     accepted(|text| text.replace('\n', "\n\n"));
     accepted(|text| text.trim_end().to_string());
     accepted(|text| {
-        text.replace(",tau2\n", ",tau2,note\n").lines().enumerate().map(|(k, line)| extra(k, line)).collect()
+        text.replace(",tau2\n", ",tau2,note\n")
+            .lines()
+            .enumerate()
+            .map(|(k, line)| extra(k, line))
+            .collect()
     });
     accepted(|text| {
         let quoted = |line: &str| format!("\"{}\"\n", line.replace(',', "\",\""));

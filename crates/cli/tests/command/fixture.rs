@@ -1,6 +1,7 @@
 //! A small data set of a 2-joint arm, and the command run on it.
 //!
-//! The links weigh nothing, so that each joint is m q̈ = u - v q̇ exactly, and its motion under a held input has a closed form.
+//! The links weigh nothing, so that each joint is m q̈ = u - v q̇ exactly, and its motion under a
+//! held input has a closed form.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -34,10 +35,15 @@ pub fn robot_toml() -> String {
             DAMPING[j]
         )
     };
-    format!("schema_version = 1\nname = \"two axes\"\nparameters = \"base\"\n\n{}\n{}", joint(0), joint(1))
+    format!(
+        "schema_version = 1\nname = \"two axes\"\nparameters = \"base\"\n\n{}\n{}",
+        joint(0),
+        joint(1)
+    )
 }
 
-/// A folder with `arm.toml`, and in `data` the suites A and B of three runs, each a motion of its own.
+/// A folder with `arm.toml`, and in `data` the suites A and B of three runs, each a motion of its
+/// own.
 pub struct Lab {
     folder: TempDir,
 }
@@ -50,7 +56,10 @@ impl Lab {
         let mut index = String::from("file,suite,motion\n");
         for (suite, frequency) in [("A", 4.0), ("B", 9.0)] {
             for run in 1..=3 {
-                lab.write(&format!("data/{suite}_{run}.csv"), recording(frequency, run as f64 - 2.0));
+                lab.write(
+                    &format!("data/{suite}_{run}.csv"),
+                    recording(frequency, run as f64 - 2.0),
+                );
                 index += &format!("{suite}_{run}.csv,{suite},motion {suite}\n");
             }
         }
@@ -123,7 +132,11 @@ pub struct Run {
 impl Run {
     pub fn of(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).unwrap();
-        Self { code: output.status.code().unwrap(), stdout: text(output.stdout), stderr: text(output.stderr) }
+        Self {
+            code: output.status.code().unwrap(),
+            stdout: text(output.stdout),
+            stderr: text(output.stderr),
+        }
     }
 
     /// Asserts the exit code.
@@ -138,17 +151,21 @@ impl Run {
     pub fn fails_with(self, parts: &[&str]) -> Self {
         assert_eq!((self.code, self.stdout.as_str()), (2, ""), "{self:#?}");
         assert!(self.stderr.lines().all(|line| line.starts_with("error: ")), "{}", self.stderr);
-        parts
-            .iter()
-            .for_each(|part| assert!(self.stderr.contains(part), "{part:?} is not in\n{}", self.stderr));
+        parts.iter().for_each(|part| {
+            assert!(self.stderr.contains(part), "{part:?} is not in\n{}", self.stderr)
+        });
         self
     }
 
     /// As [`fails_with`](Self::fails_with), where notes came before the error.
     #[track_caller]
     pub fn fails_with_last(mut self, parts: &[&str]) -> Self {
-        self.stderr =
-            self.stderr.lines().filter(|line| !line.starts_with("note: ")).collect::<Vec<_>>().join("\n");
+        self.stderr = self
+            .stderr
+            .lines()
+            .filter(|line| !line.starts_with("note: "))
+            .collect::<Vec<_>>()
+            .join("\n");
         self.fails_with(parts)
     }
 
@@ -165,7 +182,8 @@ impl Run {
 
     #[track_caller]
     pub fn json(&self) -> Value {
-        serde_json::from_str(&self.stdout).unwrap_or_else(|error| panic!("{error}: {}", self.stdout))
+        serde_json::from_str(&self.stdout)
+            .unwrap_or_else(|error| panic!("{error}: {}", self.stdout))
     }
 }
 
@@ -176,7 +194,10 @@ fn recording(frequency: f64, deviation: f64) -> String {
     for k in 0..SAMPLES {
         let t = k as f64 * STEP;
         let u = [3.0, -2.0].map(|torque| torque * (frequency * t).cos());
-        text += &format!("{t:.3},{:?},{:?},{:?},{:?},{:?},{:?}\n", q[0], q[1], qd[0], qd[1], u[0], u[1]);
+        text += &format!(
+            "{t:.3},{:?},{:?},{:?},{:?},{:?},{:?}\n",
+            q[0], q[1], qd[0], qd[1], u[0], u[1]
+        );
         for j in 0..2 {
             (q[j], qd[j]) = step(j, q[j], qd[j], u[j] + deviation * TORQUE);
         }

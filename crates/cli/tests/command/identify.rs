@@ -1,4 +1,5 @@
-//! Identification from the command line, on a pendulum with a motor whose torque is known in closed form.
+//! Identification from the command line, on a pendulum with a motor whose torque is known in closed
+//! form.
 
 use std::fmt::Write;
 
@@ -49,11 +50,13 @@ fn a_pendulum_is_found_and_its_file_is_a_robot() {
         .notes("were filtered forward and backward");
     let found = run.json();
     assert_eq!(found["kept_back"], true);
-    // What the low-pass takes off the steps of Coulomb friction where the joint turns: 1 % of the torque.
+    // What the low-pass takes off the steps of Coulomb friction where the joint turns: 1 % of the
+    // torque.
     assert!(found["validation"][0]["joints"][0]["relative"].as_f64().unwrap() < 0.02, "{found}");
     let viscous = found["robot"]["joint"][0]["friction"]["viscous"][0].as_f64().unwrap();
     assert!((viscous - 0.8).abs() < 1e-3, "{viscous}");
-    let moment = found["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "mz1").unwrap();
+    let moment =
+        found["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "mz1").unwrap();
     assert!((moment["value"].as_f64().unwrap() + 0.8).abs() < 1e-3, "{moment}");
     let html = lab.read("report/identify.html");
     assert!(html.contains("pendulum: identified") && html.matches("<svg").count() == 1);
@@ -88,19 +91,23 @@ fn a_urdf_gets_the_values_found_and_keeps_the_rest() {
     let job = "identify --robot arm.urdf --dynamic a.csv b.csv --cut-off 15";
     lab.run(&format!("{job} --out found.toml --urdf new.urdf")).exits(0).notes("wrote new.urdf");
     assert!(
-        lab.read("new.urdf").contains(r#"<visual><geometry><mesh filename="arm.stl"/></geometry></visual>"#)
+        lab.read("new.urdf")
+            .contains(r#"<visual><geometry><mesh filename="arm.stl"/></geometry></visual>"#)
     );
-    let shown = |robot: &str| lab.run(&format!("robot show {robot} --at 0.5 --json")).exits(0).json();
+    let shown =
+        |robot: &str| lab.run(&format!("robot show {robot} --at 0.5 --json")).exits(0).json();
     let (new, found) = (shown("new.urdf"), shown("found.toml"));
     for part in ["mass_matrix", "gravity_torque"] {
-        let value =
-            |of: &serde_json::Value| of[part].to_string().trim_matches(['[', ']']).parse::<f64>().unwrap();
+        let value = |of: &serde_json::Value| {
+            of[part].to_string().trim_matches(['[', ']']).parse::<f64>().unwrap()
+        };
         assert!((value(&new) - value(&found)).abs() < 1e-9, "{part}: {new} {found}");
     }
     let gravity = new["gravity_torque"][0].as_f64().unwrap();
     assert!((gravity - 2.0 * 9.81 * 0.4 * 0.5f64.sin()).abs() < 0.01, "{gravity}");
     // The companion of new.urdf, with motor and friction, would take the place of the robot file.
-    lab.run(&format!("{job} --out new.toml --urdf new.urdf")).fails_with(&["--out new.toml", "another name"]);
+    lab.run(&format!("{job} --out new.toml --urdf new.urdf"))
+        .fails_with(&["--out new.toml", "another name"]);
     lab.run("identify --robot pendulum.toml --dynamic a.csv --urdf new.urdf")
         .fails_with(&["pendulum.toml is none"]);
 }
@@ -111,14 +118,17 @@ fn settings_hold_all_of_it_and_mistakes_are_told() {
     let settings = "robot = \"pendulum.toml\"\ndynamic = [\"a.csv\", { path = \"b.csv\", from = 2.0 }]\nvalidate = [\"c.csv\"]\n[prepare]\ncut_off = 8.0\n";
     lab.write("job.toml", settings);
     let words = lab.run("identify --settings job.toml").exits(0).stdout;
-    for part in ["3. inertial parameters", "combinations shown", "recordings kept back", "simulated"] {
+    for part in
+        ["3. inertial parameters", "combinations shown", "recordings kept back", "simulated"]
+    {
         assert!(words.contains(part), "{part} is not in\n{words}");
     }
     lab.write("job.toml", settings.replace("cut_off", "cutoff"));
     lab.run("identify --settings job.toml").fails_with(&["job.toml", "line 5", "cutoff"]);
     lab.run("identify --robot pendulum.toml").fails_with(&["--dynamic"]);
     lab.run("identify --dynamic a.csv").fails_with(&["--robot"]);
-    lab.run("identify --robot pendulum.toml --dynamic nowhere.csv").fails_with(&["nowhere.csv", "CSV file"]);
+    lab.run("identify --robot pendulum.toml --dynamic nowhere.csv")
+        .fails_with(&["nowhere.csv", "CSV file"]);
     lab.run("identify --robot pendulum.toml --dynamic a.csv --gains 1,2")
         .fails_with(&["gains: 2 given", "each of the 1 joints"]);
 }

@@ -13,7 +13,8 @@ fn refused(change: impl FnOnce(&mut Vec<String>), parts: &[&str]) {
 #[test]
 fn a_missing_folder_or_index() {
     let lab = Lab::new();
-    let conform = |data: &str| lab.run(&format!("conform --robot arm.toml --data {data} --torque motor"));
+    let conform =
+        |data: &str| lab.run(&format!("conform --robot arm.toml --data {data} --torque motor"));
     conform("nowhere").fails_with(&["nowhere/runs.csv: cannot read", "give the folder"]);
     conform("data/A_1.csv").fails_with(&["data/A_1.csv/runs.csv: cannot read", "give the folder"]);
 }
@@ -22,7 +23,10 @@ fn a_missing_folder_or_index() {
 fn columns_that_are_not_there() {
     let header = |text: &'static str| move |lines: &mut Vec<String>| lines[0] = text.into();
     refused(header("path,suite,motion"), &["data/runs.csv:1: no column \"file\""]);
-    refused(header("file;suite;motion"), &["data/runs.csv:1: no column \"suite\"", "file;suite;motion"]);
+    refused(
+        header("file;suite;motion"),
+        &["data/runs.csv:1: no column \"suite\"", "file;suite;motion"],
+    );
     refused(|lines| lines.truncate(1), &["data/runs.csv: no run is listed"]);
 }
 
@@ -32,12 +36,18 @@ fn lines_that_are_wrong() {
         |lines| lines.push("A_1.csv,A,motion A".into()),
         &["data/runs.csv:8: \"A_1.csv\" is listed on line 2"],
     );
-    refused(|lines| lines.push("./A_1.csv,A,motion A".into()), &["data/runs.csv:8:", "is listed on line 2"]);
+    refused(
+        |lines| lines.push("./A_1.csv,A,motion A".into()),
+        &["data/runs.csv:8:", "is listed on line 2"],
+    );
     refused(
         |lines| lines.push("A_9.csv,A,motion A".into()),
         &["data/runs.csv:8: \"A_9.csv\" is not a file", "take the line out"],
     );
-    refused(|lines| lines.insert(1, "\nA_9.csv".into()), &["data/runs.csv:3: 1 fields, the header has 3"]);
+    refused(
+        |lines| lines.insert(1, "\nA_9.csv".into()),
+        &["data/runs.csv:3: 1 fields, the header has 3"],
+    );
     refused(
         |lines| lines[2] = "A_2.csv,A,motion B".into(),
         &["data/runs.csv:3: suite A has the motion \"motion B\" here", "line 2"],
@@ -50,7 +60,9 @@ fn suites_that_are_not_there() {
     lab.conform("--suites A,C").fails_with(&["there is no suite \"C\"", "the data set has A, B"]);
     lab.conform("--suites A,A").fails_with(&["named twice", "once"]);
     lab.edit("data/runs.csv", |lines| {
-        lines[1..].iter_mut().for_each(|line| *line = line.replace(",A,", ",,").replace(",B,", ",,"))
+        lines[1..]
+            .iter_mut()
+            .for_each(|line| *line = line.replace(",A,", ",,").replace(",B,", ",,"))
     });
     lab.conform("").fails_with(&["no run has a suite", "by the column suite"]);
     lab.run("inspect --data data").exits(0);
@@ -60,10 +72,9 @@ fn suites_that_are_not_there() {
 fn nothing_is_left_out_without_a_word() {
     let lab = Lab::new();
     std::fs::copy(lab.path("data/A_1.csv"), lab.path("data/A_4.csv")).unwrap();
-    lab.conform("--suites A")
-        .exits(0)
-        .notes("A_4.csv is not in runs.csv and is not used")
-        .notes("3 of the 6 runs in data/runs.csv are used: 3 belong to suites that were not asked for");
+    lab.conform("--suites A").exits(0).notes("A_4.csv is not in runs.csv and is not used").notes(
+        "3 of the 6 runs in data/runs.csv are used: 3 belong to suites that were not asked for",
+    );
     lab.edit("data/runs.csv", |lines| lines.push("A_4.csv,A,motion A".into()));
     lab.conform("").exits(0).notes("A_4.csv is a copy of A_1.csv");
 }

@@ -1,4 +1,5 @@
-//! The command as a user meets it: the real binary, its exit codes, what it prints and what it writes.
+//! The command as a user meets it: the real binary, its exit codes, what it prints and what it
+//! writes.
 
 mod abstraction;
 mod browser;

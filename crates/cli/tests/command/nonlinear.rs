@@ -26,16 +26,19 @@ fn schema() -> jsonschema::Validator {
 
 #[track_caller]
 fn fits(schema: &jsonschema::Validator, model: &Value) {
-    let complaints: Vec<String> =
-        schema.iter_errors(model).map(|error| format!("{}: {error}", error.instance_path())).collect();
+    let complaints: Vec<String> = schema
+        .iter_errors(model)
+        .map(|error| format!("{}: {error}", error.instance_path()))
+        .collect();
     assert_eq!(complaints, Vec::<String>::new());
 }
 
 #[test]
 fn a_model_that_is_not_linear_goes_through_every_command() {
     let lab = bent();
-    let run =
-        conform(&lab, "--out model.json --report report").exits(0).notes("round 1: the linearised sets cost");
+    let run = conform(&lab, "--out model.json --report report")
+        .exits(0)
+        .notes("round 1: the linearised sets cost");
     for part in [
         "conformant: 6 recordings in 2 suites; 816 of 816 bounds (suite, sample, state, side) in the computed reachable set, an outer enclosure",
         "of the linearised set",
@@ -75,7 +78,8 @@ fn a_model_of_an_abstraction_is_that_of_its_robot() {
     let lab = bent();
     let direct = conform(&lab, "--json").exits(0).json();
     lab.run("abstract --robot bent.toml --order 3 --out bent.json").exits(0);
-    let run = lab.run("conform --abstraction bent.json --data data --torque compensated --json").exits(0);
+    let run =
+        lab.run("conform --abstraction bent.json --data data --torque compensated --json").exits(0);
     assert_eq!(direct, run.json());
 }
 
@@ -83,12 +87,18 @@ fn a_model_of_an_abstraction_is_that_of_its_robot() {
 fn bisection_is_a_baseline_that_costs_more() {
     let lab = bent();
     let program = conform(&lab, "--json --explain none").exits(0).json();
-    let run = conform(&lab, "--json --explain none --method bisection").exits(0).notes("radius 6 of 6");
+    let run =
+        conform(&lab, "--json --explain none --method bisection").exits(0).notes("radius 6 of 6");
     let bisection = run.json();
     fits(&schema(), &bisection);
     assert!(program.get("explained").is_none());
     let cost = |model: &Value| model["cost"].as_f64().unwrap();
-    assert!(cost(&bisection) > 0.999 * cost(&program), "{} for {}", cost(&bisection), cost(&program));
+    assert!(
+        cost(&bisection) > 0.999 * cost(&program),
+        "{} for {}",
+        cost(&bisection),
+        cost(&program)
+    );
     let sets = |model: &Value| model["search"]["reachable_sets"].as_u64().unwrap();
     assert!(sets(&bisection) > 20 && sets(&program) < 5);
     // The linear model has a baseline too.
@@ -157,7 +167,10 @@ fn a_changed_model_is_refused() {
 #[test]
 fn a_model_that_runs_away_is_refused_and_a_lost_set_is_an_answer() {
     let lab = bent();
-    lab.write("weak.toml", robot_toml().replace("viscous = [2, 0.0, 0.0]", "viscous = [2, 0.0, -20.0]"));
+    lab.write(
+        "weak.toml",
+        robot_toml().replace("viscous = [2, 0.0, 0.0]", "viscous = [2, 0.0, -20.0]"),
+    );
     let weak = "conform --robot weak.toml --order 3 --data data --torque compensated --json";
     lab.run(weak).fails_with(&["suite", "the model runs away after", "--until"]);
     let mut model = conform(&lab, "--json").exits(0).json();
@@ -166,7 +179,11 @@ fn a_model_that_runs_away_is_refused_and_a_lost_set_is_an_answer() {
     }
     lab.write("model.json", model.to_string());
     let check = lab.check("").exits(1);
-    assert!(check.stdout.contains("the reachable set could not be followed beyond"), "{}", check.stdout);
+    assert!(
+        check.stdout.contains("the reachable set could not be followed beyond"),
+        "{}",
+        check.stdout
+    );
     lab.run("reach --model model.json --data data --torque compensated --out reach")
         .exits(1)
         .notes("the reachable set could not be followed beyond");

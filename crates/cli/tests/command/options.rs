@@ -5,9 +5,17 @@ use crate::fixture::{Lab, SAMPLES};
 #[test]
 fn help_has_examples_and_exit_codes() {
     let lab = Lab::new();
-    for command in
-        ["", "demo", "robot show", "inspect", "conform", "check", "reach", "report", "reproduce table1"]
-    {
+    for command in [
+        "",
+        "demo",
+        "robot show",
+        "inspect",
+        "conform",
+        "check",
+        "reach",
+        "report",
+        "reproduce table1",
+    ] {
         let help = lab.run(&format!("{command} --help")).exits(0).stdout;
         assert!(
             help.contains("Example") && help.contains(&format!("reachtube {command}")),
@@ -15,19 +23,26 @@ fn help_has_examples_and_exit_codes() {
         );
     }
     assert!(
-        lab.run("--help").stdout.contains("Exit codes: 0 conformant (or done), 1 not conformant, 2 error")
+        lab.run("--help")
+            .stdout
+            .contains("Exit codes: 0 conformant (or done), 1 not conformant, 2 error")
     );
-    assert_eq!(lab.run("--version").exits(0).stdout, concat!("reachtube ", env!("CARGO_PKG_VERSION"), "\n"));
+    assert_eq!(
+        lab.run("--version").exits(0).stdout,
+        concat!("reachtube ", env!("CARGO_PKG_VERSION"), "\n")
+    );
 }
 
 #[test]
 fn a_wrong_command_line_is_an_error() {
     let lab = Lab::new();
-    for arguments in ["", "foo", "conform", "robot show", "conform --robot arm.toml --data data --torque raw"]
+    for arguments in
+        ["", "foo", "conform", "robot show", "conform --robot arm.toml --data data --torque raw"]
     {
         let run = lab.run(arguments).exits(2);
         assert!(
-            run.stdout.is_empty() && run.stderr.contains("Usage") || run.stderr.contains("possible values")
+            run.stdout.is_empty() && run.stderr.contains("Usage")
+                || run.stderr.contains("possible values")
         );
     }
 }
@@ -36,15 +51,27 @@ fn a_wrong_command_line_is_an_error() {
 fn numbers_that_do_not_fit() {
     let lab = Lab::new();
     lab.conform("--weights 0,1").fails_with(&["weight 1 is 0", "between 1e-9 and 1e9"]);
-    lab.conform("--weights 1,2,3").fails_with(&["--weights: 3 given", "unit, spread, 2 numbers", "or 4"]);
-    lab.conform("--weights Spread").fails_with(&["--weights: \"Spread\" is no number", "unit, spread"]);
+    lab.conform("--weights 1,2,3").fails_with(&[
+        "--weights: 3 given",
+        "unit, spread, 2 numbers",
+        "or 4",
+    ]);
+    lab.conform("--weights Spread")
+        .fails_with(&["--weights: \"Spread\" is no number", "unit, spread"]);
     lab.conform("--noise -1,0").fails_with(&["noise radius 1 is -1", "between 0 and 1e9"]);
     lab.conform("--noise NaN,0").fails_with(&["noise radius 1 is NaN"]);
-    lab.conform("--expansion 1,2,3").fails_with(&["3 values", "the robot has 2 joints", "4 values"]);
+    lab.conform("--expansion 1,2,3").fails_with(&[
+        "3 values",
+        "the robot has 2 joints",
+        "4 values",
+    ]);
     lab.conform("--expansion inf,0").fails_with(&["inf", "finite"]);
     for option in ["--until 0", "--until -1", "--until NaN", "--max-gap 0", "--max-gap x"] {
         let run = lab.conform(option).exits(2);
-        assert!(run.stdout.is_empty() && run.stderr.contains("give a number of seconds above 0"), "{run:?}");
+        assert!(
+            run.stdout.is_empty() && run.stderr.contains("give a number of seconds above 0"),
+            "{run:?}"
+        );
     }
 }
 
@@ -54,7 +81,8 @@ fn until_uses_the_beginning() {
     let model = lab.conform("--until 0.1 --json --out model.json").exits(0).json();
     assert_eq!(model["data"]["suites"][0]["runs"][0]["samples"], 11);
     assert_eq!(model["settings"]["until"], 0.1);
-    let check = lab.check("--json").exits(0).notes("samples later than 0.1 s after the first are not used");
+    let check =
+        lab.check("--json").exits(0).notes("samples later than 0.1 s after the first are not used");
     assert_eq!(check.json()["rows"], 2 * 11 * 4);
     assert_eq!(
         lab.conform("--until 1e-6 --json").exits(0).json()["data"]["suites"][0]["runs"][0]["samples"],

@@ -13,8 +13,10 @@ fn a_place_that_cannot_be_written_is_found_before_the_work() {
     lab.conform("--report arm.toml").fails_with(&["arm.toml/report.html: cannot write"]);
     lab.conform("--out model.json").exits(0);
     for command in ["reach", "report"] {
-        lab.run(&format!("{command} --model model.json --data data --torque compensated --out arm.toml"))
-            .fails_with(&["arm.toml/", "cannot write"]);
+        lab.run(&format!(
+            "{command} --model model.json --data data --torque compensated --out arm.toml"
+        ))
+        .fails_with(&["arm.toml/", "cannot write"]);
     }
     assert_eq!(lab.names("."), ["arm.toml", "data", "model.json"]);
     assert_eq!(lab.read("arm.toml"), crate::fixture::robot_toml());
@@ -61,7 +63,10 @@ fn a_full_disk_is_an_error() {
         assert!(!run.stdout.is_empty());
     }
     let run = Run::of(
-        lab.command("check --model none --data data --torque motor").stderr(full()).output().unwrap(),
+        lab.command("check --model none --data data --torque motor")
+            .stderr(full())
+            .output()
+            .unwrap(),
     );
     run.exits(2);
 }
@@ -69,10 +74,12 @@ fn a_full_disk_is_an_error() {
 #[test]
 fn a_reader_that_has_seen_enough_is_no_error() {
     let lab = Lab::new();
-    for arguments in
-        ["robot show lwa4p --json", "conform --robot arm.toml --data data --torque compensated --json"]
-    {
-        let mut child = lab.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    for arguments in [
+        "robot show lwa4p --json",
+        "conform --robot arm.toml --data data --torque compensated --json",
+    ] {
+        let mut child =
+            lab.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
         assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));

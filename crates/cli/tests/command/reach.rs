@@ -20,13 +20,22 @@ fn the_columns_are_named_and_enclose_what_they_should() {
             kinds.iter().map(|kind| format!(",{name}_{kind}")).collect::<String>()
         };
         let header = |kinds: &[&str]| COLUMNS.map(|name| bounds(name, kinds)).concat();
-        assert_eq!(samples.lines().next().unwrap(), format!("t{}", header(&["lower", "nominal", "upper"])));
-        assert_eq!(tube.lines().next().unwrap(), format!("t_from,t_to{}", header(&["lower", "upper"])));
+        assert_eq!(
+            samples.lines().next().unwrap(),
+            format!("t{}", header(&["lower", "nominal", "upper"]))
+        );
+        assert_eq!(
+            tube.lines().next().unwrap(),
+            format!("t_from,t_to{}", header(&["lower", "upper"]))
+        );
         let samples: Vec<&str> = samples.lines().skip(1).collect();
         let tube: Vec<&str> = tube.lines().skip(1).collect();
         assert_eq!((samples.len(), tube.len()), (SAMPLES, SAMPLES - 1));
         for (k, step) in tube.iter().enumerate() {
-            assert_eq!((cell(step, 0), cell(step, 1)), (cell(samples[k], 0), cell(samples[k + 1], 0)));
+            assert_eq!(
+                (cell(step, 0), cell(step, 1)),
+                (cell(samples[k], 0), cell(samples[k + 1], 0))
+            );
         }
         for (k, row) in samples.iter().enumerate() {
             assert!((cell(row, 0) - k as f64 * STEP).abs() < 1e-12);
@@ -43,9 +52,14 @@ fn encloses(lab: &Lab, suite: &str, k: usize, i: usize, row: &str, tube: &[&str]
     for run in 1..=3 {
         let text = lab.read(&format!("data/{suite}_{run}.csv"));
         let recorded = cell(text.lines().nth(k + 1).unwrap(), i + 1);
-        assert!(lower <= recorded && recorded <= upper, "{suite}_{run}.csv, sample {k}, {}", COLUMNS[i]);
+        assert!(
+            lower <= recorded && recorded <= upper,
+            "{suite}_{run}.csv, sample {k}, {}",
+            COLUMNS[i]
+        );
     }
-    for step in [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|step| tube.get(step)) {
+    for step in [k.checked_sub(1), Some(k)].into_iter().flatten().filter_map(|step| tube.get(step))
+    {
         assert!(
             cell(step, 2 + 2 * i) <= lower && cell(step, 3 + 2 * i) >= upper,
             "sample {k}, {}",
@@ -59,7 +73,9 @@ fn a_run_with_its_own_nominal_solution_has_its_own_file() {
     let lab = Lab::new();
     let json = |run: Run| run.exits(0).json();
     lab.conform("--nominal own --out model.json").exits(0);
-    let found = json(lab.run("reach --model model.json --data data --torque compensated --out reach --json"));
+    let found = json(
+        lab.run("reach --model model.json --data data --torque compensated --out reach --json"),
+    );
     assert_eq!(found["reach"].as_array().unwrap().len(), 6);
     assert_eq!(
         (&found["reach"][1]["run"], &found["reach"][1]["csv"]),
@@ -77,7 +93,8 @@ fn names_of_suites_do_not_leave_the_folder_and_no_file_is_lost() {
     });
     let run = reach(&lab, "").exits(0);
     assert_eq!(lab.names("."), ["arm.toml", "data", "model.json", "reach"]);
-    let csv = lab.names("reach").into_iter().filter(|name| name.ends_with(".csv")).collect::<Vec<_>>();
+    let csv =
+        lab.names("reach").into_iter().filter(|name| name.ends_with(".csv")).collect::<Vec<_>>();
     assert_eq!(
         csv,
         ["_._.._x_A.csv", "_._.._x_A_tube.csv", "_._.._x_a_2.csv", "_._.._x_a_2_tube.csv"],

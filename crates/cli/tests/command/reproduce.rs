@@ -7,7 +7,9 @@ fn table_1_stands_beside_the_papers() {
     let lab = Lab::new();
     let command = "reproduce table1 --motions 2 --orders 1,6 --model3-up-to 1";
     let text = lab.run(&format!("{command} --out table1.csv")).exits(0).stdout;
-    for part in ["2 random point-to-point motions (seed 1) within 1.5708 rad of 0", "0.0408", "-: left out"] {
+    for part in
+        ["2 random point-to-point motions (seed 1) within 1.5708 rad of 0", "0.0408", "-: left out"]
+    {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     assert_eq!(lab.read("table1.csv").lines().count(), 1 + (3 + 2) * 2 * 2);
@@ -20,7 +22,10 @@ fn table_1_stands_beside_the_papers() {
 #[test]
 fn table_1_of_another_robot() {
     let lab = Lab::new();
-    let table = lab.run("reproduce table1 --robot arm.toml --motions 1 --orders 1,3 --json").exits(0).json();
+    let table = lab
+        .run("reproduce table1 --robot arm.toml --motions 1 --orders 1,3 --json")
+        .exits(0)
+        .json();
     assert!(table["cells"].as_array().unwrap().iter().all(|cell| cell["paper"].is_null()));
     lab.run("reproduce table1 --motions 0").fails_with(&["no motions", "give 1 at least"]);
     lab.run("reproduce table1 --range -1").fails_with(&["joint1", "choose a wider range"]);

@@ -15,7 +15,9 @@ fn refused(from: &str, to: &str, parts: &[&str]) {
 fn what_was_understood_is_shown() {
     let lab = Lab::new();
     let text = lab.run("robot show arm.toml --at 0.1,-0.2").exits(0).stdout;
-    for part in ["two axes: 2 revolute joints", "axis1", "q_a = [0.1, -0.2] rad", "1.00000", "0.50000"] {
+    for part in
+        ["two axes: 2 revolute joints", "axis1", "q_a = [0.1, -0.2] rad", "1.00000", "0.50000"]
+    {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     lab.run("robot show arm.toml --at 1,2,3").fails_with(&["--at: 3 given", "2 positions in rad"]);
@@ -50,7 +52,10 @@ fn a_singular_model_is_refused() {
 #[test]
 fn a_robot_that_is_not_there() {
     let lab = Lab::new();
-    lab.run("robot show nobody")
-        .fails_with(&["cannot read robot `nobody`", "TOML or URDF file or an embedded name (lwa4p)"]);
-    lab.run("conform --robot data --data data --torque motor").fails_with(&["cannot read robot `data`"]);
+    lab.run("robot show nobody").fails_with(&[
+        "cannot read robot `nobody`",
+        "TOML or URDF file or an embedded name (lwa4p)",
+    ]);
+    lab.run("conform --robot data --data data --torque motor")
+        .fails_with(&["cannot read robot `data`"]);
 }

@@ -55,7 +55,10 @@ fn the_schema_refuses_what_the_program_refuses() {
     less.as_object_mut().unwrap().remove("cost");
     for (changed, words) in [
         (set("/format", json!("other")), "format is not"),
-        (set("/version", json!(2)), "version 2 of the format, this program reads 1; run conform again"),
+        (
+            set("/version", json!(2)),
+            "version 2 of the format, this program reads 1; run conform again",
+        ),
         (set("/cost", json!(null)), "it has no cost"),
         (set("/input_set/radius/0", json!(-0.1)), "input_set or noise_set"),
         (set("/settings/torque", json!("raw")), "unknown variant `raw`"),
@@ -103,7 +106,8 @@ fn a_smaller_set_is_no_longer_conformant() {
 #[test]
 fn what_is_no_model_file() {
     let lab = Lab::new();
-    lab.check("").fails_with(&["model.json: cannot read", "give a file that `conform --out` wrote"]);
+    lab.check("")
+        .fails_with(&["model.json: cannot read", "give a file that `conform --out` wrote"]);
     for text in ["", "{", "[1]", "3", "t,q1,qd1,tau1\n", "\"reachtube-model\""] {
         lab.write("model.json", text);
         lab.check("").fails_with(&["model.json: ", "give a file that `conform --out` wrote"]);

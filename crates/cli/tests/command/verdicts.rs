@@ -14,8 +14,10 @@ fn the_sets_are_those_that_made_the_recordings() {
     let model = lab.conform("--json").exits(0).json();
     assert_eq!(model["verified"], true);
     assert!(model["cost"].as_f64().unwrap() > 0.0);
-    let (start, input) = (numbers(&model["initial_set"]["radius"]), numbers(&model["input_set"]["radius"]));
-    // The recordings hold numbers to the last digit, so only rounding separates the sets from what made them.
+    let (start, input) =
+        (numbers(&model["initial_set"]["radius"]), numbers(&model["input_set"]["radius"]));
+    // The recordings hold numbers to the last digit, so only rounding separates the sets from what
+    // made them.
     let near = |found: &[f64], expected: &[f64]| {
         found
             .iter()
@@ -32,7 +34,10 @@ fn the_sets_are_those_that_made_the_recordings() {
 #[test]
 fn a_model_file_is_what_json_prints() {
     let lab = Lab::new();
-    let run = lab.conform("--json --out new/folder/model.json").exits(0).notes("wrote new/folder/model.json");
+    let run = lab
+        .conform("--json --out new/folder/model.json")
+        .exits(0)
+        .notes("wrote new/folder/model.json");
     assert_eq!(lab.read("new/folder/model.json"), run.stdout);
 }
 
@@ -60,7 +65,10 @@ fn one_value_outside_is_found_with_its_place() {
     let worst = &check["violations"]["worst"];
     let expected = [("suite", "B"), ("run", "B_2.csv"), ("state", "q1"), ("side", "upper")];
     expected.iter().for_each(|(key, value)| assert_eq!(worst[key], *value, "{worst}"));
-    assert_eq!((&worst["sample"], &worst["time"], &worst["joint"]), (&20.into(), &0.2.into(), &1.into()));
+    assert_eq!(
+        (&worst["sample"], &worst["time"], &worst["joint"]),
+        (&20.into(), &0.2.into(), &1.into())
+    );
     // The run is in the middle of the set, whose radius there is at least that of X0.
     let excess = worst["excess"].as_f64().unwrap();
     assert!((0.4..=0.5 - START).contains(&excess), "{excess}");

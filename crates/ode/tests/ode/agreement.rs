@@ -78,7 +78,9 @@ fn the_step_is_kept_over_the_jumps_of_the_input() {
     let inputs: Vec<f64> = times[1..].iter().map(|t| (3.0 * t).sin()).collect();
     let run = Run { start: &[0.5, 0.0], inputs: &inputs };
     assert!(
-        DormandPrince::new(2, Tolerance::default()).follow(&mut counted, &times, run, |_, _| {}).is_reached()
+        DormandPrince::new(2, Tolerance::default())
+            .follow(&mut counted, &times, run, |_, _| {})
+            .is_reached()
     );
     // A span is one step: the slope anew, and six stages. Only the first one has to find its size.
     assert!((7000..7050).contains(&evaluations), "{evaluations} evaluations");
@@ -92,7 +94,9 @@ fn a_solver_that_was_used_gives_the_same_run() {
         let mut end = [0.0; 2];
         let run = Run { start, ..run };
         assert!(
-            solver.follow(&mut pendulum, &[0.0, 0.7, 1.9], run, |_, x| end.copy_from_slice(x)).is_reached()
+            solver
+                .follow(&mut pendulum, &[0.0, 0.7, 1.9], run, |_, x| end.copy_from_slice(x))
+                .is_reached()
         );
         end
     };

@@ -10,7 +10,8 @@ fn linear() -> (DMatrix<f64>, DMatrix<f64>) {
     (a, dmatrix![0.0, 0.0; 1.0, 0.0; 0.3, -2.0])
 }
 
-/// Its solution after t under a held input: the exponential of [[A, B u], [0, 0]] takes (x, 1) there.
+/// Its solution after t under a held input: the exponential of [[A, B u], [0, 0]] takes (x, 1)
+/// there.
 fn exact(t: f64, x: &DVector<f64>, u: &DVector<f64>) -> DVector<f64> {
     let (a, b) = linear();
     let mut block = DMatrix::zeros(4, 4);
@@ -41,7 +42,9 @@ fn exact_chirp(t: f64) -> [f64; 2] {
 fn one_step_solver(dimension: usize) -> DormandPrince {
     let mut solver = DormandPrince::new(dimension, Tolerance { relative: 0.0, absolute: 1e9 });
     let mut at_rest = |_: f64, _: &[f64], _: &[f64], dx: &mut [f64]| dx.fill(0.0);
-    assert!(solver.integrate(&mut at_rest, [0.0, 1e9], &mut vec![0.0; dimension], &[]).is_reached());
+    assert!(
+        solver.integrate(&mut at_rest, [0.0, 1e9], &mut vec![0.0; dimension], &[]).is_reached()
+    );
     solver
 }
 
@@ -51,7 +54,13 @@ fn runge_kutta_is_of_order_4() {
     let error = |steps: usize| {
         let mut x = start.clone();
         let span = [0.0, 2.0];
-        RungeKutta4::new(3).integrate(&mut linear_field(), span, steps, x.as_mut_slice(), u.as_slice());
+        RungeKutta4::new(3).integrate(
+            &mut linear_field(),
+            span,
+            steps,
+            x.as_mut_slice(),
+            u.as_slice(),
+        );
         (2.0 / steps as f64, distance(x.as_slice(), exact(2.0, &start, &u).as_slice()))
     };
     let found = order(&[error(50), error(400)]);
@@ -111,7 +120,9 @@ fn errors_follow_the_tolerance_and_work_its_fifth_root() {
         };
         let tolerance = Tolerance { relative: 0.0, absolute: tolerance };
         assert!(
-            DormandPrince::new(2, tolerance).integrate(&mut counted, [0.0, 3.0], &mut x, &[]).is_reached()
+            DormandPrince::new(2, tolerance)
+                .integrate(&mut counted, [0.0, 3.0], &mut x, &[])
+                .is_reached()
         );
         (evaluations as f64, distance(&x, &exact_chirp(3.0)))
     };
@@ -130,14 +141,15 @@ fn a_held_input_gives_the_exact_solution() {
     let run = reachtube_ode::Run { start: &[1.0, -0.5, 0.2], inputs: &inputs };
     let tolerance = Tolerance { relative: 1e-10, absolute: 1e-10 };
     let mut samples = 0;
-    let outcome = DormandPrince::new(3, tolerance).follow(&mut linear_field(), &times, run, |k, x| {
-        if k > 0 {
-            let u = DVector::from_column_slice(&inputs[2 * k - 2..2 * k]);
-            state = exact(times[k] - times[k - 1], &state, &u);
-        }
-        assert!(distance(x, state.as_slice()) < 1e-9);
-        samples += 1;
-    });
+    let outcome =
+        DormandPrince::new(3, tolerance).follow(&mut linear_field(), &times, run, |k, x| {
+            if k > 0 {
+                let u = DVector::from_column_slice(&inputs[2 * k - 2..2 * k]);
+                state = exact(times[k] - times[k - 1], &state, &u);
+            }
+            assert!(distance(x, state.as_slice()) < 1e-9);
+            samples += 1;
+        });
     assert!(outcome.is_reached());
     assert_eq!(samples, 41);
 }

@@ -38,7 +38,12 @@ fn a_bound_is_met_in_time() {
         (time.exp() / 1000.0 - 1.0).abs() < 0.5 && (time.exp() / x[0] + 1.0).abs() < 1e-6,
         "{time} s, {x:?}"
     );
-    assert!(solver().bounded_by(1000.0).integrate(&mut growth, [0.0, 6.0], &mut [-1.0], &[]).is_reached());
+    assert!(
+        solver()
+            .bounded_by(1000.0)
+            .integrate(&mut growth, [0.0, 6.0], &mut [-1.0], &[])
+            .is_reached()
+    );
 }
 
 #[test]
@@ -96,7 +101,10 @@ fn a_run_that_diverges_leaves_its_neighbours() {
             let Outcome::Diverged { time, cause: Cause::Bound } = outcomes[run] else {
                 panic!("{:?}", outcomes[run])
             };
-            assert!((time - pole).abs() < 0.03 && times[reached[run]] == time, "{time} is not {pole}");
+            assert!(
+                (time - pole).abs() < 0.03 && times[reached[run]] == time,
+                "{time} is not {pole}"
+            );
         } else {
             assert_eq!((outcomes[run], reached[run]), (Outcome::Reached, 300));
         }

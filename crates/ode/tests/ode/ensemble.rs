@@ -19,10 +19,11 @@ const SPANS: usize = 5;
 
 fn all<S: Lanewise>(runs: &[Run<'_>], times: &[f64]) -> Vec<Vec<f64>> {
     let mut found = vec![Vec::new(); runs.len()];
-    let outcomes = Ensemble::<S>::new(2).integrate(&mut Duffing, times, 3, runs, |run, sample, x| {
-        assert_eq!(found[run].len(), 2 * sample);
-        found[run].extend_from_slice(x);
-    });
+    let outcomes =
+        Ensemble::<S>::new(2).integrate(&mut Duffing, times, 3, runs, |run, sample, x| {
+            assert_eq!(found[run].len(), 2 * sample);
+            found[run].extend_from_slice(x);
+        });
     assert!(outcomes.len() == runs.len() && outcomes.iter().all(|outcome| outcome.is_reached()));
     found
 }
@@ -61,9 +62,10 @@ fn no_runs_and_no_spans_are_nothing() {
     );
     let mut seen = 0;
     let run = Run { start: &[1.0, 2.0], inputs: &[] };
-    let outcomes = Ensemble::<Lanes<4>>::new(2).integrate(&mut Duffing, &[0.0], 1, &[run], |_, _, x| {
-        assert_eq!(x, [1.0, 2.0]);
-        seen += 1;
-    });
+    let outcomes =
+        Ensemble::<Lanes<4>>::new(2).integrate(&mut Duffing, &[0.0], 1, &[run], |_, _, x| {
+            assert_eq!(x, [1.0, 2.0]);
+            seen += 1;
+        });
     assert!(outcomes[0].is_reached() && seen == 1);
 }

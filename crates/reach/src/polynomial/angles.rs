@@ -1,15 +1,18 @@
 //! Sines and cosines about a point, as functions of how far the angle is from there.
 //!
-//! With σ = sin d and κ = 1 - cos d, sin(q + d) = sin q (1 - κ) + cos q σ and cos(q + d) = cos q (1 - κ) - sin q σ; and σ² = 2κ - κ². So a polynomial of
-//! degree D in sine and cosine is a combination of φ₀ .. φ₂_D, where φ₂ₖ = (κ - m)ᵏ and φ₂ₖ₊₁ = σ (κ - m)ᵏ: exact and finite, as the shift of a polynomial is.
-//! The middle m of κ over the set halves what products with it are, and what it takes from them is linear.
+//! With σ = sin d and κ = 1 - cos d, sin(q + d) = sin q (1 - κ) + cos q σ and cos(q + d) = cos q (1
+//! - κ) - sin q σ; and σ² = 2κ - κ². So a polynomial of degree D in sine and cosine is a
+//! combination of φ₀ .. φ₂_D, where φ₂ₖ = (κ - m)ᵏ and φ₂ₖ₊₁ = σ (κ - m)ᵏ: exact and finite, as the
+//! shift of a polynomial is. The middle m of κ over the set halves what products with it are, and
+//! what it takes from them is linear.
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
 /// What a factor of an angle may be off by, in roundings of the bound of its magnitude.
 pub(super) const TURN_ROUNDINGS: f64 = 16.0;
 
-/// States whose sine and cosine a polynomial has: its variables are others, `plain` of them, then the sines, then the cosines.
+/// States whose sine and cosine a polynomial has: its variables are others, `plain` of them, then
+/// the sines, then the cosines.
 #[derive(Debug, Clone)]
 pub(super) struct Angles {
     pub plain: usize,
@@ -37,11 +40,13 @@ impl Angles {
         for term in terms {
             for i in 0..states.len() {
                 let [sine, cosine] = angles.exponents(&term.exponents, i).map(usize::from);
-                angles.highest[i] = [angles.highest[i][0].max(sine), angles.highest[i][1].max(cosine)];
+                angles.highest[i] =
+                    [angles.highest[i][0].max(sine), angles.highest[i][1].max(cosine)];
             }
         }
         for (i, [sine, cosine]) in angles.highest.iter().enumerate() {
-            angles.starts[i + 1] = angles.starts[i] + (sine + 1) * (cosine + 1) * (2 * (sine + cosine) + 1);
+            angles.starts[i + 1] =
+                angles.starts[i] + (sine + 1) * (cosine + 1) * (2 * (sine + cosine) + 1);
         }
         angles
     }
@@ -108,7 +113,8 @@ impl Angles {
         }
     }
 
-    /// Which state the slope of a variable is one of, and how large: that of an angle is of its sine, along the sine's line.
+    /// Which state the slope of a variable is one of, and how large: that of an angle is of its
+    /// sine, along the sine's line.
     pub fn along_line(&self, variable: usize, slope: Interval, lines: &[f64]) -> (usize, Interval) {
         match variable.checked_sub(self.plain) {
             None => (variable, slope),
@@ -159,11 +165,16 @@ pub(super) fn versine_middle(r: f64) -> f64 {
     (0.5 * r.min(std::f64::consts::PI)).sin().powi(2)
 }
 
-/// The slope of the line that fits sin d best over |d| <= r, about: 2 J₁(r)/r, that of the first Chebyshev polynomial, and 0 where it
-/// falls below.
+/// The slope of the line that fits sin d best over |d| <= r, about: 2 J₁(r)/r, that of the first
+/// Chebyshev polynomial, and 0 where it falls below.
 pub(super) fn sine_slope(r: f64) -> f64 {
     let x = (0.5 * r).powi(2);
-    if r < 3.8 { 1.0 - x / 2.0 * (1.0 - x / 6.0 * (1.0 - x / 12.0 * (1.0 - x / 20.0))) } else { 0.0 }.max(0.0)
+    if r < 3.8 {
+        1.0 - x / 2.0 * (1.0 - x / 6.0 * (1.0 - x / 12.0 * (1.0 - x / 20.0)))
+    } else {
+        0.0
+    }
+    .max(0.0)
 }
 
 /// sin d - slope d for offsets d and a slope from 0 to 1.
@@ -180,7 +191,8 @@ pub(super) fn sine_defect(d: Interval, slope: f64) -> Interval {
     above.into_iter().chain(below).reduce(Interval::hull).unwrap_or(Interval::ENTIRE)
 }
 
-/// Over a side in \[0, π\], where it is concave: above the smaller of the values at the ends, and below every tangent.
+/// Over a side in \[0, π\], where it is concave: above the smaller of the values at the ends, and
+/// below every tangent.
 fn concave_defect(side: Interval, slope: f64) -> Interval {
     let value = |d: f64| Interval::point(d).sin() - Interval::point(d) * slope;
     let top = slope.clamp(-1.0, 1.0).acos().clamp(side.lo(), side.hi());
@@ -236,6 +248,8 @@ mod tests {
         }
         assert_eq!(sine_slope(5.0), 0.0);
         let (sine, versine) = versed(Interval::new(-9.0, 9.0).unwrap());
-        assert!((sine.mag(), versine.lo()) == (1.0, 0.0) && (2.0..2.0 + 1e-14).contains(&versine.hi()));
+        assert!(
+            (sine.mag(), versine.lo()) == (1.0, 0.0) && (2.0..2.0 + 1e-14).contains(&versine.hi())
+        );
     }
 }

@@ -1,11 +1,14 @@
 //! The range of a polynomial over a box, by the corners of some of its sides.
 //!
-//! An odd power is x times an even one, as φ₂ₖ₊₁ = σ (κ - m)ᵏ is. So x, x², σ and κ - m are once at most in a monomial whose higher powers are bounded apart: in each the polynomial is
-//! affine. Whatever the other factors are, over those that are chosen it is therefore largest and smallest at corners of their box. At one of them the terms of
-//! Σ_S a_S Π_{i ∈ S} x_i cancel as they do, which a sum of ranges does not see; all 2ⁿ take n 2ⁿ products together.
+//! An odd power is x times an even one, as φ₂ₖ₊₁ = σ (κ - m)ᵏ is. So x, x², σ and κ - m are once at
+//! most in a monomial whose higher powers are bounded apart: in each the polynomial is affine.
+//! Whatever the other factors are, over those that are chosen it is therefore largest and smallest
+//! at corners of their box. At one of them the terms of Σ_S a_S Π_{i ∈ S} x_i cancel as they do,
+//! which a sum of ranges does not see; all 2ⁿ take n 2ⁿ products together.
 //!
-//! Where both x and x² are chosen, x³ is x times a range, so that the polynomial is affine in the pair, and corners are those of a trapezoid about the parabola: (±r, r²) and, on
-//! the tangents there, (±r/2, 0). For an angle they are (±sin r, 1 - cos r) and (±tan(r/2), 0).
+//! Where both x and x² are chosen, x³ is x times a range, so that the polynomial is affine in the
+//! pair, and corners are those of a trapezoid about the parabola: (±r, r²) and, on the tangents
+//! there, (±r/2, 0). For an angle they are (±sin r, 1 - cos r) and (±tan(r/2), 0).
 
 use reachtube_scalar::Interval;
 
@@ -17,7 +20,8 @@ const MOST: usize = 20;
 /// Roundings of a term that has a chosen factor, those of the factor's ends included.
 pub(super) const ROUNDINGS: usize = 8;
 
-/// A monomial, or a part of one, over a box: the chosen factors in it, each divided by its largest magnitude, times all else.
+/// A monomial, or a part of one, over a box: the chosen factors in it, each divided by its largest
+/// magnitude, times all else.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Monomial {
     /// A bit each chosen factor.
@@ -98,7 +102,8 @@ impl Corners {
         for &place in chosen {
             let (side, size) = (powers.at(place), powers.at(place).mag().max(f64::MIN_POSITIVE));
             let trapezoid = powers.trapezoid(place);
-            let square = trapezoid.and_then(|(square, _)| chosen.iter().position(|own| *own == square));
+            let square =
+                trapezoid.and_then(|(square, _)| chosen.iter().position(|own| *own == square));
             let waist = trapezoid.map(|(_, waist)| waist).filter(|_| square.is_some());
             let whole = [side.lo() / size, side.hi() / size];
             let ends = waist.map_or([whole; 2], |waist| [[-waist, waist], [-1.0, 1.0]]);
@@ -181,7 +186,8 @@ fn divided(powers: &[Interval], exponent: usize, odd: Option<u32>, even: Option<
         None => of(power),
     };
     let first = if exponent % 2 == 1 { own(odd, powers[0]) } else { Monomial::ONE };
-    let second = if exponent >= 2 { own(even, powers[exponent / 2 * 2 - 1]) } else { Monomial::ONE };
+    let second =
+        if exponent >= 2 { own(even, powers[exponent / 2 * 2 - 1]) } else { Monomial::ONE };
     first.times(second)
 }
 

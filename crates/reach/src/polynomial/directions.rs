@@ -8,8 +8,8 @@ use reachtube_scalar::{Interval, TaylorTerm};
 use super::angles::Angles;
 use super::shift::ShiftedPolynomial;
 
-/// How far the coefficients of a monomial may be from a multiple of a direction, relative to the largest of all: rounding of products and of sums
-/// that cancel, far below any real difference.
+/// How far the coefficients of a monomial may be from a multiple of a direction, relative to the
+/// largest of all: rounding of products and of sums that cancel, far below any real difference.
 const PARALLEL: f64 = 1e-12;
 
 /// A part of f that is a fixed vector times a polynomial in (x, u, sin, cos).
@@ -24,23 +24,35 @@ pub(super) struct Direction {
 /// The monomials of f with the column of their coefficients.
 type Columns = BTreeMap<Vec<u8>, Vec<Interval>>;
 
-/// The directions of the nonlinear terms: those of the inputs, if they span them; or those that they themselves have in several components, if they are at most
-/// as many as components. Their terms, and those linear in an input along them, are taken out of `terms`, which keeps what rounding leaves.
+/// The directions of the nonlinear terms: those of the inputs, if they span them; or those that
+/// they themselves have in several components, if they are at most as many as components. Their
+/// terms, and those linear in an input along them, are taken out of `terms`, which keeps what
+/// rounding leaves.
 ///
 /// # Guarantee
 ///
-/// Rows and directions together enclose f as it was, for coefficients that may be others of their intervals at each time.
-pub(super) fn directions(angles: &Angles, terms: &mut [Vec<TaylorTerm<Interval>>]) -> Vec<Direction> {
+/// Rows and directions together enclose f as it was, for coefficients that may be others of their
+/// intervals at each time.
+pub(super) fn directions(
+    angles: &Angles,
+    terms: &mut [Vec<TaylorTerm<Interval>>],
+) -> Vec<Direction> {
     let states = terms.len();
     let columns = columns(terms);
     let is_nonlinear = |m: &[u8]| degree(m) >= 2 || degree(&m[angles.plain..]) > 0;
     let is_input = |m: &[u8]| degree(m) == 1 && degree(&m[states..angles.plain]) == 1;
-    let mut nonlinear: Vec<&[Interval]> =
-        columns.iter().filter(|(m, _)| is_nonlinear(m)).map(|(_, column)| column.as_slice()).collect();
+    let mut nonlinear: Vec<&[Interval]> = columns
+        .iter()
+        .filter(|(m, _)| is_nonlinear(m))
+        .map(|(_, column)| column.as_slice())
+        .collect();
     // The largest are the least blurred by rounding.
     nonlinear.sort_by(|a, b| largest(b).abs().total_cmp(&largest(a).abs()));
-    let inputs = columns.iter().filter(|(m, _)| is_input(m)).map(|(_, column)| unit(column)).collect();
-    let Some(basis) = Basis::of_inputs(inputs, &nonlinear).or_else(|| Basis::of_parallels(&nonlinear)) else {
+    let inputs =
+        columns.iter().filter(|(m, _)| is_input(m)).map(|(_, column)| unit(column)).collect();
+    let Some(basis) =
+        Basis::of_inputs(inputs, &nonlinear).or_else(|| Basis::of_parallels(&nonlinear))
+    else {
         return Vec::new();
     };
     let mut parts: Vec<Vec<TaylorTerm<Interval>>> = vec![Vec::new(); basis.columns.len()];
@@ -58,8 +70,10 @@ pub(super) fn directions(angles: &Angles, terms: &mut [Vec<TaylorTerm<Interval>>
     }
     for (row, terms) in terms.iter_mut().enumerate() {
         let own = rest.iter().filter(|(_, column)| column[row] != Interval::ZERO);
-        let term =
-            |(m, c): (&Vec<u8>, &Vec<Interval>)| TaylorTerm { exponents: m.clone(), coefficient: c[row] };
+        let term = |(m, c): (&Vec<u8>, &Vec<Interval>)| TaylorTerm {
+            exponents: m.clone(),
+            coefficient: c[row],
+        };
         *terms = own.map(term).collect();
     }
     let direction = |(column, terms): (Vec<f64>, Vec<_>)| Direction {
@@ -91,9 +105,11 @@ impl Basis {
         nonlinear.iter().all(|column| basis.coordinates(column).is_some()).then_some(basis)
     }
 
-    /// The columns themselves that have several entries and are no multiples of each other, if they are at most as many as components.
+    /// The columns themselves that have several entries and are no multiples of each other, if they
+    /// are at most as many as components.
     fn of_parallels(nonlinear: &[&[Interval]]) -> Option<Self> {
-        let mut basis = Self { columns: Vec::new(), inverse: None, tolerance: tolerance(nonlinear) };
+        let mut basis =
+            Self { columns: Vec::new(), inverse: None, tolerance: tolerance(nonlinear) };
         for column in nonlinear {
             let entries = column.iter().filter(|x| x.mid().abs() > basis.tolerance).count();
             if entries >= 2 && basis.coordinates(column).is_none() {
@@ -110,19 +126,27 @@ impl Basis {
     fn coordinates(&self, column: &[Interval]) -> Option<Vec<(usize, f64)>> {
         let Some(inverse) = &self.inverse else {
             return self.columns.iter().enumerate().find_map(|(at, direction)| {
-                let pivot = direction.iter().position(|x| *x == 1.0).expect("the largest entry is 1");
+                let pivot =
+                    direction.iter().position(|x| *x == 1.0).expect("the largest entry is 1");
                 let factors = vec![(at, column[pivot].mid())];
                 self.is_sum(column, &factors).then_some(factors)
             });
         };
-        let factors = inverse * DVector::from_iterator(column.len(), column.iter().map(|x| x.mid()));
-        let factors: Vec<_> =
-            factors.iter().copied().enumerate().filter(|(_, factor)| factor.abs() > self.tolerance).collect();
+        let factors =
+            inverse * DVector::from_iterator(column.len(), column.iter().map(|x| x.mid()));
+        let factors: Vec<_> = factors
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, factor)| factor.abs() > self.tolerance)
+            .collect();
         self.is_sum(column, &factors).then_some(factors)
     }
 
     fn is_sum(&self, column: &[Interval], factors: &[(usize, f64)]) -> bool {
-        let sum = |i: usize| factors.iter().map(|(at, factor)| factor * self.columns[*at][i]).sum::<f64>();
+        let sum = |i: usize| {
+            factors.iter().map(|(at, factor)| factor * self.columns[*at][i]).sum::<f64>()
+        };
         // The factors left out are up to the tolerance each.
         let near = (self.columns.len() + 1) as f64 * self.tolerance;
         column.iter().enumerate().all(|(i, x)| (x.mid() - sum(i)).abs() <= near)
@@ -134,7 +158,8 @@ fn tolerance(columns: &[&[Interval]]) -> f64 {
     PARALLEL * columns.first().map_or(0.0, |column| largest(column).abs())
 }
 
-/// Adds a monomial to the rest; where it is rounding, its sines and cosines are any numbers within ±1, so that it costs no more than their factor.
+/// Adds a monomial to the rest; where it is rounding, its sines and cosines are any numbers within
+/// ±1, so that it costs no more than their factor.
 fn add_rest(
     angles: &Angles,
     mut exponents: Vec<u8>,
@@ -155,8 +180,9 @@ fn columns(terms: &[Vec<TaylorTerm<Interval>>]) -> Columns {
     let (states, mut columns) = (terms.len(), Columns::new());
     for (row, terms) in terms.iter().enumerate() {
         for term in terms {
-            let column =
-                columns.entry(term.exponents.clone()).or_insert_with(|| vec![Interval::ZERO; states]);
+            let column = columns
+                .entry(term.exponents.clone())
+                .or_insert_with(|| vec![Interval::ZERO; states]);
             column[row] += term.coefficient;
         }
     }
@@ -183,8 +209,8 @@ mod tests {
 
     const COLUMNS: [[f64; 2]; 2] = [[0.7, 0.1], [0.1, 0.3]];
 
-    /// Terms of two components in two states, two inputs and the sine and cosine of one, which two loads drive along two columns; each coefficient is
-    /// rounded.
+    /// Terms of two components in two states, two inputs and the sine and cosine of one, which two
+    /// loads drive along two columns; each coefficient is rounded.
     fn terms() -> Vec<Vec<TaylorTerm<Interval>>> {
         let loads = [
             (vec![0, 0, 1, 0, 0, 0], [1.0, 0.0]),
@@ -205,7 +231,10 @@ mod tests {
 
     fn value(terms: &[TaylorTerm<Interval>], at: &[f64; 6]) -> Interval {
         let power = |(x, e): (&f64, &u8)| Interval::point(*x).powi((*e).into());
-        terms.iter().map(|t| at.iter().zip(&t.exponents).map(power).fold(t.coefficient, |p, x| p * x)).sum()
+        terms
+            .iter()
+            .map(|t| at.iter().zip(&t.exponents).map(power).fold(t.coefficient, |p, x| p * x))
+            .sum()
     }
 
     #[test]
@@ -231,7 +260,8 @@ mod tests {
 
     #[test]
     fn many_unlike_columns_stay_components() {
-        let term = |a: u8, c: f64| TaylorTerm { exponents: vec![a, 2], coefficient: Interval::point(c) };
+        let term =
+            |a: u8, c: f64| TaylorTerm { exponents: vec![a, 2], coefficient: Interval::point(c) };
         let before = vec![
             vec![term(0, 1.0), term(1, 1.0), term(2, 1.0)],
             vec![term(0, 1.0), term(1, 2.0), term(2, 3.0)],

@@ -9,14 +9,17 @@ use crate::exponential::truncation;
 /// What the bound P may be above e^{|A|h}, by the entries it leaves out.
 const COARSE: f64 = 1e-6;
 
-/// Φ = e^{Ah} and φ₁ = Σ (Ah)ⁱ/(i+1)!, so that ∫₀ʰ e^{As} ds = h φ₁, in floating point; what each may be off by; and P >= e^{|A|h}.
+/// Φ = e^{Ah} and φ₁ = Σ (Ah)ⁱ/(i+1)!, so that ∫₀ʰ e^{As} ds = h φ₁, in floating point; what each
+/// may be off by; and P >= e^{|A|h}.
 ///
 /// # Guarantee
 ///
-/// For v >= 0, |exact Φ - Φ| v and |exact φ₁ - φ₁| v are at most [`error_times`](Self::error_times) v, and
-/// [`bound_times`](Self::bound_times) v is at least e^{|A|s} v for 0 <= s <= h. Horner's scheme of degree p forms each product of
-/// i factors A h by at most K = (p + 1)(n + 6) roundings, those of h and A h among them, so that its error is at most γ_K times the
-/// same polynomial in |A| h, which is at most P (Higham, section 3.1); what the series leaves out is bounded in the maximum norm.
+/// For v >= 0, |exact Φ - Φ| v and |exact φ₁ - φ₁| v are at most [`error_times`](Self::error_times)
+/// v, and [`bound_times`](Self::bound_times) v is at least e^{|A|s} v for 0 <= s <= h. Horner's
+/// scheme of degree p forms each product of i factors A h by at most K = (p + 1)(n + 6) roundings,
+/// those of h and A h among them, so that its error is at most γ_K times the same polynomial in |A|
+/// h, which is at most P (Higham, section 3.1); what the series leaves out is bounded in the
+/// maximum norm.
 #[derive(Debug)]
 pub(super) struct RoundedExponential {
     pub phi: Square,
@@ -72,7 +75,8 @@ impl RoundedExponential {
             (degree, term) = (degree + 1, next);
         }
         horner(&self.x, degree, 0.0, &mut self.bound, &mut self.spare);
-        let above = 1.0 + self.relative.max(2.0 * f64::EPSILON * ((degree + 1) * (self.x.n + 6)) as f64);
+        let above =
+            1.0 + self.relative.max(2.0 * f64::EPSILON * ((degree + 1) * (self.x.n + 6)) as f64);
         self.bound.entries.iter_mut().for_each(|p| *p *= above);
     }
 

@@ -6,10 +6,12 @@ use super::follower::{Follower, follower};
 use super::step::Exhausted;
 use crate::{Hyperrectangle, ReachError, TimeGrid, Zonotope};
 
-/// The input u(t) ∈ u_m(t) + U: what was measured, held from sample to sample, and a set that it may be off by at any time.
+/// The input u(t) ∈ u_m(t) + U: what was measured, held from sample to sample, and a set that it
+/// may be off by at any time.
 #[derive(Debug, Clone, Copy)]
 pub struct UncertainInput<'a> {
-    /// Row-major, one row of m a sample, in effect until the next; the row of the last sample is not used and may be missing.
+    /// Row-major, one row of m a sample, in effect until the next; the row of the last sample is
+    /// not used and may be missing.
     pub measured: &'a [f64],
     /// U, m: any measurable function with values in it.
     pub set: &'a Hyperrectangle,
@@ -29,14 +31,17 @@ impl UncertainInput<'_> {
 /// How sets are followed from step to step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum FlowpipeMethod {
-    /// Conservative linearisation of zonotopes (Althoff, Stursberg, Buss, CDC 2008), which carries a large uncertain input best: in each step the system is
-    /// its linear part about a point near the middle of the set plus what that leaves out, bounded over the step's own tube, which is proved by containment.
-    /// For a polynomial the shift f(z* + d) = Σ c_α dᵅ is exact and finite.
+    /// Conservative linearisation of zonotopes (Althoff, Stursberg, Buss, CDC 2008), which carries
+    /// a large uncertain input best: in each step the system is its linear part about a point near
+    /// the middle of the set plus what that leaves out, bounded over the step's own tube, which is
+    /// proved by containment. For a polynomial the shift f(z* + d) = Σ c_α dᵅ is exact and finite.
     #[default]
     Linearisation,
-    /// Taylor models, which carry a large initial set best: the state is a polynomial in where it started, of degree `order` (1 at least) in that and in
-    /// time over each step, plus an offset. The offset obeys ė = A e + B (u - u*) + d, where A and B enclose the derivatives of f over the step's tube, which
-    /// is proved by containment, and d is what the polynomial lacks of the solution; it is kept as a zonotope.
+    /// Taylor models, which carry a large initial set best: the state is a polynomial in where it
+    /// started, of degree `order` (1 at least) in that and in time over each step, plus an offset.
+    /// The offset obeys ė = A e + B (u - u*) + d, where A and B enclose the derivatives of f over
+    /// the step's tube, which is proved by containment, and d is what the polynomial lacks of the
+    /// solution; it is kept as a zonotope.
     TaylorModels {
         /// The degree: 3 to 5 for 7 states, to 12 for 2.
         order: u32,
@@ -48,12 +53,16 @@ pub enum FlowpipeMethod {
 pub struct FlowpipeSettings {
     /// How sets are followed.
     pub method: FlowpipeMethod,
-    /// Variables and squares, n, at whose 2ⁿ corners [`Linearisation`](FlowpipeMethod::Linearisation) bounds what it leaves out. The terms of a polynomial with
-    /// many are seldom all large together: where sets get lost, more corners may keep them. 0 is none, and the most that are taken are 20.
+    /// Variables and squares, n, at whose 2ⁿ corners
+    /// [`Linearisation`](FlowpipeMethod::Linearisation) bounds what it leaves out. The terms of a
+    /// polynomial with many are seldom all large together: where sets get lost, more corners may
+    /// keep them. 0 is none, and the most that are taken are 20.
     pub corners: usize,
-    /// Generators kept, in multiples of the number of states; beyond, the oldest become a box. `None` keeps all, which is the tightest.
+    /// Generators kept, in multiples of the number of states; beyond, the oldest become a box.
+    /// `None` keeps all, which is the tightest.
     pub order: Option<usize>,
-    /// Parts into which the initial set is divided along each state, N; empty for none. Each is followed alone, and the hull of all is given.
+    /// Parts into which the initial set is divided along each state, N; empty for none. Each is
+    /// followed alone, and the hull of all is given.
     pub pieces: Vec<usize>,
     /// Samples at which the zonotopes themselves are kept, one a piece.
     pub zonotopes: Vec<usize>,
@@ -83,7 +92,8 @@ pub enum FlowpipeOutcome {
     },
 }
 
-/// The reachable set of a polynomial system under an uncertain input: an interval hull at each sample and over each step.
+/// The reachable set of a polynomial system under an uncertain input: an interval hull at each
+/// sample and over each step.
 ///
 /// [`FlowpipeMethod`] says how it is found.
 ///
@@ -122,15 +132,18 @@ impl Flowpipe {
     ///
     /// # Guarantee
     ///
-    /// Outer, directed rounding: every solution from a start in the set, under an input whose values are in u_m + U, lies in the boxes, at the samples and
-    /// at all times of the steps, up to the time of the outcome; and in the zonotopes but for the rounding of their last generators'
-    /// lengths. Generators are multiplied in floating point; the rounding of each step, bounded by γ_n |Φ| times the radius of the
-    /// hull (Rump), is a generator of its own.
+    /// Outer, directed rounding: every solution from a start in the set, under an input whose
+    /// values are in u_m + U, lies in the boxes, at the samples and at all times of the steps, up
+    /// to the time of the outcome; and in the zonotopes but for the rounding of their last
+    /// generators' lengths. Generators are multiplied in floating point; the rounding of each step,
+    /// bounded by γ_n |Φ| times the radius of the hull (Rump), is a generator of its own.
     ///
     /// # Errors
     ///
-    /// [`ReachError::Shape`] where sizes do not fit, with the rows of the input counted against the grid; [`ReachError::NotFinite`]; [`ReachError::Order`] for Taylor models of
-    /// an order that does not fit the number of states; [`ReachError::Trigonometric`] for those of a system with sines and cosines.
+    /// [`ReachError::Shape`] where sizes do not fit, with the rows of the input counted against the
+    /// grid; [`ReachError::NotFinite`]; [`ReachError::Order`] for Taylor models of an order that
+    /// does not fit the number of states; [`ReachError::Trigonometric`] for those of a system with
+    /// sines and cosines.
     pub fn new(
         system: &PolynomialSystem,
         grid: &TimeGrid,
@@ -140,9 +153,16 @@ impl Flowpipe {
         settings: &FlowpipeSettings,
     ) -> Result<Self, ReachError> {
         check(system, grid, start, initial_set, input, settings)?;
-        let sides: Vec<Interval> = (0..system.states()).map(|i| side(start, initial_set, i)).collect();
+        let sides: Vec<Interval> =
+            (0..system.states()).map(|i| side(start, initial_set, i)).collect();
         let of_piece = |piece: Vec<Interval>| {
-            Ok(Self::of(follower(system, &piece, settings)?.as_mut(), system, grid, input, settings))
+            Ok(Self::of(
+                follower(system, &piece, settings)?.as_mut(),
+                system,
+                grid,
+                input,
+                settings,
+            ))
         };
         let pieces = pieces(&sides, &settings.pieces).into_par_iter().map(of_piece);
         let whole = pieces.reduce_with(|left, right| Ok(left?.hull(right?)));
@@ -163,7 +183,8 @@ impl Flowpipe {
         for k in 1..grid.len() {
             input.over_step(k - 1, &mut u);
             if let Err(Exhausted { state, widths }) = follower.advance(grid.interval(k - 1), &u) {
-                flowpipe.outcome = FlowpipeOutcome::Failed { time: grid.times()[k - 1], state, widths };
+                flowpipe.outcome =
+                    FlowpipeOutcome::Failed { time: grid.times()[k - 1], state, widths };
                 break;
             }
             follower.tube(&mut flowpipe.steps);
@@ -177,7 +198,10 @@ impl Flowpipe {
         if other.len() < self.len() {
             return other.hull(self);
         }
-        self.samples.iter_mut().zip(&other.samples).for_each(|(own, other)| *own = own.hull(*other));
+        self.samples
+            .iter_mut()
+            .zip(&other.samples)
+            .for_each(|(own, other)| *own = own.hull(*other));
         self.steps.iter_mut().zip(&other.steps).for_each(|(own, other)| *own = own.hull(*other));
         self.zonotopes.extend(other.zonotopes);
         self.generators = self.generators.max(other.generators);
@@ -250,7 +274,8 @@ fn side(start: &[f64], initial_set: &Hyperrectangle, i: usize) -> Interval {
     Interval::point(start[i]) + Interval::centered(initial_set.center[i], initial_set.radius[i])
 }
 
-/// The box divided into so many parts along each side. Neighbours share an end, so that none is left out.
+/// The box divided into so many parts along each side. Neighbours share an end, so that none is
+/// left out.
 fn pieces(sides: &[Interval], parts: &[usize]) -> Vec<Vec<Interval>> {
     let mut pieces = vec![Vec::with_capacity(sides.len())];
     for (i, side) in sides.iter().enumerate() {
@@ -258,9 +283,8 @@ fn pieces(sides: &[Interval], parts: &[usize]) -> Vec<Vec<Interval>> {
         let end = |at: usize| match at {
             0 => side.lo(),
             at if at == parts => side.hi(),
-            at => {
-                (side.lo() + (side.hi() - side.lo()) * (at as f64 / parts as f64)).clamp(side.lo(), side.hi())
-            }
+            at => (side.lo() + (side.hi() - side.lo()) * (at as f64 / parts as f64))
+                .clamp(side.lo(), side.hi()),
         };
         let own = |at: usize| Interval::new(end(at), end(at + 1)).unwrap_or(*side);
         let longer = |piece: &Vec<Interval>| {
@@ -301,7 +325,13 @@ fn check(
     let found = input.measured.len();
     if found != rows * m && found != (rows + 1) * m {
         let (found_rows, found_columns) = (found.checked_div(m).unwrap_or(found), m);
-        return Err(ReachError::Shape { what: "the input", rows, columns: m, found_rows, found_columns });
+        return Err(ReachError::Shape {
+            what: "the input",
+            rows,
+            columns: m,
+            found_rows,
+            found_columns,
+        });
     }
     check_vector("the input", input.measured, found)
 }

@@ -10,7 +10,8 @@ const LANES: usize = 16;
 /// One coordinate of as many generators.
 type Lanes = [f64; LANES];
 
-/// Blocks that one thread takes at a time: as much work as it costs to wake it up, a few times over.
+/// Blocks that one thread takes at a time: as much work as it costs to wake it up, a few times
+/// over.
 const BLOCKS: usize = 64;
 
 /// A list of generators, oldest first; the last block may be filled up with zeros.
@@ -53,7 +54,8 @@ impl Generators {
         self.blocks[block..block + self.n].iter().map(move |lanes| lanes[at % LANES])
     }
 
-    /// Every generator g becomes Φ g, in floating point; `sums` (n) becomes Σ |Φ g|, in floating point.
+    /// Every generator g becomes Φ g, in floating point; `sums` (n) becomes Σ |Φ g|, in floating
+    /// point.
     pub fn map(&mut self, phi: &Square, sums: &mut [f64]) {
         let n = self.n;
         let rows = Rows::new(phi);
@@ -72,7 +74,8 @@ impl Generators {
         }
     }
 
-    /// Removes the first `surplus` generators, whole blocks of them, and adds the box around them to `radius`, rounded upward.
+    /// Removes the first `surplus` generators, whole blocks of them, and adds the box around them
+    /// to `radius`, rounded upward.
     pub fn absorb_oldest(&mut self, surplus: usize, radius: &mut [f64]) {
         let blocks = surplus.min(self.count) / LANES;
         for (i, radius) in radius.iter_mut().enumerate() {
@@ -93,7 +96,8 @@ struct Rows {
 
 impl Rows {
     fn new(phi: &Square) -> Self {
-        let (mut entries, mut ends) = (Vec::with_capacity(phi.entries.len()), Vec::with_capacity(phi.n));
+        let (mut entries, mut ends) =
+            (Vec::with_capacity(phi.entries.len()), Vec::with_capacity(phi.n));
         for i in 0..phi.n {
             let row = phi.row(i).iter().copied().enumerate();
             entries.extend(row.filter(|(_, x)| *x != 0.0));

@@ -15,7 +15,8 @@ const LEAST_BOUND: f64 = 1e-3;
 /// Steps over which corners are taken of the same factors.
 const CHOICE_STEPS: u32 = 8;
 
-/// f(x* + d, u* + e) = f* + A d + B e + remainder, with A and B in floating point and their error in the remainder.
+/// f(x* + d, u* + e) = f* + A d + B e + remainder, with A and B in floating point and their error
+/// in the remainder.
 #[derive(Debug)]
 pub(super) struct Linearisation<'a> {
     pub system: &'a PolynomialSystem,
@@ -94,13 +95,19 @@ impl<'a> Linearisation<'a> {
         &self.b[j * n..(j + 1) * n]
     }
 
-    /// About the point x* and the middle of the input. Over a set of that `radius` (N), a power of one variable is close to a line
-    /// steeper than its derivative, and A has that slope.
+    /// About the point x* and the middle of the input. Over a set of that `radius` (N), a power of
+    /// one variable is close to a line steeper than its derivative, and A has that slope.
     ///
     /// # Guarantee
     ///
-    /// f* and the slopes are enclosed, whichever of their intervals coefficients are at each time; f*, A and B are midpoints, exact as numbers.
-    pub fn linearise(&mut self, point: impl Iterator<Item = f64>, radius: &[f64], input: &[Interval]) {
+    /// f* and the slopes are enclosed, whichever of their intervals coefficients are at each time;
+    /// f*, A and B are midpoints, exact as numbers.
+    pub fn linearise(
+        &mut self,
+        point: impl Iterator<Item = f64>,
+        radius: &[f64],
+        input: &[Interval],
+    ) {
         let n = self.system.states();
         self.point[..n].iter_mut().zip(point).for_each(|(own, x)| *own = x);
         self.radius[..n].copy_from_slice(radius);
@@ -133,7 +140,8 @@ impl<'a> Linearisation<'a> {
         }
         let beyond = |(z, bound): (&f64, &f64)| z.abs() > *bound;
         if self.point.iter().zip(&self.bounds).any(beyond) {
-            let grown = self.bounds.iter_mut().zip(&self.point).filter(|(bound, z)| z.abs() > **bound);
+            let grown =
+                self.bounds.iter_mut().zip(&self.point).filter(|(bound, z)| z.abs() > **bound);
             grown.for_each(|(bound, z)| *bound = (2.0 * z.abs()).max(LEAST_BOUND));
             self.bound_errors();
         }
@@ -161,12 +169,16 @@ impl<'a> Linearisation<'a> {
 
     fn differentiate_directions(&mut self) {
         let (n, variables, angles) = (self.system.states(), self.point.len(), &self.system.angles);
-        for (g, (direction, shift)) in self.system.directions.iter().zip(&mut self.directions).enumerate() {
+        for (g, (direction, shift)) in
+            self.system.directions.iter().zip(&mut self.directions).enumerate()
+        {
             direction.polynomial.shift(&self.factors, &self.radius, shift);
             let is_carried = |z: usize| {
                 z >= n && self.system.carriers[z - n].is_some_and(|carrier| carrier.direction == g)
             };
-            for (i, &entry) in direction.column.iter().enumerate().filter(|(_, entry)| **entry != 0.0) {
+            for (i, &entry) in
+                direction.column.iter().enumerate().filter(|(_, entry)| **entry != 0.0)
+            {
                 self.rate[i] += direction.polynomial.constant(shift) * entry;
                 let slopes = direction.polynomial.gradient(shift);
                 let slopes = slopes.map(|(z, slope)| angles.along_line(z, slope, &self.lines));
@@ -196,7 +208,8 @@ impl<'a> Linearisation<'a> {
         }
     }
 
-    /// The remainder over the offsets `tube` (N) and the input: along the axes (N), then along the directions.
+    /// The remainder over the offsets `tube` (N) and the input: along the axes (N), then along the
+    /// directions.
     ///
     /// # Guarantee
     ///
@@ -216,8 +229,10 @@ impl<'a> Linearisation<'a> {
             let defect = &self.defect[i * variables..(i + 1) * variables];
             let states = defect.iter().zip(tube).map(|(defect, d)| defect * d.mag());
             let inputs = defect[n..].iter().zip(&self.input_radius).map(|(defect, r)| defect * r);
-            let rounding = raised(states.chain(inputs).sum::<f64>() + self.rate_radius[i], variables + 1);
-            let range = self.system.rows[i].remainder(&self.powers, &mut self.corners, &mut self.rows[i]);
+            let rounding =
+                raised(states.chain(inputs).sum::<f64>() + self.rate_radius[i], variables + 1);
+            let range =
+                self.system.rows[i].remainder(&self.powers, &mut self.corners, &mut self.rows[i]);
             *out = range + Interval::centered(0.0, rounding);
         }
         for ((out, direction), shift) in
@@ -242,19 +257,26 @@ impl<'a> Linearisation<'a> {
         }
     }
 
-    /// A bound of what input and remainder can be along direction g: the inputs it carries and the radius of its remainder.
+    /// A bound of what input and remainder can be along direction g: the inputs it carries and the
+    /// radius of its remainder.
     pub fn along_direction(&self, g: usize, remainder: &[Interval]) -> f64 {
         raised(self.carried(g) + remainder[self.system.states() + g].rad(), 1)
     }
 
     fn carried(&self, g: usize) -> f64 {
         let inputs = self.system.carriers.iter().zip(&self.input_radius);
-        let own = inputs.filter_map(|(carrier, r)| carrier.filter(|c| c.direction == g).map(|c| (c, r)));
+        let own =
+            inputs.filter_map(|(carrier, r)| carrier.filter(|c| c.direction == g).map(|c| (c, r)));
         raised(own.map(|(carrier, r)| carrier.factor.abs() * r).sum(), self.input_radius.len())
     }
 
     /// `out` >= |B| r + |N| |l|, with the `size` of each l.
-    pub fn magnitude(&self, remainder: &[Interval], size: impl Fn(Interval) -> f64, out: &mut [f64]) {
+    pub fn magnitude(
+        &self,
+        remainder: &[Interval],
+        size: impl Fn(Interval) -> f64,
+        out: &mut [f64],
+    ) {
         let n = out.len();
         out.iter_mut().zip(remainder).for_each(|(out, l)| *out = size(*l));
         for (column, r) in self.b.chunks_exact(n.max(1)).zip(&self.input_radius) {

@@ -4,7 +4,8 @@ use reachtube_scalar::Interval;
 
 use super::angles::{sine_defect, versed};
 
-/// The powers of the sides of a box, even ones not negative; for an angle its φ_l, and sin d less its line.
+/// The powers of the sides of a box, even ones not negative; for an angle its φ_l, and sin d less
+/// its line.
 #[derive(Debug, Clone)]
 pub(super) struct PowerTable {
     starts: Vec<usize>,
@@ -36,10 +37,12 @@ impl PowerTable {
         self.waists[i] = is_centered(side).then_some(0.5);
     }
 
-    /// Of angle variable i over `side`, whose sine has a line of that slope, and whose κ that middle.
+    /// Of angle variable i over `side`, whose sine has a line of that slope, and whose κ that
+    /// middle.
     pub fn set_angle(&mut self, i: usize, side: Interval, [slope, middle]: [f64; 2]) {
         let (sine, versine) = versed(side);
-        self.waists[i] = Some(1.0 / (2.0 - versine.hi())).filter(|_| is_centered(side) && side.mag() < 1.5);
+        self.waists[i] =
+            Some(1.0 / (2.0 - versine.hi())).filter(|_| is_centered(side) && side.mag() < 1.5);
         let versine = versine - middle;
         let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
         for (phi, l) in own.iter_mut().zip(1..) {
@@ -67,8 +70,9 @@ impl PowerTable {
         self.starts.binary_search(&place).is_ok()
     }
 
-    /// For a variable itself, or σ: where its square is, or κ; and half the width at the bottom of the trapezoid about both, relative to that at the top. None
-    /// where the side is not about zero, or no trapezoid.
+    /// For a variable itself, or σ: where its square is, or κ; and half the width at the bottom of
+    /// the trapezoid about both, relative to that at the top. None where the side is not about
+    /// zero, or no trapezoid.
     pub fn trapezoid(&self, place: usize) -> Option<(usize, f64)> {
         let i = self.starts.binary_search(&place).ok()?;
         let has_square = *self.starts.get(i + 1)? > place + 1;

@@ -43,11 +43,13 @@ impl Square {
     }
 }
 
-/// An upper bound of a sum of products >= 0, `terms` of them, whose value in floating point is `sum`.
+/// An upper bound of a sum of products >= 0, `terms` of them, whose value in floating point is
+/// `sum`.
 ///
-/// In any order the rounded sum is at least 1 - γ_N times the exact one (Higham, Accuracy and Stability of Numerical Algorithms,
-/// section 3.1), and γ_N is at most N ε for N below 2⁵⁰; the last term covers products that underflow. One more product with a
-/// factor >= 0 in each term, and one in front of the sum, are covered as well.
+/// In any order the rounded sum is at least 1 - γ_N times the exact one (Higham, Accuracy and
+/// Stability of Numerical Algorithms, section 3.1), and γ_N is at most N ε for N below 2⁵⁰; the
+/// last term covers products that underflow. One more product with a factor >= 0 in each term, and
+/// one in front of the sum, are covered as well.
 pub(super) fn raised(sum: f64, terms: usize) -> f64 {
     sum * (1.0 + (terms + 4) as f64 * f64::EPSILON) + f64::MIN_POSITIVE
 }
@@ -67,6 +69,8 @@ mod tests {
         assert!(out[1] > 0.0);
         let mut square = Square::zero(2);
         square.set_product(&matrix, &matrix);
-        assert!((square.entries[0] - 0.01).abs() < 1e-16 && (square.entries[1] + 0.02).abs() < 1e-16);
+        assert!(
+            (square.entries[0] - 0.01).abs() < 1e-16 && (square.entries[1] + 0.02).abs() < 1e-16
+        );
     }
 }

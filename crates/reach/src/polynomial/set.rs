@@ -4,8 +4,9 @@ use super::generators::Generators;
 use super::rounded::{Square, raised};
 use crate::Zonotope;
 
-/// A zonotope about `center`, of the generators that have been through a step, and of those of the last step, which the next one adds to
-/// before they are stored: what the input adds at the end of a step and at the start of the next has the same direction.
+/// A zonotope about `center`, of the generators that have been through a step, and of those of the
+/// last step, which the next one adds to before they are stored: what the input adds at the end of
+/// a step and at the start of the next has the same direction.
 #[derive(Debug)]
 pub(super) struct Set {
     pub center: Vec<f64>,
@@ -39,9 +40,16 @@ impl Set {
         }
     }
 
-    /// Moves the recent generators through Φ into the stored ones, scaled by the lengths they have now. An axis that Φ leaves as it is stays.
-    /// Adds Σ |Φ g| of what it stores to `sums`, in floating point.
-    pub fn store(&mut self, phi: &Square, directions: &[&[f64]], image: &mut [f64], sums: &mut [f64]) {
+    /// Moves the recent generators through Φ into the stored ones, scaled by the lengths they have
+    /// now. An axis that Φ leaves as it is stays. Adds Σ |Φ g| of what it stores to `sums`, in
+    /// floating point.
+    pub fn store(
+        &mut self,
+        phi: &Square,
+        directions: &[&[f64]],
+        image: &mut [f64],
+        sums: &mut [f64],
+    ) {
         let n = self.center.len();
         for (direction, &length) in directions.iter().zip(&self.lengths) {
             phi.apply(direction, image);
@@ -66,7 +74,8 @@ impl Set {
         push(&mut self.generators, image, self.column_lengths[j], sums);
     }
 
-    /// The radii, from `sums` = Σ |g| of the stored generators in floating point; and the oldest generators turned into axes beyond `most`.
+    /// The radii, from `sums` = Σ |g| of the stored generators in floating point; and the oldest
+    /// generators turned into axes beyond `most`.
     pub fn measure(&mut self, directions: &[&[f64]], sums: &[f64], most: usize) {
         self.measure_recent(directions);
         let terms = self.generators.len() + self.radius.len() + 64;
@@ -100,7 +109,10 @@ impl Set {
                 generators.extend(column.iter().map(|x| x * length));
             }
         };
-        directions.iter().zip(&self.lengths).for_each(|(direction, length)| push(direction, *length));
+        directions
+            .iter()
+            .zip(&self.lengths)
+            .for_each(|(direction, length)| push(direction, *length));
         let columns = self.columns.chunks_exact(n.max(1)).zip(&self.column_lengths);
         columns.for_each(|(column, length)| push(column, *length));
         for (i, length) in self.axes.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! A polynomial about a point that changes from step to step: p(z + d) = Σ c_α dᵅ, exact and finite. An angle has its φ_l (see
-//! [`angles`](super::angles)) in place of the powers of d.
+//! A polynomial about a point that changes from step to step: p(z + d) = Σ c_α dᵅ, exact and
+//! finite. An angle has its φ_l (see [`angles`](super::angles)) in place of the powers of d.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,14 +11,16 @@ use super::powers::PowerTable;
 use super::rounded::raised;
 use super::univariate::Univariate;
 
-/// Added to the magnitude of each monomial, so that products that underflow are within its rounding.
+/// Added to the magnitude of each monomial, so that products that underflow are within its
+/// rounding.
 const SMALLEST: f64 = 1e-290;
 
 /// A polynomial prepared for being shifted and bounded again and again without allocation.
 #[derive(Debug, Clone)]
 pub(super) struct ShiftedPolynomial {
-    /// Coefficients: first those about the point, still zero, of a set of monomials that holds every divisor of a member, by degree, the
-    /// constant first; then those of the terms with sines and cosines, which become the former angle after angle.
+    /// Coefficients: first those about the point, still zero, of a set of monomials that holds
+    /// every divisor of a member, by degree, the constant first; then those of the terms with sines
+    /// and cosines, which become the former angle after angle.
     start: Vec<f64>,
     /// What those may be off by.
     start_error: Vec<f64>,
@@ -94,15 +96,32 @@ impl ShiftedPolynomial {
             let variable = first_variable(m);
             let parent = place[with(m, variable, 0).as_slice()] as u32;
             let exponent = u32::from(m[variable]);
-            Node { parent, variable: variable as u32, exponent, is_power: parent == 0 && variable < plain }
+            Node {
+                parent,
+                variable: variable as u32,
+                exponent,
+                is_power: parent == 0 && variable < plain,
+            }
         };
-        let univariate = (0..plain).filter_map(|variable| Univariate::of(variable, &place)).collect();
-        let nodes = monomials.iter().filter(|(degree, _)| *degree >= 2).map(|(_, m)| node(m)).collect();
+        let univariate =
+            (0..plain).filter_map(|variable| Univariate::of(variable, &place)).collect();
+        let nodes =
+            monomials.iter().filter(|(degree, _)| *degree >= 2).map(|(_, m)| node(m)).collect();
         let roundings = roundings(plain, &start, &operations, monomials.len());
         let start_error = start.iter().map(|x| x.rad()).collect();
         let start = start.iter().map(|x| x.mid()).collect();
         let first_node = 1 + linear.len();
-        Self { start, start_error, operations, roundings, linear, nodes, first_node, plain, univariate }
+        Self {
+            start,
+            start_error,
+            operations,
+            roundings,
+            linear,
+            nodes,
+            first_node,
+            plain,
+            univariate,
+        }
     }
 
     /// Scratch memory for this polynomial.
@@ -126,7 +145,8 @@ impl ShiftedPolynomial {
         }
     }
 
-    /// About the point that the factors are of: its plain variables, and what its angles turn by; with slopes for offsets of about `radius`.
+    /// About the point that the factors are of: its plain variables, and what its angles turn by;
+    /// with slopes for offsets of about `radius`.
     ///
     /// # Guarantee
     ///
@@ -142,17 +162,20 @@ impl ShiftedPolynomial {
 
     fn operate(&self, factors: &[f64], coefficients: &mut [f64]) {
         for op in &self.operations {
-            coefficients[op.to as usize] += coefficients[op.from as usize] * factors[op.factor as usize];
+            coefficients[op.to as usize] +=
+                coefficients[op.from as usize] * factors[op.factor as usize];
         }
     }
 
-    /// Bounds the errors of all shifts whose factors are within `bounds`, those of angles known to [`TURN_ROUNDINGS`] of them.
+    /// Bounds the errors of all shifts whose factors are within `bounds`, those of angles known to
+    /// [`TURN_ROUNDINGS`] of them.
     ///
     /// # Guarantee
     ///
-    /// Each coefficient is a sum of products of factors and a coefficient to begin with. Each of these is rounded at most so many times, so that the sum is
-    /// off by at most γ of that number times the same sum of magnitudes (Higham, section 3.1); what the first coefficients are off by is carried
-    /// through.
+    /// Each coefficient is a sum of products of factors and a coefficient to begin with. Each of
+    /// these is rounded at most so many times, so that the sum is off by at most γ of that number
+    /// times the same sum of magnitudes (Higham, section 3.1); what the first coefficients are off
+    /// by is carried through.
     pub fn bound_errors(&self, bounds: &[f64], work: &mut Shift) {
         let mut magnitudes: Vec<f64> = self.start.iter().map(|x| x.abs()).collect();
         let mut carried = self.start_error.clone();
@@ -173,20 +196,27 @@ impl ShiftedPolynomial {
         work.coefficient(0)
     }
 
-    /// The derivatives at the present point and the slopes: variables, φ₁ that of an angle, and what is to be added up for each.
+    /// The derivatives at the present point and the slopes: variables, φ₁ that of an angle, and
+    /// what is to be added up for each.
     pub fn gradient<'a>(&'a self, work: &'a Shift) -> impl Iterator<Item = (usize, Interval)> + 'a {
-        let derivatives = self.linear.iter().map(|&(variable, at)| (variable, work.coefficient(at)));
+        let derivatives =
+            self.linear.iter().map(|&(variable, at)| (variable, work.coefficient(at)));
         let slopes = self.univariate.iter().zip(&work.slopes);
         derivatives.chain(slopes.map(|(powers, slope)| (powers.variable, Interval::point(*slope))))
     }
 
-    /// The sum of all terms of degree 2 and above, less the slopes, over a box, given by the powers of its sides; with what sines differ from
-    /// their lines.
+    /// The sum of all terms of degree 2 and above, less the slopes, over a box, given by the powers
+    /// of its sides; with what sines differ from their lines.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn remainder(&self, powers: &PowerTable, corners: &mut Corners, work: &mut Shift) -> Interval {
+    pub fn remainder(
+        &self,
+        powers: &PowerTable,
+        corners: &mut Corners,
+        work: &mut Shift,
+    ) -> Interval {
         let mut sum = self.mixed(powers, corners, work);
         for &(variable, at) in self.linear.iter().filter(|(variable, _)| *variable >= self.plain) {
             sum += work.coefficient(at) * powers.defect(variable);
@@ -198,8 +228,9 @@ impl ShiftedPolynomial {
         sum
     }
 
-    /// The sum of all terms but those of one variable that is no angle, in floating point; its rounding is bounded in the end. A product of intervals is off
-    /// by one rounding a factor relative to its magnitude, the sum by one a term, and the corners by [`ROUNDINGS`] a factor.
+    /// The sum of all terms but those of one variable that is no angle, in floating point; its
+    /// rounding is bounded in the end. A product of intervals is off by one rounding a factor
+    /// relative to its magnitude, the sum by one a term, and the corners by [`ROUNDINGS`] a factor.
     fn mixed(&self, powers: &PowerTable, corners: &mut Corners, work: &mut Shift) -> Interval {
         corners.divide(powers, &work.chosen);
         for &(variable, at) in &self.linear {
@@ -227,7 +258,8 @@ impl ShiftedPolynomial {
         range.map_or(Interval::ENTIRE, |range| range + Interval::centered(0.0, error))
     }
 
-    /// Chooses the factors whose corners are taken from now on: those that most of the sum has, over the box bounded last.
+    /// Chooses the factors whose corners are taken from now on: those that most of the sum has,
+    /// over the box bounded last.
     pub fn choose(&self, powers: &PowerTable, corners: &mut Corners, work: &mut Shift) {
         work.sums.fill(0.0);
         for (i, node) in self.nodes.iter().enumerate().rev() {
@@ -246,7 +278,8 @@ impl ShiftedPolynomial {
     }
 }
 
-/// The largest number of roundings of a term of each of the first coefficients: two an operation, those of its factor, and one of a sum for each that follows.
+/// The largest number of roundings of a term of each of the first coefficients: two an operation,
+/// those of its factor, and one of a sum for each that follows.
 fn roundings(plain: usize, start: &[Interval], operations: &[Operation], own: usize) -> Vec<f64> {
     let mut counts = vec![0.0_f64; start.len()];
     for op in operations {
@@ -278,16 +311,19 @@ fn first_variable(monomial: &[u8]) -> usize {
     monomial.iter().position(|e| *e > 0).expect("not a constant")
 }
 
-/// The monomials before an angle is turned, each with its place among all coefficients; none is turned after the last.
+/// The monomials before an angle is turned, each with its place among all coefficients; none is
+/// turned after the last.
 struct Stage {
     monomials: BTreeSet<Vec<u8>>,
     angle: Option<usize>,
 }
 
-/// The monomials of the terms, and what they become as angle after angle is turned: the place of its sine then has the l of φ_l.
+/// The monomials of the terms, and what they become as angle after angle is turned: the place of
+/// its sine then has the l of φ_l.
 fn stages(angles: &Angles, terms: &[TaylorTerm<Interval>]) -> Vec<Stage> {
     let mut stages = Vec::new();
-    let mut monomials: BTreeSet<Vec<u8>> = terms.iter().map(|term| term.exponents.clone()).collect();
+    let mut monomials: BTreeSet<Vec<u8>> =
+        terms.iter().map(|term| term.exponents.clone()).collect();
     for i in 0..angles.states.len() {
         if monomials.iter().any(|m| angles.exponents(m, i) != [0; 2]) {
             let turned = monomials.iter().flat_map(|m| turned(angles, i, m)).collect();
@@ -306,7 +342,8 @@ fn turned(angles: &Angles, i: usize, monomial: &[u8]) -> impl Iterator<Item = Ve
     (0..=2 * (a + b)).map(move |l| with(&monomial, sine, l))
 }
 
-/// The coefficients to begin with, and the operations that turn one angle after the other, ending at `place`.
+/// The coefficients to begin with, and the operations that turn one angle after the other, ending
+/// at `place`.
 fn turns(
     angles: &Angles,
     stages: &[Stage],
@@ -317,17 +354,24 @@ fn turns(
     let (mut count, mut operations) = (place.len(), Vec::new());
     let mut places: Vec<BTreeMap<&[u8], usize>> = Vec::new();
     for stage in &stages[..stages.len() - 1] {
-        places.push(stage.monomials.iter().zip(count..).map(|(m, at)| (m.as_slice(), at)).collect());
+        places
+            .push(stage.monomials.iter().zip(count..).map(|(m, at)| (m.as_slice(), at)).collect());
         count += stage.monomials.len();
     }
-    let at = |stage: usize, m: &[u8]| places.get(stage).map_or_else(|| place[&m[..variables]], |own| own[m]);
+    let at = |stage: usize, m: &[u8]| {
+        places.get(stage).map_or_else(|| place[&m[..variables]], |own| own[m])
+    };
     for (number, stage) in stages.iter().enumerate() {
         let Some(i) = stage.angle else { break };
         for monomial in &stage.monomials {
             let exponents = angles.exponents(monomial, i);
             for (l, next) in turned(angles, i, monomial).enumerate() {
                 let (to, from) = (at(number + 1, &next) as u32, at(number, monomial) as u32);
-                operations.push(Operation { to, from, factor: angles.factor(i, exponents, l) as u32 });
+                operations.push(Operation {
+                    to,
+                    from,
+                    factor: angles.factor(i, exponents, l) as u32,
+                });
             }
         }
     }
@@ -338,7 +382,8 @@ fn turns(
     (start, operations)
 }
 
-/// Horner's shift, variable after variable, chain after chain of monomials that differ in that variable alone.
+/// Horner's shift, variable after variable, chain after chain of monomials that differ in that
+/// variable alone.
 fn shifts(
     plain: usize,
     monomials: &BTreeSet<(u32, Vec<u8>)>,

@@ -27,10 +27,12 @@ pub(super) struct Stepper<'a> {
     linear: Linearisation<'a>,
     exponential: RoundedExponential,
     directions: Vec<&'a [f64]>,
-    /// Where the linear system about the point is at the end of the step: the centre, and the radius around it.
+    /// Where the linear system about the point is at the end of the step: the centre, and the
+    /// radius around it.
     end: Vec<Interval>,
     end_radius: Vec<f64>,
-    /// Offsets from the point over the whole step, without the input and the remainder; and with them.
+    /// Offsets from the point over the whole step, without the input and the remainder; and with
+    /// them.
     linear_tube: Vec<Interval>,
     tube: Vec<Interval>,
     /// The remainder: along the axes, then along the directions.
@@ -47,7 +49,8 @@ pub(super) struct Stepper<'a> {
 impl<'a> Stepper<'a> {
     pub fn new(linear: Linearisation<'a>, most_generators: usize) -> Self {
         let n = linear.system.states();
-        let directions: Vec<&[f64]> = linear.system.directions.iter().map(|d| d.column.as_slice()).collect();
+        let directions: Vec<&[f64]> =
+            linear.system.directions.iter().map(|d| d.column.as_slice()).collect();
         let remainders = n + directions.len();
         let intervals = |n| vec![Interval::ZERO; n];
         let numbers = || vec![0.0; n];
@@ -82,14 +85,23 @@ impl<'a> Stepper<'a> {
     ///
     /// # Guarantee
     ///
-    /// Outer, directed rounding. With d = x - x*, ḋ = f* + A d + B e + Σ_g N_g l_g for exact numbers l_g in the remainder's range, which is proved by
-    /// containment: as long as d stays in the tube, the remainder is strictly inside the guess, and as long as it is in the guess, d stays in the
-    /// tube; d is continuous, so neither ends before the step. The set after the step is that of the linear system under e and l:
+    /// Outer, directed rounding. With d = x - x*, ḋ = f* + A d + B e + Σ_g N_g l_g for exact
+    /// numbers l_g in the remainder's range, which is proved by containment: as long as d stays in
+    /// the tube, the remainder is strictly inside the guess, and as long as it is in the guess, d
+    /// stays in the tube; d is continuous, so neither ends before the step. The set after the step
+    /// is that of the linear system under e and l:
     ///
-    /// ∫₀ʰ e^{As} b e(s) ds ∈ (h/2) (e^{Ah} b + b) \[-r, r\] ⊕ (h³/12) |A|² e^{|A|h} |b| r \[-1, 1\],
+    /// ∫₀ʰ e^{As} b e(s) ds ∈ (h/2) (e^{Ah} b + b) \[-r, r\] ⊕ (h³/12) |A|² e^{|A|h} |b| r \[-1,
+    /// 1\],
     ///
-    /// since e^{As} b is within s (h - s)/2 sup |A² e^{Aσ} b| of its chord, whose two weights s/h and 1 - s/h have integrals of h/2.
-    pub fn advance(&mut self, set: &mut Set, h: Interval, input: &[Interval]) -> Result<(), Exhausted> {
+    /// since e^{As} b is within s (h - s)/2 sup |A² e^{Aσ} b| of its chord, whose two weights s/h
+    /// and 1 - s/h have integrals of h/2.
+    pub fn advance(
+        &mut self,
+        set: &mut Set,
+        h: Interval,
+        input: &[Interval],
+    ) -> Result<(), Exhausted> {
         let point = set.center.iter().zip(&self.last_move).map(|(c, moved)| c + 0.5 * moved);
         self.linear.linearise(point, &set.radius, input);
         if !self.exponential.update(&self.linear.a, h) {
@@ -118,7 +130,8 @@ impl<'a> Stepper<'a> {
         let n = set.center.len();
         let [magnitudes, errors, ..] = &mut self.spare;
         for (i, end) in self.end.iter_mut().enumerate() {
-            let row = self.exponential.phi.row(i).iter().enumerate().filter(|(_, phi)| **phi != 0.0);
+            let row =
+                self.exponential.phi.row(i).iter().enumerate().filter(|(_, phi)| **phi != 0.0);
             *end = row.fold(Interval::ZERO, |sum, (j, phi)| sum + offset(j) * *phi);
             magnitudes[i] = offset(i).mag();
         }
@@ -137,7 +150,8 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Every state of the linear system over the step: within h²/8 sup|ÿ| of the chord, ÿ = A e^{As} (A y(0) + f*).
+    /// Every state of the linear system over the step: within h²/8 sup|ÿ| of the chord, ÿ = A
+    /// e^{As} (A y(0) + f*).
     fn span(&mut self, set: &Set, h: Interval) {
         let [velocity, bound, bulge, _] = &mut self.spare;
         let linear = &self.linear;
@@ -158,7 +172,8 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Finds the range of the remainder over the step, from that of the step before; whether it was found.
+    /// Finds the range of the remainder over the step, from that of the step before; whether it was
+    /// found.
     fn contain(&mut self, h: Interval) -> bool {
         self.guess.copy_from_slice(&self.found);
         for _ in 0..TRIES {
@@ -174,12 +189,16 @@ impl<'a> Stepper<'a> {
             if self.found.iter().any(|x| !x.mag().is_finite()) {
                 return false;
             }
-            self.guess.iter_mut().zip(&self.found).for_each(|(guess, found)| *guess = guess.hull(*found));
+            self.guess
+                .iter_mut()
+                .zip(&self.found)
+                .for_each(|(guess, found)| *guess = guess.hull(*found));
         }
         false
     }
 
-    /// The tube under the guess: what input and remainder can move the state by within the step is at most h e^{|A|h} times their magnitude.
+    /// The tube under the guess: what input and remainder can move the state by within the step is
+    /// at most h e^{|A|h} times their magnitude.
     fn surround(&mut self, h: Interval) {
         let [reach, ..] = &mut self.spare;
         self.linear.magnitude(&self.guess, Interval::mag, &mut self.drive);

@@ -5,10 +5,11 @@ use super::directions::{Direction, directions};
 use super::shift::ShiftedPolynomial;
 use crate::ReachError;
 
-/// The polynomial system ẋ = f(x, u) with N states x and m inputs u; polynomials may be in sines and cosines of states too.
+/// The polynomial system ẋ = f(x, u) with N states x and m inputs u; polynomials may be in sines
+/// and cosines of states too.
 ///
-/// Coefficients are intervals: a system whose coefficients are known to an ulp only is enclosed with all systems within. Points are
-/// exact numbers ([`Interval::point`]).
+/// Coefficients are intervals: a system whose coefficients are known to an ulp only is enclosed
+/// with all systems within. Points are exact numbers ([`Interval::point`]).
 ///
 /// # Examples
 ///
@@ -48,15 +49,17 @@ pub(super) struct Carrier {
 }
 
 impl PolynomialSystem {
-    /// The system with the given components, N polynomials in (x, u): `states` + `inputs` variables, or constants.
+    /// The system with the given components, N polynomials in (x, u): `states` + `inputs`
+    /// variables, or constants.
     ///
-    /// Terms of several components whose coefficients are those of one fixed direction (as M⁻¹ e_j for the torque of joint j) are found, and what is
-    /// uncertain in them moves the state along that direction only.
+    /// Terms of several components whose coefficients are those of one fixed direction (as M⁻¹ e_j
+    /// for the torque of joint j) are found, and what is uncertain in them moves the state along
+    /// that direction only.
     ///
     /// # Errors
     ///
-    /// [`ReachError::Shape`] where the number of components or of variables does not fit; [`ReachError::NotFinite`] for a coefficient
-    /// that is not bounded.
+    /// [`ReachError::Shape`] where the number of components or of variables does not fit;
+    /// [`ReachError::NotFinite`] for a coefficient that is not bounded.
     pub fn new(
         states: usize,
         inputs: usize,
@@ -65,10 +68,11 @@ impl PolynomialSystem {
         Self::trigonometric(states, inputs, &[], components)
     }
 
-    /// The system with the given components, N polynomials in (x, u, s, c): the states, the inputs, then s_i = sin x_j and then c_i = cos x_j for each state j
-    /// of `angles` (rad).
+    /// The system with the given components, N polynomials in (x, u, s, c): the states, the inputs,
+    /// then s_i = sin x_j and then c_i = cos x_j for each state j of `angles` (rad).
     ///
-    /// The sets stay on the circle: s and c are no states but functions of them, and are bounded as such, for angles up to 10⁶ rad.
+    /// The sets stay on the circle: s and c are no states but functions of them, and are bounded as
+    /// such, for angles up to 10⁶ rad.
     ///
     /// # Errors
     ///
@@ -108,7 +112,11 @@ impl PolynomialSystem {
             found_columns: 1,
         };
         if let Some(angle) = angles.iter().find(|angle| **angle >= states) {
-            return Err(shape("the state that an angle is, with all before it,", states, angle + 1));
+            return Err(shape(
+                "the state that an angle is, with all before it,",
+                states,
+                angle + 1,
+            ));
         }
         if components.len() != states {
             return Err(shape("the list of components of f", states, components.len()));
@@ -116,7 +124,11 @@ impl PolynomialSystem {
         let mut terms = Vec::with_capacity(states);
         for (row, component) in components.iter().enumerate() {
             if let Some(space) = component.space().filter(|space| space.variables() != variables) {
-                return Err(shape("the list of variables of a component", variables, space.variables()));
+                return Err(shape(
+                    "the list of variables of a component",
+                    variables,
+                    space.variables(),
+                ));
             }
             terms.push(checked_terms(row, variables, component)?);
         }
@@ -133,7 +145,8 @@ impl PolynomialSystem {
     ) -> Self {
         let directions = directions(&angles, &mut terms);
         let carriers = (0..inputs).map(|j| carrier(states + j, &directions, &terms)).collect();
-        let rows: Vec<_> = terms.iter().map(|terms| ShiftedPolynomial::new(&angles, terms)).collect();
+        let rows: Vec<_> =
+            terms.iter().map(|terms| ShiftedPolynomial::new(&angles, terms)).collect();
         let mut highest = vec![1; angles.plain + angles.states.len()];
         rows.iter().for_each(|row| row.raise_exponents(&mut highest));
         directions.iter().for_each(|direction| direction.polynomial.raise_exponents(&mut highest));
@@ -167,14 +180,15 @@ fn checked_terms(
     Ok(terms)
 }
 
-/// The direction that carries input `variable`, where it enters f linearly and along one direction. What the direction has of it stays out
-/// of `terms` already.
+/// The direction that carries input `variable`, where it enters f linearly and along one direction.
+/// What the direction has of it stays out of `terms` already.
 fn carrier(
     variable: usize,
     directions: &[Direction],
     terms: &[Vec<TaylorTerm<Interval>>],
 ) -> Option<Carrier> {
-    let occurs = |terms: &[TaylorTerm<Interval>]| terms.iter().any(|term| term.exponents[variable] > 0);
+    let occurs =
+        |terms: &[TaylorTerm<Interval>]| terms.iter().any(|term| term.exponents[variable] > 0);
     let mut with_input = directions.iter().enumerate().filter(|(_, d)| occurs(&d.terms));
     let (direction, carrier) = with_input.next()?;
     let sole = carrier.terms.iter().filter(|term| term.exponents[variable] > 0).collect::<Vec<_>>();
@@ -184,7 +198,8 @@ fn carrier(
     (is_linear && is_alone).then(|| Carrier { direction, factor: term.coefficient.mid() })
 }
 
-/// Whether the rows have no more of the variable than the rounding of its coefficients, which is linear.
+/// Whether the rows have no more of the variable than the rounding of its coefficients, which is
+/// linear.
 fn is_tiny(variable: usize, terms: &[Vec<TaylorTerm<Interval>>], scale: f64) -> bool {
     let own = terms.iter().flatten().filter(|term| term.exponents[variable] > 0);
     own.clone().all(|term| {

@@ -30,8 +30,8 @@ impl Univariate {
         (!places.is_empty()).then_some(Self { variable, places })
     }
 
-    /// The slope of the line that fits best over |d| <= r: that of the first Chebyshev polynomial. For d³ it is 3/4 r², which leaves a
-    /// quarter of r³.
+    /// The slope of the line that fits best over |d| <= r: that of the first Chebyshev polynomial.
+    /// For d³ it is 3/4 r², which leaves a quarter of r³.
     pub fn slope(&self, coefficients: &[f64], r: f64) -> f64 {
         let (mut slope, mut factor) = (0.0, 1.0);
         // C(e, (e - 1)/2) / 2^{e-1} r^{e-1} for odd e.
@@ -47,7 +47,12 @@ impl Univariate {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn range(&self, coefficient: &impl Fn(usize) -> Interval, slope: f64, side: Interval) -> Interval {
+    pub fn range(
+        &self,
+        coefficient: &impl Fn(usize) -> Interval,
+        slope: f64,
+        side: Interval,
+    ) -> Interval {
         if self.places.len() == 1 {
             return coefficient(self.places[0]) * side.sqr() - side * slope;
         }
@@ -62,7 +67,9 @@ impl Univariate {
                 .clamp(side.lo(), side.hi()),
         };
         let piece = |at: usize| match Interval::new(end(at), end(at + 1)) {
-            Some(piece) if piece.mag().is_finite() => self.range_of_piece(coefficient, slope, piece),
+            Some(piece) if piece.mag().is_finite() => {
+                self.range_of_piece(coefficient, slope, piece)
+            }
             _ => Interval::ENTIRE,
         };
         (1..PIECES).fold(piece(0), |hull, at| hull.hull(piece(at)))
@@ -76,7 +83,8 @@ impl Univariate {
     ) -> Interval {
         let middle = Interval::point(piece.mid());
         let powers = || self.places.iter().zip(0..self.places.len()).rev();
-        let value = powers().fold(Interval::ZERO, |sum, (place, _)| sum * middle + coefficient(*place));
+        let value =
+            powers().fold(Interval::ZERO, |sum, (place, _)| sum * middle + coefficient(*place));
         let derivative = powers().fold(Interval::ZERO, |sum, (place, exponent)| {
             sum * piece + coefficient(*place) * (exponent + 2) as f64
         });
@@ -103,8 +111,11 @@ mod tests {
         let tilted = cube.range(&coefficient, 1.0, Interval::new(0.5, 1.0).unwrap());
         assert!(tilted.encloses(&Interval::new(-3.0, -0.75).unwrap()) && tilted.width() < 2.4);
         assert!(
-            Univariate::of(0, &keys[..2].iter().enumerate().map(|(at, key)| (key.as_slice(), at)).collect())
-                .is_none()
+            Univariate::of(
+                0,
+                &keys[..2].iter().enumerate().map(|(at, key)| (key.as_slice(), at)).collect()
+            )
+            .is_none()
         );
     }
 }

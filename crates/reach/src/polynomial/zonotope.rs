@@ -21,15 +21,19 @@ impl Zonotope {
         self.generators.chunks_exact(self.center.len().max(1))
     }
 
-    /// The vertices of the projection on the plane of states i and j, counter-clockwise, for figures.
+    /// The vertices of the projection on the plane of states i and j, counter-clockwise, for
+    /// figures.
     ///
     /// # Guarantee
     ///
-    /// None beyond rounding to nearest: of the polygon of this zonotope, vertices are off by about 1e-16 times the number of generators.
+    /// None beyond rounding to nearest: of the polygon of this zonotope, vertices are off by about
+    /// 1e-16 times the number of generators.
     pub fn polygon(&self, i: usize, j: usize) -> Vec<[f64; 2]> {
         // Each generator turned so that it points up; by angle, they are half of the boundary.
-        let upward = |g: &[f64]| if (g[j], g[i]) < (0.0, 0.0) { [-g[i], -g[j]] } else { [g[i], g[j]] };
-        let mut edges: Vec<[f64; 2]> = self.generators().map(upward).filter(|g| *g != [0.0; 2]).collect();
+        let upward =
+            |g: &[f64]| if (g[j], g[i]) < (0.0, 0.0) { [-g[i], -g[j]] } else { [g[i], g[j]] };
+        let mut edges: Vec<[f64; 2]> =
+            self.generators().map(upward).filter(|g| *g != [0.0; 2]).collect();
         edges.sort_by(|g, h| g[1].atan2(g[0]).total_cmp(&h[1].atan2(h[0])));
         let total = edges.iter().fold([0.0; 2], |sum, g| [sum[0] + g[0], sum[1] + g[1]]);
         let mut at = [self.center[i] - total[0], self.center[j] - total[1]];
@@ -50,7 +54,8 @@ mod tests {
 
     #[test]
     fn a_polygon_goes_round() {
-        let zonotope = Zonotope::new(vec![1.0, 9.0, 2.0], vec![1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 1.0, 7.0, 1.0]);
+        let zonotope =
+            Zonotope::new(vec![1.0, 9.0, 2.0], vec![1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 1.0, 7.0, 1.0]);
         let expected = [[-1.0, 0.0], [1.0, 0.0], [3.0, 2.0], [3.0, 4.0], [1.0, 4.0], [-1.0, 2.0]];
         assert_eq!(zonotope.polygon(0, 2), expected);
         assert_eq!(zonotope.generators().len(), 3);

@@ -1,4 +1,5 @@
-//! A million disturbances of a six-joint arm stay within the reachable sets, and the worst ones touch them.
+//! A million disturbances of a six-joint arm stay within the reachable sets, and the worst ones
+//! touch them.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -35,7 +36,8 @@ impl Case {
     fn new(disturbance: Disturbance) -> Self {
         let propagation = Propagation::new(&arm(), &TimeGrid::uniform(STEP, SAMPLES)).unwrap();
         let (initial, input) = sets();
-        let reach = ReachSets::new(&propagation, &disturbance.gains(&propagation), &initial, &input);
+        let reach =
+            ReachSets::new(&propagation, &disturbance.gains(&propagation), &initial, &input);
         let (phi, gamma) =
             (propagation.step(0).phi.map(|x| x.mid()), propagation.step(0).gamma.map(|x| x.mid()));
         Self { propagation, reach, phi, gamma }
@@ -92,14 +94,17 @@ impl Motion {
 }
 
 fn within(set: &Hyperrectangle, unit: &DMatrix<f64>) -> DMatrix<f64> {
-    DMatrix::from_fn(unit.nrows(), unit.ncols(), |i, j| set.center[i] + set.radius[i] * unit[(i, j)])
+    DMatrix::from_fn(unit.nrows(), unit.ncols(), |i, j| {
+        set.center[i] + set.radius[i] * unit[(i, j)]
+    })
 }
 
 /// Simulates a batch; the largest part of a radius it uses at the end.
 fn simulate(case: &Case, motion: Motion, seed: u64) -> f64 {
     let mut random = Random::new(seed);
     let (initial, input) = sets();
-    let mut states = within(&initial, &DMatrix::from_fn(12, BATCH, |_, _| motion.start(&mut random)));
+    let mut states =
+        within(&initial, &DMatrix::from_fn(12, BATCH, |_, _| motion.start(&mut random)));
     let mut unit = DMatrix::from_fn(6, BATCH, |_, _| motion.start(&mut random));
     let mut used = case.assert_inside(&states, 0);
     for k in 1..SAMPLES {
@@ -128,7 +133,8 @@ fn none_of_a_million_disturbances_leaves_the_reachable_sets() {
 
 /// The corner of `set` to which `row` points.
 fn worst(set: &Hyperrectangle, row: impl Iterator<Item = f64>) -> DMatrix<f64> {
-    let corner: Vec<f64> = row.enumerate().map(|(j, x)| set.center[j] + set.radius[j] * x.signum()).collect();
+    let corner: Vec<f64> =
+        row.enumerate().map(|(j, x)| set.center[j] + set.radius[j] * x.signum()).collect();
     DMatrix::from_vec(corner.len(), 1, corner)
 }
 
@@ -153,7 +159,8 @@ fn the_worst_disturbance_touches_every_face() {
         let case = Case::new(disturbance);
         for k in [0, 1, 7, 33, 70] {
             for i in 0..12 {
-                let (end, inner) = (furthest(&case, disturbance, i, k), case.reach.upper_inner(k, i));
+                let (end, inner) =
+                    (furthest(&case, disturbance, i, k), case.reach.upper_inner(k, i));
                 assert!(
                     (end - inner).abs() <= ROUNDING,
                     "{disturbance:?}: {end} is not {inner} in state {i}, sample {k}"
@@ -168,10 +175,14 @@ fn the_worst_disturbance_touches_every_face() {
 fn hulls_over_five_seconds_are_known_to_ten_digits() {
     let propagation = Propagation::new(&arm(), &TimeGrid::uniform(0.004, 1251)).unwrap();
     let (initial, input) = sets();
-    let reach = ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &input);
+    let reach =
+        ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &input);
     for (k, i) in (0..1251).flat_map(|k| (0..12).map(move |i| (k, i))) {
         let (outer, inner) = (reach.upper_outer(k, i), reach.upper_inner(k, i));
         let radius = reach.radius(k, i);
-        assert!(outer - inner <= 1e-10 * radius.lo() && radius.width() <= 1e-11 * radius.lo(), "{k} {i}");
+        assert!(
+            outer - inner <= 1e-10 * radius.lo() && radius.width() <= 1e-11 * radius.lo(),
+            "{k} {i}"
+        );
     }
 }

@@ -2,12 +2,13 @@
 
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 use reachtube_reach::{
-    Disturbance, Hyperrectangle, IntervalVector, LinearSystem, Propagation, ReachError, ReachSets, TimeGrid,
-    Tube, TubeRadii,
+    Disturbance, Hyperrectangle, IntervalVector, LinearSystem, Propagation, ReachError, ReachSets,
+    TimeGrid, Tube, TubeRadii,
 };
 use reachtube_scalar::Interval;
 
-const DISTURBANCES: [Disturbance; 3] = [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable];
+const DISTURBANCES: [Disturbance; 3] =
+    [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable];
 
 fn grids() -> Vec<TimeGrid> {
     let recorded = |times: &[f64]| TimeGrid::from_times(times).unwrap();
@@ -38,12 +39,18 @@ fn run_all(system: &LinearSystem) {
             assert_eq!(reach.len(), grid.len());
             if !grid.is_empty() {
                 let ends = [(reach.upper_outer(0, 0), reach.upper_inner(0, 0), 0.75)];
-                let ends =
-                    ends.into_iter().chain([(-reach.lower_outer(0, 0), -reach.lower_inner(0, 0), -0.25)]);
-                ends.for_each(|(outer, inner, x)| assert!(inner <= x && x <= outer && outer - inner < 1e-15));
+                let ends = ends.into_iter().chain([(
+                    -reach.lower_outer(0, 0),
+                    -reach.lower_inner(0, 0),
+                    -0.25,
+                )]);
+                ends.for_each(|(outer, inner, x)| {
+                    assert!(inner <= x && x <= outer && outer - inner < 1e-15)
+                });
             }
             let inputs = vec![1.0; grid.len() * m];
-            let nominal = propagation.solve(&IntervalVector::from_element(n, Interval::ONE), &inputs);
+            let nominal =
+                propagation.solve(&IntervalVector::from_element(n, Interval::ONE), &inputs);
             assert_eq!(nominal.len(), grid.len());
             let radii = TubeRadii::new(&propagation, disturbance, &sets(n), &sets(m));
             let tube = Tube::new(&propagation, &nominal, &inputs, &reach, &sets(m), &radii);
@@ -55,7 +62,8 @@ fn run_all(system: &LinearSystem) {
 #[test]
 fn few_samples_inputs_and_states() {
     run_all(
-        &LinearSystem::new(dmatrix![0.0, 1.0; 0.0, -2.0], dmatrix![0.0; 3.0], dvector![0.0, 0.1]).unwrap(),
+        &LinearSystem::new(dmatrix![0.0, 1.0; 0.0, -2.0], dmatrix![0.0; 3.0], dvector![0.0, 0.1])
+            .unwrap(),
     );
     run_all(&LinearSystem::new(dmatrix![-1.0], dmatrix![1.0], dvector![0.0]).unwrap());
 }
@@ -64,17 +72,21 @@ fn few_samples_inputs_and_states() {
 fn a_system_that_stands_still_and_one_without_inputs() {
     run_all(&LinearSystem::new(dmatrix![0.0], dmatrix![0.0], dvector![0.0]).unwrap());
     run_all(
-        &LinearSystem::new(dmatrix![0.0, 1.0; -1.0, 0.0], DMatrix::zeros(2, 0), dvector![1.0, 0.0]).unwrap(),
+        &LinearSystem::new(dmatrix![0.0, 1.0; -1.0, 0.0], DMatrix::zeros(2, 0), dvector![1.0, 0.0])
+            .unwrap(),
     );
 }
 
 #[test]
 fn matrices_that_do_not_fit_or_are_not_finite_are_named() {
-    let shape = LinearSystem::new(DMatrix::zeros(2, 2), DMatrix::zeros(3, 1), DVector::zeros(2)).unwrap_err();
+    let shape = LinearSystem::new(DMatrix::zeros(2, 2), DMatrix::zeros(3, 1), DVector::zeros(2))
+        .unwrap_err();
     assert_eq!(shape.to_string(), "B is 3 x 1, expected 2 x 1");
-    let drift = LinearSystem::new(DMatrix::zeros(2, 2), DMatrix::zeros(2, 1), DVector::zeros(1)).unwrap_err();
+    let drift = LinearSystem::new(DMatrix::zeros(2, 2), DMatrix::zeros(2, 1), DVector::zeros(1))
+        .unwrap_err();
     assert_eq!(drift.to_string(), "the drift is 1 x 1, expected 2 x 1");
-    let value = LinearSystem::new(dmatrix![f64::INFINITY], dmatrix![1.0], dvector![0.0]).unwrap_err();
+    let value =
+        LinearSystem::new(dmatrix![f64::INFINITY], dmatrix![1.0], dvector![0.0]).unwrap_err();
     assert_eq!(value, ReachError::NotFinite { what: "A", row: 0, column: 0, value: f64::INFINITY });
 }
 

@@ -7,13 +7,15 @@ use reachtube_scalar::Interval;
 
 use crate::rational::{assert_encloses, exact, exact_step, largest, system};
 
-/// Encloses the exact step, and not by more than `relative` times the largest entry (or 1) of each matrix.
+/// Encloses the exact step, and not by more than `relative` times the largest entry (or 1) of each
+/// matrix.
 fn assert_tight(system: &LinearSystem, h: f64, relative: f64) {
     let step = step(system, Interval::point(h));
     let rows = exact_step(system, &exact(h));
     let (n, m) = (system.states(), system.inputs());
     let drift = DMatrix::from_column_slice(n, 1, step.drift.as_slice());
-    for (matrix, from, name) in [(&step.phi, 0, "Φ"), (&step.gamma, n, "Γ"), (&drift, n + m, "γ")] {
+    for (matrix, from, name) in [(&step.phi, 0, "Φ"), (&step.gamma, n, "Γ"), (&drift, n + m, "γ")]
+    {
         let width = assert_encloses(matrix, &rows, from, name);
         let allowed = relative * largest(matrix).max(if from == 0 { 1.0 } else { 0.0 });
         assert!(width <= allowed, "{name} over {h} s is {width:e} wide, more than {allowed:e}");
@@ -47,7 +49,8 @@ fn stiff_unstable_and_coupled_systems_are_tight() {
 fn an_entry_below_the_remainder_of_the_series_is_enclosed() {
     // hⁱ/i! along a chain of integrators; the series stops before the last of them.
     let chain = DMatrix::from_fn(9, 9, |i, j| if j == i + 1 { 1.0 } else { 0.0 });
-    let system = LinearSystem::new(chain, DMatrix::from_element(9, 1, 1.0), DVector::zeros(9)).unwrap();
+    let system =
+        LinearSystem::new(chain, DMatrix::from_element(9, 1, 1.0), DVector::zeros(9)).unwrap();
     for h in [0.01, 0.05] {
         let (step, rows) = (step(&system, Interval::point(h)), exact_step(&system, &exact(h)));
         assert_encloses(&step.phi, &rows, 0, "Φ");

@@ -116,9 +116,12 @@ fn a_constant_disturbance_reaches_least_and_a_measurable_one_furthest() {
         (oscillator(7.0), TimeGrid::uniform(0.05, 100)),
     ] {
         let propagation = on(&grid, &system);
-        let gains = [Constant, Sample, Measurable].map(|disturbance| disturbance.gains(&propagation));
+        let gains =
+            [Constant, Sample, Measurable].map(|disturbance| disturbance.gains(&propagation));
         for pair in gains.windows(2) {
-            for (less, more) in pair[0].iter().flatten_entries().zip(pair[1].iter().flatten_entries()) {
+            for (less, more) in
+                pair[0].iter().flatten_entries().zip(pair[1].iter().flatten_entries())
+            {
                 assert!(less.lo() <= more.hi(), "{less:?} {more:?}");
             }
         }
@@ -149,7 +152,8 @@ fn a_measurable_disturbance_is_the_limit_of_ever_faster_samples() {
         let fine = on(&TimeGrid::uniform(0.004 / parts as f64, 100 * parts + 1), &system);
         let sample = Sample.gains(&fine)[100 * parts].clone();
         assert!(sample.iter().zip(&measurable).all(|(x, y)| x.lo() <= y.hi()));
-        let missing = sample.iter().zip(&measurable).map(|(x, y)| y.hi() - x.lo()).fold(0.0, f64::max);
+        let missing =
+            sample.iter().zip(&measurable).map(|(x, y)| y.hi() - x.lo()).fold(0.0, f64::max);
         assert!(missing < last || missing < 1e-12, "{missing:e} after {last:e}");
         last = missing;
     }
@@ -164,7 +168,8 @@ fn a_measurable_disturbance_agrees_with_the_rectangle_rule() {
     let b = system.b().map(Interval::point);
     let mut sum = nalgebra::DMatrix::zeros(12, 6);
     for k in 0..parts as usize {
-        // The trapezoid of two absolute values; at a sign change it is off by less than h² times a slope.
+        // The trapezoid of two absolute values; at a sign change it is off by less than h² times a
+        // slope.
         let ends = [k, k + 1].map(|k| (fine.exponential(k) * &b).map(|x| x.mid().abs()));
         sum += (&ends[0] + &ends[1]) * (0.5 * h);
     }
@@ -176,7 +181,8 @@ fn a_measurable_disturbance_agrees_with_the_rectangle_rule() {
 
 /// Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| as it is written.
 fn brute_force(system: &LinearSystem, times: &[f64], k: usize) -> IntervalMatrix {
-    let gamma = |j: usize| step(system, Interval::point(times[k]) - Interval::point(times[j])).gamma;
+    let gamma =
+        |j: usize| step(system, Interval::point(times[k]) - Interval::point(times[j])).gamma;
     let mut sum = IntervalMatrix::from_element(system.states(), system.inputs(), Interval::ZERO);
     for j in 0..k {
         sum += (gamma(j) - gamma(j + 1)).map(|x| x.abs());

@@ -82,8 +82,10 @@ proptest! {
 
 #[test]
 fn boxes_that_are_none_are_refused() {
-    let set =
-        |center: &[f64], radius: &[f64]| Hyperrectangle { center: center.to_vec(), radius: radius.to_vec() };
+    let set = |center: &[f64], radius: &[f64]| Hyperrectangle {
+        center: center.to_vec(),
+        radius: radius.to_vec(),
+    };
     assert!(Hyperrectangle::zero(3).is_valid() && set(&[], &[]).is_valid());
     assert!(!set(&[0.0], &[]).is_valid());
     assert!(!set(&[f64::NAN], &[1.0]).is_valid());
@@ -92,9 +94,13 @@ fn boxes_that_are_none_are_refused() {
 
 #[test]
 fn times_closer_than_a_picosecond_or_not_finite_are_refused() {
-    for times in
-        [&[0.0, 1e-13][..], &[f64::NAN], &[f64::INFINITY, 1.0], &[0.0, f64::INFINITY], &[-1e308, 1e308]]
-    {
+    for times in [
+        &[0.0, 1e-13][..],
+        &[f64::NAN],
+        &[f64::INFINITY, 1.0],
+        &[0.0, f64::INFINITY],
+        &[-1e308, 1e308],
+    ] {
         assert!(TimeGrid::from_times(times).is_err(), "{times:?}");
     }
 }

@@ -1,4 +1,5 @@
-//! Model 1 of order 3 of the Schunk LWA 4P about q = 0, M⁻¹ (u - friction), and the sets of Table II, all of Liu & Althoff, IROS 2018.
+//! Model 1 of order 3 of the Schunk LWA 4P about q = 0, M⁻¹ (u - friction), and the sets of Table
+//! II, all of Liu & Althoff, IROS 2018.
 
 use reachtube_reach::{Hyperrectangle, PolynomialSystem};
 

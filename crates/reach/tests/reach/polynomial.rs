@@ -1,4 +1,5 @@
-//! Reachable sets of polynomial systems against exact hulls, simulated behaviours and published problems.
+//! Reachable sets of polynomial systems against exact hulls, simulated behaviours and published
+//! problems.
 
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -6,15 +7,17 @@ use reachtube_ode::{Ensemble, Run, VectorField};
 use reachtube_reach::{
     Disturbance, Flowpipe,
     FlowpipeMethod::{self, Linearisation},
-    FlowpipeOutcome, FlowpipeSettings, Hyperrectangle, PolynomialSystem, Propagation, ReachError, ReachSets,
-    TimeGrid, UncertainInput,
+    FlowpipeOutcome, FlowpipeSettings, Hyperrectangle, PolynomialSystem, Propagation, ReachError,
+    ReachSets, TimeGrid, UncertainInput,
 };
 use reachtube_scalar::{Interval, Lanes, Lanewise, MapWorkspace, PolynomialMap, Powers};
 
 use crate::arm::arm;
 use crate::lwa4p;
 use crate::random::Random;
-use crate::systems::{self, Polynomial, constant, cubic_arm, laub_loomis, linear, van_der_pol, variables};
+use crate::systems::{
+    self, Polynomial, constant, cubic_arm, laub_loomis, linear, van_der_pol, variables,
+};
 
 pub fn set(center: &[f64], radius: &[f64]) -> Hyperrectangle {
     Hyperrectangle { center: center.to_vec(), radius: radius.to_vec() }
@@ -29,7 +32,8 @@ fn a_linear_system_has_the_exact_hull_to_a_few_thousandths() {
     let inputs: Vec<f64> = (0..501 * 6).map(|at| (0.01 * at as f64).sin()).collect();
     let input = UncertainInput { measured: &inputs, set: &torque };
     let flowpipe =
-        Flowpipe::new(&system, &grid, &[0.1; 12], &initial, &input, &FlowpipeSettings::default()).unwrap();
+        Flowpipe::new(&system, &grid, &[0.1; 12], &initial, &input, &FlowpipeSettings::default())
+            .unwrap();
     let propagation = Propagation::new(&arm, &grid).unwrap();
     let gains = Disturbance::Measurable.gains(&propagation);
     let exact = ReachSets::new(&propagation, &gains, &initial, &torque);
@@ -38,8 +42,12 @@ fn a_linear_system_has_the_exact_hull_to_a_few_thousandths() {
     for k in 0..501 {
         for (i, side) in flowpipe.sample(k).iter().enumerate() {
             let hull = nominal.state(k)[i];
-            let (low, high) = ((hull + exact.lower_inner(k, i)).hi(), (hull + exact.upper_inner(k, i)).lo());
-            assert!(side.lo() <= low && side.hi() >= high, "sample {k}, state {i}: {side:?}, {low}, {high}");
+            let (low, high) =
+                ((hull + exact.lower_inner(k, i)).hi(), (hull + exact.upper_inner(k, i)).lo());
+            assert!(
+                side.lo() <= low && side.hi() >= high,
+                "sample {k}, state {i}: {side:?}, {low}, {high}"
+            );
             let excess = side.width() / (high - low);
             assert!(excess < 1.004, "sample {k}, state {i}: {excess}");
             if k < 500 {
@@ -50,7 +58,8 @@ fn a_linear_system_has_the_exact_hull_to_a_few_thousandths() {
     }
 }
 
-/// ẋ = f(x, u), with the sines and cosines of the first states as further variables, over any lanes.
+/// ẋ = f(x, u), with the sines and cosines of the first states as further variables, over any
+/// lanes.
 struct Field<'a, S> {
     map: &'a PolynomialMap,
     angles: usize,
@@ -93,12 +102,13 @@ pub struct Case {
     pub substeps: usize,
 }
 
-/// What a simulation may be off by, relative to the size of the states: see `simulations_are_as_exact_as_is_assumed`.
+/// What a simulation may be off by, relative to the size of the states: see
+/// `simulations_are_as_exact_as_is_assumed`.
 const SLACK: f64 = 1e-7;
 
 impl Case {
-    /// Simulates so many behaviours from `seed` on; each state at each sample and in between is in the sets. The largest part of a
-    /// width at the end that was seen.
+    /// Simulates so many behaviours from `seed` on; each state at each sample and in between is in
+    /// the sets. The largest part of a width at the end that was seen.
     pub fn simulate(&self, runs: usize, seed: u64) -> f64 {
         let mut random = Random::new(seed);
         let steps = self.flowpipe.len() - 1;
@@ -135,11 +145,17 @@ impl Case {
             }
         };
         let mut ensemble = Ensemble::<Lanes<8>>::new(n);
-        let outcomes =
-            ensemble.integrate(&mut Field::new(&self.map, self.angles), &times, self.substeps, &all, look);
+        let outcomes = ensemble.integrate(
+            &mut Field::new(&self.map, self.angles),
+            &times,
+            self.substeps,
+            &all,
+            look,
+        );
         assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
-        let used =
-            |(seen, side): (&Option<Interval>, &Interval)| seen.map_or(0.0, |x| x.width() / side.width());
+        let used = |(seen, side): (&Option<Interval>, &Interval)| {
+            seen.map_or(0.0, |x| x.width() / side.width())
+        };
         seen.iter().zip(self.flowpipe.sample(steps)).map(used).fold(0.0, f64::max)
     }
 }
@@ -157,7 +173,8 @@ fn random_polynomial(random: &mut Random, z: &[Polynomial]) -> Polynomial {
     f
 }
 
-/// Random numbers of states and inputs, f with and without terms along common directions, sets, grids.
+/// Random numbers of states and inputs, f with and without terms along common directions, sets,
+/// grids.
 pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     let mut random = Random::new(seed);
     let (n, m) = (1 + random.bits() as usize % 4, random.bits() as usize % 3);
@@ -172,14 +189,16 @@ pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
         f = z[..n].iter().map(|x| x * &constant(-0.5)).collect();
         f.iter_mut().for_each(|f| *f += &shared * &constant(random.symmetric()));
     }
-    let mut any = |n: usize, scale: f64| (0..n).map(|_| scale * random.symmetric()).collect::<Vec<f64>>();
+    let mut any =
+        |n: usize, scale: f64| (0..n).map(|_| scale * random.symmetric()).collect::<Vec<f64>>();
     let mut boxed = |n: usize, at: f64, size: f64| {
         let (center, radius) = (any(n, at), any(n, size).iter().map(|r| r.abs()).collect());
         Hyperrectangle { center, radius }
     };
     let (start, input) = (boxed(n, 0.5, 0.1), boxed(m, 1.0, 0.2));
     let step = 0.01 + 0.01 * f64::from(seed as u32 % 3);
-    let system = PolynomialSystem::trigonometric(n, m, &(0..angles).collect::<Vec<_>>(), &f).unwrap();
+    let system =
+        PolynomialSystem::trigonometric(n, m, &(0..angles).collect::<Vec<_>>(), &f).unwrap();
     let settings = FlowpipeSettings {
         method,
         corners: seed as usize / 6 % 4 * 3,
@@ -189,8 +208,18 @@ pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     };
     let uncertain = UncertainInput { measured: &vec![0.0; 12 * m], set: &input };
     let grid = TimeGrid::uniform(step, 13);
-    let flowpipe = Flowpipe::new(&system, &grid, &vec![0.0; n], &start, &uncertain, &settings).unwrap();
-    Case { map: map(variables_of_f, &f), angles, flowpipe, start, input, step, parts: 2, substeps: 1 }
+    let flowpipe =
+        Flowpipe::new(&system, &grid, &vec![0.0; n], &start, &uncertain, &settings).unwrap();
+    Case {
+        map: map(variables_of_f, &f),
+        angles,
+        flowpipe,
+        start,
+        input,
+        step,
+        parts: 2,
+        substeps: 1,
+    }
 }
 
 #[test]
@@ -211,7 +240,8 @@ fn simulations_are_as_exact_as_is_assumed() {
         let case = random_case(seed, Linearisation);
         let steps = case.flowpipe.len() - 1;
         let times: Vec<f64> = (0..=2 * steps).map(|k| 0.5 * k as f64 * case.step).collect();
-        let corner: Vec<f64> = case.start.center.iter().zip(&case.start.radius).map(|(c, r)| c + r).collect();
+        let corner: Vec<f64> =
+            case.start.center.iter().zip(&case.start.radius).map(|(c, r)| c + r).collect();
         let inputs: Vec<f64> = (0..2 * steps)
             .flat_map(|k| {
                 let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
@@ -223,17 +253,26 @@ fn simulations_are_as_exact_as_is_assumed() {
             let mut end = corner.clone();
             let mut ensemble = Ensemble::<f64>::new(corner.len());
             let keep = |_: usize, _: usize, x: &[f64]| end.copy_from_slice(x);
-            let _ =
-                ensemble.integrate(&mut Field::new(&case.map, case.angles), &times, substeps, &[run], keep);
+            let _ = ensemble.integrate(
+                &mut Field::new(&case.map, case.angles),
+                &times,
+                substeps,
+                &[run],
+                keep,
+            );
             end
         };
         for (coarse, fine) in end(case.substeps).iter().zip(end(8 * case.substeps)) {
-            assert!((coarse - fine).abs() <= 0.5 * SLACK * (1.0 + fine.abs()), "{seed}: {coarse} {fine}");
+            assert!(
+                (coarse - fine).abs() <= 0.5 * SLACK * (1.0 + fine.abs()),
+                "{seed}: {coarse} {fine}"
+            );
         }
     }
 }
 
-/// ẋ = u - x + p (1, 1, 1, 1) with p = x₁x₂ + x₂x₃ + x₃x₄ - x₄x₁: three of the products are large together at most.
+/// ẋ = u - x + p (1, 1, 1, 1) with p = x₁x₂ + x₂x₃ + x₃x₄ - x₄x₁: three of the products are large
+/// together at most.
 fn frustrated() -> Vec<Polynomial> {
     let z = variables(5, 2);
     let products = &z[0] * &z[1] + &z[1] * &z[2] + &z[2] * &z[3] - &z[3] * &z[0];
@@ -282,7 +321,8 @@ fn behaviours_of_the_cubic_arm_stay_within() {
     let input = set(&[2.0, -2.0, 1.0, 0.5, 0.3, -0.2], &[0.5, 0.4, 0.3, 0.1, 0.05, 0.05]);
     let uncertain = UncertainInput { measured: &vec![0.0; 250 * m], set: &input };
     let settings = FlowpipeSettings { zonotopes: vec![250], ..FlowpipeSettings::default() };
-    let flowpipe = Flowpipe::new(&cubic_arm(1.0), &grid, &[0.0; 12], &start, &uncertain, &settings).unwrap();
+    let flowpipe =
+        Flowpipe::new(&cubic_arm(1.0), &grid, &[0.0; 12], &start, &uncertain, &settings).unwrap();
     assert!(flowpipe.is_reached());
     let zonotope = flowpipe.zonotopes(250).next().unwrap();
     let polygon = zonotope.polygon(0, 6);
@@ -296,14 +336,16 @@ fn behaviours_of_the_cubic_arm_stay_within() {
     assert!(case.simulate(1000, 1) > 0.2);
 }
 
-/// The best inner bound known (1.151 times smaller at most) was found by ascent along adjoint solutions; here it is enough that the sets do not grow.
+/// The best inner bound known (1.151 times smaller at most) was found by ascent along adjoint
+/// solutions; here it is enough that the sets do not grow.
 #[test]
 fn cubic_friction_at_the_papers_own_sets_is_followed_for_five_seconds() {
     let ((initial, torque), grid) = (lwa4p::table2(1.0), TimeGrid::uniform(0.004, 1251));
     let uncertain = UncertainInput { measured: &vec![0.0; 1250 * 6], set: &torque };
     let settings = FlowpipeSettings::default();
     let flowpipe =
-        Flowpipe::new(&lwa4p::model1(), &grid, &[0.0; 12], &initial, &uncertain, &settings).unwrap();
+        Flowpipe::new(&lwa4p::model1(), &grid, &[0.0; 12], &initial, &uncertain, &settings)
+            .unwrap();
     assert!(flowpipe.is_reached(), "{:?}", flowpipe.outcome());
     // Widths of the inner bound, rounded down.
     let inner = [2.90, 5.01, 4.98, 2.21, 3.00, 2.79, 0.603, 1.268, 1.299, 0.521, 0.904, 0.578];
@@ -351,7 +393,8 @@ fn in_pieces(pieces: Vec<usize>) -> FlowpipeSettings {
 fn van_der_pol_is_enclosed() {
     let start = set(&[1.4, 2.4], &[0.15, 0.05]);
     let f = systems::van_der_pol_components();
-    let flowpipe = contain_ten_thousand(&van_der_pol(), &f, start, (0.01, 701), &in_pieces(vec![6, 3]));
+    let flowpipe =
+        contain_ten_thousand(&van_der_pol(), &f, start, (0.01, 701), &in_pieces(vec![6, 3]));
     let [x, y] = flowpipe.sample(700) else { unreachable!() };
     assert!(x.width() < 0.13 && y.width() < 0.55, "{x:?} {y:?}");
 }
@@ -375,11 +418,19 @@ fn what_cannot_be_followed_is_an_answer() {
     let none = Hyperrectangle::zero(0);
     let input = UncertainInput { measured: &[], set: &none };
     let grid = TimeGrid::uniform(0.01, 201);
-    let flowpipe =
-        Flowpipe::new(&square, &grid, &[1.0], &set(&[0.0], &[0.1]), &input, &FlowpipeSettings::default())
-            .unwrap();
+    let flowpipe = Flowpipe::new(
+        &square,
+        &grid,
+        &[1.0],
+        &set(&[0.0], &[0.1]),
+        &input,
+        &FlowpipeSettings::default(),
+    )
+    .unwrap();
     // x = 1/(1/x0 - t) has a pole at 1/1.1.
-    let FlowpipeOutcome::Failed { time, state, widths } = flowpipe.outcome() else { panic!("it has a pole") };
+    let FlowpipeOutcome::Failed { time, state, widths } = flowpipe.outcome() else {
+        panic!("it has a pole")
+    };
     assert!((0.7..1.0 / 1.1).contains(time) && *state == 0 && widths[0] > 1.0, "{time} {widths:?}");
     let last = flowpipe.len() - 1;
     assert_eq!(grid.times()[last], *time);
@@ -399,7 +450,10 @@ fn what_does_not_fit_is_named() {
     assert!(run(&[1.0], &point, &held).unwrap().is_reached());
     assert!(run(&[1.0], &point, &[1.0; 3]).is_ok());
     assert!(matches!(run(&[1.0], &point, &[1.0; 4]), Err(ReachError::Shape { found_rows: 4, .. })));
-    assert!(matches!(run(&[1.0, 2.0], &point, &held), Err(ReachError::Shape { found_rows: 2, .. })));
+    assert!(matches!(
+        run(&[1.0, 2.0], &point, &held),
+        Err(ReachError::Shape { found_rows: 2, .. })
+    ));
     assert!(matches!(run(&[f64::NAN], &point, &held), Err(ReachError::NotFinite { row: 0, .. })));
     let negative = set(&[0.0], &[-0.1]);
     assert!(matches!(run(&[1.0], &negative, &held), Err(ReachError::Negative { value: -0.1, .. })));

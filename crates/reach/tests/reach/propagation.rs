@@ -55,7 +55,10 @@ fn two_thousand_steps_enclose_the_exact_exponential_and_integral() {
                 let rows = exact_step(&system, &exact(k as f64 * STEP));
                 let (e, g) = (&propagation.exponential(k), propagation.integral(k));
                 let widths = [assert_encloses(e, &rows, 0, "E"), assert_encloses(g, &rows, 2, "Γ")];
-                assert!(widths[0] <= 5e-12 * largest(e) && widths[1] <= 5e-11 * largest(g), "{k} {widths:?}");
+                assert!(
+                    widths[0] <= 5e-12 * largest(e) && widths[1] <= 5e-11 * largest(g),
+                    "{k} {widths:?}"
+                );
             }
         }
     }
@@ -65,7 +68,8 @@ fn two_thousand_steps_enclose_the_exact_exponential_and_integral() {
 fn widths_grow_linearly_not_exponentially() {
     for system in [rotation(), double_integrator(), arm()] {
         let propagation = uniform(&system, 2001);
-        let relative = |k: usize| widest(&propagation.exponential(k)) / largest(&propagation.exponential(k));
+        let relative =
+            |k: usize| widest(&propagation.exponential(k)) / largest(&propagation.exponential(k));
         assert!(relative(2000) < 2.6 * relative(1000), "{:e} {:e}", relative(1000), relative(2000));
         assert!(relative(2000) < 3e-11);
     }
@@ -82,7 +86,11 @@ fn what_decays_keeps_its_digits() {
 fn steps_of_many_turns_do_not_make_it_useless() {
     let fast = system(&[&[0.0, 200.0], &[-200.0, 0.0]], &[&[1.0], &[0.0]], &[0.0, 0.0]);
     let propagation = Propagation::new(&fast, &TimeGrid::uniform(0.25, 1001)).unwrap();
-    assert!(widest(&propagation.exponential(1000)) < 1e-8, "{:e}", widest(&propagation.exponential(1000)));
+    assert!(
+        widest(&propagation.exponential(1000)) < 1e-8,
+        "{:e}",
+        widest(&propagation.exponential(1000))
+    );
     let rows = exact_step(&fast, &exact(0.25));
     assert_encloses(&propagation.exponential(1), &rows, 0, "E");
 }

@@ -1,4 +1,5 @@
-//! e^{Ah} and Γ(h) in exact rational numbers: the partial sum of the Taylor series, with a bound of what it leaves out.
+//! e^{Ah} and Γ(h) in exact rational numbers: the partial sum of the Taylor series, with a bound of
+//! what it leaves out.
 
 use nalgebra::DMatrix;
 use num_rational::BigRational;
@@ -17,7 +18,8 @@ fn integer(n: usize) -> Rational {
     Rational::from_usize(n).unwrap()
 }
 
-/// What two rational numbers may differ by and still count as the same: far below any rounding of an `f64` near 1.
+/// What two rational numbers may differ by and still count as the same: far below any rounding of
+/// an `f64` near 1.
 fn tiny() -> Rational {
     num_traits::pow(integer(10), 30).recip()
 }
@@ -41,7 +43,10 @@ fn each(matrix: &RationalMatrix, change: impl Fn(&Rational) -> Rational) -> Rati
 }
 
 fn added(left: RationalMatrix, right: &RationalMatrix) -> RationalMatrix {
-    left.into_iter().zip(right).map(|(l, r)| l.into_iter().zip(r).map(|(x, y)| x + y).collect()).collect()
+    left.into_iter()
+        .zip(right)
+        .map(|(l, r)| l.into_iter().zip(r).map(|(x, y)| x + y).collect())
+        .collect()
 }
 
 fn largest_row_sum(matrix: &RationalMatrix) -> Rational {
@@ -51,8 +56,9 @@ fn largest_row_sum(matrix: &RationalMatrix) -> Rational {
 
 /// e^{Xh}, within 1e-30 in every entry as long as the norm of Xh is at most 100.
 ///
-/// h is halved until the norm of Xh is at most 1, and the result squared as often. There the 70 terms and their rounding leave less
-/// than 2⁻³¹⁰; each squaring multiplies an error by at most twice the norm of the root, all of them by at most 2⁷ e¹⁰⁰ < 2¹⁵².
+/// h is halved until the norm of Xh is at most 1, and the result squared as often. There the 70
+/// terms and their rounding leave less than 2⁻³¹⁰; each squaring multiplies an error by at most
+/// twice the norm of the root, all of them by at most 2⁷ e¹⁰⁰ < 2¹⁵².
 fn exponential(matrix: &RationalMatrix, h: &Rational) -> RationalMatrix {
     let x = each(matrix, |x| x * h);
     if largest_row_sum(&x) > Rational::one() {
@@ -70,7 +76,8 @@ fn exponential(matrix: &RationalMatrix, h: &Rational) -> RationalMatrix {
     sum
 }
 
-/// Φ = e^{Ah}, Γ(h) and γ(h) of the system, as the rows [Φ Γ γ]: those of the exponential of [A B d; 0 0 0].
+/// Φ = e^{Ah}, Γ(h) and γ(h) of the system, as the rows [Φ Γ γ]: those of the exponential of [A B
+/// d; 0 0 0].
 pub fn exact_step(system: &LinearSystem, h: &Rational) -> RationalMatrix {
     let (n, m) = (system.states(), system.inputs());
     let entry = |i: usize, j: usize| match (i < n, j) {
@@ -91,7 +98,12 @@ pub fn assert_holds(x: Interval, value: &Rational, what: &str) {
 }
 
 /// Fails unless the matrix holds columns `from..` of `rows`; its largest width comes back.
-pub fn assert_encloses(matrix: &IntervalMatrix, rows: &RationalMatrix, from: usize, what: &str) -> f64 {
+pub fn assert_encloses(
+    matrix: &IntervalMatrix,
+    rows: &RationalMatrix,
+    from: usize,
+    what: &str,
+) -> f64 {
     for i in 0..matrix.nrows() {
         for j in 0..matrix.ncols() {
             assert_holds(matrix[(i, j)], &rows[i][from + j], &format!("{what}[{i}, {j}]"));
@@ -108,5 +120,6 @@ pub fn largest(matrix: &IntervalMatrix) -> f64 {
 /// A system with the given rows.
 pub fn system(a: &[&[f64]], b: &[&[f64]], drift: &[f64]) -> LinearSystem {
     let matrix = |rows: &[&[f64]]| DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j]);
-    LinearSystem::new(matrix(a), matrix(b), nalgebra::DVector::from_column_slice(drift)).expect("finite")
+    LinearSystem::new(matrix(a), matrix(b), nalgebra::DVector::from_column_slice(drift))
+        .expect("finite")
 }

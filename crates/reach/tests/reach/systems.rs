@@ -21,14 +21,16 @@ pub fn variables(count: usize, order: u32) -> Vec<Polynomial> {
 pub fn linear(system: &LinearSystem) -> Vec<Polynomial> {
     let z = variables(system.states() + system.inputs(), 3);
     let row = |i: usize| {
-        let coefficients = system.a().row(i).iter().chain(&system.b().row(i)).copied().collect::<Vec<_>>();
+        let coefficients =
+            system.a().row(i).iter().chain(&system.b().row(i)).copied().collect::<Vec<_>>();
         let terms = z.iter().zip(coefficients).map(|(z, c)| z * &constant(c));
         terms.fold(constant(system.drift()[i]), |sum, term| sum + term)
     };
     (0..system.states()).map(row).collect()
 }
 
-/// The arm with a friction torque of -c q̇³ beside the viscous one: c > 0 weakens friction at speed, as the paper's cubic does.
+/// The arm with a friction torque of -c q̇³ beside the viscous one: c > 0 weakens friction at
+/// speed, as the paper's cubic does.
 pub fn cubic_arm(softening: f64) -> PolynomialSystem {
     PolynomialSystem::new(12, 6, &cubic_arm_components(softening)).unwrap()
 }

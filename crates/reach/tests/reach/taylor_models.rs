@@ -12,7 +12,10 @@ use crate::polynomial::{contain_ten_thousand, random_case, set};
 use crate::systems::{self, laub_loomis, linear, van_der_pol, variables};
 
 fn of_order(order: u32) -> FlowpipeSettings {
-    FlowpipeSettings { method: FlowpipeMethod::TaylorModels { order }, ..FlowpipeSettings::default() }
+    FlowpipeSettings {
+        method: FlowpipeMethod::TaylorModels { order },
+        ..FlowpipeSettings::default()
+    }
 }
 
 /// The flowpipe of a system without inputs.
@@ -57,7 +60,8 @@ fn laub_loomis_is_enclosed_by_hardly_more_than_is_reached() {
     for (w, order, bound, inner) in [(0.05, 4, 4.5, 0.0125), (0.1, 4, 5.0, 0.0254)] {
         let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[w; 7]);
         let f = systems::laub_loomis_components();
-        let flowpipe = contain_ten_thousand(&laub_loomis(), &f, start, (0.02, 1001), &of_order(order));
+        let flowpipe =
+            contain_ten_thousand(&laub_loomis(), &f, start, (0.02, 1001), &of_order(order));
         let width = flowpipe.sample(1000)[3].width();
         assert!(width > inner && width < 1.06 * inner, "W = {w}: x4 is {width} wide");
         let highest = (0..1000).map(|k| flowpipe.step(k)[3].hi()).fold(f64::MIN, f64::max);
@@ -93,17 +97,26 @@ fn a_linear_system_without_uncertain_input_has_its_exact_hull() {
     let (initial, torque) = (set(&[0.01; 12], &[0.003; 12]), Hyperrectangle::zero(6));
     let inputs: Vec<f64> = (0..251 * 6).map(|at| (0.01 * at as f64).sin()).collect();
     let input = UncertainInput { measured: &inputs, set: &torque };
-    let flowpipe = Flowpipe::new(&system, &grid, &[0.1; 12], &initial, &input, &of_order(4)).unwrap();
+    let flowpipe =
+        Flowpipe::new(&system, &grid, &[0.1; 12], &initial, &input, &of_order(4)).unwrap();
     let propagation = Propagation::new(&arm, &grid).unwrap();
-    let exact = ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &torque);
+    let exact =
+        ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &torque);
     let start = reachtube_reach::IntervalVector::from_element(12, Interval::point(0.1));
     let nominal = propagation.solve(&start, &inputs);
     for k in 0..251 {
         for (i, side) in flowpipe.sample(k).iter().enumerate() {
             let hull = nominal.state(k)[i];
-            let (low, high) = ((hull + exact.lower_inner(k, i)).hi(), (hull + exact.upper_inner(k, i)).lo());
-            assert!(side.lo() <= low && side.hi() >= high, "sample {k}, state {i}: {side:?}, {low}, {high}");
-            assert!(side.width() < 1.01 * (high - low), "sample {k}, state {i}: {side:?}, {low}, {high}");
+            let (low, high) =
+                ((hull + exact.lower_inner(k, i)).hi(), (hull + exact.upper_inner(k, i)).lo());
+            assert!(
+                side.lo() <= low && side.hi() >= high,
+                "sample {k}, state {i}: {side:?}, {low}, {high}"
+            );
+            assert!(
+                side.width() < 1.01 * (high - low),
+                "sample {k}, state {i}: {side:?}, {low}, {high}"
+            );
         }
     }
 }
@@ -129,8 +142,14 @@ fn fewer_generators_make_larger_sets() {
     let start = set(&[1.4, 2.4], &[0.05, 0.05]);
     let grid = TimeGrid::uniform(0.01, 301);
     let all = follow(&van_der_pol(), &grid, &start, &of_order(3));
-    let few = follow(&van_der_pol(), &grid, &start, &FlowpipeSettings { order: Some(20), ..of_order(3) });
-    assert!(all.generators() > 500 && few.generators() <= 40, "{} {}", all.generators(), few.generators());
+    let few =
+        follow(&van_der_pol(), &grid, &start, &FlowpipeSettings { order: Some(20), ..of_order(3) });
+    assert!(
+        all.generators() > 500 && few.generators() <= 40,
+        "{} {}",
+        all.generators(),
+        few.generators()
+    );
     for (all, few) in all.sample(300).iter().zip(few.sample(300)) {
         assert!(few.width() >= all.width() && few.width() < 1.5 * all.width(), "{few:?} {all:?}");
     }
@@ -143,7 +162,9 @@ fn what_cannot_be_followed_is_an_answer() {
     let grid = TimeGrid::uniform(0.01, 201);
     let flowpipe = follow(&square, &grid, &set(&[1.0], &[0.1]), &of_order(6));
     // x = 1/(1/x0 - t) has a pole at 1/1.1.
-    let FlowpipeOutcome::Failed { time, state, widths } = flowpipe.outcome() else { panic!("it has a pole") };
+    let FlowpipeOutcome::Failed { time, state, widths } = flowpipe.outcome() else {
+        panic!("it has a pole")
+    };
     assert!((0.7..1.0 / 1.1).contains(time) && *state == 0 && widths[0] > 1.0, "{time} {widths:?}");
     let last = flowpipe.len() - 1;
     assert_eq!(grid.times()[last], *time);
@@ -158,9 +179,19 @@ fn an_order_that_does_not_fit_is_named() {
     let input = UncertainInput { measured: &[], set: &none };
     let start = Hyperrectangle::zero(40);
     let of = |order| {
-        Flowpipe::new(&still, &TimeGrid::uniform(0.1, 2), &[0.0; 40], &start, &input, &of_order(order))
+        Flowpipe::new(
+            &still,
+            &TimeGrid::uniform(0.1, 2),
+            &[0.0; 40],
+            &start,
+            &input,
+            &of_order(order),
+        )
     };
     let error = of(200).unwrap_err();
-    assert!(matches!(error, ReachError::Order(_)) && error.to_string().contains("40 variables"), "{error}");
+    assert!(
+        matches!(error, ReachError::Order(_)) && error.to_string().contains("40 variables"),
+        "{error}"
+    );
     assert!(of(0).unwrap().is_reached());
 }

@@ -21,11 +21,21 @@ fn a_pendulum_that_turns_over_is_enclosed() {
     let (start, input) = (set(&[0.0, 2.6], &[0.01, 0.01]), set(&[0.0], &[0.002]));
     let uncertain = UncertainInput { measured: &vec![0.0; 400], set: &input };
     let flowpipe =
-        Flowpipe::new(&system, &grid, &[0.0; 2], &start, &uncertain, &FlowpipeSettings::default()).unwrap();
+        Flowpipe::new(&system, &grid, &[0.0; 2], &start, &uncertain, &FlowpipeSettings::default())
+            .unwrap();
     assert!(flowpipe.is_reached());
     let end = flowpipe.sample(400)[0];
     assert!(end.lo() > std::f64::consts::PI && end.width() < 1.0, "{end:?}");
-    let case = Case { map: map(5, &f), angles: 1, flowpipe, start, input, step: 0.01, parts: 1, substeps: 1 };
+    let case = Case {
+        map: map(5, &f),
+        angles: 1,
+        flowpipe,
+        start,
+        input,
+        step: 0.01,
+        parts: 1,
+        substeps: 1,
+    };
     assert!(case.simulate(10_000, 3) > 0.5);
 }
 
@@ -35,8 +45,12 @@ fn sines_as_functions_are_within_sines_as_states() {
     let grid = TimeGrid::uniform(0.01, 101);
     let own = PolynomialSystem::trigonometric(2, 1, &[0], &pendulum()).unwrap();
     let z = variables(5, 2);
-    let f =
-        [z[1].clone(), z[4].clone() - z[2].clone() - &z[1] * &constant(0.1), &z[1] * &z[3], -(&z[1] * &z[2])];
+    let f = [
+        z[1].clone(),
+        z[4].clone() - z[2].clone() - &z[1] * &constant(0.1),
+        &z[1] * &z[3],
+        -(&z[1] * &z[2]),
+    ];
     let lifted = PolynomialSystem::new(4, 1, &f).unwrap();
     let input = UncertainInput { measured: &vec![0.1; 100], set: &set(&[0.0], &[1e-3]) };
     let follow = |system: &PolynomialSystem, start: &[f64], radius: &[f64]| {
@@ -57,20 +71,23 @@ fn sines_as_functions_are_within_sines_as_states() {
     }
 }
 
-/// Where the angle may be anything its sine is between -1 and 1: the sets grow no faster than that lets them.
+/// Where the angle may be anything its sine is between -1 and 1: the sets grow no faster than that
+/// lets them.
 #[test]
 fn an_angle_that_may_be_anything_has_bounded_sets() {
     let system = PolynomialSystem::trigonometric(2, 1, &[0], &pendulum()).unwrap();
     let (grid, start) = (TimeGrid::uniform(0.01, 301), set(&[0.0; 2], &[4.0, 1.0]));
     let input = UncertainInput { measured: &vec![0.0; 300], set: &set(&[0.0], &[0.0]) };
     let flowpipe =
-        Flowpipe::new(&system, &grid, &[0.0; 2], &start, &input, &FlowpipeSettings::default()).unwrap();
+        Flowpipe::new(&system, &grid, &[0.0; 2], &start, &input, &FlowpipeSettings::default())
+            .unwrap();
     assert!(flowpipe.is_reached());
     let velocity = flowpipe.sample(300)[1];
     let most = 1.0 + 3.0;
     assert!(velocity.hi() > 1.0 && velocity.hi() < most, "{velocity:?}");
     // Where sines are not known, there is no bound.
-    let far = Flowpipe::new(&system, &grid, &[1e9, 0.0], &start, &input, &FlowpipeSettings::default());
+    let far =
+        Flowpipe::new(&system, &grid, &[1e9, 0.0], &start, &input, &FlowpipeSettings::default());
     assert!(matches!(far.unwrap().outcome(), FlowpipeOutcome::Failed { time: 0.0, .. }));
     let beyond = PolynomialSystem::trigonometric(2, 1, &[2], &pendulum());
     assert!(matches!(beyond, Err(ReachError::Shape { rows: 2, found_rows: 3, .. })));
@@ -79,10 +96,13 @@ fn an_angle_that_may_be_anything_has_bounded_sets() {
 #[test]
 fn taylor_models_refuse_sines_as_functions() {
     let system = PolynomialSystem::trigonometric(2, 1, &[0], &pendulum()).unwrap();
-    let settings =
-        FlowpipeSettings { method: FlowpipeMethod::TaylorModels { order: 3 }, ..FlowpipeSettings::default() };
+    let settings = FlowpipeSettings {
+        method: FlowpipeMethod::TaylorModels { order: 3 },
+        ..FlowpipeSettings::default()
+    };
     let input = UncertainInput { measured: &[0.0; 2], set: &Hyperrectangle::zero(1) };
     let grid = TimeGrid::uniform(0.01, 3);
-    let refused = Flowpipe::new(&system, &grid, &[0.1, 0.0], &Hyperrectangle::zero(2), &input, &settings);
+    let refused =
+        Flowpipe::new(&system, &grid, &[0.1, 0.0], &Hyperrectangle::zero(2), &input, &settings);
     assert_eq!(refused.unwrap_err(), ReachError::Trigonometric);
 }

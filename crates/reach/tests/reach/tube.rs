@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 use reachtube_reach::{
-    Disturbance, Hyperrectangle, IntervalVector, LinearSystem, Propagation, ReachSets, TimeGrid, Trajectory,
-    Tube, TubeRadii, step,
+    Disturbance, Hyperrectangle, IntervalVector, LinearSystem, Propagation, ReachSets, TimeGrid,
+    Trajectory, Tube, TubeRadii, step,
 };
 use reachtube_scalar::Interval;
 
@@ -30,30 +30,38 @@ struct Case {
 impl Case {
     fn new(system: &LinearSystem, grid: &TimeGrid, disturbance: Disturbance, size: f64) -> Self {
         let (n, m) = (system.states(), system.inputs());
-        let set = |n: usize, x: f64| Hyperrectangle { center: vec![0.3 * x; n], radius: vec![x; n] };
+        let set =
+            |n: usize, x: f64| Hyperrectangle { center: vec![0.3 * x; n], radius: vec![x; n] };
         let (initial, input) = (set(n, 0.01 * size), set(m, 0.5 * size));
         let propagation = Propagation::new(system, grid).unwrap();
-        let inputs: Vec<f64> = (0..grid.len() * m).map(|at| 2.0 * (0.3 * at as f64).sin()).collect();
+        let inputs: Vec<f64> =
+            (0..grid.len() * m).map(|at| 2.0 * (0.3 * at as f64).sin()).collect();
         let start = vec![0.25; n];
-        let nominal = propagation
-            .solve(&IntervalVector::from_iterator(n, start.iter().map(|&x| Interval::point(x))), &inputs);
-        let reach = ReachSets::new(&propagation, &disturbance.gains(&propagation), &initial, &input);
+        let nominal = propagation.solve(
+            &IntervalVector::from_iterator(n, start.iter().map(|&x| Interval::point(x))),
+            &inputs,
+        );
+        let reach =
+            ReachSets::new(&propagation, &disturbance.gains(&propagation), &initial, &input);
         let radii = TubeRadii::new(&propagation, disturbance, &initial, &input);
         let tube = Tube::new(&propagation, &nominal, &inputs, &reach, &input, &radii);
         Self { propagation, initial, input, inputs, start, nominal, reach, tube }
     }
 
-    /// Simulates one disturbance, `moves` at the beginning of each part of a step, and fails where it leaves the tube.
+    /// Simulates one disturbance, `moves` at the beginning of each part of a step, and fails where
+    /// it leaves the tube.
     fn assert_inside(&self, seed: u64, moves: impl Fn(usize, usize) -> bool) {
         let (n, m) = (self.initial.dimension(), self.input.dimension());
         let mut random = Random::new(seed);
         let mut corner = |set: &Hyperrectangle| -> Vec<f64> {
             (0..set.dimension()).map(|i| set.center[i] + set.radius[i] * random.sign()).collect()
         };
-        let mut x = DVector::from_vec(self.start.clone()) + DVector::from_vec(corner(&self.initial));
+        let mut x =
+            DVector::from_vec(self.start.clone()) + DVector::from_vec(corner(&self.initial));
         let mut disturbance = DVector::from_vec(corner(&self.input));
         for k in 0..self.tube.len() {
-            let part = step(self.propagation.system(), self.propagation.grid().interval(k) / PARTS as f64);
+            let part =
+                step(self.propagation.system(), self.propagation.grid().interval(k) / PARTS as f64);
             let (phi, gamma) = (part.phi.map(|x| x.mid()), part.gamma.map(|x| x.mid()));
             let drift = part.drift.map(|x| x.mid());
             let nominal = DVector::from_column_slice(&self.inputs[k * m..(k + 1) * m]);
@@ -81,11 +89,13 @@ impl Case {
     /// The hull at sample k in state i, around the nominal solution.
     fn hull(&self, k: usize, i: usize) -> Interval {
         let nominal = self.nominal.state(k)[i];
-        let deviation = Interval::new(self.reach.lower_outer(k, i), self.reach.upper_outer(k, i)).unwrap();
+        let deviation =
+            Interval::new(self.reach.lower_outer(k, i), self.reach.upper_outer(k, i)).unwrap();
         Interval::point(nominal.mid()) + deviation
     }
 
-    /// The mean over steps and states of the tube's width over that of the hull of the two samples, less 1.
+    /// The mean over steps and states of the tube's width over that of the hull of the two samples,
+    /// less 1.
     fn overhead(&self) -> f64 {
         let n = self.initial.dimension();
         let ratio = |k: usize, i: usize| {
@@ -123,7 +133,9 @@ fn disturbances_stay_inside_between_the_samples() {
     }
     for case in cases(Disturbance::Measurable) {
         (1..60).for_each(|seed| {
-            case.assert_inside(seed, |k, at| ((k * PARTS + at) as u64).is_multiple_of(1 + seed % 20))
+            case.assert_inside(seed, |k, at| {
+                ((k * PARTS + at) as u64).is_multiple_of(1 + seed % 20)
+            })
         });
     }
 }
@@ -132,8 +144,8 @@ fn disturbances_stay_inside_between_the_samples() {
 fn the_tube_holds_the_hulls_at_both_samples() {
     for disturbance in [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable] {
         for case in cases(disturbance) {
-            for (k, i) in
-                (0..case.tube.len()).flat_map(|k| (0..case.initial.dimension()).map(move |i| (k, i)))
+            for (k, i) in (0..case.tube.len())
+                .flat_map(|k| (0..case.initial.dimension()).map(move |i| (k, i)))
             {
                 let widened = case.tube.bounds(k)[i] + Interval::centered(0.0, ROUNDING);
                 assert!(
@@ -151,25 +163,35 @@ fn a_peak_between_two_samples_is_held() {
     let turning = system(&[&[0.0, 20.0], &[-20.0, 0.0]], &[&[0.0], &[0.0]], &[0.0, 0.0]);
     let propagation = Propagation::new(&turning, &TimeGrid::uniform(0.1, 2)).unwrap();
     let (initial, input) = (Hyperrectangle::zero(2), Hyperrectangle::zero(1));
-    let start = IntervalVector::from_vec(vec![Interval::point(1f64.cos()), Interval::point(1f64.sin())]);
+    let start =
+        IntervalVector::from_vec(vec![Interval::point(1f64.cos()), Interval::point(1f64.sin())]);
     let nominal = propagation.solve(&start, &[0.0, 0.0]);
     let gains = Disturbance::Sample.gains(&propagation);
     let reach = ReachSets::new(&propagation, &gains, &initial, &input);
     let radii = TubeRadii::new(&propagation, Disturbance::Sample, &initial, &input);
     let tube = Tube::new(&propagation, &nominal, &[0.0, 0.0], &reach, &input, &radii);
     assert!(
-        tube.bounds(0)[0].hi() >= 1.0 && nominal.state(0)[0].hi() < 0.55 && nominal.state(1)[0].hi() < 0.55
+        tube.bounds(0)[0].hi() >= 1.0
+            && nominal.state(0)[0].hi() < 0.55
+            && nominal.state(1)[0].hi() < 0.55
     );
 }
 
 #[test]
 fn a_radius_that_peaks_between_two_samples_is_held() {
-    // e^{At} = [cos sin; -sin cos] and Γ(t) = (sin t, cos t - 1): |sin| is the same at 60° and 120°, and 1 between.
+    // e^{At} = [cos sin; -sin cos] and Γ(t) = (sin t, cos t - 1): |sin| is the same at 60° and
+    // 120°, and 1 between.
     let turning = system(&[&[0.0, 1.0], &[-1.0, 0.0]], &[&[1.0], &[0.0]], &[0.0, 0.0]);
-    let propagation = Propagation::new(&turning, &TimeGrid::uniform(std::f64::consts::FRAC_PI_3, 3)).unwrap();
-    let set = |radius: &[f64]| Hyperrectangle { center: vec![0.0; radius.len()], radius: radius.to_vec() };
+    let propagation =
+        Propagation::new(&turning, &TimeGrid::uniform(std::f64::consts::FRAC_PI_3, 3)).unwrap();
+    let set = |radius: &[f64]| Hyperrectangle {
+        center: vec![0.0; radius.len()],
+        radius: radius.to_vec(),
+    };
     let nominal = propagation.solve(&IntervalVector::from_element(2, Interval::ZERO), &[0.0; 3]);
-    for (initial, input, state) in [(set(&[1.0, 0.0]), set(&[0.0]), 1), (set(&[0.0, 0.0]), set(&[1.0]), 0)] {
+    for (initial, input, state) in
+        [(set(&[1.0, 0.0]), set(&[0.0]), 1), (set(&[0.0, 0.0]), set(&[1.0]), 0)]
+    {
         let gains = Disturbance::Constant.gains(&propagation);
         let reach = ReachSets::new(&propagation, &gains, &initial, &input);
         let radii = TubeRadii::new(&propagation, Disturbance::Constant, &initial, &input);
@@ -188,7 +210,12 @@ fn the_overhead_shrinks_with_the_step() {
         };
         let [coarse, middle, fine] =
             [(0.016, 26), (0.004, 101), (0.001, 401)].map(|(h, count)| overhead(h, count));
-        println!("{disturbance:?}: tube over hull of its samples, less 1: {coarse:.4} {middle:.5} {fine:.6}");
-        assert!(middle < 0.5 * coarse && fine < 0.5 * middle && fine < 0.01, "{coarse} {middle} {fine}");
+        println!(
+            "{disturbance:?}: tube over hull of its samples, less 1: {coarse:.4} {middle:.5} {fine:.6}"
+        );
+        assert!(
+            middle < 0.5 * coarse && fine < 0.5 * middle && fine < 0.01,
+            "{coarse} {middle} {fine}"
+        );
     }
 }

@@ -11,16 +11,20 @@ use super::{ExpansionPoint, ModelKind, PolynomialModel};
 use crate::error::{Error, Result};
 
 impl PolynomialModel {
-    /// Model `kind` of order p ≥ 1 about `point`: (13), (14) or (16), in double precision, whose rounding is part of what the model is.
+    /// Model `kind` of order p ≥ 1 about `point`: (13), (14) or (16), in double precision, whose
+    /// rounding is part of what the model is.
     ///
-    /// Model 1 is M_m⁻¹(q_a)(u - T^p τ_v(q̇)). Model 2 takes off the Coriolis terms (15), q̇ᵀ T^{p-2} C_i(s, c) q̇, which is exact where p - 2 is
-    /// their degree or more; it then is kept in powers of s and c themselves. Model 3 is the Taylor polynomial of M_m⁻¹(s, c)(u - c(q̇, s, c) - τ_v(q̇)) in all of
-    /// (q̇, s, c, u), with M_m and c in the extension of [`PolynomialDynamics`]; only M_m⁻¹ is a series, in the angles that M_m depends on, and what
+    /// Model 1 is M_m⁻¹(q_a)(u - T^p τ_v(q̇)). Model 2 takes off the Coriolis terms (15), q̇ᵀ
+    /// T^{p-2} C_i(s, c) q̇, which is exact where p - 2 is their degree or more; it then is kept in
+    /// powers of s and c themselves. Model 3 is the Taylor polynomial of M_m⁻¹(s, c)(u - c(q̇, s,
+    /// c) - τ_v(q̇)) in all of (q̇, s, c, u), with M_m and c in the extension of
+    /// [`PolynomialDynamics`]; only M_m⁻¹ is a series, in the angles that M_m depends on, and what
     /// multiplies it is an exact polynomial.
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`] for order 0 and where M_m(q_a) is not positive definite, [`Error::Space`] where polynomials of that order do not fit.
+    /// [`Error::Setting`] for order 0 and where M_m(q_a) is not positive definite, [`Error::Space`]
+    /// where polynomials of that order do not fit.
     pub fn new(robot: &Robot, kind: ModelKind, order: u32, point: &ExpansionPoint) -> Result<Self> {
         if order == 0 {
             return Err(Error::Setting("order 0: a model has order 1 at least".into()));
@@ -30,7 +34,9 @@ impl PolynomialModel {
         let space = TaylorSpace::new(layout.variables(), order)?;
         let builder = Builder { robot, order, point, layout, space };
         let (acceleration, origin) = match kind {
-            ModelKind::One => (times(&inverse, &builder.viscous_load()), vec![0.0; layout.variables()]),
+            ModelKind::One => {
+                (times(&inverse, &builder.viscous_load()), vec![0.0; layout.variables()])
+            }
             ModelKind::Two => builder.model2(&inverse)?,
             ModelKind::Three => builder.model3()?,
         };
@@ -60,14 +66,19 @@ const MOST_BYTES: f64 = 2e9;
 /// A term with its copies while products are formed.
 const BYTES_OF_TERM: f64 = 128.0;
 
-/// More terms than model 3 has: it is affine in u and cubic in q̇, each such factor times a series of `angles` variables.
+/// More terms than model 3 has: it is affine in u and cubic in q̇, each such factor times a series
+/// of `angles` variables.
 fn most_terms(joints: usize, angles: usize, order: u32) -> f64 {
     let n = joints as f64;
     // Monomials of degree up to d.
-    let series =
-        |d: i64| (1..=d.max(-1)).fold(f64::from(d >= 0), |c, i| c * (angles as f64 + i as f64) / i as f64);
+    let series = |d: i64| {
+        (1..=d.max(-1)).fold(f64::from(d >= 0), |c, i| c * (angles as f64 + i as f64) / i as f64)
+    };
     let p = i64::from(order);
-    n * (series(p) + 2.0 * n * series(p - 1) + 0.5 * n * (n + 1.0) * series(p - 2) + n * series(p - 3))
+    n * (series(p)
+        + 2.0 * n * series(p - 1)
+        + 0.5 * n * (n + 1.0) * series(p - 2)
+        + n * series(p - 3))
 }
 
 type Polynomials = Vec<TaylorPolynomial>;
@@ -102,8 +113,8 @@ impl Builder<'_> {
 
     /// T^p of τ_v of joint i about q̇_a, in powers of q̇.
     fn viscous(&self, i: usize) -> TaylorPolynomial {
-        let line =
-            TaylorSpace::new(1, self.order).expect("one variable to an order that more variables have");
+        let line = TaylorSpace::new(1, self.order)
+            .expect("one variable to an order that more variables have");
         let velocity = TaylorPolynomial::variable_at(&line, 0, self.point.qd[i]);
         let torque = self.robot.joints()[i].friction.viscous.torque(&velocity);
         torque.shifted(&[-self.point.qd[i]]).embedded(&self.space, &[self.layout.velocity(i)])
@@ -131,10 +142,14 @@ impl Builder<'_> {
         let mut load = self.viscous_load();
         if self.order >= 2 {
             let mut christoffel = self.dynamics()?.christoffel();
-            let degree = christoffel.iter().flatten().map(TaylorPolynomial::degree).max().unwrap_or(0);
+            let degree =
+                christoffel.iter().flatten().map(TaylorPolynomial::degree).max().unwrap_or(0);
             if self.order - 2 < degree {
                 let at = self.trigonometric_point();
-                christoffel.iter_mut().flatten().for_each(|c| *c = c.shifted(&at).truncated(self.order - 2));
+                christoffel
+                    .iter_mut()
+                    .flatten()
+                    .for_each(|c| *c = c.shifted(&at).truncated(self.order - 2));
                 for (place, at) in self.trigonometric_places().into_iter().zip(at) {
                     origin[place] = at;
                 }
@@ -149,7 +164,11 @@ impl Builder<'_> {
     }
 
     /// q̇ᵀ C q̇ for a matrix of polynomials in (s, c).
-    fn coriolis(&self, matrix: &[TaylorPolynomial], velocity: &[TaylorPolynomial]) -> TaylorPolynomial {
+    fn coriolis(
+        &self,
+        matrix: &[TaylorPolynomial],
+        velocity: &[TaylorPolynomial],
+    ) -> TaylorPolynomial {
         let n = self.layout.joints;
         let places = self.trigonometric_places();
         let mut sum = TaylorPolynomial::from(0.0);
@@ -171,7 +190,13 @@ impl Builder<'_> {
         let christoffel = dynamics.christoffel();
         let about = |c: &TaylorPolynomial| c.shifted(&at).truncated(self.order);
         let velocity: Vec<_> = (0..n)
-            .map(|i| TaylorPolynomial::variable_at(&self.space, self.layout.velocity(i), self.point.qd[i]))
+            .map(|i| {
+                TaylorPolynomial::variable_at(
+                    &self.space,
+                    self.layout.velocity(i),
+                    self.point.qd[i],
+                )
+            })
             .collect();
         let input = self.point.input();
         let load = |i: usize| {
@@ -194,7 +219,8 @@ impl Builder<'_> {
         Ok(((0..n).map(row).collect(), origin))
     }
 
-    /// Refuses an order whose terms would not fit in memory; M_m depends on `angles` sines and cosines.
+    /// Refuses an order whose terms would not fit in memory; M_m depends on `angles` sines and
+    /// cosines.
     fn check_size(&self, angles: usize) -> Result<()> {
         let bytes = |order: u32| most_terms(self.layout.joints, angles, order) * BYTES_OF_TERM;
         let needed = bytes(self.order);
@@ -211,7 +237,8 @@ impl Builder<'_> {
         )))
     }
 
-    /// The series of M_m⁻¹ about (s_a, c_a), n x n, made in the space of the variables that M_m depends on.
+    /// The series of M_m⁻¹ about (s_a, c_a), n x n, made in the space of the variables that M_m
+    /// depends on.
     fn inverse_series(&self, dynamics: &PolynomialDynamics, at: &[f64]) -> Result<Polynomials> {
         let n = self.layout.joints;
         let used: Vec<usize> =
@@ -227,7 +254,8 @@ impl Builder<'_> {
         let trigonometric = self.trigonometric_places();
         let back: Vec<usize> = used.iter().map(|i| trigonometric[*i]).collect();
         let column = |j: usize| {
-            let mut column: Polynomials = (0..n).map(|i| TaylorPolynomial::from(f64::from(i == j))).collect();
+            let mut column: Polynomials =
+                (0..n).map(|i| TaylorPolynomial::from(f64::from(i == j))).collect();
             ltdl::solve(&factors, &mut column);
             column
         };

@@ -2,7 +2,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
-/// Where the forward dynamics is expanded: positions q_a (rad), velocities q̇_a (rad/s) and inputs u_a (N m), one entry a joint. The paper's is 0.
+/// Where the forward dynamics is expanded: positions q_a (rad), velocities q̇_a (rad/s) and inputs
+/// u_a (N m), one entry a joint. The paper's is 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExpansionPoint {
@@ -28,7 +29,9 @@ impl ExpansionPoint {
     /// [`Error::Setting`] for another number of values, or one that is not finite.
     pub fn from_values(values: &[f64], joints: usize) -> Result<Self> {
         if let Some(value) = values.iter().find(|value| !value.is_finite()) {
-            return Err(Error::Setting(format!("the expansion point holds {value}; give finite numbers")));
+            return Err(Error::Setting(format!(
+                "the expansion point holds {value}; give finite numbers"
+            )));
         }
         let parts = |count: usize| values.len() == count * joints;
         if values.is_empty() {

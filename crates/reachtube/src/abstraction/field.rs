@@ -5,7 +5,8 @@ use reachtube_scalar::Powers;
 
 use super::{ModelWorkspace, PolynomialModel};
 
-/// ẋ = f_p(x, u) for the integrators of `reachtube-ode`; over lanes each lane is a run of its own. It does not allocate.
+/// ẋ = f_p(x, u) for the integrators of `reachtube-ode`; over lanes each lane is a run of its own.
+/// It does not allocate.
 ///
 /// # Examples
 ///

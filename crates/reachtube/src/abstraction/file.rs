@@ -57,7 +57,8 @@ pub(crate) struct Records {
 }
 
 impl PolynomialModel {
-    /// The model as JSON: a term a line, ending with a newline. Numbers read back are the same bit by bit.
+    /// The model as JSON: a term a line, ending with a newline. Numbers read back are the same bit
+    /// by bit.
     pub fn to_json(&self) -> String {
         let Records { variables, origin, acceleration } = self.records();
         json::to_lines(&ModelFile {
@@ -86,7 +87,8 @@ impl PolynomialModel {
         }
     }
 
-    /// The model of these records, bit by bit, once they have been compared with what the robot gives at the expansion point.
+    /// The model of these records, bit by bit, once they have been compared with what the robot
+    /// gives at the expansion point.
     ///
     /// # Errors
     ///
@@ -109,7 +111,8 @@ impl PolynomialModel {
         if point.q.len() != n || point.qd.len() != n || point.input().len() != n {
             return Err(format!("its expansion point is not one of {n} joints"));
         }
-        let space = TaylorSpace::new(layout.variables(), order).map_err(|error| error.to_string())?;
+        let space =
+            TaylorSpace::new(layout.variables(), order).map_err(|error| error.to_string())?;
         let mut acceleration = Vec::with_capacity(n);
         for (joint, terms) in records.acceleration.into_iter().enumerate() {
             let wrong = |problem| format!("acceleration of joint {}: {problem}", joint + 1);
@@ -144,8 +147,10 @@ impl PolynomialModel {
 
 impl ModelFile {
     fn model(self, path: &Path) -> Result<PolynomialModel> {
-        let wrong =
-            |problem: String| Error::ModelFile { path: path.into(), problem: format!("{problem}; {REMEDY}") };
+        let wrong = |problem: String| Error::ModelFile {
+            path: path.into(),
+            problem: format!("{problem}; {REMEDY}"),
+        };
         let robot = Robot::from_description(&self.robot)?;
         let n = robot.joint_count();
         if let Some(remainder) = self.remainder.as_ref().filter(|remainder| !remainder.is_of(n)) {
@@ -157,8 +162,9 @@ impl ModelFile {
         let abstraction = Abstraction { model: self.model, order: self.order };
         let Self { variables, origin, acceleration, .. } = self;
         let records = Records { variables, origin, acceleration };
-        let mut model = PolynomialModel::of_records(&robot, abstraction, &self.expansion_point, records)
-            .map_err(wrong)?;
+        let mut model =
+            PolynomialModel::of_records(&robot, abstraction, &self.expansion_point, records)
+                .map_err(wrong)?;
         model.remainder = self.remainder;
         Ok(model)
     }
@@ -170,7 +176,10 @@ fn polynomial(
 ) -> Result<TaylorPolynomial, String> {
     for TermRecord(exponents, coefficient) in &terms {
         let degree: u32 = exponents.iter().map(|e| u32::from(*e)).sum();
-        if exponents.len() != space.variables() || degree > space.order() || !coefficient.is_finite() {
+        if exponents.len() != space.variables()
+            || degree > space.order()
+            || !coefficient.is_finite()
+        {
             return Err(format!(
                 "a term has {} exponents of sum {degree} and the coefficient {coefficient}; there are {} variables and order {}",
                 exponents.len(),
@@ -186,9 +195,12 @@ fn polynomial(
 impl PolynomialModel {
     /// Whether all coefficients agree to [`SAME`] of the largest.
     fn is_close_to(&self, other: &Self) -> bool {
-        let largest =
-            |f: &TaylorPolynomial| f.terms().iter().map(|t| t.coefficient.abs()).fold(0.0, f64::max);
-        let close = |(a, b): (&TaylorPolynomial, &TaylorPolynomial)| largest(&(a - b)) <= SAME * largest(b);
-        self.origin() == other.origin() && self.acceleration().iter().zip(other.acceleration()).all(close)
+        let largest = |f: &TaylorPolynomial| {
+            f.terms().iter().map(|t| t.coefficient.abs()).fold(0.0, f64::max)
+        };
+        let close =
+            |(a, b): (&TaylorPolynomial, &TaylorPolynomial)| largest(&(a - b)) <= SAME * largest(b);
+        self.origin() == other.origin()
+            && self.acceleration().iter().zip(other.acceleration()).all(close)
     }
 }

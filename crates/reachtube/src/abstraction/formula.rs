@@ -4,7 +4,8 @@ use std::fmt::{Display, Formatter, Result};
 
 use super::PolynomialModel;
 
-/// One line a joint: qdd1 = 0.5762 u1 - 6.638 qd1 + ..., the terms by degree, each coefficient with all its digits. Where a variable is an offset, it is written so: (c2 - 1).
+/// One line a joint: qdd1 = 0.5762 u1 - 6.638 qd1 + ..., the terms by degree, each coefficient with
+/// all its digits. Where a variable is an offset, it is written so: (c2 - 1).
 impl Display for PolynomialModel {
     fn fmt(&self, out: &mut Formatter<'_>) -> Result {
         let offset = |(name, origin): (String, &f64)| match *origin {
@@ -12,7 +13,8 @@ impl Display for PolynomialModel {
             origin if origin < 0.0 => format!("({name} + {})", -origin),
             origin => format!("({name} - {origin})"),
         };
-        let names: Vec<String> = self.layout().names().into_iter().zip(self.origin()).map(offset).collect();
+        let names: Vec<String> =
+            self.layout().names().into_iter().zip(self.origin()).map(offset).collect();
         for (i, acceleration) in self.acceleration().iter().enumerate() {
             write!(out, "qdd{} =", i + 1)?;
             let terms = acceleration.terms();

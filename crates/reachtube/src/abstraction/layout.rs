@@ -49,8 +49,10 @@ impl Layout {
 
     /// Names of the variables: qd1, s1, c1, u1, ...
     pub fn names(self) -> Vec<String> {
-        let groups: &[&str] = if self.trigonometric { &["qd", "s", "c", "u"] } else { &["qd", "u"] };
-        let group = |name: &&str| (1..=self.joints).map(|i| format!("{name}{i}")).collect::<Vec<_>>();
+        let groups: &[&str] =
+            if self.trigonometric { &["qd", "s", "c", "u"] } else { &["qd", "u"] };
+        let group =
+            |name: &&str| (1..=self.joints).map(|i| format!("{name}{i}")).collect::<Vec<_>>();
         groups.iter().flat_map(group).collect()
     }
 }

@@ -5,7 +5,8 @@ use reachtube_scalar::{MapWorkspace, PolynomialMap};
 
 use super::{Layout, PolynomialModel};
 
-/// A = ∂ẋ/∂x and B = ∂ẋ/∂u of a model with x = (q, q̇), at one state after another; sin q and cos q are differentiated as what they are. Unrounded.
+/// A = ∂ẋ/∂x and B = ∂ẋ/∂u of a model with x = (q, q̇), at one state after another; sin q and cos q
+/// are differentiated as what they are. Unrounded.
 ///
 /// # Examples
 ///

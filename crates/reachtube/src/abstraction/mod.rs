@@ -1,4 +1,5 @@
-//! The three models of the forward dynamics (Sec. IV-B of the paper): ẋ = f_p(x, u), linear or polynomial.
+//! The three models of the forward dynamics (Sec. IV-B of the paper): ẋ = f_p(x, u), linear or
+//! polynomial.
 
 mod build;
 mod expansion_point;
@@ -26,10 +27,11 @@ pub use remainder::Remainder;
 
 use crate::error::Result;
 
-/// Model 1 (13) at order p = 1: ẋ = A x + B u + d with x = (q, q̇),
-/// A = [0 I; 0 -M⁻¹ diag(τ_v'(q̇_a))], B = [0; M⁻¹], d = [0; -M⁻¹ (τ_v(q̇_a) - τ_v'(q̇_a) q̇_a)], M = M_m(q_a).
+/// Model 1 (13) at order p = 1: ẋ = A x + B u + d with x = (q, q̇), A = [0 I; 0 -M⁻¹
+/// diag(τ_v'(q̇_a))], B = [0; M⁻¹], d = [0; -M⁻¹ (τ_v(q̇_a) - τ_v'(q̇_a) q̇_a)], M = M_m(q_a).
 ///
-/// The double-precision result is the model; what it leaves out is for the uncertainty sets to cover.
+/// The double-precision result is the model; what it leaves out is for the uncertainty sets to
+/// cover.
 ///
 /// # Errors
 ///

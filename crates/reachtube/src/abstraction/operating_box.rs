@@ -20,7 +20,8 @@ pub struct OperatingBox {
 }
 
 impl OperatingBox {
-    /// The box about an expansion point with the given radii: 3 (for all positions in rad, velocities in rad/s and inputs in N m) or 3n.
+    /// The box about an expansion point with the given radii: 3 (for all positions in rad,
+    /// velocities in rad/s and inputs in N m) or 3n.
     ///
     /// # Errors
     ///
@@ -60,7 +61,9 @@ impl OperatingBox {
     pub(crate) fn is_of(&self, n: usize) -> bool {
         let is = |sides: &[[f64; 2]]| {
             sides.len() == n
-                && sides.iter().all(|[low, high]| low <= high && low.is_finite() && high.is_finite())
+                && sides
+                    .iter()
+                    .all(|[low, high]| low <= high && low.is_finite() && high.is_finite())
         };
         is(&self.q) && is(&self.qd) && is(&self.u)
     }
@@ -87,7 +90,9 @@ impl OperatingBox {
             if !within(self.q[i], joint.position_limits) {
                 return outside("positions", self.q[i], joint.position_limits, "rad");
             }
-            if let Some(limit) = joint.velocity_limit.filter(|limit| !within(self.qd[i], [-limit, *limit])) {
+            if let Some(limit) =
+                joint.velocity_limit.filter(|limit| !within(self.qd[i], [-limit, *limit]))
+            {
                 return outside("velocities", self.qd[i], [-limit, limit], "rad/s");
             }
         }

@@ -3,7 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 use reachtube_reach::{LinearSystem, PolynomialSystem};
 use reachtube_robot::{Robot, RobotDescription};
-use reachtube_scalar::{Interval, MapWorkspace, PolynomialMap, Powers, TaylorPolynomial, TaylorSpace};
+use reachtube_scalar::{
+    Interval, MapWorkspace, PolynomialMap, Powers, TaylorPolynomial, TaylorSpace,
+};
 use serde::{Deserialize, Serialize};
 
 use super::layout::Layout;
@@ -59,8 +61,9 @@ impl TryFrom<u32> for ModelKind {
 
 /// An abstraction of the forward dynamics (10): ẋ = f_p(x, u), polynomial in x and u. SI units.
 ///
-/// States are (q, q̇) for model 1 and (q, q̇, sin q, cos q) for models 2 and 3, n of each, with d/dt sin q = q̇ cos q and d/dt cos q = -q̇ sin q. The accelerations are
-/// polynomials in (q̇, u) or (q̇, sin q, cos q, u).
+/// States are (q, q̇) for model 1 and (q, q̇, sin q, cos q) for models 2 and 3, n of each, with
+/// d/dt sin q = q̇ cos q and d/dt cos q = -q̇ sin q. The accelerations are polynomials in (q̇, u)
+/// or (q̇, sin q, cos q, u).
 ///
 /// # Examples
 ///
@@ -141,12 +144,14 @@ impl PolynomialModel {
         self.layout
     }
 
-    /// What the polynomials' variables are offsets from, one value a variable: zero, or where they are truncated the expansion point.
+    /// What the polynomials' variables are offsets from, one value a variable: zero, or where they
+    /// are truncated the expansion point.
     pub fn origin(&self) -> &[f64] {
         &self.origin
     }
 
-    /// The acceleration of each joint \[rad/s²\], a polynomial in offsets of the variables from [`origin`](Self::origin).
+    /// The acceleration of each joint \[rad/s²\], a polynomial in offsets of the variables from
+    /// [`origin`](Self::origin).
     pub fn acceleration(&self) -> &[TaylorPolynomial] {
         &self.acceleration
     }
@@ -183,10 +188,14 @@ impl PolynomialModel {
 
     /// Scratch memory for [`rate_into`](Self::rate_into).
     pub fn workspace<T: Powers>(&self) -> ModelWorkspace<T> {
-        ModelWorkspace { offsets: vec![T::zero(); self.layout.variables()], map: self.map.workspace() }
+        ModelWorkspace {
+            offsets: vec![T::zero(); self.layout.variables()],
+            map: self.map.workspace(),
+        }
     }
 
-    /// ẋ = f_p(x, u) into `rate`; `x` and `rate` have [`states`](Self::states) entries, `u` n. Allocates nothing.
+    /// ẋ = f_p(x, u) into `rate`; `x` and `rate` have [`states`](Self::states) entries, `u` n.
+    /// Allocates nothing.
     ///
     /// # Guarantee
     ///
@@ -195,7 +204,13 @@ impl PolynomialModel {
     /// # Panics
     ///
     /// Where a slice has another length.
-    pub fn rate_into<T: Powers>(&self, x: &[T], u: &[T], ws: &mut ModelWorkspace<T>, rate: &mut [T]) {
+    pub fn rate_into<T: Powers>(
+        &self,
+        x: &[T],
+        u: &[T],
+        ws: &mut ModelWorkspace<T>,
+        rate: &mut [T],
+    ) {
         let n = self.layout.joints;
         assert_eq!(
             (x.len(), u.len(), rate.len()),
@@ -224,14 +239,17 @@ impl PolynomialModel {
         rate
     }
 
-    /// ∂q̈/∂z, a polynomial for each joint and each variable z of the [`layout`](Self::layout), row by row.
+    /// ∂q̈/∂z, a polynomial for each joint and each variable z of the [`layout`](Self::layout), row
+    /// by row.
     pub fn derivatives(&self) -> Vec<Vec<TaylorPolynomial>> {
-        let row = |f: &TaylorPolynomial| (0..self.layout.variables()).map(|z| f.derivative(z)).collect();
+        let row =
+            |f: &TaylorPolynomial| (0..self.layout.variables()).map(|z| f.derivative(z)).collect();
         self.acceleration.iter().map(row).collect()
     }
 
-    /// The model as ẋ = A x + B u + d with x = (q, q̇), where its first two rows are that: model 1 at order 1 or 2 without an even friction term, and models
-    /// 2 and 3 at order 1 about q̇_a = 0, u_a = 0.
+    /// The model as ẋ = A x + B u + d with x = (q, q̇), where its first two rows are that: model 1
+    /// at order 1 or 2 without an even friction term, and models 2 and 3 at order 1 about q̇_a = 0,
+    /// u_a = 0.
     ///
     /// # Errors
     ///
@@ -260,7 +278,8 @@ impl PolynomialModel {
             }
             let offset: f64 = (0..n)
                 .map(|j| {
-                    a[(n + i, n + j)] * self.origin[j] + b[(n + i, j)] * self.origin[self.layout.input(j)]
+                    a[(n + i, n + j)] * self.origin[j]
+                        + b[(n + i, j)] * self.origin[self.layout.input(j)]
                 })
                 .sum();
             drift[n + i] -= offset;
@@ -268,12 +287,14 @@ impl PolynomialModel {
         Ok(LinearSystem::new(a, b, drift)?)
     }
 
-    /// The model as a system whose reachable sets [`Flowpipe`](reachtube_reach::Flowpipe) encloses: the 2n states (q, q̇) for every model, in which
-    /// models 2 and 3 are polynomials of sines and cosines too; n inputs.
+    /// The model as a system whose reachable sets [`Flowpipe`](reachtube_reach::Flowpipe) encloses:
+    /// the 2n states (q, q̇) for every model, in which models 2 and 3 are polynomials of sines and
+    /// cosines too; n inputs.
     ///
     /// # Guarantee
     ///
-    /// Outer: where polynomials in offsets are written in the variables themselves, each coefficient encloses the exact one.
+    /// Outer: where polynomials in offsets are written in the variables themselves, each
+    /// coefficient encloses the exact one.
     ///
     /// # Errors
     ///
@@ -288,10 +309,13 @@ impl PolynomialModel {
         };
         let places: Vec<usize> = (0..layout.variables()).map(place).collect();
         let space = TaylorSpace::new(n + layout.variables(), self.degree().max(1))?;
-        let offset: Vec<Interval> = self.origin.iter().map(|origin| Interval::point(-origin)).collect();
-        let about_zero = |f: &TaylorPolynomial| f.map_coefficients(|c| Interval::point(*c)).shifted(&offset);
+        let offset: Vec<Interval> =
+            self.origin.iter().map(|origin| Interval::point(-origin)).collect();
+        let about_zero =
+            |f: &TaylorPolynomial| f.map_coefficients(|c| Interval::point(*c)).shifted(&offset);
         let velocities = (0..n).map(|i| TaylorPolynomial::variable(&space, n + i));
-        let accelerations = self.acceleration.iter().map(|f| about_zero(f).embedded(&space, &places));
+        let accelerations =
+            self.acceleration.iter().map(|f| about_zero(f).embedded(&space, &places));
         let components: Vec<_> = velocities.chain(accelerations).collect();
         let angles: Vec<usize> = (0..if layout.trigonometric { n } else { 0 }).collect();
         Ok(PolynomialSystem::trigonometric(2 * n, n, &angles, &components)?)

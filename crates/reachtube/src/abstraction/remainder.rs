@@ -30,7 +30,8 @@ const WIDE: f64 = 0.3;
 pub struct Remainder {
     /// Where it holds.
     pub operating_box: OperatingBox,
-    /// For each joint the acceleration left out lies in \[low, high\], rad/s²; none where no bound was found.
+    /// For each joint the acceleration left out lies in \[low, high\], rad/s²; none where no bound
+    /// was found.
     pub bounds: Vec<Option<[f64; 2]>>,
     /// The largest magnitude found by search, rad/s²: no bound can be less.
     pub seen: Vec<f64>,
@@ -46,20 +47,29 @@ impl Remainder {
 }
 
 impl PolynomialModel {
-    /// Bounds what the model leaves out of the forward dynamics (10) over an operating box, by branch and bound with at most `most_boxes` boxes.
+    /// Bounds what the model leaves out of the forward dynamics (10) over an operating box, by
+    /// branch and bound with at most `most_boxes` boxes.
     ///
-    /// With the residual ρ = u - c - τ_v - M_m f_p, what is left out is r = M_m⁻¹ ρ. Over a box ρ is a Taylor model in (q, q̇, u), made by the same
-    /// recursions as the dynamics itself, and r = P ρ + (1 - P M_m) r with P the inverse of M_m's midpoint is bounded without inverting a set. Boxes with the largest bound are cut in two.
+    /// With the residual ρ = u - c - τ_v - M_m f_p, what is left out is r = M_m⁻¹ ρ. Over a box ρ
+    /// is a Taylor model in (q, q̇, u), made by the same recursions as the dynamics itself, and r =
+    /// P ρ + (1 - P M_m) r with P the inverse of M_m's midpoint is bounded without inverting a set.
+    /// Boxes with the largest bound are cut in two.
     ///
     /// # Guarantee
     ///
-    /// Outer: f - f_p lies in the bounds at every point of the box, with the robot's constants and the model's coefficients as the double-precision numbers they are, under directed
-    /// rounding. `seen` is inner, up to rounding.
+    /// Outer: f - f_p lies in the bounds at every point of the box, with the robot's constants and
+    /// the model's coefficients as the double-precision numbers they are, under directed rounding.
+    /// `seen` is inner, up to rounding.
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`](crate::Error::Setting) for a box of the wrong size or outside the joints' limits.
-    pub fn bound_remainder(&self, operating_box: &OperatingBox, most_boxes: usize) -> Result<Remainder> {
+    /// [`Error::Setting`](crate::Error::Setting) for a box of the wrong size or outside the joints'
+    /// limits.
+    pub fn bound_remainder(
+        &self,
+        operating_box: &OperatingBox,
+        most_boxes: usize,
+    ) -> Result<Remainder> {
         let robot = Robot::from_description(self.robot())?;
         operating_box.check(&robot)?;
         let seen = super::seen_error::seen_error(self, &robot, operating_box);
@@ -77,7 +87,8 @@ impl PolynomialModel {
         })
     }
 
-    /// Boxes for [`bound_remainder`](Self::bound_remainder) that take some seconds: the more terms the model has, the fewer.
+    /// Boxes for [`bound_remainder`](Self::bound_remainder) that take some seconds: the more terms
+    /// the model has, the fewer.
     pub fn usual_boxes(&self) -> usize {
         (300_000 / self.term_count().max(1)).clamp(16, 2000)
     }
@@ -143,14 +154,19 @@ impl<'a> Search<'a> {
     }
 
     fn cells_of(&self, parts: Vec<Vec<Interval>>) -> Vec<Cell> {
-        let scratch = || Scratch { robot: Workspace::new(self.robot), model: self.model.workspace() };
-        parts.into_par_iter().map_init(scratch, |scratch, sides| self.cell(sides, scratch)).collect()
+        let scratch =
+            || Scratch { robot: Workspace::new(self.robot), model: self.model.workspace() };
+        parts
+            .into_par_iter()
+            .map_init(scratch, |scratch, sides| self.cell(sides, scratch))
+            .collect()
     }
 
     fn cell(&self, sides: Vec<Interval>, scratch: &mut Scratch) -> Cell {
         let (mass, residual) = self.residual(&sides, scratch);
         let spread = Spread::of(&mass);
-        let Some((bounds, load)) = spread.as_ref().and_then(|spread| spread.solve(&residual)) else {
+        let Some((bounds, load)) = spread.as_ref().and_then(|spread| spread.solve(&residual))
+        else {
             let cut = widest_position(&sides, self.robot.joint_count());
             return Cell {
                 bounds: vec![Interval::ENTIRE; self.seen.len()],
@@ -170,7 +186,11 @@ impl<'a> Search<'a> {
     }
 
     /// M_m and ρ over a box.
-    fn residual(&self, sides: &[Interval], scratch: &mut Scratch) -> (Vec<TaylorModel>, Vec<TaylorModel>) {
+    fn residual(
+        &self,
+        sides: &[Interval],
+        scratch: &mut Scratch,
+    ) -> (Vec<TaylorModel>, Vec<TaylorModel>) {
         let n = self.robot.joint_count();
         let variables = TaylorBox::new(&self.space, sides).variables();
         let (q, rest) = variables.split_at(n);
@@ -229,7 +249,8 @@ fn most_curved(model: &TaylorModel, sides: &[Interval]) -> usize {
     if curvature[bent] > 0.0 { bent } else { widest_position(sides, sides.len()) }
 }
 
-/// How far a mass matrix over a box is from one matrix: with P the inverse of its midpoint, 1 - P M.
+/// How far a mass matrix over a box is from one matrix: with P the inverse of its midpoint, 1 - P
+/// M.
 struct Spread {
     /// P.
     inverse: DMatrix<f64>,
@@ -264,14 +285,16 @@ impl Spread {
 
     /// |1 - P M| v, rounded up, for v ≥ 0.
     fn magnitude_times(&self, v: &[f64]) -> Vec<f64> {
-        let row =
-            |row: &[Interval]| row.iter().zip(v).fold(0.0, |sum, (d, v)| add_up(sum, mul_up(d.mag(), *v)));
+        let row = |row: &[Interval]| {
+            row.iter().zip(v).fold(0.0, |sum, (d, v)| add_up(sum, mul_up(d.mag(), *v)))
+        };
         self.deviation.chunks(v.len()).map(row).collect()
     }
 
     /// Bounds of r = P ρ + (1 - P M) r, and P ρ; none where they are infinite.
     ///
-    /// Any α with |P ρ| ≤ α (w - |1 - P M| w) gives |r| ≤ α w; then |r| ≤ |P ρ| + |1 - P M| |r| makes it smaller.
+    /// Any α with |P ρ| ≤ α (w - |1 - P M| w) gives |r| ≤ α w; then |r| ≤ |P ρ| + |1 - P M| |r|
+    /// makes it smaller.
     fn solve(&self, residual: &[TaylorModel]) -> Option<(Vec<Interval>, Vec<TaylorModel>)> {
         let n = residual.len();
         let load = |i: usize| {
@@ -286,7 +309,8 @@ impl Spread {
         let mut radius: Vec<f64> = self.weights.iter().map(|w| mul_up(scale, *w)).collect();
         for _ in 0..4 {
             let rest = self.magnitude_times(&radius);
-            radius = rest.iter().zip(&ranges).map(|(rest, load)| add_up(load.mag(), *rest)).collect();
+            radius =
+                rest.iter().zip(&ranges).map(|(rest, load)| add_up(load.mag(), *rest)).collect();
         }
         let rest = self.magnitude_times(&radius);
         let bounds: Vec<Interval> =

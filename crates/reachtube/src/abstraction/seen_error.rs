@@ -8,16 +8,23 @@ use crate::random::SplitMix64;
 /// States that are sampled.
 const SAMPLES: usize = 20_000;
 
-/// The largest |f - f_p| of each joint that is found in a box, rad/s²: at [`SAMPLES`] states, half of their values at the box's ends, and by climbing from
-/// the best of them.
+/// The largest |f - f_p| of each joint that is found in a box, rad/s²: at [`SAMPLES`] states, half
+/// of their values at the box's ends, and by climbing from the best of them.
 ///
 /// # Guarantee
 ///
 /// Inner, up to rounding: the largest error is no less.
-pub(super) fn seen_error(model: &PolynomialModel, robot: &Robot, operating_box: &OperatingBox) -> Vec<f64> {
+pub(super) fn seen_error(
+    model: &PolynomialModel,
+    robot: &Robot,
+    operating_box: &OperatingBox,
+) -> Vec<f64> {
     let n = robot.joint_count();
-    let sides: Vec<[f64; 2]> =
-        [&operating_box.q, &operating_box.qd, &operating_box.u].into_iter().flatten().copied().collect();
+    let sides: Vec<[f64; 2]> = [&operating_box.q, &operating_box.qd, &operating_box.u]
+        .into_iter()
+        .flatten()
+        .copied()
+        .collect();
     let mut random = SplitMix64::new(1);
     let mut errors = Errors::new(model, robot);
     let mut best = vec![(0.0, Vec::new()); n];
@@ -40,8 +47,15 @@ pub(super) fn seen_error(model: &PolynomialModel, robot: &Robot, operating_box: 
         .collect()
 }
 
-/// Moves one coordinate after the other as long as the error of a joint grows, by ever smaller steps.
-fn climb(errors: &mut Errors, sides: &[[f64; 2]], joint: usize, mut z: Vec<f64>, mut largest: f64) -> f64 {
+/// Moves one coordinate after the other as long as the error of a joint grows, by ever smaller
+/// steps.
+fn climb(
+    errors: &mut Errors,
+    sides: &[[f64; 2]],
+    joint: usize,
+    mut z: Vec<f64>,
+    mut largest: f64,
+) -> f64 {
     for shrink in [1.0, 0.25, 0.0625, 0.015625] {
         for i in 0..z.len() {
             let [low, high] = sides[i];
@@ -95,7 +109,14 @@ impl<'a> Errors<'a> {
         for (i, joint) in self.robot.joints().iter().enumerate() {
             self.torque[i] += u[i] - joint.friction.viscous.torque(&qd[i]);
         }
-        self.robot.forward_dynamics(&sin, &cos, qd, &self.torque, &mut self.scratch, &mut self.error);
+        self.robot.forward_dynamics(
+            &sin,
+            &cos,
+            qd,
+            &self.torque,
+            &mut self.scratch,
+            &mut self.error,
+        );
         self.model.rate_into(&self.model.state(q, qd), u, &mut self.model_scratch, &mut self.rate);
         self.error.iter_mut().zip(&self.rate[n..]).for_each(|(e, f)| *e -= f);
         &self.error

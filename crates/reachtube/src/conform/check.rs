@@ -1,4 +1,5 @@
-//! Whether other recordings lie in the hull of the reachable set of a model, and where not: the answer comes with a witness.
+//! Whether other recordings lie in the hull of the reachable set of a model, and where not: the
+//! answer comes with a witness.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,11 +14,13 @@ use crate::model::Model;
 /// The answer of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Check {
-    /// Whether every recording was proved to lie in the interval hull of the reachable set at every sample.
+    /// Whether every recording was proved to lie in the interval hull of the reachable set at every
+    /// sample.
     pub conformant: bool,
     /// Where not.
     pub violations: Violations,
-    /// Where a reachable set could not be followed to the end; what is recorded later counts as violated.
+    /// Where a reachable set could not be followed to the end; what is recorded later counts as
+    /// violated.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lost: Vec<Lost>,
     /// The same for each suite.
@@ -109,14 +112,16 @@ impl Violations {
     }
 }
 
-/// Checks the suites `names` of `data` (all when none is named) against the reachable set of `model`. `settings` say how the recordings are read; they are those of the
-/// model but for what the torques are, and what part of the recordings is used.
+/// Checks the suites `names` of `data` (all when none is named) against the reachable set of
+/// `model`. `settings` say how the recordings are read; they are those of the model but for what
+/// the torques are, and what part of the recordings is used.
 ///
 /// # Guarantee
 ///
-/// When `conformant`, every recorded value was proved with directed rounding to lie in the interval hull of the reachable set, at samples; of the computed outer enclosure of that set where the model is
-/// not linear. A row within rounding of the boundary
-/// (about 1e-12 relative) that could not be proved counts as violated.
+/// When `conformant`, every recorded value was proved with directed rounding to lie in the interval
+/// hull of the reachable set, at samples; of the computed outer enclosure of that set where the
+/// model is not linear. A row within rounding of the boundary (about 1e-12 relative) that could not
+/// be proved counts as violated.
 ///
 /// # Errors
 ///
@@ -130,7 +135,8 @@ pub fn check(
 ) -> Result<Check> {
     let (robot, sets) = (model.robot()?, model.sets());
     let recordings = Recordings::read(data, names, &robot, settings, progress)?;
-    let mut suites: Vec<(SuiteCheck, Sides)> = recordings.suites.iter().map(SuiteCheck::start).collect();
+    let mut suites: Vec<(SuiteCheck, Sides)> =
+        recordings.suites.iter().map(SuiteCheck::start).collect();
     let visit = |index: usize, row: Row| {
         let (result, sides) = &mut suites[index];
         sides.take(row, result, data, &recordings.suites[index], robot.joint_count());
@@ -145,7 +151,10 @@ impl SuiteCheck {
     fn start(suite: &Suite) -> (Self, Sides) {
         let (name, runs) = (suite.entry.name.clone(), suite.runs.len());
         let violations = Violations::none();
-        (Self { suite: name, runs, rows: 0, violations, violating_runs: Vec::new() }, Sides::default())
+        (
+            Self { suite: name, runs, rows: 0, violations, violating_runs: Vec::new() },
+            Sides::default(),
+        )
     }
 }
 
@@ -156,7 +165,14 @@ struct Sides {
 }
 
 impl Sides {
-    fn take(&mut self, row: Row, result: &mut SuiteCheck, data: &DataSet, suite: &Suite, joints: usize) {
+    fn take(
+        &mut self,
+        row: Row,
+        result: &mut SuiteCheck,
+        data: &DataSet,
+        suite: &Suite,
+        joints: usize,
+    ) {
         if row.side == Side::Upper {
             result.rows += 1;
             self.violated = false;
@@ -177,7 +193,12 @@ impl Sides {
     }
 }
 
-fn summary(recordings: &Recordings, suites: Vec<SuiteCheck>, lost: Vec<Lost>, model: &Model) -> Check {
+fn summary(
+    recordings: &Recordings,
+    suites: Vec<SuiteCheck>,
+    lost: Vec<Lost>,
+    model: &Model,
+) -> Check {
     let mut violations = Violations::none();
     for suite in &suites {
         violations.count += suite.violations.count;

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 use reachtube_reach::{
-    Disturbance, IntervalMatrix, IntervalVector, LinearSystem, Propagation, ReachSets, TimeGrid, Trajectory,
+    Disturbance, IntervalMatrix, IntervalVector, LinearSystem, Propagation, ReachSets, TimeGrid,
+    Trajectory,
 };
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
@@ -45,7 +46,11 @@ impl Grids {
     /// # Errors
     ///
     /// When the solution of the system cannot be enclosed over a grid.
-    pub fn new(recordings: &Recordings, system: &LinearSystem, disturbance: Disturbance) -> Result<Self> {
+    pub fn new(
+        recordings: &Recordings,
+        system: &LinearSystem,
+        disturbance: Disturbance,
+    ) -> Result<Self> {
         let mut all: Vec<&TimeGrid> = recordings
             .suites
             .iter()
@@ -120,7 +125,9 @@ pub fn nominals(
     match &suite.shared {
         Some(shared) => Ok(vec![shared_nominal(grids, suite, shared)]),
         None => {
-            let own = |run: &RunSummary| Ok(own_nominal(data, robot, settings, grids, suite, run.index)?.0);
+            let own = |run: &RunSummary| {
+                Ok(own_nominal(data, robot, settings, grids, suite, run.index)?.0)
+            };
             suite.runs.par_iter().map(own).collect()
         }
     }
@@ -132,11 +139,13 @@ fn shared_nominal(grids: &Grids, suite: &Suite, shared: &SharedInput) -> RunNomi
     RunNominal { run: None, grid, inputs: shared.inputs.clone(), trajectory }
 }
 
-/// The deviations of a suite from its nominal solution, or from one for each run where the runs differ in input.
+/// The deviations of a suite from its nominal solution, or from one for each run where the runs
+/// differ in input.
 ///
 /// # Guarantee
 ///
-/// Outer: the exact deviation of every run from the exact solution of the model lies in the envelope.
+/// Outer: the exact deviation of every run from the exact solution of the model lies in the
+/// envelope.
 ///
 /// # Errors
 ///
@@ -203,7 +212,9 @@ fn own_nominal(
     let (run, input) = read_run(data, index, robot, settings).map_err(Error::Defects)?;
     let start = match settings.nominal {
         NominalStart::Mean => suite.mean_start.clone(),
-        NominalStart::Own => IntervalVector::from_fn(2 * run.joints, |i, _| Interval::point(run.state(0)[i])),
+        NominalStart::Own => {
+            IntervalVector::from_fn(2 * run.joints, |i, _| Interval::point(run.state(0)[i]))
+        }
     };
     let grid = grids.find(&input.grid);
     let trajectory = grids.as_slice()[grid].propagation.solve(&start, &input.inputs);

@@ -1,7 +1,7 @@
 use super::Side;
 
-/// The highest and lowest value over many runs, for each sample and state, and which run has it. It streams, and two envelopes merge into the envelope of
-/// the whole; its size is that of one run.
+/// The highest and lowest value over many runs, for each sample and state, and which run has it. It
+/// streams, and two envelopes merge into the envelope of the whole; its size is that of one run.
 ///
 /// # Examples
 ///
@@ -49,7 +49,8 @@ impl Envelope {
         self.include_bounds(run, states, states);
     }
 
-    /// Takes in a run whose values are known to lie between `lower` and `upper`, so that the envelope bounds the exact one from outside.
+    /// Takes in a run whose values are known to lie between `lower` and `upper`, so that the
+    /// envelope bounds the exact one from outside.
     ///
     /// # Guarantee
     ///
@@ -60,7 +61,8 @@ impl Envelope {
         raise(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new < old);
     }
 
-    /// Takes in another envelope of the same states. Ties keep the run of the smaller number, whatever the order of merging.
+    /// Takes in another envelope of the same states. Ties keep the run of the smaller number,
+    /// whatever the order of merging.
     pub fn merge(&mut self, other: &Self) {
         self.extend(other.upper.len());
         for i in 0..other.upper.len() {
@@ -105,7 +107,11 @@ impl Envelope {
         let shift = |values: &[f64], f: &dyn Fn(usize, usize, f64) -> f64| {
             values.iter().enumerate().map(|(at, &v)| f(at / dimension, at % dimension, v)).collect()
         };
-        Self { upper: shift(&self.upper, &upper), lower: shift(&self.lower, &lower), ..self.clone() }
+        Self {
+            upper: shift(&self.upper, &upper),
+            lower: shift(&self.lower, &lower),
+            ..self.clone()
+        }
     }
 
     /// Moves one bound outward.
@@ -128,7 +134,13 @@ impl Envelope {
 }
 
 /// One pass over memory; written without a branch so that the compiler can use vector registers.
-fn raise(bounds: &mut [f64], runs: &mut [u32], values: &[f64], run: u32, beyond: impl Fn(f64, f64) -> bool) {
+fn raise(
+    bounds: &mut [f64],
+    runs: &mut [u32],
+    values: &[f64],
+    run: u32,
+    beyond: impl Fn(f64, f64) -> bool,
+) {
     for ((bound, owner), &value) in bounds.iter_mut().zip(runs.iter_mut()).zip(values) {
         let further = beyond(value, *bound);
         *bound = if further { value } else { *bound };

@@ -12,8 +12,8 @@ use super::proof::{Checked, Enclosure, Proof, TightRow};
 use super::recordings::{Progress, Recordings};
 use super::verify::check_rows;
 use super::{
-    Case, Dynamics, Envelope, Explanation, Settings, Trust, UncertaintySets, Weights, explain, nonlinear,
-    within_box,
+    Case, Dynamics, Envelope, Explanation, Settings, Trust, UncertaintySets, Weights, explain,
+    nonlinear, within_box,
 };
 use crate::data::DataSet;
 use crate::error::Result;
@@ -28,7 +28,9 @@ pub struct Conformance {
     pub dynamics: Dynamics,
     /// X0, U, V.
     pub sets: UncertaintySets,
-    /// Cost of the sets: Σ_k Σ_i s_i width_i(t_k) of the reachable set and the noise, at each distinct sample time; suites whose sets differ count by their mean. Infinite where a set was lost.
+    /// Cost of the sets: Σ_k Σ_i s_i width_i(t_k) of the reachable set and the noise, at each
+    /// distinct sample time; suites whose sets differ count by their mean. Infinite where a set was
+    /// lost.
     pub cost: f64,
     /// What the solver says no sets can cost less than, for a linear model.
     pub lower_bound: Option<f64>,
@@ -42,7 +44,8 @@ pub struct Conformance {
     pub trust: Trust,
     /// How the sets of a model that is not linear were found.
     pub search: Option<Search>,
-    /// The rows that touch the reachable set, the closest first; that of the linearisation where the model is not linear.
+    /// The rows that touch the reachable set, the closest first; that of the linearisation where
+    /// the model is not linear.
     pub tight: Vec<TightRow>,
     /// How close a motion of the model comes to each run, where that was asked for.
     pub explanations: Vec<Explanation>,
@@ -61,7 +64,8 @@ pub struct Search {
     /// The cost of the linearised sets, Σ_k Σ_i s_i 2 (R_k r)_i, which the programs minimise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linearised_cost: Option<f64>,
-    /// The case and the time (s) at which a simulated motion under the last sets but one left every bound.
+    /// The case and the time (s) at which a simulated motion under the last sets but one left every
+    /// bound.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub runs_away: Option<(String, f64)>,
 }
@@ -73,27 +77,34 @@ pub struct Watch<'a> {
     pub reading: Progress<'a>,
     /// Of rounds or bisections that are finished, in words.
     pub finished: &'a (dyn Fn(&str) + Sync),
-    /// A file that holds what is finished, to go on from: read where it is there, written after each round, removed at the end.
+    /// A file that holds what is finished, to go on from: read where it is there, written after
+    /// each round, removed at the end.
     pub resume: Option<&'a Path>,
 }
 
 impl Watch<'_> {
     /// Nobody watches.
-    pub const SILENT: Watch<'static> = Watch { reading: &|_, _| {}, finished: &|_| {}, resume: None };
+    pub const SILENT: Watch<'static> =
+        Watch { reading: &|_, _| {}, finished: &|_| {}, resume: None };
 }
 
-/// Identifies the smallest uncertainty sets for which the model of `robot` that `settings` ask for is reachset conformant with the suites `names` of `data` (all suites when none is named), and
-/// proves the result with directed rounding. A linear model's sets are those of one linear program; for others see [`Method`](super::Method).
+/// Identifies the smallest uncertainty sets for which the model of `robot` that `settings` ask for
+/// is reachset conformant with the suites `names` of `data` (all suites when none is named), and
+/// proves the result with directed rounding. A linear model's sets are those of one linear program;
+/// for others see [`Method`](super::Method).
 ///
 /// # Guarantee
 ///
-/// When `proof.verified`, for every run, sample and state of the notion used, the recorded value lies in the interval hull of the reachable set of the model at that sample: for a linear model of the set
-/// itself, taken from inside, with the deviation taken from outside; for another of the computed outer enclosure. Directed rounding. Nothing is said between samples.
+/// When `proof.verified`, for every run, sample and state of the notion used, the recorded value
+/// lies in the interval hull of the reachable set of the model at that sample: for a linear model
+/// of the set itself, taken from inside, with the deviation taken from outside; for another of the
+/// computed outer enclosure. Directed rounding. Nothing is said between samples.
 ///
 /// # Errors
 ///
-/// Defects of the recordings, settings that do not fit, a model that runs away without any disturbance, a program that the solver gives up on, a `resume` file of another job or that cannot be
-/// written. A model that could not be proved conformant is no error.
+/// Defects of the recordings, settings that do not fit, a model that runs away without any
+/// disturbance, a program that the solver gives up on, a `resume` file of another job or that
+/// cannot be written. A model that could not be proved conformant is no error.
 pub fn conform(
     robot: &Robot,
     data: &DataSet,
@@ -105,7 +116,8 @@ pub fn conform(
     conform_dynamics(robot, data, names, settings, Dynamics::new(robot, settings)?, watch)
 }
 
-/// As [`conform`], with a model that is at hand. A linear one that is given as a polynomial goes the way of those that are not linear.
+/// As [`conform`], with a model that is at hand. A linear one that is given as a polynomial goes
+/// the way of those that are not linear.
 ///
 /// # Errors
 ///
@@ -123,7 +135,9 @@ pub fn conform_dynamics(
     recordings.notes.extend(within_box::notes(settings, &recordings));
     let mut found = match dynamics {
         Dynamics::Linear(system) => linear(robot, data, settings, system, recordings)?,
-        Dynamics::Polynomial(model) => nonlinear::conform(robot, data, settings, *model, recordings, watch)?,
+        Dynamics::Polynomial(model) => {
+            nonlinear::conform(robot, data, settings, *model, recordings, watch)?
+        }
     };
     if settings.explain.is_some() {
         let Conformance { dynamics, recordings, sets, .. } = &found;
@@ -176,21 +190,26 @@ pub(super) fn weights(settings: &Settings, deviations: &[&Envelope], joints: usi
     match &settings.weights {
         Weights::Unit => vec![1.0; 2 * joints],
         Weights::Given(weights) => weights.clone(),
-        Weights::Spread => (0..2 * joints).map(|i| 1.0 / largest_deviation(deviations, i)).collect(),
+        Weights::Spread => {
+            (0..2 * joints).map(|i| 1.0 / largest_deviation(deviations, i)).collect()
+        }
     }
 }
 
 /// The largest |d| of state `i`; 1 where there is none.
 fn largest_deviation(deviations: &[&Envelope], i: usize) -> f64 {
     let of = |envelope: &&Envelope| {
-        (0..envelope.len()).map(|k| envelope.upper(k, i).max(-envelope.lower(k, i))).fold(0.0, f64::max)
+        (0..envelope.len())
+            .map(|k| envelope.upper(k, i).max(-envelope.lower(k, i)))
+            .fold(0.0, f64::max)
     };
     let largest = deviations.iter().map(of).fold(0.0, f64::max);
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// Makes the solver's answer true (correction H of the method): the radii are scaled by the worst ratio, then checked with directed rounding, and inflated by a growing
-/// last bit until the check passes.
+/// Makes the solver's answer true (correction H of the method): the radii are scaled by the worst
+/// ratio, then checked with directed rounding, and inflated by a growing last bit until the check
+/// passes.
 fn repair(
     program: &Program,
     found: &UncertaintySets,
@@ -232,10 +251,12 @@ fn check_all(
     checked
 }
 
-/// Motions that touch the reachable set, among all motions: the rows of support are among the tight ones.
+/// Motions that touch the reachable set, among all motions: the rows of support are among the tight
+/// ones.
 pub(super) fn trust(recordings: &Recordings, tight: &[TightRow]) -> Trust {
-    let motion_of =
-        |suite: &super::Suite| suite.entry.motion.clone().unwrap_or_else(|| suite.entry.name.clone());
+    let motion_of = |suite: &super::Suite| {
+        suite.entry.motion.clone().unwrap_or_else(|| suite.entry.name.clone())
+    };
     let known = recordings.suites.iter().all(|suite| suite.entry.motion.is_some());
     let all: std::collections::BTreeSet<String> = recordings.suites.iter().map(motion_of).collect();
     let deciding: std::collections::BTreeSet<String> =

@@ -29,7 +29,9 @@ pub use proof::{Enclosure, Lost, Proof, TightRow};
 pub use recordings::{Progress, Recordings, RunSummary, SharedInput, Suite};
 use serde::{Deserialize, Serialize};
 pub use sets::UncertaintySets;
-pub use settings::{Centre, Method, Noise, NominalStart, Notion, Settings, States, Tolerance, Weights};
+pub use settings::{
+    Centre, Method, Noise, NominalStart, Notion, Settings, States, Tolerance, Weights,
+};
 pub use trust::{Trust, clopper_pearson, scenario_bound};
 pub use verify::{Row, check_rows};
 

@@ -1,12 +1,14 @@
 //! The linear program: the smallest sets whose reachable hull reaches as far as the deviations.
 //!
-//! Unknowns are the centres c = (c_x, c_u), the radii r = (r_x, r_u) and, where it is asked for, the radii r_v of the noise. For each sample k
-//! and state i, with E_k = (e^{A t_k}, Γ(t_k)) and R_k = (|e^{A t_k}|, κ(t_k)):
+//! Unknowns are the centres c = (c_x, c_u), the radii r = (r_x, r_u) and, where it is asked for,
+//! the radii r_v of the noise. For each sample k and state i, with E_k = (e^{A t_k}, Γ(t_k)) and
+//! R_k = (|e^{A t_k}|, κ(t_k)):
 //!
 //! -  (E_k c)_i + (R_k r)_i + r_v,i >= max d_i(t_k)
 //! - -(E_k c)_i + (R_k r)_i + r_v,i >= max -d_i(t_k)
 //!
-//! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, at which blocks count by their mean, corrections A, E and F of the method.
+//! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, at which
+//! blocks count by their mean, corrections A, E and F of the method.
 
 use reachtube_reach::Hyperrectangle;
 
@@ -97,7 +99,8 @@ impl<'a> Program<'a> {
         let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
         let (cost, noise_cost) = cost(&blocks, &shares, weights);
         let (centers, scale) = (Vec::new(), f64::MIN_POSITIVE);
-        let mut program = Self { settings, joints, blocks, shares, centers, cost, noise_cost, scale };
+        let mut program =
+            Self { settings, joints, blocks, shares, centers, cost, noise_cost, scale };
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
     }
@@ -120,7 +123,8 @@ impl<'a> Program<'a> {
         self.blocks.iter().map(|block| 2 * states * block.envelope.len()).sum()
     }
 
-    /// Solves the program by row generation: few of the rows decide, and only they are handed to the solver.
+    /// Solves the program by row generation: few of the rows decide, and only they are handed to
+    /// the solver.
     ///
     /// # Errors
     ///
@@ -163,7 +167,8 @@ impl<'a> Program<'a> {
         self.places((longest / 8).max(1)).collect()
     }
 
-    /// The right-hand side of a row: the deviation along its direction, less the noise that is known.
+    /// The right-hand side of a row: the deviation along its direction, less the noise that is
+    /// known.
     fn bound(&self, (b, k, i, side): Place) -> f64 {
         let envelope = &self.blocks[b].envelope;
         let known = match &self.settings.noise {
@@ -214,22 +219,27 @@ impl<'a> Program<'a> {
     }
 
     fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
-        let join = |x: &Hyperrectangle, u: &Hyperrectangle, pick: fn(&Hyperrectangle) -> &Vec<f64>| {
-            pick(x).iter().chain(pick(u)).copied().collect()
-        };
+        let join =
+            |x: &Hyperrectangle, u: &Hyperrectangle, pick: fn(&Hyperrectangle) -> &Vec<f64>| {
+                pick(x).iter().chain(pick(u)).copied().collect()
+            };
         let free = self.settings.noise == Noise::Free;
         Unknowns {
             center: join(&sets.initial_set, &sets.input_set, |set| &set.center),
             radius: join(&sets.initial_set, &sets.input_set, |set| &set.radius),
-            free_noise: (0..2 * self.joints).map(|i| if free { sets.noise_radius(i) } else { 0.0 }).collect(),
+            free_noise: (0..2 * self.joints)
+                .map(|i| if free { sets.noise_radius(i) } else { 0.0 })
+                .collect(),
         }
     }
 
-    /// Solves with the rows `places`; returns the sets as found and polished, and the dual objective.
+    /// Solves with the rows `places`; returns the sets as found and polished, and the dual
+    /// objective.
     fn solve_rows(&self, places: &[Place]) -> Result<([UncertaintySets; 2], f64)> {
         let layout = Layout::new(self);
         let largest_cost = layout.cost.iter().copied().fold(0.0, f64::max);
-        // Each unknown is measured so that its cost is that of the dearest, each row so that its largest entry is 1.
+        // Each unknown is measured so that its cost is that of the dearest, each row so that its
+        // largest entry is 1.
         let unit: Vec<f64> = layout.cost.iter().map(|w| largest_cost / w).collect();
         let mut triplets = Triplets::default();
         let mut bounds = Vec::new();
@@ -256,7 +266,8 @@ impl<'a> Program<'a> {
             .collect();
         let optimum = solve_cone(&objective, &triplets, &bounds)?;
         let sets = |x: &[f64]| {
-            let unknowns: Vec<f64> = x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
+            let unknowns: Vec<f64> =
+                x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
             layout.sets(&unknowns, self.settings)
         };
         let lower_bound = optimum.dual * self.scale * largest_cost + self.fixed_cost();
@@ -276,13 +287,18 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// The largest ratio of what a row needs to what the radii give it there, and 1 at least: r times that satisfies every row.
+    /// The largest ratio of what a row needs to what the radii give it there, and 1 at least: r
+    /// times that satisfies every row.
     pub fn worst_ratio(&self, sets: &UncertaintySets) -> f64 {
         let unknowns = self.unknowns(sets);
         let ratio = |place: Place| {
             let (b, k, i, _) = place;
             let given = dot(self.row(b, k, i).1, &unknowns.radius);
-            if given > ROUNDING * self.scale { 1.0 + self.excess(place, &unknowns) / given } else { 1.0 }
+            if given > ROUNDING * self.scale {
+                1.0 + self.excess(place, &unknowns) / given
+            } else {
+                1.0
+            }
         };
         self.places(1).map(ratio).fold(1.0, f64::max)
     }
@@ -303,7 +319,8 @@ impl<'a> Program<'a> {
         self.scale
     }
 
-    /// The interval hull of the reachable set in the units of the paper: (Σ_k Σ_i (E_k (y1 - y2))_i of eq. (21), Σ_k Δt Π_i 2 (R_k r)_i of eq. (2)).
+    /// The interval hull of the reachable set in the units of the paper: (Σ_k Σ_i (E_k (y1 - y2))_i
+    /// of eq. (21), Σ_k Δt Π_i 2 (R_k r)_i of eq. (2)).
     pub fn paper_sums(&self, sets: &UncertaintySets) -> (f64, f64) {
         let unknowns = self.unknowns(sets);
         let (mut signed, mut volume) = (0.0, 0.0);
@@ -313,7 +330,8 @@ impl<'a> Program<'a> {
                 let rows = (0..2 * self.joints).map(|i| self.row(b, k, i));
                 let edges = rows.clone().map(|(center, _)| 2.0 * dot(center, &unknowns.radius));
                 signed += share * edges.sum::<f64>();
-                let product: f64 = rows.map(|(_, radius)| 2.0 * dot(radius, &unknowns.radius)).product();
+                let product: f64 =
+                    rows.map(|(_, radius)| 2.0 * dot(radius, &unknowns.radius)).product();
                 volume += share * product * (times.get(k + 1).unwrap_or(&times[k]) - times[k]);
             }
         }
@@ -344,7 +362,8 @@ impl Layout {
         if program.settings.noise == Noise::Free {
             cost.extend(&program.noise_cost);
         }
-        // A radius without a cost is in no row (with one sample nothing depends on the input): any cost makes it 0.
+        // A radius without a cost is in no row (with one sample nothing depends on the input): any
+        // cost makes it 0.
         let largest = cost.iter().copied().fold(0.0, f64::max);
         cost.iter_mut().filter(|w| **w == 0.0).for_each(|w| *w = largest);
         Self { joints: program.joints, centers, cost }
@@ -358,7 +377,13 @@ impl Layout {
         column < self.radii()
     }
 
-    fn entries(&self, center: &[f64], radius: &[f64], state: usize, side: Side) -> Vec<(usize, f64)> {
+    fn entries(
+        &self,
+        center: &[f64],
+        radius: &[f64],
+        state: usize,
+        side: Side,
+    ) -> Vec<(usize, f64)> {
         let signed = center.iter().map(|a| side.sign() * a).take(self.radii());
         let mut row: Vec<(usize, f64)> = signed.chain(radius.iter().copied()).enumerate().collect();
         let noise = self.radii() + 3 * self.joints;
@@ -369,7 +394,13 @@ impl Layout {
     }
 
     /// r >= 0, and |c| <= r where the origin must lie in the sets.
-    fn restrictions(&self, centre: Centre, triplets: &mut Triplets, bounds: &mut Vec<f64>, unit: &[f64]) {
+    fn restrictions(
+        &self,
+        centre: Centre,
+        triplets: &mut Triplets,
+        bounds: &mut Vec<f64>,
+        unit: &[f64],
+    ) {
         for column in self.radii()..self.cost.len() {
             triplets.row([(column, -1.0)]);
             bounds.push(0.0);
@@ -388,8 +419,10 @@ impl Layout {
     fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
         let (n, radii) = (self.joints, self.radii());
         let set = |from: usize, to: usize| {
-            let radius: Vec<f64> = unknowns[radii + from..radii + to].iter().map(|r| r.max(0.0)).collect();
-            let mut center = if self.centers { unknowns[from..to].to_vec() } else { vec![0.0; to - from] };
+            let radius: Vec<f64> =
+                unknowns[radii + from..radii + to].iter().map(|r| r.max(0.0)).collect();
+            let mut center =
+                if self.centers { unknowns[from..to].to_vec() } else { vec![0.0; to - from] };
             if settings.centre == Centre::Origin {
                 center.iter_mut().zip(&radius).for_each(|(c, r)| *c = c.clamp(-r, *r));
             }
@@ -418,7 +451,8 @@ fn coefficients(grid: &Grid) -> Vec<f64> {
     all
 }
 
-/// For each of several lists of sample times, what each sample counts: those at one time together 1.
+/// For each of several lists of sample times, what each sample counts: those at one time together
+/// 1.
 pub(super) fn shares<'t>(lists: impl Iterator<Item = &'t [f64]> + Clone) -> Vec<Vec<f64>> {
     let nanoseconds = |t: &f64| (t * 1e9).round() as i64;
     let mut counts = std::collections::HashMap::new();

@@ -22,9 +22,11 @@ pub struct Proof {
     pub proved: usize,
     /// Recordings behind the rows.
     pub runs: usize,
-    /// The largest excess of a row that has a reachable set, rad or rad/s: not above 0 when all rows hold.
+    /// The largest excess of a row that has a reachable set, rad or rad/s: not above 0 when all
+    /// rows hold.
     pub largest_excess: f64,
-    /// Where a reachable set could not be followed to the end; the rows from there on are not proved.
+    /// Where a reachable set could not be followed to the end; the rows from there on are not
+    /// proved.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lost: Vec<Lost>,
 }
@@ -36,11 +38,13 @@ pub enum Enclosure {
     /// Its hull, taken from inside: what is in it is reachable in that state.
     #[default]
     Inner,
-    /// A computed set around it: what a formal analysis uses, and for a model that is not linear all that can be computed.
+    /// A computed set around it: what a formal analysis uses, and for a model that is not linear
+    /// all that can be computed.
     Outer,
 }
 
-/// A reachable set that was lost: the model may run away under its uncertainty, or the enclosure grew too wide.
+/// A reachable set that was lost: the model may run away under its uncertainty, or the enclosure
+/// grew too wide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lost {
@@ -98,7 +102,13 @@ impl Checked {
         self.tight.sort_by(|a, b| b.row.excess.total_cmp(&a.row.excess));
     }
 
-    pub fn proof(&self, settings: &Settings, runs: usize, enclosure: Enclosure, lost: Vec<Lost>) -> Proof {
+    pub fn proof(
+        &self,
+        settings: &Settings,
+        runs: usize,
+        enclosure: Enclosure,
+        lost: Vec<Lost>,
+    ) -> Proof {
         let states = match settings.states {
             States::All => "position and velocity",
             States::Positions => "position",

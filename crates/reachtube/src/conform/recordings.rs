@@ -12,7 +12,8 @@ use super::{Envelope, NominalStart, Settings};
 use crate::data::{DataSet, Defect, Run, SuiteEntry, check_limits};
 use crate::error::{Error, Result};
 
-/// Progress of a long job: called with the number of recordings done so far and the number there are.
+/// Progress of a long job: called with the number of recordings done so far and the number there
+/// are.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// The suites of a data set, read and checked.
@@ -52,7 +53,8 @@ pub struct RunSummary {
     pub samples: usize,
     /// Time from the first to the last of them, s.
     pub duration: f64,
-    /// Its grid, or a longer one of the suite that it is the beginning of: runs of one rate share one.
+    /// Its grid, or a longer one of the suite that it is the beginning of: runs of one rate share
+    /// one.
     pub grid: Arc<TimeGrid>,
     /// Its first state, 2n.
     pub start: Vec<f64>,
@@ -72,17 +74,21 @@ pub struct SharedInput {
 }
 
 impl SharedInput {
-    /// The longer of the two when the other is its beginning. The input of a run's last sample acts on nothing and is not compared.
+    /// The longer of the two when the other is its beginning. The input of a run's last sample acts
+    /// on nothing and is not compared.
     fn merge(self, other: Self, joints: usize) -> Option<Self> {
-        let (short, long) = if self.grid.len() <= other.grid.len() { (self, other) } else { (other, self) };
+        let (short, long) =
+            if self.grid.len() <= other.grid.len() { (self, other) } else { (other, self) };
         let acting = short.grid.len().saturating_sub(1) * joints;
-        let same = short.grid.is_prefix_of(&long.grid) && short.inputs[..acting] == long.inputs[..acting];
+        let same =
+            short.grid.is_prefix_of(&long.grid) && short.inputs[..acting] == long.inputs[..acting];
         same.then_some(long)
     }
 }
 
 impl Recordings {
-    /// Reads the suites named, on all cores; memory does not grow with the number of runs in a suite.
+    /// Reads the suites named, on all cores; memory does not grow with the number of runs in a
+    /// suite.
     ///
     /// # Errors
     ///
@@ -109,8 +115,9 @@ impl Recordings {
             }
             done += entry.runs.len();
         }
-        let read =
-            suites.iter().flat_map(|suite| suite.runs.iter().map(|run| (run.index, run.sha256.as_str())));
+        let read = suites
+            .iter()
+            .flat_map(|suite| suite.runs.iter().map(|run| (run.index, run.sha256.as_str())));
         notes.extend(data.copies_note(read));
         if defects.is_empty() { Ok(Self { suites, notes }) } else { Err(Error::Defects(defects)) }
     }
@@ -135,7 +142,14 @@ struct Part {
 impl Part {
     fn new(joints: usize) -> Self {
         let envelope = Envelope::new(2 * joints);
-        Self { runs: Vec::new(), shared: None, empty: true, envelope, grids: Vec::new(), defects: Vec::new() }
+        Self {
+            runs: Vec::new(),
+            shared: None,
+            empty: true,
+            envelope,
+            grids: Vec::new(),
+            defects: Vec::new(),
+        }
     }
 
     fn grid(&mut self, grid: &TimeGrid) -> Arc<TimeGrid> {
@@ -181,9 +195,11 @@ fn read_suite(
                 part.envelope.include(index as u32, &run.states);
                 let start = run.state(0).to_vec();
                 let notes = data.run_notes(index, &run);
-                let (samples, duration) = (run.len(), shared.grid.times().last().copied().unwrap_or(0.0));
+                let (samples, duration) =
+                    (run.len(), shared.grid.times().last().copied().unwrap_or(0.0));
                 let grid = part.grid(&shared.grid);
-                let summary = RunSummary { index, samples, duration, grid, start, sha256: run.sha256, notes };
+                let summary =
+                    RunSummary { index, samples, duration, grid, start, sha256: run.sha256, notes };
                 part.runs.push((place, summary));
                 part.share(Some(shared), n);
             }

@@ -10,7 +10,8 @@ use super::{Dynamics, Lost, Recordings, Settings, UncertaintySets};
 use crate::data::DataSet;
 use crate::error::Result;
 
-/// Hands every row of every suite to `visit`, with the index of the suite; returns where a reachable set was lost.
+/// Hands every row of every suite to `visit`, with the index of the suite; returns where a
+/// reachable set was lost.
 ///
 /// # Guarantee
 ///
@@ -31,11 +32,14 @@ pub(super) fn every_row(
     match dynamics {
         Dynamics::Linear(system) => {
             let grids = Grids::new(recordings, system, settings.disturbance)?;
-            let reach: Vec<ReachSets> = grids.as_slice().iter().map(|grid| grid.reach(sets)).collect();
+            let reach: Vec<ReachSets> =
+                grids.as_slice().iter().map(|grid| grid.reach(sets)).collect();
             for (index, suite) in recordings.suites.iter().enumerate() {
                 for deviation in suite_deviations(data, robot, settings, &grids, suite)? {
                     let (grid, reach) = (&grids.as_slice()[deviation.grid], &reach[deviation.grid]);
-                    check_rows(grid, reach, sets, settings.states, &deviation, |row| visit(index, row));
+                    check_rows(grid, reach, sets, settings.states, &deviation, |row| {
+                        visit(index, row)
+                    });
                 }
             }
             Ok(Vec::new())
@@ -46,7 +50,11 @@ pub(super) fn every_row(
             for (case, flowpipe) in cases.iter().zip(&flowpipes) {
                 check_outer(case, flowpipe, sets, settings.states, |row| visit(case.suite, row));
             }
-            Ok(cases.iter().zip(&flowpipes).filter_map(|(case, flowpipe)| lost(case, flowpipe)).collect())
+            Ok(cases
+                .iter()
+                .zip(&flowpipes)
+                .filter_map(|(case, flowpipe)| lost(case, flowpipe))
+                .collect())
         }
     }
 }

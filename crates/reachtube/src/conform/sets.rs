@@ -8,7 +8,8 @@ pub struct UncertaintySets {
     pub initial_set: Hyperrectangle,
     /// U, n, N m, around the nominal input.
     pub input_set: Hyperrectangle,
-    /// V, 2n, rad and rad/s, centred at 0: added to the reachable set where it is compared with measurements.
+    /// V, 2n, rad and rad/s, centred at 0: added to the reachable set where it is compared with
+    /// measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_set: Option<Hyperrectangle>,
 }
@@ -19,7 +20,8 @@ impl UncertaintySets {
         self.noise_set.as_ref().map_or(0.0, |set| set.radius[i])
     }
 
-    /// All radii times `factor` plus `term`, both rounded to nearest. The radius of V is left alone: where it is known it must stay.
+    /// All radii times `factor` plus `term`, both rounded to nearest. The radius of V is left
+    /// alone: where it is known it must stay.
     pub(crate) fn inflated(&self, factor: f64, term: f64) -> Self {
         let inflate = |set: &Hyperrectangle| Hyperrectangle {
             center: set.center.clone(),

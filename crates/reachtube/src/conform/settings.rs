@@ -9,19 +9,23 @@ use crate::error::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// By linear programs over all suites: one for a linear model; for another one after the other, each linearised along every nominal about the sets of the one before.
+    /// By linear programs over all suites: one for a linear model; for another one after the other,
+    /// each linearised along every nominal about the sets of the one before.
     #[default]
     Program,
-    /// By bisection of one radius after the other, the paper's way for models that are not linear. The result depends on their order and is not the smallest together; it is there to
-    /// be compared with.
+    /// By bisection of one radius after the other, the paper's way for models that are not linear.
+    /// The result depends on their order and is not the smallest together; it is there to be
+    /// compared with.
     Bisection,
 }
 
-/// In which directions the reachable set must reach as far as the recordings (correction C of the method).
+/// In which directions the reachable set must reach as far as the recordings (correction C of the
+/// method).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Notion {
-    /// Along ± each state axis: the interval hull of the runs lies in the hull of the reachable set, the paper's notion.
+    /// Along ± each state axis: the interval hull of the runs lies in the hull of the reachable
+    /// set, the paper's notion.
     #[default]
     Hull,
 }
@@ -71,7 +75,8 @@ pub enum NominalStart {
     Own,
 }
 
-/// What is known of the measurement noise: a set V of the measured state, centred at 0, that is added to the reachable set where runs are compared with it.
+/// What is known of the measurement noise: a set V of the measured state, centred at 0, that is
+/// added to the reachable set where runs are compared with it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Noise {
@@ -84,7 +89,8 @@ pub enum Noise {
     Fixed(Vec<f64>),
 }
 
-/// How the states are weighed against each other in the cost (correction F of the method: rad and rad/s are otherwise added as they are).
+/// How the states are weighed against each other in the cost (correction F of the method: rad and
+/// rad/s are otherwise added as they are).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Weights {
@@ -124,7 +130,8 @@ pub struct Settings {
     pub abstraction: Abstraction,
     /// Where the model is expanded.
     pub expansion_point: ExpansionPoint,
-    /// The box over which what the model leaves out was bounded, where that was done; recordings must start in it.
+    /// The box over which what the model leaves out was bounded, where that was done; recordings
+    /// must start in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operating_box: Option<OperatingBox>,
     /// How the sets are found.
@@ -205,10 +212,22 @@ impl Settings {
     /// [`Error::Setting`] that names the setting, its value and what it may be.
     pub fn validate(&self, joints: usize) -> Result<()> {
         if let Weights::Given(weights) = &self.weights {
-            check_list("weight", weights, 2 * joints, |w| (1e-9..=1e9).contains(&w), "between 1e-9 and 1e9")?;
+            check_list(
+                "weight",
+                weights,
+                2 * joints,
+                |w| (1e-9..=1e9).contains(&w),
+                "between 1e-9 and 1e9",
+            )?;
         }
         if let Noise::Fixed(radii) = &self.noise {
-            check_list("noise radius", radii, 2 * joints, |r| (0.0..=1e9).contains(&r), "between 0 and 1e9")?;
+            check_list(
+                "noise radius",
+                radii,
+                2 * joints,
+                |r| (0.0..=1e9).contains(&r),
+                "between 0 and 1e9",
+            )?;
         }
         if let Some(Tolerance { position, velocity }) = self.explain {
             check_list("tolerance", &[position, velocity], 2, |t| t >= 0.0, "0 or more")?;
@@ -236,7 +255,9 @@ fn check_list(
         )));
     }
     match values.iter().enumerate().find(|(_, v)| !(v.is_finite() && fits(**v))) {
-        Some((i, value)) => Err(Error::Setting(format!("{what} {} is {value}; it must be {range}", i + 1))),
+        Some((i, value)) => {
+            Err(Error::Setting(format!("{what} {} is {value}; it must be {range}", i + 1)))
+        }
         None => Ok(()),
     }
 }

@@ -18,7 +18,8 @@ pub(super) struct Triplets {
 }
 
 impl Triplets {
-    /// Entries below 1e-13 are left out: they cannot be told from rounding, and the repair covers them.
+    /// Entries below 1e-13 are left out: they cannot be told from rounding, and the repair covers
+    /// them.
     pub(super) fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
         for (column, value) in entries.into_iter().filter(|(_, value)| value.abs() > 1e-13) {
             self.rows.push(self.count);
@@ -29,7 +30,8 @@ impl Triplets {
     }
 }
 
-/// An optimal point as the solver found it, the same moved onto its active rows, and the dual objective.
+/// An optimal point as the solver found it, the same moved onto its active rows, and the dual
+/// objective.
 pub(super) struct Optimum {
     pub found: Vec<f64>,
     pub polished: Vec<f64>,
@@ -62,7 +64,8 @@ pub(super) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
             let solution = &solver.solution;
-            let active: Vec<bool> = solution.z.iter().zip(&solution.s).map(|(z, s)| z > s).collect();
+            let active: Vec<bool> =
+                solution.z.iter().zip(&solution.s).map(|(z, s)| z > s).collect();
             Ok(Optimum {
                 found: solution.x.clone(),
                 polished: polish(matrix, bounds, &active, &solution.x),
@@ -75,8 +78,9 @@ pub(super) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -
     }
 }
 
-/// Moves x the least way onto the active rows, those whose multiplier exceeds their slack. An interior-point solution meets each of them to about 1e-9 of the largest row, which is
-/// much for a small one; a vertex meets all to rounding.
+/// Moves x the least way onto the active rows, those whose multiplier exceeds their slack. An
+/// interior-point solution meets each of them to about 1e-9 of the largest row, which is much for a
+/// small one; a vertex meets all to rounding.
 fn polish(matrix: &Triplets, bounds: &[f64], active: &[bool], x: &[f64]) -> Vec<f64> {
     let place: Vec<Option<usize>> = active
         .iter()

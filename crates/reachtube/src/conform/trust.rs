@@ -1,5 +1,6 @@
-//! What a conformant model says about motions that were not recorded. "These sets enclose these runs" is a fact; anything about the next motion is
-//! statistical, and needs motions that are independent and alike. Several suites of one motion count once.
+//! What a conformant model says about motions that were not recorded. "These sets enclose these
+//! runs" is a fact; anything about the next motion is statistical, and needs motions that are
+//! independent and alike. Several suites of one motion count once.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +24,8 @@ pub struct Trust {
 }
 
 impl Trust {
-    /// The scenario bound for a model that was fitted to `motions` motions of which `deciding` have a support row.
+    /// The scenario bound for a model that was fitted to `motions` motions of which `deciding` have
+    /// a support row.
     pub fn of_fit(motions: usize, deciding: usize, known: bool) -> Self {
         Self {
             motions,
@@ -37,7 +39,8 @@ impl Trust {
         }
     }
 
-    /// The hold-out bound for a check on `motions` motions, not used in the fit, of which `violating` left the reachable set.
+    /// The hold-out bound for a check on `motions` motions, not used in the fit, of which
+    /// `violating` left the reachable set.
     pub fn of_check(motions: usize, violating: usize, known: bool) -> Self {
         Self {
             motions,
@@ -60,19 +63,23 @@ fn caveat(known: bool) -> &'static str {
     }
 }
 
-/// The one-sided Clopper-Pearson upper bound of a probability at confidence 1 - β after `hits` in `trials`: the p at which that few hits have probability β.
+/// The one-sided Clopper-Pearson upper bound of a probability at confidence 1 - β after `hits` in
+/// `trials`: the p at which that few hits have probability β.
 pub fn clopper_pearson(trials: usize, hits: usize, beta: f64) -> f64 {
     if hits >= trials {
         return 1.0;
     }
     let tail = |p: f64| {
-        (0..=hits).map(|k| (ln_choose(trials, k) + power(p, k) + power(1.0 - p, trials - k)).exp()).sum()
+        (0..=hits)
+            .map(|k| (ln_choose(trials, k) + power(p, k) + power(1.0 - p, trials - k)).exp())
+            .sum()
     };
     bisect(|p| -> f64 { tail(p) }, beta, 0.0, 1.0)
 }
 
-/// The wait-and-judge scenario bound ε(k) of Campi and Garatti (Mathematical Programming 2018, Theorem 1): with confidence 1 - β, a convex program with `scenarios`
-/// scenarios of which `support` are of support is violated by the next one with probability at most ε.
+/// The wait-and-judge scenario bound ε(k) of Campi and Garatti (Mathematical Programming 2018,
+/// Theorem 1): with confidence 1 - β, a convex program with `scenarios` scenarios of which
+/// `support` are of support is violated by the next one with probability at most ε.
 ///
 /// 1 - ε is the root in (0, 1) of β/(N+1) Σ_{m=k}^{N} C(m,k) t^{m-k} = C(N,k) t^{N-k}.
 pub fn scenario_bound(scenarios: usize, support: usize, beta: f64) -> f64 {
@@ -82,7 +89,9 @@ pub fn scenario_bound(scenarios: usize, support: usize, beta: f64) -> f64 {
     }
     // The quotient of the two sides falls from infinity to below 1 as t grows to 1.
     let quotient = |t: f64| {
-        let term = |m: usize| (ln_choose(m, k) - ln_choose(n, k) + power(t, m - k) - power(t, n - k)).exp();
+        let term = |m: usize| {
+            (ln_choose(m, k) - ln_choose(n, k) + power(t, m - k) - power(t, n - k)).exp()
+        };
         beta / (n as f64 + 1.0) * (k..=n).map(term).sum::<f64>()
     };
     1.0 - bisect(quotient, 1.0, 0.0, 1.0)
@@ -135,9 +144,11 @@ mod tests {
             assert!(epsilon > last && epsilon <= 1.0, "support {k}: {epsilon}");
             last = epsilon;
             let t = 1.0 - epsilon;
-            let choose =
-                |m: usize, k: usize| (0..k).map(|i| (m - i) as f64 / (k - i) as f64).product::<f64>();
-            let left: f64 = (k..=n).map(|m| choose(m, k) * t.powi((m - k) as i32)).sum::<f64>() * beta / 51.0;
+            let choose = |m: usize, k: usize| {
+                (0..k).map(|i| (m - i) as f64 / (k - i) as f64).product::<f64>()
+            };
+            let left: f64 =
+                (k..=n).map(|m| choose(m, k) * t.powi((m - k) as i32)).sum::<f64>() * beta / 51.0;
             let right = choose(n, k) * t.powi((n - k) as i32);
             assert!((left / right - 1.0).abs() < 1e-6, "support {k}");
         }

@@ -19,17 +19,20 @@ pub struct Row {
     pub side: Side,
     /// The run (index in the data set) that reaches furthest.
     pub run: u32,
-    /// How far the run reaches beyond the reachable set; negative inside. An upper bound, rad or rad/s.
+    /// How far the run reaches beyond the reachable set; negative inside. An upper bound, rad or
+    /// rad/s.
     pub excess: f64,
     /// The radius of the reachable set there, rad or rad/s.
     pub radius: f64,
 }
 
-/// Checks every row of a deviation and hands each to `visit`. A row with `excess <= 0` is proved to be enclosed.
+/// Checks every row of a deviation and hands each to `visit`. A row with `excess <= 0` is proved to
+/// be enclosed.
 ///
 /// # Guarantee
 ///
-/// The reachable set is taken from inside and the deviation from outside, both with directed rounding.
+/// The reachable set is taken from inside and the deviation from outside, both with directed
+/// rounding.
 pub fn check_rows(
     grid: &Grid,
     reach: &ReachSets,
@@ -45,11 +48,20 @@ pub fn check_rows(
         for i in 0..checked {
             let noise = sets.noise_radius(i);
             let radius = reach.radius(k, i).mid() + noise;
-            let row = |side, run, excess| Row { sample: k, time, state: i, side, run, excess, radius };
+            let row =
+                |side, run, excess| Row { sample: k, time, state: i, side, run, excess, radius };
             let highest = add_down(reach.upper_inner(k, i), noise);
-            visit(row(Side::Upper, envelope.upper_run(k, i), sub_up(envelope.upper(k, i), highest)));
+            visit(row(
+                Side::Upper,
+                envelope.upper_run(k, i),
+                sub_up(envelope.upper(k, i), highest),
+            ));
             let lowest = add_down(-reach.lower_inner(k, i), noise);
-            visit(row(Side::Lower, envelope.lower_run(k, i), sub_up(-envelope.lower(k, i), lowest)));
+            visit(row(
+                Side::Lower,
+                envelope.lower_run(k, i),
+                sub_up(-envelope.lower(k, i), lowest),
+            ));
         }
     }
 }

@@ -11,12 +11,17 @@ fn side(operating_box: &OperatingBox, i: usize) -> [f64; 2] {
     if i < n { operating_box.q[i] } else { operating_box.qd[i - n] }
 }
 
-/// Refuses recordings that start outside the box: an initial set that holds them would. Without a box there is nothing to refuse.
+/// Refuses recordings that start outside the box: an initial set that holds them would. Without a
+/// box there is nothing to refuse.
 ///
 /// # Errors
 ///
 /// [`Error::Setting`] with the run, the state and the remedy.
-pub(super) fn check_starts(data: &DataSet, settings: &Settings, recordings: &Recordings) -> Result<()> {
+pub(super) fn check_starts(
+    data: &DataSet,
+    settings: &Settings,
+    recordings: &Recordings,
+) -> Result<()> {
     let Some(operating_box) = &settings.operating_box else { return Ok(()) };
     for run in recordings.suites.iter().flat_map(|suite| &suite.runs) {
         for (i, x) in run.start.iter().enumerate() {

@@ -26,21 +26,28 @@ pub struct SuiteEntry {
 }
 
 impl DataSet {
-    /// Reads the index of the folder `root`. The runs themselves are read one by one, when they are used.
+    /// Reads the index of the folder `root`. The runs themselves are read one by one, when they are
+    /// used.
     ///
     /// # Errors
     ///
-    /// [`Error::Read`] when there is no index, [`Error::Defects`] for a missing column, a file that is named twice or not there.
+    /// [`Error::Read`] when there is no index, [`Error::Defects`] for a missing column, a file that
+    /// is named twice or not there.
     pub fn open(root: impl Into<PathBuf>) -> Result<Self> {
         let root = root.into();
         let index = root.join("runs.csv");
         let remedy = "give the folder that holds the recordings and their index runs.csv, a line a recording with its file and suite";
-        let bytes =
-            std::fs::read(&index).map_err(|source| Error::Read { path: index.clone(), source, remedy })?;
+        let bytes = std::fs::read(&index).map_err(|source| Error::Read {
+            path: index.clone(),
+            source,
+            remedy,
+        })?;
         let runs = read_index(&root, &index, &bytes).map_err(Error::Defects)?;
         let listed: BTreeSet<PathBuf> = runs.iter().map(|run| root.join(&run.file)).collect();
-        let unlisted =
-            csv_files(&root).into_iter().filter(|path| *path != index && !listed.contains(path)).collect();
+        let unlisted = csv_files(&root)
+            .into_iter()
+            .filter(|path| *path != index && !listed.contains(path))
+            .collect();
         Ok(Self { root, runs, unlisted })
     }
 

@@ -1,5 +1,6 @@
-/// A decimal number of seconds as picoseconds, rounded to the nearest: the digits are taken as they are written, so that the difference of two times since 1970 is
-/// that of the numbers in the file, where double precision keeps a tenth of a microsecond only.
+/// A decimal number of seconds as picoseconds, rounded to the nearest: the digits are taken as they
+/// are written, so that the difference of two times since 1970 is that of the numbers in the file,
+/// where double precision keeps a tenth of a microsecond only.
 ///
 /// None for what is no finite decimal number, or has more digits than fit.
 pub(super) fn picoseconds(text: &str) -> Option<i128> {
@@ -10,7 +11,8 @@ pub(super) fn picoseconds(text: &str) -> Option<i128> {
     let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
     let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
     let digits = format!("{whole}{fraction}");
-    let digits: i128 = digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())??;
+    let digits: i128 =
+        digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())??;
     let shift = exponent.checked_add(12)?.checked_sub_unsigned(fraction.len() as u32)?;
     let size = match 10i128.checked_pow(shift.unsigned_abs()) {
         Some(power) if shift >= 0 => digits.checked_mul(power)?,

@@ -27,7 +27,13 @@ impl Defect {
         problem: impl Into<String>,
         remedy: impl Into<String>,
     ) -> Self {
-        Self { file: file.into(), line, joint: None, problem: problem.into(), remedy: remedy.into() }
+        Self {
+            file: file.into(),
+            line,
+            joint: None,
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
     }
 
     /// The same defect, of one joint (from 1).

@@ -55,7 +55,11 @@ impl IndexRow {
 }
 
 /// The runs listed in `bytes`, the content of `index`, the index of the folder `root`.
-pub(super) fn read_index(root: &Path, index: &Path, bytes: &[u8]) -> Result<Vec<RunEntry>, Vec<Defect>> {
+pub(super) fn read_index(
+    root: &Path,
+    index: &Path,
+    bytes: &[u8],
+) -> Result<Vec<RunEntry>, Vec<Defect>> {
     let (runs, mut defects) = parse(index, bytes);
     defects.extend(missing_or_repeated(root, index, &runs));
     defects.extend(two_motions(index, &runs));
@@ -64,7 +68,8 @@ pub(super) fn read_index(root: &Path, index: &Path, bytes: &[u8]) -> Result<Vec<
 
 fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+    let mut reader =
+        csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
     let defect = |line, problem: String| Defect::new(index, line, problem, REMEDY);
     let header = match reader.headers() {
         Ok(header) => header.clone(),
@@ -91,8 +96,10 @@ fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
         match read {
             Ok(false) => break,
             Ok(true) if record.len() != header.len() => {
-                defects
-                    .push(defect(line, format!("{} fields, the header has {}", record.len(), header.len())));
+                defects.push(defect(
+                    line,
+                    format!("{} fields, the header has {}", record.len(), header.len()),
+                ));
             }
             Ok(true) => match record.deserialize::<IndexRow>(Some(&header)) {
                 Ok(row) => runs.push(row.entry(at)),
@@ -114,7 +121,8 @@ fn what_is_wrong(error: &csv::Error, header: &csv::StringRecord) -> String {
     match error.kind() {
         csv::ErrorKind::Utf8 { .. } => "the line is no UTF-8 text".into(),
         csv::ErrorKind::Deserialize { err, .. } => {
-            let column = err.field().and_then(|field| header.get(field as usize)).unwrap_or("a field");
+            let column =
+                err.field().and_then(|field| header.get(field as usize)).unwrap_or("a field");
             format!("{column}: {}", err.kind())
         }
         _ => error.to_string(),
@@ -145,9 +153,11 @@ fn two_motions(index: &Path, runs: &[RunEntry]) -> Vec<Defect> {
         let (Some(suite), Some(motion)) = (&run.suite, &run.motion) else { continue };
         let (known, line) = *first.entry(suite).or_insert((motion, run.line));
         if known != motion {
-            let problem =
-                format!("suite {suite} has the motion {motion:?} here and {known:?} on line {line}");
-            let remedy = "a suite is part of one motion: correct one of the lines, or split the suite";
+            let problem = format!(
+                "suite {suite} has the motion {motion:?} here and {known:?} on line {line}"
+            );
+            let remedy =
+                "a suite is part of one motion: correct one of the lines, or split the suite";
             defects.push(Defect::new(index, Some(run.line), problem, remedy));
         }
     }

@@ -64,7 +64,8 @@ pub struct JointSummary {
     pub start_spread: f64,
     /// Spread of the last positions, rad, of the runs of full length, where there are two or more.
     pub end_spread: Option<f64>,
-    /// Correlation of the last position with the order of the recordings: near ±1 where the robot drifts, as joints do that warm up.
+    /// Correlation of the last position with the order of the recordings: near ±1 where the robot
+    /// drifts, as joints do that warm up.
     pub drift: Option<f64>,
     /// Part of the samples in which the joint sticks (below 0.01 rad/s).
     pub sticking: f64,
@@ -124,9 +125,11 @@ fn other_joint_count(data: &DataSet, runs: &[Run]) -> Vec<Defect> {
     runs.iter().enumerate().filter_map(odd).collect()
 }
 
-/// Suites, then a group for each kind of the runs without one: name, whether it is a suite, members.
+/// Suites, then a group for each kind of the runs without one: name, whether it is a suite,
+/// members.
 fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
-    let mut groups: Vec<_> = data.suites().into_iter().map(|suite| (suite.name, true, suite.runs)).collect();
+    let mut groups: Vec<_> =
+        data.suites().into_iter().map(|suite| (suite.name, true, suite.runs)).collect();
     for (index, run) in data.runs().iter().enumerate().filter(|(_, run)| run.suite.is_none()) {
         let kind = run.kind.clone().unwrap_or_else(|| "no suite".into());
         match groups.iter_mut().find(|(name, suite, _)| !suite && *name == kind) {
@@ -149,7 +152,8 @@ fn notes(data: &DataSet, runs: &[Run]) -> Vec<String> {
 impl Group {
     fn new(name: String, suite: bool, motion: Option<String>, runs: &[&Run]) -> Self {
         let steps = runs.iter().flat_map(|run| run.times.windows(2).map(|pair| pair[1] - pair[0]));
-        let (shortest, longest) = steps.fold((f64::INFINITY, 0.0f64), |(a, b), h| (a.min(h), b.max(h)));
+        let (shortest, longest) =
+            steps.fold((f64::INFINITY, 0.0f64), |(a, b), h| (a.min(h), b.max(h)));
         let rate = |run: &&Run| TimeGrid::from_times(&run.times).ok().and_then(|grid| grid.step());
         let first = rate(&runs[0]);
         let samples = runs.iter().map(|run| run.len());
@@ -180,14 +184,19 @@ impl JointSummary {
     fn new(joint: usize, runs: &[&Run]) -> Self {
         let positions = runs.iter().flat_map(|run| (0..run.len()).map(|k| run.q(k)[joint]));
         let speeds = || runs.iter().flat_map(|run| (0..run.len()).map(|k| run.qd(k)[joint].abs()));
-        let torques = runs.iter().flat_map(|run| (0..run.len()).map(|k| run.torque(k)[joint].abs()));
+        let torques =
+            runs.iter().flat_map(|run| (0..run.len()).map(|k| run.torque(k)[joint].abs()));
         let longest = runs.iter().map(|run| run.len()).max().unwrap_or(0);
-        let ends: Vec<f64> =
-            runs.iter().filter(|run| run.len() == longest).map(|run| run.q(longest - 1)[joint]).collect();
+        let ends: Vec<f64> = runs
+            .iter()
+            .filter(|run| run.len() == longest)
+            .map(|run| run.q(longest - 1)[joint])
+            .collect();
         let starts: Vec<f64> = runs.iter().map(|run| run.q(0)[joint]).collect();
         let sticking = speeds().filter(|speed| *speed < STICKING).count() as f64;
         Self {
-            position: positions.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], q| [a.min(q), b.max(q)]),
+            position: positions
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], q| [a.min(q), b.max(q)]),
             speed: speeds().fold(0.0, f64::max),
             torque: torques.fold(0.0, f64::max),
             start_spread: spread(&starts),
@@ -205,7 +214,8 @@ fn spread(values: &[f64]) -> f64 {
     (highest - lowest).max(0.0)
 }
 
-/// Pearson's correlation of values with their places, for three values or more that are not all the same.
+/// Pearson's correlation of values with their places, for three values or more that are not all the
+/// same.
 fn order_correlation(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let (mean, center) = (values.iter().sum::<f64>() / n, (n - 1.0) / 2.0);

@@ -1,7 +1,8 @@
 //! Recordings and test suites, read and checked.
 //!
-//! A data set is a folder of CSV runs with the header `t,q1..qn,qd1..qdn,tau1..taun` and an index `runs.csv` that puts runs into test suites
-//! (Definition 2 of the paper: runs from one initial state under one input).
+//! A data set is a folder of CSV runs with the header `t,q1..qn,qd1..qdn,tau1..taun` and an index
+//! `runs.csv` that puts runs into test suites (Definition 2 of the paper: runs from one initial
+//! state under one input).
 
 mod data_set;
 mod decimal;

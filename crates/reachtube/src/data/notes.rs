@@ -12,7 +12,9 @@ impl DataSet {
         Some(match self.unlisted().len() {
             1 => format!("{first} is not in runs.csv and is not used"),
             count => {
-                format!("{count} CSV files in {root} are not in runs.csv and are not used, {first} the first")
+                format!(
+                    "{count} CSV files in {root} are not in runs.csv and are not used, {first} the first"
+                )
             }
         })
     }
@@ -31,7 +33,10 @@ impl DataSet {
     }
 
     /// Recordings that are the same to the last byte, given the index and the SHA-256 of each.
-    pub(crate) fn copies_note<'a>(&self, read: impl Iterator<Item = (usize, &'a str)>) -> Option<String> {
+    pub(crate) fn copies_note<'a>(
+        &self,
+        read: impl Iterator<Item = (usize, &'a str)>,
+    ) -> Option<String> {
         let mut first: BTreeMap<&str, usize> = BTreeMap::new();
         let pair = |(index, sha256): (usize, &'a str)| {
             let original = *first.entry(sha256).or_insert(index);

@@ -6,7 +6,8 @@ use super::decimal::picoseconds;
 use super::run::column_names;
 use super::{Defect, GapLimit, Run};
 
-/// A longer time between two samples than this many usual ones is a gap, where the rate is fixed: a missing sample makes it 2, a late one less.
+/// A longer time between two samples than this many usual ones is a gap, where the rate is fixed: a
+/// missing sample makes it 2, a late one less.
 const FIXED_RATE_GAP: f64 = 1.9;
 
 /// The same where the times jitter.
@@ -20,7 +21,8 @@ const QUOTED: usize = 40;
 
 const HEADER: &str = "the header is t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m";
 
-/// The samples in `bytes`, the content of the file `path`; a run of other than `joints` joints is a defect. The SHA-256 is left empty.
+/// The samples in `bytes`, the content of the file `path`; a run of other than `joints` joints is a
+/// defect. The SHA-256 is left empty.
 pub(super) fn read_samples(
     path: &Path,
     bytes: &[u8],
@@ -58,13 +60,20 @@ impl Reading<'_> {
         if let Some((problem, remedy)) = other_format(bytes) {
             return self.defect(Some(1), None, problem, remedy);
         }
-        let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
+        let mut reader =
+            csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
         let header = match reader.byte_headers() {
-            Ok(header) => {
-                header.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect::<Vec<_>>()
-            }
+            Ok(header) => header
+                .iter()
+                .map(|name| String::from_utf8_lossy(name).into_owned())
+                .collect::<Vec<_>>(),
             Err(error) => {
-                return self.defect(Some(1), None, error.to_string(), "write the file as UTF-8 CSV");
+                return self.defect(
+                    Some(1),
+                    None,
+                    error.to_string(),
+                    "write the file as UTF-8 CSV",
+                );
             }
         };
         if !self.header(&header, joints) {
@@ -74,7 +83,9 @@ impl Reading<'_> {
         let mut values = vec![0.0; 1 + 3 * self.run.joints];
         loop {
             match reader.read_byte_record(&mut record) {
-                Ok(true) => self.row(line_of(bytes, record.position()), &record, header.len(), &mut values),
+                Ok(true) => {
+                    self.row(line_of(bytes, record.position()), &record, header.len(), &mut values)
+                }
                 Ok(false) => break,
                 Err(error) => {
                     let line = line_of(bytes, error.position());
@@ -91,7 +102,8 @@ impl Reading<'_> {
     /// Whether the header is `t,q1..qn,qd1..qdn,tau1..taun`, possibly with more columns after that.
     fn header(&mut self, header: &[String], joints: Option<usize>) -> bool {
         let n = header.iter().skip(1).take_while(|name| is_numbered(name, "q")).count();
-        let expected: Vec<String> = std::iter::once("t".into()).chain(column_names(n.max(1))).collect();
+        let expected: Vec<String> =
+            std::iter::once("t".into()).chain(column_names(n.max(1))).collect();
         let wrong = expected.iter().enumerate().find(|(i, name)| header.get(*i) != Some(name));
         if let Some((i, name)) = wrong {
             let found = header.get(i).map_or("missing".into(), |found| quoted(found));
@@ -101,7 +113,12 @@ impl Reading<'_> {
         }
         if let Some(robot) = joints.filter(|robot| *robot != n) {
             let problem = format!("the recording has {n} joints, the robot {robot}");
-            self.defect(Some(1), None, problem, "name the robot that was recorded, or the right data set");
+            self.defect(
+                Some(1),
+                None,
+                problem,
+                "name the robot that was recorded, or the right data set",
+            );
             return false;
         }
         self.run = Run::empty(n);
@@ -112,7 +129,8 @@ impl Reading<'_> {
         if record.len() != fields {
             self.rows.push(Row { line, time: None });
             let problem = format!("{} fields, the header has {fields}", record.len());
-            let remedy = "the line is cut short or has a stray comma or quote: mend it or record again";
+            let remedy =
+                "the line is cut short or has a stray comma or quote: mend it or record again";
             return self.defect(Some(line), None, problem, remedy);
         }
         let mut sound = true;
@@ -136,8 +154,9 @@ impl Reading<'_> {
     fn bad_number(&mut self, line: u64, column: usize, text: &str) {
         let n = self.run.joints;
         let joint = column.checked_sub(1).map(|index| index % n + 1);
-        let name =
-            column.checked_sub(1).map_or("t".into(), |index| column_names(n).nth(index).unwrap_or_default());
+        let name = column
+            .checked_sub(1)
+            .map_or("t".into(), |index| column_names(n).nth(index).unwrap_or_default());
         let problem = match text {
             "" => format!("{name} is empty"),
             _ => format!("{name} is {}, not a finite number", quoted(text)),
@@ -153,8 +172,11 @@ impl Reading<'_> {
         self.rows.push(Row { line, time });
         let follows = above.zip(time).is_none_or(|(above, time)| time > above);
         if !follows {
-            let what =
-                if above == time { "the time of the line above" } else { "earlier than the line above" };
+            let what = if above == time {
+                "the time of the line above"
+            } else {
+                "earlier than the line above"
+            };
             let remedy = "times must increase strictly: sort the samples, drop duplicates";
             self.defect(Some(line), None, format!("t = {text} s is {what}"), remedy);
         }
@@ -172,7 +194,8 @@ impl Reading<'_> {
         self.run.torques.extend_from_slice(&values[1 + 2 * n..]);
     }
 
-    /// Too long a time from one line to the next; beside a line whose time is unknown nothing can be said.
+    /// Too long a time from one line to the next; beside a line whose time is unknown nothing can
+    /// be said.
     fn gaps(&mut self, limit: GapLimit) {
         let step = |pair: &[Row]| {
             let step = seconds(pair[1].time?.saturating_sub(pair[0].time?));
@@ -184,7 +207,8 @@ impl Reading<'_> {
             GapLimit::Usual => usual_limit(steps.iter().map(|(_, step)| *step).collect()),
         };
         for (line, step) in steps.into_iter().filter(|(_, step)| *step > longest) {
-            let problem = format!("a gap of {step:.6} s before this sample, the limit is {longest:.6} s");
+            let problem =
+                format!("a gap of {step:.6} s before this sample, the limit is {longest:.6} s");
             let remedy = "samples are missing and the input there is unknown: record again, cut the run, or accept it with --max-gap SECONDS";
             self.defect(Some(line), None, problem, remedy);
         }
@@ -206,7 +230,10 @@ fn usual_limit(mut steps: Vec<f64>) -> f64 {
 /// What is wrong, and what to do, with a file that is no comma-separated text with a header.
 fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
     if bytes.is_empty() {
-        return Some(("the file is empty".into(), "record it again, or leave the run out of runs.csv"));
+        return Some((
+            "the file is empty".into(),
+            "record it again, or leave the run out of runs.csv",
+        ));
     }
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return Some(("the file is UTF-16 text".into(), "save it as CSV in UTF-8"));
@@ -227,7 +254,8 @@ fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
     None
 }
 
-/// The line, from 1, on which a record starts; the reader's position may be that of blank lines above it.
+/// The line, from 1, on which a record starts; the reader's position may be that of blank lines
+/// above it.
 pub(super) fn line_of(bytes: &[u8], position: Option<&csv::Position>) -> u64 {
     let Some(position) = position else { return 1 };
     let ahead = bytes.get(position.byte() as usize..).unwrap_or_default();
@@ -243,5 +271,6 @@ pub(super) fn quoted(text: &str) -> String {
 }
 
 fn is_numbered(name: &str, prefix: &str) -> bool {
-    name.strip_prefix(prefix).is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
+    name.strip_prefix(prefix)
+        .is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
 }

@@ -5,7 +5,8 @@ use sha2::{Digest, Sha256};
 use super::Defect;
 use super::reading::read_samples;
 
-/// How long the time between two samples may be. The input is taken as held until the next sample, so a gap is a guess about the input.
+/// How long the time between two samples may be. The input is taken as held until the next sample,
+/// so a gap is a guess about the input.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GapLimit {
     /// 1.9 times the usual time between samples at a fixed rate, 10 times where the times jitter.
@@ -22,8 +23,8 @@ pub struct Run {
     pub joints: usize,
     /// Time of the first sample as recorded, s.
     pub start: f64,
-    /// Times since the first sample, s, strictly increasing from 0, K. The difference is taken of the numbers as written, to the picosecond, so that times since
-    /// 1970 lose nothing.
+    /// Times since the first sample, s, strictly increasing from 0, K. The difference is taken of
+    /// the numbers as written, to the picosecond, so that times since 1970 lose nothing.
     pub times: Vec<f64>,
     /// States x = (q, q̇), rad and rad/s, row-major K x 2n.
     pub states: Vec<f64>,
@@ -34,8 +35,8 @@ pub struct Run {
 }
 
 impl Run {
-    /// Reads the run in the file `path`; samples later than `until` seconds after the first are left out. A run of other than `joints` joints is
-    /// a defect.
+    /// Reads the run in the file `path`; samples later than `until` seconds after the first are
+    /// left out. A run of other than `joints` joints is a defect.
     ///
     /// # Errors
     ///
@@ -62,7 +63,14 @@ impl Run {
 
     /// No sample of `joints` joints.
     pub(super) fn empty(joints: usize) -> Self {
-        Self { joints, start: 0.0, times: vec![], states: vec![], torques: vec![], sha256: String::new() }
+        Self {
+            joints,
+            start: 0.0,
+            times: vec![],
+            states: vec![],
+            torques: vec![],
+            sha256: String::new(),
+        }
     }
 
     /// Number of samples K.
@@ -116,7 +124,9 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
 
 /// q1..qn, qd1..qdn, tau1..taun.
 pub(crate) fn column_names(n: usize) -> impl Iterator<Item = String> {
-    ["q", "qd", "tau"].into_iter().flat_map(move |prefix| (1..=n).map(move |i| format!("{prefix}{i}")))
+    ["q", "qd", "tau"]
+        .into_iter()
+        .flat_map(move |prefix| (1..=n).map(move |i| format!("{prefix}{i}")))
 }
 
 /// The column of state `i` (from 0) of a robot of `joints` joints: q1..qn, qd1..qdn.

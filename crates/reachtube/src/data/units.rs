@@ -1,4 +1,5 @@
-//! Whether a recording can be in rad, rad/s: what does not fit is a mistake of units far more often than a fast robot.
+//! Whether a recording can be in rad, rad/s: what does not fit is a mistake of units far more often
+//! than a fast robot.
 
 use std::path::Path;
 
@@ -26,7 +27,8 @@ pub(crate) fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
 pub(crate) fn integral_gap(run: &Run, joint: usize) -> f64 {
     let (mut integral, mut largest) = (run.q(0)[joint], 0.0f64);
     for k in 1..run.len() {
-        integral += 0.5 * (run.times[k] - run.times[k - 1]) * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
+        integral +=
+            0.5 * (run.times[k] - run.times[k - 1]) * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
         largest = largest.max((run.q(k)[joint] - integral).abs());
     }
     largest
@@ -59,14 +61,16 @@ pub(crate) fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect>
         };
         let problem = format!("q moves {slope:.3} times as far as qd integrates to: {guess}");
         defects.push(
-            Defect::new(path, None, problem, "give q in rad and qd in rad/s").of_joint(Some(joint + 1)),
+            Defect::new(path, None, problem, "give q in rad and qd in rad/s")
+                .of_joint(Some(joint + 1)),
         );
     }
     for (joint, description) in robot.description().joints.iter().enumerate() {
         let Some([low, high]) = description.position_limits else { continue };
         let furthest = (0..run.len()).map(|k| run.q(k)[joint].abs()).fold(0.0, f64::max);
         if furthest > BEYOND_LIMIT * low.abs().max(high.abs()) {
-            let problem = format!("|q| reaches {furthest:.3}, the joint's limits are {low} and {high} rad");
+            let problem =
+                format!("|q| reaches {furthest:.3}, the joint's limits are {low} and {high} rad");
             let remedy = "give q in rad, or correct the limits in the robot's description";
             defects.push(Defect::new(path, None, problem, remedy).of_joint(Some(joint + 1)));
         }

@@ -5,14 +5,14 @@ use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
 
 use super::SAMPLE_TIME;
 use super::hidden::{
-    self, COMPENSATION_SPEED, COULOMB_PER_KELVIN, ENCODER_STEP, LINK_SHARE, RIPPLE_SHARE, STICKING_SPEED,
-    VELOCITY_FILTER, friction_share,
+    self, COMPENSATION_SPEED, COULOMB_PER_KELVIN, ENCODER_STEP, LINK_SHARE, RIPPLE_SHARE,
+    STICKING_SPEED, VELOCITY_FILTER, friction_share,
 };
 use super::number::rounded;
 use crate::error::Result;
 
-/// Controller cycles a sample. Friction is held over a cycle: near rest it acts as a damping of about 400 1/s on a joint, which a cycle
-/// of a millisecond follows without chatter.
+/// Controller cycles a sample. Friction is held over a cycle: near rest it acts as a damping of
+/// about 400 1/s on a joint, which a cycle of a millisecond follows without chatter.
 const CYCLES: usize = 4;
 
 /// The virtual robot at one temperature.
@@ -35,12 +35,14 @@ struct Scratch {
 impl<'a> Drive<'a> {
     /// The virtual robot behind `nominal` with its joints at `temperatures`, °C.
     pub fn new(nominal: &'a Robot, temperatures: &[f64]) -> Result<Self> {
-        let coulomb_share = temperatures.iter().map(|t| friction_share(*t, COULOMB_PER_KELVIN)).collect();
+        let coulomb_share =
+            temperatures.iter().map(|t| friction_share(*t, COULOMB_PER_KELVIN)).collect();
         Ok(Self { nominal, body: hidden::body(nominal, temperatures)?, coulomb_share })
     }
 
-    /// Drives the robot from q (rad) and q̇ (rad/s) by `inputs` (N m, row-major K x n), each held for a sample; the last one acts on nothing.
-    /// Returns what is measured: (q, q̇), row-major K x 2n.
+    /// Drives the robot from q (rad) and q̇ (rad/s) by `inputs` (N m, row-major K x n), each held
+    /// for a sample; the last one acts on nothing. Returns what is measured: (q, q̇), row-major K x
+    /// 2n.
     pub fn run(&self, q: Vec<f64>, qd: Vec<f64>, inputs: &[f64]) -> Vec<f64> {
         let n = q.len();
         let mut field = RobotField::new(&self.body, DrivenBy::Motor);
@@ -59,7 +61,8 @@ impl<'a> Drive<'a> {
         states
     }
 
-    /// Motor torque by (11), with gravity and Coulomb friction of the nominal model added and with ripple, less the robot's own Coulomb friction.
+    /// Motor torque by (11), with gravity and Coulomb friction of the nominal model added and with
+    /// ripple, less the robot's own Coulomb friction.
     fn joint_torque(&self, q: &[f64], qd: &[f64], input: &[f64], scratch: &mut Scratch) {
         let Scratch { ws, sin, cos, gravity, torque } = scratch;
         for (i, q) in q.iter().enumerate() {
@@ -71,8 +74,10 @@ impl<'a> Drive<'a> {
                 joint.friction.coulomb.torque(load, qd[i]) * (qd[i].abs() / speed).tanh()
             };
             let ripple = RIPPLE_SHARE * joint.gear_ratio.map_or(0.0, |ratio| (ratio * q[i]).sin());
-            let motor = (input[i] + gravity[i] + coulomb(gravity[i], COMPENSATION_SPEED)) * (1.0 + ripple);
-            torque[i] = motor - self.coulomb_share[i] * coulomb(LINK_SHARE * gravity[i], STICKING_SPEED);
+            let motor =
+                (input[i] + gravity[i] + coulomb(gravity[i], COMPENSATION_SPEED)) * (1.0 + ripple);
+            torque[i] =
+                motor - self.coulomb_share[i] * coulomb(LINK_SHARE * gravity[i], STICKING_SPEED);
         }
     }
 }
@@ -80,7 +85,13 @@ impl<'a> Drive<'a> {
 impl Scratch {
     fn new(robot: &Robot) -> Self {
         let zeros = || vec![0.0; robot.joint_count()];
-        Self { ws: Workspace::new(robot), sin: zeros(), cos: zeros(), gravity: zeros(), torque: zeros() }
+        Self {
+            ws: Workspace::new(robot),
+            sin: zeros(),
+            cos: zeros(),
+            gravity: zeros(),
+            torque: zeros(),
+        }
     }
 }
 
@@ -138,7 +149,12 @@ mod tests {
         for joint in 6..12 {
             let speed: Vec<f64> = states.iter().skip(joint).step_by(12).copied().collect();
             let noise = 2.0 * ENCODER_STEP / VELOCITY_FILTER;
-            assert!(speed[SAMPLES - 1].abs() < noise, "joint {} has {} rad/s", joint - 5, speed[SAMPLES - 1]);
+            assert!(
+                speed[SAMPLES - 1].abs() < noise,
+                "joint {} has {} rad/s",
+                joint - 5,
+                speed[SAMPLES - 1]
+            );
             assert!(speed.iter().all(|v| *v > -noise), "joint {} turned round", joint - 5);
         }
     }
@@ -156,7 +172,9 @@ mod tests {
             sensors.record(&[1.0 + 0.5 * SAMPLE_TIME * f64::from(k)], &mut states);
         }
         for (k, state) in states.chunks_exact(2).enumerate() {
-            assert!((state[0] - 1.0 - 0.5 * SAMPLE_TIME * k as f64).abs() <= 0.5 * ENCODER_STEP + 1e-6);
+            assert!(
+                (state[0] - 1.0 - 0.5 * SAMPLE_TIME * k as f64).abs() <= 0.5 * ENCODER_STEP + 1e-6
+            );
             assert!((state[1] - 0.5).abs() <= ENCODER_STEP / SAMPLE_TIME);
         }
     }

@@ -1,4 +1,5 @@
-//! The folder of a recorded demo: runs, a README, and the index last, so that what was not finished cannot be opened.
+//! The folder of a recorded demo: runs, a README, and the index last, so that what was not finished
+//! cannot be opened.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -19,7 +20,9 @@ const INDEX_HEADER: &str = "file,kind,suite,motion,use,repeat,rows,duration_s,te
 /// Refuses a folder with an index that no demo has written.
 pub(super) fn refuse_foreign(folder: &Path) -> Result<()> {
     let index = folder.join("runs.csv");
-    let ours = || std::fs::read_to_string(folder.join("README.md")).is_ok_and(|text| text.starts_with(TITLE));
+    let ours = || {
+        std::fs::read_to_string(folder.join("README.md")).is_ok_and(|text| text.starts_with(TITLE))
+    };
     if !index.exists() || ours() {
         return Ok(());
     }

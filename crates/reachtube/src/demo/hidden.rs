@@ -1,5 +1,5 @@
-//! What the virtual robot has and its nominal model has not. All numbers are here, chosen so that the recordings spread
-//! as those of the real LWA 4P do; none was identified.
+//! What the virtual robot has and its nominal model has not. All numbers are here, chosen so that
+//! the recordings spread as those of the real LWA 4P do; none was identified.
 
 use reachtube_robot::{FrictionDescription, JointDescription, Robot};
 
@@ -35,7 +35,8 @@ pub(super) const RIPPLE_SHARE: f64 = 0.05;
 /// Speed at which Coulomb friction has come to tanh 1 of its value, rad/s.
 pub(super) const STICKING_SPEED: f64 = 0.01;
 
-/// The same for its compensation. It comes later than the friction, so a joint that turns or rests sticks.
+/// The same for its compensation. It comes later than the friction, so a joint that turns or rests
+/// sticks.
 pub(super) const COMPENSATION_SPEED: f64 = 0.015;
 
 /// Half the width of the scatter of a run's start about the planned one, rad.
@@ -47,12 +48,15 @@ pub(super) const SCATTER_QD: f64 = 0.015;
 /// Resolution of the position encoders (17 bit a turn), rad.
 pub(super) const ENCODER_STEP: f64 = std::f64::consts::TAU / 131_072.0;
 
-/// Time constant of the low-pass over the differences of the encoder's positions that is recorded as velocity, s.
+/// Time constant of the low-pass over the differences of the encoder's positions that is recorded
+/// as velocity, s.
 pub(super) const VELOCITY_FILTER: f64 = 0.01;
 
-/// Temperature of each joint, °C, when run `run` (from 0) of a suite begins. `travel` is what a run moves each joint, rad: there and back.
+/// Temperature of each joint, °C, when run `run` (from 0) of a suite begins. `travel` is what a run
+/// moves each joint, rad: there and back.
 ///
-/// Each run adds the same heat and loses the same part of the excess: the sum of a geometric series.
+/// Each run adds the same heat and loses the same part of the excess: the sum of a geometric
+/// series.
 pub(super) fn temperatures(travel: &[f64], run: usize) -> Vec<f64> {
     let kept = (1.0 - COOLING).powi(run as i32);
     travel.iter().map(|travel| COLD + WARMING * travel.abs() * (1.0 - kept) / COOLING).collect()
@@ -63,7 +67,8 @@ pub(super) fn friction_share(temperature: f64, per_kelvin: f64) -> f64 {
     1.0 + per_kelvin * (temperature - IDENTIFIED_AT)
 }
 
-/// The rigid bodies and viscous friction of the virtual robot at `temperatures`. It has no Coulomb friction: that is the drive's.
+/// The rigid bodies and viscous friction of the virtual robot at `temperatures`. It has no Coulomb
+/// friction: that is the drive's.
 pub(super) fn body(nominal: &Robot, temperatures: &[f64]) -> Result<Robot> {
     let mut description = nominal.description().clone();
     for (joint, temperature) in description.joints.iter_mut().zip(temperatures) {
@@ -96,10 +101,14 @@ mod tests {
         let nominal = Robot::lwa4p();
         let cold = body(&nominal, &[COLD; 6]).unwrap();
         let (q, qd) = ([0.3, -0.4, 0.5, 0.2, -0.7, 0.1], [0.5; 6]);
-        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()), "{a} is not {b}");
+        let close =
+            |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * (1.0 + b.abs()), "{a} is not {b}");
         for i in 0..6 {
             close(cold.gravity_torque(&q)[i], LINK_SHARE * nominal.gravity_torque(&q)[i]);
-            close(cold.coriolis_torque(&q, &qd)[i], LINK_SHARE * nominal.coriolis_torque(&q, &qd)[i]);
+            close(
+                cold.coriolis_torque(&q, &qd)[i],
+                LINK_SHARE * nominal.coriolis_torque(&q, &qd)[i],
+            );
             close(cold.viscous_torque(&qd)[i], 1.12 * nominal.viscous_torque(&qd)[i]);
             close(cold.joints()[i].armature, ARMATURE_SHARE * nominal.joints()[i].armature);
         }
@@ -123,7 +132,8 @@ mod tests {
     fn friction_is_nominal_where_it_was_identified_and_falls_with_warmth() {
         assert_eq!(friction_share(IDENTIFIED_AT, VISCOUS_PER_KELVIN), 1.0);
         assert!(
-            friction_share(40.0, COULOMB_PER_KELVIN) < 1.0 && friction_share(COLD, COULOMB_PER_KELVIN) > 1.0
+            friction_share(40.0, COULOMB_PER_KELVIN) < 1.0
+                && friction_share(COLD, COULOMB_PER_KELVIN) > 1.0
         );
     }
 }

@@ -1,9 +1,12 @@
-//! The virtual robot: recordings to try everything on, made in a second or two, with a robot that is not quite its model.
+//! The virtual robot: recordings to try everything on, made in a second or two, with a robot that
+//! is not quite its model.
 //!
-//! The experiment is that of Sec. V-B of the paper. Random point-to-point motions are planned; the input u of eq. (11) along a motion is computed
-//! from the nominal model; from several points of the motion (Fig. 3) a run applies it open loop, with gravity and Coulomb friction of the
-//! nominal model added, and so drifts off (Fig. 2). Friction of the virtual robot depends on temperature, and the joints warm up from run to run,
-//! as in Fig. 4. It has also stiction, torque ripple, heavier links and motors, encoders, and starts that scatter: the constants are in
+//! The experiment is that of Sec. V-B of the paper. Random point-to-point motions are planned; the
+//! input u of eq. (11) along a motion is computed from the nominal model; from several points of
+//! the motion (Fig. 3) a run applies it open loop, with gravity and Coulomb friction of the nominal
+//! model added, and so drifts off (Fig. 2). Friction of the virtual robot depends on temperature,
+//! and the joints warm up from run to run, as in Fig. 4. It has also stiction, torque ripple,
+//! heavier links and motors, encoders, and starts that scatter: the constants are in
 //! `demo/hidden.rs`, and in the README beside the recordings.
 
 mod drive;
@@ -88,15 +91,17 @@ impl DemoOptions {
     }
 }
 
-/// Records a virtual `robot` into `folder` as a data set for [`DataSet::open`](crate::data::DataSet::open), on all cores. The torques are
+/// Records a virtual `robot` into `folder` as a data set for
+/// [`DataSet::open`](crate::data::DataSet::open), on all cores. The torques are
 /// [`Torque::Compensated`](crate::data::Torque::Compensated).
 ///
-/// The hidden effects are of the size of the LWA 4P's; another robot should be like it. Files of an earlier demo in the folder are overwritten.
+/// The hidden effects are of the size of the LWA 4P's; another robot should be like it. Files of an
+/// earlier demo in the folder are overwritten.
 ///
 /// # Errors
 ///
-/// [`Error::Setting`] for options that record nothing, for a folder with recordings that are not a demo's, or a robot that the
-/// simulation cannot follow; [`Error::Write`].
+/// [`Error::Setting`] for options that record nothing, for a folder with recordings that are not a
+/// demo's, or a robot that the simulation cannot follow; [`Error::Write`].
 ///
 /// # Examples
 ///
@@ -115,8 +120,10 @@ pub fn record(robot: &Robot, options: &DemoOptions, folder: &Path) -> Result<Rec
     options.validate()?;
     folder::refuse_foreign(folder)?;
     let suites = plan::suites(robot, options);
-    let runs: Vec<(&SuitePlan, usize)> =
-        suites.iter().flat_map(|suite| (0..suite.runs.len()).map(move |run| (suite, run))).collect();
+    let runs: Vec<(&SuitePlan, usize)> = suites
+        .iter()
+        .flat_map(|suite| (0..suite.runs.len()).map(move |run| (suite, run)))
+        .collect();
     let lines = runs
         .par_iter()
         .map(|&(suite, index)| {

@@ -29,7 +29,8 @@ impl Motion {
             share.iter().map(|s| s / fastest * peak * duration / QUINTIC_PEAK).collect();
         let slack = joints.iter().zip(&travel).map(|(joint, travel)| {
             let speed = SPEED_SHARE * joint.velocity_limit.unwrap_or(f64::INFINITY);
-            (2.0 * half_range(joint.position_limits)).min(speed * duration / QUINTIC_PEAK) / travel.abs()
+            (2.0 * half_range(joint.position_limits)).min(speed * duration / QUINTIC_PEAK)
+                / travel.abs()
         });
         let scale = slack.fold(1.0, f64::min);
         travel.iter_mut().for_each(|t| *t *= scale);

@@ -1,4 +1,5 @@
-//! What is to be recorded: drawn from the seed before anything is simulated, so that the order of simulation does not matter.
+//! What is to be recorded: drawn from the seed before anything is simulated, so that the order of
+//! simulation does not matter.
 
 use reachtube_robot::Robot;
 

@@ -27,7 +27,9 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
         let path = entry.unwrap().path();
         if path.is_dir() {
             let below = files(&path).into_iter();
-            found.extend(below.map(|(file, bytes)| (Path::new(path.file_name().unwrap()).join(file), bytes)));
+            found.extend(
+                below.map(|(file, bytes)| (Path::new(path.file_name().unwrap()).join(file), bytes)),
+            );
         } else {
             found.insert(path.file_name().unwrap().into(), std::fs::read(&path).unwrap());
         }
@@ -43,7 +45,8 @@ fn suites(folder: &Path) -> Vec<Vec<Run>> {
 
 #[test]
 fn a_seed_gives_the_same_bytes_and_another_seed_others() {
-    let (once, again, other) = (recorded(&small(3)).0, recorded(&small(3)).0, recorded(&small(4)).0);
+    let (once, again, other) =
+        (recorded(&small(3)).0, recorded(&small(3)).0, recorded(&small(4)).0);
     let bytes = files(once.path());
     assert_eq!(bytes.len(), 4 * 5 + 2);
     assert_eq!(bytes, files(again.path()));
@@ -75,7 +78,8 @@ fn conformance_of_a_small_demo_is_verified() {
     let (folder, demo) = recorded(&small(1));
     let data = DataSet::open(folder.path()).unwrap();
     let settings = Settings::new(Torque::Compensated, 6);
-    let result = conform(&Robot::lwa4p(), &data, &demo.training, &settings, &Watch::SILENT).unwrap();
+    let result =
+        conform(&Robot::lwa4p(), &data, &demo.training, &settings, &Watch::SILENT).unwrap();
     assert!(result.proof.verified);
     assert_eq!(result.proof.runs, 10);
     assert!(result.recordings.suites.iter().all(|suite| suite.shared.is_some()));
@@ -102,8 +106,9 @@ fn runs_of_a_suite_have_one_input_and_their_temperature_rises() {
 fn runs_drift_apart_with_the_order_of_recording() {
     let (folder, _) = recorded(&small(1));
     for suite in suites(folder.path()) {
-        let ends =
-            |joint: usize| suite.iter().map(move |run| run.q(run.len() - 1)[joint]).collect::<Vec<f64>>();
+        let ends = |joint: usize| {
+            suite.iter().map(move |run| run.q(run.len() - 1)[joint]).collect::<Vec<f64>>()
+        };
         let monotone = (0..6).map(ends).filter(|q| q.is_sorted() || q.iter().rev().is_sorted());
         let spread = monotone.map(|q| (q[4] - q[0]).abs()).fold(0.0, f64::max);
         assert!((0.03..1.0).contains(&spread), "{spread} rad");
@@ -154,7 +159,8 @@ proptest! {
                 suite.runs.iter().map(|run| simulate(&robot, &suite, run).unwrap()[..12].to_vec()).collect();
             for (a, b) in measured.iter().flat_map(|a| measured.iter().map(move |b| (a, b))) {
                 for i in 0..6 {
-                    // The filter of the velocity lets through the part 1 - e^(-0.4) < 0.33 of an encoder step a sample.
+                    // The filter of the velocity lets through the part 1 - e^(-0.4) < 0.33 of an
+                    // encoder step a sample.
                     prop_assert!((a[i] - b[i]).abs() <= 2.0 * SCATTER_Q + ENCODER_STEP + 1e-6);
                     let noise = 0.33 * ENCODER_STEP / SAMPLE_TIME;
                     prop_assert!((a[i + 6] - b[i + 6]).abs() <= 2.0 * (SCATTER_QD + noise) + 1e-6);

@@ -9,7 +9,8 @@ pub const PER_LINK: usize = 10;
 /// Factor between two barriers.
 const SHRINK: f64 = 0.1;
 
-/// The last barrier: the objective is within this times the number of inequalities (5 a link) of its least value.
+/// The last barrier: the objective is within this times the number of inequalities (5 a link) of
+/// its least value.
 const LAST_BARRIER: f64 = 1e-3;
 
 /// Newton steps for one barrier; a dozen are usual.
@@ -21,17 +22,22 @@ const NEARLY: f64 = 1e-3;
 /// Half the squared Newton decrement at which a barrier's minimum is reached.
 const REACHED: f64 = 1e-8;
 
-/// min ½ ‖R x - z‖² + s Σ_i [tr(P0_i⁻¹ P_i(x)) - log det P_i(x)] over all x whose links have P_i(x) positive definite and whose listed parameters are positive.
+/// min ½ ‖R x - z‖² + s Σ_i [tr(P0_i⁻¹ P_i(x)) - log det P_i(x)] over all x whose links have P_i(x)
+/// positive definite and whose listed parameters are positive.
 ///
-/// P_i is the pseudo-inertia [[Σ, h], [hᵀ, m]] of link i, linear in x: it is positive definite if and only if some distribution of
-/// positive mass has the link's ten parameters (Wensing, Kim and Slotine, RA-L 2018). The second term is the divergence of Lee and Park (RA-L 2018) from a prior P0,
-/// convex, the same in all frames, and what decides the directions that the data leave open.
+/// P_i is the pseudo-inertia [[Σ, h], [hᵀ, m]] of link i, linear in x: it is positive definite if
+/// and only if some distribution of positive mass has the link's ten parameters (Wensing, Kim and
+/// Slotine, RA-L 2018). The second term is the divergence of Lee and Park (RA-L 2018) from a prior
+/// P0, convex, the same in all frames, and what decides the directions that the data leave open.
 ///
-/// Solved by a barrier method of our own: the cone solver of this workspace takes positive-semidefinite constraints only with a BLAS and LAPACK beside it (a Fortran
-/// or C build on every user's machine), and the divergence, being the barrier itself, makes this program as small as Newton's method on a hundred unknowns.
+/// Solved by a barrier method of our own: the cone solver of this workspace takes
+/// positive-semidefinite constraints only with a BLAS and LAPACK beside it (a Fortran or C build on
+/// every user's machine), and the divergence, being the barrier itself, makes this program as small
+/// as Newton's method on a hundred unknowns.
 #[derive(Debug, Clone)]
 pub struct Feasible<'a> {
-    /// The data, rows in units of their standard deviation; its first 10 n columns are the links' parameters.
+    /// The data, rows in units of their standard deviation; its first 10 n columns are the links'
+    /// parameters.
     pub data: &'a Triangle,
     /// Pseudo-inertias P0 of the prior, positive definite, one a link.
     pub prior: &'a [Matrix4<f64>],
@@ -54,7 +60,8 @@ pub struct FeasiblePoint {
 
 /// The pseudo-inertia of a link's ten parameters.
 pub fn pseudo_inertia(link: &[f64]) -> Matrix4<f64> {
-    let [m, hx, hy, hz, xx, xy, yy, xz, yz, zz] = *link.first_chunk().expect("ten parameters a link");
+    let [m, hx, hy, hz, xx, xy, yy, xz, yz, zz] =
+        *link.first_chunk().expect("ten parameters a link");
     let half = 0.5 * (xx + yy + zz);
     #[rustfmt::skip]
     let rows = Matrix4::new(
@@ -74,14 +81,16 @@ pub fn link_parameters(p: &Matrix4<f64>) -> [f64; PER_LINK] {
 }
 
 impl Feasible<'_> {
-    /// Solves the program from a start near the prior; none where the numbers do not allow it (data or prior not finite, prior not positive definite).
+    /// Solves the program from a start near the prior; none where the numbers do not allow it (data
+    /// or prior not finite, prior not positive definite).
     pub fn solve(&self) -> Option<FeasiblePoint> {
         let basis = basis();
         let inverse: Vec<_> = self.prior.iter().map(|p| p.try_inverse()).collect::<Option<_>>()?;
         let mut x = self.start();
         let hessian = self.data.r.transpose() * &self.data.r;
         let inequalities = 4 * self.prior.len() + self.positive.len();
-        // The first barrier weighs as much as the misfit at the start, or its minimum would be far away.
+        // The first barrier weighs as much as the misfit at the start, or its minimum would be far
+        // away.
         let mut barrier = (self.data.squares(&x) / inequalities as f64).max(1.0);
         let mut steps = 0;
         loop {
@@ -123,7 +132,8 @@ impl Feasible<'_> {
             let log_det = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
             value += self.strength * (prior * p).trace() - (self.strength + barrier) * log_det;
         }
-        let log = |column: &usize| if x[*column] > 0.0 { x[*column].ln() } else { f64::NEG_INFINITY };
+        let log =
+            |column: &usize| if x[*column] > 0.0 { x[*column].ln() } else { f64::NEG_INFINITY };
         value - barrier * self.positive.iter().map(log).sum::<f64>()
     }
 
@@ -139,14 +149,16 @@ impl Feasible<'_> {
         let mut gradient = self.data.r.transpose() * (&self.data.r * x - &self.data.z);
         for (i, prior) in inverse.iter().enumerate() {
             let at = PER_LINK * i;
-            // With P = L Lᵀ and W_k = L⁻¹ E_k L⁻ᵀ, tr(P⁻¹ E_k) = tr W_k and tr(P⁻¹ E_k P⁻¹ E_l) = ⟨W_k, W_l⟩: never indefinite.
+            // With P = L Lᵀ and W_k = L⁻¹ E_k L⁻ᵀ, tr(P⁻¹ E_k) = tr W_k and tr(P⁻¹ E_k P⁻¹ E_l) =
+            // ⟨W_k, W_l⟩: never indefinite.
             let whiten = Cholesky::new(pseudo_inertia(&x.as_slice()[at..]))?.l().try_inverse()?;
             let turned = basis.map(|e| whiten * e * whiten.transpose());
             for k in 0..PER_LINK {
                 gradient[at + k] += self.strength * (prior * basis[k]).trace()
                     - (self.strength + barrier) * turned[k].trace();
                 for l in 0..PER_LINK {
-                    hessian[(at + k, at + l)] += (self.strength + barrier) * turned[k].dot(&turned[l]);
+                    hessian[(at + k, at + l)] +=
+                        (self.strength + barrier) * turned[k].dot(&turned[l]);
                 }
             }
         }
@@ -157,7 +169,8 @@ impl Feasible<'_> {
         Step::of(&hessian, &gradient)
     }
 
-    /// The longest of 1, 1/2, 1/4, ... of a step that stays inside and descends enough; the point itself where rounding leaves nothing to gain.
+    /// The longest of 1, 1/2, 1/4, ... of a step that stays inside and descends enough; the point
+    /// itself where rounding leaves nothing to gain.
     fn advance(
         &self,
         x: &DVector<f64>,
@@ -182,19 +195,20 @@ struct Step {
 }
 
 impl Step {
-    /// By Cholesky of the Hessian scaled to a unit diagonal; directions that nothing decides stay where they are.
+    /// By Cholesky of the Hessian scaled to a unit diagonal; directions that nothing decides stay
+    /// where they are.
     fn of(hessian: &DMatrix<f64>, gradient: &DVector<f64>) -> Option<Self> {
         let n = gradient.len();
-        let scale =
-            DVector::from_fn(
-                n,
-                |i, _| if hessian[(i, i)] > 0.0 { hessian[(i, i)].sqrt().recip() } else { 1.0 },
-            );
+        let scale = DVector::from_fn(n, |i, _| {
+            if hessian[(i, i)] > 0.0 { hessian[(i, i)].sqrt().recip() } else { 1.0 }
+        });
         let scaled = DMatrix::from_fn(n, n, |i, j| hessian[(i, j)] * scale[i] * scale[j]);
-        // Near the boundary the Hessian's eigenvalues span more than doubles do; a ridge then leaves a shorter step that still descends.
+        // Near the boundary the Hessian's eigenvalues span more than doubles do; a ridge then
+        // leaves a shorter step that still descends.
         let ridges = [1e-14, 1e-11, 1e-8].into_iter();
-        let factor =
-            ridges.filter_map(|ridge| Cholesky::new(&scaled + ridge * DMatrix::identity(n, n))).next()?;
+        let factor = ridges
+            .filter_map(|ridge| Cholesky::new(&scaled + ridge * DMatrix::identity(n, n)))
+            .next()?;
         let direction = -factor.solve(&gradient.component_mul(&scale)).component_mul(&scale);
         let decrement = -direction.dot(gradient);
         decrement.is_finite().then_some(Self { direction, decrement })
@@ -242,8 +256,9 @@ mod tests {
     fn a_body_that_is_possible_is_found_as_it_is() {
         let target = link_parameters(&ball());
         let data = asking_for(&target);
-        let point =
-            Feasible { data: &data, prior: &[ball()], strength: 1e-6, positive: &[] }.solve().unwrap();
+        let point = Feasible { data: &data, prior: &[ball()], strength: 1e-6, positive: &[] }
+            .solve()
+            .unwrap();
         assert!(point.x.iter().zip(&target).all(|(a, b)| (a - b).abs() < 1e-3), "{}", point.x);
     }
 
@@ -253,8 +268,9 @@ mod tests {
         let mut target = link_parameters(&ball());
         target[0] = -1.0;
         let data = asking_for(&target);
-        let point =
-            Feasible { data: &data, prior: &[ball()], strength: 1e-6, positive: &[] }.solve().unwrap();
+        let point = Feasible { data: &data, prior: &[ball()], strength: 1e-6, positive: &[] }
+            .solve()
+            .unwrap();
         assert!(point.x[0] > 0.0 && point.x[0] < 1e-3, "{}", point.x);
         assert!((point.x[4] - target[4]).abs() < 1e-3);
     }
@@ -263,15 +279,18 @@ mod tests {
     fn positive_parameters_stay_positive() {
         let target = [link_parameters(&ball()).as_slice(), &[-0.5, 0.7]].concat();
         let data = asking_for(&target);
-        let point =
-            Feasible { data: &data, prior: &[ball()], strength: 1e-6, positive: &[10] }.solve().unwrap();
+        let point = Feasible { data: &data, prior: &[ball()], strength: 1e-6, positive: &[10] }
+            .solve()
+            .unwrap();
         assert!(point.x[10] > 0.0 && point.x[10] < 1e-3 && (point.x[11] - 0.7).abs() < 1e-6);
     }
 
     #[test]
     fn what_the_data_leave_open_is_the_priors() {
         let data = Triangle::of(&[vec![0.0; 10], vec![0.0]].concat(), 10);
-        let point = Feasible { data: &data, prior: &[ball()], strength: 1.0, positive: &[] }.solve().unwrap();
+        let point = Feasible { data: &data, prior: &[ball()], strength: 1.0, positive: &[] }
+            .solve()
+            .unwrap();
         // s P0⁻¹ = (s + barrier) P⁻¹: the last barrier scales the prior by its own weight.
         let scaled = (1.0 + LAST_BARRIER) * ball();
         assert!((pseudo_inertia(point.x.as_slice()) - scaled).amax() < 1e-6);
@@ -280,7 +299,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
-        /// The projection theorem: the way from the solution to the target makes an obtuse angle with the way to any body.
+        /// The projection theorem: the way from the solution to the target makes an obtuse angle
+        /// with the way to any body.
         #[test]
         fn the_solution_is_nearest(target in prop::collection::vec(-1.0..1.0_f64, 10), other in prop::collection::vec(-1.0..1.0_f64, 16)) {
             let data = asking_for(&target);
@@ -290,7 +310,8 @@ mod tests {
             let root = Matrix4::from_row_slice(&other);
             let body = DVector::from_row_slice(&link_parameters(&(root * root.transpose())));
             let to_target = DVector::from_row_slice(&target) - &point.x;
-            // In units of the objective (weights 100²): at the last barrier's minimum it is barrier · (tr(P⁻¹ B) - 4).
+            // In units of the objective (weights 100²): at the last barrier's minimum it is barrier
+            // · (tr(P⁻¹ B) - 4).
             let angle = 1e4 * to_target.dot(&(body - &point.x));
             prop_assert!(angle < 4.0 * point.gap, "{angle}");
         }

@@ -1,5 +1,6 @@
 use super::regression::{
-    Solution, Triangle, huber_weight, robust_deviation, root_mean_square, samples_per_independent_one,
+    Solution, Triangle, huber_weight, robust_deviation, root_mean_square,
+    samples_per_independent_one,
 };
 use super::samples::Samples;
 use serde::Serialize;
@@ -46,12 +47,14 @@ impl JointFit {
 }
 
 impl Fit {
-    /// Fits θ to groups with the same columns: least squares with weights per group and joint, iterated with Huber's weights (unless `plain`); the final rows are
-    /// weighted by how many are independent.
+    /// Fits θ to groups with the same columns: least squares with weights per group and joint,
+    /// iterated with Huber's weights (unless `plain`); the final rows are weighted by how many are
+    /// independent.
     pub fn of(groups: &[&Samples], plain: bool) -> Self {
         let first = |samples: &&Samples| {
             let size = |joint: usize| {
-                root_mean_square(flat(samples, &samples.torque, joint).into_iter()).max(f64::MIN_POSITIVE)
+                root_mean_square(flat(samples, &samples.torque, joint).into_iter())
+                    .max(f64::MIN_POSITIVE)
             };
             let sizes: Vec<f64> = (0..samples.joints).map(size).collect();
             (0..samples.len()).map(|r| sizes[r % samples.joints].recip()).collect()
@@ -60,7 +63,12 @@ impl Fit {
         for _ in 0..ROUNDS {
             let theta = joined(groups, &weights).solve().x;
             for (samples, weights) in groups.iter().zip(&mut weights) {
-                *weights = reweighted(samples, &samples.residuals(&theta), plain, &vec![1.0; samples.joints]);
+                *weights = reweighted(
+                    samples,
+                    &samples.residuals(&theta),
+                    plain,
+                    &vec![1.0; samples.joints],
+                );
             }
         }
         let theta = joined(groups, &weights).solve().x;
@@ -103,16 +111,21 @@ fn reweighted(samples: &Samples, residuals: &[f64], plain: bool, inflation: &[f6
     residuals.iter().enumerate().map(weight).collect()
 }
 
-/// The standard deviation of a joint's residuals: robust, but never below what exact data would give.
+/// The standard deviation of a joint's residuals: robust, but never below what exact data would
+/// give.
 fn deviation(residuals: &[f64], torque: &[f64], plain: bool) -> f64 {
     let size = root_mean_square(torque.iter().copied()).max(f64::MIN_POSITIVE);
-    let spread =
-        if plain { root_mean_square(residuals.iter().copied()) } else { robust_deviation(residuals) };
+    let spread = if plain {
+        root_mean_square(residuals.iter().copied())
+    } else {
+        robust_deviation(residuals)
+    };
     spread.max(LEAST_DEVIATION * size)
 }
 
 fn joint_fit(samples: &Samples, residuals: &[f64], joint: usize) -> JointFit {
-    let (own, torque) = (samples.of_joint(residuals, joint), flat(samples, &samples.recorded, joint));
+    let (own, torque) =
+        (samples.of_joint(residuals, joint), flat(samples, &samples.recorded, joint));
     let all = own.concat();
     let series: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
     let deviation = deviation(&all, &torque, false);
@@ -122,6 +135,7 @@ fn joint_fit(samples: &Samples, residuals: &[f64], joint: usize) -> JointFit {
         residual: root_mean_square(all.iter().copied()),
         torque: root_mean_square(torque.into_iter()),
         deviation,
-        outliers: all.iter().filter(|r| r.abs() > 3.0 * deviation).count() as f64 / all.len().max(1) as f64,
+        outliers: all.iter().filter(|r| r.abs() > 3.0 * deviation).count() as f64
+            / all.len().max(1) as f64,
     }
 }

@@ -10,10 +10,12 @@ use serde::{Deserialize, Serialize};
 /// Rounds of reweighting.
 const ROUNDS: usize = 4;
 
-/// A quadrant is seen with at least this part of a joint's samples, and this many of them independent.
+/// A quadrant is seen with at least this part of a joint's samples, and this many of them
+/// independent.
 const SEEN: (f64, f64) = (0.02, 8.0);
 
-/// A slope in the load is told from the offset where the load varies by more than this part of the median friction.
+/// A slope in the load is told from the offset where the load varies by more than this part of the
+/// median friction.
 const LOAD_RANGE: f64 = 0.3;
 
 /// One sample of a moving joint.
@@ -30,7 +32,8 @@ pub struct FrictionSample {
 }
 
 impl FrictionSample {
-    /// Motor quadrant in the order of a1 to a8: driving forward, driving backward, braking backward, braking forward.
+    /// Motor quadrant in the order of a1 to a8: driving forward, driving backward, braking
+    /// backward, braking forward.
     fn quadrant(&self) -> usize {
         match (self.qd > 0.0, self.load > 0.0) {
             (true, true) => 0,
@@ -68,7 +71,8 @@ pub struct JointFriction {
     pub quadrants: [usize; 4],
     /// Part of the torque's variance that gravity, friction and the joint's inertia explain.
     pub r2: f64,
-    /// The same of the torque less gravity: what friction and inertia explain of what gravity leaves.
+    /// The same of the torque less gravity: what friction and inertia explain of what gravity
+    /// leaves.
     pub r2_without_gravity: f64,
     /// Root mean square of the residuals \[N m\].
     pub residual: f64,
@@ -91,7 +95,8 @@ pub struct FrictionFit {
     pub residuals: Vec<f64>,
 }
 
-/// Fits (5) to (9) to the samples of one joint: Coulomb friction by quadrants as far as they were seen, a cubic in q̇, and the joint's inertia.
+/// Fits (5) to (9) to the samples of one joint: Coulomb friction by quadrants as far as they were
+/// seen, a cubic in q̇, and the joint's inertia.
 ///
 /// None where fewer than 50 samples are left to fit.
 pub fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
@@ -112,8 +117,9 @@ pub fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
         .solve()
     };
     let residuals = |x: &DVector<f64>| -> Vec<f64> {
-        let left =
-            |s: &FrictionSample| s.torque - row(s).iter().zip(x.iter()).map(|(a, x)| a * x).sum::<f64>();
+        let left = |s: &FrictionSample| {
+            s.torque - row(s).iter().zip(x.iter()).map(|(a, x)| a * x).sum::<f64>()
+        };
         samples.iter().map(left).collect()
     };
     for _ in 0..ROUNDS {
@@ -124,7 +130,8 @@ pub fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
     let solution = solve(&weights);
     let left = residuals(&solution.x);
     let alike = samples_per_independent_one(&[&left]);
-    let scale = robust_deviation(&left).max(root_mean_square(left.iter().zip(&weights).map(|(r, w)| r * w)))
+    let scale = robust_deviation(&left)
+        .max(root_mean_square(left.iter().zip(&weights).map(|(r, w)| r * w)))
         * alike.sqrt();
     let errors: Vec<f64> = solution.standard_errors().iter().map(|e| e * scale).collect();
     let spread = |values: Vec<f64>| {
@@ -154,11 +161,15 @@ fn counts(samples: &[FrictionSample]) -> [usize; 4] {
     counts
 }
 
-/// The form that the samples can tell: all four quadrants with loads that vary, else loads that vary at all.
+/// The form that the samples can tell: all four quadrants with loads that vary, else loads that
+/// vary at all.
 fn form_shown(samples: &[FrictionSample]) -> CoulombForm {
     let counts = counts(samples);
     let range = |quadrant: Option<usize>| {
-        let own = samples.iter().filter(|s| quadrant.is_none_or(|q| s.quadrant() == q)).map(|s| s.load.abs());
+        let own = samples
+            .iter()
+            .filter(|s| quadrant.is_none_or(|q| s.quadrant() == q))
+            .map(|s| s.load.abs());
         own.clone().fold(0.0, f64::max) - own.fold(f64::INFINITY, f64::min)
     };
     let mut sizes: Vec<f64> = samples.iter().map(|s| s.torque.abs()).collect();
@@ -243,7 +254,8 @@ mod tests {
 
     /// A joint that swings through its loads; `noise` is added to each torque.
     fn swings(a: [f64; 8], load: f64, noise: f64) -> Vec<FrictionSample> {
-        let (coulomb, viscous) = (Coulomb::from_coefficients(a), Viscous { v1: 10.08, v2: 0.1, v3: -1.02 });
+        let (coulomb, viscous) =
+            (Coulomb::from_coefficients(a), Viscous { v1: 10.08, v2: 0.1, v3: -1.02 });
         let mut state = 7u64;
         let mut random = || {
             state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -252,8 +264,10 @@ mod tests {
         let sample = |k: usize| {
             let t = 0.01 * k as f64;
             let (qd, qdd, load) = ((0.7 * t).sin(), 0.7 * (0.7 * t).cos(), load * (0.11 * t).cos());
-            let torque =
-                coulomb.torque(load, qd) + viscous.torque(&qd) + 1.7 * qdd + noise * random() * 12f64.sqrt();
+            let torque = coulomb.torque(load, qd)
+                + viscous.torque(&qd)
+                + 1.7 * qdd
+                + noise * random() * 12f64.sqrt();
             FrictionSample { qd, qdd, load, torque }
         };
         (1..12_000).map(sample).filter(|s| s.qd.abs() > 0.02).collect()
@@ -268,7 +282,10 @@ mod tests {
         let found_values = found.coefficients.coulomb.iter().chain(&found.coefficients.viscous);
         let errors = found.standard_errors.coulomb.iter().chain(&found.standard_errors.viscous);
         for ((value, found), error) in true_values.zip(found_values).zip(errors) {
-            assert!((value - found).abs() < 4.0 * error && *error < 0.3, "{value}: {found} ± {error}");
+            assert!(
+                (value - found).abs() < 4.0 * error && *error < 0.3,
+                "{value}: {found} ± {error}"
+            );
             within += usize::from((value - found).abs() < 2.0 * error);
             count += 1;
         }
@@ -281,7 +298,11 @@ mod tests {
         let found = fit("joint1", &swings(A, 0.0, 0.1)).unwrap().joint;
         assert_eq!(found.form, CoulombForm::Constant);
         let [_, _, a3, _, a5, _, a7, _] = found.coefficients.coulomb;
-        assert!((a3 + 4.64).abs() < 0.05 && a3 == a5 && (a7 - 4.08).abs() < 0.05, "{:?}", found.coefficients);
+        assert!(
+            (a3 + 4.64).abs() < 0.05 && a3 == a5 && (a7 - 4.08).abs() < 0.05,
+            "{:?}",
+            found.coefficients
+        );
     }
 
     #[test]
@@ -290,7 +311,8 @@ mod tests {
         let clean = fit("j", &samples).unwrap().joint.coefficients;
         samples.iter_mut().step_by(25).for_each(|s| s.torque += 80.0);
         let bent = fit("j", &samples).unwrap().joint.coefficients;
-        let off = clean.coulomb.iter().zip(&bent.coulomb).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let off =
+            clean.coulomb.iter().zip(&bent.coulomb).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 0.1, "{off}");
         assert!(fit("j", &samples[..40]).is_none());
     }

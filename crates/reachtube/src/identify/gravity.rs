@@ -13,10 +13,12 @@ use reachtube_robot::{
 };
 use serde::Serialize;
 
-/// Rounds of gravity and friction, each with what the other found; the second changes the load by what friction's slopes take.
+/// Rounds of gravity and friction, each with what the other found; the second changes the load by
+/// what friction's slopes take.
 const ROUNDS: usize = 3;
 
-/// Poses for each combination that gravity shows, from which on slow motions are not needed for gravity.
+/// Poses for each combination that gravity shows, from which on slow motions are not needed for
+/// gravity.
 const POSES_PER_PARAMETER: usize = 2;
 
 /// Gravity as fitted to poses at rest and to slow motions.
@@ -74,8 +76,9 @@ pub fn fit(
 
 /// The fitted friction of each joint; none for the others.
 pub fn coefficients(fits: &[FrictionFit], robot: &Robot) -> Vec<FrictionDescription> {
-    let of =
-        |name: &String| fits.iter().find(|fit| fit.joint.joint == *name).map(|fit| fit.joint.coefficients);
+    let of = |name: &String| {
+        fits.iter().find(|fit| fit.joint.joint == *name).map(|fit| fit.joint.coefficients)
+    };
     robot.joints().iter().map(|joint| of(&joint.name).unwrap_or_default()).collect()
 }
 
@@ -119,7 +122,8 @@ fn fit_gravity(
         [inertial.clone(), Column::of_joints(n, &moving)].concat()
     };
     let at_rest = Samples::of_rests(robot, &columns, rests, rest_speed);
-    // Slopes of friction that differ between driving and braking look like gravity in motion; poses tell them apart, if there are enough.
+    // Slopes of friction that differ between driving and braking look like gravity in motion; poses
+    // tell them apart, if there are enough.
     let poses = at_rest.len() / n;
     let enough = poses >= POSES_PER_PARAMETER * BaseParameters::at_rest(robot, &inertial).count();
     let slow = if enough { &[] } else { slow };
@@ -129,8 +133,9 @@ fn fit_gravity(
     let fit = Fit::of(&groups, !robust);
     let values = fit.solution.x.rows(0, inertial.len()).into_owned();
     let mut joints = fit.joints.into_iter();
-    let mut of =
-        |samples: &Samples| if samples.is_empty() { Vec::new() } else { joints.next().unwrap_or_default() };
+    let mut of = |samples: &Samples| {
+        if samples.is_empty() { Vec::new() } else { joints.next().unwrap_or_default() }
+    };
     Ok(GravityFit {
         rests: at_rest.len() / n,
         slow_samples: in_motion.used.iter().filter(|used| **used).count(),
@@ -141,7 +146,11 @@ fn fit_gravity(
 }
 
 /// Friction of each joint, from the samples in which it moves and the others do not.
-fn fit_friction(robot: &Robot, slow: &[Log], sampling: &Sampling) -> (Vec<FrictionFit>, Vec<String>) {
+fn fit_friction(
+    robot: &Robot,
+    slow: &[Log],
+    sampling: &Sampling,
+) -> (Vec<FrictionFit>, Vec<String>) {
     let (mut fits, mut notes) = (Vec::new(), Vec::new());
     if slow.is_empty() {
         return (fits, notes);

@@ -9,11 +9,13 @@ use super::settings::{ModelSettings, Prior};
 use crate::error::{Error, Result};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix4, Vector4};
 use reachtube_robot::{
-    BaseParameters, Column, ColumnKind, FrictionDescription, Parameters, Robot, RobotDescription, RobotError,
+    BaseParameters, Column, ColumnKind, FrictionDescription, Parameters, Robot, RobotDescription,
+    RobotError,
 };
 use serde::Serialize;
 
-/// Condition beyond which a combination counts as not shown: one part in ten thousand of a column is below what a rigid robot's torque is known to.
+/// Condition beyond which a combination counts as not shown: one part in ten thousand of a column
+/// is below what a rigid robot's torque is known to.
 pub const ILL_CONDITIONED: f64 = 1e4;
 
 /// Radius of the balls that stand in for links of which nothing is known \[m\].
@@ -34,7 +36,8 @@ pub struct InertiaFit {
     pub joints: Vec<JointFit>,
     /// The combinations that torque shows.
     pub parameters: Vec<BaseParameter>,
-    /// Condition number of the base regressor, columns scaled to unit length; infinite where the recordings leave a combination open.
+    /// Condition number of the base regressor, columns scaled to unit length; infinite where the
+    /// recordings leave a combination open.
     pub condition: f64,
     /// Relative singular values of the structural base, either side of the cut.
     pub gap: [f64; 2],
@@ -60,7 +63,8 @@ pub struct BaseParameter {
 pub struct PhysicalFit {
     /// Why plain least squares gives no robot; none where its mass matrix is positive definite.
     pub plain_impossible: Option<String>,
-    /// Growth of the sum of squared residuals, in standard deviations squared: up to about the number of parameters it is noise.
+    /// Growth of the sum of squared residuals, in standard deviations squared: up to about the
+    /// number of parameters it is noise.
     pub cost: f64,
     /// How far the program's objective is above its least value, at most.
     pub gap: f64,
@@ -86,13 +90,15 @@ pub fn columns(joints: usize, model: &ModelSettings, friction: Friction) -> Vec<
         columns.extend(Column::of_joints(joints, &[ColumnKind::MotorInertia]));
     }
     if friction.refit {
-        let kinds = [ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1, ColumnKind::Viscous3];
+        let kinds =
+            [ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1, ColumnKind::Viscous3];
         columns.extend(Column::of_joints(joints, &kinds[..if friction.cubic { 4 } else { 3 }]));
     }
     columns
 }
 
-/// Fits the inertial parameters to exciting motions and poses at rest; the friction of `known` is known, its gravity the load.
+/// Fits the inertial parameters to exciting motions and poses at rest; the friction of `known` is
+/// known, its gravity the load.
 ///
 /// # Errors
 ///
@@ -111,10 +117,13 @@ pub fn fit(
         return Err(Error::Setting("no joint moves in the recordings for the inertial parameters; name recordings of motions with --dynamic".into()));
     }
     let still = Samples::of_rests(robot, &columns, rests, model.rest_speed);
-    let groups: Vec<&Samples> = [&moving, &still].into_iter().filter(|samples| !samples.is_empty()).collect();
+    let groups: Vec<&Samples> =
+        [&moving, &still].into_iter().filter(|samples| !samples.is_empty()).collect();
     let fit = Fit::of(&groups, !model.robust);
-    let physical =
-        model.physical.then(|| nearest_bodies([robot, known], &columns, &fit, &moving, model)).transpose()?;
+    let physical = model
+        .physical
+        .then(|| nearest_bodies([robot, known], &columns, &fit, &moving, model))
+        .transpose()?;
     let (values, physical) = match physical {
         Some((values, physical)) => (values, Some(physical)),
         None => (fit.solution.x.clone(), None),
@@ -179,7 +188,8 @@ fn nearest_bodies(
     let (prior, balls) = prior(robot, model.prior);
     let frictionless =
         |joint: usize| known.description().joints[joint].friction == FrictionDescription::default();
-    // Friction that is fitted here alone must dissipate; what is added to friction that is known may have either sign.
+    // Friction that is fitted here alone must dissipate; what is added to friction that is known
+    // may have either sign.
     let positive = |column: &Column| match column.kind {
         ColumnKind::MotorInertia => true,
         ColumnKind::Coulomb | ColumnKind::Viscous1 => frictionless(column.joint),
@@ -191,11 +201,14 @@ fn nearest_bodies(
     let point = program.solve().ok_or_else(|| {
         Error::Setting("no possible bodies were found near the data: check gains and signs, or set model.physical = false to see the plain fit".into())
     })?;
-    let plain = with_parameters(robot, &body_columns(columns), &body_values(columns, &fit.solution.x));
+    let plain =
+        with_parameters(robot, &body_columns(columns), &body_values(columns, &fit.solution.x));
     let residuals = |x| {
         let residuals = moving.residuals(x);
         let size = |joint| {
-            super::regression::root_mean_square(moving.of_joint(&residuals, joint).concat().into_iter())
+            super::regression::root_mean_square(
+                moving.of_joint(&residuals, joint).concat().into_iter(),
+            )
         };
         (0..moving.joints).map(size).collect::<Vec<f64>>()
     };
@@ -215,20 +228,22 @@ fn impossible(robot: Result<Robot>) -> Result<Option<String>> {
     let checked = robot.and_then(|robot| Ok(robot.check_physical().map(drop)?));
     match checked {
         Ok(()) => Ok(None),
-        Err(Error::Robot(error @ (RobotError::NotPhysical { .. } | RobotError::Invalid { .. }))) => {
-            Ok(Some(error.to_string()))
-        }
+        Err(Error::Robot(
+            error @ (RobotError::NotPhysical { .. } | RobotError::Invalid { .. }),
+        )) => Ok(Some(error.to_string())),
         Err(other) => Err(other),
     }
 }
 
-/// Pseudo-inertias of the description's links, or balls of the robot's mean mass where asked for or where a link is no body; and the names of the latter.
+/// Pseudo-inertias of the description's links, or balls of the robot's mean mass where asked for or
+/// where a link is no body; and the names of the latter.
 fn prior(robot: &Robot, prior: Prior) -> (Vec<Matrix4<f64>>, Vec<String>) {
     let parameters = robot.inertial_parameters();
     let links: Vec<Matrix4<f64>> = parameters.chunks_exact(PER_LINK).map(pseudo_inertia).collect();
     let body = |p: &Matrix4<f64>| prior == Prior::Description && Cholesky::new(*p).is_some();
     let masses: Vec<f64> = links.iter().filter(|p| body(p)).map(|p| p[(3, 3)]).collect();
-    let mean = if masses.is_empty() { 1.0 } else { masses.iter().sum::<f64>() / masses.len() as f64 };
+    let mean =
+        if masses.is_empty() { 1.0 } else { masses.iter().sum::<f64>() / masses.len() as f64 };
     let second = 0.2 * mean * BALL_RADIUS * BALL_RADIUS;
     let ball = Matrix4::from_diagonal(&Vector4::new(second, second, second, mean));
     let replaced = robot
@@ -255,7 +270,8 @@ fn body_values(columns: &[Column], values: &DVector<f64>) -> DVector<f64> {
     DVector::from_vec(body)
 }
 
-/// The description of the robot that was found: `friction` of its own fit plus what was fitted with the inertial parameters.
+/// The description of the robot that was found: `friction` of its own fit plus what was fitted with
+/// the inertial parameters.
 ///
 /// # Errors
 ///
@@ -265,7 +281,8 @@ pub fn description(
     found: &InertiaFit,
     friction: &[FrictionDescription],
 ) -> Result<RobotDescription> {
-    let (bodies, values) = (body_columns(&found.columns), body_values(&found.columns, &found.values));
+    let (bodies, values) =
+        (body_columns(&found.columns), body_values(&found.columns, &found.values));
     let mut out = with_parameters(robot, &bodies, &values)?.description().clone();
     out.parameters = if found.physical.is_some() { Parameters::Physical } else { Parameters::Base };
     for (joint, friction) in out.joints.iter_mut().zip(friction) {

@@ -1,7 +1,10 @@
-//! The nominal model from recordings: gravity, then friction, then inertia (step 1 of the paper, its appendix).
+//! The nominal model from recordings: gravity, then friction, then inertia (step 1 of the paper,
+//! its appendix).
 //!
-//! [`identify`] prepares recordings ([`prepare`]), fits gravity to poses at rest and slow motions, friction (5) to (9) with the gravity torque for its load, and the
-//! inertial parameters to exciting motions; makes the links bodies that can exist ([`feasible`]); and tries the robot on recordings kept back.
+//! [`identify`] prepares recordings ([`prepare`]), fits gravity to poses at rest and slow motions,
+//! friction (5) to (9) with the gravity torque for its load, and the inertial parameters to
+//! exciting motions; makes the links bodies that can exist ([`feasible`]); and tries the robot on
+//! recordings kept back.
 
 pub mod feasible;
 mod fit;
@@ -31,7 +34,8 @@ use reachtube_robot::{Robot, RobotDescription};
 use samples::{Known, Samples, Sampling};
 use std::path::Path;
 
-/// Samples are taken at this many times the cut-off: more would only repeat what the filter let pass.
+/// Samples are taken at this many times the cut-off: more would only repeat what the filter let
+/// pass.
 const SAMPLES_PER_CUT_OFF: f64 = 6.0;
 
 /// Slow is below this part of a joint's high speeds.
@@ -77,7 +81,8 @@ struct Logs {
     validate: Vec<Log>,
 }
 
-/// Identifies a robot from recordings; their paths are taken from `folder` on. `progress` is told how many of four steps are done.
+/// Identifies a robot from recordings; their paths are taken from `folder` on. `progress` is told
+/// how many of four steps are done.
 ///
 /// # Errors
 ///
@@ -102,7 +107,8 @@ pub fn identify(
         1e3 * sampling.margin,
         slow.iter().map(|slow| format!("{slow:.3}")).collect::<Vec<_>>().join(", ")
     ));
-    let first = gravity::fit(robot, &logs.rest, &logs.friction, &sampling, model.rest_speed, model.robust)?;
+    let first =
+        gravity::fit(robot, &logs.rest, &logs.friction, &sampling, model.rest_speed, model.robust)?;
     progress(2, 4);
     let coefficients = gravity::coefficients(&first.friction, robot);
     let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
@@ -125,7 +131,8 @@ pub fn identify(
     let tried = if kept_back { &logs.validate } else { &logs.dynamic };
     let (validation, traces) = validate::predict(&found, &known, tried, &sampling, &inertia);
     let windows = validate::simulate(&found, tried, &model.windows);
-    let moving = Samples::of(robot, &inertia.columns, &logs.dynamic, &sampling, &Known::Friction(&known));
+    let moving =
+        Samples::of(robot, &inertia.columns, &logs.dynamic, &sampling, &Known::Friction(&known));
     let consistency = suspect::Consistency::of(&moving, &inertia.joints);
     let gains = suspect::gains(robot, &moving, &consistency);
     let mut warnings = first.notes;
@@ -171,23 +178,35 @@ fn own_gravity(robot: &Robot, motor_inertia: bool) -> Result<Robot> {
 }
 
 /// Reads and prepares all recordings; the cut-off; what was changed.
-fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<(Logs, f64, Vec<String>)> {
+fn read(
+    robot: &Robot,
+    settings: &IdentifySettings,
+    folder: &Path,
+) -> Result<(Logs, f64, Vec<String>)> {
     let own = |entries: &[LogEntry]| prepare::read(entries, folder, robot, &settings.prepare);
-    let groups =
-        [own(&settings.rest)?, own(&settings.friction)?, own(&settings.dynamic)?, own(&settings.validate)?];
+    let groups = [
+        own(&settings.rest)?,
+        own(&settings.friction)?,
+        own(&settings.dynamic)?,
+        own(&settings.validate)?,
+    ];
     let exciting: Vec<&RawLog> = groups[2].iter().collect();
     let cut_off = prepare::cut_off(&exciting, &settings.prepare)?;
     let counts = groups.each_ref().map(Vec::len);
     let prepared = prepare::prepare(&groups.concat(), &settings.prepare, cut_off)?;
     let mut logs = prepared.logs.into_iter();
-    let [rest, friction, dynamic, validate] = counts.map(|count| logs.by_ref().take(count).collect());
+    let [rest, friction, dynamic, validate] =
+        counts.map(|count| logs.by_ref().take(count).collect());
     Ok((Logs { rest, friction, dynamic, validate }, cut_off, prepared.changes))
 }
 
-/// For each joint 2 % of the speed that it exceeds 1 % of the time it moves at all, or the speed given.
+/// For each joint 2 % of the speed that it exceeds 1 % of the time it moves at all, or the speed
+/// given.
 fn slow_speeds(logs: &Logs, joints: usize, given: Option<f64>) -> Vec<f64> {
     let own = |joint: usize| {
-        let of = |log: &Log| log.qd.iter().skip(joint).step_by(joints).map(|v| v.abs()).collect::<Vec<_>>();
+        let of = |log: &Log| {
+            log.qd.iter().skip(joint).step_by(joints).map(|v| v.abs()).collect::<Vec<_>>()
+        };
         let mut speeds: Vec<f64> = logs.friction.iter().chain(&logs.dynamic).flat_map(of).collect();
         speeds.sort_by(f64::total_cmp);
         let high = speeds.get((HIGH_SPEED * speeds.len() as f64) as usize).copied().unwrap_or(0.0);

@@ -36,13 +36,26 @@ pub struct Sampling {
 }
 
 impl Samples {
-    /// Samples of logs with these columns, less a known torque, a function of q \[rad\] and q̇ \[rad/s\].
-    pub fn of(robot: &Robot, columns: &[Column], logs: &[Log], sampling: &Sampling, known: &Known) -> Self {
+    /// Samples of logs with these columns, less a known torque, a function of q \[rad\] and q̇
+    /// \[rad/s\].
+    pub fn of(
+        robot: &Robot,
+        columns: &[Column],
+        logs: &[Log],
+        sampling: &Sampling,
+        known: &Known,
+    ) -> Self {
         let parts = logs.par_iter().map(|log| Self::of_log(robot, columns, log, sampling, known));
         Self::joined(robot.joint_count(), columns, parts.collect())
     }
 
-    fn of_log(robot: &Robot, columns: &[Column], log: &Log, sampling: &Sampling, known: &Known) -> Self {
+    fn of_log(
+        robot: &Robot,
+        columns: &[Column],
+        log: &Log,
+        sampling: &Sampling,
+        known: &Known,
+    ) -> Self {
         let mut own = Self::empty(robot.joint_count(), columns);
         let mut regressor = Regressor::new(robot, columns);
         let moves = log.moves(&sampling.slow, sampling.margin);
@@ -54,7 +67,8 @@ impl Samples {
         own
     }
 
-    /// One sample a rest: the means of q and tau where no joint moved faster than `speed` \[rad/s\] for half a second. Friction columns are 0.
+    /// One sample a rest: the means of q and tau where no joint moved faster than `speed` \[rad/s\]
+    /// for half a second. Friction columns are 0.
     pub fn of_rests(robot: &Robot, columns: &[Column], logs: &[Log], speed: f64) -> Self {
         let n = robot.joint_count();
         let mut all = Self::empty(n, columns);
@@ -64,17 +78,24 @@ impl Samples {
             let first = all.torque.len();
             for rest in rests(&log.qd, n, speed, (0.5 / log.step) as usize) {
                 let mean = |values: &[f64]| -> Vec<f64> {
-                    let sum = |joint: usize| rest.clone().map(|k| values[k * n + joint]).sum::<f64>();
+                    let sum =
+                        |joint: usize| rest.clone().map(|k| values[k * n + joint]).sum::<f64>();
                     (0..n).map(|joint| sum(joint) / rest.len() as f64).collect()
                 };
-                all.push(&mut regressor, [&mean(&log.q), &still, &still], &mean(&log.tau), &Known::Nothing);
+                all.push(
+                    &mut regressor,
+                    [&mean(&log.q), &still, &still],
+                    &mean(&log.tau),
+                    &Known::Nothing,
+                );
                 all.used.extend(vec![true; n]);
             }
             all.logs.push(first..all.torque.len());
         }
         let width = columns.len();
         let offsets = (0..width).filter(|c| columns[*c].kind == ColumnKind::Offset);
-        offsets.for_each(|c| all.regressor.iter_mut().skip(c).step_by(width).for_each(|y| *y = 0.0));
+        offsets
+            .for_each(|c| all.regressor.iter_mut().skip(c).step_by(width).for_each(|y| *y = 0.0));
         all
     }
 
@@ -91,7 +112,13 @@ impl Samples {
         }
     }
 
-    fn push(&mut self, regressor: &mut Regressor, [q, qd, qdd]: [&[f64]; 3], tau: &[f64], known: &Known) {
+    fn push(
+        &mut self,
+        regressor: &mut Regressor,
+        [q, qd, qdd]: [&[f64]; 3],
+        tau: &[f64],
+        known: &Known,
+    ) {
         let at = self.regressor.len();
         self.regressor.resize(at + self.joints * self.columns.len(), 0.0);
         if !self.columns.is_empty() {
@@ -99,7 +126,9 @@ impl Samples {
         }
         let known = known.torque([q, qd, qdd]);
         self.recorded.extend_from_slice(tau);
-        self.torque.extend(tau.iter().enumerate().map(|(j, tau)| tau - known.as_ref().map_or(0.0, |k| k[j])));
+        self.torque.extend(
+            tau.iter().enumerate().map(|(j, tau)| tau - known.as_ref().map_or(0.0, |k| k[j])),
+        );
     }
 
     fn joined(joints: usize, columns: &[Column], parts: Vec<Self>) -> Self {
@@ -144,7 +173,8 @@ impl Samples {
 
     /// The triangular factor of the rows that count, each times its weight.
     pub fn triangle(&self, weights: &[f64]) -> Triangle {
-        let counted: Vec<usize> = (0..self.len()).filter(|r| self.used[*r] && weights[*r] > 0.0).collect();
+        let counted: Vec<usize> =
+            (0..self.len()).filter(|r| self.used[*r] && weights[*r] > 0.0).collect();
         let p = self.columns.len();
         Triangle::of_rows(&counted, p, |r, out| {
             out[..p].iter_mut().zip(self.row(r)).for_each(|(o, y)| *o = weights[r] * y);

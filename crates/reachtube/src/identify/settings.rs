@@ -50,11 +50,14 @@ pub struct IdentifySettings {
 pub struct ModelSettings {
     /// Whether the torque drives the motors' inertia too: not where it is measured behind the gear.
     pub motor_inertia: bool,
-    /// Whether friction is fitted once more, as a change, with the inertial parameters; always where there are no friction recordings.
+    /// Whether friction is fitted once more, as a change, with the inertial parameters; always
+    /// where there are no friction recordings.
     pub refit_friction: bool,
-    /// Whether viscous friction has a cubic term where it is fitted with the inertial parameters; where left out, if there are friction recordings.
+    /// Whether viscous friction has a cubic term where it is fitted with the inertial parameters;
+    /// where left out, if there are friction recordings.
     pub cubic: Option<bool>,
-    /// Speed below which a joint's torque is not used \[rad/s\], for friction has no value there; 2 % of each joint's high speeds where left out.
+    /// Speed below which a joint's torque is not used \[rad/s\], for friction has no value there; 2
+    /// % of each joint's high speeds where left out.
     pub slow: Option<f64>,
     /// Speed up to which the robot is at rest \[rad/s\].
     pub rest_speed: f64,
@@ -108,8 +111,9 @@ impl IdentifySettings {
     ///
     /// [`Error::Setting`] with line and field.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self> {
-        let wrong =
-            |error: toml::de::Error| Error::Setting(format!("{origin}: {}", error.to_string().trim_end()));
+        let wrong = |error: toml::de::Error| {
+            Error::Setting(format!("{origin}: {}", error.to_string().trim_end()))
+        };
         toml::from_str(text).map_err(wrong)
     }
 
@@ -136,7 +140,8 @@ impl IdentifySettings {
         let wrong = |words: String| Err(Error::Setting(words));
         if self.dynamic.is_empty() {
             return wrong(
-                "no recordings of exciting motions: name some with --dynamic or dynamic = [..]".into(),
+                "no recordings of exciting motions: name some with --dynamic or dynamic = [..]"
+                    .into(),
             );
         }
         let gains = &self.prepare.gains;
@@ -147,11 +152,15 @@ impl IdentifySettings {
             ));
         }
         if let Some(gain) = gains.iter().find(|gain| **gain == 0.0 || !gain.is_finite()) {
-            return wrong(format!("gains: {gain} turns no torque into N m; give numbers other than 0"));
+            return wrong(format!(
+                "gains: {gain} turns no torque into N m; give numbers other than 0"
+            ));
         }
         let model = &self.model;
-        let positive =
-            [("model.rest_speed", model.rest_speed), ("model.prior_strength", model.prior_strength)];
+        let positive = [
+            ("model.rest_speed", model.rest_speed),
+            ("model.prior_strength", model.prior_strength),
+        ];
         let slow = model.slow.map(|slow| ("model.slow", slow));
         let windows = model.windows.iter().map(|window| ("model.windows", *window));
         match positive
@@ -172,8 +181,10 @@ mod tests {
 
     #[test]
     fn a_mistake_is_found_with_its_line() {
-        let error =
-            IdentifySettings::from_toml("dynamic = [\"a.csv\"]\n[model]\nmotorinertia = true\n", "s.toml");
+        let error = IdentifySettings::from_toml(
+            "dynamic = [\"a.csv\"]\n[model]\nmotorinertia = true\n",
+            "s.toml",
+        );
         let words = error.unwrap_err().to_string();
         assert!(
             words.contains("s.toml") && words.contains("line 3") && words.contains("motorinertia"),
@@ -188,7 +199,9 @@ mod tests {
             ..Default::default()
         };
         assert!(given.validate(6).is_ok());
-        assert!(IdentifySettings::default().validate(6).unwrap_err().to_string().contains("--dynamic"));
+        assert!(
+            IdentifySettings::default().validate(6).unwrap_err().to_string().contains("--dynamic")
+        );
         let mut gains = given.clone();
         gains.prepare.gains = vec![1.0; 5];
         assert!(gains.validate(6).unwrap_err().to_string().contains("each of the 6 joints"));

@@ -1,6 +1,6 @@
 use super::{
-    BaseParameter, Gain, GravityFit, Identification, JointFit, JointFriction, LogValidation, PhysicalFit,
-    WindowErrors,
+    BaseParameter, Gain, GravityFit, Identification, JointFit, JointFriction, LogValidation,
+    PhysicalFit, WindowErrors,
 };
 use reachtube_robot::RobotDescription;
 use serde::Serialize;

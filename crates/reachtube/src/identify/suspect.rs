@@ -28,7 +28,8 @@ const TURNED: f64 = 0.9;
 /// Samples that are enough to tell a sign.
 const SIGN_SAMPLES: f64 = 800.0;
 
-/// The gain of one joint's torque against those of the others, from the forces that the links hand each other.
+/// The gain of one joint's torque against those of the others, from the forces that the links hand
+/// each other.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Gain {
     /// The joint's name.
@@ -39,12 +40,15 @@ pub struct Gain {
     pub standard_error: f64,
 }
 
-/// Rounds in which gains that contradict each other are applied and the errors of the joints found again.
+/// Rounds in which gains that contradict each other are applied and the errors of the joints found
+/// again.
 const GAIN_ROUNDS: usize = 4;
 
-/// The gains of the joints' torques against each other, relative to the joint with the largest torque.
+/// The gains of the joints' torques against each other, relative to the joint with the largest
+/// torque.
 ///
-/// What a joint's errors are is only known once its gain is right, so that gains that are off are applied, and found again.
+/// What a joint's errors are is only known once its gain is right, so that gains that are off are
+/// applied, and found again.
 pub fn gains(robot: &Robot, samples: &Samples, first: &Consistency) -> Vec<Gain> {
     let mut found = first.gains(robot);
     let mut scaled = samples.clone();
@@ -56,8 +60,12 @@ pub fn gains(robot: &Robot, samples: &Samples, first: &Consistency) -> Vec<Gain>
         let n = samples.joints;
         scaled.torque.iter_mut().enumerate().for_each(|(r, tau)| *tau *= latest[r % n].gain);
         scaled.recorded.iter_mut().enumerate().for_each(|(r, tau)| *tau *= latest[r % n].gain);
-        latest = Consistency::with_reference(&scaled, &Fit::of(&[&scaled], false).joints[0], first.reference)
-            .gains(robot);
+        latest = Consistency::with_reference(
+            &scaled,
+            &Fit::of(&[&scaled], false).joints[0],
+            first.reference,
+        )
+        .gains(robot);
         for (found, latest) in found.iter_mut().zip(&latest) {
             (found.gain, found.standard_error) =
                 (found.gain * latest.gain, latest.standard_error * found.gain);
@@ -66,7 +74,8 @@ pub fn gains(robot: &Robot, samples: &Samples, first: &Consistency) -> Vec<Gain>
     found
 }
 
-/// How much the joints' torques contradict each other: a link's mass and inertia act on its own joint and on all before it.
+/// How much the joints' torques contradict each other: a link's mass and inertia act on its own
+/// joint and on all before it.
 ///
 /// With the parameters eliminated the misfit of torques scaled by g is gᵀ S g.
 pub struct Consistency {
@@ -105,7 +114,8 @@ impl Consistency {
         }
     }
 
-    /// The most likely gains relative to the joint with the largest torque: a gain scales a joint's errors too, which its likelihood has as Σ N_j log g_j.
+    /// The most likely gains relative to the joint with the largest torque: a gain scales a joint's
+    /// errors too, which its likelihood has as Σ N_j log g_j.
     fn gains(&self, robot: &Robot) -> Vec<Gain> {
         let Some((gains, errors)) = most_likely(&self.misfit, &self.counts, self.reference) else {
             return Vec::new();
@@ -119,7 +129,8 @@ impl Consistency {
         (0..gains.len()).map(gain).collect()
     }
 
-    /// The joint whose torque, with the other sign, contradicts the others least, and the part of the misfit that is then left.
+    /// The joint whose torque, with the other sign, contradicts the others least, and the part of
+    /// the misfit that is then left.
     fn turned(&self) -> Option<(usize, f64)> {
         let n = self.counts.len();
         let squares = |turned: Option<usize>| {
@@ -127,7 +138,8 @@ impl Consistency {
             g.dot(&(&self.misfit * &g))
         };
         let here = squares(None);
-        let best = (0..n).map(|j| (j, squares(Some(j)) / here)).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let best =
+            (0..n).map(|j| (j, squares(Some(j)) / here)).min_by(|a, b| a.1.total_cmp(&b.1))?;
         (best.1 < TURNED).then_some(best)
     }
 }
@@ -147,8 +159,13 @@ fn eliminated(whole: &Triangle, p: usize) -> DMatrix<f64> {
     torque.transpose() * torque
 }
 
-/// The minimum of ½ gᵀ S g - Σ N_j log g_j by Newton's method in log g, and the standard errors of log g_j - log g_reference.
-fn most_likely(misfit: &DMatrix<f64>, counts: &[f64], reference: usize) -> Option<(Vec<f64>, Vec<f64>)> {
+/// The minimum of ½ gᵀ S g - Σ N_j log g_j by Newton's method in log g, and the standard errors of
+/// log g_j - log g_reference.
+fn most_likely(
+    misfit: &DMatrix<f64>,
+    counts: &[f64],
+    reference: usize,
+) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = counts.len();
     let mut log = DVector::zeros(n);
     let mut factor = None;
@@ -157,7 +174,8 @@ fn most_likely(misfit: &DMatrix<f64>, counts: &[f64], reference: usize) -> Optio
         let pull = misfit * &g;
         let gradient = DVector::from_fn(n, |j, _| g[j] * pull[j] - counts[j]);
         let mut hessian = DMatrix::from_fn(n, n, |i, j| g[i] * misfit[(i, j)] * g[j]);
-        // The part of the curvature that may be negative is left out: it vanishes at the minimum up to N_j.
+        // The part of the curvature that may be negative is left out: it vanishes at the minimum up
+        // to N_j.
         (0..n).for_each(|j| hessian[(j, j)] += counts[j]);
         let decomposed = hessian.cholesky()?;
         let step: DVector<f64> = decomposed.solve(&gradient);
@@ -168,12 +186,17 @@ fn most_likely(misfit: &DMatrix<f64>, counts: &[f64], reference: usize) -> Optio
         }
     }
     let covariance = factor?.inverse();
-    let variance =
-        |j: usize| covariance[(j, j)] + covariance[(reference, reference)] - 2.0 * covariance[(j, reference)];
-    Some((log.iter().map(|log| log.exp()).collect(), (0..n).map(|j| variance(j).max(0.0).sqrt()).collect()))
+    let variance = |j: usize| {
+        covariance[(j, j)] + covariance[(reference, reference)] - 2.0 * covariance[(j, reference)]
+    };
+    Some((
+        log.iter().map(|log| log.exp()).collect(),
+        (0..n).map(|j| variance(j).max(0.0).sqrt()).collect(),
+    ))
 }
 
-/// What looks wrong, in words: torques that contradict each other, friction that drives, and, where the fit is poor, signs that are turned.
+/// What looks wrong, in words: torques that contradict each other, friction that drives, and, where
+/// the fit is poor, signs that are turned.
 pub fn words(
     robot: &Robot,
     fit: &InertiaFit,
@@ -189,7 +212,9 @@ pub fn words(
     let poor: Vec<usize> = (0..joints.len()).filter(|j| joints[*j].relative() > POOR).collect();
     let searched = || turned_sign(robot, logs, samples, sampling);
     let turned = consistency.turned().map(|(j, part)| (format!("tau of {}", name(j)), part));
-    if let Some((what, part)) = turned.clone().or_else(|| (!poor.is_empty()).then(searched).flatten()) {
+    if let Some((what, part)) =
+        turned.clone().or_else(|| (!poor.is_empty()).then(searched).flatten())
+    {
         words.push(format!(
             "the sign of {what} looks turned: with the other sign the sum of squared residuals is {part:.3} of what it is; multiply the column by -1 (for a \
              torque: a negative gain)"
@@ -238,9 +263,16 @@ fn plain_friction(fit: &InertiaFit, known: &FrictionDescription, joint: usize) -
     )
 }
 
-/// The turned sign of one joint's torque, of its position with its velocity, or of all three, that explains the torque best; and what is then left of the sum of squares.
-fn turned_sign(robot: &Robot, logs: &[Log], samples: &Samples, sampling: &Sampling) -> Option<(String, f64)> {
-    let rate = sampling.rate * (SIGN_SAMPLES * samples.joints as f64 / samples.len().max(1) as f64).min(1.0);
+/// The turned sign of one joint's torque, of its position with its velocity, or of all three, that
+/// explains the torque best; and what is then left of the sum of squares.
+fn turned_sign(
+    robot: &Robot,
+    logs: &[Log],
+    samples: &Samples,
+    sampling: &Sampling,
+) -> Option<(String, f64)> {
+    let rate = sampling.rate
+        * (SIGN_SAMPLES * samples.joints as f64 / samples.len().max(1) as f64).min(1.0);
     let sampling = Sampling { rate, ..sampling.clone() };
     let misfit = |logs: &[Log]| unexplained(robot, &samples.columns, logs, &sampling);
     let here = misfit(logs);
@@ -248,11 +280,13 @@ fn turned_sign(robot: &Robot, logs: &[Log], samples: &Samples, sampling: &Sampli
     let candidates: Vec<(usize, usize)> =
         (0..samples.joints).flat_map(|joint| (0..3).map(move |kind| (joint, kind))).collect();
     let turned = |&(joint, kind): &(usize, usize)| {
-        let logs: Vec<Log> = logs.iter().map(|log| turn(log, joint, kind != 0, kind != 1)).collect();
+        let logs: Vec<Log> =
+            logs.iter().map(|log| turn(log, joint, kind != 0, kind != 1)).collect();
         (joint, kind, misfit(&logs) / here)
     };
     let best = candidates.par_iter().map(turned).min_by(|a, b| a.2.total_cmp(&b.2))?;
-    (best.2 < BETTER).then(|| (format!("{} of {}", names[best.1], robot.joints()[best.0].name), best.2))
+    (best.2 < BETTER)
+        .then(|| (format!("{} of {}", names[best.1], robot.joints()[best.0].name), best.2))
 }
 
 /// The sum over joints of the part of the squared torque that no parameters explain.
@@ -264,7 +298,8 @@ fn unexplained(robot: &Robot, columns: &[Column], logs: &[Log], sampling: &Sampl
 fn turn(log: &Log, joint: usize, motion: bool, torque: bool) -> Log {
     let mut log = log.clone();
     let n = log.joints;
-    let negate = |values: &mut Vec<f64>| values.iter_mut().skip(joint).step_by(n).for_each(|v| *v = -*v);
+    let negate =
+        |values: &mut Vec<f64>| values.iter_mut().skip(joint).step_by(n).for_each(|v| *v = -*v);
     if motion {
         [&mut log.q, &mut log.qd, &mut log.qdd].into_iter().for_each(negate);
     }
@@ -278,14 +313,18 @@ fn turn(log: &Log, joint: usize, motion: bool, torque: bool) -> Log {
 mod tests {
     use super::*;
 
-    /// Two joints whose torques are both x(t), a sine with an unknown amplitude, the second recorded at half scale.
+    /// Two joints whose torques are both x(t), a sine with an unknown amplitude, the second
+    /// recorded at half scale.
     fn whole(sign: f64) -> Triangle {
         let noise = |k: usize| 0.01 * (((k * 7919) % 1009) as f64 / 1009.0 - 0.5) * 12f64.sqrt();
         let row = |k: usize| {
             let x = (0.1 * k as f64).sin();
             let second = sign * 0.5 * (2.0 * x + noise(3 * k + 500));
-            [[x, 2.0 * x + noise(k), 0.0, 0.0].map(|v| v / 0.01), [x, 0.0, second, 0.0].map(|v| v / 0.01)]
-                .concat()
+            [
+                [x, 2.0 * x + noise(k), 0.0, 0.0].map(|v| v / 0.01),
+                [x, 0.0, second, 0.0].map(|v| v / 0.01),
+            ]
+            .concat()
         };
         Triangle::of(&(0..400).flat_map(row).collect::<Vec<_>>(), 3)
     }
@@ -298,8 +337,11 @@ mod tests {
 
     #[test]
     fn a_turned_torque_contradicts_the_other() {
-        let consistency =
-            |sign| Consistency { misfit: eliminated(&whole(sign), 1), counts: vec![400.0; 2], reference: 0 };
+        let consistency = |sign| Consistency {
+            misfit: eliminated(&whole(sign), 1),
+            counts: vec![400.0; 2],
+            reference: 0,
+        };
         assert!(consistency(-1.0).turned().is_some() && consistency(1.0).turned().is_none());
     }
 }

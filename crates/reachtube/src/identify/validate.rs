@@ -1,4 +1,5 @@
-//! The model on recordings that it was not fitted to: torque predicted from motion, and motion simulated from torque.
+//! The model on recordings that it was not fitted to: torque predicted from motion, and motion
+//! simulated from torque.
 
 use super::inertia::InertiaFit;
 use super::prepare::Log;
@@ -75,7 +76,8 @@ pub struct TorqueTrace {
     pub moves: Vec<Vec<bool>>,
 }
 
-/// Predicts the torque of logs by the robot that was found; plain least squares, beside it, by `fit` and the friction of `known`. Log by log, then over all.
+/// Predicts the torque of logs by the robot that was found; plain least squares, beside it, by
+/// `fit` and the friction of `known`. Log by log, then over all.
 pub fn predict(
     found: &Robot,
     known: &Robot,
@@ -97,8 +99,10 @@ pub fn predict(
     if logs.len() > 1 {
         found.push(of("all", 0..samples.len()));
     }
-    let traces =
-        logs.iter().zip(&samples.logs).map(|(log, rows)| trace(&samples, &residuals, log, rows.clone()));
+    let traces = logs
+        .iter()
+        .zip(&samples.logs)
+        .map(|(log, rows)| trace(&samples, &residuals, log, rows.clone()));
     (found, traces.collect())
 }
 
@@ -116,7 +120,8 @@ fn joint_error(
         let torque = size(rows, &samples.recorded);
         if torque > 0.0 { size(rows, values) / torque } else { 0.0 }
     };
-    let mean = moving.iter().map(|r| samples.recorded[*r]).sum::<f64>() / moving.len().max(1) as f64;
+    let mean =
+        moving.iter().map(|r| samples.recorded[*r]).sum::<f64>() / moving.len().max(1) as f64;
     let spread = root_mean_square(moving.iter().map(|r| samples.recorded[*r] - mean));
     let residual = size(&moving, residuals);
     JointError {
@@ -130,13 +135,19 @@ fn joint_error(
     }
 }
 
-fn trace(samples: &Samples, residuals: &[f64], log: &Log, rows: std::ops::Range<usize>) -> TorqueTrace {
+fn trace(
+    samples: &Samples,
+    residuals: &[f64],
+    log: &Log,
+    rows: std::ops::Range<usize>,
+) -> TorqueTrace {
     let n = samples.joints;
     let count = rows.len() / n;
     let span = log.time(log.len().saturating_sub(1)) - log.start;
     let step = if count > 1 { span / (count - 1) as f64 } else { 0.0 };
-    let column =
-        |joint: usize, value: &dyn Fn(usize) -> f64| rows.clone().skip(joint).step_by(n).map(value).collect();
+    let column = |joint: usize, value: &dyn Fn(usize) -> f64| {
+        rows.clone().skip(joint).step_by(n).map(value).collect()
+    };
     TorqueTrace {
         log: log.name.clone(),
         times: (0..count).map(|k| log.start + step * k as f64).collect(),
@@ -144,11 +155,14 @@ fn trace(samples: &Samples, residuals: &[f64], log: &Log, rows: std::ops::Range<
             .map(|joint| rows.clone().skip(joint).step_by(n).map(|r| samples.used[r]).collect())
             .collect(),
         recorded: (0..n).map(|joint| column(joint, &|r| samples.recorded[r])).collect(),
-        predicted: (0..n).map(|joint| column(joint, &|r| samples.recorded[r] - residuals[r])).collect(),
+        predicted: (0..n)
+            .map(|joint| column(joint, &|r| samples.recorded[r] - residuals[r]))
+            .collect(),
     }
 }
 
-/// The joints of which more than 30 % of the torque on recordings kept back is not predicted, in words.
+/// The joints of which more than 30 % of the torque on recordings kept back is not predicted, in
+/// words.
 pub fn poor(robot: &Robot, validation: &[LogValidation]) -> Vec<String> {
     let joints = validation.last().map_or(&[][..], |all| &all.joints);
     let words = |(joint, error): (&reachtube_robot::Joint, &JointError)| {
@@ -163,7 +177,8 @@ pub fn poor(robot: &Robot, validation: &[LogValidation]) -> Vec<String> {
     robot.joints().iter().zip(joints).filter_map(words).collect()
 }
 
-/// Simulates the robot under the recorded torque over windows of each length and compares the states at their ends.
+/// Simulates the robot under the recorded torque over windows of each length and compares the
+/// states at their ends.
 pub fn simulate(robot: &Robot, logs: &[Log], durations: &[f64]) -> Vec<WindowErrors> {
     durations.iter().map(|duration| simulate_windows(robot, logs, *duration)).collect()
 }
@@ -175,15 +190,20 @@ fn simulate_windows(robot: &Robot, logs: &[Log], duration: f64) -> WindowErrors 
         .flat_map(|log| {
             let length = (duration / log.step).round().max(1.0) as usize;
             let count = (log.len().saturating_sub(1) / length).min(MOST_WINDOWS);
-            let apart =
-                (log.len() - 1 - length.min(log.len() - 1)).checked_div(count.saturating_sub(1)).unwrap_or(0);
+            let apart = (log.len() - 1 - length.min(log.len() - 1))
+                .checked_div(count.saturating_sub(1))
+                .unwrap_or(0);
             (0..count).map(move |k| (log, k * apart, length))
         })
         .collect();
-    let ends: Vec<Option<DVector<f64>>> =
-        windows.par_iter().map(|(log, start, length)| window_error(robot, log, *start, *length)).collect();
+    let ends: Vec<Option<DVector<f64>>> = windows
+        .par_iter()
+        .map(|(log, start, length)| window_error(robot, log, *start, *length))
+        .collect();
     let moved = |joint: usize| {
-        windows.iter().map(move |(log, start, length)| log.q(start + length)[joint] - log.q(*start)[joint])
+        windows
+            .iter()
+            .map(move |(log, start, length)| log.q(start + length)[joint] - log.q(*start)[joint])
     };
     let error = |i: usize| ends.iter().flatten().map(move |error| error[i]).collect::<Vec<f64>>();
     WindowErrors {
@@ -192,7 +212,9 @@ fn simulate_windows(robot: &Robot, logs: &[Log], duration: f64) -> WindowErrors 
         diverged: ends.iter().filter(|end| end.is_none()).count(),
         q: (0..n).map(|joint| root_mean_square(error(joint).into_iter())).collect(),
         qd: (0..n).map(|joint| root_mean_square(error(n + joint).into_iter())).collect(),
-        motion: (0..n).map(|joint| root_mean_square(moved(joint).collect::<Vec<_>>().into_iter())).collect(),
+        motion: (0..n)
+            .map(|joint| root_mean_square(moved(joint).collect::<Vec<_>>().into_iter()))
+            .collect(),
     }
 }
 
@@ -200,7 +222,8 @@ fn simulate_windows(robot: &Robot, logs: &[Log], duration: f64) -> WindowErrors 
 fn window_error(robot: &Robot, log: &Log, start: usize, length: usize) -> Option<DVector<f64>> {
     let substeps = (log.step / SIMULATION_STEP).ceil().max(1.0) as usize;
     // The mean over the step: a torque held from its start would be half a step late.
-    let mean = |k: usize| log.tau(k).iter().zip(log.tau(k + 1)).map(|(a, b)| 0.5 * (a + b)).collect();
+    let mean =
+        |k: usize| log.tau(k).iter().zip(log.tau(k + 1)).map(|(a, b)| 0.5 * (a + b)).collect();
     let torques: Vec<Vec<f64>> = (start..start + length).map(mean).collect();
     let motion = robot.simulate(log.q(start), log.qd(start), &torques, log.step, substeps);
     let (q, qd) = (&motion.q[length], &motion.qd[length]);

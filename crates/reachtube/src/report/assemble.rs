@@ -1,6 +1,8 @@
 //! From a model and recordings to the page.
 
-use super::{Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict};
+use super::{
+    Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict,
+};
 use crate::conform::{self, Check, Enclosure, Lost, Recordings, Settings, States};
 use crate::data::DataSet;
 use crate::error::{Error, Result};
@@ -63,9 +65,14 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     let set = if outer { "computed reachable set" } else { "reachable set" };
     let words = match &check.violations.worst {
         _ if check.conformant => {
-            format!("All {} recordings lie in the interval hull of the {set} at every sample.", check.runs)
+            format!(
+                "All {} recordings lie in the interval hull of the {set} at every sample.",
+                check.runs
+            )
         }
-        None => format!("{} of {} rows have no {set} to lie in.", check.violations.count, check.rows),
+        None => {
+            format!("{} of {} rows have no {set} to lie in.", check.violations.count, check.rows)
+        }
         Some(worst) => format!(
             "{} of {} rows leave the {set}, furthest {} at {:.3} s, {} by {:.3e}.",
             check.violations.count, check.rows, worst.run, worst.time, worst.state, worst.excess
@@ -94,8 +101,10 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
         not_proved.push("The model is not linear: its reachable set was computed as an outer enclosure, which is what a formal analysis uses. A recording in it need not be a behaviour of the model itself. The recordings that decide the sets touch the linearised set, not the wider band.".into());
     }
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
-        not_proved
-            .push(format!("Explanations were searched for, not proved: {}.", explained.words(tolerance)));
+        not_proved.push(format!(
+            "Explanations were searched for, not proved: {}.",
+            explained.words(tolerance)
+        ));
     }
     let end = |lost: &Lost| {
         format!(
@@ -115,7 +124,10 @@ fn sets_table(model: &Model) -> SetsTable {
         x0_q: bounds(&model.initial_set, joint),
         x0_qd: bounds(&model.initial_set, n + joint),
         u: bounds(&model.input_set, joint),
-        noise: model.noise_set.as_ref().map(|noise| [bounds(noise, joint), bounds(noise, n + joint)]),
+        noise: model
+            .noise_set
+            .as_ref()
+            .map(|noise| [bounds(noise, joint), bounds(noise, n + joint)]),
     };
     let notion = match model.settings.states {
         States::All => "Position and velocity conformant",
@@ -136,9 +148,12 @@ fn facts(model: &Model) -> Vec<(String, String)> {
     let settings = &model.settings;
     let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
     let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
-    let number = |value: Option<f64>| value.map_or_else(|| "none".into(), |value| format!("{value:.6}"));
-    let cost = match (model.cost_lower_bound, model.search.as_ref().and_then(|search| search.linearised_cost))
-    {
+    let number =
+        |value: Option<f64>| value.map_or_else(|| "none".into(), |value| format!("{value:.6}"));
+    let cost = match (
+        model.cost_lower_bound,
+        model.search.as_ref().and_then(|search| search.linearised_cost),
+    ) {
         (Some(bound), _) => format!("{} (lower bound {bound:.6})", number(model.cost)),
         (None, Some(linearised)) => format!("{} (linearised {linearised:.6})", number(model.cost)),
         (None, None) => number(model.cost),
@@ -202,16 +217,21 @@ fn caution(model: &Model) -> Vec<String> {
 fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
     let Sources { model, data, check, reach, .. } = *sources;
     let joints = model.joints();
-    let own: Vec<&SuiteReach> = reach.iter().filter(|reach| reach.suite == suite.entry.name).collect();
+    let own: Vec<&SuiteReach> =
+        reach.iter().filter(|reach| reach.suite == suite.entry.name).collect();
     let longest = own.iter().max_by_key(|reach| reach.times.len()).copied();
     let Some(longest) = longest else {
-        return Err(Error::Setting(format!("no reachable set was computed for suite {}", suite.entry.name)));
+        return Err(Error::Setting(format!(
+            "no reachable set was computed for suite {}",
+            suite.entry.name
+        )));
     };
     let shared = longest.run.is_none();
     let mut runs = Vec::new();
     for (order, summary) in suite.runs.iter().enumerate() {
         let entry = &data.runs()[summary.index];
-        let of_run = own.iter().find(|reach| reach.run.as_deref().is_none_or(|run| run == entry.file));
+        let of_run =
+            own.iter().find(|reach| reach.run.as_deref().is_none_or(|run| run == entry.file));
         runs.push(trace(sources, summary.index, order, of_run.filter(|_| !shared).copied())?);
     }
     let nominal = columns(&longest.nominal, 2 * joints);
@@ -224,12 +244,15 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
         let values: Vec<f64> = (0..longest.nominal.len()).filter_map(hull).collect();
         columns(&values, 2 * joints)
     };
-    let name = |file: &String| suite.runs.iter().position(|run| data.runs()[run.index].file == *file);
+    let name =
+        |file: &String| suite.runs.iter().position(|run| data.runs()[run.index].file == *file);
     let tight = model.tight.iter().filter(|place| place.suite == suite.entry.name);
     let violated = check.suites.iter().filter(|own| own.suite == suite.entry.name);
     let worst = violated.filter_map(|own| own.violations.worst.as_ref());
-    let spots: Vec<TightSpot> =
-        tight.chain(worst).filter_map(|place| Some(spot(place, name(&place.run)?, joints))).collect();
+    let spots: Vec<TightSpot> = tight
+        .chain(worst)
+        .filter_map(|place| Some(spot(place, name(&place.run)?, joints)))
+        .collect();
     for spot in &spots {
         runs[spot.run].touches += 1;
     }
@@ -250,7 +273,8 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
 }
 
 fn spot(place: &conform::Place, run: usize, joints: usize) -> TightSpot {
-    let state = if place.state.starts_with("qd") { joints + place.joint - 1 } else { place.joint - 1 };
+    let state =
+        if place.state.starts_with("qd") { joints + place.joint - 1 } else { place.joint - 1 };
     let side = match place.side {
         conform::Side::Upper => Side::Upper,
         conform::Side::Lower => Side::Lower,
@@ -259,10 +283,16 @@ fn spot(place: &conform::Place, run: usize, joints: usize) -> TightSpot {
 }
 
 /// A run as a line; relative to its own nominal solution where it has one.
-fn trace(sources: &Sources, index: usize, order: usize, own: Option<&SuiteReach>) -> Result<RunTrace> {
+fn trace(
+    sources: &Sources,
+    index: usize,
+    order: usize,
+    own: Option<&SuiteReach>,
+) -> Result<RunTrace> {
     let Sources { model, settings, data, .. } = *sources;
-    let run =
-        data.read(index, Some(model.joints()), settings.gap_limit, settings.until).map_err(Error::Defects)?;
+    let run = data
+        .read(index, Some(model.joints()), settings.gap_limit, settings.until)
+        .map_err(Error::Defects)?;
     let mut states = run.states.clone();
     if let Some(own) = own {
         states.iter_mut().zip(&own.nominal).for_each(|(x, nominal)| *x -= nominal);

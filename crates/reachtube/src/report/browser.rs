@@ -8,7 +8,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+const BROWSERS: [&str; 4] =
+    ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 const PATIENCE: Duration = Duration::from_secs(120);
 const QUIET: [&str; 13] = [
     "--headless",
@@ -39,7 +40,8 @@ fn open(browser: &Path, html: &str) -> Result<String, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let at = |name: &str| folder.path().join(name);
     fs::write(at("page.html"), html).map_err(|error| error.to_string())?;
-    let pipe = |name: &str| fs::File::create(at(name)).map(Stdio::from).map_err(|error| error.to_string());
+    let pipe =
+        |name: &str| fs::File::create(at(name)).map(Stdio::from).map_err(|error| error.to_string());
     let child = Command::new(browser)
         .args(QUIET)
         .arg(format!("--user-data-dir={}", at("profile").display()))
@@ -55,7 +57,11 @@ fn open(browser: &Path, html: &str) -> Result<String, String> {
         return Err(line.to_string());
     }
     let dom = String::from_utf8_lossy(&fs::read(at("dom")).unwrap_or_default()).into_owned();
-    if dom.contains("data-ready=\"yes\"") { Ok(dom) } else { Err(format!("the script did not end\n{log}")) }
+    if dom.contains("data-ready=\"yes\"") {
+        Ok(dom)
+    } else {
+        Err(format!("the script did not end\n{log}"))
+    }
 }
 
 fn wait(mut child: Child) -> Result<(), String> {
@@ -105,7 +111,9 @@ fn the_buttons_choose_the_suite_the_view_and_the_run() {
     let click = "<script>for (const b of ['#suites [value=\"1\"]', '#views [value=deviation]', '#suite-1 .runs button']) \
                  document.querySelector(b).click();</script></body>";
     let dom = open(&browser, &page().replace("</body>", click)).unwrap();
-    let shown = |start: &str| -> Vec<bool> { dom.split(start).skip(1).map(|tag| !has_hidden(tag)).collect() };
+    let shown = |start: &str| -> Vec<bool> {
+        dom.split(start).skip(1).map(|tag| !has_hidden(tag)).collect()
+    };
     assert_eq!(shown("<section class=\"suite\""), [false, true]);
     assert_eq!(shown("<figure"), [false, true, false, true]);
     assert!(dom.contains("#suite-1 polyline[stroke=\"#1246C8\"] { stroke-width: 13; }"));
@@ -120,7 +128,8 @@ fn a_complaint_or_a_broken_script_is_seen() {
     let Some(browser) = browser_or_word() else { return };
     let planted = page().replace("</body>", "<script>console.error(\"planted\")</script></body>");
     assert!(open(&browser, &planted).unwrap_err().contains("planted"));
-    let fetching = page().replace("</main>", "<img src=\"https://example.invalid/x.png\" alt=\"\"></main>");
+    let fetching =
+        page().replace("</main>", "<img src=\"https://example.invalid/x.png\" alt=\"\"></main>");
     assert!(open(&browser, &fetching).unwrap_err().contains("Content Security Policy"));
     let cut = page().replace("root.dataset.ready = \"yes\";", "");
     assert!(open(&browser, &cut).unwrap_err().contains("did not end"));

@@ -52,7 +52,8 @@ pub struct Series {
 /// Numbers that are not finite, or what the drawing library refuses.
 pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
     let points = || chart.series.iter().flat_map(|series| &series.points);
-    if let Some((index, (x, y))) = points().enumerate().find(|(_, (x, y))| !(x.is_finite() && y.is_finite()))
+    if let Some((index, (x, y))) =
+        points().enumerate().find(|(_, (x, y))| !(x.is_finite() && y.is_finite()))
     {
         let value = if x.is_finite() { *y } else { *x };
         return Err(ReportError::NotFinite {
@@ -65,8 +66,10 @@ pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
     let size = (units(WIDTH) as u32, units(HEIGHT) as u32);
     let mut drawing = String::new();
     let canvas = SVGBackend::with_string(&mut drawing, size).into_drawing_area();
-    draw(&canvas, chart)
-        .map_err(|cause| ReportError::Draw { suite: chart.title.clone(), cause: cause.to_string() })?;
+    draw(&canvas, chart).map_err(|cause| ReportError::Draw {
+        suite: chart.title.clone(),
+        cause: cause.to_string(),
+    })?;
     drop(canvas);
     let body = drawing.split_once('>').map_or("", |(_, body)| body);
     Ok(format!(
@@ -82,8 +85,9 @@ fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
     canvas.fill(&WHITE)?;
     let [x, y] = [range(chart, |p| p.0), range(chart, |p| p.1)];
     let font = |size: f64| ("sans-serif", f64::from(units(size)) * 1.24).into_font();
-    let style =
-        |font: FontDesc<'static>| TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Center, VPos::Center));
+    let style = |font: FontDesc<'static>| {
+        TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Center, VPos::Center))
+    };
     let middle = units(LEFT + 0.5 * (WIDTH - LEFT - RIGHT));
     canvas.draw_text(
         &clean(&chart.title),
@@ -97,9 +101,10 @@ fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
         &turned,
         (units(9.0), units(TITLE + 0.5 * (HEIGHT - TITLE - BELOW))),
     )?;
-    let plot = canvas
-        .clone()
-        .shrink((units(14.0), units(TITLE)), (units(WIDTH - 14.0 - RIGHT), units(HEIGHT - TITLE - 16.0)));
+    let plot = canvas.clone().shrink(
+        (units(14.0), units(TITLE)),
+        (units(WIDTH - 14.0 - RIGHT), units(HEIGHT - TITLE - 16.0)),
+    );
     let mut axes = ChartBuilder::on(&plot)
         .set_label_area_size(LabelAreaPosition::Left, units(LEFT - 14.0))
         .set_label_area_size(LabelAreaPosition::Bottom, units(BELOW - 16.0))
@@ -123,7 +128,8 @@ fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
             let dot = |point: &(f64, f64)| Circle::new(*point, units(DOT), colour.filled());
             axes.draw_series(series.points.iter().step_by(stride).map(dot))?;
         } else {
-            let (column, tolerance) = ((x[1] - x[0]) / (2.0 * WIDTH), (y[1] - y[0]) / (20.0 * HEIGHT));
+            let (column, tolerance) =
+                ((x[1] - x[0]) / (2.0 * WIDTH), (y[1] - y[0]) / (20.0 * HEIGHT));
             let line = decimate::decimate(&series.points, column, tolerance);
             axes.draw_series([PathElement::new(line, colour.stroke_width(LINE))])?;
         }
@@ -134,7 +140,8 @@ fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
 /// The range of a coordinate with some room; 1 about what does not vary.
 fn range(chart: &Chart, of: fn(&(f64, f64)) -> f64) -> [f64; 2] {
     let values = || chart.series.iter().flat_map(|series| series.points.iter().map(of));
-    let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    let (low, high) =
+        (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     // What differs by rounding only does not vary.
     match (low.is_finite(), high - low > 1e-9 * high.abs().max(low.abs()).max(1e-3)) {
         (true, true) => [low - 0.05 * (high - low), high + 0.05 * (high - low)],
@@ -162,7 +169,9 @@ mod tests {
         };
         let svg = chart_svg(&chart).unwrap();
         assert_eq!(svg.matches("<circle").count(), 500);
-        assert!(svg.contains("stroke=\"#090807\"") && !svg.contains("<b>") && svg.ends_with("</svg>\n"));
+        assert!(
+            svg.contains("stroke=\"#090807\"") && !svg.contains("<b>") && svg.ends_with("</svg>\n")
+        );
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Shapes and values are checked before anything is drawn, so that a wrong input is named instead of misdrawn.
+//! Shapes and values are checked before anything is drawn, so that a wrong input is named instead
+//! of misdrawn.
 
 use super::{Band, Bounds, Nominal, ReportError, RunTrace, SetsTable, SuiteFigure, TightSpot};
 
@@ -23,9 +24,11 @@ pub(super) fn suite(figure: &SuiteFigure) -> Result<(), ReportError> {
 pub(super) fn sets(table: &SetsTable) -> Result<(), ReportError> {
     for (index, row) in table.joints.iter().enumerate() {
         let noise = row.noise.iter().flatten();
-        let bounds: Vec<&Bounds> = [&row.x0_q, &row.x0_qd, &row.u].into_iter().chain(noise).collect();
+        let bounds: Vec<&Bounds> =
+            [&row.x0_q, &row.x0_qd, &row.u].into_iter().chain(noise).collect();
         if let Some(&value) = bounds.into_iter().flatten().find(|bound| !bound.is_finite()) {
-            let (place, what) = (format!("sets \"{}\"", table.notion), format!("joint {}", row.joint));
+            let (place, what) =
+                (format!("sets \"{}\"", table.notion), format!("joint {}", row.joint));
             return Err(ReportError::NotFinite { place, what, index, value });
         }
     }
@@ -121,9 +124,15 @@ mod tests {
             suite(&figure).unwrap_err().to_string()
         };
         assert!(words(|f| f.band.lower.truncate(3)).contains("band.lower has length 3, but 4"));
-        assert!(words(|f| f.runs[1].states[2][5] = f64::NAN).contains("states of run run 2[2][5] is NaN"));
+        assert!(
+            words(|f| f.runs[1].states[2][5] = f64::NAN)
+                .contains("states of run run 2[2][5] is NaN")
+        );
         assert!(words(|f| f.times[1] = 0.0).contains("times[1] is 0 s, not later"));
-        assert!(words(|f| f.tight[0].state = 9).contains("states (an index of tight) has length 4, but 10"));
+        assert!(
+            words(|f| f.tight[0].state = 9)
+                .contains("states (an index of tight) has length 4, but 10")
+        );
         assert!(words(|f| f.joints.clear()).contains("joints has length 0"));
     }
 

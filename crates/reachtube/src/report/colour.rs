@@ -1,4 +1,5 @@
-//! The colours of the lines: blue for the first or coldest run to red for the last or hottest, as in Fig. 4.
+//! The colours of the lines: blue for the first or coldest run to red for the last or hottest, as
+//! in Fig. 4.
 
 use super::RunTrace;
 use plotters::style::RGBColor;

@@ -3,14 +3,15 @@
 /// A point (time \[s\], value).
 pub(super) type Point = (f64, f64);
 
-/// Thins a line to the samples that a plot can show: of every column `column` wide (in time) the lowest and the
-/// highest sample, then without the samples that a straight line already passes within `tolerance` (in value).
-/// Times strictly increase.
+/// Thins a line to the samples that a plot can show: of every column `column` wide (in time) the
+/// lowest and the highest sample, then without the samples that a straight line already passes
+/// within `tolerance` (in value). Times strictly increase.
 ///
 /// # Guarantee
 ///
-/// Inner and outer within `tolerance`: every point kept is a sample, and in every column the line reaches the
-/// lowest and the highest sample up to `tolerance`, plus the rounding of one linear interpolation.
+/// Inner and outer within `tolerance`: every point kept is a sample, and in every column the line
+/// reaches the lowest and the highest sample up to `tolerance`, plus the rounding of one linear
+/// interpolation.
 pub(super) fn decimate(points: &[Point], column: f64, tolerance: f64) -> Vec<Point> {
     straighten(&extremes(points, column), tolerance)
 }
@@ -42,8 +43,9 @@ fn low_and_high(group: &[Point]) -> (Point, Point) {
     })
 }
 
-/// Drops the points that the line between their kept neighbours passes within `tolerance`: the slopes that a line
-/// from the last kept point may still have narrow with every point passed, and a point outside them starts anew.
+/// Drops the points that the line between their kept neighbours passes within `tolerance`: the
+/// slopes that a line from the last kept point may still have narrow with every point passed, and a
+/// point outside them starts anew.
 fn straighten(points: &[Point], tolerance: f64) -> Vec<Point> {
     let Some((&first, rest)) = points.split_first() else {
         return Vec::new();
@@ -125,7 +127,8 @@ mod tests {
 
     #[test]
     fn a_straight_line_needs_its_ends_only() {
-        let points: Vec<Point> = (0..1000).map(|k| (f64::from(k) * 0.004, f64::from(k) * 0.1)).collect();
+        let points: Vec<Point> =
+            (0..1000).map(|k| (f64::from(k) * 0.004, f64::from(k) * 0.1)).collect();
         assert_eq!(decimate(&points, 0.001, 1e-6), [points[0], points[999]]);
     }
 

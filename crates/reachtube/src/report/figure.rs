@@ -13,17 +13,18 @@ pub(super) type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// The outcome of a drawing call.
 pub(super) type DrawResult = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// One figure of a suite as a complete SVG document of at most 1,240 px width: per joint a plot of the position
-/// \[rad\] above a plot of the velocity \[rad/s\] over time \[s\], the reachable set in grey, the runs on it coloured
-/// by temperature or order, the tight spots ringed.
+/// One figure of a suite as a complete SVG document of at most 1,240 px width: per joint a plot of
+/// the position \[rad\] above a plot of the velocity \[rad/s\] over time \[s\], the reachable set
+/// in grey, the runs on it coloured by temperature or order, the tight spots ringed.
 ///
-/// The lines are thinned to what the plot can show: each passes every sample's extremes per pixel column within a
-/// tenth of a pixel. Between samples the bands are joined by straight lines, which is a drawing and not a claim.
+/// The lines are thinned to what the plot can show: each passes every sample's extremes per pixel
+/// column within a tenth of a pixel. Between samples the bands are joined by straight lines, which
+/// is a drawing and not a claim.
 ///
 /// # Errors
 ///
-/// Shapes that do not match, times that do not increase, numbers that are not finite, or a view that the suite does
-/// not have.
+/// Shapes that do not match, times that do not increase, numbers that are not finite, or a view
+/// that the suite does not have.
 ///
 /// # Examples
 ///
@@ -58,8 +59,10 @@ pub fn suite_svg(figure: &SuiteFigure, view: View) -> Result<String, ReportError
     let mut drawing = String::new();
     let canvas = SVGBackend::with_string(&mut drawing, size).into_drawing_area();
     let colours: Vec<RGBColor> = heat.values.iter().map(|&heat| colour::colour(heat)).collect();
-    draw(&canvas, figure, view, &layout, &legend, &colours)
-        .map_err(|cause| ReportError::Draw { suite: figure.suite.clone(), cause: cause.to_string() })?;
+    draw(&canvas, figure, view, &layout, &legend, &colours).map_err(|cause| ReportError::Draw {
+        suite: figure.suite.clone(),
+        cause: cause.to_string(),
+    })?;
     drop(canvas);
     Ok(with_head(&drawing, &layout, &describe(figure, view)))
 }
@@ -88,8 +91,9 @@ fn words(canvas: &Canvas, figure: &SuiteFigure, layout: &Layout, state: usize) -
     let (width, plot) = layout.plot();
     let n = figure.joints.len();
     let font = |size: f64| ("sans-serif", f64::from(units(size)) * 1.24).into_font();
-    let style =
-        |font: FontDesc<'static>| TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Center, VPos::Center));
+    let style = |font: FontDesc<'static>| {
+        TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Center, VPos::Center))
+    };
     let middle = units(x + super::layout::BESIDE_PLOT + width / 2.0);
     if state < n {
         let name = style(font(12.5).style(FontStyle::Bold));
@@ -137,7 +141,8 @@ mod tests {
     use super::super::{Nominal, sample};
     use super::*;
 
-    /// Every tag is closed in order, every attribute is quoted, and no raw markup is left in a text.
+    /// Every tag is closed in order, every attribute is quoted, and no raw markup is left in a
+    /// text.
     pub(crate) fn well_formed(svg: &str) -> Result<(), String> {
         let mut open = Vec::new();
         let mut rest = svg;

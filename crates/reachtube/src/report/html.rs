@@ -2,7 +2,8 @@
 
 use super::text::escape;
 use super::{
-    Page, ReportError, RunTrace, SuiteFigure, View, check, colour, figure::suite_svg, layout::Layout, tables,
+    Page, ReportError, RunTrace, SuiteFigure, View, check, colour, figure::suite_svg,
+    layout::Layout, tables,
 };
 use std::io::Write;
 
@@ -12,8 +13,9 @@ const SCRIPT: &str = include_str!("page.js");
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
-/// Writes the page as one HTML file that needs nothing else: it can be mailed, archived and printed. Without
-/// JavaScript all figures are shown one below the other; with it, one suite and one view at a time.
+/// Writes the page as one HTML file that needs nothing else: it can be mailed, archived and
+/// printed. Without JavaScript all figures are shown one below the other; with it, one suite and
+/// one view at a time.
 ///
 /// The printed bounds of the sets are rounded outward. The same page gives the same bytes.
 ///
@@ -79,19 +81,25 @@ pub(super) fn titled_list(title: &str, class: &str, points: &[String]) -> String
     if points.is_empty() {
         return String::new();
     }
-    let points: String = points.iter().map(|point| format!("<li>{}</li>\n", escape(point))).collect();
+    let points: String =
+        points.iter().map(|point| format!("<li>{}</li>\n", escape(point))).collect();
     format!("<div>\n<h3>{title}</h3>\n<ul class=\"{class}\">\n{points}</ul>\n</div>\n")
 }
 
 /// The head of the figures: a button a suite and a button a view, shown by the script only.
 fn controls(page: &Page) -> String {
-    let suites: String =
-        page.suites.iter().enumerate().map(|(k, suite)| button(&k.to_string(), &suite.suite)).collect();
+    let suites: String = page
+        .suites
+        .iter()
+        .enumerate()
+        .map(|(k, suite)| button(&k.to_string(), &suite.suite))
+        .collect();
     let both = page.suites.iter().any(|suite| suite.views().len() == 2);
     let views = [("motion", "Motion"), ("deviation", "Deviation from the nominal")];
     let views: String = views.map(|(value, label)| button(value, label)).concat();
     let views = if both { group("views", "View", &views) } else { String::new() };
-    let suites = if page.suites.len() > 1 { group("suites", "Suite", &suites) } else { String::new() };
+    let suites =
+        if page.suites.len() > 1 { group("suites", "Suite", &suites) } else { String::new() };
     format!(
         "<section id=\"figures\" aria-labelledby=\"figures-title\">\n<h2 id=\"figures-title\">Recordings in the reachable set</h2>\n\
          <div class=\"controls\">{suites}{views}</div>\n"
@@ -99,16 +107,22 @@ fn controls(page: &Page) -> String {
 }
 
 fn group(id: &str, label: &str, buttons: &str) -> String {
-    format!("<div class=\"choice\" id=\"{id}\" role=\"group\" aria-label=\"{label}\" hidden>{buttons}</div>")
+    format!(
+        "<div class=\"choice\" id=\"{id}\" role=\"group\" aria-label=\"{label}\" hidden>{buttons}</div>"
+    )
 }
 
 fn button(value: &str, label: &str) -> String {
-    format!("<button type=\"button\" value=\"{value}\" aria-pressed=\"false\">{}</button>", escape(label))
+    format!(
+        "<button type=\"button\" value=\"{value}\" aria-pressed=\"false\">{}</button>",
+        escape(label)
+    )
 }
 
 fn suite_section(index: usize, suite: &SuiteFigure) -> Result<String, ReportError> {
     let views = suite.views();
-    let figures: String = views.iter().map(|&view| figure(suite, view)).collect::<Result<_, _>>()?;
+    let figures: String =
+        views.iter().map(|&view| figure(suite, view)).collect::<Result<_, _>>()?;
     let name = escape(&suite.suite);
     Ok(format!(
         "<section class=\"suite\" id=\"suite-{index}\" data-suite=\"{index}\" aria-label=\"Suite {name}\">\n\
@@ -121,7 +135,8 @@ fn figure(suite: &SuiteFigure, view: View) -> Result<String, ReportError> {
     let svg = suite_svg(suite, view)?;
     let name = if view == View::Motion { "motion" } else { "deviation" };
     let width = Layout::new(suite.joints.len()).width();
-    let choice = if suite.views().len() == 2 { format!(" data-view=\"{name}\"") } else { String::new() };
+    let choice =
+        if suite.views().len() == 2 { format!(" data-view=\"{name}\"") } else { String::new() };
     Ok(format!(
         "<figure{choice}>\n<div class=\"wide\" style=\"--width:{width}px\" tabindex=\"0\" role=\"region\" aria-label=\"Figure, {name}\">\n{svg}</div>\n\
          <figcaption>{}</figcaption>\n</figure>\n",
@@ -153,7 +168,8 @@ fn caption(suite: &SuiteFigure, view: View) -> String {
     )
 }
 
-/// The runs by name and colour, each with the number of support rows it decides; choosing one singles out its lines.
+/// The runs by name and colour, each with the number of support rows it decides; choosing one
+/// singles out its lines.
 fn chips(suite: &SuiteFigure) -> String {
     if suite.runs.is_empty() {
         return String::new();
@@ -170,7 +186,8 @@ fn chips(suite: &SuiteFigure) -> String {
 
 fn chip(run: &RunTrace, heat: f64) -> String {
     let stroke = colour::hex(colour::colour(heat));
-    let degrees = run.temperature.map_or(String::new(), |degrees| format!(" <small>{degrees:.1} °C</small>"));
+    let degrees =
+        run.temperature.map_or(String::new(), |degrees| format!(" <small>{degrees:.1} °C</small>"));
     let touches = if run.touches == 0 { String::new() } else { format!(" <b>{}</b>", run.touches) };
     format!(
         "<li><button type=\"button\" data-stroke=\"{stroke}\" aria-pressed=\"false\"><i style=\"background:{stroke}\"></i>{}{degrees}{touches}</button></li>\n",
@@ -185,7 +202,10 @@ fn rest(page: &Page) -> String {
         let tables: String = page.sets.iter().map(tables::sets).collect();
         let words = "<p>Printed bounds are rounded outward at their last digit: the printed sets contain the checked ones. \
                      The bars share one scale a column; their middle is 0.</p>\n";
-        html += &section("Uncertainty sets", &format!("<div class=\"tables\">\n{tables}</div>\n{words}"));
+        html += &section(
+            "Uncertainty sets",
+            &format!("<div class=\"tables\">\n{tables}</div>\n{words}"),
+        );
     }
     if !page.suites.is_empty() {
         html += &section("Where the sets are tight", &tables::tight(page));
@@ -199,7 +219,8 @@ fn rest(page: &Page) -> String {
         html += &section("Settings and provenance", &tables::facts(&page.facts));
     }
     if !page.notes.is_empty() {
-        let notes: String = page.notes.iter().map(|note| format!("<p>{}</p>\n", escape(note))).collect();
+        let notes: String =
+            page.notes.iter().map(|note| format!("<p>{}</p>\n", escape(note))).collect();
         html += &section("Notes", &notes);
     }
     html
@@ -233,8 +254,10 @@ mod tests {
     fn every_text_is_escaped() {
         let html = written(&sample::page());
         assert_eq!(html.matches("<script>").count(), 1);
-        for what in ["title", "subtitle", "words", "proved", "A", "name", "value", "trust", "caution", "note"]
-        {
+        for what in [
+            "title", "subtitle", "words", "proved", "A", "name", "value", "trust", "caution",
+            "note",
+        ] {
             assert!(html.contains(&format!("{what} &lt;script&gt;")), "{what}");
         }
     }

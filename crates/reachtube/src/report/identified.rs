@@ -1,4 +1,5 @@
-//! The page of an identified robot: how good it is first, then the fits, the residuals, and every parameter.
+//! The page of an identified robot: how good it is first, then the fits, the residuals, and every
+//! parameter.
 
 use super::chart::{Chart, Series, chart_svg};
 use super::html::{section, titled_list, top};
@@ -23,7 +24,10 @@ const LEFT_OVER: [u8; 3] = [222, 30, 30];
 /// # Errors
 ///
 /// Numbers that cannot be drawn, and failures of `out`.
-pub fn write_identified_html(found: &Identification, out: &mut impl Write) -> Result<(), ReportError> {
+pub fn write_identified_html(
+    found: &Identification,
+    out: &mut impl Write,
+) -> Result<(), ReportError> {
     let subtitle = "Gravity, friction and inertia from its recordings";
     out.write_all(top(&format!("{}: identified", found.description.name), subtitle).as_bytes())?;
     out.write_all(prediction(found)?.as_bytes())?;
@@ -34,16 +38,20 @@ pub fn write_identified_html(found: &Identification, out: &mut impl Write) -> Re
     out.write_all(section("Inertial parameters", &inertia(found)).as_bytes())?;
     let words = titled_list("How recordings were changed", "yes", &found.changes)
         + &titled_list("What looks wrong, or could not be done", "no", &found.warnings);
-    out.write_all(section("Recordings", &format!("<div class=\"pair\">\n{words}</div>\n")).as_bytes())?;
+    out.write_all(
+        section("Recordings", &format!("<div class=\"pair\">\n{words}</div>\n")).as_bytes(),
+    )?;
     out.write_all(b"</main>\n</body>\n</html>\n")?;
     Ok(())
 }
 
 /// A table with a head; the first cell of a row names it.
 fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
-    let heads: String = head.iter().map(|name| format!("<th scope=\"col\">{}</th>", escape(name))).collect();
+    let heads: String =
+        head.iter().map(|name| format!("<th scope=\"col\">{}</th>", escape(name))).collect();
     let row = |cells: &Vec<String>| {
-        let rest: String = cells[1..].iter().map(|cell| format!("<td>{}</td>", escape(cell))).collect();
+        let rest: String =
+            cells[1..].iter().map(|cell| format!("<td>{}</td>", escape(cell))).collect();
         format!("<tr><th scope=\"row\">{}</th>{rest}</tr>\n", escape(&cells[0]))
     };
     format!(
@@ -68,8 +76,11 @@ fn figures(charts: &[Chart]) -> Result<String, ReportError> {
 }
 
 fn prediction(found: &Identification) -> Result<String, ReportError> {
-    let which =
-        if found.kept_back { "kept back from the fits" } else { "that it was fitted to: none was kept back" };
+    let which = if found.kept_back {
+        "kept back from the fits"
+    } else {
+        "that it was fitted to: none was kept back"
+    };
     let rows: Vec<Vec<String>> = found
         .validation
         .iter()
@@ -87,7 +98,8 @@ fn prediction(found: &Identification) -> Result<String, ReportError> {
         })
         .collect();
     let joints = names(found);
-    let head: Vec<&str> = std::iter::once("Recording").chain(joints.iter().map(String::as_str)).collect();
+    let head: Vec<&str> =
+        std::iter::once("Recording").chain(joints.iter().map(String::as_str)).collect();
     let caption = "Part of the torque that is not predicted where a joint moves (standstill included), and its root mean square";
     let mut body = format!("<p>On recordings {which}.</p>\n{}", table(caption, &head, &rows));
     body += "<p>Grey: recorded. Blue: predicted from the motion. Red: what is left. Where a joint stands still its friction has no value, and nothing is predicted.</p>\n";
@@ -99,16 +111,20 @@ fn prediction(found: &Identification) -> Result<String, ReportError> {
     Ok(section("Predicted torque", &body))
 }
 
-/// Recorded torque throughout, predicted and left only where the joint moves: at rest friction has no value.
+/// Recorded torque throughout, predicted and left only where the joint moves: at rest friction has
+/// no value.
 fn torque_chart(trace: &TorqueTrace, joint: usize, name: &str) -> Chart {
-    let (recorded, predicted, moves) = (&trace.recorded[joint], &trace.predicted[joint], &trace.moves[joint]);
+    let (recorded, predicted, moves) =
+        (&trace.recorded[joint], &trace.predicted[joint], &trace.moves[joint]);
     let mut series = vec![Series {
         points: trace.times.iter().copied().zip(recorded.iter().copied()).collect(),
         dots: false,
         colour: RECORDED,
     }];
     let samples: Vec<usize> = (0..moves.len()).collect();
-    for stretch in samples.chunk_by(|a, b| moves[*a] == moves[*b]).filter(|stretch| moves[stretch[0]]) {
+    for stretch in
+        samples.chunk_by(|a, b| moves[*a] == moves[*b]).filter(|stretch| moves[stretch[0]])
+    {
         let line = |value: &dyn Fn(usize) -> f64, colour| Series {
             points: stretch.iter().map(|k| (trace.times[*k], value(*k))).collect(),
             dots: false,
@@ -126,14 +142,20 @@ fn windows(found: &Identification) -> String {
         .iter()
         .map(|w| {
             let cell = |j: usize| {
-                format!("{} rad of {}, {} rad/s", short(w.q[j], 3), short(w.motion[j], 3), short(w.qd[j], 3))
+                format!(
+                    "{} rad of {}, {} rad/s",
+                    short(w.q[j], 3),
+                    short(w.motion[j], 3),
+                    short(w.qd[j], 3)
+                )
             };
             let head = format!("{} s ({} windows, {} diverged)", w.duration, w.windows, w.diverged);
             std::iter::once(head).chain((0..w.q.len()).map(cell)).collect()
         })
         .collect();
     let joints = names(found);
-    let head: Vec<&str> = std::iter::once("Window").chain(joints.iter().map(String::as_str)).collect();
+    let head: Vec<&str> =
+        std::iter::once("Window").chain(joints.iter().map(String::as_str)).collect();
     table(
         "Root mean square errors of position, of how far the joint moves, and of velocity at the end of windows driven by the recorded torque",
         &head,
@@ -167,8 +189,11 @@ fn friction(found: &Identification) -> Result<String, ReportError> {
     let head = ["Joint", "R²", "Residual [N m]", "a1 to a8", "v1, v2, v3"];
     let charts: Vec<Chart> =
         found.friction.iter().flat_map(|fit| [load_chart(fit), viscous_chart(fit)]).collect();
-    Ok(table("Coulomb friction (6) to (9) and viscous friction (5), with standard errors", &head, &rows)
-        + "<p>Blue: recorded torque less gravity, the joint's inertia and the other part of friction. Orange: the fit.</p>\n"
+    Ok(table(
+        "Coulomb friction (6) to (9) and viscous friction (5), with standard errors",
+        &head,
+        &rows,
+    ) + "<p>Blue: recorded torque less gravity, the joint's inertia and the other part of friction. Orange: the fit.</p>\n"
         + &figures(&charts)?)
 }
 
@@ -239,12 +264,22 @@ fn inertia(found: &Identification) -> String {
         "Beyond three deviations",
     ];
     let parameter = |p: &crate::identify::BaseParameter| {
-        let error =
-            if p.standard_error.is_finite() { short(p.standard_error, 2) } else { "not shown".into() };
-        vec![p.name.clone(), short(p.value, 4), short(p.least_squares, 4), error, short(p.described, 4)]
+        let error = if p.standard_error.is_finite() {
+            short(p.standard_error, 2)
+        } else {
+            "not shown".into()
+        };
+        vec![
+            p.name.clone(),
+            short(p.value, 4),
+            short(p.least_squares, 4),
+            error,
+            short(p.described, 4),
+        ]
     };
     let parameters: Vec<Vec<String>> = fit.parameters.iter().map(parameter).collect();
-    let columns = ["Combination (SI units)", "Value", "Least squares", "Standard error", "Described"];
+    let columns =
+        ["Combination (SI units)", "Value", "Least squares", "Standard error", "Described"];
     let mut facts = vec![("Condition of the base regressor".to_string(), short(fit.condition, 4))];
     if let Some(physical) = &fit.physical {
         let plain = physical
@@ -262,6 +297,7 @@ fn inertia(found: &Identification) -> String {
 }
 
 fn gains(found: &Identification) -> String {
-    let gain = |g: &crate::identify::Gain| format!("{} {:.3} ± {:.3}", g.joint, g.gain, g.standard_error);
+    let gain =
+        |g: &crate::identify::Gain| format!("{} {:.3} ± {:.3}", g.joint, g.gain, g.standard_error);
     found.gains.iter().map(gain).collect::<Vec<_>>().join(", ")
 }

@@ -1,6 +1,8 @@
-//! Where things stand in a figure, in pixels: positions above velocities, a column a joint, up to six columns abreast.
+//! Where things stand in a figure, in pixels: positions above velocities, a column a joint, up to
+//! six columns abreast.
 
-/// Drawing units a pixel: the drawing library places on integers, and a pixel is too coarse for a thin band.
+/// Drawing units a pixel: the drawing library places on integers, and a pixel is too coarse for a
+/// thin band.
 pub(super) const UNITS: f64 = 8.0;
 
 const WIDTH: f64 = 1240.0;
@@ -110,7 +112,10 @@ mod tests {
     use super::*;
 
     fn apart(a: Rect, b: Rect) -> bool {
-        a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y
+        a.x + a.width <= b.x
+            || b.x + b.width <= a.x
+            || a.y + a.height <= b.y
+            || b.y + b.height <= a.y
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! The legend of a figure: what the bands, the colours and the rings mean, in lines that fit the figure's width.
+//! The legend of a figure: what the bands, the colours and the rings mean, in lines that fit the
+//! figure's width.
 
 use super::colour::{Heat, colour};
 use super::figure::{Canvas, DrawResult};
@@ -127,7 +128,8 @@ fn draw_scale(canvas: &Canvas, ends: &[String; 2], x: f64, y: f64) -> DrawResult
         let from = x + step * k as f64;
         // Each to the end, under the next: edges that only meet would show as seams.
         let corners = [(units(from), units(y - 4.0)), (units(x + SCALE), units(y + 4.0))];
-        canvas.draw(&Rectangle::new(corners, colour(k as f64 / (SCALE_STEPS - 1) as f64).filled()))?;
+        canvas
+            .draw(&Rectangle::new(corners, colour(k as f64 / (SCALE_STEPS - 1) as f64).filled()))?;
     }
     write(canvas, &ends[1], x + SCALE + 6.0, y, false)
 }

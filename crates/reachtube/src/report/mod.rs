@@ -1,8 +1,10 @@
-//! Figures and the HTML page: what was proved about which recordings, drawn so that a reader can check it by eye.
+//! Figures and the HTML page: what was proved about which recordings, drawn so that a reader can
+//! check it by eye.
 //!
-//! [`write_html`] writes one self-contained page (no network, no external font or script); [`suite_svg`] writes one
-//! figure in the spirit of Figs. 2 and 4 of Liu & Althoff (IROS 2018). The inputs are plain numbers and words, so
-//! the page can be made from any result, and the same input always gives the same bytes.
+//! [`write_html`] writes one self-contained page (no network, no external font or script);
+//! [`suite_svg`] writes one figure in the spirit of Figs. 2 and 4 of Liu & Althoff (IROS 2018). The
+//! inputs are plain numbers and words, so the page can be made from any result, and the same input
+//! always gives the same bytes.
 
 mod assemble;
 mod chart;
@@ -89,13 +91,15 @@ pub struct JointSets {
     pub x0_qd: Bounds,
     /// Input set U \[N m\].
     pub u: Bounds,
-    /// Measurement noise V of position \[rad\] and velocity \[rad/s\]; `None` where no noise was modelled.
+    /// Measurement noise V of position \[rad\] and velocity \[rad/s\]; `None` where no noise was
+    /// modelled.
     pub noise: Option<[Bounds; 2]>,
 }
 
 /// One test suite: the reachable set, its runs, and where they touch.
 ///
-/// States are ordered q1..qn \[rad\], then q̇1..q̇n \[rad/s\]; a table of states has the shape `[2n][times]`.
+/// States are ordered q1..qn \[rad\], then q̇1..q̇n \[rad/s\]; a table of states has the shape
+/// `[2n][times]`.
 #[derive(Debug, Clone, Default)]
 pub struct SuiteFigure {
     /// The suite's name.
@@ -133,9 +137,11 @@ pub enum Nominal {
     /// Not known: the bands and runs are drawn as they are.
     #[default]
     Unknown,
-    /// One nominal for all runs, shape `[2n][times]`: the motion is drawn, and the deviation x - x̂ from it.
+    /// One nominal for all runs, shape `[2n][times]`: the motion is drawn, and the deviation x - x̂
+    /// from it.
     Shared(Vec<Vec<f64>>),
-    /// Each run has its own nominal: bands and runs are given as deviations already, and only these are drawn.
+    /// Each run has its own nominal: bands and runs are given as deviations already, and only these
+    /// are drawn.
     PerRun,
 }
 
@@ -167,8 +173,8 @@ pub struct TightSpot {
     pub state: usize,
     /// The side of the reachable set.
     pub side: Side,
-    /// Distance to the boundary in the state's unit; negative where the sample lies outside. For [`Side::Plane`] in
-    /// the scaled unit of the direction.
+    /// Distance to the boundary in the state's unit; negative where the sample lies outside. For
+    /// [`Side::Plane`] in the scaled unit of the direction.
     pub margin: f64,
 }
 
@@ -210,7 +216,9 @@ pub enum ReportError {
         expected: usize,
     },
     /// A number that cannot be drawn.
-    #[error("{place}: {what}[{index}] is {value}, which cannot be drawn; check the step that computed it")]
+    #[error(
+        "{place}: {what}[{index}] is {value}, which cannot be drawn; check the step that computed it"
+    )]
     NotFinite {
         /// The suite or table.
         place: String,
@@ -266,7 +274,8 @@ impl SuiteFigure {
         }
     }
 
-    /// What a spot is tight in, such as `elbow, velocity`; the joint alone for a facet of its plane.
+    /// What a spot is tight in, such as `elbow, velocity`; the joint alone for a facet of its
+    /// plane.
     fn spot_label(&self, spot: &TightSpot) -> String {
         let n = self.joints.len();
         let joint = &self.joints[spot.state % n];

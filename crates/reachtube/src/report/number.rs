@@ -2,7 +2,8 @@
 
 use super::Bounds;
 
-/// `value` to `digits` significant digits, without trailing zeros; with an exponent where it is far from 1.
+/// `value` to `digits` significant digits, without trailing zeros; with an exponent where it is far
+/// from 1.
 pub(super) fn short(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".into();
@@ -63,8 +64,11 @@ fn downward(value: f64, decimals: usize) -> String {
     }
     let nearest = format!("{value:.decimals$}");
     let read: f64 = nearest.parse().unwrap_or(f64::NAN);
-    let text =
-        if read <= value { nearest } else { format!("{:.decimals$}", read - 10f64.powi(-(decimals as i32))) };
+    let text = if read <= value {
+        nearest
+    } else {
+        format!("{:.decimals$}", read - 10f64.powi(-(decimals as i32)))
+    };
     if text.parse() == Ok(0.0) { "0".into() } else { text }
 }
 

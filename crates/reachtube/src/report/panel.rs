@@ -43,9 +43,10 @@ impl Content {
         };
         let line = |times: &[f64], values: &[f64]| relative(times, values, &figure.times, nominal);
         let bands = [Some(&figure.band), figure.inner.as_ref()].into_iter().flatten();
-        let bands =
-            bands.map(|band| [&band.lower, &band.upper].map(|edge| line(&figure.times, &edge[state])));
-        let runs: Vec<_> = figure.runs.iter().map(|run| line(&run.times, &run.states[state])).collect();
+        let bands = bands
+            .map(|band| [&band.lower, &band.upper].map(|edge| line(&figure.times, &edge[state])));
+        let runs: Vec<_> =
+            figure.runs.iter().map(|run| line(&run.times, &run.states[state])).collect();
         let n = figure.joints.len();
         let shown = |spot: &&TightSpot| {
             spot.state == state || (spot.side == Side::Plane && spot.state % n == state % n)
@@ -53,7 +54,8 @@ impl Content {
         let marks = figure.tight.iter().filter(shown);
         let marks = marks.filter_map(|spot| {
             let line = &runs[spot.run];
-            (!line.is_empty()).then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
+            (!line.is_empty())
+                .then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
         });
         let marks = marks.collect();
         Content { bands: bands.collect(), runs, marks, time: [0.0; 2], value: [0.0; 2] }.ranged()
@@ -89,7 +91,10 @@ fn relative(times: &[f64], values: &[f64], grid: &[f64], nominal: Option<&[f64]>
     };
     let nominal: Vec<Point> = grid.iter().copied().zip(nominal.iter().copied()).collect();
     let known = grid[0]..=grid[grid.len() - 1];
-    points.filter(|(t, _)| known.contains(t)).map(|(t, x)| (t, x - interpolate(&nominal, t))).collect()
+    points
+        .filter(|(t, _)| known.contains(t))
+        .map(|(t, x)| (t, x - interpolate(&nominal, t)))
+        .collect()
 }
 
 /// The value of a line (not empty) at a time; beyond its ends, that of the end.
@@ -103,7 +108,9 @@ fn interpolate(line: &[Point], time: f64) -> f64 {
 }
 
 fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
+        [low.min(value), high.max(value)]
+    })
 }
 
 /// Draws the panel of a state, runs in the given colours.
@@ -120,10 +127,14 @@ pub(super) fn draw(
         .margin_right(units(layout::AFTER_PLOT))
         .build_cartesian_2d(content.time[0]..content.time[1], content.value[0]..content.value[1])?;
     axes(&mut chart, layout, state, content)?;
-    chart.draw_series(content.bands.iter().zip([BAND, INNER]).map(|(band, style)| fill(band, style[0])))?;
+    chart.draw_series(
+        content.bands.iter().zip([BAND, INNER]).map(|(band, style)| fill(band, style[0])),
+    )?;
     for (band, style) in content.bands.iter().zip([BAND, INNER]) {
-        // After both fills, so that the edge of the outer set is seen where the second one exceeds it.
-        let edge = |line: &Vec<Point>| PathElement::new(line.clone(), style[1].stroke_width(EDGE_WIDTH));
+        // After both fills, so that the edge of the outer set is seen where the second one exceeds
+        // it.
+        let edge =
+            |line: &Vec<Point>| PathElement::new(line.clone(), style[1].stroke_width(EDGE_WIDTH));
         chart.draw_series(band.iter().map(edge))?;
     }
     let lines = content.runs.iter().zip(colours);
@@ -153,7 +164,8 @@ type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64
 fn axes(chart: &mut Chart, layout: &Layout, state: usize, content: &Content) -> DrawResult {
     let (time, value) = (content.time[1] - content.time[0], content.value[1] - content.value[0]);
     let time_labels = (layout.plot().0 / 28.0) as usize;
-    let time_label = |t: &f64| if layout.is_velocity(state) { tick(*t, time) } else { String::new() };
+    let time_label =
+        |t: &f64| if layout.is_velocity(state) { tick(*t, time) } else { String::new() };
     let value_label = |x: &f64| tick(*x, value);
     let mut mesh = chart.configure_mesh();
     mesh.max_light_lines(0)
@@ -176,7 +188,9 @@ mod tests {
     #[test]
     fn the_deviation_of_the_nominal_is_zero() {
         let mut figure = sample::suite("S", 2);
-        let Nominal::Shared(nominal) = figure.nominal.clone() else { panic!("the sample has a nominal") };
+        let Nominal::Shared(nominal) = figure.nominal.clone() else {
+            panic!("the sample has a nominal")
+        };
         figure.runs[0].times = figure.times.clone();
         figure.runs[0].states = nominal;
         let content = Content::new(&figure, View::Deviation, 3);
@@ -185,7 +199,8 @@ mod tests {
 
     #[test]
     fn a_run_on_its_own_times_is_measured_against_the_interpolated_nominal() {
-        let line = relative(&[-1.0, 0.5, 1.0, 9.0], &[0.0, 7.0, 9.0, 0.0], &[0.0, 1.0], Some(&[2.0, 4.0]));
+        let line =
+            relative(&[-1.0, 0.5, 1.0, 9.0], &[0.0, 7.0, 9.0, 0.0], &[0.0, 1.0], Some(&[2.0, 4.0]));
         assert_eq!(line, [(0.5, 4.0), (1.0, 5.0)]);
     }
 

@@ -32,7 +32,13 @@ pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
         inner: Some(band("position conformant", 0.005, 0.045)),
         runs: (1..=3).map(run).collect(),
         tight: vec![
-            TightSpot { run: 2, time_s: 1.5, state: joints - 1, side: Side::Upper, margin: 1.25e-6 },
+            TightSpot {
+                run: 2,
+                time_s: 1.5,
+                state: joints - 1,
+                side: Side::Upper,
+                margin: 1.25e-6,
+            },
             TightSpot { run: 0, time_s: 1.0, state: 0, side: Side::Plane, margin: 0.0 },
         ],
         nominal: Nominal::Shared(nominal),
@@ -53,7 +59,10 @@ pub(super) fn sets(joints: usize) -> SetsTable {
         u: [-2.7201, 3.6017],
         noise: Some([[-1e-5, 1e-5], [0.0, 0.0]]),
     };
-    SetsTable { notion: "position and velocity conformant".into(), joints: (1..=joints).map(row).collect() }
+    SetsTable {
+        notion: "position and velocity conformant".into(),
+        joints: (1..=joints).map(row).collect(),
+    }
 }
 
 /// A whole page whose every text is hostile.

@@ -43,10 +43,12 @@ fn head(name: &str, unit: &str) -> String {
     format!("<th scope=\"col\">{name} <span class=\"unit\">[{unit}]</span></th>")
 }
 
-/// The cells of a column: each interval in digits, and as a bar on the scale of the column's largest bound.
+/// The cells of a column: each interval in digits, and as a bar on the scale of the column's
+/// largest bound.
 fn intervals(column: &[Bounds]) -> Vec<String> {
     let decimals = decimals(column);
-    let largest = column.iter().flatten().fold(f64::MIN_POSITIVE, |most, bound| most.max(bound.abs()));
+    let largest =
+        column.iter().flatten().fold(f64::MIN_POSITIVE, |most, bound| most.max(bound.abs()));
     let cell = |bounds: &Bounds| {
         let [lower, upper] = outward(*bounds, decimals);
         let [from, to] = bounds.map(|bound| 50.0 + 50.0 * bound / largest);
@@ -101,7 +103,10 @@ pub(super) fn facts(facts: &[(String, String)]) -> String {
     let row = |(name, value): &(String, String)| {
         format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape(name), escape(value))
     };
-    format!("<table class=\"facts\"><tbody>\n{}</tbody></table>\n", facts.iter().map(row).collect::<String>())
+    format!(
+        "<table class=\"facts\"><tbody>\n{}</tbody></table>\n",
+        facts.iter().map(row).collect::<String>()
+    )
 }
 
 #[cfg(test)]
@@ -129,6 +134,8 @@ mod tests {
         let mut page = sample::page();
         assert!(!tight(&page).contains("outside"));
         page.suites[0].tight[0].margin = -0.01;
-        assert!(tight(&page).contains("class=\"outside\"") && tight(&page).contains("-0.01 outside"));
+        assert!(
+            tight(&page).contains("class=\"outside\"") && tight(&page).contains("-0.01 outside")
+        );
     }
 }

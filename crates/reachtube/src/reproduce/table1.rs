@@ -23,14 +23,16 @@ pub struct Table1Options {
     pub seed: u64,
     /// Orders p of the models.
     pub orders: Vec<u32>,
-    /// The highest order of model 3 that is simulated. At order 7 it has half a million terms for the LWA 4P, and the paper has no number.
+    /// The highest order of model 3 that is simulated. At order 7 it has half a million terms for
+    /// the LWA 4P, and the paper has no number.
     pub model3_up_to: u32,
     /// Motions stay this close to the expansion point q = 0, rad, and within the joints' limits.
     pub range: f64,
 }
 
 impl Default for Table1Options {
-    /// 50 motions within π/2, where the paper's recorded motions are; the paper's orders, model 3 up to order 5.
+    /// 50 motions within π/2, where the paper's recorded motions are; the paper's orders, model 3
+    /// up to order 5.
     fn default() -> Self {
         Self { motions: 50, seed: 1, orders: vec![1, 3, 5, 7], model3_up_to: 5, range: FRAC_PI_2 }
     }
@@ -106,7 +108,8 @@ pub struct Cell {
     pub speed: Speed,
     /// Terms of the model.
     pub terms: usize,
-    /// Mean |velocity error| over time and joints of each motion, rad/s; none where the model diverged.
+    /// Mean |velocity error| over time and joints of each motion, rad/s; none where the model
+    /// diverged.
     pub errors: Vec<Option<f64>>,
     /// Mean over the motions that did not diverge, rad/s.
     pub mean: Option<f64>,
@@ -131,10 +134,12 @@ pub struct Table1 {
     pub cells: Vec<Cell>,
 }
 
-/// Simulates `robot` by Featherstone's articulated bodies and its models about q = 0 under the same inputs, and compares velocities.
+/// Simulates `robot` by Featherstone's articulated bodies and its models about q = 0 under the same
+/// inputs, and compares velocities.
 ///
-/// The motions are point to point along quintics, with a random direction of each joint from a random place; slow and fast motions have the same paths. The input is u = M_m q̈ + c +
-/// τ_v along the motion, held over 4 ms.
+/// The motions are point to point along quintics, with a random direction of each joint from a
+/// random place; slow and fast motions have the same paths. The input is u = M_m q̈ + c + τ_v along
+/// the motion, held over 4 ms.
 ///
 /// # Errors
 ///
@@ -174,7 +179,8 @@ pub fn table1(robot: &Robot, options: &Table1Options, progress: Progress<'_>) ->
         .flat_map_iter(|part| {
             let (cell, block) = (part / blocks, part % blocks);
             let (trajectories, velocities) = &speeds[cell % speeds.len()];
-            let errors = trajectories.errors(&models[cell / speeds.len()], &velocities[block], block);
+            let errors =
+                trajectories.errors(&models[cell / speeds.len()], &velocities[block], block);
             progress(done.fetch_add(1, Relaxed) + 1, models.len() * speeds.len() * blocks);
             errors
         })
@@ -229,7 +235,8 @@ impl Table1 {
         self.cells.iter().find(|cell| (cell.model, cell.order, cell.speed) == (model, order, speed))
     }
 
-    /// Writes the error of each motion \[rad/s\] as CSV, `inf` where the model diverged: order, model, speed, motion, velocity_error.
+    /// Writes the error of each motion \[rad/s\] as CSV, `inf` where the model diverged: order,
+    /// model, speed, motion, velocity_error.
     ///
     /// # Errors
     ///
@@ -239,7 +246,13 @@ impl Table1 {
         for cell in &self.cells {
             for (motion, error) in cell.errors.iter().enumerate() {
                 let (model, error) = (u32::from(cell.model), error.unwrap_or(f64::INFINITY));
-                writeln!(out, "{},{model},{},{},{error}", cell.order, cell.speed.name(), motion + 1)?;
+                writeln!(
+                    out,
+                    "{},{model},{},{},{error}",
+                    cell.order,
+                    cell.speed.name(),
+                    motion + 1
+                )?;
             }
         }
         Ok(())

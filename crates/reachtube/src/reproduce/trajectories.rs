@@ -33,7 +33,8 @@ type Number = Lanes<8>;
 /// How many of them there are.
 pub(super) const BLOCK: usize = <Number as Lanewise>::LANES;
 
-/// A motion with a peak of each joint's speed limit, in a random direction from a random place, at positions within `range` \[rad\] of 0 and the limits.
+/// A motion with a peak of each joint's speed limit, in a random direction from a random place, at
+/// positions within `range` \[rad\] of 0 and the limits.
 ///
 /// # Errors
 ///
@@ -87,7 +88,8 @@ impl Trajectories {
         let samples = (duration / SAMPLE_TIME).round() as usize;
         let input = |motion: &Motion| {
             let motion = Motion { duration, ..motion.clone() };
-            // The plan in the middle of a sample is what holding an input over the sample does best.
+            // The plan in the middle of a sample is what holding an input over the sample does
+            // best.
             let at = |k: usize| motion.input(robot, (k as f64 + 0.5) * SAMPLE_TIME);
             (0..samples).flat_map(at).collect()
         };
@@ -108,23 +110,35 @@ impl Trajectories {
         let n = robot.joint_count();
         let start = |q: &Vec<f64>| [&q[..], &vec![0.0; n]].concat();
         let mut field = RobotField::<Number>::new(robot, DrivenBy::Input).by_articulated_bodies();
-        let mut velocities = vec![Vec::with_capacity(n * self.times.len()); self.block(block).len()];
+        let mut velocities =
+            vec![Vec::with_capacity(n * self.times.len()); self.block(block).len()];
         self.run(block, &start, &mut field, |run, _, x| velocities[run].extend_from_slice(&x[n..]));
         velocities
     }
 
-    /// Mean |velocity error| of a model against velocities of the robot, over time and joints \[rad/s\], for each motion of a block; none where the model diverges.
-    pub fn errors(&self, model: &PolynomialModel, robot: &[Velocities], block: usize) -> Vec<Option<f64>> {
+    /// Mean |velocity error| of a model against velocities of the robot, over time and joints
+    /// \[rad/s\], for each motion of a block; none where the model diverges.
+    pub fn errors(
+        &self,
+        model: &PolynomialModel,
+        robot: &[Velocities],
+        block: usize,
+    ) -> Vec<Option<f64>> {
         let n = model.joints();
         let start = |q: &Vec<f64>| model.state(q, &vec![0.0; n]);
         let mut sums = vec![0.0; self.block(block).len()];
         let add = |run: usize, sample: usize, x: &[f64]| {
             let velocities = &robot[run][sample * n..];
-            sums[run] += x[n..2 * n].iter().zip(velocities).map(|(a, b)| (a - b).abs()).sum::<f64>();
+            sums[run] +=
+                x[n..2 * n].iter().zip(velocities).map(|(a, b)| (a - b).abs()).sum::<f64>();
         };
         let outcomes = self.run(block, &start, &mut ModelField::<Number>::new(model), add);
         let count = (n * self.times.len()) as f64;
-        outcomes.iter().zip(&sums).map(|(outcome, sum)| outcome.is_reached().then_some(sum / count)).collect()
+        outcomes
+            .iter()
+            .zip(&sums)
+            .map(|(outcome, sum)| outcome.is_reached().then_some(sum / count))
+            .collect()
     }
 
     fn run<F: VectorField<Number>>(
@@ -137,7 +151,8 @@ impl Trajectories {
         let block = self.block(block);
         let starts: Vec<Vec<f64>> = self.starts[block.clone()].iter().map(start).collect();
         let inputs = &self.inputs[block];
-        let runs: Vec<_> = starts.iter().zip(inputs).map(|(start, inputs)| Run { start, inputs }).collect();
+        let runs: Vec<_> =
+            starts.iter().zip(inputs).map(|(start, inputs)| Run { start, inputs }).collect();
         let mut ensemble = Ensemble::new(starts[0].len()).bounded_by(BOUND);
         ensemble.integrate(field, &self.times, SUBSTEPS, &runs, observe)
     }
@@ -168,17 +183,24 @@ mod tests {
     #[test]
     fn no_range_is_refused() {
         let refusal = random_motion(&Robot::lwa4p(), -1.0, &mut SplitMix64::new(1)).unwrap_err();
-        assert!(refusal.to_string().contains("joint1") && refusal.to_string().contains("wider range"));
+        assert!(
+            refusal.to_string().contains("joint1") && refusal.to_string().contains("wider range")
+        );
     }
 
     /// Velocities at samples by adaptive steps.
-    fn adaptive<F: VectorField<f64>>(field: &mut F, start: &[f64], motions: &Trajectories) -> Vec<f64> {
+    fn adaptive<F: VectorField<f64>>(
+        field: &mut F,
+        start: &[f64],
+        motions: &Trajectories,
+    ) -> Vec<f64> {
         let fine = Tolerance { relative: 1e-10, absolute: 1e-10 };
         let mut velocities = Vec::new();
         let run = Run { start, inputs: &motions.inputs[0] };
-        let outcome = DormandPrince::new(start.len(), fine).follow(field, &motions.times, run, |_, x| {
-            velocities.extend_from_slice(&x[6..12]);
-        });
+        let outcome =
+            DormandPrince::new(start.len(), fine).follow(field, &motions.times, run, |_, x| {
+                velocities.extend_from_slice(&x[6..12]);
+            });
         assert!(outcome.is_reached());
         velocities
     }
@@ -194,11 +216,12 @@ mod tests {
         let fixed = motions.of_robot(&robot, 0);
         assert!(fixed[0].iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-7));
         for (kind, order) in [(ModelKind::One, 3), (ModelKind::Two, 12)] {
-            let model = PolynomialModel::new(&robot, kind, order, &ExpansionPoint::zero(6)).unwrap();
+            let model =
+                PolynomialModel::new(&robot, kind, order, &ExpansionPoint::zero(6)).unwrap();
             let start = model.state(&motions.starts[0], &[0.0; 6]);
             let moved = adaptive(&mut ModelField::new(&model), &start, &motions);
-            let error =
-                moved.iter().zip(&exact).map(|(a, b)| (a - b).abs()).sum::<f64>() / moved.len() as f64;
+            let error = moved.iter().zip(&exact).map(|(a, b)| (a - b).abs()).sum::<f64>()
+                / moved.len() as f64;
             let fixed = motions.errors(&model, &fixed, 0)[0].unwrap();
             assert!(error > 0.01 && (fixed - error).abs() < 1e-7, "{kind:?}: {fixed} {error}");
         }

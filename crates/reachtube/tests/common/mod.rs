@@ -52,7 +52,8 @@ pub struct Disturbed<'a> {
 }
 
 impl Disturbed<'_> {
-    /// The recording of model 1 under a sine input that is the same for each `random`, and random disturbances.
+    /// The recording of model 1 under a sine input that is the same for each `random`, and random
+    /// disturbances.
     pub fn record(&self, random: &mut Random) -> Recorded {
         let n = self.robot.joint_count();
         let system = linear_model(self.robot, &ExpansionPoint::zero(n)).unwrap();
@@ -103,11 +104,13 @@ pub fn write_data_set(folder: &Path, suites: &[(&str, Vec<Recorded>)]) {
 fn csv(run: &Recorded) -> String {
     let samples = run.times.len();
     let n = run.torques.len() / samples;
-    let names = ["q", "qd", "tau"].iter().flat_map(|kind| (1..=n).map(move |i| format!("{kind}{i}")));
+    let names =
+        ["q", "qd", "tau"].iter().flat_map(|kind| (1..=n).map(move |i| format!("{kind}{i}")));
     let mut text = format!("t,{}\n", names.collect::<Vec<_>>().join(","));
     for k in 0..samples {
         let _ = write!(text, "{}", run.times[k]);
-        let row = run.states[k * 2 * n..(k + 1) * 2 * n].iter().chain(&run.torques[k * n..(k + 1) * n]);
+        let row =
+            run.states[k * 2 * n..(k + 1) * 2 * n].iter().chain(&run.torques[k * n..(k + 1) * n]);
         row.for_each(|value| {
             let _ = write!(text, ",{value}");
         });

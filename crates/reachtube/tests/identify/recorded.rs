@@ -13,7 +13,8 @@ fn identified(folder: &str, settings: &str) -> Option<Identification> {
         return None;
     }
     let settings = IdentifySettings::from_toml(settings, "settings").unwrap();
-    let robot = Robot::load(&folder.join(settings.robot.as_ref().unwrap()).display().to_string()).unwrap();
+    let robot =
+        Robot::load(&folder.join(settings.robot.as_ref().unwrap()).display().to_string()).unwrap();
     Some(identify(&robot, &settings, &folder, &|_, _| {}).unwrap())
 }
 
@@ -33,14 +34,21 @@ fn the_ur10e_predicts_recordings_kept_back() {
     assert_eq!(all.log, "all");
     for (j, joint) in all.joints.iter().enumerate() {
         assert!(joint.relative < 0.1, "joint {}: {joint:?}", j + 1);
-        assert!(joint.relative < 1.05 * joint.relative_plain, "as good as plain least squares: {joint:?}");
+        assert!(
+            joint.relative < 1.05 * joint.relative_plain,
+            "as good as plain least squares: {joint:?}"
+        );
     }
     let robot = Robot::from_description(&found.description).unwrap();
     assert!(matches!(robot.check_physical(), Ok(reachtube_robot::Physicality::Links { .. })));
-    // 58 combinations of inertia, motors, viscous and Coulomb friction and offset, as counted for this arm elsewhere, and six cubic terms.
+    // 58 combinations of inertia, motors, viscous and Coulomb friction and offset, as counted for
+    // this arm elsewhere, and six cubic terms.
     assert_eq!(found.inertia.parameters.len(), 58 + 6);
     let half_second = &found.windows[0];
-    assert!(half_second.diverged == 0 && half_second.q.iter().all(|q| *q < 0.05), "{half_second:?}");
+    assert!(
+        half_second.diverged == 0 && half_second.q.iter().all(|q| *q < 0.05),
+        "{half_second:?}"
+    );
 }
 
 /// Modified Denavit-Hartenberg parameters of the Panda, with links of which nothing is known.
@@ -86,7 +94,10 @@ fn half_of_the_pandas_motion_predicts_the_other_and_its_links_can_exist() {
     }
     let limits = [0.09, 0.03, 0.03, 0.04, 0.13, 0.1, 0.22];
     let joints = &found.validation[0].joints;
-    joints.iter().zip(limits).for_each(|(joint, limit)| assert!(joint.relative < limit, "{joints:?}"));
+    joints
+        .iter()
+        .zip(limits)
+        .for_each(|(joint, limit)| assert!(joint.relative < limit, "{joints:?}"));
 }
 
 #[test]

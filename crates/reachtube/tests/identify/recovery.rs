@@ -41,7 +41,11 @@ impl Lab {
             let path = self.folder.path().join(format!("dynamic_{seed}.csv"));
             recorder.record(&path, 24.0, excitation(robot.joint_count(), seed));
         }
-        recorder.record(&self.folder.path().join("kept_back.csv"), 12.0, excitation(robot.joint_count(), 9));
+        recorder.record(
+            &self.folder.path().join("kept_back.csv"),
+            12.0,
+            excitation(robot.joint_count(), 9),
+        );
     }
 
     fn settings(&self) -> IdentifySettings {
@@ -98,11 +102,14 @@ fn base_parameters_of_the_lwa_4p_lie_within_their_errors() {
     settings.model.physical = false;
     let found = lab.identify(&geometry(&truth), &settings);
     let [one, three] = rates(&found, &truth);
-    // 68.3 % and 99.7 % of normal errors; with 59 parameters a share of 68 % has a standard deviation of 6 %.
+    // 68.3 % and 99.7 % of normal errors; with 59 parameters a share of 68 % has a standard
+    // deviation of 6 %.
     assert!(three > 0.96 && (0.5..0.87).contains(&one), "{one} within one, {three} within three");
     assert!(found.inertia.condition < 1e3, "{}", found.inertia.condition);
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
-    assert!(found.kept_back && found.validation[0].joints.iter().all(|joint| joint.relative < 0.05));
+    assert!(
+        found.kept_back && found.validation[0].joints.iter().all(|joint| joint.relative < 0.05)
+    );
 }
 
 #[test]
@@ -119,11 +126,16 @@ fn the_ur5_is_found_again_as_bodies() {
     let [one, three] = rates(&found, &truth);
     assert!(three > 0.96 && (0.5..0.87).contains(&one), "{one} within one, {three} within three");
     let physical = found.inertia.physical.as_ref().unwrap();
-    // The truth is possible, so that the nearest bodies cost no more than it does: about the number of parameters.
+    // The truth is possible, so that the nearest bodies cost no more than it does: about the number
+    // of parameters.
     assert!(physical.cost < 120.0 && physical.balls.len() == 6, "{physical:?}");
     let robot = Robot::from_description(&found.description).unwrap();
     assert!(matches!(robot.check_physical(), Ok(reachtube_robot::Physicality::Links { .. })));
-    assert!(found.validation[0].joints.iter().all(|joint| joint.relative < 0.1), "{:?}", found.validation);
+    assert!(
+        found.validation[0].joints.iter().all(|joint| joint.relative < 0.1),
+        "{:?}",
+        found.validation
+    );
     assert!(
         found.gains.iter().all(|gain| (gain.gain - 1.0).abs() < 5.0 * gain.standard_error + 0.02),
         "{:?}",
@@ -138,7 +150,8 @@ fn gravity_and_friction_quadrants_are_found_in_the_papers_order() {
     let truth = lwa4p();
     let lab = Lab::new();
     lab.excite(&truth, 0.1, &[1.0; 6]);
-    let mut recorder = Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(3) };
+    let mut recorder =
+        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(3) };
     let mut random = Random(11);
     for k in 0..20 {
         let q = (0..6).map(|_| 2.0 * random.uniform() - 1.0).collect();
@@ -146,7 +159,11 @@ fn gravity_and_friction_quadrants_are_found_in_the_papers_order() {
     }
     for joint in 0..6 {
         for (k, pose) in [0.0, 0.8, -0.6].into_iter().enumerate() {
-            recorder.record(&lab.path().join(format!("slow_{joint}_{k}.csv")), 24.0, slow(6, joint, pose));
+            recorder.record(
+                &lab.path().join(format!("slow_{joint}_{k}.csv")),
+                24.0,
+                slow(6, joint, pose),
+            );
         }
     }
     let mut settings = lab.settings();
@@ -202,12 +219,16 @@ fn a_turned_sign_and_a_wrong_gain_are_said() {
 fn what_is_not_excited_is_named() {
     let truth = simple_friction(&lwa4p());
     let lab = Lab::new();
-    let mut recorder = Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(5) };
+    let mut recorder =
+        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(5) };
     recorder.record(&lab.path().join("one.csv"), 20.0, slow(6, 1, 0.3));
-    let mut settings =
-        IdentifySettings { dynamic: vec![PathBuf::from("one.csv").into()], ..IdentifySettings::default() };
+    let mut settings = IdentifySettings {
+        dynamic: vec![PathBuf::from("one.csv").into()],
+        ..IdentifySettings::default()
+    };
     settings.model.physical = false;
-    let error = identify(&geometry(&truth), &settings, lab.path(), &|_, _| {}).unwrap_err().to_string();
+    let error =
+        identify(&geometry(&truth), &settings, lab.path(), &|_, _| {}).unwrap_err().to_string();
     assert!(
         error.contains("the recordings do not show")
             && error.contains("J6")

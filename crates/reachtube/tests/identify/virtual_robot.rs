@@ -54,7 +54,11 @@ pub fn excitation(joints: usize, seed: u64) -> impl Fn(f64) -> State {
         };
         let mut q = sum(&|[a, w, p]| a * (w * t + p).sin());
         q.iter_mut().zip(&centres).for_each(|(q, centre)| *q += centre);
-        [q, sum(&|[a, w, p]| a * w * (w * t + p).cos()), sum(&|[a, w, p]| -a * w * w * (w * t + p).sin())]
+        [
+            q,
+            sum(&|[a, w, p]| a * w * (w * t + p).cos()),
+            sum(&|[a, w, p]| -a * w * w * (w * t + p).sin()),
+        ]
     }
 }
 
@@ -91,7 +95,8 @@ impl Recorder<'_> {
     /// Records a motion as CSV.
     pub fn record(&mut self, path: &Path, duration: f64, motion: impl Fn(f64) -> State) {
         let n = self.robot.joint_count();
-        let columns = ["q", "qd", "tau"].map(|c| (1..=n).map(|i| format!(",{c}{i}")).collect::<String>());
+        let columns =
+            ["q", "qd", "tau"].map(|c| (1..=n).map(|i| format!(",{c}{i}")).collect::<String>());
         let mut text = format!("t{}\n", columns.concat());
         for k in 0..(duration / STEP) as usize {
             let [q, qd, qdd] = motion(k as f64 * STEP);

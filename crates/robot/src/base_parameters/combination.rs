@@ -5,11 +5,13 @@ use crate::Column;
 /// Coefficients are taken for a readable number within this, relative to 1 or their size.
 const SNAP: f64 = 1e-9;
 
-/// A row of K as `Ixx2 - Iyy2 + Izz2 + J2`, its leading column first, terms with one coefficient in brackets.
+/// A row of K as `Ixx2 - Iyy2 + Izz2 + J2`, its leading column first, terms with one coefficient in
+/// brackets.
 pub(super) fn words(columns: &[Column], leader: usize, row: &[f64]) -> String {
     let mut groups: Vec<(f64, Vec<(f64, usize)>)> = vec![(1.0, vec![(1.0, leader)])];
     for (k, &value) in row.iter().enumerate().filter(|(k, v)| *k != leader && v.abs() > SNAP) {
-        let same = groups.iter_mut().find(|(size, _)| (*size - value.abs()).abs() <= SNAP * size.max(1.0));
+        let same =
+            groups.iter_mut().find(|(size, _)| (*size - value.abs()).abs() <= SNAP * size.max(1.0));
         match same {
             Some((_, members)) => members.push((value.signum(), k)),
             None => groups.push((value.abs(), vec![(value.signum(), k)])),
@@ -20,7 +22,8 @@ pub(super) fn words(columns: &[Column], leader: usize, row: &[f64]) -> String {
         let factor = Factor::of(size);
         let bracket = members.len() > 1 && factor != Factor::One;
         let outer = if bracket { members[0].0 } else { 1.0 };
-        let names: Vec<_> = members.iter().map(|(sign, k)| (sign * outer, columns[*k].to_string())).collect();
+        let names: Vec<_> =
+            members.iter().map(|(sign, k)| (sign * outer, columns[*k].to_string())).collect();
         if bracket {
             out += &term(outer, &factor.around(&format!("({})", sum(&names))), out.is_empty());
         } else {
@@ -45,7 +48,8 @@ fn term(sign: f64, what: &str, first: bool) -> String {
     }
 }
 
-/// Digits of a length that is divided by or squared; with more, chance gives any number such a form.
+/// Digits of a length that is divided by or squared; with more, chance gives any number such a
+/// form.
 const LENGTH: i32 = 5;
 
 /// A positive coefficient as people write it.
@@ -67,10 +71,15 @@ impl Factor {
             shortest(size, 7).map(|(cost, text)| (cost, Self::Times(text))),
             shortest(inverse, LENGTH).map(|(cost, text)| (cost + 1, Self::Over(text))),
             shortest(root, LENGTH).map(squared).map(|(cost, text)| (cost, Self::Times(text))),
-            shortest(1.0 / root, LENGTH).map(squared).map(|(cost, text)| (cost + 1, Self::Over(text))),
+            shortest(1.0 / root, LENGTH)
+                .map(squared)
+                .map(|(cost, text)| (cost + 1, Self::Over(text))),
         ];
         let best = ways.into_iter().flatten().min_by_key(|(cost, _)| *cost);
-        best.map_or_else(|| Self::Times(((size * 1e6).round() / 1e6).to_string()), |(_, factor)| factor)
+        best.map_or_else(
+            || Self::Times(((size * 1e6).round() / 1e6).to_string()),
+            |(_, factor)| factor,
+        )
     }
 
     fn around(&self, what: &str) -> String {

@@ -9,11 +9,11 @@ pub(super) struct Independent {
     pub combinations: DMatrix<f64>,
 }
 
-/// R of the QR decomposition of a matrix with columns of unit length, and their lengths before; R has the same
-/// dependences and singular values.
+/// R of the QR decomposition of a matrix with columns of unit length, and their lengths before; R
+/// has the same dependences and singular values.
 ///
-/// Columns below `tolerance` of the longest are taken for 0: angles with 12 digits leave such where right angles are
-/// meant, and scaled up they would look like parameters.
+/// Columns below `tolerance` of the longest are taken for 0: angles with 12 digits leave such where
+/// right angles are meant, and scaled up they would look like parameters.
 pub(super) fn triangle(stacked: &DMatrix<f64>, tolerance: f64) -> (DMatrix<f64>, Vec<f64>) {
     let norms: Vec<_> = stacked.column_iter().map(|c| c.norm()).collect();
     let mut scaled = stacked.clone();
@@ -30,7 +30,8 @@ impl Independent {
         let mut indices = Vec::new();
         for (k, column) in r.column_iter().enumerate() {
             let mut rest = column.into_owned();
-            // Twice is enough (Kahan, Parlett): the second pass takes off what rounding of the first left.
+            // Twice is enough (Kahan, Parlett): the second pass takes off what rounding of the
+            // first left.
             for _ in 0..2 {
                 frame.iter().for_each(|e| rest.axpy(-e.dot(&rest), e, 1.0));
             }
@@ -45,8 +46,14 @@ impl Independent {
     }
 }
 
-/// All columns by the independent ones: back substitution in the frame that these span, columns at their own scale.
-fn express(r: &DMatrix<f64>, norms: &[f64], indices: &[usize], frame: &[DVector<f64>]) -> DMatrix<f64> {
+/// All columns by the independent ones: back substitution in the frame that these span, columns at
+/// their own scale.
+fn express(
+    r: &DMatrix<f64>,
+    norms: &[f64],
+    indices: &[usize],
+    frame: &[DVector<f64>],
+) -> DMatrix<f64> {
     let inner = |columns: &[usize]| {
         DMatrix::from_fn(frame.len(), columns.len(), |i, j| frame[i].dot(&r.column(columns[j])))
     };

@@ -12,17 +12,17 @@ use nalgebra::{DMatrix, DVector};
 /// Random states for the numerical base: several times as many equations as any arm has parameters.
 const STATES: usize = 200;
 
-/// Columns count as dependent where less than this part of them is new: far above rounding, far below what a
-/// regressor over random states leaves.
+/// Columns count as dependent where less than this part of them is new: far above rounding, far
+/// below what a regressor over random states leaves.
 const TOLERANCE: f64 = 1e-9;
 
-/// A numerical base of a regressor (Gautier 1991): independent columns, and the combinations β = K θ that stand in for
-/// all parameters, Y θ = Y_b β.
+/// A numerical base of a regressor (Gautier 1991): independent columns, and the combinations β = K
+/// θ that stand in for all parameters, Y θ = Y_b β.
 ///
-/// Columns are scaled to unit length and taken in their given order: each that is independent of those before is one
-/// of the base, others are expressed by those. With the columns joint by joint from the base, as
-/// [`Column::of_joints`] makes them, parameters of a link that are only seen through earlier links are grouped with those, as is
-/// common in the literature.
+/// Columns are scaled to unit length and taken in their given order: each that is independent of
+/// those before is one of the base, others are expressed by those. With the columns joint by joint
+/// from the base, as [`Column::of_joints`] makes them, parameters of a link that are only seen
+/// through earlier links are grouped with those, as is common in the literature.
 ///
 /// # Examples
 ///
@@ -45,8 +45,8 @@ pub struct BaseParameters {
 }
 
 impl BaseParameters {
-    /// The base of a robot in motion: 200 reproducible random states within its limits, accelerations to 5 rad/s²,
-    /// speeds to the limit or 2 rad/s.
+    /// The base of a robot in motion: 200 reproducible random states within its limits,
+    /// accelerations to 5 rad/s², speeds to the limit or 2 rad/s.
     ///
     /// For gravity left out or tilted, take the base of [`Robot::with_gravity`].
     pub fn of_robot(robot: &Robot, columns: &[Column]) -> Self {
@@ -62,8 +62,9 @@ impl BaseParameters {
         Self::of_regressor(columns, &Regressor::new(robot, columns).stacked(states), TOLERANCE)
     }
 
-    /// The base of a stacked regressor \[equations x columns\]; a column is new where more than `tolerance` of its
-    /// length is independent of those before, and counts as 0 below that part of the longest column.
+    /// The base of a stacked regressor \[equations x columns\]; a column is new where more than
+    /// `tolerance` of its length is independent of those before, and counts as 0 below that part of
+    /// the longest column.
     ///
     /// For recorded motions this says what they excite, if `tolerance` is above their noise.
     ///
@@ -93,19 +94,25 @@ impl BaseParameters {
         &self.independent
     }
 
-    /// K \[base parameters x columns\] of β = K θ, to rounding; the identity on the independent columns.
+    /// K \[base parameters x columns\] of β = K θ, to rounding; the identity on the independent
+    /// columns.
     pub fn combinations(&self) -> &DMatrix<f64> {
         &self.combinations
     }
 
-    /// Singular values of the regressor with columns of unit length, descending, relative to the largest.
+    /// Singular values of the regressor with columns of unit length, descending, relative to the
+    /// largest.
     pub fn singular_values(&self) -> Vec<f64> {
         let largest = self.singular_values.first().copied().unwrap_or(0.0);
-        self.singular_values.iter().map(|s| if largest == 0.0 { 0.0 } else { s / largest }).collect()
+        self.singular_values
+            .iter()
+            .map(|s| if largest == 0.0 { 0.0 } else { s / largest })
+            .collect()
     }
 
-    /// The relative singular values either side of the cut: the smallest that counts and the largest that does not
-    /// (0 where all count). Only where they are far apart is the number of base parameters beyond doubt.
+    /// The relative singular values either side of the cut: the smallest that counts and the
+    /// largest that does not (0 where all count). Only where they are far apart is the number of
+    /// base parameters beyond doubt.
     pub fn gap(&self) -> [f64; 2] {
         let s = self.singular_values();
         [self.count().checked_sub(1), Some(self.count())]
@@ -139,7 +146,8 @@ impl BaseParameters {
         theta
     }
 
-    /// The parameters θ with the base parameters β that are nearest to given ones, in the plain Euclidean sense.
+    /// The parameters θ with the base parameters β that are nearest to given ones, in the plain
+    /// Euclidean sense.
     ///
     /// # Panics
     ///
@@ -148,7 +156,8 @@ impl BaseParameters {
         let prior = DVector::from_column_slice(prior);
         let lacking = DVector::from_column_slice(beta) - &self.combinations * &prior;
         let gram = &self.combinations * self.combinations.transpose();
-        let weights = gram.cholesky().expect("K holds the identity, so K Kᵀ is at least 1").solve(&lacking);
+        let weights =
+            gram.cholesky().expect("K holds the identity, so K Kᵀ is at least 1").solve(&lacking);
         prior + self.combinations.tr_mul(&weights)
     }
 
@@ -159,11 +168,13 @@ impl BaseParameters {
 
     /// The combinations in words, as `Ixx2 - Iyy2 + Izz2 + J2` or `mx2 + (Izz2 + J2)/0.35`.
     ///
-    /// Coefficients within 1e-9 of a short decimal, its square, or the inverse of these are printed so; others with 6
-    /// digits. [`BaseParameters::combinations`] has them in full.
+    /// Coefficients within 1e-9 of a short decimal, its square, or the inverse of these are printed
+    /// so; others with 6 digits. [`BaseParameters::combinations`] has them in full.
     pub fn names(&self) -> Vec<String> {
         let transposed = self.combinations.transpose();
         let rows = transposed.as_slice().chunks(self.columns.len().max(1));
-        rows.zip(&self.independent).map(|(row, k)| combination::words(&self.columns, *k, row)).collect()
+        rows.zip(&self.independent)
+            .map(|(row, k)| combination::words(&self.columns, *k, row))
+            .collect()
     }
 }

@@ -5,7 +5,8 @@ use crate::inertia::LinkInertia;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
 
-/// Rotations and mass distributions are accepted to this relative error, well above what printing 12 digits loses.
+/// Rotations and mass distributions are accepted to this relative error, well above what printing
+/// 12 digits loses.
 const TOLERANCE: f64 = 1e-9;
 
 /// A value that makes no robot.
@@ -35,9 +36,11 @@ impl RobotDescription {
         let mut names = HashSet::new();
         for (i, joint) in self.joints.iter().enumerate() {
             let unique = names.insert(joint.name.as_str());
-            require(unique, "name", "give each joint its own name", || "the name occurs twice".into())
-                .and_then(|()| self.check_joint(joint))
-                .map_err(|f| finding(Some(i), f))?;
+            require(unique, "name", "give each joint its own name", || {
+                "the name occurs twice".into()
+            })
+            .and_then(|()| self.check_joint(joint))
+            .map_err(|f| finding(Some(i), f))?;
         }
         Ok(())
     }
@@ -49,7 +52,9 @@ impl RobotDescription {
             "use the version of reachtube that wrote it, or rewrite it",
             || format!("schema_version {} is not {SCHEMA_VERSION}", self.schema_version),
         )?;
-        require(!self.joints.is_empty(), "joint", "add a [[joint]] for each joint", || "no joints".into())?;
+        require(!self.joints.is_empty(), "joint", "add a [[joint]] for each joint", || {
+            "no joints".into()
+        })?;
         finite("gravity", &self.gravity)
     }
 
@@ -59,7 +64,10 @@ impl RobotDescription {
         check_drive(joint)?;
         check_limits(joint)?;
         check_link_numbers(joint)?;
-        let all = self.joints.iter().all(|j| j.gravity_moments.is_some() == joint.gravity_moments.is_some());
+        let all = self
+            .joints
+            .iter()
+            .all(|j| j.gravity_moments.is_some() == joint.gravity_moments.is_some());
         require(all, "gravity_moments", "give gravity_moments for all joints or for none", || {
             "only some joints have gravity_moments".into()
         })?;
@@ -67,13 +75,18 @@ impl RobotDescription {
     }
 }
 
-fn finding(joint: Option<usize>, (key, problem, remedy): (&'static str, String, &'static str)) -> Finding {
+fn finding(
+    joint: Option<usize>,
+    (key, problem, remedy): (&'static str, String, &'static str),
+) -> Finding {
     Finding { joint, key, problem, remedy }
 }
 
 fn finite(key: &'static str, values: &[f64]) -> Checked {
     let bad = values.iter().find(|v| !v.is_finite());
-    require(bad.is_none(), key, "give a finite number", || format!("{key} holds {}", bad.unwrap_or(&0.0)))
+    require(bad.is_none(), key, "give a finite number", || {
+        format!("{key} holds {}", bad.unwrap_or(&0.0))
+    })
 }
 
 fn check_geometry(joint: &JointDescription) -> Checked {
@@ -114,7 +127,9 @@ fn check_placement(joint: &JointDescription) -> Checked {
         "print the rotation with 12 digits",
         || {
             let det = r.determinant();
-            format!("rotation is not one: |R Rᵀ - 1| = {error:.1e} (limit {TOLERANCE:.0e}), det R = {det:.3}")
+            format!(
+                "rotation is not one: |R Rᵀ - 1| = {error:.1e} (limit {TOLERANCE:.0e}), det R = {det:.3}"
+            )
         },
     )
 }
@@ -136,9 +151,12 @@ fn check_drive(joint: &JointDescription) -> Checked {
     for (key, value) in ["armature", "rotor_inertia", "gear_ratio"].into_iter().zip(given) {
         let value = value.unwrap_or_default();
         finite(key, &[value])?;
-        require(value >= 0.0 || key == "gear_ratio", key, "give a motor inertia of at least 0", || {
-            format!("{key} = {value} is negative")
-        })?;
+        require(
+            value >= 0.0 || key == "gear_ratio",
+            key,
+            "give a motor inertia of at least 0",
+            || format!("{key} = {value} is negative"),
+        )?;
     }
     finite("friction", &joint.friction.coulomb)?;
     finite("friction", &joint.friction.viscous)
@@ -181,7 +199,8 @@ fn check_link_numbers(joint: &JointDescription) -> Checked {
 
 /// Checks that some distribution of mass has these parameters.
 fn check_body(joint: &JointDescription) -> Checked {
-    let remedy = "correct it, or set parameters = \"base\" where only identified combinations are meant";
+    let remedy =
+        "correct it, or set parameters = \"base\" where only identified combinations are meant";
     require(joint.mass >= 0.0, "mass", remedy, || format!("mass = {} kg is negative", joint.mass))?;
     let (_, _, about_com) = joint.about_own_com();
     let principal = principal_spreads(&about_com);
@@ -201,7 +220,8 @@ fn check_body(joint: &JointDescription) -> Checked {
     })
 }
 
-/// Half of what each principal inertia lacks to the sum of the other two: the principal second moments.
+/// Half of what each principal inertia lacks to the sum of the other two: the principal second
+/// moments.
 fn principal_spreads(inertia: &[f64; 6]) -> [f64; 3] {
     let [xx, xy, xz, yy, yz, zz] = *inertia;
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);

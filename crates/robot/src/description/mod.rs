@@ -63,7 +63,8 @@ pub enum Parameters {
     /// Each link is a body: mass and inertia are checked to be those of some distribution of mass.
     #[default]
     Physical,
-    /// Only the combinations that motion shows are meant; single links may even have negative inertia.
+    /// Only the combinations that motion shows are meant; single links may even have negative
+    /// inertia.
     Base,
 }
 
@@ -78,7 +79,8 @@ pub enum Convention {
     Modified,
 }
 
-/// Denavit-Hartenberg parameters; angles within 1e-12 of a multiple of pi/2 are taken as exactly that.
+/// Denavit-Hartenberg parameters; angles within 1e-12 of a multiple of pi/2 are taken as exactly
+/// that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Dh {
@@ -132,7 +134,8 @@ pub struct GravityMoments {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionDescription {
-    /// a1 to a8: offset \[N m\] and slope of driving forward, driving backward, braking backward, braking forward.
+    /// a1 to a8: offset \[N m\] and slope of driving forward, driving backward, braking backward,
+    /// braking forward.
     #[serde(default)]
     pub coulomb: [f64; 8],
     /// v1 \[N m s/rad\], v2 \[N m s²/rad²\], v3 \[N m s³/rad³\].
@@ -142,7 +145,8 @@ pub struct FrictionDescription {
 
 /// A joint and the link that it moves.
 ///
-/// The link's frame is the joint frame turned by q (`placement`), or the Denavit-Hartenberg frame of the link (`dh`).
+/// The link's frame is the joint frame turned by q (`placement`), or the Denavit-Hartenberg frame
+/// of the link (`dh`).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointDescription {
@@ -181,7 +185,8 @@ pub struct JointDescription {
     /// Rotor inertia I_m on the motor's side \[kg m²\]; the armature is k_r² I_m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotor_inertia: Option<f64>,
-    /// Motor inertia on the link's side \[kg m²\], in place of `rotor_inertia`; 0 when neither is given.
+    /// Motor inertia on the link's side \[kg m²\], in place of `rotor_inertia`; 0 when neither is
+    /// given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub armature: Option<f64>,
     /// Lowest and highest position \[rad\]; ±pi when left out.

@@ -15,8 +15,8 @@ use std::path::Path;
 const EMBEDDED: [(&str, &str); 1] = [("lwa4p", include_str!("../../robots/lwa4p.toml"))];
 
 impl Robot {
-    /// An embedded robot by name (`lwa4p`), or one from a TOML or URDF file by path; what ends in `.urdf` is read as
-    /// [`Urdf::load`](crate::Urdf::load) does without named ends.
+    /// An embedded robot by name (`lwa4p`), or one from a TOML or URDF file by path; what ends in
+    /// `.urdf` is read as [`Urdf::load`](crate::Urdf::load) does without named ends.
     ///
     /// # Errors
     ///
@@ -70,7 +70,8 @@ impl Robot {
 
     /// The Schunk LWA 4P as identified by Liu & Althoff (IROS 2018), Table III.
     ///
-    /// Its links are one choice that gives the table's 23 identifiable combinations; gravity has its own parameters.
+    /// Its links are one choice that gives the table's 23 identifiable combinations; gravity has
+    /// its own parameters.
     pub fn lwa4p() -> Self {
         Self::load("lwa4p").expect("the embedded description is tested")
     }
@@ -80,12 +81,14 @@ fn joint_words(description: &RobotDescription, f: &Finding) -> String {
     f.joint.map_or(String::new(), |i| format!("joint `{}`: ", description.joints[i].name))
 }
 
-/// Line (from 1) of a key in the table of the given joint, or the table's first line where the key is absent.
+/// Line (from 1) of a key in the table of the given joint, or the table's first line where the key
+/// is absent.
 fn line_of(text: &str, joint: Option<usize>, key: &str) -> usize {
     let lines = || text.lines().map(str::trim).enumerate();
     let mut headers = lines().filter(|(_, l)| l.starts_with("[[joint]]")).map(|(i, _)| i);
     let start = joint.map_or(0, |k| headers.nth(k).unwrap_or(0));
-    let named = |l: &str| l.strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with(['=', '.']));
+    let named =
+        |l: &str| l.strip_prefix(key).is_some_and(|rest| rest.trim_start().starts_with(['=', '.']));
     let own = lines().skip(start).take_while(|(i, l)| *i == start || !l.starts_with("[[joint]]"));
     own.into_iter().find(|(_, l)| named(l)).map_or(start, |(i, _)| i) + 1
 }
@@ -129,11 +132,18 @@ impl PlacementDescription {
 impl JointDescription {
     fn geometry(&self, convention: Convention) -> JointGeometry {
         match (self.dh, convention) {
-            (Some(p), Convention::Standard) => JointGeometry::standard_dh(p.a, p.alpha, p.theta, p.d),
-            (Some(p), Convention::Modified) => JointGeometry::modified_dh(p.a, p.alpha, p.theta, p.d),
+            (Some(p), Convention::Standard) => {
+                JointGeometry::standard_dh(p.a, p.alpha, p.theta, p.d)
+            }
+            (Some(p), Convention::Modified) => {
+                JointGeometry::modified_dh(p.a, p.alpha, p.theta, p.d)
+            }
             (None, _) => {
                 let axis = Vector3::from(self.axis.unwrap_or([0.0, 0.0, 1.0]));
-                JointGeometry::explicit(self.placement.unwrap_or_default().placement(), axis.normalize())
+                JointGeometry::explicit(
+                    self.placement.unwrap_or_default().placement(),
+                    axis.normalize(),
+                )
             }
         }
     }
@@ -155,7 +165,8 @@ impl JointDescription {
         }
     }
 
-    /// Mass, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz about it; the numbers as given where those are they.
+    /// Mass, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz about it; the numbers as given where
+    /// those are they.
     pub(crate) fn about_own_com(&self) -> (f64, [f64; 3], [f64; 6]) {
         match self.about {
             InertiaPoint::Com => (self.mass, self.com.unwrap_or_default(), self.inertia),

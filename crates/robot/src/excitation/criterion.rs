@@ -19,8 +19,8 @@ pub enum Criterion {
 /// How well a motion shows base parameters, from 20 samples a harmonic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// ln det of the information matrix Y_bᵀ W Y_b / samples in SI units, W the inverse variances of torque; -∞ where
-    /// some combination is not shown.
+    /// ln det of the information matrix Y_bᵀ W Y_b / samples in SI units, W the inverse variances
+    /// of torque; -∞ where some combination is not shown.
     pub log_determinant: f64,
     /// Condition number of the weighted Y_b with columns of unit length.
     pub condition: f64,
@@ -82,7 +82,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// By columns of unit length, whose lengths are added afterwards: units then do not cost digits.
+    /// By columns of unit length, whose lengths are added afterwards: units then do not cost
+    /// digits.
     fn log_determinant(&self) -> f64 {
         let lengths: Vec<f64> = self.stacked.column_iter().map(|c| c.norm()).collect();
         if lengths.contains(&0.0) {
@@ -95,7 +96,8 @@ impl<'a> Judge<'a> {
         }
         let points = self.states.len() as f64;
         let own: f64 = lengths.iter().map(|l| 2.0 * l.ln() - points.ln()).sum();
-        gram.cholesky().map_or(f64::NEG_INFINITY, |l| own + 2.0 * l.l_dirty().diagonal().map(f64::ln).sum())
+        gram.cholesky()
+            .map_or(f64::NEG_INFINITY, |l| own + 2.0 * l.l_dirty().diagonal().map(f64::ln).sum())
     }
 
     fn condition(&self) -> f64 {

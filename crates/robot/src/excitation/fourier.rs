@@ -3,8 +3,9 @@ use core::f64::consts::{PI, TAU};
 /// Grid points a harmonic at which a series is looked at for its bounds.
 pub(super) const GRID: usize = 20;
 
-/// A periodic motion: for joint i, q_i(t) = c_i + Σ_l (a_il sin(l ω t) - b_il cos(l ω t)) / (l ω), so that the velocity is
-/// Σ_l a_il cos(l ω t) + b_il sin(l ω t) (Swevers et al., IEEE Trans. Robotics and Automation 13(5), 1997).
+/// A periodic motion: for joint i, q_i(t) = c_i + Σ_l (a_il sin(l ω t) - b_il cos(l ω t)) / (l ω),
+/// so that the velocity is Σ_l a_il cos(l ω t) + b_il sin(l ω t) (Swevers et al., IEEE Trans.
+/// Robotics and Automation 13(5), 1997).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierTrajectory {
     /// Period 2π/ω \[s\].
@@ -70,16 +71,17 @@ impl FourierTrajectory {
     ///
     /// # Guarantee
     ///
-    /// Outer for the series as it is, up to rounding: between M equidistant samples of a period a trigonometric
-    /// polynomial of degree N exceeds its largest sample by no more than the factor 1/cos(π N / M) (Ehlich & Zeller
-    /// 1964), here 1.013.
+    /// Outer for the series as it is, up to rounding: between M equidistant samples of a period a
+    /// trigonometric polynomial of degree N exceeds its largest sample by no more than the factor
+    /// 1/cos(π N / M) (Ehlich & Zeller 1964), here 1.013.
     pub fn position_range(&self, joint: usize) -> [f64; 2] {
         let (low, high) = self.extremes(joint, 0);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * excess());
         [middle - half, middle + half]
     }
 
-    /// A bound of a joint's speed at all times \[rad/s\], in the sense of [`FourierTrajectory::position_range`].
+    /// A bound of a joint's speed at all times \[rad/s\], in the sense of
+    /// [`FourierTrajectory::position_range`].
     pub fn speed_bound(&self, joint: usize) -> f64 {
         let (low, high) = self.extremes(joint, 1);
         high.max(-low) * excess()
@@ -93,8 +95,8 @@ impl FourierTrajectory {
 
     fn extremes(&self, joint: usize, derivative: usize) -> (f64, f64) {
         let count = GRID * self.cosine[joint].len().max(1);
-        let values =
-            (0..count).map(|k| self.joint_at(joint, self.period * k as f64 / count as f64)[derivative]);
+        let values = (0..count)
+            .map(|k| self.joint_at(joint, self.period * k as f64 / count as f64)[derivative]);
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     }
 }

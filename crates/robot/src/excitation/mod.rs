@@ -22,7 +22,8 @@ pub struct ExcitationSettings {
     pub harmonics: usize,
     /// What is made best.
     pub criterion: Criterion,
-    /// Whether velocity and acceleration are 0 where the period begins and ends; needs two harmonics.
+    /// Whether velocity and acceleration are 0 where the period begins and ends; needs two
+    /// harmonics.
     pub from_rest: bool,
     /// Part of the position and velocity limits that is used.
     pub margin: f64,
@@ -41,7 +42,8 @@ pub struct ExcitationSettings {
 }
 
 impl Default for ExcitationSettings {
-    /// 10 s, five harmonics, D-optimal, from rest, within 90 % of the limits; four searches of 1500 motions.
+    /// 10 s, five harmonics, D-optimal, from rest, within 90 % of the limits; four searches of 1500
+    /// motions.
     fn default() -> Self {
         Self {
             period: 10.0,
@@ -71,16 +73,18 @@ pub struct Excitation {
 }
 
 impl Robot {
-    /// A periodic motion within the limits that shows the base parameters of these columns best (Swevers et al. 1997).
+    /// A periodic motion within the limits that shows the base parameters of these columns best
+    /// (Swevers et al. 1997).
     ///
-    /// Each joint moves by a Fourier series that is scaled and centred so that it fills its limits; an evolution
-    /// strategy ((1+1), Rechenberg's rule for its step) shapes the series, from several random starts at once. Links may hit each
-    /// other, the floor, or their cables: only joint limits are looked at.
+    /// Each joint moves by a Fourier series that is scaled and centred so that it fills its limits;
+    /// an evolution strategy ((1+1), Rechenberg's rule for its step) shapes the series, from
+    /// several random starts at once. Links may hit each other, the floor, or their cables: only
+    /// joint limits are looked at.
     ///
     /// # Guarantee
     ///
-    /// Positions, speeds and accelerations are within their limits at all times, not only at samples, up to rounding:
-    /// see [`FourierTrajectory::position_range`].
+    /// Positions, speeds and accelerations are within their limits at all times, not only at
+    /// samples, up to rounding: see [`FourierTrajectory::position_range`].
     ///
     /// # Errors
     ///
@@ -113,7 +117,8 @@ impl Robot {
             climb(shape.len(), settings.trials, &mut random, &mut value)
         };
         let climbs = on_all_cores(settings.starts, &search);
-        let best = climbs.iter().max_by(|a, b| a.value.total_cmp(&b.value).then(b.start.cmp(&a.start)));
+        let best =
+            climbs.iter().max_by(|a, b| a.value.total_cmp(&b.value).then(b.start.cmp(&a.start)));
         let best = best.expect("there is a start");
         let mut judge = Judge::new(self, &base, settings);
         let mut quality = |x: &[f64]| judge.quality(&shape, x);
@@ -128,7 +133,8 @@ impl Robot {
 /// The results of independent tasks, in their order whatever their number of threads.
 fn on_all_cores<T: Send>(count: usize, task: &(impl Fn(usize) -> T + Sync)) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(count);
-    let share = |first: usize| (first..count).step_by(threads).map(|k| (k, task(k))).collect::<Vec<_>>();
+    let share =
+        |first: usize| (first..count).step_by(threads).map(|k| (k, task(k))).collect::<Vec<_>>();
     let mut results: Vec<_> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|first| scope.spawn(move || share(first))).collect();
         workers.into_iter().flat_map(|w| w.join().expect("a task does not panic")).collect()
@@ -141,21 +147,34 @@ impl ExcitationSettings {
     fn check(&self, joints: usize) -> Result<(), RobotError> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let least = if self.from_rest { 2 } else { 1 };
-        let fits =
-            |list: &[f64], one: bool| list.is_empty() || list.len() == joints || (one && list.len() == 1);
+        let fits = |list: &[f64], one: bool| {
+            list.is_empty() || list.len() == joints || (one && list.len() == 1)
+        };
         let wrong = [
             (!positive(self.period), format!("period = {} s; give a positive time", self.period)),
-            (self.harmonics < least, format!("harmonics = {}; give {least} or more", self.harmonics)),
-            (!positive(self.margin) || self.margin > 1.0, format!("margin = {}; give up to 1", self.margin)),
+            (
+                self.harmonics < least,
+                format!("harmonics = {}; give {least} or more", self.harmonics),
+            ),
+            (
+                !positive(self.margin) || self.margin > 1.0,
+                format!("margin = {}; give up to 1", self.margin),
+            ),
             (!positive(self.speed), format!("speed = {} rad/s; give a positive one", self.speed)),
             (self.starts == 0 || self.trials == 0, "no starts or trials; give one or more".into()),
             (
                 !fits(&self.acceleration, true) || !self.acceleration.iter().all(|a| positive(*a)),
-                format!("acceleration = {:?}; give none, one, or {joints} positive ones", self.acceleration),
+                format!(
+                    "acceleration = {:?}; give none, one, or {joints} positive ones",
+                    self.acceleration
+                ),
             ),
             (
                 !fits(&self.torque_noise, false) || !self.torque_noise.iter().all(|s| positive(*s)),
-                format!("torque_noise = {:?}; give none or {joints} positive ones", self.torque_noise),
+                format!(
+                    "torque_noise = {:?}; give none or {joints} positive ones",
+                    self.torque_noise
+                ),
             ),
         ];
         let first = wrong.into_iter().find(|(is_wrong, _)| *is_wrong);

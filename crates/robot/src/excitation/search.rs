@@ -19,7 +19,8 @@ pub(super) fn start(seed: u64, k: usize) -> (u64, Random) {
     (k as u64, Random::new(start))
 }
 
-/// Climbs from a random point: normal steps, in some of the directions each time, kept where the value does not fall.
+/// Climbs from a random point: normal steps, in some of the directions each time, kept where the
+/// value does not fall.
 pub(super) fn climb(
     dimensions: usize,
     trials: usize,

@@ -5,8 +5,8 @@ use super::{ExcitationSettings, fourier::GRID};
 use crate::Robot;
 use core::f64::consts::TAU;
 
-/// Turns a vector of free numbers into a motion: for each joint a place within the room left, then a and b of each
-/// harmonic, of which only the direction counts.
+/// Turns a vector of free numbers into a motion: for each joint a place within the room left, then
+/// a and b of each harmonic, of which only the direction counts.
 pub(super) struct Shape {
     period: f64,
     harmonics: usize,
@@ -72,7 +72,8 @@ impl Shape {
     /// States of a motion on the grid, into rows of (q, q̇, q̈).
     pub fn states(&self, motion: &FourierTrajectory, out: &mut [[Vec<f64>; 3]]) {
         for i in 0..self.limits.len() {
-            for (state, values) in out.iter_mut().zip(self.grid(&motion.cosine[i], &motion.sine[i])) {
+            for (state, values) in out.iter_mut().zip(self.grid(&motion.cosine[i], &motion.sine[i]))
+            {
                 state.iter_mut().zip(values).for_each(|(s, v)| s[i] = v);
                 state[0][i] += motion.centre[i];
             }
@@ -106,8 +107,10 @@ impl Shape {
         let low = grid.iter().fold(f64::INFINITY, |m, x| m.min(x[0]));
         let high = grid.iter().fold(f64::NEG_INFINITY, |m, x| m.max(x[0]));
         let half = 0.5 * (high - low);
-        let bounds = [(half, limits.position[1]), (most(1), limits.speed), (most(2), limits.acceleration)];
-        let scale = bounds.iter().fold(f64::INFINITY, |s, (most, bound)| s.min(bound / (most * excess())));
+        let bounds =
+            [(half, limits.position[1]), (most(1), limits.speed), (most(2), limits.acceleration)];
+        let scale =
+            bounds.iter().fold(f64::INFINITY, |s, (most, bound)| s.min(bound / (most * excess())));
         let scale = if half > 0.0 { scale } else { 0.0 };
         (scale, 0.5 * scale * (low + high), scale * half * excess())
     }

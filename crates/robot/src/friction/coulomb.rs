@@ -1,10 +1,10 @@
 use reachtube_scalar::Lanewise;
 
-/// Load-dependent Coulomb friction of one joint: a straight line in the load torque for each motor quadrant, eqs. (6)
-/// to (9), after Hamon et al. (AIM 2010).
+/// Load-dependent Coulomb friction of one joint: a straight line in the load torque for each motor
+/// quadrant, eqs. (6) to (9), after Hamon et al. (AIM 2010).
 ///
-/// The quadrants are named by what the motor does, so that friction dissipates: as printed, (6) and (8) would let it
-/// push the joint along.
+/// The quadrants are named by what the motor does, so that friction dissipates: as printed, (6) and
+/// (8) would let it push the joint along.
 ///
 /// # Examples
 ///
@@ -37,8 +37,8 @@ pub struct LoadLine {
 }
 
 impl Coulomb {
-    /// The coefficients a1 to a8: offset \[N m\] and slope of driving forward, driving backward, braking backward and
-    /// braking forward, in this order.
+    /// The coefficients a1 to a8: offset \[N m\] and slope of driving forward, driving backward,
+    /// braking backward and braking forward, in this order.
     pub fn from_coefficients(a: [f64; 8]) -> Self {
         let line = |i: usize| LoadLine { offset: a[i], slope: a[i + 1] };
         Self {
@@ -57,8 +57,9 @@ impl Coulomb {
 
     /// Friction torque \[N m\] at a load torque \[N m\] and a joint velocity \[rad/s\].
     ///
-    /// At q̇ = 0 it is 0: stiction is a set of torques, not a value, and belongs to the uncertainty. At zero load the
-    /// joint brakes, by the convention of the fields. Over lanes each has its own quadrant.
+    /// At q̇ = 0 it is 0: stiction is a set of torques, not a value, and belongs to the
+    /// uncertainty. At zero load the joint brakes, by the convention of the fields. Over lanes each
+    /// has its own quadrant.
     pub fn torque<S: Lanewise>(&self, load: S, qd: S) -> S {
         load.zip(qd, |load, qd| self.of_lane(load, qd))
     }

@@ -1,6 +1,7 @@
 use reachtube_scalar::Scalar;
 
-/// Viscous friction of one joint as a cubic (5): tau_v = v1 q̇ + v2 q̇² + v3 q̇³ \[N m\], q̇ in rad/s.
+/// Viscous friction of one joint as a cubic (5): tau_v = v1 q̇ + v2 q̇² + v3 q̇³ \[N m\], q̇ in
+/// rad/s.
 ///
 /// # Examples
 ///
@@ -15,7 +16,8 @@ use reachtube_scalar::Scalar;
 pub struct Viscous {
     /// Linear coefficient \[N m s/rad\].
     pub v1: f64,
-    /// Quadratic coefficient \[N m s²/rad²\]; it acts in the same direction whichever way the joint moves.
+    /// Quadratic coefficient \[N m s²/rad²\]; it acts in the same direction whichever way the joint
+    /// moves.
     pub v2: f64,
     /// Cubic coefficient \[N m s³/rad³\].
     pub v3: f64,
@@ -38,6 +40,7 @@ impl Viscous {
     ///
     /// Over `Interval`: an outer enclosure.
     pub fn slope<S: Scalar>(&self, qd: &S) -> S {
-        S::from(self.v1) + (S::from(2.0 * self.v2) + S::from(3.0 * self.v3) * qd.clone()) * qd.clone()
+        S::from(self.v1)
+            + (S::from(2.0 * self.v2) + S::from(3.0 * self.v3) * qd.clone()) * qd.clone()
     }
 }

@@ -34,12 +34,12 @@ impl PositionBox {
 }
 
 impl Robot {
-    /// Tries to prove that M_m(q) is positive definite at every position within the limits, where the links alone do
-    /// not show it ([`Robot::check_physical`]), as for base parameters.
+    /// Tries to prove that M_m(q) is positive definite at every position within the limits, where
+    /// the links alone do not show it ([`Robot::check_physical`]), as for base parameters.
     ///
-    /// Branch and bound: interval arithmetic over boxes of positions, halved where they are too wide. Gives the number
-    /// of boxes, or `None` where more than `most_boxes` would be needed, which says nothing about M. The LWA 4P takes
-    /// about 45,000 boxes and 2 s.
+    /// Branch and bound: interval arithmetic over boxes of positions, halved where they are too
+    /// wide. Gives the number of boxes, or `None` where more than `most_boxes` would be needed,
+    /// which says nothing about M. The LWA 4P takes about 45,000 boxes and 2 s.
     ///
     /// # Guarantee
     ///
@@ -66,7 +66,9 @@ impl Robot {
                 return None;
             }
             match cover.best_splits(&positions)[..] {
-                [first, second] => open.extend(positions.halves(first).iter().flat_map(|h| h.halves(second))),
+                [first, second] => {
+                    open.extend(positions.halves(first).iter().flat_map(|h| h.halves(second)))
+                }
                 [only] => open.extend(positions.halves(only)),
                 _ => return None,
             }
@@ -76,7 +78,8 @@ impl Robot {
 
     fn position_limits_box(&self) -> PositionBox {
         let limits = self.joints.iter().map(|j| j.position_limits);
-        let q: Vec<_> = limits.map(|[low, high]| Interval::point(low).hull(Interval::point(high))).collect();
+        let q: Vec<_> =
+            limits.map(|[low, high]| Interval::point(low).hull(Interval::point(high))).collect();
         let (sin, cos) = q.iter().map(|q| q.sin_cos()).unzip();
         PositionBox { q, sin, cos }
     }
@@ -110,8 +113,8 @@ impl<'a> Cover<'a> {
 
     /// Positive only where every M(q) of the box is positive definite.
     ///
-    /// With M(mid) ≈ Lᵀ D L, the matrix W M Wᵀ for W = D^(-1/2) L^(-T) is near 1; M is positive definite if W M Wᵀ is
-    /// diagonally dominant (Gershgorin), whatever the error of W.
+    /// With M(mid) ≈ Lᵀ D L, the matrix W M Wᵀ for W = D^(-1/2) L^(-T) is near 1; M is positive
+    /// definite if W M Wᵀ is diagonally dominant (Gershgorin), whatever the error of W.
     fn slack(&mut self, positions: &PositionBox) -> f64 {
         let n = positions.q.len();
         self.robot.crba(&positions.sin, &positions.cos, &mut self.ws, &mut self.m);
@@ -123,7 +126,8 @@ impl<'a> Cover<'a> {
         }
         for i in 0..n {
             for j in 0..n {
-                self.half[i * n + j] = product(&self.w[i * n + i..(i + 1) * n], &self.m[j * n + i..]);
+                self.half[i * n + j] =
+                    product(&self.w[i * n + i..(i + 1) * n], &self.m[j * n + i..]);
             }
         }
         (0..n).map(|i| self.dominance(i, n).lo()).fold(f64::INFINITY, f64::min)
@@ -136,7 +140,8 @@ impl<'a> Cover<'a> {
         others.fold(entry(i), |rest, j| rest - Interval::point(entry(j).mag()))
     }
 
-    /// The two joints whose halving should help most: those with the greatest slack were one of them known exactly.
+    /// The two joints whose halving should help most: those with the greatest slack were one of
+    /// them known exactly.
     ///
     /// Two at a time spares half the scoring. The first joint never matters to M.
     fn best_splits(&mut self, positions: &PositionBox) -> Vec<usize> {
@@ -156,7 +161,8 @@ fn product(w: &[f64], m: &[Interval]) -> Interval {
     w.iter().zip(m).fold(Interval::ZERO, |sum, (w, m)| sum + Interval::point(*w) * *m)
 }
 
-/// W = D^(-1/2) L^(-T) of the factors of [`ltdl`], upper triangular, row by row; false where a pivot is not positive.
+/// W = D^(-1/2) L^(-T) of the factors of [`ltdl`], upper triangular, row by row; false where a
+/// pivot is not positive.
 fn whitening(factors: &[f64], w: &mut [f64], n: usize) -> bool {
     for i in (0..n).rev() {
         let pivot = factors[i * n + i];

@@ -10,8 +10,8 @@ use reachtube_scalar::Interval;
 /// How it is known that the mass matrix M_m(q) is positive definite.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Physicality {
-    /// Proved for every position: each link's pseudo-inertia is positive semidefinite, by interval arithmetic, and
-    /// no joint is without inertia of its own.
+    /// Proved for every position: each link's pseudo-inertia is positive semidefinite, by interval
+    /// arithmetic, and no joint is without inertia of its own.
     Links {
         /// No pivot is below this at any position \[kg m²\].
         least_pivot: f64,
@@ -30,15 +30,17 @@ pub enum Physicality {
 }
 
 impl Robot {
-    /// Whether M_m(q) is positive definite: proved from the links, else searched for a position where it is not.
+    /// Whether M_m(q) is positive definite: proved from the links, else searched for a position
+    /// where it is not.
     ///
-    /// Pivot i of M = Lᵀ D L is the articulated inertia about joint i; M is positive definite if and only if all are
-    /// positive. The search samples the position limits evenly and descends along the joints; it is reproducible.
+    /// Pivot i of M = Lᵀ D L is the articulated inertia about joint i; M is positive definite if
+    /// and only if all are positive. The search samples the position limits evenly and descends
+    /// along the joints; it is reproducible.
     ///
     /// # Guarantee
     ///
-    /// [`Physicality::Links`] is a proof for the links' inertias as loaded, under outward rounding, with joint
-    /// rotations taken as exact. [`Physicality::Searched`] proves nothing;
+    /// [`Physicality::Links`] is a proof for the links' inertias as loaded, under outward rounding,
+    /// with joint rotations taken as exact. [`Physicality::Searched`] proves nothing;
     /// [`Robot::prove_positive_definite`] may.
     ///
     /// # Errors
@@ -60,7 +62,8 @@ impl Robot {
         self.search_pivots()
     }
 
-    /// A lower bound of all pivots where every link is a body: what hangs on a joint can only add to its own link.
+    /// A lower bound of all pivots where every link is a body: what hangs on a joint can only add
+    /// to its own link.
     fn least_pivot_of_links(&self) -> Option<f64> {
         let own = |link: &Link| {
             let [xx, _, _, yy, ..] = link.second_moments.map(Interval::point);
@@ -73,8 +76,8 @@ impl Robot {
 }
 
 impl Link {
-    /// Whether the pseudo-inertia [[Σ, h], [hᵀ, m]] is certainly positive semidefinite: all zero, or with positive
-    /// pivots in interval arithmetic.
+    /// Whether the pseudo-inertia [[Σ, h], [hᵀ, m]] is certainly positive semidefinite: all zero,
+    /// or with positive pivots in interval arithmetic.
     fn is_body(&self) -> bool {
         let [xx, xy, xz, yy, yz, zz] = self.second_moments;
         let [hx, hy, hz] = self.first_moment;

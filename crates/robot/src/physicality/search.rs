@@ -5,7 +5,8 @@ use crate::{Robot, RobotError, Workspace, ltdl};
 
 /// Positions that the search samples before it descends.
 const SAMPLES: usize = 20_000;
-/// Sweeps over the joints of each descent; the step shrinks from 0.5 rad by 0.7 a sweep to about 1e-4 rad.
+/// Sweeps over the joints of each descent; the step shrinks from 0.5 rad by 0.7 a sweep to about
+/// 1e-4 rad.
 const SWEEPS: usize = 24;
 
 impl Robot {
@@ -31,14 +32,17 @@ impl Robot {
         Ok(Physicality::Searched { positions: probe.count, joint, pivot, q })
     }
 
-    /// The k-th point of an evenly spread sequence in the position limits: Roberts' generalised golden ratio.
+    /// The k-th point of an evenly spread sequence in the position limits: Roberts' generalised
+    /// golden ratio.
     fn spread_position(&self, k: usize) -> Vec<f64> {
         let n = self.joint_count() as i32;
         let ratio = (0..60).fold(1.5_f64, |x, _| (1.0 + x).powf(1.0 / f64::from(n + 1)));
         let limits = self.joints.iter().map(|j| j.position_limits);
         limits
             .zip(1..)
-            .map(|([low, high], i)| low + (high - low) * ((0.5 + (k as f64) * ratio.powi(-i)) % 1.0))
+            .map(|([low, high], i)| {
+                low + (high - low) * ((0.5 + (k as f64) * ratio.powi(-i)) % 1.0)
+            })
             .collect()
     }
 
@@ -82,7 +86,13 @@ struct Probe<'a> {
 impl<'a> Probe<'a> {
     fn new(robot: &'a Robot) -> Self {
         let n = robot.joint_count();
-        Self { robot, ws: Workspace::new(robot), m: vec![0.0; n * n], pivots: vec![0.0; n], count: 0 }
+        Self {
+            robot,
+            ws: Workspace::new(robot),
+            m: vec![0.0; n * n],
+            pivots: vec![0.0; n],
+            count: 0,
+        }
     }
 
     /// The pivots at q, or the witness where one is not positive.

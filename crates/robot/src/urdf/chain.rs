@@ -28,7 +28,10 @@ impl<'a> Tree<'a> {
         if base != root {
             let start = joints.iter().position(|k| parent(k) == base);
             let start = start.ok_or_else(|| {
-                self.whole(format!("tip `{tip}` does not hang on base `{base}`"), "name a base above the tip")
+                self.whole(
+                    format!("tip `{tip}` does not hang on base `{base}`"),
+                    "name a base above the tip",
+                )
             })?;
             joints.drain(..start);
         }
@@ -64,8 +67,9 @@ impl<'a> Tree<'a> {
     /// Links moved by a joint below which no other joint moves, below a base where one is named.
     fn ends(&self, base: Option<&str>) -> Vec<&'a str> {
         let moving = || (0..self.joints.len()).filter(|k| !self.joints[*k].is_fixed());
-        let hangs_on =
-            |k: usize, link: &str| self.above(self.joints[k].child).any(|j| self.joints[j].parent == link);
+        let hangs_on = |k: usize, link: &str| {
+            self.above(self.joints[k].child).any(|j| self.joints[j].parent == link)
+        };
         let last = |k: &usize| {
             let link = self.joints[*k].child;
             !moving().any(|j| j != *k && hangs_on(j, link))
@@ -77,7 +81,12 @@ impl<'a> Tree<'a> {
             .collect()
     }
 
-    fn only(&self, mut candidates: Vec<&'a str>, end: &str, what: &str) -> Result<&'a str, RobotError> {
+    fn only(
+        &self,
+        mut candidates: Vec<&'a str>,
+        end: &str,
+        what: &str,
+    ) -> Result<&'a str, RobotError> {
         if let [one] = candidates[..] {
             return Ok(one);
         }

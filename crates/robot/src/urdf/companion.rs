@@ -3,7 +3,8 @@
 use crate::{FrictionDescription, JointDescription, Parameters, RobotDescription, RobotError};
 use serde::{Deserialize, Serialize};
 
-/// Ends of the chain, gravity, and motor and friction of joints; each value comes before that of the URDF.
+/// Ends of the chain, gravity, and motor and friction of joints; each value comes before that of
+/// the URDF.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Companion {
@@ -38,8 +39,10 @@ struct Drive {
 impl Companion {
     /// Reads it; empty where the text is a whole robot, which has a `schema_version`.
     pub fn parse(text: &str, origin: &str) -> Result<Self, RobotError> {
-        let syntax =
-            |e: toml::de::Error| RobotError::Syntax { origin: origin.into(), message: e.to_string() };
+        let syntax = |e: toml::de::Error| RobotError::Syntax {
+            origin: origin.into(),
+            message: e.to_string(),
+        };
         let table: toml::Table = toml::from_str(text).map_err(syntax)?;
         if table.contains_key("schema_version") {
             return Ok(Self::default());

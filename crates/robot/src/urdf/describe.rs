@@ -6,8 +6,8 @@ use crate::description::Finding;
 use crate::inertia::LinkInertia;
 use crate::placement::Placement;
 use crate::{
-    Convention, FrictionDescription, InertiaPoint, JointDescription, Parameters, PlacementDescription,
-    RobotDescription, RobotError, SCHEMA_VERSION,
+    Convention, FrictionDescription, InertiaPoint, JointDescription, Parameters,
+    PlacementDescription, RobotDescription, RobotError, SCHEMA_VERSION,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -21,7 +21,10 @@ pub(super) struct MovedLink {
 }
 
 impl<'a> Tree<'a> {
-    pub fn describe(&self, chain: &Chain<'a>) -> Result<(RobotDescription, Vec<MovedLink>), RobotError> {
+    pub fn describe(
+        &self,
+        chain: &Chain<'a>,
+    ) -> Result<(RobotDescription, Vec<MovedLink>), RobotError> {
         let mut fixed: Option<Placement> = None;
         let (mut joints, mut moved) = (Vec::new(), Vec::new());
         for &k in &chain.joints {
@@ -128,10 +131,15 @@ impl<'a> Tree<'a> {
             Some(before) => {
                 let p = before.then(&self.placement_of(joint.node)?);
                 let rows = core::array::from_fn(|i| core::array::from_fn(|j| p.rotation[(i, j)]));
-                PlacementDescription { rotation: Some(rows), rpy: None, translation: p.translation.into() }
+                PlacementDescription {
+                    rotation: Some(rows),
+                    rpy: None,
+                    translation: p.translation.into(),
+                }
             }
         };
-        let axis = element(joint.node, "axis").map(|node| self.triple(node, "xyz")).transpose()?.flatten();
+        let axis =
+            element(joint.node, "axis").map(|node| self.triple(node, "xyz")).transpose()?.flatten();
         let (mass, com, inertia) = lump(bodies);
         let (position_limits, velocity_limit) = self.limits(joint)?;
         let (gear_ratio, rotor_inertia) = self.motor(joint)?;
@@ -155,9 +163,10 @@ impl<'a> Tree<'a> {
     /// Position and velocity limits; zeros stand for fields that an exporter left empty.
     fn limits(&self, joint: &TreeJoint<'a>) -> Result<(Option<[f64; 2]>, Option<f64>), RobotError> {
         let Some(limit) = element(joint.node, "limit") else { return Ok((None, None)) };
-        let [low, high] =
-            [self.number(limit, "lower")?, self.number(limit, "upper")?].map(Option::unwrap_or_default);
-        let position = (joint.kind == "revolute" && (low, high) != (0.0, 0.0)).then_some([low, high]);
+        let [low, high] = [self.number(limit, "lower")?, self.number(limit, "upper")?]
+            .map(Option::unwrap_or_default);
+        let position =
+            (joint.kind == "revolute" && (low, high) != (0.0, 0.0)).then_some([low, high]);
         Ok((position, self.number(limit, "velocity")?.filter(|v| *v != 0.0)))
     }
 
@@ -172,8 +181,10 @@ impl<'a> Tree<'a> {
     /// Where in the URDF a value stands that makes no robot.
     pub fn locate(&self, moved: &[MovedLink], finding: &Finding) -> (String, String) {
         let root = self.document.root_element();
-        let joint = finding.joint.and_then(|i| self.joints.iter().find(|j| j.name == moved[i].joint));
-        let inner = |node, tags: &[&str]| tags.iter().find_map(|tag| element(node, tag)).unwrap_or(node);
+        let joint =
+            finding.joint.and_then(|i| self.joints.iter().find(|j| j.name == moved[i].joint));
+        let inner =
+            |node, tags: &[&str]| tags.iter().find_map(|tag| element(node, tag)).unwrap_or(node);
         let node = joint.map_or(root, |joint| match finding.key {
             "mass" | "com" | "inertia" => {
                 self.links[joint.child].map_or(joint.node, |link| inner(link, &["inertial"]))
@@ -185,7 +196,8 @@ impl<'a> Tree<'a> {
             _ => joint.node,
         });
         let line = self.document.text_pos_at(node.range().start).row;
-        let place = joint.map_or(String::new(), |j| format!("joint `{}`, link `{}`: ", j.name, j.child));
+        let place =
+            joint.map_or(String::new(), |j| format!("joint `{}`, link `{}`: ", j.name, j.child));
         (format!("{}:{line}", self.origin), place)
     }
 }
@@ -206,12 +218,13 @@ impl Body {
     fn in_link(&self, placement: &Placement) -> LinkInertia {
         let [xx, xy, xz, yy, yz, zz] = self.inertia;
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        LinkInertia::about_com(self.mass, Vector3::zeros(), &tensor).moved(&placement.then(&self.frame))
+        LinkInertia::about_com(self.mass, Vector3::zeros(), &tensor)
+            .moved(&placement.then(&self.frame))
     }
 }
 
-/// Mass, centre of mass and inertia about it in the link's axes, of all bodies together; numbers of a single body
-/// whose frame is not turned are taken as they are.
+/// Mass, centre of mass and inertia about it in the link's axes, of all bodies together; numbers of
+/// a single body whose frame is not turned are taken as they are.
 fn lump(bodies: &[(Placement, Body)]) -> (f64, [f64; 3], [f64; 6]) {
     let heavy: Vec<_> = bodies.iter().filter(|(_, body)| body.weighs()).collect();
     match heavy[..] {

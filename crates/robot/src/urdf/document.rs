@@ -49,16 +49,26 @@ pub(super) fn element<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>>
 
 impl<'a> Tree<'a> {
     pub fn new(document: &'a Document<'a>, origin: &'a str) -> Result<Self, RobotError> {
-        let mut tree =
-            Self { document, origin, links: BTreeMap::new(), joints: Vec::new(), carrier: HashMap::new() };
+        let mut tree = Self {
+            document,
+            origin,
+            links: BTreeMap::new(),
+            joints: Vec::new(),
+            carrier: HashMap::new(),
+        };
         let root = document.root_element();
         if root.tag_name().name() != "robot" {
             let problem = format!("the root element is <{}>", root.tag_name().name());
             return Err(tree.error(root, problem, "give a URDF, whose root element is <robot>"));
         }
-        let is_xacro = |n: &Node| n.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
+        let is_xacro =
+            |n: &Node| n.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
         if let Some(node) = root.descendants().find(|n| n.is_element() && is_xacro(n)) {
-            return Err(tree.error(node, "this is a xacro file".into(), "expand it with xacro first"));
+            return Err(tree.error(
+                node,
+                "this is a xacro file".into(),
+                "expand it with xacro first",
+            ));
         }
         tree.add_links(root)?;
         tree.add_joints(root)?;
@@ -69,7 +79,11 @@ impl<'a> Tree<'a> {
         for node in elements(root, "link") {
             let name = self.attribute(node, "name")?;
             if self.links.insert(name, Some(node)).is_some() {
-                return Err(self.error(node, "the name occurs twice".into(), "give each link its own name"));
+                return Err(self.error(
+                    node,
+                    "the name occurs twice".into(),
+                    "give each link its own name",
+                ));
             }
         }
         Ok(())
@@ -79,14 +93,20 @@ impl<'a> Tree<'a> {
         for node in elements(root, "joint") {
             let link = |tag| self.attribute(self.child(node, tag)?, "link");
             let (name, kind) = (self.attribute(node, "name")?, self.attribute(node, "type")?);
-            let joint = TreeJoint { node, name, kind, parent: link("parent")?, child: link("child")? };
+            let joint =
+                TreeJoint { node, name, kind, parent: link("parent")?, child: link("child")? };
             if joint.parent == "world" {
                 self.links.entry("world").or_insert(None);
             }
             if self.joints.iter().any(|j| j.name == name) {
-                return Err(self.error(node, "the name occurs twice".into(), "give each joint its own name"));
+                return Err(self.error(
+                    node,
+                    "the name occurs twice".into(),
+                    "give each joint its own name",
+                ));
             }
-            if let Some(lacking) = [joint.parent, joint.child].iter().find(|l| !self.links.contains_key(**l))
+            if let Some(lacking) =
+                [joint.parent, joint.child].iter().find(|l| !self.links.contains_key(**l))
             {
                 return Err(self.error(
                     node,
@@ -110,15 +130,18 @@ impl<'a> Tree<'a> {
     /// An error at an element: file and line, the joint or link it belongs to, and its tag.
     pub fn error(&self, node: Node, problem: String, remedy: &str) -> RobotError {
         let line = self.document.text_pos_at(node.range().start).row;
-        let owner =
-            node.ancestors().find(|n| matches!(n.tag_name().name(), "joint" | "link" | "transmission"));
+        let owner = node
+            .ancestors()
+            .find(|n| matches!(n.tag_name().name(), "joint" | "link" | "transmission"));
         let owner = owner.filter(|n| n.attribute("name").is_some());
         let tag = format!("<{}>", node.tag_name().name());
         let place = match owner {
             Some(o) if o == node => {
                 format!("{} `{}`: ", o.tag_name().name(), o.attribute("name").unwrap_or(""))
             }
-            Some(o) => format!("{} `{}`, {tag}: ", o.tag_name().name(), o.attribute("name").unwrap_or("")),
+            Some(o) => {
+                format!("{} `{}`, {tag}: ", o.tag_name().name(), o.attribute("name").unwrap_or(""))
+            }
             None => format!("{tag}: "),
         };
         RobotError::Invalid {
@@ -156,8 +179,10 @@ impl<'a> Tree<'a> {
 
     pub fn triple(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<[f64; 3]>, RobotError> {
         let Some(text) = node.attribute(name) else { return Ok(None) };
-        let numbers: Vec<_> =
-            text.split_whitespace().map(|t| self.to_number(node, name, t)).collect::<Result<_, _>>()?;
+        let numbers: Vec<_> = text
+            .split_whitespace()
+            .map(|t| self.to_number(node, name, t))
+            .collect::<Result<_, _>>()?;
         let triple = numbers.try_into().map(Some);
         triple.map_err(|_| {
             self.error(node, format!("{name} = \"{text}\" are not three numbers"), "write three")

@@ -14,8 +14,9 @@ impl Edits {
             Some(attribute) => (attribute.range_value(), value.into()),
             None => {
                 let text = &node.document().input_text()[node.range()];
-                let tag =
-                    text.find(|c: char| c.is_whitespace() || c == '/' || c == '>').unwrap_or(text.len());
+                let tag = text
+                    .find(|c: char| c.is_whitespace() || c == '/' || c == '>')
+                    .unwrap_or(text.len());
                 let at = node.range().start + tag;
                 (at..at, format!(" {name}=\"{value}\""))
             }
@@ -75,6 +76,7 @@ impl Edits {
 
 /// `<tag name="value" .../>`.
 pub(super) fn empty_element(tag: &str, values: &[(&str, String)]) -> String {
-    let attributes: String = values.iter().map(|(name, value)| format!(" {name}=\"{value}\"")).collect();
+    let attributes: String =
+        values.iter().map(|(name, value)| format!(" {name}=\"{value}\"")).collect();
     format!("<{tag}{attributes}/>")
 }

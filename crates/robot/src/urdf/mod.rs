@@ -1,4 +1,5 @@
-//! Robots as URDF: a serial chain of revolute joints read from it, and what was identified written back.
+//! Robots as URDF: a serial chain of revolute joints read from it, and what was identified written
+//! back.
 
 mod chain;
 mod companion;
@@ -19,16 +20,19 @@ use std::path::Path;
 pub struct UrdfEnds {
     /// Link that stands still; the root when left out.
     pub base: Option<String>,
-    /// Link at the end of the chain; when left out, the only link that moves without moving another.
+    /// Link at the end of the chain; when left out, the only link that moves without moving
+    /// another.
     pub tip: Option<String>,
 }
 
-/// A URDF and the robot read from it; keeps the text, so that identified values can be written into it.
+/// A URDF and the robot read from it; keeps the text, so that identified values can be written into
+/// it.
 ///
-/// Revolute and continuous joints make the chain. What is fixed to a moving link is lumped into it, what stands still
-/// is left out. Gravity is 9.81 m/s² along -z of the root. `<dynamics>` gives viscous and Coulomb friction;
-/// `mechanicalReduction` (or `gear_ratio`) and `rotor_inertia` of a `<transmission>`, and a TOML file beside it, give
-/// the motors. Angles are taken as they are written: 1.57079632679 is not pi/2.
+/// Revolute and continuous joints make the chain. What is fixed to a moving link is lumped into it,
+/// what stands still is left out. Gravity is 9.81 m/s² along -z of the root. `<dynamics>` gives
+/// viscous and Coulomb friction; `mechanicalReduction` (or `gear_ratio`) and `rotor_inertia` of a
+/// `<transmission>`, and a TOML file beside it, give the motors. Angles are taken as they are
+/// written: 1.57079632679 is not pi/2.
 ///
 /// # Examples
 ///
@@ -56,17 +60,20 @@ pub struct Urdf {
 }
 
 impl Urdf {
-    /// Reads a URDF file, and beside it the TOML file of the same base name where there is one that is no robot by
-    /// itself (has no `schema_version`); its values come before those of the URDF, `ends` before its own.
+    /// Reads a URDF file, and beside it the TOML file of the same base name where there is one that
+    /// is no robot by itself (has no `schema_version`); its values come before those of the URDF,
+    /// `ends` before its own.
     ///
     /// # Errors
     ///
-    /// [`RobotError`] with file, line, element, joint or link, and remedy: for XML that is not well-formed, links or
-    /// numbers that lack, and for prismatic, planar, floating and mimicking joints or branches in the chain.
+    /// [`RobotError`] with file, line, element, joint or link, and remedy: for XML that is not
+    /// well-formed, links or numbers that lack, and for prismatic, planar, floating and mimicking
+    /// joints or branches in the chain.
     pub fn load(path: impl AsRef<Path>, ends: &UrdfEnds) -> Result<Self, RobotError> {
         let path = path.as_ref();
         let read = |path: &Path| {
-            std::fs::read_to_string(path).map_err(|source| RobotError::Read { path: path.into(), source })
+            std::fs::read_to_string(path)
+                .map_err(|source| RobotError::Read { path: path.into(), source })
         };
         let text = read(path)?;
         let beside = path.with_extension("toml");
@@ -102,7 +109,12 @@ impl Urdf {
         Self::read(text.into(), origin, ends, companion)
     }
 
-    fn read(text: String, origin: &str, ends: &UrdfEnds, companion: Companion) -> Result<Self, RobotError> {
+    fn read(
+        text: String,
+        origin: &str,
+        ends: &UrdfEnds,
+        companion: Companion,
+    ) -> Result<Self, RobotError> {
         let document = document::parse(&text, origin)?;
         let tree = Tree::new(&document, origin)?;
         let chain = tree.chain(

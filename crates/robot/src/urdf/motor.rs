@@ -7,20 +7,27 @@ use roxmltree::Node;
 impl<'a> Tree<'a> {
     /// Gear ratio and rotor inertia \[kg m²\] of a joint.
     ///
-    /// From a `<transmission>` that names the joint: `mechanicalReduction` (ROS) or `gear_ratio`, and `rotor_inertia`
-    /// (Drake), as text or as attribute `value`, in it or in its `<actuator>`; or from the same elements in the joint.
-    /// A rotor inertia without a ratio is on the link's side.
+    /// From a `<transmission>` that names the joint: `mechanicalReduction` (ROS) or `gear_ratio`,
+    /// and `rotor_inertia` (Drake), as text or as attribute `value`, in it or in its `<actuator>`;
+    /// or from the same elements in the joint. A rotor inertia without a ratio is on the link's
+    /// side.
     pub fn motor(&self, joint: &TreeJoint<'a>) -> Result<(Option<f64>, Option<f64>), RobotError> {
-        let names = |t: &Node<'a, 'a>| elements(*t, "joint").any(|j| j.attribute("name") == Some(joint.name));
+        let names = |t: &Node<'a, 'a>| {
+            elements(*t, "joint").any(|j| j.attribute("name") == Some(joint.name))
+        };
         let transmission = elements(self.document.root_element(), "transmission").find(names);
-        let inner: Vec<_> =
-            [Some(joint.node), transmission].into_iter().flatten().flat_map(|n| n.descendants()).collect();
+        let inner: Vec<_> = [Some(joint.node), transmission]
+            .into_iter()
+            .flatten()
+            .flat_map(|n| n.descendants())
+            .collect();
         let value = |tags: &[&str]| {
             let node = inner.iter().find(|n| n.is_element() && tags.contains(&n.tag_name().name()));
             node.map(|n| self.value(*n)).transpose()
         };
         let rotor = value(&["rotor_inertia", "rotorInertia"])?;
-        let ratio = value(&["mechanicalReduction", "mechanical_reduction", "gear_ratio", "gearRatio"])?;
+        let ratio =
+            value(&["mechanicalReduction", "mechanical_reduction", "gear_ratio", "gearRatio"])?;
         Ok((ratio.or(rotor.map(|_| 1.0)), rotor))
     }
 

@@ -10,16 +10,17 @@ use roxmltree::Node;
 impl Urdf {
     /// The URDF text with the inertia and friction of another robot with the same joints.
     ///
-    /// Only what differs from the robot as read is written, all other text stays byte for byte: `<inertial>` of moving
-    /// links, about the centre of mass in the link's axes, and `<dynamics>` of joints. What is identified of a link is
-    /// identified with all that is fixed to it: the whole goes into the moving link, and the mass and inertia of
-    /// links that were lumped become 0. URDF has no place for motor inertia, nor for friction beyond a viscous and a Coulomb
+    /// Only what differs from the robot as read is written, all other text stays byte for byte:
+    /// `<inertial>` of moving links, about the centre of mass in the link's axes, and `<dynamics>`
+    /// of joints. What is identified of a link is identified with all that is fixed to it: the
+    /// whole goes into the moving link, and the mass and inertia of links that were lumped become
+    /// 0. URDF has no place for motor inertia, nor for friction beyond a viscous and a Coulomb
     /// coefficient (those at no load are written); [`Urdf::companion`] has them.
     ///
     /// # Errors
     ///
-    /// [`RobotError::Invalid`] when the robot has other joints, or a changed link has a first moment without a mass, which
-    /// no `<inertial>` can say.
+    /// [`RobotError::Invalid`] when the robot has other joints, or a changed link has a first
+    /// moment without a mass, which no `<inertial>` can say.
     pub fn updated(&self, robot: &Robot) -> Result<String, RobotError> {
         let names = |r: &Robot| r.joints().iter().map(|j| j.name.clone()).collect::<Vec<_>>();
         if names(robot) != names(&self.robot) {
@@ -72,7 +73,9 @@ impl Urdf {
         }
         write_inertial(node, &robot.description().joints[i].about_own_com(), edits);
         for name in &moved.lumped {
-            if let Some(inertial) = tree.links[name.as_str()].and_then(|node| element(node, "inertial")) {
+            if let Some(inertial) =
+                tree.links[name.as_str()].and_then(|node| element(node, "inertial"))
+            {
                 edits.set_child(inertial, "mass", &[("value", "0".into())]);
                 edits.set_child(inertial, "inertia", &tensor(&[0.0; 6]));
             }
@@ -80,10 +83,18 @@ impl Urdf {
         Ok(())
     }
 
-    fn write_friction(&self, tree: &Tree, moved: &MovedLink, i: usize, robot: &Robot, edits: &mut Edits) {
+    fn write_friction(
+        &self,
+        tree: &Tree,
+        moved: &MovedLink,
+        i: usize,
+        robot: &Robot,
+        edits: &mut Edits,
+    ) {
         use crate::ColumnKind::{Coulomb, Viscous1};
-        let values =
-            |r: &Robot| r.column_values(&[Viscous1, Coulomb].map(|kind| crate::Column { joint: i, kind }));
+        let values = |r: &Robot| {
+            r.column_values(&[Viscous1, Coulomb].map(|kind| crate::Column { joint: i, kind }))
+        };
         let (old, new) = (values(&self.robot), values(robot));
         let Some(joint) = tree.joints.iter().find(|j| j.name == moved.joint) else { return };
         let changed = ["damping", "friction"].into_iter().zip(old.iter().zip(&new));
@@ -101,12 +112,17 @@ impl Urdf {
 fn write_inertial(link: Node, (mass, com, inertia): &(f64, [f64; 3], [f64; 6]), edits: &mut Edits) {
     let origin = [("xyz", words(com)), ("rpy", "0 0 0".into())];
     let (mass, inertia) = ([("value", mass.to_string())], tensor(inertia));
-    let parts: [(&str, &[(&str, String)]); 3] = [("origin", &origin), ("mass", &mass), ("inertia", &inertia)];
+    let parts: [(&str, &[(&str, String)]); 3] =
+        [("origin", &origin), ("mass", &mass), ("inertia", &inertia)];
     match link.children().find(|n| n.is_element() && n.tag_name().name() == "inertial") {
-        Some(inertial) => parts.iter().for_each(|(tag, values)| edits.set_child(inertial, tag, values)),
+        Some(inertial) => {
+            parts.iter().for_each(|(tag, values)| edits.set_child(inertial, tag, values))
+        }
         None => {
-            let inner: String =
-                parts.iter().map(|(tag, values)| format!("\n  {}", empty_element(tag, values))).collect();
+            let inner: String = parts
+                .iter()
+                .map(|(tag, values)| format!("\n  {}", empty_element(tag, values)))
+                .collect();
             edits.add(link, &format!("<inertial>{inner}\n</inertial>"));
         }
     }

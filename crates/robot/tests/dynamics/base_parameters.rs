@@ -1,4 +1,5 @@
-//! Base parameters against the counts of Pinocchio's regressor (`shared/oracle`, `base_parameters`) and the paper's Table III.
+//! Base parameters against the counts of Pinocchio's regressor (`shared/oracle`, `base_parameters`)
+//! and the paper's Table III.
 
 use crate::shared::{oracle, oracle_robot};
 use reachtube_robot::{BaseParameters, Column, ColumnKind, Regressor, Robot};
@@ -63,7 +64,9 @@ fn all_columns() -> Vec<Column> {
 }
 
 fn named_columns() -> Vec<Column> {
-    let named = |c: &Column| TABLE_III.iter().any(|r| r.split([' ', '/']).any(|word| word == c.to_string()));
+    let named = |c: &Column| {
+        TABLE_III.iter().any(|r| r.split([' ', '/']).any(|word| word == c.to_string()))
+    };
     all_columns().into_iter().filter(named).collect()
 }
 
@@ -111,7 +114,9 @@ fn combinations_read_like_table_iii() {
 #[test]
 fn counts_and_gaps_agree_with_pinocchio() {
     for name in ["ur5", "dh6"] {
-        let (Some(robot), Some(oracle)) = (oracle_robot(name), oracle(&format!("oracle/{name}.json"))) else {
+        let (Some(robot), Some(oracle)) =
+            (oracle_robot(name), oracle(&format!("oracle/{name}.json")))
+        else {
             return;
         };
         let inertial = Column::of_joints(6, &ColumnKind::INERTIAL);
@@ -122,12 +127,18 @@ fn counts_and_gaps_agree_with_pinocchio() {
             assert!(below < 1e-14, "{name} {key}: {below:e}");
             if let Some(gap) = expected[format!("{key}_sv_gap")].as_array() {
                 let ratio = above / gap[0].as_f64().unwrap();
-                assert!((0.2..5.0).contains(&ratio), "{name} {key}: {above} is {ratio} of the oracle's");
+                assert!(
+                    (0.2..5.0).contains(&ratio),
+                    "{name} {key}: {above} is {ratio} of the oracle's"
+                );
             }
         };
         check(BaseParameters::of_robot(&robot, &inertial), "inertial");
         check(BaseParameters::of_robot(&robot, &all_columns()), "inertial_plus_armature");
-        check(BaseParameters::of_robot(&robot.with_gravity([0.0; 3]), &inertial), "inertial_no_gravity");
+        check(
+            BaseParameters::of_robot(&robot.with_gravity([0.0; 3]), &inertial),
+            "inertial_no_gravity",
+        );
         let tilted = robot.with_gravity([3.0, -2.0, -9.0]);
         check(BaseParameters::of_robot(&tilted, &inertial), "inertial_tilted_gravity");
         check(BaseParameters::at_rest(&robot, &inertial), "gravity_only_static");
@@ -139,13 +150,16 @@ fn counts_and_gaps_agree_with_pinocchio() {
 fn the_base_regressor_gives_the_same_torque() {
     use ColumnKind::{Coulomb, MotorInertia, Offset, Viscous1, Viscous3};
     let robot = Robot::lwa4p();
-    let kinds = [&ColumnKind::INERTIAL[..], &[MotorInertia, Viscous1, Viscous3, Coulomb, Offset]].concat();
+    let kinds =
+        [&ColumnKind::INERTIAL[..], &[MotorInertia, Viscous1, Viscous3, Coulomb, Offset]].concat();
     let columns = Column::of_joints(6, &kinds);
     let base = BaseParameters::of_robot(&robot, &columns);
     assert_eq!(base.count(), 40 + 4 * 6);
     let theta: Vec<_> = (0..columns.len()).map(|k| ((k * k) as f64).sin()).collect();
     let beta = base.reduce(&theta);
-    let state = |k: usize| [0.1, 0.7, 1.9].map(|a| (0..6).map(|i| (a * (i + 3 * k) as f64).cos()).collect());
+    let state = |k: usize| {
+        [0.1, 0.7, 1.9].map(|a| (0..6).map(|i| (a * (i + 3 * k) as f64).cos()).collect())
+    };
     let y = Regressor::new(&robot, &columns).stacked(&(0..20).map(state).collect::<Vec<_>>());
     let tau = &y * nalgebra::DVector::from_column_slice(&theta);
     let scale = tau.amax();

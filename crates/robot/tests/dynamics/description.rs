@@ -34,15 +34,23 @@ fn errors_name_line_joint_value_and_remedy() {
     );
     let axis = error_with("axis = [0.0, 2.0, 0.0]", "axis = [0.0, 0.0, 0.0]");
     assert!(
-        axis.starts_with("pendulum.toml:7: joint `hinge`: the axis [0.0, 0.0, 0.0] has no direction"),
+        axis.starts_with(
+            "pendulum.toml:7: joint `hinge`: the axis [0.0, 0.0, 0.0] has no direction"
+        ),
         "{axis}"
     );
     let com = error_with("com = [0.0, 0.0, -0.5]", "com = [0.0, nan, -0.5]");
-    assert!(com.starts_with("pendulum.toml:9: joint `hinge`: com holds NaN; give a finite"), "{com}");
-    let inertia =
-        error_with("inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.02]", "inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.3]");
     assert!(
-        inertia.starts_with("pendulum.toml:10: joint `hinge`: inertia [0.1, 0.0, 0.0, 0.1, 0.0, 0.3]"),
+        com.starts_with("pendulum.toml:9: joint `hinge`: com holds NaN; give a finite"),
+        "{com}"
+    );
+    let inertia = error_with(
+        "inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.02]",
+        "inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.3]",
+    );
+    assert!(
+        inertia
+            .starts_with("pendulum.toml:10: joint `hinge`: inertia [0.1, 0.0, 0.0, 0.1, 0.0, 0.3]"),
         "{inertia}"
     );
     assert!(inertia.contains("exceeds the sum of the other two by 1.000e-1 kg m²"), "{inertia}");
@@ -62,24 +70,36 @@ fn the_parser_names_line_and_field() {
 fn geometry_and_drives_that_make_no_sense_are_refused() {
     let skew = "placement = { rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.1], [0.0, 0.0, 1.0]] }";
     let placement = "placement = { translation = [0.0, 0.0, 1.0] }";
-    assert!(error_with(placement, skew).contains("joint `hinge`: rotation is not one: |R Rᵀ - 1| = 1.0e-1"));
+    assert!(
+        error_with(placement, skew)
+            .contains("joint `hinge`: rotation is not one: |R Rᵀ - 1| = 1.0e-1")
+    );
     let mirror = skew.replace("0.1]", "0.0]").replace("[1.0, 0.0, 0.0]", "[-1.0, 0.0, 0.0]");
     assert!(error_with(placement, &mirror).contains("det R = -1"));
     let both = format!("{placement}\ndh = {{ a = 0.0, alpha = 0.0, theta = 0.0, d = 0.0 }}");
     assert!(error_with(placement, &both).contains("give either `dh` or `placement`"));
-    assert!(error_with("mass = 2.0", "mass = 2.0\narmature = -0.1").contains("armature = -0.1 is negative"));
-    assert!(error_with("mass = 2.0", "mass = 2.0\nrotor_inertia = 0.1").contains("add `gear_ratio`"));
     assert!(
-        error_with("mass = 2.0", "mass = 2.0\nposition_limits = [1.0, 1.0]").contains("hold no position")
+        error_with("mass = 2.0", "mass = 2.0\narmature = -0.1")
+            .contains("armature = -0.1 is negative")
     );
-    assert!(error_with("mass = 2.0", "mass = 2.0\nvelocity_limit = 0.0").contains("allows no motion"));
+    assert!(
+        error_with("mass = 2.0", "mass = 2.0\nrotor_inertia = 0.1").contains("add `gear_ratio`")
+    );
+    assert!(
+        error_with("mass = 2.0", "mass = 2.0\nposition_limits = [1.0, 1.0]")
+            .contains("hold no position")
+    );
+    assert!(
+        error_with("mass = 2.0", "mass = 2.0\nvelocity_limit = 0.0").contains("allows no motion")
+    );
     let twice = format!("{PENDULUM}\n{}", PENDULUM.split_once("\n\n").unwrap().1);
     assert!(error_of(&twice).starts_with("pendulum.toml:13: joint `hinge`: the name occurs twice"));
 }
 
 #[test]
 fn base_parameters_may_be_those_of_no_body() {
-    let base = PENDULUM.replace("name = \"pendulum\"", "name = \"pendulum\"\nparameters = \"base\"");
+    let base =
+        PENDULUM.replace("name = \"pendulum\"", "name = \"pendulum\"\nparameters = \"base\"");
     assert!(Robot::from_toml(&base.replace("mass = 2.0", "mass = -2.0"), "base").is_ok());
 }
 
@@ -102,22 +122,26 @@ fn descriptions_survive_json() {
 fn both_conventions_give_the_same_robot() {
     let rows = [[0.3, 0.4, 0.1, 0.2], [0.5, -0.7, 0.2, 0.1], [0.2, 1.1, -0.3, 0.4]];
     let text = |convention: &str, shifted: bool| {
-        let mut out = format!("schema_version = 1\nname = \"three\"\nconvention = \"{convention}\"\n");
+        let mut out =
+            format!("schema_version = 1\nname = \"three\"\nconvention = \"{convention}\"\n");
         for (i, [a, alpha, theta, d]) in rows.iter().enumerate() {
             let (a, alpha) = match (shifted, i) {
                 (false, _) => (*a, *alpha),
                 (true, 0) => (0.0, 0.0),
                 (true, _) => (rows[i - 1][0], rows[i - 1][1]),
             };
-            out += &format!("[[joint]]\nname = \"j{i}\"\nmass = {}\n", if i == 2 { 1.5 } else { 0.0 });
-            out += &format!("dh = {{ a = {a:?}, alpha = {alpha:?}, theta = {theta:?}, d = {d:?} }}\n");
+            out +=
+                &format!("[[joint]]\nname = \"j{i}\"\nmass = {}\n", if i == 2 { 1.5 } else { 0.0 });
+            out +=
+                &format!("dh = {{ a = {a:?}, alpha = {alpha:?}, theta = {theta:?}, d = {d:?} }}\n");
         }
         out
     };
     let standard = Robot::from_toml(&text("standard", false), "standard").unwrap();
     let modified = Robot::from_toml(&text("modified", true), "modified").unwrap();
     let q = [0.3, -0.8, 1.2];
-    // The last standard frame lies a, alpha further on; the origins of the second joints' frames agree.
+    // The last standard frame lies a, alpha further on; the origins of the second joints' frames
+    // agree.
     let last = &modified.link_placements(&q)[2];
     let end = last.translation + last.rotation * nalgebra::Vector3::new(rows[2][0], 0.0, 0.0);
     assert!((standard.link_placements(&q)[2].translation - end).norm() < 1e-15);

@@ -1,4 +1,5 @@
-//! Exciting motions: within the limits everywhere, reproducible, and better than the motions they began with.
+//! Exciting motions: within the limits everywhere, reproducible, and better than the motions they
+//! began with.
 
 use reachtube_robot::{Column, ColumnKind, Criterion, ExcitationSettings, Robot};
 
@@ -20,7 +21,9 @@ fn limits_hold_at_all_times() {
     for (i, joint) in robot.joints().iter().enumerate() {
         let ([low, high], [from, to]) = (joint.position_limits, motion.position_range(i));
         let (speed, acceleration) = (motion.speed_bound(i), motion.acceleration_bound(i));
-        assert!(low <= from && to <= high && speed <= 0.9 * 1.2 + 1e-12 && acceleration <= 6.0 + 1e-12);
+        assert!(
+            low <= from && to <= high && speed <= 0.9 * 1.2 + 1e-12 && acceleration <= 6.0 + 1e-12
+        );
         // One of the limits is met, to the excess that the bound allows for.
         let used = [(to - from) / (0.9 * (high - low)), speed / (0.9 * 1.2), acceleration / 6.0];
         assert!(used.iter().any(|u| *u > 1.0 - 1e-9), "{used:?}");
@@ -47,10 +50,12 @@ fn samples_are_one_function_and_its_derivatives() {
     }
     for w in samples.windows(3).step_by(97) {
         for i in 0..6 {
-            let slope =
-                |x: fn(&reachtube_robot::MotionSample) -> &Vec<f64>| (x(&w[2])[i] - x(&w[0])[i]) / 2e-3;
+            let slope = |x: fn(&reachtube_robot::MotionSample) -> &Vec<f64>| {
+                (x(&w[2])[i] - x(&w[0])[i]) / 2e-3
+            };
             assert!(
-                (slope(|s| &s.q) - w[1].qd[i]).abs() < 1e-5 && (slope(|s| &s.qd) - w[1].qdd[i]).abs() < 1e-4
+                (slope(|s| &s.q) - w[1].qd[i]).abs() < 1e-5
+                    && (slope(|s| &s.qd) - w[1].qdd[i]).abs() < 1e-4
             );
         }
     }
@@ -63,11 +68,17 @@ fn it_is_reproducible_and_better_than_before() {
     assert_eq!(found, robot.excitation(&columns(), &settings()).unwrap());
     // 46 base parameters: three nats each are a standard deviation 4.5 times smaller.
     assert!(found.quality.log_determinant > found.before.log_determinant + 46.0, "{found:?}");
-    let other = robot.excitation(&columns(), &ExcitationSettings { seed: 2, ..settings() }).unwrap();
+    let other =
+        robot.excitation(&columns(), &ExcitationSettings { seed: 2, ..settings() }).unwrap();
     assert_ne!(found.trajectory, other.trajectory);
     let conditioned = ExcitationSettings { criterion: Criterion::Condition, ..settings() };
     let found = robot.excitation(&columns(), &conditioned).unwrap();
-    assert!(found.quality.condition < 0.5 * found.before.condition, "{:?} {:?}", found.quality, found.before);
+    assert!(
+        found.quality.condition < 0.5 * found.before.condition,
+        "{:?} {:?}",
+        found.quality,
+        found.before
+    );
 }
 
 #[test]

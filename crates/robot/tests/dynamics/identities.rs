@@ -72,8 +72,8 @@ proptest! {
 
     #[test]
     fn pivots_are_articulated_inertias((robot, q, _, tau) in robots_and_states()) {
-        // Torque on the last joint alone, all others fixed by their inertia: pivot n is M_nn; the product of the
-        // pivots is det M.
+        // Torque on the last joint alone, all others fixed by their inertia: pivot n is M_nn; the
+        // product of the pivots is det M.
         let mut m = robot.mass_matrix(&q);
         let (n, det) = (q.len(), m.determinant());
         let b = &m * nalgebra::DVector::from_column_slice(&tau);
@@ -101,7 +101,8 @@ proptest! {
         let mut wide_ws = Workspace::<Interval>::new(&robot);
         let mut ws = Workspace::<f64>::new(&robot);
         let (mut outer, mut value) = (vec![Interval::ZERO; n * n], vec![0.0; n * n]);
-        // Each f64 operation rounds to a value within the outward-rounded one, so no slack is needed.
+        // Each f64 operation rounds to a value within the outward-rounded one, so no slack is
+        // needed.
         let encloses = |outer: &[Interval], value: &[f64]| outer.iter().zip(value).all(|(o, v)| o.contains(*v));
         robot.rnea(&boxes[0], &boxes[1], &boxes[2], &boxes[3], &mut wide_ws, &mut outer[..n]);
         robot.rnea(&points[0], &points[1], &points[2], &points[3], &mut ws, &mut value[..n]);
@@ -132,7 +133,8 @@ proptest! {
 
 #[test]
 fn friction_takes_energy_away() {
-    let robot = Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
+    let robot =
+        Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
     let motion = robot.simulate(&[2.0, -1.0], &[0.0, 0.0], &vec![vec![0.0; 2]; 10000], 0.002, 4);
     let energies: Vec<_> = motion
         .q
@@ -148,21 +150,30 @@ fn friction_takes_energy_away() {
 
 #[test]
 fn the_double_pendulum_has_its_textbook_mass_matrix() {
-    let robot = Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
+    let robot =
+        Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
     let (i1, i2, m2, l1, r2) =
         (0.031887199591513114, 0.05086984812807257, 0.6255677234174437, 0.2, 0.25569305436052964);
     let motor = 36.0 * 6.287203962819607e-5;
     for q2 in [0.0, 0.7, 2.0_f64] {
         let m = robot.mass_matrix(&[0.3, q2]);
         let coupling = m2 * l1 * r2 * q2.cos();
-        let expected =
-            [i1 + i2 + m2 * l1 * l1 + 2.0 * coupling + motor, i2 + coupling, i2 + coupling, i2 + motor];
-        assert!(m.iter().zip(expected).all(|(m, e)| (m - e).abs() < 1e-15), "{m} is not {expected:?}");
+        let expected = [
+            i1 + i2 + m2 * l1 * l1 + 2.0 * coupling + motor,
+            i2 + coupling,
+            i2 + coupling,
+            i2 + motor,
+        ];
+        assert!(
+            m.iter().zip(expected).all(|(m, e)| (m - e).abs() < 1e-15),
+            "{m} is not {expected:?}"
+        );
     }
 }
 
 proptest! {
-    /// Under the load of gravity, for which Table III was identified; joint 5 would be driven from 10 N m on.
+    /// Under the load of gravity, for which Table III was identified; joint 5 would be driven from
+    /// 10 N m on.
     #[test]
     fn coulomb_friction_dissipates(
         q in prop::collection::vec(-3.2..3.2f64, 6),

@@ -35,7 +35,10 @@ fn bits(x: &[f64]) -> Vec<u64> {
     x.iter().map(|x| x.to_bits()).collect()
 }
 
-fn same_in_every_lane<const N: usize>(robot: &Robot, state: [&[f64]; 3]) -> Result<(), TestCaseError> {
+fn same_in_every_lane<const N: usize>(
+    robot: &Robot,
+    state: [&[f64]; 3],
+) -> Result<(), TestCaseError> {
     let [q, qd, load] = state.map(spread::<N>);
     let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(|q| q.sin_cos()).unzip();
     let all = dynamics(robot, [&sin, &cos, &qd, &load]);
@@ -79,8 +82,9 @@ proptest! {
 #[test]
 fn an_ensemble_is_its_runs_alone() {
     let robot = Robot::lwa4p();
-    let starts: Vec<Vec<f64>> =
-        (0..21).map(|r| (0..12).map(|i| (1.3 * f64::from(r) + f64::from(i)).sin()).collect()).collect();
+    let starts: Vec<Vec<f64>> = (0..21)
+        .map(|r| (0..12).map(|i| (1.3 * f64::from(r) + f64::from(i)).sin()).collect())
+        .collect();
     let torques: Vec<Vec<f64>> =
         (0..20).map(|k| (0..6).map(|i| 20.0 * f64::from(k + i).cos()).collect()).collect();
     let inputs = torques.concat();
@@ -88,13 +92,16 @@ fn an_ensemble_is_its_runs_alone() {
     let times: Vec<f64> = (0..=20).map(|k| 0.004 * f64::from(k)).collect();
     let mut field = RobotField::<Lanes<8>>::new(&robot, DrivenBy::Motor);
     let mut ends = vec![Vec::new(); 21];
-    let outcomes =
-        Ensemble::new(12).integrate(&mut field, &times, 2, &runs, |run, _, x| ends[run] = x.to_vec());
+    let outcomes = Ensemble::new(12)
+        .integrate(&mut field, &times, 2, &runs, |run, _, x| ends[run] = x.to_vec());
     assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
     for (start, end) in starts.iter().zip(&ends) {
         let motion = robot.simulate(&start[..6], &start[6..], &torques, 0.004, 2);
         // Spans are differences of sample times there, and 4 ms here.
         let alone = [&motion.q[20][..], &motion.qd[20]].concat();
-        assert!(alone.iter().zip(end).all(|(a, b)| (a - b).abs() < 1e-9), "{alone:?} is not {end:?}");
+        assert!(
+            alone.iter().zip(end).all(|(a, b)| (a - b).abs() < 1e-9),
+            "{alone:?} is not {end:?}"
+        );
     }
 }

@@ -1,5 +1,5 @@
-//! The embedded Schunk LWA 4P against an independent evaluation of the paper's Table III by the regressor of its
-//! standard inertial parameters (`shared/lwa4p/oracle.json`).
+//! The embedded Schunk LWA 4P against an independent evaluation of the paper's Table III by the
+//! regressor of its standard inertial parameters (`shared/lwa4p/oracle.json`).
 
 use crate::close::assert_close;
 use crate::shared::{numbers, oracle};
@@ -12,7 +12,8 @@ fn lwa4p_agrees_with_the_regressor_of_table_iii() {
     for sample in oracle["samples"].as_array().unwrap() {
         let get = |key: &str| numbers(&sample[key]);
         let (q, qd, qdd) = (get("q"), get("qd"), get("qdd"));
-        let m: Vec<f64> = sample["mass_matrix"].as_array().unwrap().iter().flat_map(numbers).collect();
+        let m: Vec<f64> =
+            sample["mass_matrix"].as_array().unwrap().iter().flat_map(numbers).collect();
         assert_close(robot.mass_matrix(&q).as_slice(), &m, "M");
         assert_close(robot.coriolis_torque(&q, &qd).as_slice(), &get("coriolis"), "c");
         assert_close(robot.gravity_torque(&q).as_slice(), &get("gravity"), "g");

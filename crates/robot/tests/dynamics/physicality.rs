@@ -1,7 +1,9 @@
 //! Which robots have a positive definite mass matrix, and what is said of those that do not.
 
 use crate::shared::{description, oracle, oracle_robot};
-use reachtube_robot::{GravityMoments, JointDescription, Parameters, Physicality, Robot, RobotError};
+use reachtube_robot::{
+    GravityMoments, JointDescription, Parameters, Physicality, Robot, RobotError,
+};
 
 #[test]
 fn lwa4p_is_proved_over_its_position_limits() {
@@ -20,7 +22,10 @@ fn robots_of_bodies_are_proved_by_their_links() {
     for name in ["ur5", "dh6"] {
         let Some(robot) = oracle_robot(name) else { return };
         let known = robot.check_physical().unwrap();
-        assert!(matches!(known, Physicality::Links { least_pivot } if least_pivot > 0.0), "{known:?}");
+        assert!(
+            matches!(known, Physicality::Links { least_pivot } if least_pivot > 0.0),
+            "{known:?}"
+        );
     }
 }
 

@@ -1,4 +1,5 @@
-//! Dynamics against Pinocchio 4.1.0 (`shared/oracle/*.json`): UR5 by placements, the LWA 4P's geometry both ways.
+//! Dynamics against Pinocchio 4.1.0 (`shared/oracle/*.json`): UR5 by placements, the LWA 4P's
+//! geometry both ways.
 
 use crate::close::assert_close;
 use crate::shared::{description, numbers, oracle};
@@ -6,11 +7,12 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use reachtube_robot::{Dh, Robot, RobotDescription, Workspace};
 use serde_json::Value;
 
-/// The same robot in Denavit-Hartenberg frames. The oracle's link frame is the joint frame after theta, so that
-/// x_dh = Rx(-alpha) (x - (a, 0, d)).
+/// The same robot in Denavit-Hartenberg frames. The oracle's link frame is the joint frame after
+/// theta, so that x_dh = Rx(-alpha) (x - (a, 0, d)).
 fn dh_description(oracle: &Value) -> RobotDescription {
     let mut description = description(oracle);
-    for (joint, row) in description.joints.iter_mut().zip(oracle["dh_standard"].as_array().unwrap()) {
+    for (joint, row) in description.joints.iter_mut().zip(oracle["dh_standard"].as_array().unwrap())
+    {
         let get = |key: &str| row[key].as_f64().unwrap();
         let (a, alpha, theta, d) = (get("a"), get("alpha"), get("theta_offset"), get("d"));
         (joint.placement, joint.axis) = (None, None);
@@ -43,11 +45,18 @@ fn agrees(robot: &Robot, oracle: &Value) {
         robot.gravity(&sin, &cos, &mut ws, &mut out);
         assert_close(&out, &get("g"), "g");
         let m = robot.mass_matrix(&q);
-        let lower: Vec<_> = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|k| m[k]).collect();
+        let lower: Vec<_> =
+            (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|k| m[k]).collect();
         assert_close(&lower, &get("M_lower"), "M");
         let scalar = |key: &str| state[key].as_f64().unwrap();
-        assert!((robot.kinetic_energy(&q, &qd) - scalar("ekin")).abs() <= 1e-10 * (1.0 + scalar("ekin")));
-        assert!((robot.potential_energy(&q) - scalar("epot")).abs() <= 1e-10 * (1.0 + scalar("epot").abs()));
+        assert!(
+            (robot.kinetic_energy(&q, &qd) - scalar("ekin")).abs()
+                <= 1e-10 * (1.0 + scalar("ekin"))
+        );
+        assert!(
+            (robot.potential_energy(&q) - scalar("epot")).abs()
+                <= 1e-10 * (1.0 + scalar("epot").abs())
+        );
     }
 }
 

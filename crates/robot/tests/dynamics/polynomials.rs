@@ -1,11 +1,14 @@
-//! Dynamics over Taylor polynomials: M, c and g as exact polynomials, and series against 40-digit arithmetic.
+//! Dynamics over Taylor polynomials: M, c and g as exact polynomials, and series against 40-digit
+//! arithmetic.
 
 use std::sync::Arc;
 
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use reachtube_robot::{Robot, Workspace};
-use reachtube_scalar::{Elementary, Interval, Scalar, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace};
+use reachtube_scalar::{
+    Elementary, Interval, Scalar, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace,
+};
 use serde_json::Value;
 
 use crate::close::assert_close;
@@ -52,7 +55,8 @@ fn polynomials_of_the_ur5_agree_with_numbers() {
     );
 }
 
-/// Degrees by counting: M has two factors of each angle after the first, and so has C; with q̇ that is the paper's p_max = 12.
+/// Degrees by counting: M has two factors of each angle after the first, and so has C; with q̇ that
+/// is the paper's p_max = 12.
 #[test]
 fn degrees_and_terms_of_the_lwa4p() {
     let dynamics = Robot::lwa4p().polynomial_dynamics::<f64>().unwrap();
@@ -65,7 +69,9 @@ fn degrees_and_terms_of_the_lwa4p() {
         "M does not depend on q1"
     );
     // Right angles keep their zeros: no term is left over from rounding.
-    let terms = |list: &[TaylorPolynomial]| -> usize { list.iter().map(TaylorPolynomial::term_count).sum() };
+    let terms = |list: &[TaylorPolynomial]| -> usize {
+        list.iter().map(TaylorPolynomial::term_count).sum()
+    };
     let smallest = dynamics
         .mass_matrix
         .iter()
@@ -79,8 +85,10 @@ fn degrees_and_terms_of_the_lwa4p() {
 #[test]
 fn coefficients_over_intervals_enclose_those_over_numbers() {
     let robot = Robot::lwa4p();
-    let (numbers, boxes) =
-        (robot.polynomial_dynamics::<f64>().unwrap(), robot.polynomial_dynamics::<Interval>().unwrap());
+    let (numbers, boxes) = (
+        robot.polynomial_dynamics::<f64>().unwrap(),
+        robot.polynomial_dynamics::<Interval>().unwrap(),
+    );
     for (number, interval) in numbers.mass_matrix.iter().zip(&boxes.mass_matrix) {
         for term in number.terms() {
             let enclosure = interval.coefficient(&term.exponents);
@@ -127,7 +135,9 @@ fn along(space: &Arc<TaylorSpace>, case: &Value) -> Motion {
     let line = |start: &str, direction: &str| {
         let pairs = numbers(&case[start]).into_iter().zip(numbers(&case[direction]));
         pairs
-            .map(|(a, d)| TaylorPolynomial::variable(space, 0).scaled(&d) + TaylorPolynomial::constant(a))
+            .map(|(a, d)| {
+                TaylorPolynomial::variable(space, 0).scaled(&d) + TaylorPolynomial::constant(a)
+            })
             .collect()
     };
     Motion { q: line("q0", "dq"), qd: line("qd0", "dqd"), tau: line("tau0", "dtau") }
@@ -178,7 +188,8 @@ fn series_in_all_variables_agree_with_40_digit_arithmetic() {
         let Some(oracle) = oracle(&format!("oracle/{name}.json")) else { return };
         let robot = Robot::from_description(&description(&oracle)).unwrap();
         let case = &oracle["directional_taylor"][0];
-        let (space, line) = (TaylorSpace::new(18, order).unwrap(), TaylorSpace::new(1, order).unwrap());
+        let (space, line) =
+            (TaylorSpace::new(18, order).unwrap(), TaylorSpace::new(1, order).unwrap());
         let all = about(&space, case).acceleration(&robot, order == 4);
         let direction: Vec<TaylorPolynomial> = ["dq", "dqd", "dtau"]
             .iter()
@@ -190,7 +201,8 @@ fn series_in_all_variables_agree_with_40_digit_arithmetic() {
     }
 }
 
-/// rnea and crba differ as polynomials in independent s and c, and agree on the circle: s and c as series of one angle.
+/// rnea and crba differ as polynomials in independent s and c, and agree on the circle: s and c as
+/// series of one angle.
 #[test]
 fn the_extensions_off_the_circle_agree_on_it() {
     let robot = Robot::lwa4p();
@@ -207,16 +219,20 @@ fn the_extensions_off_the_circle_agree_on_it() {
     let (s, c): (Vec<_>, Vec<_>) =
         (0..n).map(|i| TaylorPolynomial::variable_at(&angles, i, 0.3 + i as f64).sin_cos()).unzip();
     let qd = [0.5, -1.0, 0.7, 0.2, -0.3, 0.9];
-    let constants: Vec<TaylorPolynomial> = qd.iter().map(|v| TaylorPolynomial::constant(*v)).collect();
-    let arguments = [s.clone(), c.clone(), constants, vec![TaylorPolynomial::from(0.0); n]].concat();
+    let constants: Vec<TaylorPolynomial> =
+        qd.iter().map(|v| TaylorPolynomial::constant(*v)).collect();
+    let arguments =
+        [s.clone(), c.clone(), constants, vec![TaylorPolynomial::from(0.0); n]].concat();
     let christoffel = robot.polynomial_dynamics::<f64>().unwrap().christoffel();
     for (left, matrix) in newton_euler.iter().zip(&christoffel) {
         let left = left.evaluate(&arguments);
         let mut right = TaylorPolynomial::from(0.0);
         for (jk, entry) in matrix.iter().enumerate() {
-            right += entry.evaluate(&[s.clone(), c.clone()].concat()).scaled(&(qd[jk / n] * qd[jk % n]));
+            right +=
+                entry.evaluate(&[s.clone(), c.clone()].concat()).scaled(&(qd[jk / n] * qd[jk % n]));
         }
-        let difference = (&left - &right).terms().iter().map(|t| t.coefficient.abs()).fold(0.0, f64::max);
+        let difference =
+            (&left - &right).terms().iter().map(|t| t.coefficient.abs()).fold(0.0, f64::max);
         assert!(difference < 1e-13, "{difference}");
     }
 }
@@ -234,15 +250,18 @@ fn all_algorithms<S: Scalar>(robot: &Robot, [sin, cos, qd, last]: [&[S]; 4]) -> 
     out
 }
 
-/// Taylor models of the dynamics hold 10,000 points of it, and are less than a third as wide as intervals, mostly by what truly varies.
+/// Taylor models of the dynamics hold 10,000 points of it, and are less than a third as wide as
+/// intervals, mostly by what truly varies.
 #[test]
 fn taylor_models_of_the_dynamics_enclose_it() {
     let robot = Robot::lwa4p();
     let n = robot.joint_count();
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     let space = TaylorSpace::new(3 * n, 3).unwrap();
-    let middle =
-        [0.4, -0.7, 0.9, 0.2, -0.5, 0.3, 0.5, -0.4, 0.6, 0.3, -0.8, 0.2, 1.0, -2.0, 0.5, 1.5, -0.3, 0.7];
+    let middle = [
+        0.4, -0.7, 0.9, 0.2, -0.5, 0.3, 0.5, -0.4, 0.6, 0.3, -0.8, 0.2, 1.0, -2.0, 0.5, 1.5, -0.3,
+        0.7,
+    ];
     let sides: Vec<Interval> = middle.iter().map(|m| Interval::centered(*m, 0.05)).collect();
     let domain = TaylorBox::new(&space, &sides);
     let z = domain.variables();
@@ -279,8 +298,9 @@ fn interval_series_enclose_the_series_of_numbers() {
     fn series<C: Scalar + Elementary>(robot: &Robot) -> Vec<TaylorPolynomial<C>> {
         let space = TaylorSpace::new(2, 3).unwrap();
         let n = robot.joint_count();
-        let q: Vec<TaylorPolynomial<C>> =
-            (0..n).map(|i| TaylorPolynomial::variable_at(&space, i % 2, C::from(0.25 * i as f64))).collect();
+        let q: Vec<TaylorPolynomial<C>> = (0..n)
+            .map(|i| TaylorPolynomial::variable_at(&space, i % 2, C::from(0.25 * i as f64)))
+            .collect();
         let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(Elementary::sin_cos).unzip();
         let mut out = vec![TaylorPolynomial::from(0.0); n];
         robot.aba(&sin, &cos, &q, &q, &mut Workspace::new(robot), &mut out);
@@ -291,7 +311,10 @@ fn interval_series_enclose_the_series_of_numbers() {
         for term in number.terms() {
             let enclosure = interval.coefficient(&term.exponents);
             let slack = 1e-12 * (1.0 + term.coefficient.abs());
-            assert!(Interval::centered(enclosure.mid(), enclosure.rad() + slack).contains(term.coefficient));
+            assert!(
+                Interval::centered(enclosure.mid(), enclosure.rad() + slack)
+                    .contains(term.coefficient)
+            );
             assert!(enclosure.rad() < 1e-9 * (1.0 + term.coefficient.abs()));
         }
     }

@@ -5,14 +5,17 @@ use reachtube_robot::{
     Dh, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot, RobotDescription,
 };
 
-/// A body of a few random points, so that its parameters are physical; half the joints by DH, half by placement.
+/// A body of a few random points, so that its parameters are physical; half the joints by DH, half
+/// by placement.
 fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
     let points = x[..12].chunks(3).map(|c| nalgebra::Vector3::new(c[0], c[1], c[2]));
     let mass = 1.0 + x[12].abs();
     let com = points.clone().sum::<nalgebra::Vector3<f64>>() / 4.0;
     let inertia = points
         .map(|p| p - com)
-        .map(|r| 0.25 * mass * (nalgebra::Matrix3::identity() * r.norm_squared() - r * r.transpose()))
+        .map(|r| {
+            0.25 * mass * (nalgebra::Matrix3::identity() * r.norm_squared() - r * r.transpose())
+        })
         .sum::<nalgebra::Matrix3<f64>>();
     let placement = PlacementDescription {
         rotation: None,
@@ -35,7 +38,8 @@ fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
 
 /// Robots of 1 to 7 joints without friction.
 pub fn robots() -> impl Strategy<Value = Robot> {
-    let joints = prop::collection::vec((prop::collection::vec(-1.0..1.0f64, 22), any::<bool>()), 1..8);
+    let joints =
+        prop::collection::vec((prop::collection::vec(-1.0..1.0f64, 22), any::<bool>()), 1..8);
     (joints, prop::array::uniform3(-10.0..10.0f64)).prop_map(|(joints, gravity)| {
         let description = RobotDescription {
             schema_version: 1,
@@ -43,7 +47,11 @@ pub fn robots() -> impl Strategy<Value = Robot> {
             parameters: Parameters::Physical,
             convention: Default::default(),
             gravity,
-            joints: joints.into_iter().enumerate().map(|(i, (x, by_dh))| joint(x, i, by_dh)).collect(),
+            joints: joints
+                .into_iter()
+                .enumerate()
+                .map(|(i, (x, by_dh))| joint(x, i, by_dh))
+                .collect(),
         };
         Robot::from_description(&description).unwrap()
     })

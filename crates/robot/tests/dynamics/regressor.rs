@@ -1,4 +1,5 @@
-//! The regressor against rnea, Pinocchio 4.1.0 (`shared/oracle`, `Y_rows`), and its f64 values against intervals.
+//! The regressor against rnea, Pinocchio 4.1.0 (`shared/oracle`, `Y_rows`), and its f64 values
+//! against intervals.
 
 use crate::close::assert_close;
 use crate::identities::close;
@@ -11,7 +12,9 @@ use reachtube_scalar::Interval;
 #[test]
 fn it_agrees_with_pinocchio() {
     for name in ["ur5", "dh6"] {
-        let (Some(robot), Some(oracle)) = (oracle_robot(name), oracle(&format!("oracle/{name}.json"))) else {
+        let (Some(robot), Some(oracle)) =
+            (oracle_robot(name), oracle(&format!("oracle/{name}.json")))
+        else {
             return;
         };
         for state in oracle["states"].as_array().unwrap() {
@@ -19,8 +22,10 @@ fn it_agrees_with_pinocchio() {
             let y = robot.inertial_regressor_matrix(&q, &qd, &qdd);
             let rows: Vec<_> = state["Y_rows"].as_array().unwrap().iter().map(numbers).collect();
             // The oracle leaves out the columns of links before the joint, which are zero.
-            let whole =
-                rows.iter().enumerate().flat_map(|(i, row)| [vec![0.0; 10 * i], row.clone()].concat());
+            let whole = rows
+                .iter()
+                .enumerate()
+                .flat_map(|(i, row)| [vec![0.0; 10 * i], row.clone()].concat());
             assert_close(y.transpose().as_slice(), &whole.collect::<Vec<_>>(), name);
         }
     }
@@ -61,19 +66,23 @@ proptest! {
     }
 }
 
-/// The double pendulum's friction has no load dependence, so all of its motor torque is linear in the columns.
+/// The double pendulum's friction has no load dependence, so all of its motor torque is linear in
+/// the columns.
 #[test]
 fn all_columns_together_give_the_motor_torque() {
     use ColumnKind::{Coulomb, MotorInertia, Offset, Viscous1, Viscous2, Viscous3};
-    let robot = Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
+    let robot =
+        Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
     let kinds =
-        [&ColumnKind::INERTIAL[..], &[MotorInertia, Viscous1, Viscous2, Viscous3, Coulomb, Offset]].concat();
+        [&ColumnKind::INERTIAL[..], &[MotorInertia, Viscous1, Viscous2, Viscous3, Coulomb, Offset]]
+            .concat();
     let columns = Column::of_joints(2, &kinds);
     let theta = nalgebra::DVector::from_vec(robot.column_values(&columns));
     let (q, qd, qdd) = (vec![0.4, -1.1], vec![0.7, -2.0], vec![3.0, 1.0]);
     let y = Regressor::new(&robot, &columns).stacked(&[[q.clone(), qd.clone(), qdd.clone()]]);
-    let expected =
-        robot.inverse_dynamics(&q, &qd, &qdd) + robot.viscous_torque(&qd) + robot.coulomb_torque(&q, &qd);
+    let expected = robot.inverse_dynamics(&q, &qd, &qdd)
+        + robot.viscous_torque(&qd)
+        + robot.coulomb_torque(&q, &qd);
     assert_close((y * &theta).as_slice(), expected.as_slice(), "motor torque");
 
     let twice = robot.description().with_values(&columns, (2.0 * &theta).as_slice()).unwrap();
@@ -88,6 +97,7 @@ fn all_columns_together_give_the_motor_torque() {
 
 #[test]
 fn names_are_those_of_the_literature() {
-    let names: Vec<_> = Column::of_joints(1, &ColumnKind::INERTIAL).iter().map(Column::to_string).collect();
+    let names: Vec<_> =
+        Column::of_joints(1, &ColumnKind::INERTIAL).iter().map(Column::to_string).collect();
     assert_eq!(names.join(" "), "m1 mx1 my1 mz1 Ixx1 Ixy1 Iyy1 Ixz1 Iyz1 Izz1");
 }

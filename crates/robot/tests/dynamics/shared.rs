@@ -1,8 +1,8 @@
 //! Reading the oracles.
 
 use reachtube_robot::{
-    Convention, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot, RobotDescription,
-    SCHEMA_VERSION,
+    Convention, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot,
+    RobotDescription, SCHEMA_VERSION,
 };
 use serde_json::Value;
 

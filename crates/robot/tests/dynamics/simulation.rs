@@ -98,10 +98,14 @@ fn a_generated_input_holds_the_robot() {
         body.rate(t, x, &torque, dx);
     };
     let mut x = [0.0; 4];
-    let outcome = DormandPrince::new(4, Tolerance::default()).integrate(&mut held, [0.0, 4.0], &mut x, &[]);
+    let outcome =
+        DormandPrince::new(4, Tolerance::default()).integrate(&mut held, [0.0, 4.0], &mut x, &[]);
     assert!(outcome.is_reached());
     // Coulomb friction of 0.16 N m against 20 N m/rad.
-    assert!(distance(&x[..2], &wanted) < 0.16 / 20.0 + 1e-3 && distance(&x[2..], &[0.0; 2]) < 1e-3, "{x:?}");
+    assert!(
+        distance(&x[..2], &wanted) < 0.16 / 20.0 + 1e-3 && distance(&x[2..], &[0.0; 2]) < 1e-3,
+        "{x:?}"
+    );
 }
 
 /// From a swing to rest, over each joint's turns.
@@ -116,12 +120,20 @@ fn sticking_joints_come_to_rest_in_few_steps() {
         body.rate(t, x, u, dx);
     };
     let (mut x, mut energies) = ([2.0, -1.0, 0.0, 0.0], Vec::new());
-    let outcome =
-        DormandPrince::new(4, Tolerance::default()).sample(&mut counted, &times, &mut x, &torque, |_, x| {
+    let outcome = DormandPrince::new(4, Tolerance::default()).sample(
+        &mut counted,
+        &times,
+        &mut x,
+        &torque,
+        |_, x| {
             energies.push(robot.kinetic_energy(&x[..2], &x[2..]) + robot.potential_energy(&x[..2]));
-        });
+        },
+    );
     assert!(outcome.is_reached());
-    assert!(energies.is_sorted_by(|a, b| a >= b) && energies[0] - energies[3] > 1.0, "{energies:?} J");
+    assert!(
+        energies.is_sorted_by(|a, b| a >= b) && energies[0] - energies[3] > 1.0,
+        "{energies:?} J"
+    );
     assert!(distance(&x[2..], &[0.0; 2]) < 1e-2, "{x:?}");
     assert!(evaluations < 60_000, "{evaluations} evaluations");
 }

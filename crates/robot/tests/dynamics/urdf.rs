@@ -1,4 +1,5 @@
-//! URDF in and out: real files of the shared folder against the oracles, and the words for files that are no robot.
+//! URDF in and out: real files of the shared folder against the oracles, and the words for files
+//! that are no robot.
 
 use crate::close::assert_close;
 use crate::shared::{description, numbers, oracle};
@@ -67,13 +68,18 @@ fn oracles_urdfs_agree_with_pinocchio() {
             return;
         };
         let robot = urdf.robot();
-        let armatures: Vec<_> = description(&oracle).joints.iter().map(|j| j.armature.unwrap()).collect();
+        let armatures: Vec<_> =
+            description(&oracle).joints.iter().map(|j| j.armature.unwrap()).collect();
         for state in oracle["states"].as_array().unwrap() {
             let [q, qd, mut qdd] = ["q", "qd", "qdd"].map(|key| numbers(&state[key]));
             let tau = robot.inverse_dynamics(&q, &qd, &qdd);
             // The armature is not in the URDF.
             qdd.iter_mut().zip(&armatures).for_each(|(qdd, a)| *qdd *= a);
-            assert_close((tau + nalgebra::DVector::from_vec(qdd)).as_slice(), &numbers(&state["rnea"]), name);
+            assert_close(
+                (tau + nalgebra::DVector::from_vec(qdd)).as_slice(),
+                &numbers(&state["rnea"]),
+                name,
+            );
             let tip = robot.link_placements(&q)[5].translation;
             assert_close(tip.as_slice(), &numbers(&state["ee_p"]), "ee_p");
         }
@@ -106,7 +112,8 @@ fn real_files_are_read_with_limits_friction_and_gears() {
         (joints[0].friction.viscous.v1, joints[0].friction.coulomb.driving_forward.offset),
         (0.001, 0.16)
     );
-    // The second link's frame is upside down there: hanging, as in the embedded description, is q = 0 for both.
+    // The second link's frame is upside down there: hanging, as in the embedded description, is q =
+    // 0 for both.
     let described =
         Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
     let loaded = Robot::load(&format!("{SHARED}data/double_pendulum/acrobot.urdf")).unwrap();
@@ -124,7 +131,8 @@ fn fixed_links_are_lumped() {
     // The bracket's centre of mass: its joint at (0.3, 0, 0), turned about x by 1, and 0.1 along y.
     let bracket = [0.3, 0.1 * 1f64.cos(), 0.1 * 1f64.sin()];
     let com = upper.com.unwrap();
-    let expected: Vec<f64> = (0..3).map(|i| (2.0 * [0.1, 0.2, 0.3][i] + 0.5 * bracket[i]) / 2.5).collect();
+    let expected: Vec<f64> =
+        (0..3).map(|i| (2.0 * [0.1, 0.2, 0.3][i] + 0.5 * bracket[i]) / 2.5).collect();
     assert_close(&com, &expected, "com");
     let trace: f64 = [0, 3, 5].map(|k| upper.inertia[k]).iter().sum();
     let parallel: f64 =
@@ -172,37 +180,47 @@ fn a_base_may_be_named_and_keeps_the_direction_of_gravity() {
 fn what_is_not_identified_stays_byte_for_byte() {
     let urdf = read(ARM);
     assert_eq!(urdf.updated(urdf.robot()).unwrap(), ARM);
-    let columns =
-        [ColumnKind::Mass, ColumnKind::Viscous1, ColumnKind::Coulomb].map(|kind| Column { joint: 0, kind });
+    let columns = [ColumnKind::Mass, ColumnKind::Viscous1, ColumnKind::Coulomb]
+        .map(|kind| Column { joint: 0, kind });
     let changed = urdf.robot().description().with_values(&columns, &[2.6, 0.6, 0.25]).unwrap();
     let text = urdf.updated(&Robot::from_description(&changed).unwrap()).unwrap();
     let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
     let (old, new) = (lines(ARM), lines(&text));
     assert_eq!(old.len(), new.len());
     let differ: Vec<_> = (0..old.len()).filter(|i| old[*i] != new[*i]).map(|i| i + 1).collect();
-    // The upper link's origin, mass and inertia; the shoulder's dynamics; the bracket, which is in the whole now.
+    // The upper link's origin, mass and inertia; the shoulder's dynamics; the bracket, which is in
+    // the whole now.
     assert_eq!(differ, [9, 10, 17, 19]);
     assert_eq!(new[16], "    <dynamics friction=\"0.25\" damping=\"0.6\"/>");
     let bracket = "<mass value=\"0\"/><origin xyz=\"0 0.1 0\"/><inertia ixy=\"0\" ixz=\"0\" iyz=\"0\" ixx=\"0\" iyy=\"0\" izz=\"0\"/>";
     assert!(new[18].contains(bracket), "{}", new[18]);
 }
 
-/// Reading, writing and reading again give the same robot, motors and friction through the companion.
+/// Reading, writing and reading again give the same robot, motors and friction through the
+/// companion.
 #[test]
 fn round_trips() {
     let urdf = read(ARM);
-    let kinds =
-        [&ColumnKind::INERTIAL[..], &[ColumnKind::MotorInertia, ColumnKind::Viscous1, ColumnKind::Coulomb]];
+    let kinds = [
+        &ColumnKind::INERTIAL[..],
+        &[ColumnKind::MotorInertia, ColumnKind::Viscous1, ColumnKind::Coulomb],
+    ];
     let columns = Column::of_joints(2, &kinds.concat());
-    let values: Vec<_> = urdf.robot().column_values(&columns).iter().map(|v| 1.1 * v + 1e-3).collect();
-    let changed =
-        Robot::from_description(&urdf.robot().description().with_values(&columns, &values).unwrap()).unwrap();
+    let values: Vec<_> =
+        urdf.robot().column_values(&columns).iter().map(|v| 1.1 * v + 1e-3).collect();
+    let changed = Robot::from_description(
+        &urdf.robot().description().with_values(&columns, &values).unwrap(),
+    )
+    .unwrap();
     let (text, companion) = (urdf.updated(&changed).unwrap(), urdf.companion(&changed));
     let back = Urdf::parse_with(&text, "arm.urdf", &companion, &UrdfEnds::default()).unwrap();
     assert_close(&back.robot().column_values(&columns), &values, "parameters");
     assert_eq!(back.robot().joints(), changed.joints());
     assert_eq!(back.updated(back.robot()).unwrap(), text);
-    assert_eq!(Urdf::parse_with(&text, "", &companion, &UrdfEnds::default()).unwrap().robot(), back.robot());
+    assert_eq!(
+        Urdf::parse_with(&text, "", &companion, &UrdfEnds::default()).unwrap().robot(),
+        back.robot()
+    );
     let described = Robot::from_toml(&back.robot().description().to_toml(), "arm.toml").unwrap();
     assert_eq!(&described, back.robot());
     // A link without `<inertial>` gets one.
@@ -220,7 +238,8 @@ fn the_companion_names_motors_ends_and_its_mistakes() {
     assert_eq!(robot.gravity_torque(&[0.3, 0.4]).amax(), 0.0);
     let error = with(&text.replace("elbow", "knee")).unwrap_err().to_string();
     assert!(
-        error.contains("joint `knee`: the chain has no such joint; name one of `shoulder`, `elbow`"),
+        error
+            .contains("joint `knee`: the chain has no such joint; name one of `shoulder`, `elbow`"),
         "{error}"
     );
     let error = with(&text.replace("armature", "armatur")).unwrap_err().to_string();
@@ -232,25 +251,36 @@ fn the_companion_names_motors_ends_and_its_mistakes() {
 #[test]
 fn joints_that_are_not_handled_are_refused_by_name() {
     let kind = "<joint name=\"elbow\" type=\"continuous\">";
-    for (name, verb) in [("prismatic", "is prismatic"), ("floating", "is floating"), ("planar", "is planar")]
+    for (name, verb) in
+        [("prismatic", "is prismatic"), ("floating", "is floating"), ("planar", "is planar")]
     {
         let error = error_with(kind, &kind.replace("continuous", name));
         assert!(
-            error.starts_with(&format!("arm.urdf:22: joint `elbow`: the joint {verb}; only revolute")),
+            error.starts_with(&format!(
+                "arm.urdf:22: joint `elbow`: the joint {verb}; only revolute"
+            )),
             "{error}"
         );
     }
     let error = error_with(kind, &format!("{kind}<mimic joint=\"shoulder\" multiplier=\"2\"/>"));
-    assert!(error.starts_with("arm.urdf:22: joint `elbow`, <mimic>: the joint mimics `shoulder`"), "{error}");
+    assert!(
+        error.starts_with("arm.urdf:22: joint `elbow`, <mimic>: the joint mimics `shoulder`"),
+        "{error}"
+    );
     let finger = "<link name=\"finger\"/><joint name=\"slide\" type=\"revolute\"><parent link=\"upper\"/>\
                   <child link=\"finger\"/></joint>\n</robot>";
     let branched = ARM.replace("</robot>", finger);
     let error = error_of(&branched);
-    assert!(error.contains("tip is not clear: `finger`, `lower` each are a link that moves"), "{error}");
+    assert!(
+        error.contains("tip is not clear: `finger`, `lower` each are a link that moves"),
+        "{error}"
+    );
     let ends = UrdfEnds { base: None, tip: Some("tool".into()) };
     let error = Urdf::parse(&branched, "arm.urdf", &ends).unwrap_err().to_string();
     assert!(
-        error.starts_with("arm.urdf:27: joint `slide`: the chain branches: this revolute joint hangs"),
+        error.starts_with(
+            "arm.urdf:27: joint `slide`: the chain branches: this revolute joint hangs"
+        ),
         "{error}"
     );
 }
@@ -260,11 +290,16 @@ fn broken_files_are_answered_with_line_and_element() {
     let error = error_with("</robot>", "");
     assert!(error.starts_with("arm.urdf: no well-formed XML: "), "{error}");
     assert!(error_of("pendulum\n").contains("no well-formed XML"));
-    assert!(error_of("<sdf/>").contains("arm.urdf:1: <sdf>: the root element is <sdf>; give a URDF"));
+    assert!(
+        error_of("<sdf/>").contains("arm.urdf:1: <sdf>: the root element is <sdf>; give a URDF")
+    );
     let error = error_with("<child link=\"upper\"/>", "<child link=\"uper\"/>");
     assert!(error.starts_with("arm.urdf:13: joint `shoulder`: there is no link `uper`"), "{error}");
     let error = error_with("<parent link=\"mount\"/>", "");
-    assert!(error.starts_with("arm.urdf:13: joint `shoulder`: <parent> is lacking; add it"), "{error}");
+    assert!(
+        error.starts_with("arm.urdf:13: joint `shoulder`: <parent> is lacking; add it"),
+        "{error}"
+    );
     let error = error_with("<parent link=\"mount\"/>", "<parent link=\"tool\"/>");
     assert!(error.contains("hangs on itself; let the joints form a tree"), "{error}");
     let error = error_with("<mass value=\"2.0\" />", "<mass value=\"two\" />");
@@ -281,7 +316,9 @@ fn broken_files_are_answered_with_line_and_element() {
     );
     let error = error_with("lower=\"-1\"", "lower=\"3\"");
     assert!(
-        error.starts_with("arm.urdf:16: joint `shoulder`, link `upper`: position_limits [3, 2] hold"),
+        error.starts_with(
+            "arm.urdf:16: joint `shoulder`, link `upper`: position_limits [3, 2] hold"
+        ),
         "{error}"
     );
     let error = error_with("<mass value=\"2.0\" />", "<mass value=\"-2.0\" />");
@@ -289,9 +326,11 @@ fn broken_files_are_answered_with_line_and_element() {
         error.starts_with("arm.urdf:8: joint `shoulder`, link `upper`: mass = -1.5 kg is negative"),
         "{error}"
     );
-    let error = error_with("<link name=\"lower\"/>", "<link name=\"lower\"/><link name=\"lower\"/>");
+    let error =
+        error_with("<link name=\"lower\"/>", "<link name=\"lower\"/><link name=\"lower\"/>");
     assert!(error.starts_with("arm.urdf:21: link `lower`: the name occurs twice"), "{error}");
-    let error = error_with("<link name=\"base\"/>", "<joint name=\"x\"><child link=\"upper\"/></joint>");
+    let error =
+        error_with("<link name=\"base\"/>", "<joint name=\"x\"><child link=\"upper\"/></joint>");
     assert!(error.contains("joint `x`: the attribute `type` is lacking"), "{error}");
     // Without any mass the robot is read, and refused as none that moves.
     let weightless = ARM
@@ -304,21 +343,30 @@ fn broken_files_are_answered_with_line_and_element() {
     assert!(error.contains("joint `elbow` has the articulated inertia"), "{error}");
 }
 
-/// A file that lost a line, or everything after some byte, is read or answered; what is read can be written.
+/// A file that lost a line, or everything after some byte, is read or answered; what is read can be
+/// written.
 #[test]
 fn damaged_files_are_read_or_answered() {
     let lines: Vec<_> = ARM.lines().collect();
     let without = |k: usize| {
-        lines.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, l)| *l).collect::<Vec<_>>().join("\n")
+        lines
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != k)
+            .map(|(_, l)| *l)
+            .collect::<Vec<_>>()
+            .join("\n")
     };
     let cut = (0..ARM.len()).step_by(7).map(|k| ARM[..k].to_string());
     let mut read = 0;
     for text in (0..lines.len()).map(without).chain(cut) {
         let Ok(urdf) = Urdf::parse(&text, "arm.urdf", &UrdfEnds::default()) else { continue };
         let masses = Column::of_joints(urdf.robot().joint_count(), &[ColumnKind::Mass]);
-        let changed = urdf.robot().description().with_values(&masses, &vec![3.0; masses.len()]).unwrap();
+        let changed =
+            urdf.robot().description().with_values(&masses, &vec![3.0; masses.len()]).unwrap();
         let Ok(changed) = Robot::from_description(&changed) else { continue };
-        let back = Urdf::parse(&urdf.updated(&changed).unwrap(), "arm.urdf", &UrdfEnds::default()).unwrap();
+        let back = Urdf::parse(&urdf.updated(&changed).unwrap(), "arm.urdf", &UrdfEnds::default())
+            .unwrap();
         assert_close(&back.robot().column_values(&masses), &vec![3.0; masses.len()], "masses");
         read += 1;
     }

@@ -22,7 +22,8 @@ impl Interval {
     /// The number that a decimal literal such as `0.1`, `-3` or `1.5e-3` stands for.
     ///
     /// # Guarantee
-    /// The tightest enclosure: a point where the literal is an `f64` exactly, else two neighbouring numbers.
+    /// The tightest enclosure: a point where the literal is an `f64` exactly, else two neighbouring
+    /// numbers.
     ///
     /// # Errors
     /// [`DecimalError`] where the text is not a decimal number; infinities and NaN are not.
@@ -62,7 +63,8 @@ impl Interval {
 impl fmt::Display for Interval {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let write = |x: f64| f.precision().map_or_else(|| format!("{x}"), |p| format!("{x:.p$}"));
-        // One unit of the last digit written; below it when the shortest text of a number is written.
+        // One unit of the last digit written; below it when the shortest text of a number is
+        // written.
         let unit = f.precision().map_or(0.0, |p| 10_f64.powi(-(p.min(400) as i32)));
         let (lo, hi) = (self.lo + 0.0, self.hi + 0.0); // -0 is written 0
         let mut below = write(lo);
@@ -77,7 +79,8 @@ impl fmt::Display for Interval {
     }
 }
 
-/// How the number that a decimal literal stands for compares with x, exactly. An infinite x is beyond every literal.
+/// How the number that a decimal literal stands for compares with x, exactly. An infinite x is
+/// beyond every literal.
 fn compare(literal: &str, x: f64) -> Ordering {
     if x.is_infinite() {
         return 0.0.partial_cmp(&x).expect("x is not NaN");

@@ -6,9 +6,11 @@ use super::Interval;
 use super::taylor::{Series, inverse_factorial};
 use crate::rounding::{mul_down, mul_up, two_sum};
 
-/// ln 2 = `LN_2_HEAD` + `LN_2_TAIL`; the head has 41 bits, so that its product with |k| ≤ 2¹¹ is exact.
+/// ln 2 = `LN_2_HEAD` + `LN_2_TAIL`; the head has 41 bits, so that its product with |k| ≤ 2¹¹ is
+/// exact.
 const LN_2_HEAD: f64 = 0.693147180559663;
-const LN_2_TAIL: Interval = Interval { lo: 2.8235290563031577e-13, hi: 2.8235290563031577e-13_f64.next_up() };
+const LN_2_TAIL: Interval =
+    Interval { lo: 2.8235290563031577e-13, hi: 2.8235290563031577e-13_f64.next_up() };
 
 /// e^x overflows above and is below the smallest subnormal number beneath.
 const OVERFLOW: f64 = 710.0;
@@ -29,8 +31,9 @@ impl Interval {
     /// e^x.
     ///
     /// # Guarantee
-    /// Outer, for every x; exact at 0. Each end is the tightest `f64` or (as far as the tests have seen) the next one; where
-    /// e^x overflows the upper end is infinite, where it underflows the lower end is 0. The platform's `exp` is not used.
+    /// Outer, for every x; exact at 0. Each end is the tightest `f64` or (as far as the tests have
+    /// seen) the next one; where e^x overflows the upper end is infinite, where it underflows the
+    /// lower end is 0. The platform's `exp` is not used.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -55,14 +58,16 @@ fn exp_of(x: f64) -> Interval {
     if x < UNDERFLOW {
         return Interval { lo: 0.0, hi: 0.0_f64.next_up() };
     }
-    // x = k ln 2 + head + tail. Any integer k is right; the nearest makes |head + tail| least, 0.35.
+    // x = k ln 2 + head + tail. Any integer k is right; the nearest makes |head + tail| least,
+    // 0.35.
     let k = (x * LOG2_E).round();
     let (head, error) = two_sum(x, -k * LN_2_HEAD);
     let tail = Interval::point(error) - LN_2_TAIL * k;
     let r = tail + head;
     let correction = tail + r.sqr() * SERIES.at(r);
     let power = times_power_of_two(correction + head + 1.0, k as i32);
-    // e^x is on the side of 1 that x is of 0: without it the exact e^0 would lie outside of its neighbours' bounds.
+    // e^x is on the side of 1 that x is of 0: without it the exact e^0 would lie outside of its
+    // neighbours' bounds.
     if x > 0.0 { power.max(Interval::ONE) } else { power.min(Interval::ONE) }
 }
 

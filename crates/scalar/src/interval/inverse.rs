@@ -6,7 +6,8 @@ impl Interval {
     /// {ln x} over the positive x of the interval; [`ENTIRE`](Self::ENTIRE) where there is none.
     ///
     /// # Guarantee
-    /// Outer; each end within 1e-15 (relative where |ln x| > 1, else absolute). The platform's `ln` is a guess that [`exp`](Self::exp) corrects.
+    /// Outer; each end within 1e-15 (relative where |ln x| > 1, else absolute). The platform's `ln`
+    /// is a guess that [`exp`](Self::exp) corrects.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -24,10 +25,12 @@ impl Interval {
         Interval { lo, hi }
     }
 
-    /// The angles of the points (x, self), in [-π, π]; all of that where the box holds the origin or crosses the negative x axis.
+    /// The angles of the points (x, self), in [-π, π]; all of that where the box holds the origin
+    /// or crosses the negative x axis.
     ///
     /// # Guarantee
-    /// Outer; each end within 1e-15. The platform's `atan2` is a guess that [`sin_cos`](Self::sin_cos) corrects.
+    /// Outer; each end within 1e-15. The platform's `atan2` is a guess that
+    /// [`sin_cos`](Self::sin_cos) corrects.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -43,7 +46,8 @@ impl Interval {
         if on_cut || x.contains_zero() && y.contains_zero() || unbounded {
             return Interval { lo: -Interval::PI.hi, hi: Interval::PI.hi };
         }
-        // Away from the origin and the cut the angle is monotone along each edge, and extreme in a corner.
+        // Away from the origin and the cut the angle is monotone along each edge, and extreme in a
+        // corner.
         let corner = |y: f64, x: f64| angle_of(y + 0.0, x);
         let [a, b, c, d] =
             [(y.lo, x.lo), (y.lo, x.hi), (y.hi, x.lo), (y.hi, x.hi)].map(|(y, x)| corner(y, x));
@@ -60,9 +64,11 @@ fn ln_of(x: f64) -> Interval {
     Interval::point(y) + (t / (t + 1.0)).hull(t)
 }
 
-/// The angle of (x, y) is a guess plus that of the point turned back by the guess, where z - z³/3 ≤ atan z ≤ z for z ≥ 0.
+/// The angle of (x, y) is a guess plus that of the point turned back by the guess, where z - z³/3 ≤
+/// atan z ≤ z for z ≥ 0.
 fn angle_of(y: f64, x: f64) -> Interval {
-    // A point scaled by a power of two has the same angle, and its products neither overflow nor vanish.
+    // A point scaled by a power of two has the same angle, and its products neither overflow nor
+    // vanish.
     let scale = 2f64.powi(-(x.abs().max(y.abs()).log2().floor() as i32).clamp(-1000, 1000));
     let (x, y) = (Interval::point(x) * scale, Interval::point(y) * scale);
     let guess = y.mid().atan2(x.mid());

@@ -14,13 +14,13 @@ use crate::rounding::{add_up, sub_down, sub_up};
 
 /// A closed interval [lo, hi] of real numbers, lo ≤ hi, with ends rounded outwards.
 ///
-/// Ends may be infinite (the interval is then unbounded) but never NaN, and an interval is never empty. All operations
-/// are those of sets: the result encloses x ∘ y for **every** x and y of the operands, so `x - x` is not zero unless
-/// x is a point. Comparison `==` compares ends.
+/// Ends may be infinite (the interval is then unbounded) but never NaN, and an interval is never
+/// empty. All operations are those of sets: the result encloses x ∘ y for **every** x and y of the
+/// operands, so `x - x` is not zero unless x is a point. Comparison `==` compares ends.
 ///
 /// # Guarantee
-/// Every operation is outer, under the rounding of [`rounding`](crate::rounding): the exact result for real numbers of
-/// the operands lies in the interval returned.
+/// Every operation is outer, under the rounding of [`rounding`](crate::rounding): the exact result
+/// for real numbers of the operands lies in the interval returned.
 ///
 /// # Examples
 ///
@@ -46,7 +46,8 @@ impl Interval {
     /// The number 1.
     pub const ONE: Interval = Interval { lo: 1.0, hi: 1.0 };
 
-    /// [lo, hi], or `None` where that holds no real number: an end is NaN, lo > hi, lo = +∞ or hi = -∞.
+    /// [lo, hi], or `None` where that holds no real number: an end is NaN, lo > hi, lo = +∞ or hi =
+    /// -∞.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -78,8 +79,8 @@ impl Interval {
     /// The numbers within `rad` ≥ 0 of `mid`.
     ///
     /// # Guarantee
-    /// Outer: [mid - rad, mid + rad] with ends rounded outwards. A negative or NaN radius, or a NaN centre, gives
-    /// [`ENTIRE`](Self::ENTIRE).
+    /// Outer: [mid - rad, mid + rad] with ends rounded outwards. A negative or NaN radius, or a NaN
+    /// centre, gives [`ENTIRE`](Self::ENTIRE).
     #[inline]
     #[must_use]
     pub const fn centered(mid: f64, rad: f64) -> Interval {
@@ -103,8 +104,9 @@ impl Interval {
         self.hi
     }
 
-    /// A finite number of the interval, the nearest to its middle up to rounding; 0 for [`ENTIRE`](Self::ENTIRE), the
-    /// largest (smallest) finite number where only the upper (lower) end is infinite.
+    /// A finite number of the interval, the nearest to its middle up to rounding; 0 for
+    /// [`ENTIRE`](Self::ENTIRE), the largest (smallest) finite number where only the upper (lower)
+    /// end is infinite.
     #[inline]
     #[must_use]
     pub fn mid(self) -> f64 {
@@ -114,7 +116,11 @@ impl Interval {
 
     #[cold]
     fn mid_of_large_ends(self) -> f64 {
-        if self == Interval::ENTIRE { 0.0 } else { (0.5 * self.lo + 0.5 * self.hi).clamp(f64::MIN, f64::MAX) }
+        if self == Interval::ENTIRE {
+            0.0
+        } else {
+            (0.5 * self.lo + 0.5 * self.hi).clamp(f64::MIN, f64::MAX)
+        }
     }
 
     /// The radius about [`mid`](Self::mid).

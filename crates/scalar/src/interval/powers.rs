@@ -39,11 +39,12 @@ impl Interval {
         Interval { lo: mul_down(mig, mig), hi: mul_up(mag, mag) }
     }
 
-    /// {xⁿ}; x⁰ is 1 for every x, and a negative power of an interval with zero is [`ENTIRE`](Self::ENTIRE).
+    /// {xⁿ}; x⁰ is 1 for every x, and a negative power of an interval with zero is
+    /// [`ENTIRE`](Self::ENTIRE).
     ///
     /// # Guarantee
-    /// Outer. Each end is within 3 (n - 1) numbers of the tightest one for n > 0, since a power is a chain of products; about
-    /// n are usual.
+    /// Outer. Each end is within 3 (n - 1) numbers of the tightest one for n > 0, since a power is
+    /// a chain of products; about n are usual.
     ///
     /// ```
     /// use reachtube_scalar::Interval;

@@ -14,9 +14,11 @@ pub(super) const fn inverse_factorial(n: u32) -> Interval {
     Interval { lo: div_down(1.0, factorial), hi: div_up(1.0, factorial) }
 }
 
-/// Σ c_i xⁱ + remainder · x^N for |x| ≤ `LARGEST` < 1, where from c_2 on |c_i| falls at least by a factor of 4 each.
+/// Σ c_i xⁱ + remainder · x^N for |x| ≤ `LARGEST` < 1, where from c_2 on |c_i| falls at least by a
+/// factor of 4 each.
 ///
-/// c_0 and c_1 are taken as intervals. The rest weighs so little that it is evaluated in `f64`, with an error bound.
+/// c_0 and c_1 are taken as intervals. The rest weighs so little that it is evaluated in `f64`,
+/// with an error bound.
 pub(super) struct Series<const N: usize> {
     leading: [Interval; 2],
     /// c_i, rounded; those of c_0 and c_1 are not used.
@@ -30,10 +32,14 @@ pub(super) struct Series<const N: usize> {
 impl<const N: usize> Series<N> {
     /// From c_i, and bounds of |remainder| and |x|.
     ///
-    /// The rest c_2 + c_3 x + … has Σ |c_i| ≤ 4/3 |c_2|, and Horner's rule of degree d ≤ 12 with coefficients within
-    /// 2⁻⁵¹ an error of at most (2d u / (1 - 2d u) + 2⁻⁵¹) 4/3 |c_2| < 2⁻⁴⁶ |c_2|, u = 2⁻⁵³ (Higham, Accuracy and
-    /// Stability of Numerical Algorithms, (5.3)).
-    pub(super) const fn new(coefficients: [Interval; N], remainder: f64, largest: f64) -> Series<N> {
+    /// The rest c_2 + c_3 x + … has Σ |c_i| ≤ 4/3 |c_2|, and Horner's rule of degree d ≤ 12 with
+    /// coefficients within 2⁻⁵¹ an error of at most (2d u / (1 - 2d u) + 2⁻⁵¹) 4/3 |c_2| < 2⁻⁴⁶
+    /// |c_2|, u = 2⁻⁵³ (Higham, Accuracy and Stability of Numerical Algorithms, (5.3)).
+    pub(super) const fn new(
+        coefficients: [Interval; N],
+        remainder: f64,
+        largest: f64,
+    ) -> Series<N> {
         let mut rounded = [0.0; N];
         let mut remainder = remainder;
         let mut i = 2;

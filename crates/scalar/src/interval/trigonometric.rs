@@ -6,24 +6,28 @@ use super::Interval;
 use super::taylor::{Series, inverse_factorial};
 use crate::rounding::two_sum;
 
-/// π/2 = Σ `FRAC_PI_2_PARTS` + `FRAC_PI_2_REST`; each part has at most 32 bits, so that its product with |k| < 2²⁰ is
-/// exact. Four parts, because an `f64` below 2²⁰ can be as near to a multiple of π/2 as 2⁻⁶⁰ or so.
-const FRAC_PI_2_PARTS: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487111665e-21];
-const FRAC_PI_2_REST: Interval = Interval { lo: 8.4784276603689e-32, hi: 8.4784276603689e-32_f64.next_up() };
+/// π/2 = Σ `FRAC_PI_2_PARTS` + `FRAC_PI_2_REST`; each part has at most 32 bits, so that its product
+/// with |k| < 2²⁰ is exact. Four parts, because an `f64` below 2²⁰ can be as near to a multiple of
+/// π/2 as 2⁻⁶⁰ or so.
+const FRAC_PI_2_PARTS: [f64; 3] =
+    [1.5707963267341256, 6.077100506303966e-11, 2.0222662487111665e-21];
+const FRAC_PI_2_REST: Interval =
+    Interval { lo: 8.4784276603689e-32, hi: 8.4784276603689e-32_f64.next_up() };
 
 /// Beyond it [-1, 1] is returned: the reduction would no longer be exact.
 const LARGEST_ANGLE: f64 = (1 << 20) as f64;
 
 const RANGE: Interval = Interval { lo: -1.0, hi: 1.0 };
 
-/// The series in r² of the coefficients ±1 / (2i + first)!, of alternating sign, for r² ≤ 0.64, with Lagrange's
-/// remainder: a derivative of sine somewhere, which lies in [-1, 1], for the sign.
+/// The series in r² of the coefficients ±1 / (2i + first)!, of alternating sign, for r² ≤ 0.64,
+/// with Lagrange's remainder: a derivative of sine somewhere, which lies in [-1, 1], for the sign.
 const fn alternating(first: u32, first_is_negative: bool) -> Series<8> {
     let mut c = [Interval::ZERO; 8];
     let mut i = 0;
     while i < 8 {
         let a = inverse_factorial(2 * i as u32 + first);
-        c[i] = if (i % 2 == 0) == first_is_negative { Interval { lo: -a.hi, hi: -a.lo } } else { a };
+        c[i] =
+            if (i % 2 == 0) == first_is_negative { Interval { lo: -a.hi, hi: -a.lo } } else { a };
         i += 1;
     }
     Series::new(c, inverse_factorial(16 + first).hi, 0.64)
@@ -71,7 +75,8 @@ impl Reduced {
         (self.tail + r * square * SINE.at(square)) + self.head
     }
 
-    /// cos(head + tail) = 1 - b²/2 - (r - b)(r + b)/2 + …, where b is r to 26 bits, so that b² is exact.
+    /// cos(head + tail) = 1 - b²/2 - (r - b)(r + b)/2 + …, where b is r to 26 bits, so that b² is
+    /// exact.
     fn cos_of_rest(&self) -> Interval {
         let r = self.rest();
         let b = leading_bits(self.head);
@@ -91,7 +96,8 @@ impl Reduced {
         }
     }
 
-    /// An integer at or below ⌊x / (π/2)⌋, and one at or above; they agree unless the rest has no certain sign.
+    /// An integer at or below ⌊x / (π/2)⌋, and one at or above; they agree unless the rest has no
+    /// certain sign.
     fn floor(&self) -> (i64, i64) {
         let rest = self.rest();
         (self.quadrant - i64::from(rest.lo < 0.0), self.quadrant - i64::from(rest.hi < 0.0))
@@ -112,8 +118,8 @@ fn reduce(x: Interval) -> Option<[Reduced; 2]> {
     Some([lo, if x.lo == x.hi { lo } else { Reduced::new(x.hi) }])
 }
 
-/// The values of sin(x + shift · π/2) between the two ends: the hull of those at the ends, and ±1 where a multiple j of
-/// π/2 with an extremum lies between.
+/// The values of sin(x + shift · π/2) between the two ends: the hull of those at the ends, and ±1
+/// where a multiple j of π/2 with an extremum lies between.
 fn sin_between([lo, hi]: [Reduced; 2], shift: i64) -> Interval {
     let mut values = lo.sin(shift).hull(hi.sin(shift));
     let (before, last) = (lo.floor().0 + shift, hi.floor().1 + shift);
@@ -138,7 +144,8 @@ impl Interval {
     ///
     /// # Guarantee
     /// The tightest enclosure.
-    pub const FRAC_PI_2: Interval = Interval { lo: consts::FRAC_PI_2, hi: consts::FRAC_PI_2.next_up() };
+    pub const FRAC_PI_2: Interval =
+        Interval { lo: consts::FRAC_PI_2, hi: consts::FRAC_PI_2.next_up() };
     /// 2π.
     ///
     /// # Guarantee
@@ -166,9 +173,9 @@ impl Interval {
     /// (sin x, cos x) of an angle x in rad.
     ///
     /// # Guarantee
-    /// Outer, for every x, and within [-1, 1]; sin 0 and cos 0 are exact. For angles up to 2²⁰ ≈ 10⁶ rad each end is
-    /// the tightest `f64` or (as far as the tests have seen) the next one, also beside the zeros; beyond, [-1, 1] is
-    /// returned. The platform's `sin` and `cos` are not used.
+    /// Outer, for every x, and within [-1, 1]; sin 0 and cos 0 are exact. For angles up to 2²⁰ ≈
+    /// 10⁶ rad each end is the tightest `f64` or (as far as the tests have seen) the next one, also
+    /// beside the zeros; beyond, [-1, 1] is returned. The platform's `sin` and `cos` are not used.
     ///
     /// ```
     /// use reachtube_scalar::Interval;

@@ -78,7 +78,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         self.accumulate_by(other, minus, &mut Plain);
     }
 
-    /// self ± other in place, by the given addition of coefficients; a dense self that nobody shares is not copied.
+    /// self ± other in place, by the given addition of coefficients; a dense self that nobody
+    /// shares is not copied.
     pub(crate) fn accumulate_by(&mut self, other: &Self, minus: bool, add: &mut impl Addition<C>) {
         let Form::Dense(space, coefficients) = &mut self.form else {
             *self = self.sum_by(other, minus, add);
@@ -137,7 +138,9 @@ impl<C: Scalar> TaylorPolynomial<C> {
         match &self.form {
             Form::Constant(c) => Self::constant(c.clone() * k.clone()),
             Form::Sparse(space, terms) => Self::sparse(space, sparse::scaled(terms, k)),
-            Form::Dense(space, c) => Self::dense(space, c.iter().map(|c| c.clone() * k.clone()).collect()),
+            Form::Dense(space, c) => {
+                Self::dense(space, c.iter().map(|c| c.clone() * k.clone()).collect())
+            }
         }
     }
 
@@ -237,7 +240,8 @@ impl<C: Scalar> MulAssign for TaylorPolynomial<C> {
 }
 
 impl<C: Scalar> DivAssign for TaylorPolynomial<C> {
-    /// The truncated series of the quotient; infinite or NaN coefficients where the divisor is zero at the expansion point.
+    /// The truncated series of the quotient; infinite or NaN coefficients where the divisor is zero
+    /// at the expansion point.
     fn div_assign(&mut self, rhs: Self) {
         *self = self.quotient(&rhs);
     }

@@ -35,7 +35,11 @@ impl<'a, C: Scalar> Series<'a, C> {
     pub fn block(&self, degree: u32) -> &'a [C] {
         let known_zero = self.zero[degree as usize / 64] >> (degree % 64) & 1 == 1;
         let block = self.space.block(degree);
-        if known_zero || block.end > self.coefficients.len() { &[] } else { &self.coefficients[block] }
+        if known_zero || block.end > self.coefficients.len() {
+            &[]
+        } else {
+            &self.coefficients[block]
+        }
     }
 
     fn degree(&self) -> u32 {
@@ -67,7 +71,13 @@ pub(super) fn product<C: Scalar>(space: &TaylorSpace, x: &[C], y: &[C]) -> Vec<C
 }
 
 /// Adds Σ x_i y_{d-i} over 0 < i < d to `out`, the block of degree d.
-pub(super) fn add_inner<C: Scalar>(space: &TaylorSpace, d: u32, x: &Series<C>, y: &Series<C>, out: &mut [C]) {
+pub(super) fn add_inner<C: Scalar>(
+    space: &TaylorSpace,
+    d: u32,
+    x: &Series<C>,
+    y: &Series<C>,
+    out: &mut [C],
+) {
     for i in 1..=d / 2 {
         let j = d - i;
         if i == j {
@@ -153,7 +163,11 @@ pub(super) fn add_scaled<C: Scalar>(out: &mut [C], k: &C, x: &[C]) {
 }
 
 /// The product of a dense series with a list of terms.
-pub(super) fn product_with_terms<C: Scalar>(space: &TaylorSpace, terms: &[Term<C>], y: &[C]) -> Vec<C> {
+pub(super) fn product_with_terms<C: Scalar>(
+    space: &TaylorSpace,
+    terms: &[Term<C>],
+    y: &[C],
+) -> Vec<C> {
     let y = Series::new(space, y);
     let packing = space.packing;
     let high = terms.last().map_or(0, |(m, _)| packing.degree(*m) + y.degree()).min(space.order());
@@ -169,10 +183,14 @@ pub(super) fn product_with_terms<C: Scalar>(space: &TaylorSpace, terms: &[Term<C
                 (0, ..) => {}
                 (_, 0, _) => add_scaled(target, c, from),
                 (_, _, 0) => target[a] += c.clone() * from[0].clone(),
-                (width, ..) if i <= j => add_row(&space.table(i, j)[a * width..][..width], c, from, target),
+                (width, ..) if i <= j => {
+                    add_row(&space.table(i, j)[a * width..][..width], c, from, target)
+                }
                 _ => {
                     let column = space.table(j, i)[a..].iter().step_by(space.block(i).len());
-                    column.zip(from).for_each(|(at, y)| target[*at as usize] += c.clone() * y.clone());
+                    column
+                        .zip(from)
+                        .for_each(|(at, y)| target[*at as usize] += c.clone() * y.clone());
                 }
             }
         }

@@ -1,7 +1,9 @@
 //! Division and elementary functions, degree by degree.
 //!
-//! Euler's operator D = Σ x_i ∂/∂x_i is a derivation and multiplies the terms of degree d by d. A function's differential equation so becomes a recurrence over
-//! the homogeneous parts of its series, e.g. e = exp a: D e = e D a gives d e_d = Σ_i i a_i e_{d-i}; each function costs about one product.
+//! Euler's operator D = Σ x_i ∂/∂x_i is a derivation and multiplies the terms of degree d by d. A
+//! function's differential equation so becomes a recurrence over the homogeneous parts of its
+//! series, e.g. e = exp a: D e = e D a gives d e_d = Σ_i i a_i e_{d-i}; each function costs about
+//! one product.
 
 use std::sync::Arc;
 
@@ -26,7 +28,8 @@ impl<C: Scalar> Growing<C> {
         &self.coefficients[0]
     }
 
-    /// Σ a_i x_{d-i} over 0 < i ≤ d for a known a: all that the next degree of a product needs but a_0 x_d.
+    /// Σ a_i x_{d-i} over 0 < i ≤ d for a known a: all that the next degree of a product needs but
+    /// a_0 x_d.
     fn convolve(&self, space: &TaylorSpace, d: u32, a: &Series<C>, out: &mut [C]) {
         let known = Series::full(space, &self.coefficients[..space.block(d).start]);
         add_inner(space, d, a, &known, out);
@@ -40,7 +43,10 @@ impl<C: Scalar> Growing<C> {
 }
 
 /// Whether a series can be made, and in which space.
-fn dense_space<C: Scalar>(x: &TaylorPolynomial<C>, y: &TaylorPolynomial<C>) -> Option<Arc<TaylorSpace>> {
+fn dense_space<C: Scalar>(
+    x: &TaylorPolynomial<C>,
+    y: &TaylorPolynomial<C>,
+) -> Option<Arc<TaylorSpace>> {
     let space = x.space().or(y.space())?;
     if let Err(error) = space.check_dense() {
         panic!("{error}");
@@ -93,7 +99,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self::dense(&space, quotient)
     }
 
-    /// The truncated series of 1 / self; infinite or NaN coefficients where self is zero at the expansion point.
+    /// The truncated series of 1 / self; infinite or NaN coefficients where self is zero at the
+    /// expansion point.
     pub fn recip(&self) -> Self {
         Self::from(1.0).quotient(self)
     }
@@ -119,7 +126,9 @@ fn lift<C: Elementary>(
     of_series: impl Fn(&TaylorSpace, &[C]) -> Vec<C>,
 ) -> TaylorPolynomial<C> {
     match (&a.form, dense_space(a, a)) {
-        (_, Some(space)) => TaylorPolynomial::dense(&space, of_series(&space, &a.coefficients(&space))),
+        (_, Some(space)) => {
+            TaylorPolynomial::dense(&space, of_series(&space, &a.coefficients(&space)))
+        }
         (Form::Constant(c), _) => TaylorPolynomial::constant(of_constant(c)),
         _ => unreachable!("only a constant has no space"),
     }
@@ -192,8 +201,9 @@ impl<C: Elementary> Elementary for TaylorPolynomial<C> {
 
     /// D ln a = D a / a.
     fn ln(&self) -> Self {
-        let series =
-            |space: &TaylorSpace, a: &[C]| integrated(space, quotient(space, &euler(space, a), a), a[0].ln());
+        let series = |space: &TaylorSpace, a: &[C]| {
+            integrated(space, quotient(space, &euler(space, a), a), a[0].ln())
+        };
         lift(self, C::ln, series)
     }
 

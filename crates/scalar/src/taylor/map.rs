@@ -8,8 +8,8 @@ use crate::Scalar;
 
 /// A map from k variables to m values whose components are polynomials.
 ///
-/// Monomials are shared by the components, and each is one product: the monomial without its first variable, which comes before it, times a
-/// power of that variable.
+/// Monomials are shared by the components, and each is one product: the monomial without its first
+/// variable, which comes before it, times a power of that variable.
 ///
 /// # Examples
 ///
@@ -67,7 +67,8 @@ pub struct MapWorkspace<T> {
 }
 
 impl<C: Scalar> PolynomialMap<C> {
-    /// The map with the given components, polynomials of one space of `variables` variables or constants.
+    /// The map with the given components, polynomials of one space of `variables` variables or
+    /// constants.
     ///
     /// # Panics
     ///
@@ -89,8 +90,14 @@ impl<C: Scalar> PolynomialMap<C> {
         close_under_parents(packing, &mut monomials);
         let group = Group { monomials: vec![], coefficients: vec![] };
         let groups = vec![group; components.len().div_ceil(GROUP)];
-        let mut map =
-            Self { variables, highest: vec![0; variables], constants, nodes: vec![], groups, term_count: 0 };
+        let mut map = Self {
+            variables,
+            highest: vec![0; variables],
+            constants,
+            nodes: vec![],
+            groups,
+            term_count: 0,
+        };
         map.fill(packing, monomials);
         map
     }
@@ -101,7 +108,8 @@ impl<C: Scalar> PolynomialMap<C> {
                 self.highest[i] = self.highest[i].max(packing.exponent(*m, i));
             }
         }
-        let starts: Vec<u32> = (0..self.variables).map(|i| self.highest[..i].iter().sum()).collect();
+        let starts: Vec<u32> =
+            (0..self.variables).map(|i| self.highest[..i].iter().sum()).collect();
         let mut numbers = std::collections::HashMap::with_capacity(monomials.len());
         for (m, terms) in monomials {
             let i = packing.first_variable(m).expect("1 is a constant");
@@ -135,7 +143,10 @@ impl<C: Scalar> PolynomialMap<C> {
     /// Scratch memory for evaluation over T.
     pub fn workspace<T: Scalar>(&self) -> MapWorkspace<T> {
         let powers = self.highest.iter().sum::<u32>() as usize;
-        MapWorkspace { powers: vec![T::zero(); powers], values: vec![T::zero(); self.nodes.len() + 1] }
+        MapWorkspace {
+            powers: vec![T::zero(); powers],
+            values: vec![T::zero(); self.nodes.len() + 1],
+        }
     }
 
     /// The components at `at` (k values), into `out` (m values). Allocates nothing.
@@ -153,7 +164,11 @@ impl<C: Scalar> PolynomialMap<C> {
         ws: &mut MapWorkspace<T>,
         out: &mut [T],
     ) {
-        assert_eq!((at.len(), out.len()), (self.variables, self.constants.len()), "k arguments, m values");
+        assert_eq!(
+            (at.len(), out.len()),
+            (self.variables, self.constants.len()),
+            "k arguments, m values"
+        );
         let mut place = 0;
         for (x, highest) in at.iter().zip(&self.highest) {
             for e in 1..=*highest {
@@ -208,7 +223,8 @@ impl<C: Scalar> Group<C> {
         let (coefficients, monomials) =
             (self.coefficients.chunks_exact(SUMS), self.monomials.chunks_exact(SUMS));
         let rest = coefficients.remainder().iter().zip(monomials.remainder());
-        let mut sums: [[T; GROUP]; SUMS] = core::array::from_fn(|_| core::array::from_fn(|_| T::zero()));
+        let mut sums: [[T; GROUP]; SUMS] =
+            core::array::from_fn(|_| core::array::from_fn(|_| T::zero()));
         for (c, monomials) in coefficients.zip(monomials) {
             for i in 0..SUMS {
                 add(&mut sums[i], &c[i], monomials[i]);

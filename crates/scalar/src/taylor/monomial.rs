@@ -1,9 +1,10 @@
 //! Monomials, packed into one integer.
 
-/// How exponents are packed: the degree in the top byte, below it `bits` for each variable, variable 0 lowest.
+/// How exponents are packed: the degree in the top byte, below it `bits` for each variable,
+/// variable 0 lowest.
 ///
-/// Packed monomials multiply by addition and compare by degree, then by the exponents of the last variables first: the order of
-/// [`TaylorSpace`](super::TaylorSpace).
+/// Packed monomials multiply by addition and compare by degree, then by the exponents of the last
+/// variables first: the order of [`TaylorSpace`](super::TaylorSpace).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Packing {
     bits: u32,

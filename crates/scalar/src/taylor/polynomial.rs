@@ -9,16 +9,20 @@ use crate::Scalar;
 
 /// A polynomial in a [`TaylorSpace`]: terms of total degree above the order are cut off.
 ///
-/// The variables are offsets from an expansion point; where they are angles' sines or a robot's velocities is the user's to know. Three forms, chosen as
-/// results need: a constant, which belongs to every space, so that code written over [`Scalar`] can make one from a number; a sorted
-/// list of terms, for the sparse exact polynomials of a robot's M, g and c; and a dense series, as division makes it. Copies share memory until one is changed.
+/// The variables are offsets from an expansion point; where they are angles' sines or a robot's
+/// velocities is the user's to know. Three forms, chosen as results need: a constant, which belongs
+/// to every space, so that code written over [`Scalar`] can make one from a number; a sorted list
+/// of terms, for the sparse exact polynomials of a robot's M, g and c; and a dense series, as
+/// division makes it. Copies share memory until one is changed.
 ///
-/// Sums and products are truncated to the order; with coefficients of type [`Interval`](crate::Interval) each coefficient encloses the exact one.
+/// Sums and products are truncated to the order; with coefficients of type
+/// [`Interval`](crate::Interval) each coefficient encloses the exact one.
 ///
 /// # Panics
 ///
-/// Operations panic where operands belong to spaces that differ in variables or order, and where division or an elementary function would need a dense series that does not
-/// fit ([`TaylorSpace::check_dense`]).
+/// Operations panic where operands belong to spaces that differ in variables or order, and where
+/// division or an elementary function would need a dense series that does not fit
+/// ([`TaylorSpace::check_dense`]).
 ///
 /// # Examples
 ///
@@ -57,7 +61,11 @@ impl<C: Scalar> TaylorPolynomial<C> {
     /// The variable x_i, an offset from the expansion point.
     pub fn variable(space: &Arc<TaylorSpace>, i: usize) -> Self {
         assert!(i < space.variables(), "variable {i} of a space of {}", space.variables());
-        let terms = if space.order() == 0 { Vec::new() } else { vec![(space.packing.variable(i), C::one())] };
+        let terms = if space.order() == 0 {
+            Vec::new()
+        } else {
+            vec![(space.packing.variable(i), C::one())]
+        };
         Self::sparse(space, terms)
     }
 
@@ -84,15 +92,23 @@ impl<C: Scalar> TaylorPolynomial<C> {
     /// # Panics
     ///
     /// Where a term has not one exponent a variable.
-    pub fn from_terms(space: &Arc<TaylorSpace>, terms: impl IntoIterator<Item = TaylorTerm<C>>) -> Self {
+    pub fn from_terms(
+        space: &Arc<TaylorSpace>,
+        terms: impl IntoIterator<Item = TaylorTerm<C>>,
+    ) -> Self {
         let fits = |term: &TaylorTerm<C>| {
             assert_eq!(term.exponents.len(), space.variables(), "one exponent a variable");
             term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() <= space.order()
         };
         let key = |exponents: &[u8]| -> u128 {
-            exponents.iter().enumerate().map(|(i, e)| u128::from(*e) * space.packing.variable(i)).sum()
+            exponents
+                .iter()
+                .enumerate()
+                .map(|(i, e)| u128::from(*e) * space.packing.variable(i))
+                .sum()
         };
-        let all = terms.into_iter().filter(fits).map(|term| (key(&term.exponents), term.coefficient));
+        let all =
+            terms.into_iter().filter(fits).map(|term| (key(&term.exponents), term.coefficient));
         Self::sparse(space, sparse::collected(all.collect()))
     }
 
@@ -130,11 +146,14 @@ impl<C: Scalar> TaylorPolynomial<C> {
         terms
     }
 
-    /// The non-zero terms, by degree, then by the exponents of the last variables. A constant's term has no exponents.
+    /// The non-zero terms, by degree, then by the exponents of the last variables. A constant's
+    /// term has no exponents.
     pub fn terms(&self) -> Vec<TaylorTerm<C>> {
         let exponents = |m: u128| match self.space() {
             None => Vec::new(),
-            Some(space) => (0..space.variables()).map(|i| space.packing.exponent(m, i) as u8).collect(),
+            Some(space) => {
+                (0..space.variables()).map(|i| space.packing.exponent(m, i) as u8).collect()
+            }
         };
         let mut terms = Vec::new();
         self.for_each_term(|m, c| {
@@ -162,11 +181,18 @@ impl<C: Scalar> TaylorPolynomial<C> {
     /// The coefficient of the monomial with the given exponents; zero where there is no such term.
     pub fn coefficient(&self, exponents: &[u8]) -> C {
         let Some(space) = self.space() else {
-            return if exponents.iter().all(|e| *e == 0) { self.constant_term() } else { C::zero() };
+            return if exponents.iter().all(|e| *e == 0) {
+                self.constant_term()
+            } else {
+                C::zero()
+            };
         };
         let mut found = C::zero();
-        let wanted: u128 =
-            exponents.iter().enumerate().map(|(i, e)| u128::from(*e) * space.packing.variable(i)).sum();
+        let wanted: u128 = exponents
+            .iter()
+            .enumerate()
+            .map(|(i, e)| u128::from(*e) * space.packing.variable(i))
+            .sum();
         self.for_each_term(|m, c| {
             if m == wanted {
                 found = c.clone();

@@ -1,4 +1,5 @@
-//! The space that truncated polynomials live in: how many variables, to which order, and how monomials are numbered.
+//! The space that truncated polynomials live in: how many variables, to which order, and how
+//! monomials are numbered.
 
 use std::sync::{Arc, OnceLock};
 
@@ -13,9 +14,10 @@ const MOST_ENTRIES: u128 = 1 << 28;
 
 /// Polynomials of k variables truncated at total degree p (Liu & Althoff, IROS 2018, Definition 3).
 ///
-/// Monomials of one degree are ordered by their exponents, that of the last variable first, so that those of degree 1 are
-/// x_0, x_1, ...; a dense series stores block after block of one degree. A product of two blocks is driven by a table that gives the place of
-/// each product of two monomials; tables are made when first used.
+/// Monomials of one degree are ordered by their exponents, that of the last variable first, so that
+/// those of degree 1 are x_0, x_1, ...; a dense series stores block after block of one degree. A
+/// product of two blocks is driven by a table that gives the place of each product of two
+/// monomials; tables are made when first used.
 ///
 /// # Examples
 ///
@@ -33,7 +35,8 @@ pub struct TaylorSpace {
     variables: usize,
     order: u32,
     pub(crate) packing: Packing,
-    /// Where the block of each degree starts in a dense series; one entry more than there are degrees. Empty where no dense series fits.
+    /// Where the block of each degree starts in a dense series; one entry more than there are
+    /// degrees. Empty where no dense series fits.
     offsets: Vec<usize>,
     factors: Vec<OnceLock<Box<[u8]>>>,
     tables: Vec<OnceLock<Box<[u32]>>>,
@@ -87,11 +90,14 @@ fn remedy(most: u32) -> String {
 /// A size in words.
 fn size_in_words(count: u128) -> String {
     let units = ["B", "kB", "MB", "GB", "TB", "PB"];
-    let unit = (0..units.len() - 1).find(|u| count < 1000u128.pow(*u as u32 + 1)).unwrap_or(units.len() - 1);
+    let unit = (0..units.len() - 1)
+        .find(|u| count < 1000u128.pow(*u as u32 + 1))
+        .unwrap_or(units.len() - 1);
     format!("{:.1} {}", count as f64 / 1000f64.powi(unit as i32), units[unit])
 }
 
-/// Number of monomials of exactly `degree` in `variables` variables, or `u128::MAX` where that is too many to tell.
+/// Number of monomials of exactly `degree` in `variables` variables, or `u128::MAX` where that is
+/// too many to tell.
 pub(super) fn monomials(variables: usize, degree: u32) -> u128 {
     match variables {
         0 => u128::from(degree == 0),
@@ -109,8 +115,9 @@ fn binomial(n: u128, k: u128) -> u128 {
 fn dense_size(variables: usize, order: u32) -> (u128, u128) {
     let count = |degree| monomials(variables, degree);
     let coefficients = (0..=order).fold(0u128, |sum, d| sum.saturating_add(count(d)));
-    let pair =
-        |i: u32| (i..=order - i).fold(0u128, |sum, j| sum.saturating_add(count(i).saturating_mul(count(j))));
+    let pair = |i: u32| {
+        (i..=order - i).fold(0u128, |sum, j| sum.saturating_add(count(i).saturating_mul(count(j))))
+    };
     let entries = (1..=order / 2).fold(0u128, |sum, i| sum.saturating_add(pair(i)));
     (coefficients, entries)
 }
@@ -123,11 +130,13 @@ fn fits(variables: usize, order: u32) -> bool {
 impl TaylorSpace {
     /// The space of polynomials of `variables` variables to total degree `order`.
     ///
-    /// Sparse polynomials always fit; whether a dense series does says [`check_dense`](Self::check_dense).
+    /// Sparse polynomials always fit; whether a dense series does says
+    /// [`check_dense`](Self::check_dense).
     ///
     /// # Errors
     ///
-    /// When the exponents of a monomial do not fit 120 bits: order 15 is the most for 28 variables, 31 for 24, 255 for 15 or fewer.
+    /// When the exponents of a monomial do not fit 120 bits: order 15 is the most for 28 variables,
+    /// 31 for 24, 255 for 15 or fewer.
     pub fn new(variables: usize, order: u32) -> Result<Arc<Self>, TaylorSpaceError> {
         let packing = Packing::new(variables).ok_or(TaylorSpaceError::Variables { variables })?;
         let most = packing.largest_exponent();
@@ -207,12 +216,14 @@ impl TaylorSpace {
         self.offsets[degree as usize]..self.offsets[degree as usize + 1]
     }
 
-    /// The monomials of one degree in order, each as its factors x_v with falling v: `degree` bytes a monomial.
+    /// The monomials of one degree in order, each as its factors x_v with falling v: `degree` bytes
+    /// a monomial.
     pub(super) fn factors(&self, degree: u32) -> &[u8] {
         self.factors[degree as usize].get_or_init(|| list_factors(self.variables, degree as usize))
     }
 
-    /// Place of the product of monomial a of degree i and monomial b of degree j in the block of degree i + j, at a · (size of block j) + b; i ≤ j.
+    /// Place of the product of monomial a of degree i and monomial b of degree j in the block of
+    /// degree i + j, at a · (size of block j) + b; i ≤ j.
     pub(crate) fn table(&self, i: u32, j: u32) -> &[u32] {
         debug_assert!(1 <= i && i <= j && i + j <= self.order);
         let at = i as usize * (self.order as usize + 1) + j as usize;
@@ -251,8 +262,8 @@ fn list_factors(variables: usize, degree: usize) -> Box<[u8]> {
     list.into()
 }
 
-/// The combinatorial number system: the monomial x_{v_0} x_{v_1} ... with v_0 ≥ v_1 ≥ ... of degree d has the place Σ_t N(v_t, d - t), where N(m, r) monomials of
-/// degree r have m variables.
+/// The combinatorial number system: the monomial x_{v_0} x_{v_1} ... with v_0 ≥ v_1 ≥ ... of degree
+/// d has the place Σ_t N(v_t, d - t), where N(m, r) monomials of degree r have m variables.
 struct Weights {
     variables: usize,
     degree: usize,
@@ -269,7 +280,8 @@ impl Weights {
     fn place_of_product<'a>(&self, mut a: &'a [u8], mut b: &'a [u8]) -> u32 {
         let mut place = 0;
         for rest in (1..=self.degree).rev() {
-            let largest = if b.is_empty() || !a.is_empty() && a[0] >= b[0] { &mut a } else { &mut b };
+            let largest =
+                if b.is_empty() || !a.is_empty() && a[0] >= b[0] { &mut a } else { &mut b };
             place += self.count[rest * self.variables + usize::from(largest[0])];
             *largest = &largest[1..];
         }
@@ -306,9 +318,12 @@ mod tests {
 
     #[test]
     fn sizes_are_those_of_the_literature() {
-        for (variables, order, coefficients, products) in
-            [(6, 6, 924, 18_564), (12, 4, 1_820, 20_475), (24, 3, 2_925, 20_825), (24, 4, 20_475, 270_725)]
-        {
+        for (variables, order, coefficients, products) in [
+            (6, 6, 924, 18_564),
+            (12, 4, 1_820, 20_475),
+            (24, 3, 2_925, 20_825),
+            (24, 4, 20_475, 270_725),
+        ] {
             assert_eq!(dense_size(variables, order).0, coefficients);
             let pairs: u128 = (0..=order)
                 .flat_map(|i| (0..=order - i).map(move |j| (i, j)))
@@ -322,7 +337,10 @@ mod tests {
     fn what_does_not_fit_says_what_does() {
         let space = TaylorSpace::new(24, 12).unwrap();
         let error = space.check_dense().unwrap_err().to_string();
-        assert!(error.contains("1251677700 coefficients") && error.contains("order 7 fits"), "{error}");
+        assert!(
+            error.contains("1251677700 coefficients") && error.contains("order 7 fits"),
+            "{error}"
+        );
         let error = TaylorSpace::new(28, 16).unwrap_err().to_string();
         assert!(error.contains("order 15 at most"), "{error}");
         assert!(TaylorSpace::new(0, 2).is_err() && TaylorSpace::new(121, 1).is_err());

@@ -5,13 +5,15 @@ use super::monomial::Packing;
 use super::space::TaylorSpace;
 use crate::Scalar;
 
-/// A packed monomial and its coefficient. Lists of terms are sorted by monomial, each at most once, none with coefficient zero.
+/// A packed monomial and its coefficient. Lists of terms are sorted by monomial, each at most once,
+/// none with coefficient zero.
 pub(super) type Term<C> = (u128, C);
 
 /// A product by as few terms as this is merged term by term, one by more is collected and sorted.
 const FEW: usize = 4;
 
-/// Products of terms that are collected before they are sorted, so that memory stays near that of the result.
+/// Products of terms that are collected before they are sorted, so that memory stays near that of
+/// the result.
 const CHUNK: usize = 1 << 20;
 
 /// a + b, or a - b where `minus`.
@@ -56,13 +58,18 @@ pub(super) fn sum_by<C: Scalar>(
 }
 
 /// a b, truncated at the space's order.
-pub(super) fn product<C: Scalar>(space: &TaylorSpace, a: &[Term<C>], b: &[Term<C>]) -> Vec<Term<C>> {
+pub(super) fn product<C: Scalar>(
+    space: &TaylorSpace,
+    a: &[Term<C>],
+    b: &[Term<C>],
+) -> Vec<Term<C>> {
     let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
     if few.len() <= FEW {
         let rows = few.iter().map(|x| times_term(space, x, many));
         return rows.reduce(|p, q| sum(&p, &q, false)).unwrap_or_default();
     }
-    let (mut done, mut open) = (Vec::new(), Vec::with_capacity(a.len().saturating_mul(b.len()).min(CHUNK)));
+    let (mut done, mut open) =
+        (Vec::new(), Vec::with_capacity(a.len().saturating_mul(b.len()).min(CHUNK)));
     for x in few {
         open.extend(times_term_lazily(space, x, many));
         if open.len() >= CHUNK {

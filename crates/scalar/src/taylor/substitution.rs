@@ -10,9 +10,11 @@ use super::sparse::{self, Term};
 use crate::Scalar;
 
 impl<C: Scalar> TaylorPolynomial<C> {
-    /// The value at offsets `at` from the expansion point, one a variable, by Horner's rule; over any scalar that coefficients turn into.
+    /// The value at offsets `at` from the expansion point, one a variable, by Horner's rule; over
+    /// any scalar that coefficients turn into.
     ///
-    /// With polynomials as arguments this is composition, truncated in their space: exact to its order where they are.
+    /// With polynomials as arguments this is composition, truncated in their space: exact to its
+    /// order where they are.
     ///
     /// # Guarantee
     ///
@@ -32,8 +34,12 @@ impl<C: Scalar> TaylorPolynomial<C> {
     pub fn derivative(&self, i: usize) -> Self {
         match &self.form {
             Form::Constant(_) => Self::constant(C::zero()),
-            Form::Sparse(space, terms) => Self::sparse(space, sparse::derivative(space.packing, terms, i)),
-            Form::Dense(space, coefficients) => Self::dense(space, dense::derivative(space, coefficients, i)),
+            Form::Sparse(space, terms) => {
+                Self::sparse(space, sparse::derivative(space.packing, terms, i))
+            }
+            Form::Dense(space, coefficients) => {
+                Self::dense(space, dense::derivative(space, coefficients, i))
+            }
         }
     }
 
@@ -45,7 +51,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self::sparse(&space, terms)
     }
 
-    /// The same polynomial about another point: f(x + h) as a polynomial in x. Exact but for rounding, for the degree does not rise.
+    /// The same polynomial about another point: f(x + h) as a polynomial in x. Exact but for
+    /// rounding, for the degree does not rise.
     ///
     /// # Panics
     ///
@@ -60,20 +67,25 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self::sparse(&space, terms)
     }
 
-    /// The polynomial in another space, variable i becoming variable `places[i]`; terms above that space's order are cut off.
+    /// The polynomial in another space, variable i becoming variable `places[i]`; terms above that
+    /// space's order are cut off.
     ///
     /// # Panics
     ///
     /// Where `places` names a variable that the space does not have.
     pub fn embedded(&self, space: &Arc<TaylorSpace>, places: &[usize]) -> Self {
         let Some(own) = self.space() else { return self.clone() };
-        assert!(places.iter().all(|p| *p < space.variables()), "a place beyond the space's variables");
+        assert!(
+            places.iter().all(|p| *p < space.variables()),
+            "a place beyond the space's variables"
+        );
         let mut factors = Vec::new();
         let mut terms = Vec::new();
         self.for_each_term(|m, c| {
             if own.packing.degree(m) <= space.order() {
                 own.packing.factors(m, &mut factors);
-                let key = factors.iter().map(|v| space.packing.variable(places[usize::from(*v)])).sum();
+                let key =
+                    factors.iter().map(|v| space.packing.variable(places[usize::from(*v)])).sum();
                 terms.push((key, c.clone()));
             }
         });
@@ -81,8 +93,14 @@ impl<C: Scalar> TaylorPolynomial<C> {
     }
 }
 
-/// Horner's rule in the variable before `end` and those below it; terms sorted by the exponents of the last variables.
-fn horner<C: Scalar, T: Scalar + From<C>>(space: &TaylorSpace, terms: &[Term<C>], end: usize, at: &[T]) -> T {
+/// Horner's rule in the variable before `end` and those below it; terms sorted by the exponents of
+/// the last variables.
+fn horner<C: Scalar, T: Scalar + From<C>>(
+    space: &TaylorSpace,
+    terms: &[Term<C>],
+    end: usize,
+    at: &[T],
+) -> T {
     let packing = space.packing;
     let Some((highest, c)) = terms.last() else { return T::zero() };
     let Some(i) = (0..end).rev().find(|i| packing.exponent(*highest, *i) > 0) else {
@@ -103,16 +121,23 @@ fn horner<C: Scalar, T: Scalar + From<C>>(space: &TaylorSpace, terms: &[Term<C>]
 }
 
 /// x_i replaced by x_i + h.
-fn shifted_terms<C: Scalar>(space: &TaylorSpace, terms: &[Term<C>], i: usize, h: &C) -> Vec<Term<C>> {
+fn shifted_terms<C: Scalar>(
+    space: &TaylorSpace,
+    terms: &[Term<C>],
+    i: usize,
+    h: &C,
+) -> Vec<Term<C>> {
     let packing = space.packing;
     let mut all = Vec::with_capacity(2 * terms.len());
     for (m, c) in terms {
         let mut binomial = c.clone();
         let (mut key, mut exponent) = (*m, packing.exponent(*m, i));
         all.push((key, c.clone()));
-        // C(e, j) h^{e-j} from one j to the next lower; a ratio of integers below 2^53 is exact enough only if multiplied first.
+        // C(e, j) h^{e-j} from one j to the next lower; a ratio of integers below 2^53 is exact
+        // enough only if multiplied first.
         for step in 1..=packing.exponent(*m, i) {
-            binomial = binomial * h.clone() * C::from(f64::from(exponent)) / C::from(f64::from(step));
+            binomial =
+                binomial * h.clone() * C::from(f64::from(exponent)) / C::from(f64::from(step));
             key -= packing.variable(i);
             exponent -= 1;
             all.push((key, binomial.clone()));

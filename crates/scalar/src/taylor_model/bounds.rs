@@ -1,13 +1,15 @@
-//! Bounds of polynomials over [-1, 1]^k, where a monomial is at most 1 in magnitude and one with even exponents lies in [0, 1].
+//! Bounds of polynomials over [-1, 1]^k, where a monomial is at most 1 in magnitude and one with
+//! even exponents lies in [0, 1].
 
 use crate::taylor::Form;
 use crate::{Interval, TaylorPolynomial, TaylorSpace};
 
-/// A bound of the exact value of a sum of non-negative numbers and products of two that was computed as x, in which no number went through
-/// more than `operations` roundings.
+/// A bound of the exact value of a sum of non-negative numbers and products of two that was
+/// computed as x, in which no number went through more than `operations` roundings.
 ///
-/// Each rounding takes a factor 1/(1 - u) at most, u = ε/2; k of them less than 1 + 2ku for ku < 1/2. The two more of ε each cover this product's own
-/// rounding. Underflow costs less than 2⁻¹⁰⁷⁵ a product, of which [`f64::MIN_POSITIVE`] covers 2⁵².
+/// Each rounding takes a factor 1/(1 - u) at most, u = ε/2; k of them less than 1 + 2ku for ku <
+/// 1/2. The two more of ε each cover this product's own rounding. Underflow costs less than 2⁻¹⁰⁷⁵
+/// a product, of which [`f64::MIN_POSITIVE`] covers 2⁵².
 pub(super) fn inflated(x: f64, operations: usize) -> f64 {
     if operations == 0 { x } else { x * (1.0 + (operations + 2) as f64 * f64::EPSILON) }
 }
@@ -34,10 +36,12 @@ pub(super) fn magnitude(c: &[f64]) -> f64 {
     inflated(sum, chunks.len() + 2 * LANES)
 }
 
-/// Norms of the degrees from 31 on are kept together: models of a higher order have wider remainders than they need.
+/// Norms of the degrees from 31 on are kept together: models of a higher order have wider
+/// remainders than they need.
 const DEGREES: usize = 32;
 
-/// Upper bounds of Σ |c| over the terms of each degree, which bounds the sum of these terms over [-1, 1]^k.
+/// Upper bounds of Σ |c| over the terms of each degree, which bounds the sum of these terms over
+/// [-1, 1]^k.
 pub(super) struct Norms {
     of_degree: [f64; DEGREES],
     /// So many are not zero by storage.
@@ -86,8 +90,8 @@ impl Norms {
         self.of_degree[..DEGREES - 1].get(degree as usize).copied().unwrap_or(0.0)
     }
 
-    /// Bounds the terms of the product of degree above `order`, but for products of two terms of degree `except` whose norm [`of`](Self::of)
-    /// tells.
+    /// Bounds the terms of the product of degree above `order`, but for products of two terms of
+    /// degree `except` whose norm [`of`](Self::of) tells.
     pub fn cut_off(&self, other: &Self, order: u32, except: u32) -> f64 {
         let (order, last) = (order as usize, DEGREES - 1);
         let except = if except as usize == last { usize::MAX } else { except as usize };
@@ -107,7 +111,8 @@ impl Norms {
     }
 }
 
-/// Sums over the terms of a polynomial but the constant: |c|, and |c| < 0 and c > 0 where all exponents are even.
+/// Sums over the terms of a polynomial but the constant: |c|, and |c| < 0 and c > 0 where all
+/// exponents are even.
 #[derive(Default)]
 struct Parts {
     all: f64,
@@ -143,7 +148,11 @@ pub(super) fn range(p: &TaylorPolynomial<f64>) -> Interval {
         Form::Sparse(space, terms) => sparse_parts(space, terms),
         Form::Dense(space, coefficients) => dense_parts(space, coefficients),
     };
-    if parts.all < LARGEST { Interval::point(p.constant_term()) + parts.range() } else { Interval::ENTIRE }
+    if parts.all < LARGEST {
+        Interval::point(p.constant_term()) + parts.range()
+    } else {
+        Interval::ENTIRE
+    }
 }
 
 fn sparse_parts(space: &TaylorSpace, terms: &[(u128, f64)]) -> Parts {

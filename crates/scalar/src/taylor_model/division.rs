@@ -4,9 +4,11 @@ use super::TaylorModel;
 use crate::Interval;
 
 impl TaylorModel {
-    /// self / divisor, a posteriori: for any polynomial Q, self / divisor = Q + (self - divisor Q) / divisor.
+    /// self / divisor, a posteriori: for any polynomial Q, self / divisor = Q + (self - divisor Q)
+    /// / divisor.
     ///
-    /// Q is the series of the quotient of the polynomials; the defect is what it was cut off by, rounding and both remainders.
+    /// Q is the series of the quotient of the polynomials; the defect is what it was cut off by,
+    /// rounding and both remainders.
     pub(super) fn quotient(&self, divisor: &Self) -> Self {
         match divisor.as_number() {
             Some(0.0) => return Self::unknown(),

@@ -6,8 +6,9 @@ use crate::{Elementary, Interval};
 impl TaylorModel {
     /// f(self), where `series(x, n)` encloses f^(i)(ξ) / i! for every ξ of x and i = 0, ..., n.
     ///
-    /// With c near the middle of the values a and δ = a - c: f(a) = Σ f^(i)(c)/i! δ^i + f^(p+1)(ξ)/(p+1)! δ^(p+1), i ≤ p, where ξ is between c and a. The sum is
-    /// formed by Horner's rule over models.
+    /// With c near the middle of the values a and δ = a - c: f(a) = Σ f^(i)(c)/i! δ^i +
+    /// f^(p+1)(ξ)/(p+1)! δ^(p+1), i ≤ p, where ξ is between c and a. The sum is formed by Horner's
+    /// rule over models.
     fn composed(&self, series: impl Fn(Interval, u32) -> Vec<Interval>) -> Self {
         let values = |x| Self::from(series(x, 0)[0]);
         let Some(space) = self.polynomial.space() else { return values(self.range()) };
@@ -74,7 +75,9 @@ fn arctangent(x: Interval, n: u32) -> Vec<Interval> {
     let cos = angle.cos();
     let term = |i: u32| match i {
         0 => angle,
-        _ => cos.powi(i as i32) * ((angle + Interval::FRAC_PI_2) * f64::from(i)).sin() / f64::from(i),
+        _ => {
+            cos.powi(i as i32) * ((angle + Interval::FRAC_PI_2) * f64::from(i)).sin() / f64::from(i)
+        }
     };
     (0..=n).map(term).collect()
 }
@@ -83,8 +86,8 @@ fn arctangent(x: Interval, n: u32) -> Vec<Interval> {
 ///
 /// # Guarantee
 ///
-/// Outer. Where a function is not smooth over the values (a root of zero, a logarithm of zero, an angle at the cut or the origin) the result is the
-/// interval of its values.
+/// Outer. Where a function is not smooth over the values (a root of zero, a logarithm of zero, an
+/// angle at the cut or the origin) the result is the interval of its values.
 impl Elementary for TaylorModel {
     fn sqrt(&self) -> Self {
         let values = self.range();
@@ -118,7 +121,8 @@ impl Elementary for TaylorModel {
         (sine(0), sine(1))
     }
 
-    /// φ + atan z for a φ within a right angle of all values, where z is the tangent of the angle that is left after turning back by φ.
+    /// φ + atan z for a φ within a right angle of all values, where z is the tangent of the angle
+    /// that is left after turning back by φ.
     ///
     /// Both sides then differ by a multiple of 2π, and by less than π.
     fn atan2(&self, x: &Self) -> Self {

@@ -13,25 +13,32 @@ pub use taylor_box::TaylorBox;
 
 use crate::{Interval, Powers, TaylorPolynomial};
 
-/// A function over a box as a truncated polynomial plus an interval that holds the rest, wherever in the box.
+/// A function over a box as a truncated polynomial plus an interval that holds the rest, wherever
+/// in the box.
 ///
-/// The polynomial is one in t ∈ [-1, 1]^k, the box's coordinates: variable i of a [`TaylorBox`] is mid_i + rad_i t_i. Operations
-/// truncate it to the order of its [`TaylorSpace`](crate::TaylorSpace) and put into the remainder what was cut off and every rounding error. A number
-/// belongs to every space, so that dynamics written over [`Scalar`](crate::Scalar) runs over models.
+/// The polynomial is one in t ∈ [-1, 1]^k, the box's coordinates: variable i of a [`TaylorBox`] is
+/// mid_i + rad_i t_i. Operations truncate it to the order of its
+/// [`TaylorSpace`](crate::TaylorSpace) and put into the remainder what was cut off and every
+/// rounding error. A number belongs to every space, so that dynamics written over
+/// [`Scalar`](crate::Scalar) runs over models.
 ///
-/// What nothing is known of, as the quotient by a model whose range holds zero, has the remainder [`Interval::ENTIRE`]; coefficients are always finite.
+/// What nothing is known of, as the quotient by a model whose range holds zero, has the remainder
+/// [`Interval::ENTIRE`]; coefficients are always finite.
 ///
-/// Makino, Berz: Taylor models and other validated functional inclusion methods, Int. J. Pure Appl. Math. 4 (2003).
+/// Makino, Berz: Taylor models and other validated functional inclusion methods, Int. J. Pure Appl.
+/// Math. 4 (2003).
 ///
 /// # Guarantee
 ///
-/// Every operation is outer: at each point of the box the exact value of the operation, on any values that the operands
-/// enclose there, lies in polynomial + remainder. The polynomial is taken exactly: rounding is in the remainder.
+/// Every operation is outer: at each point of the box the exact value of the operation, on any
+/// values that the operands enclose there, lies in polynomial + remainder. The polynomial is taken
+/// exactly: rounding is in the remainder.
 ///
 /// # Panics
 ///
-/// As [`TaylorPolynomial`]: where operands belong to spaces that differ in variables or order, and where a quotient would need
-/// a dense series that does not fit ([`TaylorSpace::check_dense`](crate::TaylorSpace::check_dense)).
+/// As [`TaylorPolynomial`]: where operands belong to spaces that differ in variables or order, and
+/// where a quotient would need a dense series that does not fit
+/// ([`TaylorSpace::check_dense`](crate::TaylorSpace::check_dense)).
 ///
 /// # Examples
 ///
@@ -77,8 +84,9 @@ impl TaylorModel {
     ///
     /// # Guarantee
     ///
-    /// Outer; of the polynomial alone, exact but for rounding where its non-linear terms are squares of variables of their own. Terms whose
-    /// exponents are all even are not negative, which is used.
+    /// Outer; of the polynomial alone, exact but for rounding where its non-linear terms are
+    /// squares of variables of their own. Terms whose exponents are all even are not negative,
+    /// which is used.
     pub fn range(&self) -> Interval {
         bounds::range(&self.polynomial) + self.remainder
     }
@@ -109,7 +117,11 @@ impl From<f64> for TaylorModel {
 impl From<TaylorPolynomial> for TaylorModel {
     /// The polynomial in t exactly; nothing is known where a coefficient is infinite or NaN.
     fn from(polynomial: TaylorPolynomial) -> Self {
-        if polynomial.is_finite() { Self { polynomial, remainder: Interval::ZERO } } else { Self::unknown() }
+        if polynomial.is_finite() {
+            Self { polynomial, remainder: Interval::ZERO }
+        } else {
+            Self::unknown()
+        }
     }
 }
 

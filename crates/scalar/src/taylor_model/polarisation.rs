@@ -4,14 +4,17 @@ use super::bounds::inflated;
 use crate::taylor::Form;
 use crate::{Interval, TaylorPolynomial};
 
-/// The values over [-1, 1]^k of the product x y of the terms of one degree of two polynomials of a space, of which the norms Σ |x_α|, Σ |y_α| are known.
+/// The values over [-1, 1]^k of the product x y of the terms of one degree of two polynomials of a
+/// space, of which the norms Σ |x_α|, Σ |y_α| are known.
 ///
-/// x y = ((x + ν y)² - (x - ν y)²) / 4ν for any ν > 0. With ν = N(x) / N(y) that lies in the ±N(x) N(y) which the norms alone tell, is nearly
-/// free of negative numbers where x and y are nearly multiples of each other, as in a square, and costs no more than the norms.
+/// x y = ((x + ν y)² - (x - ν y)²) / 4ν for any ν > 0. With ν = N(x) / N(y) that lies in the ±N(x)
+/// N(y) which the norms alone tell, is nearly free of negative numbers where x and y are nearly
+/// multiples of each other, as in a square, and costs no more than the norms.
 ///
 /// # Guarantee
 ///
-/// Outer. N(x ± ν y) is computed with two roundings a term, which is less than 2ε (N(x) + ν N(y)) in all.
+/// Outer. N(x ± ν y) is computed with two roundings a term, which is less than 2ε (N(x) + ν N(y))
+/// in all.
 pub(super) fn product_of_parts(
     x: &TaylorPolynomial,
     y: &TaylorPolynomial,
@@ -33,7 +36,8 @@ pub(super) fn product_of_parts(
         .unwrap_or(by_norms)
 }
 
-/// N(x + ν y) and N(x - ν y) of the terms of one degree, up to rounding of their terms; `None` where one polynomial is dense and the other is not.
+/// N(x + ν y) and N(x - ν y) of the terms of one degree, up to rounding of their terms; `None`
+/// where one polynomial is dense and the other is not.
 fn norms_of_sum_and_difference(
     x: &TaylorPolynomial,
     y: &TaylorPolynomial,
@@ -57,7 +61,8 @@ fn norms_of_sum_and_difference(
         }
         (Form::Sparse(space, x), Form::Sparse(_, y)) => {
             let of_degree = |terms: &[(u128, f64)]| {
-                let below = |degree| terms.partition_point(|(m, _)| space.packing.degree(*m) < degree);
+                let below =
+                    |degree| terms.partition_point(|(m, _)| space.packing.degree(*m) < degree);
                 below(degree)..below(degree + 1)
             };
             merge(&x[of_degree(x)], &y[of_degree(y)], add);

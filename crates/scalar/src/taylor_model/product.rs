@@ -31,7 +31,8 @@ impl TaylorModel {
             return Self::from(self.range() * other.range());
         }
         let order = a.space().or(b.space()).map_or(0, |space| space.order());
-        // Of the products that are cut off, those of two parts of the lowest such degree weigh most.
+        // Of the products that are cut off, those of two parts of the lowest such degree weigh
+        // most.
         let degree = order / 2 + 1;
         let parts = product_of_parts(a, b, degree, [&x, &y].map(|norms| norms.of(degree)));
         let left_out = add_up(x.cut_off(&y, order, degree), rounding_error(&x, &y, order, bound));
@@ -60,7 +61,8 @@ impl TaylorModel {
 
     /// self / k for a finite k that is not zero.
     pub(super) fn divided(&self, k: f64) -> Self {
-        let Some(error) = scaling_error(&self.polynomial, k.recip().abs(), is_power_of_two(k)) else {
+        let Some(error) = scaling_error(&self.polynomial, k.recip().abs(), is_power_of_two(k))
+        else {
             return Self::from(self.range() / Interval::point(k));
         };
         let quotient = self.polynomial.map_coefficients(|c| c / k);
@@ -68,9 +70,11 @@ impl TaylorModel {
     }
 }
 
-/// A bound of what rounding the coefficients times about k changes in total; `None` where one might overflow.
+/// A bound of what rounding the coefficients times about k changes in total; `None` where one might
+/// overflow.
 ///
-/// Each is rounded once, within ε/2 of itself, and within 2⁻¹⁰⁷⁵ where it underflows; with a power of two, only underflow is an error.
+/// Each is rounded once, within ε/2 of itself, and within 2⁻¹⁰⁷⁵ where it underflows; with a power
+/// of two, only underflow is an error.
 fn scaling_error(p: &TaylorPolynomial, k: f64, is_power_of_two: bool) -> Option<Interval> {
     let sum = mul_up(Norms::new(p).total(), k);
     if sum > LARGEST || !k.is_normal() {
@@ -105,13 +109,17 @@ fn is_power_of_two(k: f64) -> bool {
     k.is_normal() && k.to_bits() & ((1 << 52) - 1) == 0
 }
 
-/// A bound of what rounding changes in a product of polynomials of which the product of norms is `bound`.
+/// A bound of what rounding changes in a product of polynomials of which the product of norms is
+/// `bound`.
 ///
-/// The coefficient of a monomial m is a sum of products a_α b_β, α + β = m, in some order. At most S of them are not zero: no more than either
-/// factor has terms, and no more than m has divisors, which is 2^p at most. In whatever order they are summed, a product is rounded once
-/// itself and in S - 1 additions at most (adding zero is exact), so it enters with a factor 1 + θ, |θ| ≤ γ = S u / (1 - S u), u = ε/2 (Higham,
-/// Accuracy and Stability of Numerical Algorithms, Lemma 3.1). Over [-1, 1]^k the errors sum up to γ Σ |a_α| |b_β| ≤ γ N(a) N(b) at most, and
-/// γ ≤ (S + 1) u for S < 2²⁵, γ ≤ 2 S u for S < 2⁵². A product that underflows costs 2⁻¹⁰⁷⁵ more; there are fewer than 2⁵² products.
+/// The coefficient of a monomial m is a sum of products a_α b_β, α + β = m, in some order. At most
+/// S of them are not zero: no more than either factor has terms, and no more than m has divisors,
+/// which is 2^p at most. In whatever order they are summed, a product is rounded once itself and in
+/// S - 1 additions at most (adding zero is exact), so it enters with a factor 1 + θ, |θ| ≤ γ = S u
+/// / (1 - S u), u = ε/2 (Higham, Accuracy and Stability of Numerical Algorithms, Lemma 3.1). Over
+/// [-1, 1]^k the errors sum up to γ Σ |a_α| |b_β| ≤ γ N(a) N(b) at most, and γ ≤ (S + 1) u for S <
+/// 2²⁵, γ ≤ 2 S u for S < 2⁵². A product that underflows costs 2⁻¹⁰⁷⁵ more; there are fewer than
+/// 2⁵² products.
 fn rounding_error(x: &Norms, y: &Norms, order: u32, bound: f64) -> f64 {
     let divisors = 1usize.checked_shl(order).unwrap_or(usize::MAX);
     let summands = x.terms.min(y.terms).min(divisors);

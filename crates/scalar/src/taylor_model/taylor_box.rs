@@ -46,11 +46,13 @@ impl TaylorBox {
         &self.sides
     }
 
-    /// Variable i: mid + rad t_i. A point is a constant; of a side without end nothing more is known.
+    /// Variable i: mid + rad t_i. A point is a constant; of a side without end nothing more is
+    /// known.
     ///
     /// # Guarantee
     ///
-    /// Exact, without a remainder, where the side is bounded and the order not 0; t_i in [-1, 1] reaches every point of the side.
+    /// Exact, without a remainder, where the side is bounded and the order not 0; t_i in [-1, 1]
+    /// reaches every point of the side.
     pub fn variable(&self, i: usize) -> TaylorModel {
         let (side, order) = (self.sides[i], self.space.order());
         let (mid, rad) = (side.mid(), side.rad());
@@ -71,7 +73,8 @@ impl TaylorBox {
     ///
     /// # Guarantee
     ///
-    /// Outer, for every point of `at` as a box; [`Interval::ENTIRE`] where that is not part of this box, for a model says nothing beyond.
+    /// Outer, for every point of `at` as a box; [`Interval::ENTIRE`] where that is not part of this
+    /// box, for a model says nothing beyond.
     ///
     /// # Panics
     ///
@@ -81,7 +84,8 @@ impl TaylorBox {
         if !self.sides.iter().zip(at).all(|(side, x)| side.encloses(x)) {
             return Interval::ENTIRE;
         }
-        let t: Vec<Interval> = self.sides.iter().zip(at).map(|(side, x)| coordinate(*side, *x)).collect();
+        let t: Vec<Interval> =
+            self.sides.iter().zip(at).map(|(side, x)| coordinate(*side, *x)).collect();
         model.polynomial().evaluate(&t) + model.remainder()
     }
 }

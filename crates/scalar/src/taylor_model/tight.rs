@@ -1,4 +1,5 @@
-//! Tight bounds of polynomials over [-1, 1]^k: what is monotonic in a variable has its extremes where that is ±1, and what is not is halved.
+//! Tight bounds of polynomials over [-1, 1]^k: what is monotonic in a variable has its extremes
+//! where that is ±1, and what is not is halved.
 
 use super::TaylorModel;
 use super::bounds::{LARGEST, inflated};
@@ -16,12 +17,13 @@ const NEGLIGIBLE: f64 = 0.005;
 type Terms = Vec<(u128, f64)>;
 
 impl TaylorModel {
-    /// The values over the box, as [`range`](Self::range), and closer where the polynomial is monotonic in some variables or close to it in
-    /// parts of the box. It costs more.
+    /// The values over the box, as [`range`](Self::range), and closer where the polynomial is
+    /// monotonic in some variables or close to it in parts of the box. It costs more.
     ///
     /// # Guarantee
     ///
-    /// Outer. Exact but for rounding and the remainder where the polynomial is monotonic in each variable, by more than its non-linear terms.
+    /// Outer. Exact but for rounding and the remainder where the polynomial is monotonic in each
+    /// variable, by more than its non-linear terms.
     ///
     /// # Examples
     ///
@@ -93,8 +95,8 @@ impl Search<'_> {
         }
         let (bound, middle) = self.bound(&terms);
         self.best = self.best.max(middle);
-        let widest =
-            (0..self.slopes.len()).max_by(|i, j| self.slopes[*i].others.total_cmp(&self.slopes[*j].others));
+        let widest = (0..self.slopes.len())
+            .max_by(|i, j| self.slopes[*i].others.total_cmp(&self.slopes[*j].others));
         let is_enough = bound - self.best <= NEGLIGIBLE * self.total;
         match widest {
             Some(i) if depth > 0 && !is_enough && self.slopes[i].others > 0.0 => {
@@ -115,7 +117,9 @@ impl Search<'_> {
             self.space.packing.factors(*m, &mut self.factors);
             match self.factors[..] {
                 [i] => self.slopes[usize::from(i)].linear = *c,
-                _ => self.factors.iter().for_each(|i| self.slopes[usize::from(*i)].others += c.abs()),
+                _ => {
+                    self.factors.iter().for_each(|i| self.slopes[usize::from(*i)].others += c.abs())
+                }
             }
         }
         let count = terms.len() * self.space.order() as usize;
@@ -128,7 +132,8 @@ impl Search<'_> {
         let monotonic = || self.slopes.iter().enumerate().filter(|(_, slope)| slope.is_monotonic());
         let fixed = monotonic().fold(0, |bits, (i, _)| bits | packing.bits_of(i));
         let falling = monotonic().filter(|(_, slope)| slope.linear < 0.0);
-        let negative = falling.fold(0, |bits, (i, _)| bits | packing.bits_of(i) & packing.odd_exponents);
+        let negative =
+            falling.fold(0, |bits, (i, _)| bits | packing.bits_of(i) & packing.odd_exponents);
         for (m, c) in &mut terms {
             if (*m & negative).count_ones() % 2 == 1 {
                 *c = -*c;
@@ -149,7 +154,8 @@ impl Search<'_> {
             let exponent = packing.exponent(*m, i);
             let (mut key, mut choices) = (*m, 1.0);
             for step in 0..=exponent {
-                // c C(e, e - step) at^step / 2^(e - step), of which only the product with c is rounded up to e = 50.
+                // c C(e, e - step) at^step / 2^(e - step), of which only the product with c is
+                // rounded up to e = 50.
                 let factor = choices * at.powi(step as i32) * 0.5f64.powi((exponent - step) as i32);
                 all.push((key, c * factor));
                 key = if step < exponent { key - packing.variable(i) } else { key };
@@ -159,10 +165,12 @@ impl Search<'_> {
         self.collected(all, error)
     }
 
-    /// Terms of one monomial summed. The rounding of so many, and of three products in each, is added to the error.
+    /// Terms of one monomial summed. The rounding of so many, and of three products in each, is
+    /// added to the error.
     fn collected(&self, terms: Terms, error: &mut f64) -> Terms {
         let roundings = (terms.len() + 3) as f64;
-        let rounding = add_up(mul_up(roundings * f64::EPSILON, self.total), roundings * f64::MIN_POSITIVE);
+        let rounding =
+            add_up(mul_up(roundings * f64::EPSILON, self.total), roundings * f64::MIN_POSITIVE);
         *error = add_up(*error, rounding);
         collected(terms)
     }
@@ -201,8 +209,13 @@ mod tests {
     #[test]
     fn a_monotonic_polynomial_has_its_exact_range() {
         // From (-1, -1), where all but the square are below, to (1, 1).
-        let p =
-            polynomial(&[(&[0, 0], 1.0), (&[1, 0], 1.0), (&[0, 1], 2.0), (&[1, 1], 0.25), (&[2, 0], 0.125)]);
+        let p = polynomial(&[
+            (&[0, 0], 1.0),
+            (&[1, 0], 1.0),
+            (&[0, 1], 2.0),
+            (&[1, 1], 0.25),
+            (&[2, 0], 0.125),
+        ]);
         let range = p.tight_range();
         assert!(range.contains(4.375) && range.contains(-1.625), "{range:?}");
         assert!(range.width() < 6.0 + 1e-13 && p.range().width() > 6.1);
@@ -212,7 +225,9 @@ mod tests {
     fn what_turns_is_halved() {
         // x - x² has its maximum 1/4 at 1/2; 4x³ - 3x goes between -1 and 1 three times.
         let hill = polynomial(&[(&[1], 1.0), (&[2], -1.0)]).tight_range();
-        assert!(hill.hi() >= 0.25 && hill.hi() < 0.27 && hill.lo() <= -2.0 && hill.lo() > -2.0 - 1e-13);
+        assert!(
+            hill.hi() >= 0.25 && hill.hi() < 0.27 && hill.lo() <= -2.0 && hill.lo() > -2.0 - 1e-13
+        );
         let chebyshev = polynomial(&[(&[3], 4.0), (&[1], -3.0)]).tight_range();
         assert!(
             chebyshev.encloses(&Interval::centered(0.0, 1.0 - 1e-15)) && chebyshev.width() < 2.1,
@@ -241,7 +256,10 @@ mod tests {
             for _ in 0..200 {
                 let at: Vec<f64> = (0..3).map(|_| random().clamp(-0.5, 0.5) * 2.0).collect();
                 let value = p.polynomial().evaluate(&at);
-                assert!(tight.lo() - 1e-13 <= value && value <= tight.hi() + 1e-13, "{value} {tight:?}");
+                assert!(
+                    tight.lo() - 1e-13 <= value && value <= tight.hi() + 1e-13,
+                    "{value} {tight:?}"
+                );
             }
         }
     }

@@ -34,15 +34,22 @@ pub fn steps_from(x: f64, count: i32) -> f64 {
 
 /// Fails unless x encloses [lo, hi].
 pub fn assert_encloses(x: Interval, lo: &BigRational, hi: &BigRational) {
-    assert!(x.lo() == f64::NEG_INFINITY || exact(x.lo()) <= *lo, "lower end of {x:?} cuts off {lo}");
+    assert!(
+        x.lo() == f64::NEG_INFINITY || exact(x.lo()) <= *lo,
+        "lower end of {x:?} cuts off {lo}"
+    );
     assert!(x.hi() == f64::INFINITY || exact(x.hi()) >= *hi, "upper end of {x:?} cuts off {hi}");
 }
 
-/// Fails unless x encloses [lo, hi], with ends at most `slack` numbers wider than the tightest `f64` ends.
+/// Fails unless x encloses [lo, hi], with ends at most `slack` numbers wider than the tightest
+/// `f64` ends.
 pub fn assert_tight_enclosure(x: Interval, lo: &BigRational, hi: &BigRational, slack: i32) {
     assert_encloses(x, lo, hi);
     let (inner_lo, inner_hi) = (steps_from(x.lo(), slack + 1), steps_from(x.hi(), -slack - 1));
-    assert!(inner_lo == f64::INFINITY || exact(inner_lo) > *lo, "lower end of {x:?} is too wide for {lo}");
+    assert!(
+        inner_lo == f64::INFINITY || exact(inner_lo) > *lo,
+        "lower end of {x:?} is too wide for {lo}"
+    );
     assert!(
         inner_hi == f64::NEG_INFINITY || exact(inner_hi) < *hi,
         "upper end of {x:?} is too wide for {hi}"
@@ -59,7 +66,8 @@ pub fn ends(x: Interval) -> [BigRational; 2] {
     [exact(x.lo()), exact(x.hi())]
 }
 
-/// Finite numbers of every kind: any bits, subnormal, huge, near a power of two, whole, moderate, zero.
+/// Finite numbers of every kind: any bits, subnormal, huge, near a power of two, whole, moderate,
+/// zero.
 pub fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL | proptest::num::f64::ZERO,
@@ -78,7 +86,8 @@ pub fn any_number() -> impl Strategy<Value = f64> {
 pub fn any_pair() -> impl Strategy<Value = (f64, f64)> {
     let nearly_opposite = (any_number(), -3..=3_i32).prop_map(|(a, n)| (a, steps_from(-a, n)));
     let finite = |&(a, b): &(f64, f64)| a.is_finite() && b.is_finite();
-    prop_oneof![2 => (any_number(), any_number()), 1 => nearly_opposite].prop_filter("finite", finite)
+    prop_oneof![2 => (any_number(), any_number()), 1 => nearly_opposite]
+        .prop_filter("finite", finite)
 }
 
 /// Bounded intervals: points, narrow, wide, with and without zero.
@@ -114,12 +123,14 @@ pub fn truncated(x: &BigRational, bits: i32) -> BigRational {
 /// Bits behind the point of the references below.
 pub const REFERENCE_BITS: i32 = 300;
 
-/// An error bound of the references below; 2³⁰ of their last units cover every truncation on the way.
+/// An error bound of the references below; 2³⁰ of their last units cover every truncation on the
+/// way.
 pub fn reference_error() -> BigRational {
     power_of_two(30 - REFERENCE_BITS)
 }
 
-/// Σ (factor / 1) (factor / 2) … of 60 terms from `first`, the n-th term being the (n-1)-th times `factor` / divisor(n).
+/// Σ (factor / 1) (factor / 2) … of 60 terms from `first`, the n-th term being the (n-1)-th times
+/// `factor` / divisor(n).
 fn series(first: BigRational, factor: &BigRational, divisor: impl Fn(i64) -> i64) -> BigRational {
     let mut term = first;
     let mut sum = term.clone();

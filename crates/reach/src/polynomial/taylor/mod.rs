@@ -24,7 +24,8 @@ const TRIES: usize = 25;
 const ENLARGED: f64 = 0.1;
 const LEAST: f64 = 1e-290;
 
-/// The set {p(s) + e : s in [-1, 1]^N, e in E}: polynomials in the coordinates of the initial box, and offsets.
+/// The set {p(s) + e : s in [-1, 1]^N, e in E}: polynomials in the coordinates of the initial box,
+/// and offsets.
 #[derive(Debug, Clone)]
 pub(super) struct TaylorSet {
     /// Without remainders.
@@ -35,7 +36,8 @@ pub(super) struct TaylorSet {
 }
 
 impl TaylorSet {
-    /// A box, with polynomials to the order of the space to come; beyond that many generators of offsets, the oldest become a box.
+    /// A box, with polynomials to the order of the space to come; beyond that many generators of
+    /// offsets, the oldest become a box.
     pub fn new(space: &Arc<TaylorSpace>, sides: &[Interval], most_generators: usize) -> Self {
         let polynomials = TaylorBox::new(space, sides).variables();
         let ranges = polynomials.iter().map(TaylorModel::range).collect();
@@ -51,7 +53,8 @@ impl TaylorSet {
         self.ranges.iter().zip(self.offset.hull()).map(|(p, e)| *p + e)
     }
 
-    /// A zonotope around it: the linear terms, the offsets, and a box for the rest of the polynomials.
+    /// A zonotope around it: the linear terms, the offsets, and a box for the rest of the
+    /// polynomials.
     pub fn zonotope(&self) -> Zonotope {
         let n = self.ranges.len();
         let (mut center, mut columns) = (vec![0.0; n], vec![0.0; 2 * n * n]);
@@ -88,7 +91,8 @@ pub(super) struct TaylorStepper {
     tube: Vec<Interval>,
 }
 
-/// Bounds over the tube of a step of length h: h ∂f/∂x, and what the offset is driven by, the defect and the uncertain input.
+/// Bounds over the tube of a step of length h: h ∂f/∂x, and what the offset is driven by, the
+/// defect and the uncertain input.
 struct Bounds {
     a: IntervalMatrix,
     input: Vec<Interval>,
@@ -113,18 +117,25 @@ impl TaylorStepper {
 
     /// The set after a step of length h under the input u, which may change within it.
     ///
-    /// With P the series in time and e = x - P, ė = A e + B (u - u*) + d for some A and B among the derivatives of f between P and x and the
-    /// defect d: a linear system, of which the tube of e is found by containment.
+    /// With P the series in time and e = x - P, ė = A e + B (u - u*) + d for some A and B among the
+    /// derivatives of f between P and x and the defect d: a linear system, of which the tube of e
+    /// is found by containment.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn advance(&mut self, set: &mut TaylorSet, h: Interval, u: &[Interval]) -> Result<(), Exhausted> {
+    pub fn advance(
+        &mut self,
+        set: &mut TaylorSet,
+        h: Interval,
+        u: &[Interval],
+    ) -> Result<(), Exhausted> {
         let middle: Vec<f64> = u.iter().map(|u| u.mid()).collect();
         let series = TimeSeries::new(&self.monomials, set, &middle, h, self.order);
         let n = set.polynomials.len();
         let defect: Vec<_> = (0..n).map(|i| series.defect(i)).collect();
-        let bounds = self.contain(&series, &set.offset.hull().collect::<Vec<_>>(), &defect, h, u)?;
+        let bounds =
+            self.contain(&series, &set.offset.hull().collect::<Vec<_>>(), &defect, h, u)?;
         let (flow, change) = flow(&bounds.a);
         let driven: Vec<_> = defect.iter().zip(&bounds.input).map(|(d, b)| *d + *b).collect();
         let later = applied(&change, &driven);
@@ -161,11 +172,15 @@ impl TaylorStepper {
             }
             if guess.iter().zip(&found).all(|(guess, found)| guess.encloses(found)) {
                 let bounds = self.bounds(&range, &found, h, u);
-                self.tube =
-                    range.iter().zip(driven(&bounds, start, defect, &found)).map(|(x, e)| *x + e).collect();
+                self.tube = range
+                    .iter()
+                    .zip(driven(&bounds, start, defect, &found))
+                    .map(|(x, e)| *x + e)
+                    .collect();
                 return Ok(bounds);
             }
-            guess = guess.iter().zip(found).map(|(guess, found)| enlarged(guess.hull(found))).collect();
+            guess =
+                guess.iter().zip(found).map(|(guess, found)| enlarged(guess.hull(found))).collect();
         }
         let widths: Vec<f64> = range.iter().zip(&guess).map(|(x, e)| (*x + *e).width()).collect();
         let grown = |i: usize| guess[i].width() / (start[i].width() + LEAST);
@@ -174,9 +189,16 @@ impl TaylorStepper {
     }
 
     /// Over the offsets `e` from the `range` of P, and the input u.
-    fn bounds(&mut self, range: &[Interval], e: &[Interval], h: Interval, u: &[Interval]) -> Bounds {
+    fn bounds(
+        &mut self,
+        range: &[Interval],
+        e: &[Interval],
+        h: Interval,
+        u: &[Interval],
+    ) -> Bounds {
         let n = range.len();
-        let at: Vec<_> = range.iter().zip(e).map(|(x, e)| *x + *e).chain(u.iter().copied()).collect();
+        let at: Vec<_> =
+            range.iter().zip(e).map(|(x, e)| *x + *e).chain(u.iter().copied()).collect();
         let mut values = vec![Interval::ZERO; self.derivatives.components()];
         self.derivatives.evaluate_into(&at, &mut self.workspace, &mut values);
         values.iter_mut().for_each(|value| *value *= h);
@@ -190,10 +212,19 @@ impl TaylorStepper {
 }
 
 /// All offsets over the step, from `start`, where they do not leave `tube`.
-fn driven(bounds: &Bounds, start: &[Interval], defect: &[Interval], tube: &[Interval]) -> Vec<Interval> {
+fn driven(
+    bounds: &Bounds,
+    start: &[Interval],
+    defect: &[Interval],
+    tube: &[Interval],
+) -> Vec<Interval> {
     let rate = applied(&bounds.a, tube);
     let rates = rate.iter().zip(&bounds.input).zip(defect);
-    start.iter().zip(rates).map(|(e, ((a, b), d))| *e + (*a + *b + *d).hull(Interval::ZERO)).collect()
+    start
+        .iter()
+        .zip(rates)
+        .map(|(e, ((a, b), d))| *e + (*a + *b + *d).hull(Interval::ZERO))
+        .collect()
 }
 
 /// `matrix` times `vector`.
@@ -210,12 +241,14 @@ fn enlarged(x: Interval) -> Interval {
 /// Terms of the series of [`flow`] before its remainder.
 const TERMS: usize = 4;
 
-/// Ψ(1, 0) of Ψ̇ = A(τ) Ψ for any A(τ) in `a` at each time, 0 <= τ <= 1; and Ψ(1, τ) - I for every τ.
+/// Ψ(1, 0) of Ψ̇ = A(τ) Ψ for any A(τ) in `a` at each time, 0 <= τ <= 1; and Ψ(1, τ) - I for every
+/// τ.
 ///
 /// # Guarantee
 ///
-/// Outer, directed rounding: each product of A at different times lies in that of the interval matrices, and so do means of them. What is left out is at
-/// most |A|^p / p! / (1 - |A| / (p + 1)) in the norm.
+/// Outer, directed rounding: each product of A at different times lies in that of the interval
+/// matrices, and so do means of them. What is left out is at most |A|^p / p! / (1 - |A| / (p + 1))
+/// in the norm.
 fn flow(a: &IntervalMatrix) -> (IntervalMatrix, IntervalMatrix) {
     let n = a.nrows();
     let identity = IntervalMatrix::identity(n, n);
@@ -227,7 +260,8 @@ fn flow(a: &IntervalMatrix) -> (IntervalMatrix, IntervalMatrix) {
         change += power.map(|x| x.hull(Interval::ZERO));
     }
     let norm = Interval::point(norm_upper(&magnitude(a)));
-    let left_out = (1..=TERMS).fold(Interval::ONE, |term, i| term * norm / Interval::point(i as f64));
+    let left_out =
+        (1..=TERMS).fold(Interval::ONE, |term, i| term * norm / Interval::point(i as f64));
     let tail = left_out / (Interval::ONE - norm / Interval::point(TERMS as f64 + 1.0));
     let tail = if tail.lo() >= 0.0 { Interval::centered(0.0, tail.hi()) } else { Interval::ENTIRE };
     (sum.map(|x| x + tail), change.map(|x| x + tail))

@@ -19,7 +19,12 @@ pub(super) struct Offset {
 impl Offset {
     /// 0, in so many dimensions. Beyond that many generators, the oldest become a box.
     pub fn zero(n: usize, most_generators: usize) -> Self {
-        Self { generators: Generators::new(n), axes: vec![0.0; n], radius: vec![0.0; n], most_generators }
+        Self {
+            generators: Generators::new(n),
+            axes: vec![0.0; n],
+            radius: vec![0.0; n],
+            most_generators,
+        }
     }
 
     /// Number of generators.
@@ -39,8 +44,9 @@ impl Offset {
 
     /// Becomes {J x + d : x in the set, |d_i| <= `more`_i}, for every J in `j`.
     ///
-    /// Generators are mapped by the middle of J. What J is off by, and what rounding of the products with n terms is, at most n u / (1 - n u) of the
-    /// absolute products, is bounded with the hull and goes along the axes.
+    /// Generators are mapped by the middle of J. What J is off by, and what rounding of the
+    /// products with n terms is, at most n u / (1 - n u) of the absolute products, is bounded with
+    /// the hull and goes along the axes.
     ///
     /// # Guarantee
     ///
@@ -70,7 +76,8 @@ impl Offset {
         self.measure(&sums);
     }
 
-    /// The radius, from `sums` = Σ |g| of the generators in floating point; the oldest of them become a box if there are too many.
+    /// The radius, from `sums` = Σ |g| of the generators in floating point; the oldest of them
+    /// become a box if there are too many.
     fn measure(&mut self, sums: &[f64]) {
         let terms = self.generators.len() + self.axes.len() + 64;
         for ((radius, axis), sum) in self.radius.iter_mut().zip(&self.axes).zip(sums) {

@@ -1,4 +1,5 @@
-//! f along a solution, as a series in time: its monomials, each a product of two before it, term by term.
+//! f along a solution, as a series in time: its monomials, each a product of two before it, term by
+//! term.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +7,8 @@ use reachtube_scalar::{Interval, TaylorModel, TaylorPolynomial};
 
 use super::TaylorSet;
 
-/// The monomials of f and how its components are summed from them. The first N + m are the variables themselves.
+/// The monomials of f and how its components are summed from them. The first N + m are the
+/// variables themselves.
 #[derive(Debug)]
 pub(super) struct Monomials {
     variables: usize,
@@ -23,8 +25,11 @@ impl Monomials {
         let mut all = Self { variables, products: vec![], constants: vec![], rows: vec![] };
         for component in components {
             all.constants.push(component.constant_term());
-            let terms = component.terms().into_iter().filter(|term| term.exponents.iter().any(|e| *e > 0));
-            let row = terms.map(|term| (all.place(term.exponents, &mut places), term.coefficient)).collect();
+            let terms =
+                component.terms().into_iter().filter(|term| term.exponents.iter().any(|e| *e > 0));
+            let row = terms
+                .map(|term| (all.place(term.exponents, &mut places), term.coefficient))
+                .collect();
             all.rows.push(row);
         }
         all
@@ -50,10 +55,12 @@ impl Monomials {
     }
 }
 
-/// The solution over one step from x(0) = X₀(s), as P(τ, s) = Σ X_i(s) τⁱ, i <= K, with time τ in steps, 0 <= τ <= 1.
+/// The solution over one step from x(0) = X₀(s), as P(τ, s) = Σ X_i(s) τⁱ, i <= K, with time τ in
+/// steps, 0 <= τ <= 1.
 ///
-/// What P leaves out is its defect h f(P) - dP/dτ, for a fixed input: the terms below τᴷ agree but for what polynomials in s to a given order, and
-/// rounding, leave out of them; those from τᴷ on are bounded.
+/// What P leaves out is its defect h f(P) - dP/dτ, for a fixed input: the terms below τᴷ agree but
+/// for what polynomials in s to a given order, and rounding, leave out of them; those from τᴷ on
+/// are bounded.
 #[derive(Debug)]
 pub(super) struct TimeSeries {
     /// For each monomial its terms below τᴷ; of the variables that are states, those up to τᴷ.
@@ -69,8 +76,15 @@ pub(super) struct TimeSeries {
 }
 
 impl TimeSeries {
-    /// From the polynomials of `start` (N), under the fixed `input` (m), over steps of length h, to the order K in time.
-    pub fn new(monomials: &Monomials, start: &TaylorSet, input: &[f64], h: Interval, order: usize) -> Self {
+    /// From the polynomials of `start` (N), under the fixed `input` (m), over steps of length h, to
+    /// the order K in time.
+    pub fn new(
+        monomials: &Monomials,
+        start: &TaylorSet,
+        input: &[f64],
+        h: Interval,
+        order: usize,
+    ) -> Self {
         let states = start.polynomials.len();
         let inputs = input.iter().map(|u| TaylorModel::from(*u));
         let mut series = Self {
@@ -96,7 +110,9 @@ impl TimeSeries {
         for (at, [left, right]) in monomials.products.iter().enumerate() {
             let mut sum = TaylorModel::from(0.0);
             for j in 0..=i {
-                if let (Some(x), Some(y)) = (self.terms[*left].get(j), self.terms[*right].get(i - j)) {
+                if let (Some(x), Some(y)) =
+                    (self.terms[*left].get(j), self.terms[*right].get(i - j))
+                {
                     sum += x * y;
                 }
             }
@@ -107,8 +123,11 @@ impl TimeSeries {
     /// X_{i+1} = h f_i / (i + 1), of which the polynomial is kept, and what it lacks is known.
     fn extend(&mut self, monomials: &Monomials, i: usize, h: &TaylorModel) {
         for (state, row) in monomials.rows.iter().enumerate() {
-            let mut sum =
-                if i == 0 { TaylorModel::from(monomials.constants[state]) } else { TaylorModel::from(0.0) };
+            let mut sum = if i == 0 {
+                TaylorModel::from(monomials.constants[state])
+            } else {
+                TaylorModel::from(0.0)
+            };
             for (place, coefficient) in row {
                 if let Some(term) = self.terms[*place].get(i) {
                     sum += term * &TaylorModel::from(*coefficient);
@@ -123,7 +142,8 @@ impl TimeSeries {
 
     /// The ranges of all terms, those of the first known already, and the tails.
     fn bound(&mut self, monomials: &Monomials, first: &[Interval], h: &TaylorModel) {
-        self.ranges = self.terms.iter().map(|terms| terms.iter().map(TaylorModel::range).collect()).collect();
+        self.ranges =
+            self.terms.iter().map(|terms| terms.iter().map(TaylorModel::range).collect()).collect();
         for ((ranges, tail), first) in self.ranges.iter_mut().zip(&mut self.tails).zip(first) {
             *tail = ranges[self.order];
             ranges.truncate(self.order);
@@ -147,8 +167,10 @@ impl TimeSeries {
                 sum += (*x * *y).hull(Interval::ZERO);
             }
         }
-        let (below, tail) =
-            ([left, right].map(|at| over_step(&self.ranges[at])), [left, right].map(|at| self.tails[at]));
+        let (below, tail) = (
+            [left, right].map(|at| over_step(&self.ranges[at])),
+            [left, right].map(|at| self.tails[at]),
+        );
         sum + below[0] * tail[1] + below[1] * tail[0] + (tail[0] * tail[1]).hull(Interval::ZERO)
     }
 
@@ -225,7 +247,8 @@ mod tests {
     #[test]
     fn the_defect_is_what_the_series_lacks() {
         // h f(P) - P' is exactly known: a polynomial in τ for each start.
-        for (h, r, orders, u) in [(0.1, 0.0, (1, 3), 0.0), (0.1, 0.2, (2, 4), 0.5), (0.05, 0.3, (1, 5), -1.0)]
+        for (h, r, orders, u) in
+            [(0.1, 0.0, (1, 3), 0.0), (0.1, 0.2, (2, 4), 0.5), (0.05, 0.3, (1, 5), -1.0)]
         {
             let series = square(h, r, orders, u);
             let (bound, integral) = (series.defect(0), series.defect_integral(0));
@@ -234,8 +257,9 @@ mod tests {
                 let c: Vec<f64> =
                     series.terms[0].iter().map(|term| term.polynomial().evaluate(&[s])).collect();
                 let p = |tau: f64| c.iter().rev().fold(0.0, |sum, c| sum * tau + c);
-                let slope =
-                    |tau: f64| (1..c.len()).map(|i| i as f64 * c[i] * tau.powi(i as i32 - 1)).sum::<f64>();
+                let slope = |tau: f64| {
+                    (1..c.len()).map(|i| i as f64 * c[i] * tau.powi(i as i32 - 1)).sum::<f64>()
+                };
                 let defect = |tau: f64| h * (p(tau).powi(2) + u) - slope(tau);
                 let taus: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
                 for tau in &taus {
@@ -245,9 +269,11 @@ mod tests {
                     largest = largest.max(defect(*tau).abs());
                 }
                 // Simpson's rule, whose error is below 1e-12 here.
-                let weight = |k: usize| if k == 0 || k == 1000 { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
+                let weight =
+                    |k: usize| if k == 0 || k == 1000 { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
                 let sum =
-                    taus.iter().enumerate().map(|(k, tau)| weight(k) * defect(*tau)).sum::<f64>() / 3000.0;
+                    taus.iter().enumerate().map(|(k, tau)| weight(k) * defect(*tau)).sum::<f64>()
+                        / 3000.0;
                 assert!(
                     (integral + Interval::centered(0.0, 1e-12)).contains(sum),
                     "{sum} is not in {integral:?}"

@@ -1,4 +1,5 @@
-//! Uncertainty sets by bisection of one radius after the other (end of Sec. IV-C of the paper), a baseline.
+//! Uncertainty sets by bisection of one radius after the other (end of Sec. IV-C of the paper), a
+//! baseline.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -35,7 +36,8 @@ struct Progress {
     reachable_sets: usize,
 }
 
-/// Starts from the sets of the first linearisation, enlarged until they enclose every recording, and makes one radius after the other as small as it can be while the others stay.
+/// Starts from the sets of the first linearisation, enlarged until they enclose every recording,
+/// and makes one radius after the other as small as it can be while the others stay.
 ///
 /// # Errors
 ///
@@ -48,10 +50,14 @@ pub(super) fn run(search: &Search, journal: &Journal, finished: &dyn Fn(&str)) -
         progress.sets = linearised.inflated(factor, 0.0);
         progress.enclosed = encloses(search, &progress.sets)?;
         progress.first = progress.radius_now();
-        (progress.factor, progress.reachable_sets) = (progress.factor + 1, progress.reachable_sets + 1);
+        (progress.factor, progress.reachable_sets) =
+            (progress.factor + 1, progress.reachable_sets + 1);
         journal.save(&progress)?;
-        let words =
-            if progress.enclosed { "enclose every recording" } else { "do not enclose every recording" };
+        let words = if progress.enclosed {
+            "enclose every recording"
+        } else {
+            "do not enclose every recording"
+        };
         finished(&format!("{factor} times the linearised radii {words}"));
     }
     while progress.enclosed && progress.radius < progress.count() {
@@ -74,7 +80,9 @@ fn encloses(search: &Search, sets: &UncertaintySets) -> Result<bool> {
     let of_case = |case: &Case| -> Result<bool> {
         let flowpipe = flowpipes(search.system, std::slice::from_ref(case), sets, Effort::Quick)?;
         let mut all = true;
-        check_outer(case, &flowpipe[0], sets, search.settings.states, |row| all &= row.excess <= 0.0);
+        check_outer(case, &flowpipe[0], sets, search.settings.states, |row| {
+            all &= row.excess <= 0.0
+        });
         Ok(all)
     };
     // The first case that is left out, or fails, ends the others.
@@ -85,7 +93,15 @@ fn encloses(search: &Search, sets: &UncertaintySets) -> Result<bool> {
 impl Progress {
     fn start(linearised: &UncertaintySets) -> Self {
         let sets = linearised.clone();
-        Self { sets, factor: 0, enclosed: false, radius: 0, low: 0.0, first: 0.0, reachable_sets: 0 }
+        Self {
+            sets,
+            factor: 0,
+            enclosed: false,
+            radius: 0,
+            low: 0.0,
+            first: 0.0,
+            reachable_sets: 0,
+        }
     }
 
     fn count(&self) -> usize {

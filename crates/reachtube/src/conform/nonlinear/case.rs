@@ -22,7 +22,8 @@ pub struct Case {
     pub grid: TimeGrid,
     /// The input u, row-major, samples x n, N m.
     pub inputs: Vec<f64>,
-    /// The nominal initial state, 2n: the mean of the runs' first states rounded to double precision, which defines it, or the run's own.
+    /// The nominal initial state, 2n: the mean of the runs' first states rounded to double
+    /// precision, which defines it, or the run's own.
     pub start: Vec<f64>,
     /// The measured states.
     pub measured: Envelope,
@@ -55,7 +56,8 @@ impl Case {
                 suite.runs.par_iter().map(|run| own(run.index)).collect()
             }
         };
-        let parts = recordings.suites.iter().enumerate().map(of_suite).collect::<Result<Vec<_>>>()?;
+        let parts =
+            recordings.suites.iter().enumerate().map(of_suite).collect::<Result<Vec<_>>>()?;
         Ok(parts.concat())
     }
 

@@ -1,4 +1,5 @@
-//! How far a model itself goes, beside how far its linearisation says: the motions that are extremal for the linearisation, simulated.
+//! How far a model itself goes, beside how far its linearisation says: the motions that are
+//! extremal for the linearisation, simulated.
 
 use rayon::prelude::*;
 use reachtube_ode::{Ensemble, Run};
@@ -8,11 +9,12 @@ use super::sensitivity::{BOUND, Many, Node, Sensitivity};
 use crate::abstraction::{ModelField, PolynomialModel};
 use crate::conform::{Side, UncertaintySets};
 
-/// Rows whose recordings stay below this part of the linearised radius are left as they are: a small correction does not make them decide.
+/// Rows whose recordings stay below this part of the linearised radius are left as they are: a
+/// small correction does not make them decide.
 const NEAR: f64 = 0.5;
 
-/// For each sample, state and side, by how much the model reaches further than its linearisation; negative where it reaches less far. Found at some samples, and
-/// interpolated between them.
+/// For each sample, state and side, by how much the model reaches further than its linearisation;
+/// negative where it reaches less far. Found at some samples, and interpolated between them.
 #[derive(Debug, Clone)]
 pub(super) struct Correction {
     /// Samples x 2n x 2.
@@ -44,7 +46,8 @@ impl Correction {
         sensitivity: &Sensitivity,
     ) -> Self {
         let states = 2 * case.joints();
-        let found = sensitivity.nodes.par_iter().map(|node| at_node(model, case, sets, sensitivity, node));
+        let found =
+            sensitivity.nodes.par_iter().map(|node| at_node(model, case, sets, sensitivity, node));
         let found: Vec<(Vec<f64>, bool)> = found.collect();
         let mut correction = Self::none(case.grid.len(), states);
         let (mut from, mut before) = (0, &vec![0.0; states * 2]);

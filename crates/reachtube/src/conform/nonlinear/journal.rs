@@ -34,7 +34,12 @@ struct File<T> {
 }
 
 impl<'a> Journal<'a> {
-    pub fn new(path: Option<&'a Path>, robot: &Robot, settings: &Settings, recordings: &Recordings) -> Self {
+    pub fn new(
+        path: Option<&'a Path>,
+        robot: &Robot,
+        settings: &Settings,
+        recordings: &Recordings,
+    ) -> Self {
         let mut digest = Sha256::new();
         let decides = serde_json::to_string(&(settings, robot.description()));
         digest.update(decides.expect("settings have only finite numbers and string keys"));
@@ -63,13 +68,13 @@ impl<'a> Journal<'a> {
             remedy,
         })?;
         let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
-        let value: serde_json::Value =
-            serde_json::from_str(&text).map_err(|error| wrong(format!("not JSON: {error}; {remedy}")))?;
-        let is_ours =
-            value["format"] == FORMAT && value["version"] == VERSION && value["job"] == self.job.as_str();
+        let value: serde_json::Value = serde_json::from_str(&text)
+            .map_err(|error| wrong(format!("not JSON: {error}; {remedy}")))?;
+        let is_ours = value["format"] == FORMAT
+            && value["version"] == VERSION
+            && value["job"] == self.job.as_str();
         if !is_ours {
-            let what =
-                "it holds the progress of another job: the robot, the settings or the recordings differ";
+            let what = "it holds the progress of another job: the robot, the settings or the recordings differ";
             return Err(wrong(format!("{what}; {remedy}")));
         }
         let file: File<T> =

@@ -20,7 +20,9 @@ use self::journal::Journal;
 use self::outer::sums;
 use super::identify::{trust, weights};
 use super::proof::{Checked, Enclosure, TightRow};
-use super::{Conformance, Dynamics, Envelope, Method, Recordings, Search, Settings, UncertaintySets, Watch};
+use super::{
+    Conformance, Dynamics, Envelope, Method, Recordings, Search, Settings, UncertaintySets, Watch,
+};
 use crate::abstraction::PolynomialModel;
 use crate::data::DataSet;
 use crate::error::{Error, Result};
@@ -47,14 +49,16 @@ pub(super) fn conform(
     let cases = Case::all(data, robot, settings, &recordings)?;
     let weights = case_weights(&model, settings, &cases)?;
     let journal = Journal::new(watch.resume, robot, settings, &recordings);
-    let search = search::Search { model: &model, system: &system, cases: &cases, settings, weights };
+    let search =
+        search::Search { model: &model, system: &system, cases: &cases, settings, weights };
     let found = match settings.method {
         Method::Program => search.run(&journal, watch.finished)?,
         Method::Bisection => bisection::run(&search, &journal, watch.finished)?,
     };
     let (cost, hull_volume) = sums(&cases, &found.flowpipes, &found.sets, &search.weights);
     let checked = check(&cases, &found, settings);
-    let lost = cases.iter().zip(&found.flowpipes).filter_map(|(case, flowpipe)| lost(case, flowpipe));
+    let lost =
+        cases.iter().zip(&found.flowpipes).filter_map(|(case, flowpipe)| lost(case, flowpipe));
     let proof = checked.proof(settings, recordings.run_count(), Enclosure::Outer, lost.collect());
     journal.remove();
     Ok(Conformance {
@@ -94,7 +98,9 @@ fn check(cases: &[Case], found: &Found, settings: &Settings) -> Checked {
     for (index, (case, flowpipe)) in cases.iter().zip(&found.flowpipes).enumerate() {
         check_outer(case, flowpipe, &found.sets, settings.states, |row| {
             checked.take(&row);
-            if deciding.contains(&(index, row.sample, row.state, row.side)) && row.excess.is_finite() {
+            if deciding.contains(&(index, row.sample, row.state, row.side))
+                && row.excess.is_finite()
+            {
                 checked.tight.push(TightRow { suite: case.suite, row });
             }
         });

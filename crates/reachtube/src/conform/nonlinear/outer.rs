@@ -1,7 +1,9 @@
 //! The reachable sets that decide: outer enclosures over each case.
 
 use rayon::prelude::*;
-use reachtube_reach::{Flowpipe, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput};
+use reachtube_reach::{
+    Flowpipe, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,
+};
 use reachtube_scalar::rounding::{add_down, sub_up};
 
 use super::case::Case;
@@ -10,7 +12,8 @@ use crate::conform::{Lost, Row, Side, States, UncertaintySets};
 use crate::data::state_name;
 use crate::error::Result;
 
-/// Corners at which remainders are bounded, one number after the other while a set is lost: with 14 a step takes four times as long as with 8, with 18 a hundred times.
+/// Corners at which remainders are bounded, one number after the other while a set is lost: with 14
+/// a step takes four times as long as with 8, with 18 a hundred times.
 const CORNERS: [usize; 3] = [8, 14, 18];
 
 /// How hard to try where a set is lost.
@@ -76,12 +79,14 @@ pub fn lost(case: &Case, flowpipe: &Flowpipe) -> Option<Lost> {
     }
 }
 
-/// Checks every row of a case and hands each to `visit`, as [`check_rows`](crate::conform::check_rows) does for a linear system. Where there is no reachable set any more, the excess is
-/// infinite.
+/// Checks every row of a case and hands each to `visit`, as
+/// [`check_rows`](crate::conform::check_rows) does for a linear system. Where there is no reachable
+/// set any more, the excess is infinite.
 ///
 /// # Guarantee
 ///
-/// A row with `excess <= 0` is in the outer enclosure of the reachable set, widened by the noise set rounded inward.
+/// A row with `excess <= 0` is in the outer enclosure of the reachable set, widened by the noise
+/// set rounded inward.
 pub fn check_outer(
     case: &Case,
     flowpipe: &Flowpipe,
@@ -94,19 +99,28 @@ pub fn check_outer(
             let noise = sets.noise_radius(i);
             let hull = (k < flowpipe.len()).then(|| flowpipe.sample(k)[i]);
             let radius = hull.map_or(f64::INFINITY, |hull| hull.rad()) + noise;
-            let row = |side, run, excess| Row { sample: k, time, state: i, side, run, excess, radius };
-            let excess = |of: &dyn Fn(reachtube_scalar::Interval) -> f64| hull.map_or(f64::INFINITY, of);
-            let upper = excess(&|hull| sub_up(case.measured.upper(k, i), add_down(hull.hi(), noise)));
+            let row =
+                |side, run, excess| Row { sample: k, time, state: i, side, run, excess, radius };
+            let excess =
+                |of: &dyn Fn(reachtube_scalar::Interval) -> f64| hull.map_or(f64::INFINITY, of);
+            let upper =
+                excess(&|hull| sub_up(case.measured.upper(k, i), add_down(hull.hi(), noise)));
             visit(row(Side::Upper, case.measured.upper_run(k, i), upper));
-            let lower = excess(&|hull| sub_up(-case.measured.lower(k, i), add_down(-hull.lo(), noise)));
+            let lower =
+                excess(&|hull| sub_up(-case.measured.lower(k, i), add_down(-hull.lo(), noise)));
             visit(row(Side::Lower, case.measured.lower_run(k, i), lower));
         }
     }
 }
 
-/// Σ_k Σ_i s_i width_i(t_k) of the reachable sets with the noise set, cases at one time counting by their mean; and Σ_k Δt Π_i width_i(t_k), eq. (2) of the paper. Infinite where a set was
-/// lost.
-pub fn sums(cases: &[Case], flowpipes: &[Flowpipe], sets: &UncertaintySets, weights: &[f64]) -> (f64, f64) {
+/// Σ_k Σ_i s_i width_i(t_k) of the reachable sets with the noise set, cases at one time counting by
+/// their mean; and Σ_k Δt Π_i width_i(t_k), eq. (2) of the paper. Infinite where a set was lost.
+pub fn sums(
+    cases: &[Case],
+    flowpipes: &[Flowpipe],
+    sets: &UncertaintySets,
+    weights: &[f64],
+) -> (f64, f64) {
     let shares = shares(cases.iter().map(|case| case.grid.times()));
     let (mut cost, mut volume) = (0.0, 0.0);
     for ((case, flowpipe), shares) in cases.iter().zip(flowpipes).zip(&shares) {
@@ -117,7 +131,8 @@ pub fn sums(cases: &[Case], flowpipes: &[Flowpipe], sets: &UncertaintySets, weig
             }
             let widths = flowpipe.sample(k).iter().map(|hull| hull.width()).enumerate();
             let widths = widths.map(|(i, width)| width + 2.0 * sets.noise_radius(i));
-            cost += share * widths.clone().zip(weights).map(|(width, weight)| weight * width).sum::<f64>();
+            cost += share
+                * widths.clone().zip(weights).map(|(width, weight)| weight * width).sum::<f64>();
             let next = times.get(k + 1).unwrap_or(&times[k]);
             volume += share * widths.product::<f64>() * (next - times[k]);
         }

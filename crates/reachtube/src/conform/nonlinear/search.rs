@@ -1,8 +1,11 @@
-//! Uncertainty sets of a model that is not linear, by successive linearisation (correction K of the method).
+//! Uncertainty sets of a model that is not linear, by successive linearisation (correction K of the
+//! method).
 //!
-//! Each round linearises the model along every nominal, about the centres found so far, and solves one linear program over all cases. What the model itself does beyond its linearisation is
-//! found by simulating the extremal motions, and moves the rows of the next round. When the sets have settled, the reachable sets are enclosed; a row that they leave out is asked for with a margin, and so on
-//! until every recording is enclosed.
+//! Each round linearises the model along every nominal, about the centres found so far, and solves
+//! one linear program over all cases. What the model itself does beyond its linearisation is found
+//! by simulating the extremal motions, and moves the rows of the next round. When the sets have
+//! settled, the reachable sets are enclosed; a row that they leave out is asked for with a margin,
+//! and so on until every recording is enclosed.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -22,13 +25,15 @@ use crate::conform::program::{Block, Program, Solution};
 use crate::conform::{Search as Record, Settings, Side, UncertaintySets};
 use crate::error::Result;
 
-/// Rounds of linearisation after which the sets are taken as they are; twice as many with margins at most.
+/// Rounds of linearisation after which the sets are taken as they are; twice as many with margins
+/// at most.
 const ROUNDS: usize = 20;
 
 /// The sets have settled when no radius or centre changes by more than this part of the largest.
 const SETTLED: f64 = 1e-5;
 
-/// Or when the cost of the linearised sets changes by less than this part: where the program has several answers, the sets may wander among them.
+/// Or when the cost of the linearised sets changes by less than this part: where the program has
+/// several answers, the sets may wander among them.
 const SAME_COST: f64 = 1e-6;
 
 /// The change of a round is this part of the one before at most, or centres get less freedom.
@@ -60,11 +65,13 @@ pub(super) struct Progress {
     pub cost: f64,
     /// How far that round's program was from the sets before it.
     pub change: f64,
-    /// How far centres may move in the next round, in parts of the largest centre or radius of their kind.
+    /// How far centres may move in the next round, in parts of the largest centre or radius of
+    /// their kind.
     pub freedom: f64,
     /// The sets after them.
     pub sets: UncertaintySets,
-    /// By how much more than the recordings ask for the rows that were not enclosed must be reached.
+    /// By how much more than the recordings ask for the rows that were not enclosed must be
+    /// reached.
     pub margins: Vec<Margin>,
 }
 
@@ -92,7 +99,8 @@ pub(super) struct Round<'a> {
 impl Progress {
     /// Before the first round: no uncertainty.
     pub fn start(joints: usize) -> Self {
-        let (initial_set, input_set) = (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
+        let (initial_set, input_set) =
+            (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
         Self {
             rounds: 0,
@@ -105,7 +113,8 @@ impl Progress {
         }
     }
 
-    /// Takes the answer of a program; whether the sets have settled. Where answers jump back and forth, as those that are worth the same may do, centres get less freedom.
+    /// Takes the answer of a program; whether the sets have settled. Where answers jump back and
+    /// forth, as those that are worth the same may do, centres get less freedom.
     fn take(&mut self, round: &Round) -> bool {
         let (change, cost) =
             (change(&self.sets, &round.solution.sets), round.program.cost(&round.solution.sets));
@@ -153,13 +162,16 @@ impl Margin {
 }
 
 impl Search<'_> {
-    /// Runs rounds until every row is enclosed, or no more can be done; `finished` is told what each came to.
+    /// Runs rounds until every row is enclosed, or no more can be done; `finished` is told what
+    /// each came to.
     ///
     /// # Errors
     ///
-    /// Where the model cannot be followed along a case, a program is not solved, or the journal cannot be written.
+    /// Where the model cannot be followed along a case, a program is not solved, or the journal
+    /// cannot be written.
     pub fn run(&self, journal: &Journal, finished: &dyn Fn(&str)) -> Result<Found> {
-        let mut progress: Progress = journal.load()?.unwrap_or_else(|| Progress::start(self.model.joints()));
+        let mut progress: Progress =
+            journal.load()?.unwrap_or_else(|| Progress::start(self.model.joints()));
         loop {
             let round = self.round(&progress)?;
             let is_settled = progress.take(&round);
@@ -178,7 +190,10 @@ impl Search<'_> {
             if missing.is_empty() || is_lost || progress.rounds >= 2 * ROUNDS {
                 return Ok(self.found(&progress, round, flowpipes));
             }
-            finished(&format!("{} rows are not enclosed and are asked for with a margin", missing.len()));
+            finished(&format!(
+                "{} rows are not enclosed and are asked for with a margin",
+                missing.len()
+            ));
             progress.add(missing);
             journal.save(&progress)?;
         }
@@ -203,7 +218,8 @@ impl Search<'_> {
         let sensitivities = self.sensitivities(sets)?;
         let corrections = self.corrections(progress, &sensitivities);
         let ran_away = corrections.iter().enumerate();
-        let runs_away = ran_away.filter_map(|(case, c)| c.runs_away.map(|time| (case, time))).next();
+        let runs_away =
+            ran_away.filter_map(|(case, c)| c.runs_away.map(|time| (case, time))).next();
         let parts = self.cases.iter().zip(sensitivities).zip(&corrections);
         let mut blocks: Vec<Block> = parts
             .map(|((case, sensitivity), correction)| block(case, sensitivity, correction, sets))
@@ -212,7 +228,8 @@ impl Search<'_> {
             let envelope = &mut blocks[margin.case].envelope;
             envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
         }
-        let program = Program::new(self.settings, &self.weights, blocks).with_centers(progress.centers());
+        let program =
+            Program::new(self.settings, &self.weights, blocks).with_centers(progress.centers());
         let solution = program.solve()?;
         Ok(Round { program, solution, runs_away })
     }
@@ -241,7 +258,13 @@ impl Search<'_> {
             check_outer(case, flowpipe, sets, self.settings.states, |row| {
                 if row.excess > 0.0 {
                     let (sample, state, side) = (row.sample, row.state, row.side);
-                    missing.push(Margin { case: index, sample, state, side, margin: MARGIN * row.excess });
+                    missing.push(Margin {
+                        case: index,
+                        sample,
+                        state,
+                        side,
+                        margin: MARGIN * row.excess,
+                    });
                 }
             });
         }
@@ -249,11 +272,17 @@ impl Search<'_> {
     }
 }
 
-/// The rows of one case. With x̂ the motion from the centres c of the sets of the round before, the new ones must satisfy
-/// x̂ + E (c' - c) + R r' + further >= x_m, and the like below.
-fn block(case: &Case, sensitivity: Sensitivity, correction: &Correction, sets: &UncertaintySets) -> Block {
+/// The rows of one case. With x̂ the motion from the centres c of the sets of the round before, the
+/// new ones must satisfy x̂ + E (c' - c) + R r' + further >= x_m, and the like below.
+fn block(
+    case: &Case,
+    sensitivity: Sensitivity,
+    correction: &Correction,
+    sets: &UncertaintySets,
+) -> Block {
     let (n, states) = (case.joints(), 2 * case.joints());
-    let center: Vec<f64> = sets.initial_set.center.iter().chain(&sets.input_set.center).copied().collect();
+    let center: Vec<f64> =
+        sets.initial_set.center.iter().chain(&sets.input_set.center).copied().collect();
     let from_nominal = |k: usize, i: usize, x: f64| {
         let (row, _) = sensitivity.row(n, k, i);
         let moved: f64 = row.iter().zip(&center).map(|(e, c)| e * c).sum();
@@ -266,12 +295,14 @@ fn block(case: &Case, sensitivity: Sensitivity, correction: &Correction, sets: &
     Block { times: case.grid.times().to_vec(), coefficients: sensitivity.coefficients, envelope }
 }
 
-/// The largest change of a centre or radius, in parts of the largest of its kind: positions, velocities, inputs.
+/// The largest change of a centre or radius, in parts of the largest of its kind: positions,
+/// velocities, inputs.
 fn change(old: &UncertaintySets, new: &UncertaintySets) -> f64 {
     let n = new.input_set.dimension();
     let of_kind = |old: &Hyperrectangle, new: &Hyperrectangle, kind: Range<usize>| {
-        let pairs =
-            |x: &[f64], y: &[f64]| -> f64 { kind.clone().map(|i| (x[i] - y[i]).abs()).fold(0.0, f64::max) };
+        let pairs = |x: &[f64], y: &[f64]| -> f64 {
+            kind.clone().map(|i| (x[i] - y[i]).abs()).fold(0.0, f64::max)
+        };
         let change = pairs(&old.center, &new.center).max(pairs(&old.radius, &new.radius));
         if change == 0.0 { 0.0 } else { change / largest(new, kind) }
     };

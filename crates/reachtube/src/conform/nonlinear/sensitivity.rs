@@ -11,7 +11,8 @@ use crate::abstraction::{Linearisation, ModelField, PolynomialModel};
 use crate::conform::UncertaintySets;
 use crate::error::Result;
 
-/// A Runge-Kutta step is so short that h |A| stays below this: its error is then below 1e-7 of the change.
+/// A Runge-Kutta step is so short that h |A| stays below this: its error is then below 1e-7 of the
+/// change.
 pub(super) const STEP_NORM: f64 = 0.1;
 
 /// Runs that are simulated at once.
@@ -20,14 +21,16 @@ pub(super) type Many = Lanes<8>;
 /// Samples of a case at which the extremal motions are simulated, at most.
 const NODES: usize = 24;
 
-/// The motion of a model from the centre of X0 under the centre of U, and what it is like around it. Unrounded: nothing that is proved rests on it.
+/// The motion of a model from the centre of X0 under the centre of U, and what it is like around
+/// it. Unrounded: nothing that is proved rests on it.
 #[derive(Debug, Clone)]
 pub(super) struct Sensitivity {
     /// Samples x 2n.
     pub nominal: Vec<f64>,
     /// Runge-Kutta steps from one sample to the next.
     pub substeps: usize,
-    /// Samples x 2n x (3n, then 3n): E_k = (Φ(t_k, 0), ∫Φ(t_k, s) B ds), then R_k, as the program takes them.
+    /// Samples x 2n x (3n, then 3n): E_k = (Φ(t_k, 0), ∫Φ(t_k, s) B ds), then R_k, as the program
+    /// takes them.
     pub coefficients: Vec<f64>,
     /// Where to look how far the model itself goes.
     pub nodes: Vec<Node>,
@@ -40,7 +43,8 @@ pub(super) struct Node {
     pub sample: usize,
     /// For each state, the signs of its row of Φ(t_k, 0): 2n x 2n.
     pub start: Vec<f64>,
-    /// For each earlier sample, input and state, the sign of what that input over that sample does to that state: samples x n x 2n.
+    /// For each earlier sample, input and state, the sign of what that input over that sample does
+    /// to that state: samples x n x 2n.
     pub input: Vec<f64>,
 }
 
@@ -48,7 +52,8 @@ pub(super) struct Node {
 pub(super) const BOUND: f64 = 1e4;
 
 impl Sensitivity {
-    /// Of `case`, about the centres of `sets`; the time, s, up to which the model could be followed where it runs away.
+    /// Of `case`, about the centres of `sets`; the time, s, up to which the model could be followed
+    /// where it runs away.
     pub fn new(
         model: &PolynomialModel,
         case: &Case,
@@ -90,7 +95,8 @@ impl Sensitivity {
     }
 }
 
-/// The motion of a model along a case from its start under its inputs, samples x 2n, without any uncertainty. Unrounded.
+/// The motion of a model along a case from its start under its inputs, samples x 2n, without any
+/// uncertainty. Unrounded.
 ///
 /// # Errors
 ///
@@ -108,7 +114,8 @@ fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> us
     (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
 }
 
-/// (q, q̇) of all samples under `inputs` from `start`; the time, s, up to which the model could be followed where it runs away.
+/// (q, q̇) of all samples under `inputs` from `start`; the time, s, up to which the model could be
+/// followed where it runs away.
 pub(super) fn simulate(
     model: &PolynomialModel,
     times: &[f64],
@@ -122,9 +129,10 @@ pub(super) fn simulate(
     let mut states = Vec::with_capacity(times.len() * 2 * n);
     let run = [Run { start: &start, inputs }];
     let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
-    let outcomes = ensemble.integrate(&mut ModelField::new(model), times, substeps, &run, |_, _, x| {
-        states.extend(&x[..2 * n]);
-    });
+    let outcomes =
+        ensemble.integrate(&mut ModelField::new(model), times, substeps, &run, |_, _, x| {
+            states.extend(&x[..2 * n]);
+        });
     match outcomes[0] {
         Outcome::Reached => Ok(states),
         Outcome::Diverged { time, .. } => Err(time),
@@ -198,6 +206,10 @@ impl Tracks {
             Disturbance::Sample | Disturbance::Measurable => used.iter().copied().collect(),
         };
         let signs = |values: Vec<f64>| values.into_iter().map(f64::signum).collect();
-        Node { sample, start: signs(self.start.transpose().as_slice().to_vec()), input: signs(input) }
+        Node {
+            sample,
+            start: signs(self.start.transpose().as_slice().to_vec()),
+            input: signs(input),
+        }
     }
 }

@@ -1,11 +1,12 @@
 use super::Log;
 
-/// By how many seconds a repeated run is late against a reference, from the shift at which their velocities agree best; none where
-/// the runs do not overlap or nothing moves.
+/// By how many seconds a repeated run is late against a reference, from the shift at which their
+/// velocities agree best; none where the runs do not overlap or nothing moves.
 ///
-/// Evenly sampled logs of the same step. Shifts up to half the shorter run are tried; between samples the best one is
-/// that of the parabola through the three around it. The measure is the mean squared difference of all joints' velocities over the overlap, which,
-/// unlike a correlation, does not favour long overlaps.
+/// Evenly sampled logs of the same step. Shifts up to half the shorter run are tried; between
+/// samples the best one is that of the parabola through the three around it. The measure is the
+/// mean squared difference of all joints' velocities over the overlap, which, unlike a correlation,
+/// does not favour long overlaps.
 pub fn lateness(reference: &Log, run: &Log) -> Option<f64> {
     let most = (reference.len().min(run.len()) / 2) as isize;
     let cost = |shift: isize| difference(reference, run, shift);
@@ -34,7 +35,8 @@ mod tests {
     use super::*;
 
     fn bump(centre: f64) -> Log {
-        let qd: Vec<f64> = (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
+        let qd: Vec<f64> =
+            (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
         Log { qd, ..Log::blank("bump", 1, 400, 0.01) }
     }
 

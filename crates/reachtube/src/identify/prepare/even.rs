@@ -7,7 +7,8 @@ pub fn usual_step(times: &[f64]) -> Option<f64> {
     (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Values at the times k · `step` from the first time on, by straight lines between samples; `times` increase.
+/// Values at the times k · `step` from the first time on, by straight lines between samples;
+/// `times` increase.
 pub fn resampled(times: &[f64], values: impl Fn(usize) -> f64, step: f64) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Vec::new() };
     let count = ((last - first) / step + 1e-9).floor() as usize + 1;
@@ -24,7 +25,8 @@ pub fn resampled(times: &[f64], values: impl Fn(usize) -> f64, step: f64) -> Vec
     (0..count).map(&mut at).collect()
 }
 
-/// The derivative of evenly spaced samples: central differences of fourth order, of second order beside the ends, one-sided at them.
+/// The derivative of evenly spaced samples: central differences of fourth order, of second order
+/// beside the ends, one-sided at them.
 pub fn derivative(values: &[f64], step: f64) -> Vec<f64> {
     let n = values.len();
     let slope = |k: usize| match k {
@@ -32,7 +34,10 @@ pub fn derivative(values: &[f64], step: f64) -> Vec<f64> {
         0 => (values[1] - values[0]) / step,
         k if k == n - 1 => (values[k] - values[k - 1]) / step,
         k if k == 1 || k == n - 2 => (values[k + 1] - values[k - 1]) / (2.0 * step),
-        k => (8.0 * (values[k + 1] - values[k - 1]) - (values[k + 2] - values[k - 2])) / (12.0 * step),
+        k => {
+            (8.0 * (values[k + 1] - values[k - 1]) - (values[k + 2] - values[k - 2]))
+                / (12.0 * step)
+        }
     };
     (0..n).map(slope).collect()
 }

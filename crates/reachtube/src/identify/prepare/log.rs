@@ -1,6 +1,7 @@
 use crate::data::Run;
 
-/// A recording prepared for regression: K evenly spaced samples of n joints, filtered without delay.
+/// A recording prepared for regression: K evenly spaced samples of n joints, filtered without
+/// delay.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// The file's name.
@@ -64,9 +65,11 @@ impl Log {
         self.start + k as f64 * self.step
     }
 
-    /// Whether each joint moves, row-major K x n: not slower than `slow` \[rad/s\], and not for `margin` \[s\] before and after.
+    /// Whether each joint moves, row-major K x n: not slower than `slow` \[rad/s\], and not for
+    /// `margin` \[s\] before and after.
     ///
-    /// A low-pass spreads the step of Coulomb friction where a joint turns over about half a period of its cut-off.
+    /// A low-pass spreads the step of Coulomb friction where a joint turns over about half a period
+    /// of its cut-off.
     pub fn moves(&self, slow: &[f64], margin: f64) -> Vec<bool> {
         let reach = (margin / self.step).round() as usize;
         let mut moves = vec![true; self.qd.len()];
@@ -88,7 +91,8 @@ impl Log {
     pub fn part(&self, range: std::ops::Range<usize>) -> Self {
         let n = self.joints;
         let rows = |values: &[f64]| values[range.start * n..range.end * n].to_vec();
-        let [q, qd, qdd, tau] = [&self.q, &self.qd, &self.qdd, &self.tau].map(|values| rows(values));
+        let [q, qd, qdd, tau] =
+            [&self.q, &self.qd, &self.qdd, &self.tau].map(|values| rows(values));
         Self {
             name: self.name.clone(),
             joints: n,

@@ -2,8 +2,9 @@ use std::f64::consts::PI;
 
 /// A Butterworth low-pass of order 4 that is run forward and backward, so that it delays nothing.
 ///
-/// After both passes the gain is 1/2 at the cut-off and (1 + (f / f_c)⁸)⁻¹ near it. Ends are continued point-symmetrically (Gustafsson 1996 discusses
-/// the choices), and each pass starts in the steady state of its first sample.
+/// After both passes the gain is 1/2 at the cut-off and (1 + (f / f_c)⁸)⁻¹ near it. Ends are
+/// continued point-symmetrically (Gustafsson 1996 discusses the choices), and each pass starts in
+/// the steady state of its first sample.
 ///
 /// # Examples
 ///
@@ -33,7 +34,8 @@ struct Section {
 }
 
 impl LowPass {
-    /// A filter with its cut-off and the sample rate in Hz; none where the cut-off is not between 0 and half the rate.
+    /// A filter with its cut-off and the sample rate in Hz; none where the cut-off is not between 0
+    /// and half the rate.
     pub fn new(cut_off: f64, rate: f64) -> Option<Self> {
         let between = cut_off > 0.0 && cut_off < 0.5 * rate && rate.is_finite();
         let period = (rate / cut_off).ceil() as usize;
@@ -102,7 +104,8 @@ mod tests {
     fn the_gain_is_that_of_two_passes() {
         assert!((amplitude(10.0) - 0.5).abs() < 1e-3, "{}", amplitude(10.0));
         assert!((amplitude(1.0) - 1.0).abs() < 1e-6);
-        // Frequencies are warped by tan: 20 Hz of 200 Hz stands for tan(0.1 π) / tan(0.05 π) times the cut-off.
+        // Frequencies are warped by tan: 20 Hz of 200 Hz stands for tan(0.1 π) / tan(0.05 π) times
+        // the cut-off.
         let warped = (0.1 * PI).tan() / (0.05 * PI).tan();
         assert!((amplitude(20.0) - 1.0 / (1.0 + warped.powi(8))).abs() < 1e-4);
     }
@@ -110,7 +113,8 @@ mod tests {
     #[test]
     fn nothing_is_delayed_and_ends_stay() {
         let filter = LowPass::new(5.0, 100.0).unwrap();
-        let mut signal: Vec<f64> = (0..401).map(|k| (-((k as f64 - 200.0) / 12.0).powi(2)).exp()).collect();
+        let mut signal: Vec<f64> =
+            (0..401).map(|k| (-((k as f64 - 200.0) / 12.0).powi(2)).exp()).collect();
         filter.zero_phase(&mut signal);
         let peak = (0..401).max_by(|a, b| signal[*a].total_cmp(&signal[*b])).unwrap();
         assert_eq!(peak, 200);

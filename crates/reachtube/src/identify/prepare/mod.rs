@@ -1,4 +1,5 @@
-//! Recordings made fit for regression: evenly sampled, filtered without delay, differentiated. What was changed is told in words.
+//! Recordings made fit for regression: evenly sampled, filtered without delay, differentiated. What
+//! was changed is told in words.
 
 mod align;
 mod cut_off;
@@ -33,9 +34,11 @@ const SAME_RATE: f64 = 0.25;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PrepareSettings {
-    /// The robot's joints by name, in the order of the recordings' columns; the robot's own order where empty.
+    /// The robot's joints by name, in the order of the recordings' columns; the robot's own order
+    /// where empty.
     pub joints: Vec<String>,
-    /// What each recorded torque is multiplied with, in the order of the robot's joints; for currents N m/A. 1 where empty.
+    /// What each recorded torque is multiplied with, in the order of the robot's joints; for
+    /// currents N m/A. 1 where empty.
     pub gains: Vec<f64>,
     /// Cut-off of the low-pass \[Hz\]; chosen from the recordings where left out.
     pub cut_off: Option<f64>,
@@ -76,14 +79,17 @@ struct Change {
     differentiated: bool,
 }
 
-/// The cut-off asked for, or chosen from recordings with motion: 1.5 times the frequency below which 99.9 % of the power of a joint's velocity
-/// lies (the median over joints and logs, weighted by how much they move), at least 3 Hz so that friction steps where a joint turns, at most a fifth of the sample rate.
+/// The cut-off asked for, or chosen from recordings with motion: 1.5 times the frequency below
+/// which 99.9 % of the power of a joint's velocity lies (the median over joints and logs, weighted
+/// by how much they move), at least 3 Hz so that friction steps where a joint turns, at most a
+/// fifth of the sample rate.
 ///
 /// # Errors
 ///
 /// [`Error::Setting`] where the cut-off is not below half the sample rate.
 pub fn cut_off(logs: &[&RawLog], settings: &PrepareSettings) -> Result<f64> {
-    let lowest_rate = logs.iter().filter_map(|log| usual_step(&log.run.times)).fold(0.0, f64::max).recip();
+    let lowest_rate =
+        logs.iter().filter_map(|log| usual_step(&log.run.times)).fold(0.0, f64::max).recip();
     if let Some(given) = settings.cut_off {
         if !(given > 0.0 && given < 0.5 * lowest_rate) {
             return Err(Error::Setting(format!(
@@ -97,20 +103,25 @@ pub fn cut_off(logs: &[&RawLog], settings: &PrepareSettings) -> Result<f64> {
     Ok(cut_off::chosen(bands, lowest_rate))
 }
 
-/// The band of each joint's motion in a log \[Hz\], with the variance of its position times the duration for weight.
+/// The band of each joint's motion in a log \[Hz\], with the variance of its position times the
+/// duration for weight.
 fn bands(log: &RawLog) -> Vec<(f64, f64)> {
     let Some(step) = usual_step(&log.run.times) else { return Vec::new() };
     let column = |which, joint| resampled(&log.run.times, log.column(which, joint), step);
     let band = |joint: usize| {
         let q = column(Run::q, joint);
         let mean = q.iter().sum::<f64>() / q.len() as f64;
-        (motion_band(&q, &column(Run::qd, joint), step), q.iter().map(|q| step * (q - mean).powi(2)).sum())
+        (
+            motion_band(&q, &column(Run::qd, joint), step),
+            q.iter().map(|q| step * (q - mean).powi(2)).sum(),
+        )
     };
     (0..log.run.joints).map(band).collect()
 }
 
-/// Prepares recordings: even sample times, gains, a low-pass without delay on positions, velocities and torques, accelerations, and the ends, where
-/// a filter has to guess, cut by two and a half periods of the cut-off.
+/// Prepares recordings: even sample times, gains, a low-pass without delay on positions, velocities
+/// and torques, accelerations, and the ends, where a filter has to guess, cut by two and a half
+/// periods of the cut-off.
 ///
 /// # Errors
 ///
@@ -119,15 +130,23 @@ pub fn prepare(raw: &[RawLog], settings: &PrepareSettings, cut_off: f64) -> Resu
     let mut steps: Vec<f64> = raw.iter().filter_map(|log| usual_step(&log.run.times)).collect();
     steps.sort_by(f64::total_cmp);
     let common = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    let done: Vec<(Log, Change)> =
-        raw.par_iter().map(|log| prepare_one(log, settings, cut_off, common)).collect::<Result<_>>()?;
+    let done: Vec<(Log, Change)> = raw
+        .par_iter()
+        .map(|log| prepare_one(log, settings, cut_off, common))
+        .collect::<Result<_>>()?;
     let (logs, changes): (Vec<Log>, Vec<Change>) = done.into_iter().unzip();
     let changes = words(&logs, &changes, settings, cut_off);
     Ok(Prepared { logs, cut_off, changes })
 }
 
-/// Logs sampled at nearly the same rate get the same one, `common` \[s\], so that repeats can be compared sample by sample.
-fn prepare_one(raw: &RawLog, settings: &PrepareSettings, cut_off: f64, common: f64) -> Result<(Log, Change)> {
+/// Logs sampled at nearly the same rate get the same one, `common` \[s\], so that repeats can be
+/// compared sample by sample.
+fn prepare_one(
+    raw: &RawLog,
+    settings: &PrepareSettings,
+    cut_off: f64,
+    common: f64,
+) -> Result<(Log, Change)> {
     let (n, times) = (raw.run.joints, &raw.run.times);
     let short = || {
         Error::Setting(format!(
@@ -168,8 +187,12 @@ fn prepare_one(raw: &RawLog, settings: &PrepareSettings, cut_off: f64, common: f
         let qd = if differentiated { derivative(&q, step) } else { smooth(even(Run::qd, joint)) };
         let gain = settings.gains.get(joint).copied().unwrap_or(1.0);
         let tau = smooth(even(Run::torque, joint)).into_iter().map(|tau| gain * tau).collect();
-        let columns =
-            [(&mut log.q, q), (&mut log.qdd, derivative(&qd, step)), (&mut log.qd, qd), (&mut log.tau, tau)];
+        let columns = [
+            (&mut log.q, q),
+            (&mut log.qdd, derivative(&qd, step)),
+            (&mut log.qd, qd),
+            (&mut log.tau, tau),
+        ];
         columns.into_iter().for_each(|(rows, column)| set_column(rows, joint, n, &column));
     }
     let end = (END / (cut_off * step)).ceil() as usize;
@@ -188,17 +211,29 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
-fn words(logs: &[Log], changes: &[Change], settings: &PrepareSettings, cut_off: f64) -> Vec<String> {
+fn words(
+    logs: &[Log],
+    changes: &[Change],
+    settings: &PrepareSettings,
+    cut_off: f64,
+) -> Vec<String> {
     let (count, samples) = (logs.len(), logs.iter().map(Log::len).sum::<usize>());
     let steps = changes.iter().map(|change| change.usual_step);
-    let (fastest, slowest) = (steps.clone().fold(f64::INFINITY, f64::min), steps.fold(0.0, f64::max));
+    let (fastest, slowest) =
+        (steps.clone().fold(f64::INFINITY, f64::min), steps.fold(0.0, f64::max));
     let jitter = changes.iter().map(|change| change.jitter).fold(0.0, f64::max);
     let mut words = Vec::new();
     if !settings.joints.is_empty() {
-        words.push(format!("columns were matched with the joints by name: {}", settings.joints.join(", ")));
+        words.push(format!(
+            "columns were matched with the joints by name: {}",
+            settings.joints.join(", ")
+        ));
     }
     if settings.gains.iter().any(|gain| *gain != 1.0) {
-        words.push(format!("recorded torques were multiplied by {:?} (joint by joint)", settings.gains));
+        words.push(format!(
+            "recorded torques were multiplied by {:?} (joint by joint)",
+            settings.gains
+        ));
     }
     if jitter > 1e-6 {
         words.push(format!(
@@ -249,14 +284,17 @@ mod tests {
     #[test]
     fn a_slow_wave_is_kept_with_its_derivatives() {
         for velocity in [VelocitySource::Recorded, VelocitySource::Differentiated] {
-            let settings = PrepareSettings { gains: vec![3.0], velocity, ..PrepareSettings::default() };
+            let settings =
+                PrepareSettings { gains: vec![3.0], velocity, ..PrepareSettings::default() };
             let prepared = prepare(&[wave()], &settings, 4.0).unwrap();
             let log = &prepared.logs[0];
             for k in 0..log.len() {
                 let t = log.time(k);
-                let off = [log.q(k)[0] - t.sin(), log.qd(k)[0] - t.cos(), log.tau(k)[0] - 6.0 * t.sin()];
+                let off =
+                    [log.q(k)[0] - t.sin(), log.qd(k)[0] - t.cos(), log.tau(k)[0] - 6.0 * t.sin()];
                 assert!(off.iter().all(|x| x.abs() < 5e-4), "{t}: {off:?}");
-                // The ends are continued without curvature; 2.5 periods later 0.1 % of that is left.
+                // The ends are continued without curvature; 2.5 periods later 0.1 % of that is
+                // left.
                 let off = log.qdd(k)[0] + t.sin();
                 assert!(off.abs() < 2e-3, "{t}: {off}");
             }
@@ -271,11 +309,19 @@ mod tests {
     #[test]
     fn what_cannot_be_filtered_is_an_error() {
         let settings = PrepareSettings { cut_off: Some(70.0), ..PrepareSettings::default() };
-        assert!(cut_off(&[&wave()], &settings).unwrap_err().to_string().contains("half the sample rate"));
+        assert!(
+            cut_off(&[&wave()], &settings)
+                .unwrap_err()
+                .to_string()
+                .contains("half the sample rate")
+        );
         let mut short = wave();
         short.run.times.truncate(30);
         assert!(
-            prepare(&[short], &PrepareSettings::default(), 3.0).unwrap_err().to_string().contains("too few")
+            prepare(&[short], &PrepareSettings::default(), 3.0)
+                .unwrap_err()
+                .to_string()
+                .contains("too few")
         );
     }
 }

@@ -39,11 +39,13 @@ impl From<PathBuf> for LogEntry {
     }
 }
 
-/// Reads recordings of a robot; paths are taken from `folder` on. Columns are brought into the order of the robot's joints.
+/// Reads recordings of a robot; paths are taken from `folder` on. Columns are brought into the
+/// order of the robot's joints.
 ///
 /// # Errors
 ///
-/// Defects of the files (units that cannot be the robot's among them), [`Error::Read`] for a path that is not there, [`Error::Setting`] for joints that the robot does not have.
+/// Defects of the files (units that cannot be the robot's among them), [`Error::Read`] for a path
+/// that is not there, [`Error::Setting`] for joints that the robot does not have.
 pub fn read(
     entries: &[LogEntry],
     folder: &Path,
@@ -56,7 +58,8 @@ pub fn read(
         let (path, from, until) = entry.parts();
         for file in files(&folder.join(path))? {
             let limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
-            let run = Run::read(&file, Some(robot.joint_count()), limit, until).map_err(Error::Defects)?;
+            let run = Run::read(&file, Some(robot.joint_count()), limit, until)
+                .map_err(Error::Defects)?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let run = ordered(cut(run, from), &order);
             match check_limits(&file, &run, robot) {
@@ -82,7 +85,8 @@ fn files(path: &Path) -> Result<Vec<PathBuf>> {
         .flatten()
         .map(|entry| entry.path())
         .filter(|path| {
-            path.extension().is_some_and(|e| e == "csv") && path.file_name().is_some_and(|f| f != "runs.csv")
+            path.extension().is_some_and(|e| e == "csv")
+                && path.file_name().is_some_and(|f| f != "runs.csv")
         })
         .collect();
     files.sort();
@@ -137,7 +141,12 @@ mod tests {
         let robot = Robot::lwa4p();
         let names = ["joint2", "joint1", "joint3", "joint4", "joint5", "joint6"].map(String::from);
         assert_eq!(order(&robot, &names).unwrap(), [1, 0, 2, 3, 4, 5]);
-        assert!(order(&robot, &names[..5]).unwrap_err().to_string().contains("each of the robot's 6 joints"));
+        assert!(
+            order(&robot, &names[..5])
+                .unwrap_err()
+                .to_string()
+                .contains("each of the robot's 6 joints")
+        );
         let run = Run {
             joints: 2,
             start: 0.0,
@@ -153,8 +162,9 @@ mod tests {
     #[test]
     fn a_stretch_is_cut_from_a_folder() {
         let folder = tempfile::tempdir().unwrap();
-        let rows: String =
-            (0..50).map(|k| format!("{},0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,{k}\n", 0.1 * k as f64)).collect();
+        let rows: String = (0..50)
+            .map(|k| format!("{},0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,{k}\n", 0.1 * k as f64))
+            .collect();
         let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6\n";
         std::fs::write(folder.path().join("a.csv"), format!("{header}{rows}")).unwrap();
         std::fs::write(folder.path().join("runs.csv"), "file,suite\n").unwrap();
@@ -163,7 +173,8 @@ mod tests {
         let logs = read(&[entry], folder.path(), &robot, &PrepareSettings::default()).unwrap();
         assert_eq!((logs.len(), logs[0].name.as_str(), logs[0].run.len()), (1, "a", 11));
         assert_eq!(logs[0].run.torque(0)[5], 10.0);
-        let nowhere = read(&[LogEntry::Path("b".into())], folder.path(), &robot, &PrepareSettings::default());
+        let nowhere =
+            read(&[LogEntry::Path("b".into())], folder.path(), &robot, &PrepareSettings::default());
         assert!(nowhere.unwrap_err().to_string().contains("folder of them"));
     }
 }

@@ -1,6 +1,7 @@
 use std::ops::Range;
 
-/// The stretches of samples in which no joint moves faster than `speed` \[rad/s\], each at least `shortest` samples long.
+/// The stretches of samples in which no joint moves faster than `speed` \[rad/s\], each at least
+/// `shortest` samples long.
 ///
 /// `qd` is row-major, samples x `joints`.
 ///

@@ -25,15 +25,18 @@ pub struct Window {
     pub log: Log,
 }
 
-/// Cuts logs into windows of a duration \[s\], or leaves them whole. Logs whose names differ after the last `_` only are repeats of a motion where `repeats` is set:
-/// they are aligned with the first by their velocities, and each window of a motion is a suite with a run a repeat. What does not fill a window is left out.
+/// Cuts logs into windows of a duration \[s\], or leaves them whole. Logs whose names differ after
+/// the last `_` only are repeats of a motion where `repeats` is set: they are aligned with the
+/// first by their velocities, and each window of a motion is a suite with a run a repeat. What does
+/// not fill a window is left out.
 pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
     let motion_of = |log: &Log| match log.name.rsplit_once('_') {
         Some((motion, _)) if repeats => motion.to_string(),
         _ => log.name.clone(),
     };
     let motions: Vec<String> = logs.iter().map(motion_of).collect();
-    let first = |index: usize| motions.iter().position(|motion| *motion == motions[index]).unwrap_or(index);
+    let first =
+        |index: usize| motions.iter().position(|motion| *motion == motions[index]).unwrap_or(index);
     let late: Vec<f64> = (0..logs.len())
         .map(|index| {
             if first(index) == index {
@@ -58,10 +61,12 @@ pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
         let earliest = same.map(|other| late[other]).fold(0.0, f64::min);
         let skip = ((late[index] - earliest) / log.step).round() as usize;
         let rest = log.len().saturating_sub(skip + 1);
-        let length = duration.map_or(rest, |duration| (duration / log.step).round().max(1.0) as usize);
+        let length =
+            duration.map_or(rest, |duration| (duration / log.step).round().max(1.0) as usize);
         for k in 0..rest.checked_div(length).unwrap_or(0) {
             let start = skip + k * length;
-            let suite = if duration.is_some() { format!("{motion}_w{:02}", k + 1) } else { motion.clone() };
+            let suite =
+                if duration.is_some() { format!("{motion}_w{:02}", k + 1) } else { motion.clone() };
             found.windows.push(Window {
                 suite,
                 motion: motion.clone(),
@@ -91,8 +96,10 @@ impl Windows {
 }
 
 fn csv(log: &Log) -> String {
-    let mut text =
-        std::iter::once("t".to_string()).chain(column_names(log.joints)).collect::<Vec<_>>().join(",");
+    let mut text = std::iter::once("t".to_string())
+        .chain(column_names(log.joints))
+        .collect::<Vec<_>>()
+        .join(",");
     text.push('\n');
     for k in 0..log.len() {
         let _ = write!(text, "{:.6}", k as f64 * log.step);
@@ -110,7 +117,8 @@ mod tests {
     use super::*;
 
     fn bump(name: &str, centre: f64) -> Log {
-        let qd: Vec<f64> = (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
+        let qd: Vec<f64> =
+            (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
         Log { qd, ..Log::blank(name, 1, 400, 0.01) }
     }
 
@@ -122,8 +130,9 @@ mod tests {
         assert_eq!(suites[..3], ["A_w01", "A_w02", "A_w03"]);
         assert_eq!(suites.iter().filter(|s| **s == "A_w02").count(), 2);
         assert!(found.changes[0].contains("A_2 is 300.0 ms late"), "{:?}", found.changes);
-        let peak =
-            |w: &Window| (0..w.log.len()).max_by(|a, b| w.log.qd(*a)[0].total_cmp(&w.log.qd(*b)[0])).unwrap();
+        let peak = |w: &Window| {
+            (0..w.log.len()).max_by(|a, b| w.log.qd(*a)[0].total_cmp(&w.log.qd(*b)[0])).unwrap()
+        };
         let second: Vec<&Window> = found.windows.iter().filter(|w| w.suite == "A_w02").collect();
         assert_eq!((peak(second[0]), peak(second[1])), (50, 50));
     }

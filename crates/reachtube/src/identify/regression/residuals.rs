@@ -1,5 +1,5 @@
-/// Where the influence of a residual stops growing, in robust standard deviations: 95 % of the efficiency of least squares for normal errors
-/// (Huber 1964).
+/// Where the influence of a residual stops growing, in robust standard deviations: 95 % of the
+/// efficiency of least squares for normal errors (Huber 1964).
 const HUBER: f64 = 1.345;
 
 /// The standard deviation of normal errors whose median magnitude is 1.
@@ -21,14 +21,16 @@ pub fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     (values.map(|v| v * v).sum::<f64>() / count).sqrt()
 }
 
-/// The weight of a row whose residual is so many standard deviations: 1 up to 1.345, then falling so that its pull stays the same.
+/// The weight of a row whose residual is so many standard deviations: 1 up to 1.345, then falling
+/// so that its pull stays the same.
 pub fn huber_weight(residual: f64, deviation: f64) -> f64 {
     let size = residual.abs();
     if size <= HUBER * deviation { 1.0 } else { (HUBER * deviation / size).sqrt() }
 }
 
-/// How many samples of a series carry as much as one independent sample: 1 + 2 Σ ρ_k over the autocorrelations ρ_k of its residuals, until two
-/// neighbours sum to nothing (Geyer 1992). At least 1.
+/// How many samples of a series carry as much as one independent sample: 1 + 2 Σ ρ_k over the
+/// autocorrelations ρ_k of its residuals, until two neighbours sum to nothing (Geyer 1992). At
+/// least 1.
 ///
 /// `series` are stretches of consecutive residuals.
 ///
@@ -45,7 +47,10 @@ pub fn huber_weight(residual: f64, deviation: f64) -> f64 {
 pub fn samples_per_independent_one(series: &[&[f64]]) -> f64 {
     let longest = series.iter().map(|s| s.len()).max().unwrap_or(0);
     let correlation = |lag: usize| -> f64 {
-        series.iter().map(|s| s.iter().zip(s.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>()).sum()
+        series
+            .iter()
+            .map(|s| s.iter().zip(s.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>())
+            .sum()
     };
     let variance = correlation(0);
     if variance <= 0.0 {
@@ -68,12 +73,16 @@ mod tests {
 
     #[test]
     fn outliers_do_not_move_the_deviation() {
-        let mut residuals: Vec<f64> = (0..1000).map(|k| ((k as f64 + 0.5) / 1000.0 - 0.5) * 2.0).collect();
+        let mut residuals: Vec<f64> =
+            (0..1000).map(|k| ((k as f64 + 0.5) / 1000.0 - 0.5) * 2.0).collect();
         let before = robust_deviation(&residuals);
         residuals[..50].fill(1e6);
         assert!((robust_deviation(&residuals) / before - 1.0).abs() < 0.12);
         assert_eq!(huber_weight(1.0, 1.0), 1.0);
-        assert!((huber_weight(100.0, 1.0).powi(2) * 100.0 - HUBER).abs() < 1e-12, "the pull stays the same");
+        assert!(
+            (huber_weight(100.0, 1.0).powi(2) * 100.0 - HUBER).abs() < 1e-12,
+            "the pull stays the same"
+        );
     }
 
     #[test]

@@ -1,27 +1,32 @@
 use super::Triangle;
 use nalgebra::{DMatrix, DVector};
 
-/// Singular values below this part of the largest are taken as zero: the rows do not show that direction.
+/// Singular values below this part of the largest are taken as zero: the rows do not show that
+/// direction.
 const RANK_TOLERANCE: f64 = 1e-7;
 
 /// Part that a parameter must have in a direction that the rows do not show, to be named.
 const NAMED: f64 = 0.05;
 
-/// A least-squares solution: of smallest norm (columns scaled to unit length) where the rows leave some of it open.
+/// A least-squares solution: of smallest norm (columns scaled to unit length) where the rows leave
+/// some of it open.
 #[derive(Debug, Clone)]
 pub struct Solution {
     /// The parameters x, p entries.
     pub x: DVector<f64>,
-    /// Their covariance for rows with errors of variance 1, p x p; infinite for what the rows do not show.
+    /// Their covariance for rows with errors of variance 1, p x p; infinite for what the rows do
+    /// not show.
     pub covariance: DMatrix<f64>,
-    /// Largest over smallest singular value of the columns scaled to unit length; infinite where the rows leave a parameter open.
+    /// Largest over smallest singular value of the columns scaled to unit length; infinite where
+    /// the rows leave a parameter open.
     pub condition: f64,
     /// Columns that have part in a direction that the rows do not show.
     pub open: Vec<usize>,
 }
 
 impl Triangle {
-    /// Solves the least-squares problem by the singular values of R with its columns scaled to unit length; directions that only rounding shows are left open.
+    /// Solves the least-squares problem by the singular values of R with its columns scaled to unit
+    /// length; directions that only rounding shows are left open.
     pub fn solve(&self) -> Solution {
         self.solve_within(RANK_TOLERANCE)
     }
@@ -47,7 +52,9 @@ impl Triangle {
                 scaled += &direction * (u.column(k).dot(&self.z) / sigma[k]);
                 covariance += &direction * direction.transpose() / sigma[k].powi(2);
             } else {
-                open.iter_mut().zip(&direction).for_each(|(open, part)| *open |= part.abs() > NAMED);
+                open.iter_mut()
+                    .zip(&direction)
+                    .for_each(|(open, part)| *open |= part.abs() > NAMED);
             }
         }
         let spread = DMatrix::from_diagonal(&unit);
@@ -95,6 +102,9 @@ mod tests {
         let solution = rows(4, |t| vec![t, 1.0, 2.0 * t, 0.0, 3.0 * t]).solve();
         assert_eq!(solution.open, [0, 2, 3]);
         assert!(solution.condition.is_infinite() && solution.x[1].abs() < 1e-9);
-        assert!(solution.standard_errors()[1].is_finite() && solution.standard_errors()[2].is_infinite());
+        assert!(
+            solution.standard_errors()[1].is_finite()
+                && solution.standard_errors()[2].is_infinite()
+        );
     }
 }

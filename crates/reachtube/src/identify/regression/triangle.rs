@@ -6,7 +6,8 @@ const CHUNK: usize = 1024;
 
 /// What least squares keeps of any number of rows [a, y]: the triangular factor R of [A, y].
 ///
-/// ‖A x - y‖² = ‖R x - z‖² + rest² for all x. Factors of parts are joined by factoring them again, so rows can be added in any number.
+/// ‖A x - y‖² = ‖R x - z‖² + rest² for all x. Factors of parts are joined by factoring them again,
+/// so rows can be added in any number.
 #[derive(Debug, Clone)]
 pub struct Triangle {
     /// p x p, upper triangular.
@@ -22,15 +23,23 @@ impl Triangle {
     pub fn of(rows: &[f64], columns: usize) -> Self {
         let width = columns + 1;
         let all: Vec<usize> = (0..rows.len() / width).collect();
-        Self::of_rows(&all, columns, |index, row| row.copy_from_slice(&rows[index * width..][..width]))
+        Self::of_rows(&all, columns, |index, row| {
+            row.copy_from_slice(&rows[index * width..][..width])
+        })
     }
 
     /// Of the rows [a, y] that `write` writes for each index.
-    pub fn of_rows(indices: &[usize], columns: usize, write: impl Fn(usize, &mut [f64]) + Sync) -> Self {
+    pub fn of_rows(
+        indices: &[usize],
+        columns: usize,
+        write: impl Fn(usize, &mut [f64]) + Sync,
+    ) -> Self {
         let width = columns + 1;
         let part = |part: &[usize]| {
             let mut rows = vec![0.0; part.len() * width];
-            part.iter().zip(rows.chunks_exact_mut(width)).for_each(|(index, row)| write(*index, row));
+            part.iter()
+                .zip(rows.chunks_exact_mut(width))
+                .for_each(|(index, row)| write(*index, row));
             factor(DMatrix::from_row_slice(part.len(), width, &rows))
         };
         let parts: Vec<_> = indices.par_chunks(CHUNK).map(part).collect();
@@ -105,7 +114,8 @@ mod tests {
     use proptest::prelude::*;
 
     fn matrix(rows: usize) -> impl Strategy<Value = DMatrix<f64>> {
-        prop::collection::vec(-3.0..3.0_f64, rows * 4).prop_map(move |v| DMatrix::from_row_slice(rows, 4, &v))
+        prop::collection::vec(-3.0..3.0_f64, rows * 4)
+            .prop_map(move |v| DMatrix::from_row_slice(rows, 4, &v))
     }
 
     fn triangle(rows: &DMatrix<f64>) -> Triangle {

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// x_k = G_k y_k + Φ_k x_{k-1} + d_k with x_{-1} = 0: states x_k of one dimension, moves y_k of any.
+/// x_k = G_k y_k + Φ_k x_{k-1} + d_k with x_{-1} = 0: states x_k of one dimension, moves y_k of
+/// any.
 #[derive(Debug)]
 pub(super) struct Chain {
     states: usize,
@@ -43,8 +44,11 @@ impl Chain {
     pub fn rest(&self) -> Vec<f64> {
         let mut x = self.drift.clone();
         for (k, link) in self.links.iter().enumerate().skip(1) {
-            let (before, after) = x[(k - 1) * self.states..(k + 1) * self.states].split_at_mut(self.states);
-            for (x, row) in after.iter_mut().zip(link.rows.chunks_exact(link.rows.len() / self.states)) {
+            let (before, after) =
+                x[(k - 1) * self.states..(k + 1) * self.states].split_at_mut(self.states);
+            for (x, row) in
+                after.iter_mut().zip(link.rows.chunks_exact(link.rows.len() / self.states))
+            {
                 *x += dot(&row[link.moves.len()..], before);
             }
         }
@@ -56,11 +60,13 @@ impl Chain {
     }
 }
 
-/// The Riccati recursion of ½ Σ Q x² + ½ Σ R y² over a chain without drift, Q and R diagonal, R > 0.
+/// The Riccati recursion of ½ Σ Q x² + ½ Σ R y² over a chain without drift, Q and R diagonal, R >
+/// 0.
 #[derive(Debug)]
 pub(super) struct Riccati<'a> {
     chain: &'a Chain,
-    /// For each link the upper rows of the Cholesky factor of what (y_k, x_{k-1}) cost, as many as it has moves, row-major.
+    /// For each link the upper rows of the Cholesky factor of what (y_k, x_{k-1}) cost, as many as
+    /// it has moves, row-major.
     eliminated: Vec<Vec<f64>>,
     /// P_k, of which x_k cost ½ xᵀ P x.
     cost: Vec<f64>,
@@ -132,13 +138,15 @@ impl<'a> Riccati<'a> {
         }
     }
 
-    /// States `x` and moves `y` of the chain without drift that make the quadratic cost + q·x + r·y least.
+    /// States `x` and moves `y` of the chain without drift that make the quadratic cost + q·x + r·y
+    /// least.
     pub fn solve(&mut self, q: &[f64], r: &[f64], x: &mut [f64], y: &mut [f64]) {
         self.backward(q, r, y);
         let states = self.chain.states;
         let before = &mut self.slope;
         before.fill(0.0);
-        for ((link, rows), x) in self.chain.links.iter().zip(&self.eliminated).zip(x.chunks_exact_mut(states))
+        for ((link, rows), x) in
+            self.chain.links.iter().zip(&self.eliminated).zip(x.chunks_exact_mut(states))
         {
             let width = link.moves.len();
             let both = &mut self.both[..width + states];
@@ -180,7 +188,8 @@ impl<'a> Riccati<'a> {
     }
 }
 
-/// The first `count` steps of Cholesky's factorisation of a symmetric matrix, in its upper triangle; false where it is not positive definite.
+/// The first `count` steps of Cholesky's factorisation of a symmetric matrix, in its upper
+/// triangle; false where it is not positive definite.
 fn eliminate(matrix: &mut [f64], size: usize, count: usize) -> bool {
     for j in 0..count {
         let (done, left) = matrix[j * size..].split_at_mut(size);

@@ -22,23 +22,27 @@ use crate::conform::{Recordings, Settings, UncertaintySets};
 use crate::data::{DataSet, Run};
 use crate::error::{Error, Result};
 
-/// What counts as one unit of position, rad, and of velocity, rad/s, where the largest residual is made least. It is about what recordings leave open: those of the LWA 4P differ
-/// by up to 0.0003 rad between q and the integral of q̇, and q̇ by up to 0.009 rad/s from a local parabola.
+/// What counts as one unit of position, rad, and of velocity, rad/s, where the largest residual is
+/// made least. It is about what recordings leave open: those of the LWA 4P differ by up to 0.0003
+/// rad between q and the integral of q̇, and q̇ by up to 0.009 rad/s from a local parabola.
 const UNITS: [f64; 2] = [1e-3, 1e-2];
 
 /// Residuals below this many units are not made smaller.
 const ENOUGH: f64 = 1e-5;
 
-/// How far the model's own residual may exceed that of its linearisation before it is linearised again.
+/// How far the model's own residual may exceed that of its linearisation before it is linearised
+/// again.
 const SLACK: f64 = 1.02;
 
 /// Linearisations of one run.
 const PASSES: usize = 4;
 
-/// How close a model comes to a recorded run: the largest |recorded - simulated| over all samples and joints of the closest motion found, whose start lies in start + X0 and whose
-/// input lies in u_m + U and is held from each sample to the next. Infinite where the simulation ran away.
+/// How close a model comes to a recorded run: the largest |recorded - simulated| over all samples
+/// and joints of the closest motion found, whose start lies in start + X0 and whose input lies in
+/// u_m + U and is held from each sample to the next. Infinite where the simulation ran away.
 ///
-/// That motion is a witness: the run is explained within these residuals. That there is none closer is not said.
+/// That motion is a witness: the run is explained within these residuals. That there is none closer
+/// is not said.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Explanation {
     /// The run (index in the data set).
@@ -64,8 +68,9 @@ pub fn explain(
     sets: &UncertaintySets,
 ) -> Result<Vec<Explanation>> {
     let suites = recordings.suites.iter().enumerate();
-    let runs: Vec<(usize, usize)> =
-        suites.flat_map(|(suite, read)| read.runs.iter().map(move |run| (suite, run.index))).collect();
+    let runs: Vec<(usize, usize)> = suites
+        .flat_map(|(suite, read)| read.runs.iter().map(move |run| (suite, run.index)))
+        .collect();
     let of = |&(suite, run): &(usize, usize)| {
         let is_its = |case: &&Case| case.suite == suite && case.run.is_none_or(|own| own == run);
         let case = cases.iter().find(is_its).expect("every run of the recordings has a case");
@@ -94,7 +99,8 @@ impl Behaviour {
     }
 }
 
-/// The behaviour sought for one run: the model is linearised along the recorded motion, then along the one found.
+/// The behaviour sought for one run: the model is linearised along the recorded motion, then along
+/// the one found.
 struct Search<'a> {
     model: &'a PolynomialModel,
     recorded: &'a Run,
@@ -106,10 +112,16 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(model: &'a PolynomialModel, case: &Case, sets: &UncertaintySets, recorded: &'a Run) -> Self {
+    fn new(
+        model: &'a PolynomialModel,
+        case: &Case,
+        sets: &UncertaintySets,
+        recorded: &'a Run,
+    ) -> Self {
         let n = case.joints();
         let acting = &case.inputs[..n * recorded.len().saturating_sub(1)];
-        let inputs = (0..acting.len()).map(|at| bounds(acting[at], &sets.input_set, at % n)).collect();
+        let inputs =
+            (0..acting.len()).map(|at| bounds(acting[at], &sets.input_set, at % n)).collect();
         let start = (0..2 * n).map(|i| bounds(case.start[i], &sets.initial_set, i)).collect();
         let mut linearisation = Linearisation::new(model);
         let norms = acting.chunks_exact(n).enumerate().map(|(k, u)| {
@@ -137,24 +149,31 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// What is found with the model linearised along a motion, and what its largest residual would be if the linearisation were the model.
+    /// What is found with the model linearised along a motion, and what its largest residual would
+    /// be if the linearisation were the model.
     fn pass(&self, states: &[f64], inputs: &[f64]) -> (Behaviour, f64) {
         let found = regulate(&self.chain(states, inputs), ENOUGH);
-        let place =
-            |([low, high], y): (&[f64; 2], &f64)| (0.5 * (low + high + y * (high - low))).clamp(*low, *high);
+        let place = |([low, high], y): (&[f64; 2], &f64)| {
+            (0.5 * (low + high + y * (high - low))).clamp(*low, *high)
+        };
         let mut moves = found.moves.iter();
         let start: Vec<f64> = self.start.iter().zip(moves.by_ref()).map(place).collect();
         let inputs = self.inputs.iter().zip(moves).map(place).collect();
         (self.behaviour(&start, inputs), found.largest)
     }
 
-    /// The distance of the linearised model from the recorded motion in units, as start and inputs move through their boxes, [-1, 1] each.
+    /// The distance of the linearised model from the recorded motion in units, as start and inputs
+    /// move through their boxes, [-1, 1] each.
     fn chain(&self, states: &[f64], inputs: &[f64]) -> Chain {
         let n = self.recorded.joints;
         let mut chain = Chain::new(2 * n);
-        let reach = &|i: usize, j: usize| if i == j { radius(&self.start[i]) / unit(n, i) } else { 0.0 };
+        let reach =
+            &|i: usize, j: usize| if i == j { radius(&self.start[i]) / unit(n, i) } else { 0.0 };
         let rows = (0..2 * n).flat_map(|i| (0..4 * n).map(move |j| reach(i, j))).collect();
-        chain.push(rows, (0..2 * n).map(|i| (middle(&self.start[i]) - self.recorded.states[i]) / unit(n, i)));
+        chain.push(
+            rows,
+            (0..2 * n).map(|i| (middle(&self.start[i]) - self.recorded.states[i]) / unit(n, i)),
+        );
         let mut steps = Steps::new(self.model, self.substeps);
         for k in 1..self.recorded.len() {
             let (before, after) = states[(k - 1) * 2 * n..(k + 1) * 2 * n].split_at(2 * n);
@@ -165,7 +184,8 @@ impl<'a> Search<'a> {
         chain
     }
 
-    /// The step to sample k, made from the state `before` under the input `held`, as a link from the recorded state and the middle of the allowed inputs.
+    /// The step to sample k, made from the state `before` under the input `held`, as a link from
+    /// the recorded state and the middle of the allowed inputs.
     fn link(&self, k: usize, step: Step, before: &[f64], held: &[f64], chain: &mut Chain) {
         let n = held.len();
         let allowed = &self.inputs[(k - 1) * n..k * n];
@@ -173,11 +193,14 @@ impl<'a> Search<'a> {
         let mut rows = Vec::with_capacity(6 * n * n);
         let mut drift = Vec::with_capacity(2 * n);
         for (i, to) in self.recorded.state(k).iter().enumerate() {
-            let gains = allowed.iter().enumerate().map(|(j, u)| step.gain[(i, j)] * radius(u) / unit(n, i));
+            let gains =
+                allowed.iter().enumerate().map(|(j, u)| step.gain[(i, j)] * radius(u) / unit(n, i));
             rows.extend(gains);
             rows.extend((0..2 * n).map(|j| step.transition[(i, j)] * unit(n, j) / unit(n, i)));
-            let moved: f64 = (0..2 * n).map(|j| step.transition[(i, j)] * (from[j] - before[j])).sum();
-            let pushed: f64 = (0..n).map(|j| step.gain[(i, j)] * (middle(&allowed[j]) - held[j])).sum();
+            let moved: f64 =
+                (0..2 * n).map(|j| step.transition[(i, j)] * (from[j] - before[j])).sum();
+            let pushed: f64 =
+                (0..n).map(|j| step.gain[(i, j)] * (middle(&allowed[j]) - held[j])).sum();
             drift.push((step.reached[i] + moved + pushed - to) / unit(n, i));
         }
         chain.push(rows, drift);
@@ -185,8 +208,8 @@ impl<'a> Search<'a> {
 
     fn behaviour(&self, start: &[f64], inputs: Vec<f64>) -> Behaviour {
         let n = self.recorded.joints;
-        let states =
-            simulate(self.model, &self.recorded.times, self.substeps, start, &inputs).unwrap_or_default();
+        let states = simulate(self.model, &self.recorded.times, self.substeps, start, &inputs)
+            .unwrap_or_default();
         let mut residuals = [0.0_f64; 2];
         for (at, (x, recorded)) in states.iter().zip(&self.recorded.states).enumerate() {
             let residual = &mut residuals[at / n % 2];
@@ -204,10 +227,12 @@ fn unit(joints: usize, i: usize) -> f64 {
     UNITS[i / joints]
 }
 
-/// Lowest and highest of base + set in dimension i, rounded inwards; one number, the nearest, where no other lies between.
+/// Lowest and highest of base + set in dimension i, rounded inwards; one number, the nearest, where
+/// no other lies between.
 fn bounds(base: f64, set: &Hyperrectangle, i: usize) -> [f64; 2] {
     let (center, radius) = (set.center[i], set.radius[i]);
-    let (low, high) = (add_up(base, sub_up(center, radius)), add_down(base, add_down(center, radius)));
+    let (low, high) =
+        (add_up(base, sub_up(center, radius)), add_down(base, add_down(center, radius)));
     if low <= high { [low, high] } else { [base + center; 2] }
 }
 

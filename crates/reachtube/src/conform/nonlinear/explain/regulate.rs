@@ -18,23 +18,32 @@ const ITERATIONS: usize = 60;
 /// How far towards a bound a step goes.
 const CAUTION: f64 = 0.99;
 
-/// min t over |x| <= t, |y| <= 1 for states x and moves y of `chain`, as far as `enough`: a linear program, solved by the primal-dual interior-point method of Mehrotra
-/// (SIAM J. Optim. 2, 1992), each of whose steps is one Riccati recursion (Rao, Wright, Rawlings, J. Optim. Theory Appl. 99, 1998).
+/// min t over |x| <= t, |y| <= 1 for states x and moves y of `chain`, as far as `enough`: a linear
+/// program, solved by the primal-dual interior-point method of Mehrotra (SIAM J. Optim. 2, 1992),
+/// each of whose steps is one Riccati recursion (Rao, Wright, Rawlings, J. Optim. Theory Appl. 99,
+/// 1998).
 pub(super) fn regulate(chain: &Chain, enough: f64) -> Regulated {
     let (mut states, mut moves) = start(chain);
     let mut step = Step::new(chain, &states, &moves);
     for _ in 0..ITERATIONS {
         let gap = states.gap() + moves.gap();
-        if gap <= ACCURACY * states.bound || states.bound <= enough || !step.find(&states, &moves, gap) {
+        if gap <= ACCURACY * states.bound
+            || states.bound <= enough
+            || !step.find(&states, &moves, gap)
+        {
             break;
         }
-        let primal = CAUTION * states.room(&step.states).min(moves.room(&step.moves)).min(1.0 / CAUTION);
-        let dual =
-            CAUTION * states.dual_room(&step.states).min(moves.dual_room(&step.moves)).min(1.0 / CAUTION);
+        let primal =
+            CAUTION * states.room(&step.states).min(moves.room(&step.moves)).min(1.0 / CAUTION);
+        let dual = CAUTION
+            * states.dual_room(&step.states).min(moves.dual_room(&step.moves)).min(1.0 / CAUTION);
         states.advance(&step.states, primal, dual);
         moves.advance(&step.moves, primal, dual);
     }
-    Regulated { largest: states.values.iter().fold(0.0, |max, x| max.max(x.abs())), moves: moves.values }
+    Regulated {
+        largest: states.values.iter().fold(0.0, |max, x| max.max(x.abs())),
+        moves: moves.values,
+    }
 }
 
 /// No moves, with multipliers as on the central path.
@@ -79,7 +88,9 @@ impl Band {
     }
 
     fn gap(&self) -> f64 {
-        self.pairs().map(|(slack, multiplier)| slack[0] * multiplier[0] + slack[1] * multiplier[1]).sum()
+        self.pairs()
+            .map(|(slack, multiplier)| slack[0] * multiplier[0] + slack[1] * multiplier[1])
+            .sum()
     }
 
     /// That after a step.
@@ -100,14 +111,20 @@ impl Band {
 
     /// How far `change` may be followed until a multiplier is used up.
     fn dual_room(&self, change: &Self) -> f64 {
-        let rooms =
-            self.multipliers.iter().zip(&change.multipliers).flat_map(|(own, more)| room(*own, *more));
+        let rooms = self
+            .multipliers
+            .iter()
+            .zip(&change.multipliers)
+            .flat_map(|(own, more)| room(*own, *more));
         rooms.fold(f64::INFINITY, f64::min)
     }
 
     fn advance(&mut self, change: &Self, primal: f64, dual: f64) {
         self.bound += primal * change.bound;
-        self.values.iter_mut().zip(&change.values).for_each(|(value, more)| *value += primal * more);
+        self.values
+            .iter_mut()
+            .zip(&change.values)
+            .for_each(|(value, more)| *value += primal * more);
         for (own, more) in self.multipliers.iter_mut().zip(&change.multipliers) {
             *own = [own[0] + dual * more[0], own[1] + dual * more[1]];
         }
@@ -119,8 +136,9 @@ fn room(own: [f64; 2], change: [f64; 2]) -> [f64; 2] {
     [side(0), side(1)]
 }
 
-/// The Newton step. With s and λ the slacks and multipliers above (+) and below (-) a value z, h = λ / s, and a = (μ - Δs Δλ) / s what the product of the two aims at, the
-/// changes make ½ (h⁺ + h⁻) Δz² + (a⁺ - a⁻) Δz - (h⁺ - h⁻) Δz Δt least.
+/// The Newton step. With s and λ the slacks and multipliers above (+) and below (-) a value z, h =
+/// λ / s, and a = (μ - Δs Δλ) / s what the product of the two aims at, the changes make ½ (h⁺ + h⁻)
+/// Δz² + (a⁺ - a⁻) Δz - (h⁺ - h⁻) Δz Δt least.
 struct Step<'a> {
     riccati: Riccati<'a>,
     states: Band,
@@ -134,7 +152,13 @@ impl<'a> Step<'a> {
     fn new(chain: &'a Chain, states: &Band, moves: &Band) -> Self {
         let pair = || [states.values.clone(), moves.values.clone()];
         let riccati = Riccati::new(chain);
-        Self { riccati, states: states.clone(), moves: moves.clone(), per_bound: pair(), scratch: pair() }
+        Self {
+            riccati,
+            states: states.clone(),
+            moves: moves.clone(),
+            per_bound: pair(),
+            scratch: pair(),
+        }
     }
 
     /// Predictor and corrector; whether there is a step.
@@ -153,7 +177,8 @@ impl<'a> Step<'a> {
         self.predict(states, moves, curvature);
         let primal = states.room(&self.states).min(moves.room(&self.moves)).min(1.0);
         let dual = states.dual_room(&self.states).min(moves.dual_room(&self.moves)).min(1.0);
-        let left = states.gap_after(&self.states, primal, dual) + moves.gap_after(&self.moves, primal, dual);
+        let left = states.gap_after(&self.states, primal, dual)
+            + moves.gap_after(&self.moves, primal, dual);
         let pairs = 2 * (states.values.len() + moves.values.len());
         self.correct(states, moves, curvature, (left / gap).powi(3) * gap / pairs as f64);
         self.states.bound.is_finite() && curvature > 0.0
@@ -177,8 +202,11 @@ impl<'a> Step<'a> {
         fill(&mut self.scratch[1], self.moves.multipliers.iter().map(|a| a[0] - a[1]));
         let [q, r] = &self.scratch;
         self.riccati.solve(q, r, &mut self.states.values, &mut self.moves.values);
-        let leaning: f64 =
-            states.pairs().zip(&self.states.values).map(|((s, m), x)| (m[0] / s[0] - m[1] / s[1]) * x).sum();
+        let leaning: f64 = states
+            .pairs()
+            .zip(&self.states.values)
+            .map(|((s, m), x)| (m[0] / s[0] - m[1] / s[1]) * x)
+            .sum();
         self.follow(states, moves, (tilt + leaning) / curvature);
     }
 
@@ -203,7 +231,9 @@ impl Band {
     /// Replaces the multipliers' changes by what their products with the slacks of `own` aim at.
     fn aim(&mut self, own: &Self, mu: f64) {
         let bound = self.bound;
-        for ((change, value), slack) in self.multipliers.iter_mut().zip(&self.values).zip(own.slacks()) {
+        for ((change, value), slack) in
+            self.multipliers.iter_mut().zip(&self.values).zip(own.slacks())
+        {
             let more = [bound - value, bound + value];
             *change = [0, 1].map(|i| (mu - more[i] * change[i]) / slack[i]);
         }

@@ -53,7 +53,8 @@ fn dyadic(x: f64) -> f64 {
     (x * 1024.0).round() / 1024.0
 }
 
-/// What the model does from a start and under inputs off the case's, by an integrator of another kind.
+/// What the model does from a start and under inputs off the case's, by an integrator of another
+/// kind.
 fn record(model: &PolynomialModel, case: &Case, start: &[f64], inputs: &[f64]) -> Run {
     let mut states = Vec::new();
     let tolerance = Tolerance { relative: 1e-11, absolute: 1e-11 };
@@ -83,7 +84,8 @@ fn disturbed(model: &PolynomialModel, case: &Case, sets: &UncertaintySets, reach
     record(model, case, &start, &inputs)
 }
 
-/// Asserts that a behaviour is one: start and inputs in their sets without any tolerance, and residuals as another integrator finds them.
+/// Asserts that a behaviour is one: start and inputs in their sets without any tolerance, and
+/// residuals as another integrator finds them.
 fn assert_is_witness(
     model: &PolynomialModel,
     case: &Case,
@@ -120,7 +122,12 @@ fn runs_of_the_model_are_explained() {
         let run = disturbed(&model, &case, &sets, 1.0);
         let found = Search::new(&model, &case, &sets, &run).run();
         assert_is_witness(&model, &case, &sets, &run, &found);
-        assert!(found.position < 1e-7 && found.velocity < 1e-6, "{} {}", found.position, found.velocity);
+        assert!(
+            found.position < 1e-7 && found.velocity < 1e-6,
+            "{} {}",
+            found.position,
+            found.velocity
+        );
     }
 }
 
@@ -146,7 +153,10 @@ fn inputs_outside_are_explained_by_larger_sets_only() {
         assert_is_witness(&model, &case, &sets, &run, &found);
         assert!(found.largest() > 0.2, "{}", found.largest());
         let larger = UncertaintySets {
-            initial_set: Hyperrectangle { radius: vec![3.0 / 128.0; 2 * JOINTS], ..sets.initial_set.clone() },
+            initial_set: Hyperrectangle {
+                radius: vec![3.0 / 128.0; 2 * JOINTS],
+                ..sets.initial_set.clone()
+            },
             input_set: Hyperrectangle { radius: vec![1.5; JOINTS], ..sets.input_set.clone() },
             noise_set: None,
         };
@@ -196,8 +206,9 @@ fn the_largest_state_is_least() {
             let (gain, transition) =
                 (entries(states, width, 1.0), entries(states, states, f64::from(u8::from(k > 0))));
             let drift = entries(states, 1, 2.0);
-            let row =
-                |i: usize| gain.row(i).iter().chain(transition.row(i).iter()).copied().collect::<Vec<_>>();
+            let row = |i: usize| {
+                gain.row(i).iter().chain(transition.row(i).iter()).copied().collect::<Vec<_>>()
+            };
             chain.push((0..states).flat_map(row).collect(), drift.iter().copied());
             matrices.push((gain, transition, drift));
         }
