@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use reachtube::abstraction::ModelKind;
 use reachtube::conform::{Centre, Method, NominalStart, States};
-use reachtube::data::{GapLimit, Torque};
+use reachtube::recordings::{GapLimit, Torque};
 use reachtube_reach::Disturbance;
 use serde::de::DeserializeOwned;
 

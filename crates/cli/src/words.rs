@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use reachtube::Model;
 use reachtube::abstraction::{ModelKind, PolynomialModel};
+use reachtube::conform::MOST_TIGHT;
 use reachtube::conform::{Check, Enclosure, Lost, Place, Trust};
-use reachtube::data::{Group, Inspection};
-use reachtube::model::MOST_TIGHT;
+use reachtube::recordings::{Group, Inspection};
 use reachtube::reproduce::{Cell, Paper, Speed, Table1};
 
 use crate::numbers::{interval, number};
@@ -379,7 +379,7 @@ fn group_words(group: &Group) -> String {
         plural(most, "sample"),
         group.duration
     );
-    let row = |(index, joint): (usize, &reachtube::data::JointSummary)| {
+    let row = |(index, joint): (usize, &reachtube::recordings::JointSummary)| {
         vec![
             (index + 1).to_string(),
             format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1]),

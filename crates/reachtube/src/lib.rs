@@ -1,22 +1,18 @@
 #![doc = include_str!("../README.md")]
 
-pub mod abstraction;
-pub mod conform;
-pub mod data;
 pub mod demo;
 mod error;
-pub mod identify;
-mod json;
-pub mod model;
 mod motion;
 mod random;
-pub mod reach;
 pub mod report;
 pub mod reproduce;
-pub mod write;
 
 pub use error::{Error, Result};
-pub use model::Model;
-
-/// Name and version of the program, as files that it writes record it.
-pub const TOOL: &str = concat!("reachtube ", env!("CARGO_PKG_VERSION"));
+pub use reachtube_abstraction as abstraction;
+pub use reachtube_conform as conform;
+pub use reachtube_conform::Model;
+pub use reachtube_files::{TOOL, write};
+pub use reachtube_identify as identify;
+pub use reachtube_reach as reach;
+pub use reachtube_recordings as recordings;
+pub use reachtube_robot as robot;

@@ -59,12 +59,12 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::random::SplitMix64;
+    use crate::random::{SeedableRng, SplitMix64};
 
     proptest! {
         #[test]
         fn velocity_and_acceleration_are_derivatives(seed: u64, t in 0.01..2.99f64) {
-            let motion = Motion::random(&Robot::lwa4p(), 3.0, &mut SplitMix64::new(seed));
+            let motion = Motion::random(&Robot::lwa4p(), 3.0, &mut SplitMix64::seed_from_u64(seed));
             let (before, plan, after) = (motion.at(t - 1e-4), motion.at(t), motion.at(t + 1e-4));
             for i in 0..6 {
                 prop_assert!(((after.q[i] - before.q[i]) / 2e-4 - plan.qd[i]).abs() < 1e-6);
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn the_motion_goes_from_rest_to_rest() {
-        let motion = Motion::random(&Robot::lwa4p(), 3.0, &mut SplitMix64::new(1));
+        let motion = Motion::random(&Robot::lwa4p(), 3.0, &mut SplitMix64::seed_from_u64(1));
         assert_eq!(motion.at(0.0).q, motion.start);
         for (end, (start, travel)) in
             motion.at(3.0).q.iter().zip(motion.start.iter().zip(&motion.travel))
@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn the_input_moves_the_nominal_robot_as_planned() {
         let robot = Robot::lwa4p();
-        let motion = Motion::random(&robot, 3.0, &mut SplitMix64::new(2));
+        let motion = Motion::random(&robot, 3.0, &mut SplitMix64::seed_from_u64(2));
         let plan = motion.at(1.0);
         let net = robot.gravity_torque(&plan.q) - robot.viscous_torque(&plan.qd)
             + nalgebra::DVector::from_vec(motion.input(&robot, 1.0));

@@ -1,6 +1,6 @@
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube::conform::{Dynamics, Noise, Settings, Tolerance, Watch, Weights, conform};
-use reachtube::data::DataSet;
+use reachtube::recordings::DataSet;
 use reachtube::{Error, Model, Result, write};
 use reachtube_robot::Robot;
 

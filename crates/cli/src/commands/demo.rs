@@ -1,8 +1,8 @@
 use std::path::Path;
 
 use reachtube::conform::{Check, Settings, Watch, conform};
-use reachtube::data::{DataSet, Torque};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
+use reachtube::recordings::{DataSet, Torque};
 use reachtube::{Model, Result, write};
 use reachtube_robot::Robot;
 use serde_json::json;

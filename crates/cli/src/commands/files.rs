@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use reachtube::reach::SuiteReach;
+use reachtube::conform::SuiteReach;
 use reachtube::report::SuiteFigure;
 
 /// A name for the files of each of `reach`: the suite, and the run where it has its own nominal

@@ -1,5 +1,5 @@
 use reachtube::Result;
-use reachtube::data::{DataSet, inspect};
+use reachtube::recordings::{DataSet, inspect};
 
 use super::Outcome;
 use crate::args::{InspectArgs, gap_limit};

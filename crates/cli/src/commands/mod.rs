@@ -15,8 +15,8 @@ mod reproduce;
 mod robot;
 
 use reachtube::conform::{Check, Recordings, Settings, check as check_recordings};
-use reachtube::data::DataSet;
-use reachtube::reach::{SuiteReach, reach as reach_suites};
+use reachtube::conform::{SuiteReach, reach as reach_suites};
+use reachtube::recordings::DataSet;
 use reachtube::report::Sources;
 use reachtube::{Model, Result};
 use reachtube_robot::Robot;
@@ -93,19 +93,19 @@ impl Opened {
     fn check(&self) -> Result<Check> {
         let bar = Progress::new();
         let show = |done: usize, total: usize| bar.show(done, total);
-        check_recordings(&self.model, &self.data, &self.suites, &self.settings, &show)
+        Ok(check_recordings(&self.model, &self.data, &self.suites, &self.settings, &show)?)
     }
 
     fn recordings(&self) -> Result<Recordings> {
         let bar = Progress::new();
         let show = |done: usize, total: usize| bar.show(done, total);
-        Recordings::read(&self.data, &self.suites, &self.robot, &self.settings, &show)
+        Ok(Recordings::read(&self.data, &self.suites, &self.robot, &self.settings, &show)?)
     }
 
     fn reach(&self, recordings: &Recordings) -> Result<Vec<SuiteReach>> {
         let _bar = Progress::new();
         let Self { model, robot, settings, data, .. } = self;
-        reach_suites(data, robot, settings, &model.dynamics()?, &model.sets(), recordings)
+        Ok(reach_suites(data, robot, settings, &model.dynamics()?, &model.sets(), recordings)?)
     }
 
     /// What the page is made from.

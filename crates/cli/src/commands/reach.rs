@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use reachtube::reach::SuiteReach;
+use reachtube::conform::SuiteReach;
 use reachtube::report::page;
 use reachtube::{Result, write};
 use serde_json::json;

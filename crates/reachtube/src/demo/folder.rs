@@ -10,7 +10,7 @@ use super::SAMPLE_TIME;
 use super::hidden;
 use super::plan::{RunPlan, SuitePlan};
 use crate::error::{Error, Result};
-use crate::write::atomically;
+use reachtube_files::write::atomically;
 
 /// First line of the README, by which the folder of a demo is known.
 const TITLE: &str = "# Recordings of a virtual robot";
@@ -61,7 +61,8 @@ pub(super) fn write_index(folder: &Path, robot: &str, seed: u64, lines: &[String
     atomically(&folder.join("runs.csv"), |out| {
         out.write_all(INDEX_HEADER.as_bytes())?;
         lines.iter().try_for_each(|line| out.write_all(line.as_bytes()))
-    })
+    })?;
+    Ok(())
 }
 
 fn run_text(n: usize, states: &[f64], inputs: &[f64]) -> String {

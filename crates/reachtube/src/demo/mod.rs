@@ -92,8 +92,8 @@ impl DemoOptions {
 }
 
 /// Records a virtual `robot` into `folder` as a data set for
-/// [`DataSet::open`](crate::data::DataSet::open), on all cores. The torques are
-/// [`Torque::Compensated`](crate::data::Torque::Compensated).
+/// [`DataSet::open`](reachtube_recordings::DataSet::open), on all cores. The torques are
+/// [`Torque::Compensated`](reachtube_recordings::Torque::Compensated).
 ///
 /// The hidden effects are of the size of the LWA 4P's; another robot should be like it. Files of an
 /// earlier demo in the folder are overwritten.
@@ -106,7 +106,7 @@ impl DemoOptions {
 /// # Examples
 ///
 /// ```
-/// use reachtube::{data::DataSet, demo};
+/// use reachtube::{recordings::DataSet, demo};
 /// use reachtube_robot::Robot;
 ///
 /// let folder = tempfile::tempdir().unwrap();

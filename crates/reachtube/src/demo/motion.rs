@@ -3,7 +3,7 @@
 use reachtube_robot::Robot;
 
 use crate::motion::{Motion, QUINTIC_PEAK};
-use crate::random::SplitMix64;
+use crate::random::{SplitMix64, sign, uniform};
 
 /// Peak speed of the fastest joint of a motion, rad/s: from, to.
 const PEAK_SPEED: [f64; 2] = [0.5, 1.0];
@@ -22,9 +22,9 @@ impl Motion {
     pub(crate) fn random(robot: &Robot, duration: f64, random: &mut SplitMix64) -> Self {
         let joints = robot.joints();
         let share: Vec<f64> =
-            joints.iter().map(|_| random.sign() * random.uniform(LEAST_TRAVEL, 1.0)).collect();
+            joints.iter().map(|_| sign(random) * uniform(random, LEAST_TRAVEL, 1.0)).collect();
         let fastest = share.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
-        let peak = random.uniform(PEAK_SPEED[0], PEAK_SPEED[1]);
+        let peak = uniform(random, PEAK_SPEED[0], PEAK_SPEED[1]);
         let mut travel: Vec<f64> =
             share.iter().map(|s| s / fastest * peak * duration / QUINTIC_PEAK).collect();
         let slack = joints.iter().zip(&travel).map(|(joint, travel)| {
@@ -37,7 +37,7 @@ impl Motion {
         let start = joints.iter().zip(&travel).map(|(joint, travel)| {
             let [low, high] = joint.position_limits;
             let room = half_range(joint.position_limits) - 0.5 * travel.abs();
-            0.5 * (low + high) - 0.5 * travel + random.uniform(-room, room)
+            0.5 * (low + high) - 0.5 * travel + uniform(random, -room, room)
         });
         Self { start: start.collect(), travel, duration }
     }
@@ -52,12 +52,13 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::random::SeedableRng;
 
     proptest! {
         #[test]
         fn motions_keep_the_limits(seed: u64, duration in 0.5..20.0f64) {
             let robot = Robot::lwa4p();
-            let motion = Motion::random(&robot, duration, &mut SplitMix64::new(seed));
+            let motion = Motion::random(&robot, duration, &mut SplitMix64::seed_from_u64(seed));
             let mut peak = 0.0f64;
             for k in 0..=200 {
                 let plan = motion.at(duration * f64::from(k) / 200.0);

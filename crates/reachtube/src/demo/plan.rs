@@ -7,7 +7,7 @@ use super::hidden::{self, SCATTER_Q, SCATTER_QD};
 use super::number::rounded;
 use super::{DemoOptions, SAMPLE_TIME};
 use crate::motion::Motion;
-use crate::random::SplitMix64;
+use crate::random::{SeedableRng, SplitMix64, uniform};
 
 /// Parts of a motion at which the first suite starts, and after which none does.
 const STARTS: [f64; 2] = [0.1, 0.9];
@@ -38,7 +38,7 @@ pub(super) struct RunPlan {
 
 /// All suites, motion by motion.
 pub(super) fn suites(robot: &Robot, options: &DemoOptions) -> Vec<SuitePlan> {
-    let mut random = SplitMix64::new(options.seed);
+    let mut random = SplitMix64::seed_from_u64(options.seed);
     let mut suites = Vec::new();
     for index in 0..options.motions {
         let motion = Motion::random(robot, options.duration, &mut random);
@@ -75,7 +75,7 @@ fn run_plan(motion: &Motion, first: usize, run: usize, random: &mut SplitMix64) 
     let start = motion.at(first as f64 * SAMPLE_TIME);
     let there_and_back: Vec<f64> = motion.travel.iter().map(|travel| 2.0 * travel).collect();
     let mut scattered =
-        |x: Vec<f64>, width: f64| x.iter().map(|x| x + random.uniform(-width, width)).collect();
+        |x: Vec<f64>, width: f64| x.iter().map(|x| x + uniform(random, -width, width)).collect();
     RunPlan {
         q: scattered(start.q, SCATTER_Q),
         qd: scattered(start.qd, SCATTER_QD),

@@ -7,8 +7,8 @@ use proptest::prelude::*;
 
 use super::hidden::{ENCODER_STEP, SCATTER_Q, SCATTER_QD};
 use super::*;
-use crate::conform::{Settings, Watch, conform};
-use crate::data::{DataSet, GapLimit, Run, Torque};
+use reachtube_conform::{Settings, Watch, conform};
+use reachtube_recordings::{DataSet, GapLimit, Run, Torque};
 
 fn small(seed: u64) -> DemoOptions {
     DemoOptions { seed, motions: 2, held_out_motions: 1, start_points: 2, runs: 5, duration: 2.0 }

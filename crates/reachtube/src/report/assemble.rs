@@ -3,12 +3,12 @@
 use super::{
     Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict,
 };
-use crate::conform::{self, Check, Enclosure, Lost, Recordings, Settings, States};
-use crate::data::DataSet;
 use crate::error::{Error, Result};
-use crate::model::Model;
-use crate::reach::SuiteReach;
+use reachtube_conform::Model;
+use reachtube_conform::SuiteReach;
+use reachtube_conform::{self as conform, Check, Enclosure, Lost, Recordings, Settings, States};
 use reachtube_reach::Hyperrectangle;
+use reachtube_recordings::DataSet;
 
 /// What a page is made of.
 #[derive(Debug, Clone, Copy)]
@@ -292,7 +292,7 @@ fn trace(
     let Sources { model, settings, data, .. } = *sources;
     let run = data
         .read(index, Some(model.joints()), settings.gap_limit, settings.until)
-        .map_err(Error::Defects)?;
+        .map_err(reachtube_recordings::Error::Defects)?;
     let mut states = run.states.clone();
     if let Some(own) = own {
         states.iter_mut().zip(&own.nominal).for_each(|(x, nominal)| *x -= nominal);

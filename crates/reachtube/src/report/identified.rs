@@ -6,8 +6,8 @@ use super::html::{section, titled_list, top};
 use super::number::short;
 use super::text::escape;
 use super::{ReportError, tables};
-use crate::identify::friction::FrictionFit;
-use crate::identify::{Identification, JointFit, TorqueTrace};
+use reachtube_identify::friction::FrictionFit;
+use reachtube_identify::{Identification, JointFit, TorqueTrace};
 use reachtube_robot::friction::{Coulomb, Viscous};
 use std::io::Write;
 
@@ -85,7 +85,7 @@ fn prediction(found: &Identification) -> Result<String, ReportError> {
         .validation
         .iter()
         .map(|log| {
-            let cell = |e: &crate::identify::JointError| {
+            let cell = |e: &reachtube_identify::JointError| {
                 format!(
                     "{} ({}), R² {:.4}, {} N m",
                     percent(e.relative),
@@ -263,7 +263,7 @@ fn inertia(found: &Identification) -> String {
         "Part",
         "Beyond three deviations",
     ];
-    let parameter = |p: &crate::identify::BaseParameter| {
+    let parameter = |p: &reachtube_identify::BaseParameter| {
         let error = if p.standard_error.is_finite() {
             short(p.standard_error, 2)
         } else {
@@ -297,7 +297,8 @@ fn inertia(found: &Identification) -> String {
 }
 
 fn gains(found: &Identification) -> String {
-    let gain =
-        |g: &crate::identify::Gain| format!("{} {:.3} ± {:.3}", g.joint, g.gain, g.standard_error);
+    let gain = |g: &reachtube_identify::Gain| {
+        format!("{} {:.3} ± {:.3}", g.joint, g.gain, g.standard_error)
+    };
     found.gains.iter().map(gain).collect::<Vec<_>>().join(", ")
 }

@@ -9,10 +9,10 @@ use reachtube_robot::Robot;
 use serde::Serialize;
 
 use super::trajectories::{BLOCK, Trajectories, random_motion};
-use crate::abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
-use crate::conform::Progress;
 use crate::error::{Error, Result};
-use crate::random::SplitMix64;
+use crate::random::{SeedableRng, SplitMix64};
+use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
+use reachtube_conform::Progress;
 
 /// What is simulated.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -160,7 +160,7 @@ pub fn table1(robot: &Robot, options: &Table1Options, progress: Progress<'_>) ->
     if options.motions == 0 || options.orders.is_empty() {
         return Err(Error::Setting("Table I of no motions or no orders; give 1 at least".into()));
     }
-    let mut random = SplitMix64::new(options.seed);
+    let mut random = SplitMix64::seed_from_u64(options.seed);
     let motion = |_| random_motion(robot, options.range, &mut random);
     let motions = (0..options.motions).map(motion).collect::<Result<Vec<_>>>()?;
     let blocks = options.motions.div_ceil(BLOCK);
@@ -203,7 +203,7 @@ fn models(robot: &Robot, options: &Table1Options) -> Result<Vec<PolynomialModel>
     let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];
     let all = options.orders.iter().flat_map(|order| kinds.map(|kind| (kind, *order)));
     all.filter(|(kind, order)| *kind != ModelKind::Three || *order <= options.model3_up_to)
-        .map(|(kind, order)| PolynomialModel::new(robot, kind, order, &zero))
+        .map(|(kind, order)| Ok(PolynomialModel::new(robot, kind, order, &zero)?))
         .collect()
 }
 

@@ -4,10 +4,10 @@ use reachtube_ode::{Ensemble, Outcome, Run, VectorField};
 use reachtube_robot::{DrivenBy, Joint, Robot, RobotField};
 use reachtube_scalar::{Lanes, Lanewise};
 
-use crate::abstraction::{ModelField, PolynomialModel};
 use crate::error::{Error, Result};
 use crate::motion::{Motion, QUINTIC_PEAK};
-use crate::random::SplitMix64;
+use crate::random::{SplitMix64, sign, uniform};
+use reachtube_abstraction::{ModelField, PolynomialModel};
 
 /// Time over which an input is held, s.
 pub(super) const SAMPLE_TIME: f64 = 0.004;
@@ -45,8 +45,8 @@ pub(super) fn random_motion(robot: &Robot, range: f64, random: &mut SplitMix64) 
     let duration = axes.iter().map(longest).fold(DURATION, f64::min);
     let along = |axis: &Axis| {
         let distance = axis.speed * duration / QUINTIC_PEAK;
-        let travel = random.sign() * distance;
-        (random.uniform(axis.low, axis.high - distance) + (distance - travel) / 2.0, travel)
+        let travel = sign(random) * distance;
+        (uniform(random, axis.low, axis.high - distance) + (distance - travel) / 2.0, travel)
     };
     let (start, travel) = axes.iter().map(along).unzip();
     Ok(Motion { start, travel, duration })
@@ -164,13 +164,14 @@ mod tests {
     use reachtube_ode::{DormandPrince, Tolerance};
 
     use super::*;
-    use crate::abstraction::{ExpansionPoint, ModelKind};
+    use crate::random::SeedableRng;
+    use reachtube_abstraction::{ExpansionPoint, ModelKind};
 
     proptest! {
         #[test]
         fn motions_have_their_peak_and_stay_in_range(seed: u64, range in 0.01..4.0f64) {
             let robot = Robot::lwa4p();
-            let motion = random_motion(&robot, range, &mut SplitMix64::new(seed)).unwrap();
+            let motion = random_motion(&robot, range, &mut SplitMix64::seed_from_u64(seed)).unwrap();
             let peak = motion.at(motion.duration / 2.0);
             prop_assert!(peak.qd.iter().all(|qd| (qd.abs() - 1.2).abs() < 1e-12));
             for part in [0.0, 0.3, 1.0] {
@@ -182,7 +183,8 @@ mod tests {
 
     #[test]
     fn no_range_is_refused() {
-        let refusal = random_motion(&Robot::lwa4p(), -1.0, &mut SplitMix64::new(1)).unwrap_err();
+        let refusal =
+            random_motion(&Robot::lwa4p(), -1.0, &mut SplitMix64::seed_from_u64(1)).unwrap_err();
         assert!(
             refusal.to_string().contains("joint1") && refusal.to_string().contains("wider range")
         );
@@ -209,7 +211,7 @@ mod tests {
     #[test]
     fn errors_are_those_of_adaptive_steps() {
         let robot = Robot::lwa4p();
-        let motion = random_motion(&robot, 1.5, &mut SplitMix64::new(4)).unwrap();
+        let motion = random_motion(&robot, 1.5, &mut SplitMix64::seed_from_u64(4)).unwrap();
         let motions = Trajectories::new(&robot, &[motion], 1.0);
         let body = [&motions.starts[0][..], &[0.0; 6]].concat();
         let exact = adaptive(&mut RobotField::new(&robot, DrivenBy::Input), &body, &motions);

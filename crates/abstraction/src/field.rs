@@ -1,0 +1,45 @@
+//! A polynomial model as a differential equation.
+
+use reachtube_ode::VectorField;
+use reachtube_scalar::Powers;
+
+use super::{ModelWorkspace, PolynomialModel};
+
+/// ẋ = f_p(x, u) for the integrators of `reachtube-ode`; over lanes each lane is a run of its own.
+/// It does not allocate.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
+/// use reachtube_ode::{DormandPrince, Run, Tolerance};
+/// use reachtube_robot::Robot;
+///
+/// let model = PolynomialModel::new(&Robot::lwa4p(), ModelKind::Two, 12, &ExpansionPoint::zero(6))?;
+/// let start = model.state(&[0.3; 6], &[0.0; 6]);
+/// let run = Run { start: &start, inputs: &[1.0; 2 * 6] };
+/// let mut solver = DormandPrince::new(model.states(), Tolerance::default());
+/// let outcome = solver.follow(&mut ModelField::new(&model), &[0.0, 0.004, 0.008], run, |_sample, x| {
+///     assert!((x[12] - x[0].sin()).abs() < 1e-8);
+/// });
+/// assert!(outcome.is_reached());
+/// # Ok::<(), reachtube_abstraction::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ModelField<'a, S> {
+    model: &'a PolynomialModel,
+    ws: ModelWorkspace<S>,
+}
+
+impl<'a, S: Powers> ModelField<'a, S> {
+    /// The motion of a model.
+    pub fn new(model: &'a PolynomialModel) -> Self {
+        Self { model, ws: model.workspace() }
+    }
+}
+
+impl<S: Powers> VectorField<S> for ModelField<'_, S> {
+    fn rate(&mut self, _: f64, x: &[S], u: &[S], dx: &mut [S]) {
+        self.model.rate_into(x, u, &mut self.ws, dx);
+    }
+}

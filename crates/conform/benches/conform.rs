@@ -1,0 +1,137 @@
+//! The paper's size: 152 suites x 15 runs x 5 s at 250 Hz of a 6-joint arm.
+//! `cargo bench -p reachtube`.
+
+use divan::counter::BytesCount;
+use divan::{Bencher, black_box};
+use rayon::prelude::*;
+use reachtube_abstraction::{ExpansionPoint, linear_model};
+use reachtube_conform::{Block, Deviation, Envelope, Grid, Program, Settings, Watch, conform};
+use reachtube_reach::{Disturbance, Propagation, TimeGrid};
+use reachtube_recordings::{DataSet, Torque};
+use reachtube_robot::Robot;
+
+const SAMPLES: usize = 1251;
+const STATES: usize = 12;
+const RUNS: usize = 152 * 15;
+
+fn main() {
+    divan::main();
+}
+
+/// Deviations like those of an arm that drifts: a smooth growth of its own in each run and state,
+/// with some noise.
+fn deviations(run: usize) -> Vec<f64> {
+    let mut noise = 0x9E37_79B9_7F4A_7C15u64.wrapping_mul(run as u64 + 1);
+    let mut random = move || {
+        noise ^= noise << 13;
+        noise ^= noise >> 7;
+        noise ^= noise << 17;
+        (noise >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let rates: Vec<f64> = (0..STATES).map(|_| random()).collect();
+    (0..SAMPLES * STATES)
+        .map(|at| {
+            let (t, i) = ((at / STATES) as f64 * 0.004, at % STATES);
+            let growth =
+                if i < 6 { 0.002 + 0.1 * t } else { 0.01 + 0.1 * (1.0 - (-5.0 * t).exp()) };
+            growth * (rates[i] + 0.05 * random())
+        })
+        .collect()
+}
+
+fn recordings() -> Vec<Vec<f64>> {
+    (0..RUNS).map(deviations).collect()
+}
+
+fn grid(disturbance: Disturbance) -> Grid {
+    let system = linear_model(&Robot::lwa4p(), &ExpansionPoint::zero(6)).unwrap();
+    let propagation = Propagation::new(&system, &TimeGrid::uniform(0.004, SAMPLES)).unwrap();
+    let gains = disturbance.gains(&propagation);
+    Grid { propagation, gains }
+}
+
+#[divan::bench(sample_count = 10)]
+fn envelope_of_2280_runs(bencher: Bencher) {
+    let runs = recordings();
+    let bytes = runs.iter().map(|run| run.len() * 8).sum::<usize>();
+    bencher.counter(BytesCount::new(bytes)).bench(|| {
+        let mut envelope = Envelope::new(STATES);
+        runs.iter()
+            .enumerate()
+            .for_each(|(run, states)| envelope.include(run as u32, black_box(states)));
+        envelope
+    });
+}
+
+/// The same with one envelope a core, merged: how recordings are read.
+#[divan::bench(sample_count = 10)]
+fn envelope_of_2280_runs_on_all_cores(bencher: Bencher) {
+    let runs = recordings();
+    let bytes = runs.iter().map(|run| run.len() * 8).sum::<usize>();
+    let part = RUNS.div_ceil(rayon::current_num_threads());
+    bencher.counter(BytesCount::new(bytes)).bench(|| {
+        let envelope_of = |(at, runs): (usize, &[Vec<f64>])| {
+            let mut envelope = Envelope::new(STATES);
+            runs.iter()
+                .enumerate()
+                .for_each(|(run, states)| envelope.include((at * part + run) as u32, states));
+            envelope
+        };
+        let merge = |mut a: Envelope, b: Envelope| {
+            a.merge(&b);
+            a
+        };
+        runs.par_chunks(part).enumerate().map(envelope_of).reduce_with(merge)
+    });
+}
+
+/// The same bytes read and added up: what the envelope is measured against.
+#[divan::bench(sample_count = 10)]
+fn reading_2280_runs(bencher: Bencher) {
+    let runs = recordings();
+    let bytes = runs.iter().map(|run| run.len() * 8).sum::<usize>();
+    bencher.counter(BytesCount::new(bytes)).bench(|| {
+        let mut sums = [0.0; 8];
+        for run in &runs {
+            for chunk in black_box(run).chunks_exact(8) {
+                sums.iter_mut().zip(chunk).for_each(|(sum, x)| *sum += x);
+            }
+        }
+        sums
+    });
+}
+
+#[divan::bench(args = [Disturbance::Constant, Disturbance::Sample], sample_count = 10)]
+fn program_of_152_suites(bencher: Bencher, disturbance: Disturbance) {
+    let grids = [grid(disturbance)];
+    let mut envelope = Envelope::new(STATES);
+    (0..RUNS).for_each(|run| envelope.include(run as u32, &deviations(run)));
+    let deviations = [Deviation { grid: 0, envelope }];
+    let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
+    bencher.bench(|| {
+        let program = Program::new(
+            &settings,
+            &[1.0; STATES],
+            Block::of_grids(&grids, &deviations, STATES / 2),
+        );
+        program.solve().unwrap()
+    });
+}
+
+#[divan::bench(sample_count = 10)]
+fn matrices_of_5_s(bencher: Bencher) {
+    bencher.bench(|| grid(Disturbance::Sample));
+}
+
+/// The whole of `conform` on the recordings of the paper's arm, where they are beside the
+/// repository.
+#[divan::bench(sample_count = 10)]
+fn conform_schunk(bencher: Bencher) {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/schunk_lwa4p");
+    let Ok(data) = DataSet::open(folder) else {
+        eprintln!("skipped: shared/data/schunk_lwa4p is not beside the repository");
+        return;
+    };
+    let (robot, settings) = (Robot::lwa4p(), Settings::new(Torque::Compensated, 6));
+    bencher.bench(|| conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap());
+}

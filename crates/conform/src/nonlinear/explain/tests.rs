@@ -1,0 +1,254 @@
+use nalgebra::DMatrix;
+use reachtube_ode::{DormandPrince, Run as Motion, Tolerance};
+use reachtube_reach::{Hyperrectangle, TimeGrid};
+use reachtube_robot::Robot;
+
+use super::chain::Chain;
+use super::regulate::regulate;
+use super::{Behaviour, Search};
+use crate::nonlinear::Case;
+use crate::solver::{Triplets, solve_cone};
+use crate::{Envelope, UncertaintySets};
+use rand::RngExt;
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::SeedableRng;
+use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
+use reachtube_recordings::Run;
+
+const SAMPLES: usize = 120;
+const JOINTS: usize = 6;
+
+/// The models that are tried: linear, cubic, and with sin q and cos q.
+fn models() -> [PolynomialModel; 3] {
+    [(ModelKind::One, 1), (ModelKind::One, 3), (ModelKind::Two, 2)].map(|(kind, order)| {
+        PolynomialModel::new(&Robot::lwa4p(), kind, order, &ExpansionPoint::zero(JOINTS)).unwrap()
+    })
+}
+
+/// Sets off their centre, in numbers whose sums are exact.
+fn sets() -> UncertaintySets {
+    let set = |dimension, radius: f64| Hyperrectangle {
+        center: vec![radius / 4.0; dimension],
+        radius: vec![radius; dimension],
+    };
+    UncertaintySets {
+        initial_set: set(2 * JOINTS, 1.0 / 128.0),
+        input_set: set(JOINTS, 0.5),
+        noise_set: None,
+    }
+}
+
+fn case() -> Case {
+    let input = |at: usize| ((at % JOINTS) as f64 + 0.02 * (at / JOINTS) as f64).sin();
+    Case {
+        name: "a case".into(),
+        suite: 0,
+        run: None,
+        grid: TimeGrid::uniform(1.0 / 256.0, SAMPLES),
+        inputs: (0..SAMPLES * JOINTS).map(|at| dyadic(input(at))).collect(),
+        start: (0..2 * JOINTS).map(|i| i as f64 / 16.0).collect(),
+        measured: Envelope::new(2 * JOINTS),
+    }
+}
+
+fn dyadic(x: f64) -> f64 {
+    (x * 1024.0).round() / 1024.0
+}
+
+/// What the model does from a start and under inputs off the case's, by an integrator of another
+/// kind.
+fn record(model: &PolynomialModel, case: &Case, start: &[f64], inputs: &[f64]) -> Run {
+    let mut states = Vec::new();
+    let tolerance = Tolerance { relative: 1e-11, absolute: 1e-11 };
+    let start = model.state(&start[..JOINTS], &start[JOINTS..]);
+    let motion = Motion { start: &start, inputs };
+    let outcome = DormandPrince::new(model.states(), tolerance).follow(
+        &mut ModelField::new(model),
+        case.grid.times(),
+        motion,
+        |_, x| states.extend(&x[..2 * JOINTS]),
+    );
+    assert!(outcome.is_reached());
+    let (times, torques) = (case.grid.times().to_vec(), vec![0.0; SAMPLES * JOINTS]);
+    Run { joints: JOINTS, start: 0.0, times, states, torques, sha256: String::new() }
+}
+
+/// A run whose start and inputs go `reach` times as far as the sets.
+fn disturbed(model: &PolynomialModel, case: &Case, sets: &UncertaintySets, reach: f64) -> Run {
+    let mut random = SplitMix64::seed_from_u64(7);
+    let mut within = |set: &Hyperrectangle, i: usize| {
+        set.center[i] + reach * uniform(&mut random, set.radius[i])
+    };
+    let start: Vec<f64> =
+        case.start.iter().enumerate().map(|(i, x)| x + within(&sets.initial_set, i)).collect();
+    let acting = case.inputs[..(SAMPLES - 1) * JOINTS].iter().enumerate();
+    let inputs: Vec<f64> = acting.map(|(at, u)| u + within(&sets.input_set, at % JOINTS)).collect();
+    record(model, case, &start, &inputs)
+}
+
+/// Asserts that a behaviour is one: start and inputs in their sets without any tolerance, and
+/// residuals as another integrator finds them.
+fn assert_is_witness(
+    model: &PolynomialModel,
+    case: &Case,
+    sets: &UncertaintySets,
+    run: &Run,
+    found: &Behaviour,
+) {
+    let is_in = |x: f64, base: f64, set: &Hyperrectangle, i: usize| {
+        let (low, high) = set.bounds(i);
+        base + low <= x && x <= base + high
+    };
+    assert!((0..2 * JOINTS).all(|i| is_in(found.states[i], case.start[i], &sets.initial_set, i)));
+    assert_eq!(found.inputs.len(), (SAMPLES - 1) * JOINTS);
+    assert!(found.inputs.iter().enumerate().all(|(at, u)| is_in(
+        *u,
+        case.inputs[at],
+        &sets.input_set,
+        at % JOINTS
+    )));
+    let again = record(model, case, &found.states[..2 * JOINTS], &found.inputs);
+    let mut largest = [0.0_f64; 2];
+    for (at, (x, y)) in run.states.iter().zip(&again.states).enumerate() {
+        let largest = &mut largest[at / JOINTS % 2];
+        *largest = largest.max((x - y).abs());
+    }
+    assert!((largest[0] - found.position).abs() < 1e-8, "{} {}", largest[0], found.position);
+    assert!((largest[1] - found.velocity).abs() < 1e-7, "{} {}", largest[1], found.velocity);
+}
+
+#[test]
+fn runs_of_the_model_are_explained() {
+    let (case, sets) = (case(), sets());
+    for model in models() {
+        let run = disturbed(&model, &case, &sets, 1.0);
+        let found = Search::new(&model, &case, &sets, &run).run();
+        assert_is_witness(&model, &case, &sets, &run, &found);
+        assert!(
+            found.position < 1e-7 && found.velocity < 1e-6,
+            "{} {}",
+            found.position,
+            found.velocity
+        );
+    }
+}
+
+#[test]
+fn a_start_outside_cannot_be_explained() {
+    let (case, sets) = (case(), sets());
+    for model in models() {
+        let mut start = case.start.clone();
+        start[0] += sets.initial_set.bounds(0).1 + 0.0625;
+        let run = record(&model, &case, &start, &case.inputs[..(SAMPLES - 1) * JOINTS]);
+        let found = Search::new(&model, &case, &sets, &run).run();
+        assert_is_witness(&model, &case, &sets, &run, &found);
+        assert!((0.0625..0.064).contains(&found.position), "{}", found.position);
+    }
+}
+
+#[test]
+fn inputs_outside_are_explained_by_larger_sets_only() {
+    let (case, sets) = (case(), sets());
+    for model in models() {
+        let run = disturbed(&model, &case, &sets, 3.0);
+        let found = Search::new(&model, &case, &sets, &run).run();
+        assert_is_witness(&model, &case, &sets, &run, &found);
+        assert!(found.largest() > 0.2, "{}", found.largest());
+        let larger = UncertaintySets {
+            initial_set: Hyperrectangle {
+                radius: vec![3.0 / 128.0; 2 * JOINTS],
+                ..sets.initial_set.clone()
+            },
+            input_set: Hyperrectangle { radius: vec![1.5; JOINTS], ..sets.input_set.clone() },
+            noise_set: None,
+        };
+        let found = Search::new(&model, &case, &larger, &run).run();
+        assert!(found.largest() < 1e-4, "{}", found.largest());
+    }
+}
+
+#[test]
+fn sets_of_one_point_leave_the_nominal_motion() {
+    let case = case();
+    let point = UncertaintySets {
+        initial_set: Hyperrectangle::zero(2 * JOINTS),
+        input_set: Hyperrectangle::zero(JOINTS),
+        noise_set: None,
+    };
+    let model = &models()[1];
+    let run = disturbed(model, &case, &sets(), 1.0);
+    let found = Search::new(model, &case, &point, &run).run();
+    assert_eq!(found.states[..2 * JOINTS], case.start);
+    assert_eq!(found.inputs, case.inputs[..(SAMPLES - 1) * JOINTS]);
+    assert_is_witness(model, &case, &point, &run, &found);
+}
+
+#[test]
+fn one_sample_is_explained_by_the_start() {
+    let (case, sets) = (case(), sets());
+    let model = &models()[0];
+    let mut run = disturbed(model, &case, &sets, 1.0);
+    run.times.truncate(1);
+    run.states.truncate(2 * JOINTS);
+    let found = Search::new(model, &case, &sets, &run).run();
+    assert!(found.position < 1e-7 && found.inputs.is_empty());
+}
+
+/// The same program handed whole to a conic solver.
+#[test]
+fn the_largest_state_is_least() {
+    let mut random = SplitMix64::seed_from_u64(11);
+    for _ in 0..20 {
+        let (states, width, links) = (3, 2, 8);
+        let (mut chain, mut matrices) = (Chain::new(states), Vec::new());
+        for k in 0..links {
+            let mut entries = |rows, columns, size: f64| {
+                DMatrix::from_fn(rows, columns, |_, _| uniform(&mut random, size))
+            };
+            let (gain, transition) =
+                (entries(states, width, 1.0), entries(states, states, f64::from(u8::from(k > 0))));
+            let drift = entries(states, 1, 2.0);
+            let row = |i: usize| {
+                gain.row(i).iter().chain(transition.row(i).iter()).copied().collect::<Vec<_>>()
+            };
+            chain.push((0..states).flat_map(row).collect(), drift.iter().copied());
+            matrices.push((gain, transition, drift));
+        }
+        let found = regulate(&chain, 1e-9);
+        assert!(found.moves.iter().all(|y| y.abs() <= 1.0));
+        let least = least(&matrices);
+        assert!(
+            found.largest > least - 1e-8 && found.largest < 1.03 * least + 1e-6,
+            "{} {least}",
+            found.largest
+        );
+    }
+}
+
+/// By moves alone: each state is an affine function of them.
+fn least(matrices: &[(DMatrix<f64>, DMatrix<f64>, DMatrix<f64>)]) -> f64 {
+    let (states, width) = matrices[0].0.shape();
+    let moves = width * matrices.len();
+    let (mut rows, mut bounds) = (Triplets::default(), Vec::new());
+    let (mut x, mut constant) = (DMatrix::zeros(states, moves), DMatrix::zeros(states, 1));
+    for (k, (gain, transition, drift)) in matrices.iter().enumerate() {
+        (x, constant) = (transition * x, transition * constant + drift);
+        x.columns_mut(k * width, width).copy_from(gain);
+        for (i, sign) in (0..states).flat_map(|i| [(i, 1.0), (i, -1.0)]) {
+            rows.row((0..moves).map(|j| (j, sign * x[(i, j)])).chain([(moves, -1.0)]));
+            bounds.push(-sign * constant[(i, 0)]);
+        }
+    }
+    for (j, sign) in (0..moves).flat_map(|j| [(j, 1.0), (j, -1.0)]) {
+        rows.row([(j, sign)]);
+        bounds.push(1.0);
+    }
+    let mut objective = vec![0.0; moves + 1];
+    objective[moves] = 1.0;
+    solve_cone(&objective, &rows, &bounds).unwrap().dual
+}
+
+/// Draws a number uniformly from [-bound, bound).
+fn uniform(random: &mut SplitMix64, bound: f64) -> f64 {
+    -bound + 2.0 * bound * random.random::<f64>()
+}

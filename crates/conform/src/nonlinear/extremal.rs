@@ -1,0 +1,143 @@
+//! How far a model itself goes, beside how far its linearisation says: the motions that are
+//! extremal for the linearisation, simulated.
+
+use rayon::prelude::*;
+use reachtube_ode::{Ensemble, Run};
+
+use super::case::Case;
+use super::sensitivity::{BOUND, Many, Node, Sensitivity};
+use crate::{Side, UncertaintySets};
+use reachtube_abstraction::{ModelField, PolynomialModel};
+
+/// Rows whose recordings stay below this part of the linearised radius are left as they are: a
+/// small correction does not make them decide.
+const NEAR: f64 = 0.5;
+
+/// For each sample, state and side, by how much the model reaches further than its linearisation;
+/// negative where it reaches less far. Found at some samples, and interpolated between them.
+#[derive(Debug, Clone)]
+pub(super) struct Correction {
+    /// Samples x 2n x 2.
+    further: Vec<f64>,
+    states: usize,
+    /// The earliest time (s) at which an extremal motion ran away.
+    pub runs_away: Option<f64>,
+}
+
+impl Correction {
+    /// That of a linear model.
+    pub fn none(samples: usize, states: usize) -> Self {
+        Self { further: vec![0.0; samples * states * 2], states, runs_away: None }
+    }
+
+    pub fn at(&self, k: usize, i: usize, side: Side) -> f64 {
+        self.further[(k * self.states + i) * 2 + usize::from(side == Side::Lower)]
+    }
+
+    /// Of `case` under `sets`.
+    ///
+    /// # Guarantee
+    ///
+    /// Inner, unrounded: at the nodes each corrected bound is the state of a motion of the model.
+    pub fn new(
+        model: &PolynomialModel,
+        case: &Case,
+        sets: &UncertaintySets,
+        sensitivity: &Sensitivity,
+    ) -> Self {
+        let states = 2 * case.joints();
+        let found =
+            sensitivity.nodes.par_iter().map(|node| at_node(model, case, sets, sensitivity, node));
+        let found: Vec<(Vec<f64>, bool)> = found.collect();
+        let mut correction = Self::none(case.grid.len(), states);
+        let (mut from, mut before) = (0, &vec![0.0; states * 2]);
+        for (node, (further, ran_away)) in sensitivity.nodes.iter().zip(&found) {
+            for k in from..=node.sample {
+                let weight = (k - from) as f64 / (node.sample - from).max(1) as f64;
+                let row = &mut correction.further[k * states * 2..(k + 1) * states * 2];
+                for ((own, x), y) in row.iter_mut().zip(before).zip(further) {
+                    *own = x + weight * (y - x);
+                }
+            }
+            if *ran_away && correction.runs_away.is_none() {
+                correction.runs_away = Some(case.grid.times()[node.sample]);
+            }
+            (from, before) = (node.sample, further);
+        }
+        correction
+    }
+}
+
+/// 2n x 2: upper and lower; and whether a motion ran away, which counts as no correction.
+fn at_node(
+    model: &PolynomialModel,
+    case: &Case,
+    sets: &UncertaintySets,
+    sensitivity: &Sensitivity,
+    node: &Node,
+) -> (Vec<f64>, bool) {
+    let (k, states) = (node.sample, 2 * case.joints());
+    let radii = reach(case, sets, sensitivity, k);
+    let nominal = &sensitivity.nominal[k * states..(k + 1) * states];
+    let is_near = |&(i, side): &(usize, Side)| {
+        let measured = match side {
+            Side::Upper => case.measured.upper(k, i),
+            Side::Lower => case.measured.lower(k, i),
+        };
+        side.sign() * (measured - nominal[i]) > NEAR * radii[i]
+    };
+    let all = (0..states).flat_map(|i| [(i, Side::Upper), (i, Side::Lower)]);
+    let places: Vec<(usize, Side)> = all.filter(is_near).collect();
+    let motions: Vec<_> =
+        places.iter().map(|&(i, side)| extremal(model, case, sets, node, i, side)).collect();
+    let runs: Vec<Run> = motions.iter().map(|(start, inputs)| Run { start, inputs }).collect();
+    let mut further = vec![0.0; 2 * states];
+    let mut ensemble = Ensemble::<Many>::new(model.states()).bounded_by(BOUND);
+    let times = &case.grid.times()[..=k];
+    let outcomes = ensemble.integrate(
+        &mut ModelField::new(model),
+        times,
+        sensitivity.substeps,
+        &runs,
+        |run, sample, x| {
+            if sample == k {
+                let (i, side) = places[run];
+                let at = 2 * i + usize::from(side == Side::Lower);
+                further[at] = side.sign() * (x[i] - nominal[i]) - radii[i];
+            }
+        },
+    );
+    (further, outcomes.iter().any(|outcome| !outcome.is_reached()))
+}
+
+/// (R_k r)_i for each state i.
+fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usize) -> Vec<f64> {
+    let radii = || sets.initial_set.radius.iter().chain(&sets.input_set.radius);
+    let of_state = |i: usize| {
+        let (_, gains) = sensitivity.row(case.joints(), k, i);
+        gains.iter().zip(radii()).map(|(gain, r)| gain * r).sum()
+    };
+    (0..2 * case.joints()).map(of_state).collect()
+}
+
+/// The start and inputs that take the linearisation furthest.
+fn extremal(
+    model: &PolynomialModel,
+    case: &Case,
+    sets: &UncertaintySets,
+    node: &Node,
+    i: usize,
+    side: Side,
+) -> (Vec<f64>, Vec<f64>) {
+    let (n, states) = (case.joints(), 2 * case.joints());
+    let corner = |center: f64, radius: f64, sign: f64| center + side.sign() * sign * radius;
+    let (x0, u) = (&sets.initial_set, &sets.input_set);
+    let start: Vec<f64> = (0..states)
+        .map(|j| case.start[j] + corner(x0.center[j], x0.radius[j], node.start[i * states + j]))
+        .collect();
+    let input = |at: usize| {
+        let joint = at % n;
+        case.inputs[at] + corner(u.center[joint], u.radius[joint], node.input[at * states + i])
+    };
+    (model.state(&start[..n], &start[n..]), (0..node.sample * n).map(input).collect())
+}

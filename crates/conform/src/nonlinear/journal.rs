@@ -1,0 +1,105 @@
+//! What is finished of a long job, in a file.
+
+use std::path::Path;
+
+use reachtube_robot::Robot;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::error::{Error, Result};
+use crate::{Recordings, Settings};
+use reachtube_files::{json, write};
+
+/// What the file says it is.
+const FORMAT: &str = "reachtube-progress";
+const VERSION: u32 = 1;
+
+/// Where a job keeps what is finished, if it does.
+#[derive(Debug)]
+pub(super) struct Journal<'a> {
+    path: Option<&'a Path>,
+    /// SHA-256 of all that decides the result.
+    job: String,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File<T> {
+    format: String,
+    version: u32,
+    tool: String,
+    job: String,
+    progress: T,
+}
+
+impl<'a> Journal<'a> {
+    pub fn new(
+        path: Option<&'a Path>,
+        robot: &Robot,
+        settings: &Settings,
+        recordings: &Recordings,
+    ) -> Self {
+        let mut digest = Sha256::new();
+        let decides = serde_json::to_string(&(settings, robot.description()));
+        digest.update(decides.expect("settings have only finite numbers and string keys"));
+        for suite in &recordings.suites {
+            digest.update(&suite.entry.name);
+            suite.runs.iter().for_each(|run| digest.update(&run.sha256));
+        }
+        Self { path, job: reachtube_files::hex(&digest.finalize()) }
+    }
+
+    /// What is finished, where the file is there.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read or written, or is that of another job.
+    pub fn load<T: DeserializeOwned>(&self) -> Result<Option<T>> {
+        let Some(path) = self.path else { return Ok(None) };
+        write::try_at(path)?;
+        if !path.exists() {
+            return Ok(None);
+        }
+        let remedy = "give the file of this job, or a new one";
+        let text = reachtube_files::read_text(path, remedy)?;
+        let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
+        let value: serde_json::Value = serde_json::from_str(&text)
+            .map_err(|error| wrong(format!("not JSON: {error}; {remedy}")))?;
+        let is_ours = value["format"] == FORMAT
+            && value["version"] == VERSION
+            && value["job"] == self.job.as_str();
+        if !is_ours {
+            let what = "it holds the progress of another job: the robot, the settings or the recordings differ";
+            return Err(wrong(format!("{what}; {remedy}")));
+        }
+        let file: File<T> =
+            serde_json::from_value(value).map_err(|error| wrong(format!("{error}; {remedy}")))?;
+        Ok(Some(file.progress))
+    }
+
+    /// Writes what is finished, whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// Where it cannot be written; the file is as it was.
+    pub fn save(&self, progress: &impl Serialize) -> Result<()> {
+        let Some(path) = self.path else { return Ok(()) };
+        let text = json::to_lines(&File {
+            format: FORMAT.into(),
+            version: VERSION,
+            tool: reachtube_files::TOOL.into(),
+            job: self.job.clone(),
+            progress,
+        });
+        write::atomically(path, |out| out.write_all(text.as_bytes()))?;
+        Ok(())
+    }
+
+    /// The job is done.
+    pub fn remove(&self) {
+        if let Some(path) = self.path {
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! A model linearised along its motion: how far X0 and U move each state, to first order.
+
+use nalgebra::DMatrix;
+use reachtube_ode::{Ensemble, Outcome, Run};
+use reachtube_reach::Disturbance;
+use reachtube_scalar::Lanes;
+
+use super::case::Case;
+use super::runs_away;
+use crate::UncertaintySets;
+use crate::error::Result;
+use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
+
+/// A Runge-Kutta step is so short that h |A| stays below this: its error is then below 1e-7 of the
+/// change.
+pub(super) const STEP_NORM: f64 = 0.1;
+
+/// Runs that are simulated at once.
+pub(super) type Many = Lanes<8>;
+
+/// Samples of a case at which the extremal motions are simulated, at most.
+const NODES: usize = 24;
+
+/// The motion of a model from the centre of X0 under the centre of U, and what it is like around
+/// it. Unrounded: nothing that is proved rests on it.
+#[derive(Debug, Clone)]
+pub(super) struct Sensitivity {
+    /// Samples x 2n.
+    pub nominal: Vec<f64>,
+    /// Runge-Kutta steps from one sample to the next.
+    pub substeps: usize,
+    /// Samples x 2n x (3n, then 3n): E_k = (Φ(t_k, 0), ∫Φ(t_k, s) B ds), then R_k, as the program
+    /// takes them.
+    pub coefficients: Vec<f64>,
+    /// Where to look how far the model itself goes.
+    pub nodes: Vec<Node>,
+}
+
+/// The signs of what moves each state at one sample.
+#[derive(Debug, Clone)]
+pub(super) struct Node {
+    /// The sample.
+    pub sample: usize,
+    /// For each state, the signs of its row of Φ(t_k, 0): 2n x 2n.
+    pub start: Vec<f64>,
+    /// For each earlier sample, input and state, the sign of what that input over that sample does
+    /// to that state: samples x n x 2n.
+    pub input: Vec<f64>,
+}
+
+/// Beyond this |x| a motion has run away, rad or rad/s.
+pub(super) const BOUND: f64 = 1e4;
+
+impl Sensitivity {
+    /// Of `case`, about the centres of `sets`; the time, s, up to which the model could be followed
+    /// where it runs away.
+    pub fn new(
+        model: &PolynomialModel,
+        case: &Case,
+        sets: &UncertaintySets,
+        disturbance: Disturbance,
+    ) -> Result<Self, f64> {
+        let n = case.joints();
+        let times = case.grid.times();
+        let shifted = |values: &[f64], center: &[f64]| -> Vec<f64> {
+            values.iter().zip(center.iter().cycle()).map(|(x, c)| x + c).collect()
+        };
+        let start = shifted(&case.start, &sets.initial_set.center);
+        let inputs = shifted(&case.inputs, &sets.input_set.center);
+        let mut linearisation = Linearisation::new(model);
+        let substeps = substeps(&mut linearisation, case, &start);
+        let nominal = simulate(model, times, substeps, &start, &inputs)?;
+        let mut tracks = Tracks::new(n, times.len(), disturbance);
+        let stride = times.len().div_ceil(NODES).max(1);
+        let mut found = Self { nominal, substeps, coefficients: Vec::new(), nodes: Vec::new() };
+        tracks.write_into(&mut found.coefficients);
+        for k in 1..times.len() {
+            let (before, after) = found.nominal[(k - 1) * 2 * n..(k + 1) * 2 * n].split_at(2 * n);
+            let middle: Vec<f64> = before.iter().zip(after).map(|(x, y)| 0.5 * (x + y)).collect();
+            let (a, b) = linearisation.at(&middle, &inputs[(k - 1) * n..k * n]);
+            tracks.advance(a, b, times[k] - times[k - 1]);
+            tracks.write_into(&mut found.coefficients);
+            if k % stride == 0 || k + 1 == times.len() {
+                found.nodes.push(tracks.node(k));
+            }
+        }
+        Ok(found)
+    }
+
+    /// Row i of E_k and of R_k, 3n each.
+    pub fn row(&self, joints: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+        let width = 3 * joints;
+        let start = (k * 2 * joints + i) * 2 * width;
+        self.coefficients[start..start + 2 * width].split_at(width)
+    }
+}
+
+/// The motion of a model along a case from its start under its inputs, samples x 2n, without any
+/// uncertainty. Unrounded.
+///
+/// # Errors
+///
+/// [`Error::RunsAway`](crate::Error::RunsAway).
+pub(crate) fn nominal(model: &PolynomialModel, case: &Case) -> Result<Vec<f64>> {
+    let substeps = substeps(&mut Linearisation::new(model), case, &case.start);
+    simulate(model, case.grid.times(), substeps, &case.start, &case.inputs)
+        .map_err(|time| runs_away(case, time))
+}
+
+fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> usize {
+    let rest = vec![0.0; case.joints()];
+    let (a, _) = linearisation.at(start, case.inputs.get(..case.joints()).unwrap_or(&rest));
+    let norm = a.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
+    (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
+}
+
+/// (q, q̇) of all samples under `inputs` from `start`; the time, s, up to which the model could be
+/// followed where it runs away.
+pub(super) fn simulate(
+    model: &PolynomialModel,
+    times: &[f64],
+    substeps: usize,
+    start: &[f64],
+    inputs: &[f64],
+) -> Result<Vec<f64>, f64> {
+    let n = model.joints();
+    let start = model.state(&start[..n], &start[n..]);
+    let inputs = &inputs[..n * times.len().saturating_sub(1)];
+    let mut states = Vec::with_capacity(times.len() * 2 * n);
+    let run = [Run { start: &start, inputs }];
+    let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
+    let outcomes =
+        ensemble.integrate(&mut ModelField::new(model), times, substeps, &run, |_, _, x| {
+            states.extend(&x[..2 * n]);
+        });
+    match outcomes[0] {
+        Outcome::Reached => Ok(states),
+        Outcome::Diverged { time, .. } => Err(time),
+    }
+}
+
+/// What each earlier cause has grown to.
+struct Tracks {
+    joints: usize,
+    disturbance: Disturbance,
+    /// Φ(t_k, 0).
+    start: DMatrix<f64>,
+    /// Φ(t_k, t_{j+1}) Γ_j, n columns for each sample j < k.
+    inputs: DMatrix<f64>,
+    spare: DMatrix<f64>,
+    samples: usize,
+}
+
+impl Tracks {
+    fn new(joints: usize, samples: usize, disturbance: Disturbance) -> Self {
+        let columns = joints * samples.saturating_sub(1);
+        let inputs = DMatrix::zeros(2 * joints, columns);
+        let start = DMatrix::identity(2 * joints, 2 * joints);
+        Self { joints, disturbance, start, spare: inputs.clone(), inputs, samples: 0 }
+    }
+
+    /// One more step of length h (s) of δẋ = A δx + B δu.
+    fn advance(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) {
+        let (n, states) = (self.joints, 2 * self.joints);
+        let mut augmented = DMatrix::zeros(states + n, states + n);
+        augmented.view_mut((0, 0), (states, states)).copy_from(&(a * h));
+        augmented.view_mut((0, states), (states, n)).copy_from(&(b * h));
+        let exponential = augmented.exp();
+        let phi = exponential.view((0, 0), (states, states));
+        self.start = phi * &self.start;
+        let columns = n * self.samples;
+        self.spare.columns_mut(0, columns).gemm(1.0, &phi, &self.inputs.columns(0, columns), 0.0);
+        self.spare.columns_mut(columns, n).copy_from(&exponential.view((0, states), (states, n)));
+        std::mem::swap(&mut self.inputs, &mut self.spare);
+        self.samples += 1;
+    }
+
+    /// Appends the rows of E_k and R_k.
+    fn write_into(&self, coefficients: &mut Vec<f64>) {
+        let (n, states) = (self.joints, 2 * self.joints);
+        let (mut sum, mut total) = (DMatrix::zeros(states, n), DMatrix::zeros(states, n));
+        for j in 0..self.samples {
+            let gamma = self.inputs.columns(j * n, n);
+            sum += gamma;
+            total.zip_apply(&gamma, |total: &mut f64, x| *total += x.abs());
+        }
+        if self.disturbance == Disturbance::Constant {
+            total = sum.abs();
+        }
+        for i in 0..states {
+            coefficients.extend(self.start.row(i).iter().chain(sum.row(i).iter()));
+            coefficients.extend(self.start.row(i).iter().map(|x| x.abs()));
+            coefficients.extend(total.row(i).iter());
+        }
+    }
+
+    fn node(&self, sample: usize) -> Node {
+        let (n, states) = (self.joints, 2 * self.joints);
+        let used = self.inputs.columns(0, n * self.samples);
+        let input = match self.disturbance {
+            Disturbance::Constant => {
+                let mut sum = DMatrix::zeros(states, n);
+                (0..self.samples).for_each(|j| sum += used.columns(j * n, n));
+                sum.as_slice().repeat(self.samples)
+            }
+            Disturbance::Sample | Disturbance::Measurable => used.iter().copied().collect(),
+        };
+        let signs = |values: Vec<f64>| values.into_iter().map(f64::signum).collect();
+        Node {
+            sample,
+            start: signs(self.start.transpose().as_slice().to_vec()),
+            input: signs(input),
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Recordings of a linear system with known disturbances, written as a data set.
+#![allow(dead_code)]
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use nalgebra::DVector;
+use reachtube_abstraction::{ExpansionPoint, linear_model};
+use reachtube_reach::{LinearSystem, TimeGrid};
+use reachtube_robot::Robot;
+
+/// The folder of real recordings, or none with a word about it.
+pub fn shared(folder: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(folder);
+    if path.is_dir() {
+        return Some(path);
+    }
+    eprintln!("skipped: the folder shared/data/{folder} is not beside the repository");
+    None
+}
+
+/// Xorshift64*: enough for tests, the same everywhere.
+pub struct Random(pub u64);
+
+impl Random {
+    /// Uniform in [-1, 1].
+    pub fn signed(&mut self) -> f64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        let bits = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11;
+        bits as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}
+
+/// One run: times, states (K x 2n), torques (K x n).
+#[derive(Clone)]
+pub struct Recorded {
+    pub times: Vec<f64>,
+    pub states: Vec<f64>,
+    pub torques: Vec<f64>,
+}
+
+/// What moves the virtual arm.
+pub struct Disturbed<'a> {
+    pub robot: &'a Robot,
+    pub times: &'a [f64],
+    /// Radius of the initial states, rad and rad/s.
+    pub start: f64,
+    /// Radius of the input disturbance, N m, held over each sample.
+    pub input: f64,
+}
+
+impl Disturbed<'_> {
+    /// The recording of model 1 under a sine input that is the same for each `random`, and random
+    /// disturbances.
+    pub fn record(&self, random: &mut Random) -> Recorded {
+        let n = self.robot.joint_count();
+        let system = linear_model(self.robot, &ExpansionPoint::zero(n)).unwrap();
+        let mut x = DVector::from_fn(2 * n, |_, _| self.start * random.signed());
+        let (mut states, mut torques) = (Vec::new(), Vec::new());
+        for (k, &t) in self.times.iter().enumerate() {
+            let u = DVector::from_fn(n, |j, _| (3.0 * t + j as f64).sin());
+            states.extend(x.iter());
+            torques.extend(u.iter());
+            let du = DVector::from_fn(n, |_, _| self.input * random.signed());
+            if let Some(next) = self.times.get(k + 1) {
+                x = step(&system, next - t, &x, &(u + du));
+            }
+        }
+        Recorded { times: self.times.to_vec(), states, torques }
+    }
+}
+
+/// One step by a Taylor series of the augmented matrix, independent of the library's enclosures.
+pub fn step(system: &LinearSystem, h: f64, x: &DVector<f64>, u: &DVector<f64>) -> DVector<f64> {
+    let mut term = (system.a() * x + system.b() * u) * h;
+    let mut sum = x.clone();
+    for i in 2..30 {
+        sum += &term;
+        term = system.a() * term * (h / i as f64);
+    }
+    sum
+}
+
+/// The grid of every suite of a test.
+pub fn grid(step: f64, samples: usize) -> Vec<f64> {
+    TimeGrid::uniform(step, samples).times().to_vec()
+}
+
+/// Writes suites, each with its runs, and runs.csv.
+pub fn write_data_set(folder: &Path, suites: &[(&str, Vec<Recorded>)]) {
+    let mut index = String::from("file,suite\n");
+    for (suite, runs) in suites {
+        for (repeat, run) in runs.iter().enumerate() {
+            let file = format!("{suite}_{repeat:02}.csv");
+            let _ = writeln!(index, "{file},{suite}");
+            std::fs::write(folder.join(file), csv(run)).unwrap();
+        }
+    }
+    std::fs::write(folder.join("runs.csv"), index).unwrap();
+}
+
+fn csv(run: &Recorded) -> String {
+    let samples = run.times.len();
+    let n = run.torques.len() / samples;
+    let names =
+        ["q", "qd", "tau"].iter().flat_map(|kind| (1..=n).map(move |i| format!("{kind}{i}")));
+    let mut text = format!("t,{}\n", names.collect::<Vec<_>>().join(","));
+    for k in 0..samples {
+        let _ = write!(text, "{}", run.times[k]);
+        let row =
+            run.states[k * 2 * n..(k + 1) * 2 * n].iter().chain(&run.torques[k * n..(k + 1) * n]);
+        row.for_each(|value| {
+            let _ = write!(text, ",{value}");
+        });
+        text.push('\n');
+    }
+    text
+}
+
+/// Two coupled joints with viscous friction.
+pub fn two_joints() -> Robot {
+    let text = r#"
+        schema_version = 1
+        name = "two joints"
+        [[joint]]
+        name = "shoulder"
+        dh = { a = 0.3, alpha = 0.0, theta = 0.0, d = 0.0 }
+        mass = 2.0
+        com = [-0.15, 0.0, 0.0]
+        inertia = [0.01, 0.0, 0.0, 0.02, 0.0, 0.02]
+        armature = 0.3
+        friction = { viscous = [2.0, 0.0, 0.0] }
+        [[joint]]
+        name = "elbow"
+        dh = { a = 0.25, alpha = 0.0, theta = 0.0, d = 0.0 }
+        mass = 1.5
+        com = [-0.12, 0.0, 0.0]
+        inertia = [0.01, 0.0, 0.0, 0.02, 0.0, 0.02]
+        armature = 0.2
+        friction = { viscous = [1.0, 0.0, 0.0] }
+    "#;
+    Robot::from_toml(text, "two joints").unwrap()
+}

@@ -1,0 +1,173 @@
+//! The recordings of the paper's own arm: cost against an independent solver, proof, and a check
+//! that fails where it must.
+
+mod common;
+
+use reachtube_conform::Model;
+use reachtube_conform::{Centre, Conformance, Dynamics, Settings, States, Watch, check, conform};
+use reachtube_reach::Disturbance;
+use reachtube_recordings::{DataSet, Torque};
+use reachtube_robot::Robot;
+
+fn names(suites: &str) -> Vec<String> {
+    suites.split(',').map(String::from).collect()
+}
+
+fn conform_with(
+    data: &DataSet,
+    suites: &str,
+    adjust: impl Fn(&mut Settings),
+) -> (Settings, Conformance) {
+    let robot = Robot::lwa4p();
+    let mut settings = Settings::new(Torque::Compensated, 6);
+    adjust(&mut settings);
+    let found = conform(&robot, data, &names(suites), &settings, &Watch::SILENT).unwrap();
+    (settings, found)
+}
+
+/// Optimal costs found by HiGHS 1.11 (dual simplex, through SciPy) on the whole program, all 52,224
+/// or 26,112 rows, with e^{At} by SciPy's Padé approximation and κ of `measurable` by 50
+/// subdivisions of each sample (hence 1e-6 there): suites A, B, D, E, unit weights, mean first
+/// state, 12 states in the cost.
+const OPTIMA: [(States, Disturbance, [f64; 3]); 6] = [
+    (States::All, Disturbance::Constant, [6818.561053712907, 6818.561053712875, 8372.7249271995]),
+    (States::All, Disturbance::Sample, [6048.047985391407, 6048.047985391244, 7296.460846264912]),
+    (
+        States::All,
+        Disturbance::Measurable,
+        [6048.041327597189, 6048.041327597189, 7296.45810698982],
+    ),
+    (
+        States::Positions,
+        Disturbance::Constant,
+        [4077.952629703163, 4119.457416560856, 5227.013665532468],
+    ),
+    (
+        States::Positions,
+        Disturbance::Sample,
+        [4190.645059667318, 4235.435876073377, 5401.906499505786],
+    ),
+    (
+        States::Positions,
+        Disturbance::Measurable,
+        [4190.646094536758, 4235.437004112476, 5401.9082782636115],
+    ),
+];
+
+#[test]
+fn costs_are_those_of_an_independent_solver_and_the_sets_are_proved() {
+    let Some(folder) = common::shared("schunk_lwa4p") else { return };
+    let data = DataSet::open(folder).unwrap();
+    for (states, disturbance, costs) in OPTIMA {
+        for (centre, optimum) in [Centre::Free, Centre::Origin, Centre::Zero].into_iter().zip(costs)
+        {
+            let (_, found) = conform_with(&data, "A,B,D,E", |settings| {
+                (settings.states, settings.disturbance, settings.centre) =
+                    (states, disturbance, centre);
+            });
+            let lower_bound = found.lower_bound.unwrap();
+            let case = format!("{states:?} {disturbance:?} {centre:?}");
+            assert!(
+                (found.cost / optimum - 1.0).abs() < 1e-8,
+                "{case}: {} for {optimum}",
+                found.cost
+            );
+            assert!(
+                (found.cost - lower_bound) / found.cost < 1e-9,
+                "{case}: bound {}",
+                lower_bound
+            );
+            assert!(found.proof.verified && found.proof.largest_excess <= 0.0, "{case}");
+            let suites_by_samples = 937 + 703 + 234 + 1088;
+            assert_eq!(found.proof.rows, suites_by_samples * 2 * states.rows(6), "{case}");
+            let sets = found.sets.initial_set.center.iter().zip(&found.sets.initial_set.radius);
+            match centre {
+                Centre::Free => {}
+                Centre::Origin => assert!(sets.clone().all(|(c, r)| c.abs() <= *r), "{case}"),
+                Centre::Zero => assert!(sets.clone().all(|(c, _)| *c == 0.0), "{case}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_motion_that_was_not_fitted_is_not_claimed_and_a_fitted_one_is() {
+    let Some(folder) = common::shared("schunk_lwa4p") else { return };
+    let data = DataSet::open(folder).unwrap();
+    let (settings, found) = conform_with(&data, "A,B,D", |_| {});
+    let model = Model::new(&Robot::lwa4p(), &data, &settings, &found);
+    let fitted = check(&model, &data, &names("B,A"), &settings, &|_, _| {}).unwrap();
+    assert!(fitted.conformant && fitted.violations.count == 0 && fitted.trust.is_none());
+    let other = check(&model, &data, &names("E"), &settings, &|_, _| {}).unwrap();
+    let worst = other.violations.worst.clone().unwrap();
+    assert!(
+        !other.conformant
+            && other.violations.count > 1000
+            && worst.suite == "E"
+            && worst.excess > 0.1
+    );
+    assert_eq!(other.trust.unwrap().motions, 1);
+}
+
+/// The count of `check` by plain floating point: x̂ by the exact discretisation, the reach by
+/// running sums.
+#[test]
+fn violations_are_counted_as_a_plain_simulation_counts_them() {
+    let Some(folder) = common::shared("schunk_lwa4p") else { return };
+    let data = DataSet::open(folder).unwrap();
+    let (settings, found) = conform_with(&data, "A,B", |_| {});
+    let model = Model::new(&Robot::lwa4p(), &data, &settings, &found);
+    let checked = check(&model, &data, &names("D,E"), &settings, &|_, _| {}).unwrap();
+    let mut count = 0;
+    let mut worst: f64 = 0.0;
+    for suite in data.select(&names("D,E")).unwrap() {
+        let runs: Vec<_> = suite
+            .runs
+            .iter()
+            .map(|&run| data.read(run, Some(6), Default::default(), None).unwrap())
+            .collect();
+        for (_, _, excess) in plain_excess(&model, &runs) {
+            count += usize::from(excess > 0.0);
+            worst = worst.max(excess);
+        }
+    }
+    assert_eq!(checked.violations.count, count);
+    assert!((checked.violations.worst.unwrap().excess - worst).abs() < 1e-9);
+}
+
+/// (sample, state, excess) by plain floating point.
+fn plain_excess(model: &Model, runs: &[reachtube_recordings::Run]) -> Vec<(usize, usize, f64)> {
+    use nalgebra::{DMatrix, DVector};
+    let Dynamics::Linear(system) = model.dynamics().unwrap() else { panic!("model 1 of order 1") };
+    let sets = model.sets();
+    let vector = |values: &[f64]| -> DVector<f64> { DVector::from_column_slice(values) };
+    let zero = DVector::zeros(6);
+    let columns = |f: &dyn Fn(usize) -> DVector<f64>, n: usize| {
+        DMatrix::from_columns(&(0..n).map(f).collect::<Vec<_>>())
+    };
+    let unit = |n: usize, j: usize| DVector::from_fn(n, |i, _| f64::from(u8::from(i == j)));
+    let phi = columns(&|j| common::step(&system, 0.004, &unit(12, j), &zero), 12);
+    let gamma = columns(&|j| common::step(&system, 0.004, &DVector::zeros(12), &unit(6, j)), 6);
+    let mean =
+        runs.iter().map(|run| vector(run.state(0))).sum::<DVector<f64>>() / runs.len() as f64;
+    let (mut e, mut g, mut gain) =
+        (DMatrix::identity(12, 12), DMatrix::zeros(12, 6), DMatrix::zeros(12, 6));
+    let (mut x, mut rows) = (mean, Vec::new());
+    for k in 0..runs[0].len() {
+        let center: DVector<f64> =
+            &x + &e * vector(&sets.initial_set.center) + &g * vector(&sets.input_set.center);
+        let radius: DVector<f64> =
+            e.abs() * vector(&sets.initial_set.radius) + &gain * vector(&sets.input_set.radius);
+        for i in 0..12 {
+            let furthest =
+                runs.iter().map(|run| (run.state(k)[i] - center[i]).abs()).fold(0.0, f64::max);
+            rows.push((k, i, furthest - radius[i]));
+        }
+        x = &phi * x + &gamma * vector(runs[0].torque(k));
+        let increment: DMatrix<f64> = &e * &gamma;
+        gain += increment.abs();
+        g += increment;
+        e *= &phi;
+    }
+    rows
+}

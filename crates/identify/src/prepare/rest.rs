@@ -1,0 +1,32 @@
+use std::ops::Range;
+
+/// The stretches of samples in which no joint moves faster than `speed` \[rad/s\], each at least
+/// `shortest` samples long.
+///
+/// `qd` is row-major, samples x `joints`.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_identify::prepare::rests;
+///
+/// let qd = [0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.0];
+/// assert_eq!(rests(&qd, 1, 0.1, 2), [0..2, 4..7]);
+/// ```
+pub fn rests(qd: &[f64], joints: usize, speed: f64, shortest: usize) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    let mut close = |range: Range<usize>| {
+        if range.len() >= shortest.max(1) {
+            found.push(range);
+        }
+    };
+    for (k, row) in qd.chunks_exact(joints).enumerate() {
+        if row.iter().any(|v| v.abs() > speed) {
+            close(start..k);
+            start = k + 1;
+        }
+    }
+    close(start..qd.len() / joints);
+    found
+}

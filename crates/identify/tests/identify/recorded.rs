@@ -1,0 +1,122 @@
+//! Robots that were recorded: what the torque of recordings kept back comes to.
+
+use reachtube_identify::{Identification, IdentifySettings, identify};
+use reachtube_robot::Robot;
+use std::path::{Path, PathBuf};
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
+
+fn identified(folder: &str, settings: &str) -> Option<Identification> {
+    let folder = Path::new(DATA).join(folder);
+    if !folder.exists() {
+        println!("skipped: {} is lacking", folder.display());
+        return None;
+    }
+    let settings = IdentifySettings::from_toml(settings, "settings").unwrap();
+    let robot =
+        Robot::load(&folder.join(settings.robot.as_ref().unwrap()).display().to_string()).unwrap();
+    Some(identify(&robot, &settings, &folder, &|_, _| {}).unwrap())
+}
+
+#[test]
+fn the_ur10e_predicts_recordings_kept_back() {
+    let settings = r#"
+        robot = "ur10e.urdf"
+        static = ["static"]
+        friction = ["friction"]
+        dynamic = ["excitation/20_02_12-50sec_12harm.csv", "excitation/20_02_10-30sec_12harm.csv"]
+        validate = ["excitation/20_02_12-40sec_12harm.csv", "excitation/20_02_19_14harm50sec.csv", "excitation/20_02_10-20sec_7harm.csv"]
+        prepare.cut_off = 6.0
+    "#;
+    let Some(found) = identified("ur10e", settings) else { return };
+    assert!(found.friction.len() == 6 && found.friction.iter().all(|fit| fit.joint.r2 > 0.99));
+    let all = found.validation.last().unwrap();
+    assert_eq!(all.log, "all");
+    for (j, joint) in all.joints.iter().enumerate() {
+        assert!(joint.relative < 0.1, "joint {}: {joint:?}", j + 1);
+        assert!(
+            joint.relative < 1.05 * joint.relative_plain,
+            "as good as plain least squares: {joint:?}"
+        );
+    }
+    let robot = Robot::from_description(&found.description).unwrap();
+    assert!(matches!(robot.check_physical(), Ok(reachtube_robot::Physicality::Links { .. })));
+    // 58 combinations of inertia, motors, viscous and Coulomb friction and offset, as counted for
+    // this arm elsewhere, and six cubic terms.
+    assert_eq!(found.inertia.parameters.len(), 58 + 6);
+    let half_second = &found.windows[0];
+    assert!(
+        half_second.diverged == 0 && half_second.q.iter().all(|q| *q < 0.05),
+        "{half_second:?}"
+    );
+}
+
+/// Modified Denavit-Hartenberg parameters of the Panda, with links of which nothing is known.
+const PANDA: [[f64; 3]; 7] = [
+    [0.0, 0.0, 0.333],
+    [0.0, -1.0, 0.0],
+    [0.0, 1.0, 0.316],
+    [0.0825, 1.0, 0.0],
+    [-0.0825, -1.0, 0.384],
+    [0.0, 1.0, 0.0],
+    [0.088, 1.0, 0.0],
+];
+
+#[test]
+fn half_of_the_pandas_motion_predicts_the_other_and_its_links_can_exist() {
+    let file = "panda/excitation/traj1_000_015s.csv";
+    if !Path::new(DATA).join(file).exists() {
+        println!("skipped: {DATA}/{file} is lacking");
+        return;
+    }
+    let joint = |(k, [a, turn, d]): (usize, &[f64; 3])| {
+        let alpha = turn * std::f64::consts::FRAC_PI_2;
+        format!(
+            "[[joint]]\nname = \"joint{}\"\ndh = {{ a = {a:?}, alpha = {alpha:?}, theta = 0.0, d = {d:?} }}\n",
+            k + 1
+        )
+    };
+    let text = format!(
+        "schema_version = 1\nname = \"panda\"\nparameters = \"base\"\nconvention = \"modified\"\n{}",
+        PANDA.iter().enumerate().map(joint).collect::<String>()
+    );
+    let settings = format!(
+        "dynamic = [{{ path = \"{file}\", until = 7.5 }}]\nvalidate = [{{ path = \"{file}\", from = 7.5 }}]\n\
+         prepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.windows = []"
+    );
+    let settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
+    let robot = Robot::from_toml(&text, "panda.toml").unwrap();
+    let found = identify(&robot, &settings, &PathBuf::from(DATA), &|_, _| {}).unwrap();
+    let physical = found.inertia.physical.as_ref().unwrap();
+    assert!(physical.plain_impossible.is_some(), "plain least squares gives no robot");
+    for joint in Robot::from_description(&found.description).unwrap().description().joints.iter() {
+        assert!(joint.mass > 0.0);
+    }
+    let limits = [0.09, 0.03, 0.03, 0.04, 0.13, 0.1, 0.22];
+    let joints = &found.validation[0].joints;
+    joints
+        .iter()
+        .zip(limits)
+        .for_each(|(joint, limit)| assert!(joint.relative < limit, "{joints:?}"));
+}
+
+#[test]
+fn the_double_pendulum_is_found_as_far_as_its_friction_lets() {
+    let settings = r#"
+        robot = "acrobot.urdf"
+        dynamic = ["openloop", "swing"]
+        validate = [{ path = "repeats_acrobot/acrobot_01.csv", until = 4.0 }]
+        prepare.cut_off = 6.0
+    "#;
+    let Some(found) = identified("double_pendulum", settings) else { return };
+    let joints = &found.validation[0].joints;
+    assert!(joints[0].relative < 0.5 && joints[1].relative < 0.2, "{joints:?}");
+    assert!(
+        found.warnings.iter().any(|w| w.contains("Joint1") && w.contains("is not explained")),
+        "{:?}",
+        found.warnings
+    );
+    // The authors' second moments about the joints, 0.03 to 0.05 kg m².
+    let inertia = found.inertia.parameters.iter().find(|p| p.name == "Ixx2").unwrap();
+    assert!((0.03..0.06).contains(&inertia.value), "{inertia:?}");
+}

@@ -1,0 +1,245 @@
+//! What was put into virtual recordings is found in them, with the errors that theory says.
+
+use crate::virtual_robot::rand_like::Random;
+use crate::virtual_robot::{Recorder, excitation, rest, slow};
+use reachtube_identify::friction::CoulombForm;
+use reachtube_identify::{Identification, IdentifySettings, identify};
+use reachtube_robot::{BaseParameters, Robot, RobotDescription};
+use std::path::{Path, PathBuf};
+
+/// The LWA 4P with one set of parameters for inertia and gravity.
+fn lwa4p() -> Robot {
+    let mut description = Robot::lwa4p().description().clone();
+    description.joints.iter_mut().for_each(|joint| joint.gravity_moments = None);
+    Robot::from_description(&description).unwrap()
+}
+
+/// The same geometry; nothing of the links, motors and friction.
+fn geometry(robot: &Robot) -> Robot {
+    let mut description: RobotDescription = robot.description().clone();
+    for joint in &mut description.joints {
+        (joint.mass, joint.com, joint.first_moment) = (0.0, None, None);
+        (joint.inertia, joint.armature, joint.rotor_inertia) = ([0.0; 6], None, None);
+        joint.friction = Default::default();
+    }
+    Robot::from_description(&description).unwrap()
+}
+
+struct Lab {
+    folder: tempfile::TempDir,
+}
+
+impl Lab {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    /// Recordings of exciting motions, with gains.
+    fn excite(&self, robot: &Robot, noise: f64, gains: &[f64]) {
+        let mut recorder = Recorder { robot, noise, gains: gains.to_vec(), random: Random(5) };
+        for seed in 1..=3 {
+            let path = self.folder.path().join(format!("dynamic_{seed}.csv"));
+            recorder.record(&path, 24.0, excitation(robot.joint_count(), seed));
+        }
+        recorder.record(
+            &self.folder.path().join("kept_back.csv"),
+            12.0,
+            excitation(robot.joint_count(), 9),
+        );
+    }
+
+    fn settings(&self) -> IdentifySettings {
+        let entry = |name: &str| PathBuf::from(name).into();
+        let mut settings = IdentifySettings {
+            dynamic: (1..=3).map(|k| entry(&format!("dynamic_{k}.csv"))).collect(),
+            validate: vec![entry("kept_back.csv")],
+            ..IdentifySettings::default()
+        };
+        settings.prepare.cut_off = Some(8.0);
+        settings
+    }
+
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    fn identify(&self, robot: &Robot, settings: &IdentifySettings) -> Identification {
+        identify(robot, settings, self.path(), &|_, _| {}).unwrap()
+    }
+}
+
+/// Parts of the base parameters within one and three standard errors of the truth.
+fn rates(found: &Identification, truth: &Robot) -> [f64; 2] {
+    let base = BaseParameters::of_robot(truth, &found.inertia.columns);
+    let values = base.reduce(&truth.column_values(&found.inertia.columns));
+    let off: Vec<f64> = found
+        .inertia
+        .parameters
+        .iter()
+        .zip(values.iter())
+        .map(|(p, value)| (p.least_squares - value).abs() / p.standard_error)
+        .collect();
+    [1.0, 3.0].map(|limit| off.iter().filter(|off| **off < limit).count() as f64 / off.len() as f64)
+}
+
+/// Constant and linear friction, as the regression with the inertial parameters has.
+fn simple_friction(robot: &Robot) -> Robot {
+    let mut description = robot.description().clone();
+    for (j, joint) in description.joints.iter_mut().enumerate() {
+        let f = 2.0 + 0.3 * j as f64;
+        joint.friction.coulomb = [f, 0.0, -f, 0.0, -f, 0.0, f, 0.0];
+        joint.friction.viscous = [3.0, 0.0, 0.0];
+    }
+    Robot::from_description(&description).unwrap()
+}
+
+#[test]
+fn base_parameters_of_the_lwa_4p_lie_within_their_errors() {
+    let truth = simple_friction(&lwa4p());
+    let lab = Lab::new();
+    lab.excite(&truth, 0.5, &[1.0; 6]);
+    let mut settings = lab.settings();
+    settings.model.physical = false;
+    let found = lab.identify(&geometry(&truth), &settings);
+    let [one, three] = rates(&found, &truth);
+    // 68.3 % and 99.7 % of normal errors; with 59 parameters a share of 68 % has a standard
+    // deviation of 6 %.
+    assert!(three > 0.96 && (0.5..0.87).contains(&one), "{one} within one, {three} within three");
+    assert!(found.inertia.condition < 1e3, "{}", found.inertia.condition);
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    assert!(
+        found.kept_back && found.validation[0].joints.iter().all(|joint| joint.relative < 0.05)
+    );
+}
+
+#[test]
+fn the_ur5_is_found_again_as_bodies() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/oracle/ur5.urdf");
+    if !Path::new(path).exists() {
+        println!("skipped: ../shared/oracle is lacking");
+        return;
+    }
+    let truth = simple_friction(&Robot::load(path).unwrap());
+    let lab = Lab::new();
+    lab.excite(&truth, 0.5, &[1.0; 6]);
+    let found = lab.identify(&geometry(&truth), &lab.settings());
+    let [one, three] = rates(&found, &truth);
+    assert!(three > 0.96 && (0.5..0.87).contains(&one), "{one} within one, {three} within three");
+    let physical = found.inertia.physical.as_ref().unwrap();
+    // The truth is possible, so that the nearest bodies cost no more than it does: about the number
+    // of parameters.
+    assert!(physical.cost < 120.0 && physical.balls.len() == 6, "{physical:?}");
+    let robot = Robot::from_description(&found.description).unwrap();
+    assert!(matches!(robot.check_physical(), Ok(reachtube_robot::Physicality::Links { .. })));
+    assert!(
+        found.validation[0].joints.iter().all(|joint| joint.relative < 0.1),
+        "{:?}",
+        found.validation
+    );
+    assert!(
+        found.gains.iter().all(|gain| (gain.gain - 1.0).abs() < 5.0 * gain.standard_error + 0.02),
+        "{:?}",
+        found.gains
+    );
+    let again = Robot::from_toml(&found.robot_toml(), "found").unwrap();
+    assert!((again.mass_matrix(&[0.3; 6]) - robot.mass_matrix(&[0.3; 6])).amax() < 1e-12);
+}
+
+#[test]
+fn gravity_and_friction_quadrants_are_found_in_the_papers_order() {
+    let truth = lwa4p();
+    let lab = Lab::new();
+    lab.excite(&truth, 0.1, &[1.0; 6]);
+    let mut recorder =
+        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(3) };
+    let mut random = Random(11);
+    for k in 0..20 {
+        let q = (0..6).map(|_| 2.0 * random.uniform() - 1.0).collect();
+        recorder.record(&lab.path().join(format!("rest_{k}.csv")), 3.0, rest(q));
+    }
+    for joint in 0..6 {
+        for (k, pose) in [0.0, 0.8, -0.6].into_iter().enumerate() {
+            recorder.record(
+                &lab.path().join(format!("slow_{joint}_{k}.csv")),
+                24.0,
+                slow(6, joint, pose),
+            );
+        }
+    }
+    let mut settings = lab.settings();
+    settings.rest = (0..20).map(|k| PathBuf::from(format!("rest_{k}.csv")).into()).collect();
+    let names = (0..6).flat_map(|joint| (0..3).map(move |k| format!("slow_{joint}_{k}.csv")));
+    settings.friction = names.map(|name| PathBuf::from(name).into()).collect();
+    settings.model.physical = false;
+    let found = lab.identify(&geometry(&truth), &settings);
+    let gravity = found.gravity.as_ref().unwrap();
+    assert_eq!(gravity.rests, 20);
+    let q = [0.4, -0.7, 0.5, 0.3, -0.2, 0.9];
+    let off = (gravity.robot.gravity_torque(&q) - truth.gravity_torque(&q)).amax();
+    assert!(off < 0.2, "{off} N m");
+    for (joint, form) in [(1, CoulombForm::Quadrants), (2, CoulombForm::Quadrants)] {
+        let fit = &found.friction[joint].joint;
+        assert!(fit.form == form && fit.r2 > 0.99, "{fit:?}");
+        let true_values = truth.description().joints[joint].friction;
+        for (a, b) in fit.coefficients.coulomb.chunks(2).zip(true_values.coulomb.chunks(2)) {
+            assert!((a[0] - b[0]).abs() < 0.3 && (a[1] - b[1]).abs() < 0.03, "{fit:?}");
+        }
+        assert!((fit.coefficients.viscous[0] - true_values.viscous[0]).abs() < 0.5, "{fit:?}");
+    }
+    assert!(
+        found.validation[0].joints.iter().all(|joint| joint.relative < 0.05),
+        "{:?}",
+        found.validation[0]
+    );
+}
+
+#[test]
+fn a_turned_sign_and_a_wrong_gain_are_said() {
+    let truth = simple_friction(&lwa4p());
+    let lab = Lab::new();
+    lab.excite(&truth, 0.3, &[1.0, 1.0, -1.0, 1.0, 1.0, 1.0]);
+    let found = lab.identify(&geometry(&truth), &lab.settings());
+    let said = |words: &String| words.contains("joint3") && words.contains("sign of its torque");
+    assert!(found.warnings.iter().any(said), "{:?}", found.warnings);
+    let lab = Lab::new();
+    lab.excite(&truth, 0.3, &[1.0, 1.0, 1.6, 1.0, 1.0, 1.0]);
+    let mut settings = lab.settings();
+    settings.model.physical = false;
+    let found = lab.identify(&geometry(&truth), &settings);
+    let gain = &found.gains[2];
+    assert!((gain.gain - 1.0 / 1.6).abs() < 0.05, "{:?}", found.gains);
+    assert!(
+        found.warnings.iter().any(|w| w.contains("the torque of joint3 contradicts")),
+        "{:?}",
+        found.warnings
+    );
+}
+
+#[test]
+fn what_is_not_excited_is_named() {
+    let truth = simple_friction(&lwa4p());
+    let lab = Lab::new();
+    let mut recorder =
+        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(5) };
+    recorder.record(&lab.path().join("one.csv"), 20.0, slow(6, 1, 0.3));
+    let mut settings = IdentifySettings {
+        dynamic: vec![PathBuf::from("one.csv").into()],
+        ..IdentifySettings::default()
+    };
+    settings.model.physical = false;
+    let error =
+        identify(&geometry(&truth), &settings, lab.path(), &|_, _| {}).unwrap_err().to_string();
+    assert!(
+        error.contains("the recordings do not show")
+            && error.contains("J6")
+            && error.contains("move all joints"),
+        "{error}"
+    );
+    settings.model.physical = true;
+    let found = lab.identify(&geometry(&truth), &settings);
+    assert!(
+        found.warnings.iter().any(|w| w.contains("the prior decides") && w.contains("J6")),
+        "{:?}",
+        found.warnings
+    );
+}
