@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::Defect;
-use super::reading::{line_of, quoted};
+use crate::defect::Defect;
+use crate::text::{line_of, quoted};
 
 const REMEDY: &str = "runs.csv has a header with at least file and suite, then one line a run";
 

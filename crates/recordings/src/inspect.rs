@@ -4,9 +4,14 @@ use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
 use serde::Serialize;
 
-use super::units::integral_gap;
-use super::{DataSet, Defect, GapLimit, Run};
+use crate::data_set::DataSet;
+use crate::defect::Defect;
 use crate::error::{Error, Result};
+use crate::gap_limit::GapLimit;
+use crate::notes::{copies_note, run_notes};
+use crate::run::Run;
+use crate::source::{ReadOptions, RunSource};
+use crate::units::integral_gap;
 
 /// A joint slower than this sticks, rad/s.
 const STICKING: f64 = 0.01;
@@ -79,7 +84,8 @@ pub struct JointSummary {
 ///
 /// Every defect of every recording.
 pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Result<Inspection> {
-    let read = |index: usize| data.read(index, None, gap_limit, None);
+    let options = ReadOptions { gap_limit, ..ReadOptions::default() };
+    let read = |index: usize| data.read(index, &options);
     let results: Vec<_> = (0..data.runs().len()).into_par_iter().map(read).collect();
     let mut runs = Vec::new();
     let mut defects = Vec::new();
@@ -115,7 +121,7 @@ fn other_joint_count(data: &DataSet, runs: &[Run]) -> Vec<Defect> {
     let odd = |(index, run): (usize, &Run)| {
         let problem = format!("{} joints, the first recording has {}", run.joints, runs[0].joints);
         let defect = Defect::new(
-            data.path(index),
+            data.run_name(index),
             Some(1),
             problem,
             "keep the recordings of one robot in one data set",
@@ -143,9 +149,9 @@ fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
 fn notes(data: &DataSet, runs: &[Run]) -> Vec<String> {
     let mut notes = data.unlisted_note().into_iter().collect::<Vec<_>>();
     for (index, run) in runs.iter().enumerate() {
-        notes.extend(data.run_notes(index, run));
+        notes.extend(run_notes(data, index, run));
     }
-    notes.extend(data.copies_note(runs.iter().map(|run| run.sha256.as_str()).enumerate()));
+    notes.extend(copies_note(data, runs.iter().map(|run| run.sha256.as_str()).enumerate()));
     notes
 }
 

@@ -2,9 +2,15 @@
 
 use std::path::Path;
 
-use super::decimal::picoseconds;
-use super::run::column_names;
-use super::{Defect, GapLimit, Run};
+use reachtube_files::hex;
+use sha2::{Digest, Sha256};
+
+use crate::decimal::picoseconds;
+use crate::defect::Defect;
+use crate::gap_limit::GapLimit;
+use crate::run::{Run, column_names};
+use crate::source::ReadOptions;
+use crate::text::{line_of, quoted};
 
 /// A longer time between two samples than this many usual ones is a gap, where the rate is fixed: a
 /// missing sample makes it 2, a late one less.
@@ -16,14 +22,27 @@ const JITTER_GAP: f64 = 10.0;
 /// Part of the samples that must follow at the usual time for the rate to be called fixed.
 const FIXED_RATE_SHARE: f64 = 0.9;
 
-/// Longest piece of a file that an error quotes, characters.
-const QUOTED: usize = 40;
-
 const HEADER: &str = "the header is t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m";
+
+/// Reads the recording in the CSV file `path`.
+///
+/// # Errors
+///
+/// Every defect of the file, with line and joint.
+pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> {
+    let bytes = std::fs::read(path).map_err(|source| {
+        let problem = format!("cannot read: {source}");
+        vec![Defect::new(path, None, problem, "check the path and its permissions")]
+    })?;
+    let mut run = read_samples(path, &bytes, options.joints, options.gap_limit)?;
+    run.sha256 = hex(&Sha256::digest(&bytes));
+    run.truncate(options.until);
+    Ok(run)
+}
 
 /// The samples in `bytes`, the content of the file `path`; a run of other than `joints` joints is a
 /// defect. The SHA-256 is left empty.
-pub(super) fn read_samples(
+fn read_samples(
     path: &Path,
     bytes: &[u8],
     joints: Option<usize>,
@@ -252,22 +271,6 @@ fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
         return Some(("the first line holds numbers, so the header is missing".into(), HEADER));
     }
     None
-}
-
-/// The line, from 1, on which a record starts; the reader's position may be that of blank lines
-/// above it.
-pub(super) fn line_of(bytes: &[u8], position: Option<&csv::Position>) -> u64 {
-    let Some(position) = position else { return 1 };
-    let ahead = bytes.get(position.byte() as usize..).unwrap_or_default();
-    let blank = ahead.iter().take_while(|byte| matches!(byte, b'\n' | b'\r'));
-    position.line() + blank.filter(|byte| **byte == b'\n').count() as u64
-}
-
-/// A piece of a file, cut short and without control characters.
-pub(super) fn quoted(text: &str) -> String {
-    let short: String = text.chars().take(QUOTED).collect();
-    let dots = if short.len() < text.len() { "..." } else { "" };
-    format!("{short:?}{dots}")
 }
 
 fn is_numbered(name: &str, prefix: &str) -> bool {

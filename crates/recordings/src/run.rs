@@ -1,23 +1,3 @@
-use std::path::Path;
-
-use sha2::{Digest, Sha256};
-
-use reachtube_files::hex;
-
-use super::Defect;
-use super::reading::read_samples;
-
-/// How long the time between two samples may be. The input is taken as held until the next sample,
-/// so a gap is a guess about the input.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum GapLimit {
-    /// 1.9 times the usual time between samples at a fixed rate, 10 times where the times jitter.
-    #[default]
-    Usual,
-    /// As many seconds.
-    Seconds(f64),
-}
-
 /// One recording: K samples of n joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
@@ -37,34 +17,49 @@ pub struct Run {
 }
 
 impl Run {
-    /// Reads the run in the file `path`; samples later than `until` seconds after the first are
-    /// left out. A run of other than `joints` joints is a defect.
+    /// Makes a run of `joints` joints from numbers in memory: `times` (s, strictly increasing, K),
+    /// `states` (q then q̇, rad and rad/s, row-major K x 2n) and `torques` (N m, row-major K x n).
+    /// Times are counted from the first.
     ///
     /// # Errors
     ///
-    /// Every defect of the file, with line and joint.
-    pub fn read(
-        path: &Path,
-        joints: Option<usize>,
-        gap_limit: GapLimit,
-        until: Option<f64>,
-    ) -> Result<Self, Vec<Defect>> {
-        let bytes = std::fs::read(path).map_err(|source| {
-            vec![Defect::new(
-                path,
-                None,
-                format!("cannot read: {source}"),
-                "check the path and its permissions",
-            )]
-        })?;
-        let mut run = read_samples(path, &bytes, joints, gap_limit)?;
-        run.sha256 = hex(&Sha256::digest(&bytes));
-        run.truncate(until);
-        Ok(run)
+    /// A sentence that names the array and the sample when lengths do not fit, a number is not
+    /// finite, or times do not increase.
+    pub fn new(
+        joints: usize,
+        times: Vec<f64>,
+        states: Vec<f64>,
+        torques: Vec<f64>,
+    ) -> Result<Self, String> {
+        let samples = times.len();
+        for (name, values, width) in
+            [("times", &times, 1), ("states", &states, 2 * joints), ("torques", &torques, joints)]
+        {
+            if values.len() != samples * width {
+                let needed = samples * width;
+                let length = values.len();
+                return Err(format!(
+                    "{name} has {length} numbers; {samples} samples of {joints} joints need {needed}"
+                ));
+            }
+            if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+                let (value, sample) = (values[at], at / width);
+                return Err(format!("{name} holds {value} at sample {sample}; drop that sample"));
+            }
+        }
+        if let Some(k) = (1..samples).find(|&k| times[k] <= times[k - 1]) {
+            return Err(format!(
+                "the time of sample {k} is not later than that of the sample before; sort the \
+                 samples and drop duplicates"
+            ));
+        }
+        let start = times.first().copied().ok_or("a run needs one sample at least")?;
+        let times = times.iter().map(|time| time - start).collect();
+        Ok(Self { joints, start, times, states, torques, sha256: String::new() })
     }
 
     /// No sample of `joints` joints.
-    pub(super) fn empty(joints: usize) -> Self {
+    pub(crate) fn empty(joints: usize) -> Self {
         Self {
             joints,
             start: 0.0,
@@ -110,7 +105,8 @@ impl Run {
         &self.torques[k * self.joints..(k + 1) * self.joints]
     }
 
-    fn truncate(&mut self, until: Option<f64>) {
+    /// Drops the samples later than `until` seconds after the first.
+    pub(crate) fn truncate(&mut self, until: Option<f64>) {
         let Some(until) = until else { return };
         let end = until * (1.0 + 1e-12);
         let count = self.times.partition_point(|&t| t <= end);
@@ -125,9 +121,4 @@ pub fn column_names(n: usize) -> impl Iterator<Item = String> {
     ["q", "qd", "tau"]
         .into_iter()
         .flat_map(move |prefix| (1..=n).map(move |i| format!("{prefix}{i}")))
-}
-
-/// The column of state `i` (from 0) of a robot of `joints` joints: q1..qn, qd1..qdn.
-pub fn state_name(i: usize, joints: usize) -> String {
-    column_names(joints).nth(i).unwrap_or_default()
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use reachtube_robot::Robot;
 
-use super::{Defect, Run};
+use crate::defect::Defect;
+use crate::run::Run;
 
 /// Motion of a joint below which q and q̇ are not compared, rad.
 const LEAST_MOTION: f64 = 0.05;

@@ -1,0 +1,129 @@
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// Which quantity of a joint a state is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum StateKind {
+    /// The position q.
+    Position,
+    /// The velocity q̇.
+    Velocity,
+}
+
+impl StateKind {
+    /// Returns the unit in which states of this kind are recorded.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Position => "rad",
+            Self::Velocity => "rad/s",
+        }
+    }
+
+    fn prefix(self) -> &'static str {
+        match self {
+            Self::Position => "q",
+            Self::Velocity => "qd",
+        }
+    }
+}
+
+/// One state of a robot: the position or the velocity of one joint.
+///
+/// States are ordered q1..qn, q̇1..q̇n. A state is written as the name of its column in a
+/// recording.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_recordings::{State, StateKind};
+///
+/// let state = State::from_index(7, 6);
+/// assert_eq!((state.joint, state.kind), (1, StateKind::Velocity));
+/// assert_eq!(state.to_string(), "qd2");
+/// assert_eq!("qd2".parse(), Ok(state));
+/// assert_eq!(state.index(6), 7);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct State {
+    /// The joint, from 0.
+    pub joint: usize,
+    /// Position or velocity.
+    pub kind: StateKind,
+}
+
+impl State {
+    /// Returns the state at `index` (from 0) of the 2n states of a robot of `joints` joints.
+    #[must_use]
+    pub fn from_index(index: usize, joints: usize) -> Self {
+        match index.checked_sub(joints) {
+            None => Self { joint: index, kind: StateKind::Position },
+            Some(joint) => Self { joint, kind: StateKind::Velocity },
+        }
+    }
+
+    /// Returns the index (from 0) among the 2n states of a robot of `joints` joints.
+    #[must_use]
+    pub fn index(self, joints: usize) -> usize {
+        match self.kind {
+            StateKind::Position => self.joint,
+            StateKind::Velocity => joints + self.joint,
+        }
+    }
+}
+
+impl fmt::Display for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.kind.prefix(), self.joint + 1)
+    }
+}
+
+impl FromStr for State {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let (kind, digits) = match (name.strip_prefix("qd"), name.strip_prefix('q')) {
+            (Some(digits), _) => (StateKind::Velocity, digits),
+            (None, Some(digits)) => (StateKind::Position, digits),
+            (None, None) => (StateKind::Position, ""),
+        };
+        let joint = digits.parse::<usize>().ok().and_then(|joint| joint.checked_sub(1));
+        let wrong = || format!("\"{name}\" is not a state; states are named q1, q2, ..., qd1, ...");
+        joint.map(|joint| Self { joint, kind }).ok_or_else(wrong)
+    }
+}
+
+impl Serialize for State {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for State {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_state_has_one_name_and_one_index() {
+        for index in 0..14 {
+            let state = State::from_index(index, 7);
+            assert_eq!(state.index(7), index);
+            assert_eq!(state.to_string().parse(), Ok(state));
+        }
+    }
+
+    #[test]
+    fn other_names_are_refused() {
+        for name in ["", "q", "qd", "q0", "qd0", "x1", "tau1", "q1.5", "q-1"] {
+            assert!(name.parse::<State>().is_err(), "{name}");
+        }
+    }
+}
