@@ -1,64 +1,80 @@
-use std::borrow::Cow;
+use std::sync::OnceLock;
 
-use reachtube_reach::LinearSystem;
+use reachtube_abstraction::{Abstraction, PolynomialModel};
+use reachtube_reach::{LinearSystem, PolynomialSystem};
 use reachtube_robot::Robot;
 
-use super::{Method, Settings};
 use crate::error::Result;
-use reachtube_abstraction::{Abstraction, PolynomialModel};
+use crate::settings::{Method, Settings};
 
-/// A model as its reachable sets are computed.
+/// A model of the motion, with everything that is derived from it once.
+///
+/// A linear model ẋ = A x + B u + d has reachable sets whose hull is known up to rounding. For any
+/// other model ẋ = f_p(x, u) the sets are enclosed by a [`Flowpipe`](reachtube_reach::Flowpipe).
 #[derive(Debug, Clone)]
-pub enum Dynamics {
-    /// ẋ = A x + B u + d, whose hull is known up to rounding.
-    Linear(LinearSystem),
-    /// ẋ = f_p(x, u), whose reachable sets are enclosed by a
-    /// [`Flowpipe`](reachtube_reach::Flowpipe).
-    Polynomial(Box<PolynomialModel>),
+pub struct Dynamics {
+    linear: Option<LinearSystem>,
+    polynomials: PolynomialModel,
+    /// The polynomials as the flowpipe takes them, made when first asked for.
+    system: OnceLock<PolynomialSystem>,
 }
 
 impl Dynamics {
-    /// The model of `robot` that `settings` ask for. A linear one is taken as a polynomial for
-    /// [`Method::Bisection`], which knows no program.
+    /// Makes the model of `robot` that `settings` ask for. A linear one is treated as a polynomial
+    /// for [`Method::Bisection`], which knows no program.
     ///
     /// # Errors
     ///
-    /// Where the robot is not physical at the expansion point, or the order does not fit.
+    /// When the robot is not physical at the expansion point, or the order does not fit.
     pub fn new(robot: &Robot, settings: &Settings) -> Result<Self> {
         let Abstraction { model, order } = settings.abstraction;
-        Ok(Self::of(
-            PolynomialModel::new(robot, model, order, &settings.expansion_point)?,
-            settings.method,
-        ))
+        let polynomials = PolynomialModel::new(robot, model, order, &settings.expansion_point)?;
+        Ok(Self::of(polynomials, settings.method))
     }
 
-    /// The polynomials of the model; those of a linear one are made of `robot` again.
+    /// Takes a model; it counts as linear when its polynomials are and `method` solves a program.
+    #[must_use]
+    pub fn of(polynomials: PolynomialModel, method: Method) -> Self {
+        let linear = match method {
+            Method::Program => polynomials.linear_system().ok(),
+            Method::Bisection => None,
+        };
+        Self { linear, polynomials, system: OnceLock::new() }
+    }
+
+    /// Takes a model and treats it as one that is not linear, whatever its polynomials are.
+    #[must_use]
+    pub fn polynomial(polynomials: PolynomialModel) -> Self {
+        Self { linear: None, polynomials, system: OnceLock::new() }
+    }
+
+    /// Replaces the matrices of a linear model.
+    pub(crate) fn with_linear(self, system: LinearSystem) -> Self {
+        Self { linear: Some(system), ..self }
+    }
+
+    /// Returns A, B and d of a linear model, and nothing for any other.
+    #[must_use]
+    pub fn linear_system(&self) -> Option<&LinearSystem> {
+        self.linear.as_ref()
+    }
+
+    /// Returns the polynomials of the model.
+    #[must_use]
+    pub fn polynomials(&self) -> &PolynomialModel {
+        &self.polynomials
+    }
+
+    /// Returns the polynomials as the flowpipe takes them.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
-    pub fn polynomials(
-        &self,
-        robot: &Robot,
-        settings: &Settings,
-    ) -> Result<Cow<'_, PolynomialModel>> {
-        let Abstraction { model, order } = settings.abstraction;
-        match self {
-            Self::Linear(_) => Ok(Cow::Owned(PolynomialModel::new(
-                robot,
-                model,
-                order,
-                &settings.expansion_point,
-            )?)),
-            Self::Polynomial(model) => Ok(Cow::Borrowed(model)),
+    /// When states, inputs and order together do not fit.
+    pub(crate) fn polynomial_system(&self) -> Result<&PolynomialSystem> {
+        if let Some(system) = self.system.get() {
+            return Ok(system);
         }
-    }
-
-    /// A model, by the method that its sets are found by.
-    pub fn of(model: PolynomialModel, method: Method) -> Self {
-        match (model.linear_system(), method) {
-            (Ok(system), Method::Program) => Self::Linear(system),
-            _ => Self::Polynomial(Box::new(model)),
-        }
+        let system = self.polynomials.polynomial_system()?;
+        Ok(self.system.get_or_init(|| system))
     }
 }

@@ -1,4 +1,4 @@
-use super::Side;
+use crate::side::Side;
 
 /// The highest and lowest value over many runs, for each sample and state, and which run has it. It
 /// streams, and two envelopes merge into the envelope of the whole; its size is that of one run.

@@ -1,15 +1,73 @@
 use std::path::PathBuf;
 
 use reachtube_reach::ReachError;
+use reachtube_recordings::State;
 use thiserror::Error;
 
 /// Why a conformance could not be decided. A model that is not conformant is no error but a value.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A setting does not fit.
-    #[error("{0}")]
-    Setting(String),
+    /// A setting has another number of values than the robot has states.
+    #[error("{given} {setting} values; there are {needed} states, q then q̇")]
+    SettingCount {
+        /// The setting.
+        setting: &'static str,
+        /// How many values it has.
+        given: usize,
+        /// How many it must have.
+        needed: usize,
+    },
+    /// A value of a setting is not finite or outside its range.
+    #[error("{setting} {index} is {value}; it must be {}", range(*low, *high))]
+    SettingRange {
+        /// The setting.
+        setting: &'static str,
+        /// Which of its values, from 1.
+        index: usize,
+        /// The value.
+        value: f64,
+        /// The lowest value allowed.
+        low: f64,
+        /// The highest value allowed.
+        high: f64,
+    },
+    /// The error of a model has no bound over its operating box.
+    #[error(
+        "the model's error in the acceleration of joint {joint} has no bound over its box; give \
+         `abstract` a smaller --box or more --most-boxes, or no box at all"
+    )]
+    Unbounded {
+        /// The joint, from 1.
+        joint: usize,
+    },
+    /// A recording starts outside the box over which the model's error was bounded.
+    #[error(
+        "{file}: {state} starts at {value}, outside the box [{low}, {high}] over which the model's \
+         error was bounded; give `abstract` a larger --box, or another --at"
+    )]
+    StartsOutsideBox {
+        /// The recording.
+        file: String,
+        /// The state.
+        state: State,
+        /// Its first value, rad or rad/s.
+        value: f64,
+        /// The lower side of the box.
+        low: f64,
+        /// The upper side of the box.
+        high: f64,
+    },
+    /// A recording is not the one that was read first.
+    #[error("{}: the recording has changed since it was first read; run the command again",
+        path.display())]
+    Changed {
+        /// The recording.
+        path: PathBuf,
+    },
+    /// A step for linear models was asked of another one.
+    #[error("the model is not linear; use the steps for polynomial models")]
+    NotLinear,
     /// A model file is not one, or of another version.
     #[error("{}: {problem}", path.display())]
     ModelFile {
@@ -47,6 +105,10 @@ pub enum Error {
     /// The reachable set could not be computed.
     #[error(transparent)]
     Reach(#[from] ReachError),
+}
+
+fn range(low: f64, high: f64) -> String {
+    if high == f64::MAX { format!("{low} or more") } else { format!("between {low} and {high}") }
 }
 
 /// A result of this crate.

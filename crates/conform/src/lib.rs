@@ -1,64 +1,59 @@
-//! Conformance: deviations -> envelope -> linear program -> sets -> verdict.
+//! Reachset conformance: the smallest uncertainty sets for which every recording lies in the
+//! reachable set of a model, found by programs and proved with directed rounding.
+//!
+//! A [`Problem`] is a model, [`Settings`] and recordings that are read once. [`conform`] finds its
+//! sets, [`Model`] writes them to a file, [`check()`] compares other recordings with the reachable
+//! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
+//! [`explain()`] searches for the motion of the model closest to each run.
 
+mod bounds;
 mod check;
 mod conformance;
 mod deviation;
 mod dynamics;
 mod envelope;
 mod error;
+mod explain;
+mod flowpipes;
+mod found;
+mod grids;
+mod hulls;
+mod linear;
 mod model;
-mod nonlinear;
-mod program;
-mod proof;
-mod recordings;
+mod problem;
+mod progress;
+mod reach;
 mod rows;
+mod search;
 mod sets;
 mod settings;
-mod solver;
-mod suite_reach;
+mod side;
 mod trust;
-mod verify;
-mod within_box;
+mod verdict;
+mod weights;
 
-pub use check::{Check, Place, SuiteCheck, Violations, check};
-pub use conformance::{Conformance, Search, Watch, conform, conform_dynamics};
-pub use deviation::{Deviation, Grid, Grids, RunNominal, nominals, suite_deviations};
+pub use bounds::{clopper_pearson, scenario_bound};
+pub use check::{Check, check};
+pub use conformance::{Conformance, conform};
+pub use deviation::{Deviation, Nominal};
 pub use dynamics::Dynamics;
 pub use envelope::Envelope;
 pub use error::{Error, Result};
+pub use explain::{Explanation, explain};
+pub use found::SearchSummary;
+pub use grids::{Grid, Grids};
+pub use hulls::{Enclosure, HullKind, Hulls, Lost};
+pub use linear::block::Block;
+pub use linear::program::{Program, Solution};
 pub use model::{
     DataRecord, Explained, FORMAT, MOST_TIGHT, Model, Residual, RunRecord, SuiteRecord, VERSION,
 };
-pub use nonlinear::{Case, Explanation, explain};
-pub(crate) use nonlinear::{Effort, flowpipes, lost, nominal};
-pub use program::{Block, Program, Solution};
-pub use proof::{Enclosure, Lost, Proof, TightRow};
-pub use recordings::{Progress, Recordings, RunSummary, SharedInput, Suite};
-use serde::{Deserialize, Serialize};
+pub use problem::{Case, Keep, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
+pub use progress::{Progress, Silent};
+pub use reach::{SuiteReach, reach};
+pub use rows::{Edge, Hull, HullBounds, Row, rows};
 pub use sets::UncertaintySets;
-pub use settings::{
-    Centre, Method, Noise, NominalStart, Notion, Settings, States, Tolerance, Weights,
-};
-pub use suite_reach::{SuiteReach, reach};
-pub use trust::{Trust, clopper_pearson, scenario_bound};
-pub use verify::{Row, check_rows};
-
-/// A side of a set along a state axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Side {
-    /// The highest values.
-    Upper,
-    /// The lowest values.
-    Lower,
-}
-
-impl Side {
-    /// 1 or -1.
-    pub fn sign(self) -> f64 {
-        match self {
-            Self::Upper => 1.0,
-            Self::Lower => -1.0,
-        }
-    }
-}
+pub use settings::{Centre, Method, Noise, NominalStart, Settings, States, Tolerance, Weights};
+pub use side::Side;
+pub use trust::{CONFIDENCE, Trust};
+pub use verdict::{SuiteVerdict, Verdict, Violations, Witness};

@@ -1,60 +1,119 @@
-//! Every row of some recordings against the reachable set of any model.
+//! The comparison of recordings with reachable sets, with directed rounding: what is reported as
+//! conformant has passed it.
 
-use reachtube_reach::ReachSets;
-use reachtube_robot::Robot;
+use reachtube_reach::{Flowpipe, ReachSets};
+use reachtube_scalar::rounding::{add_down, sub_up};
 
-use super::deviation::{Grids, suite_deviations};
-use super::nonlinear::{Case, Effort, check_outer, flowpipes, lost};
-use super::verify::{Row, check_rows};
-use super::{Dynamics, Lost, Recordings, Settings, UncertaintySets};
-use crate::error::Result;
-use reachtube_recordings::DataSet;
+use crate::envelope::Envelope;
+use crate::sets::UncertaintySets;
+use crate::settings::States;
+use crate::side::Side;
 
-/// Hands every row of every suite to `visit`, with the index of the suite; returns where a
-/// reachable set was lost.
+/// One row: the recordings of a suite (or of a run with an input of its own) at one time in one
+/// state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Sample index on its grid.
+    pub sample: usize,
+    /// Time since the first sample, s.
+    pub time: f64,
+    /// State, from 0: q1..qn, q̇1..q̇n.
+    pub state: usize,
+    /// The radius of the reachable set there, rad or rad/s; infinite without one.
+    pub radius: f64,
+    /// The upper side, then the lower one.
+    pub edges: [Edge; 2],
+}
+
+/// One side of a row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// The side.
+    pub side: Side,
+    /// The run (index in the source) that reaches furthest.
+    pub run: u32,
+    /// How far that run reaches beyond the reachable set, rad or rad/s; negative inside, infinite
+    /// without a set. An upper bound.
+    pub excess: f64,
+}
+
+impl Row {
+    /// Returns whether both sides are proved to be enclosed. An excess that is not a number proves
+    /// nothing.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.edges.iter().all(|edge| edge.excess <= 0.0)
+    }
+}
+
+/// The interval hull of a reachable set in one state at one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HullBounds {
+    /// The lower bound that a row may use, rad or rad/s.
+    pub lower: f64,
+    /// The upper bound that a row may use.
+    pub upper: f64,
+    /// The radius.
+    pub radius: f64,
+}
+
+/// The hull of a reachable set over time, as rows are compared with it.
+pub trait Hull {
+    /// Returns the bounds at sample `k` in state `i`; nothing where the set was lost.
+    fn bounds(&self, k: usize, i: usize) -> Option<HullBounds>;
+}
+
+impl Hull for ReachSets {
+    /// Inner bounds: every value between them is reachable in that state.
+    fn bounds(&self, k: usize, i: usize) -> Option<HullBounds> {
+        let (lower, upper) = (self.lower_inner(k, i), self.upper_inner(k, i));
+        Some(HullBounds { lower, upper, radius: self.radius(k, i).mid() })
+    }
+}
+
+impl Hull for Flowpipe {
+    /// Outer bounds: those of the computed set.
+    fn bounds(&self, k: usize, i: usize) -> Option<HullBounds> {
+        let hull = (k < self.len()).then(|| self.sample(k)[i])?;
+        Some(HullBounds { lower: hull.lo(), upper: hull.hi(), radius: hull.rad() })
+    }
+}
+
+/// Compares each row of an envelope with a hull and hands it to `visit`. A row that
+/// [holds](Row::holds) is proved to be enclosed.
 ///
 /// # Guarantee
 ///
-/// Those of [`check_rows`] and [`check_outer`].
-///
-/// # Errors
-///
-/// Defects of a run that has changed since it was read.
-pub(super) fn every_row(
-    dynamics: &Dynamics,
-    data: &DataSet,
-    robot: &Robot,
-    settings: &Settings,
+/// Excesses are upper bounds for the hull as its bounds are given, widened by the noise set V
+/// rounded inward; directed rounding.
+pub fn rows(
+    envelope: &Envelope,
+    times: &[f64],
+    hull: &impl Hull,
     sets: &UncertaintySets,
-    recordings: &Recordings,
-    mut visit: impl FnMut(usize, Row),
-) -> Result<Vec<Lost>> {
-    match dynamics {
-        Dynamics::Linear(system) => {
-            let grids = Grids::new(recordings, system, settings.disturbance)?;
-            let reach: Vec<ReachSets> =
-                grids.as_slice().iter().map(|grid| grid.reach(sets)).collect();
-            for (index, suite) in recordings.suites.iter().enumerate() {
-                for deviation in suite_deviations(data, robot, settings, &grids, suite)? {
-                    let (grid, reach) = (&grids.as_slice()[deviation.grid], &reach[deviation.grid]);
-                    check_rows(grid, reach, sets, settings.states, &deviation, |row| {
-                        visit(index, row)
-                    });
-                }
-            }
-            Ok(Vec::new())
-        }
-        Dynamics::Polynomial(model) => {
-            let cases = Case::all(data, robot, settings, recordings)?;
-            let flowpipes = flowpipes(&model.polynomial_system()?, &cases, sets, Effort::Whole)?;
-            for (case, flowpipe) in cases.iter().zip(&flowpipes) {
-                check_outer(case, flowpipe, sets, settings.states, |row| visit(case.suite, row));
-            }
-            Ok(cases
-                .iter()
-                .zip(&flowpipes)
-                .filter_map(|(case, flowpipe)| lost(case, flowpipe))
-                .collect())
+    states: States,
+    mut visit: impl FnMut(Row),
+) {
+    let checked = states.rows(envelope.dimension() / 2);
+    for (sample, &time) in times.iter().enumerate().take(envelope.len()) {
+        for state in 0..checked {
+            let noise = sets.noise_radius(state);
+            let bounds = hull.bounds(sample, state);
+            let excess = |value: f64, reach: fn(HullBounds) -> f64| {
+                bounds.map_or(f64::INFINITY, |b| sub_up(value, add_down(reach(b), noise)))
+            };
+            let upper = Edge {
+                side: Side::Upper,
+                run: envelope.upper_run(sample, state),
+                excess: excess(envelope.upper(sample, state), |bounds| bounds.upper),
+            };
+            let lower = Edge {
+                side: Side::Lower,
+                run: envelope.lower_run(sample, state),
+                excess: excess(-envelope.lower(sample, state), |bounds| -bounds.lower),
+            };
+            let radius = bounds.map_or(f64::INFINITY, |bounds| bounds.radius) + noise;
+            visit(Row { sample, time, state, radius, edges: [upper, lower] });
         }
     }
 }

@@ -1,47 +1,37 @@
-use reachtube_reach::Disturbance;
-use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
-use crate::error::{Error, Result};
 use reachtube_abstraction::{
     Abstraction, ExpansionPoint, OperatingBox, PolynomialModel, Remainder,
 };
+use reachtube_reach::Disturbance;
 use reachtube_recordings::{GapLimit, Torque};
+use serde::{Deserialize, Serialize};
 
-/// How the smallest sets are found (correction K of the method).
+use crate::error::{Error, Result};
+
+/// How the smallest sets are found (docs/method.md, correction K).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// By linear programs over all suites: one for a linear model; for another one after the other,
-    /// each linearised along every nominal about the sets of the one before.
+    /// By linear programs over all suites: one program for a linear model; a sequence of them for
+    /// any other, each linearised along every nominal motion about the sets of the one before.
     #[default]
     Program,
     /// By bisection of one radius after the other, the paper's way for models that are not linear.
-    /// The result depends on their order and is not the smallest together; it is there to be
-    /// compared with.
+    /// The result depends on the order of the radii and is not jointly minimal; it is a baseline.
     Bisection,
 }
 
-/// In which directions the reachable set must reach as far as the recordings (correction C of the
-/// method).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Notion {
-    /// Along ± each state axis: the interval hull of the runs lies in the hull of the reachable
-    /// set, the paper's notion.
-    #[default]
-    Hull,
-}
-
-/// What the centres of the sets may be (correction B of the method).
+/// Where the centres of the sets may lie (docs/method.md, correction B).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Centre {
-    /// Anything.
+    /// Anywhere.
     #[default]
     Free,
-    /// Such that the set contains the origin, |c| <= r: the paper's restriction.
+    /// Where the set still contains the origin, |c| <= r: the paper's restriction.
     Origin,
-    /// The origin.
+    /// At the origin.
     Zero,
 }
 
@@ -77,21 +67,21 @@ pub enum NominalStart {
     Own,
 }
 
-/// What is known of the measurement noise: a set V of the measured state, centred at 0, that is
-/// added to the reachable set where runs are compared with it.
+/// The measurement noise: a set V of the measured state, centred at 0, that is added to the
+/// reachable set where runs are compared with it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Noise {
-    /// No noise: every deviation is explained by X0 and U.
+    /// No noise: X0 and U explain every deviation.
     #[default]
     None,
-    /// Radii are unknowns of the program, and count in its cost as every radius does.
+    /// The radii are unknowns of the program and count in its cost as every radius does.
     Free,
     /// Known radii, 2n, rad and rad/s.
     Fixed(Vec<f64>),
 }
 
-/// How the states are weighed against each other in the cost (correction F of the method: rad and
+/// How the states are weighed against each other in the cost (docs/method.md, correction F: rad and
 /// rad/s are otherwise added as they are).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -105,7 +95,8 @@ pub enum Weights {
     Given(Vec<f64>),
 }
 
-/// Within what largest difference a motion of the model counts as an explanation of a recording.
+/// The largest difference within which a motion of the model counts as an explanation of a
+/// recording.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {
@@ -116,13 +107,14 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// A little more than the noise of the paper's recordings: 0.0002 rad and 0.009 rad/s at most.
+    /// Returns 0.001 rad and 0.01 rad/s, a little more than the noise of the paper's recordings
+    /// (0.0002 rad and 0.009 rad/s at most).
     fn default() -> Self {
         Self { position: 1e-3, velocity: 1e-2 }
     }
 }
 
-/// All that decides a conformance result besides robot and recordings.
+/// Everything that decides a conformance result besides robot and recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -132,18 +124,16 @@ pub struct Settings {
     pub abstraction: Abstraction,
     /// Where the model is expanded.
     pub expansion_point: ExpansionPoint,
-    /// The box over which what the model leaves out was bounded, where that was done; recordings
-    /// must start in it.
+    /// The box over which the model's error was bounded, where that was done; recordings must start
+    /// in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operating_box: Option<OperatingBox>,
     /// How the sets are found.
     #[serde(default)]
     pub method: Method,
-    /// The notion of conformance.
-    pub notion: Notion,
     /// How the disturbance may change in time.
     pub disturbance: Disturbance,
-    /// What the centres may be.
+    /// Where the centres may lie.
     pub centre: Centre,
     /// Which states are rows.
     pub states: States,
@@ -153,19 +143,19 @@ pub struct Settings {
     pub noise: Noise,
     /// Where nominal solutions start.
     pub nominal: NominalStart,
-    /// Whether each run's own explanation is looked for, and what counts as one.
+    /// What counts as an explanation of a run; none is searched for where it is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explain: Option<Tolerance>,
     /// Samples later than this many seconds after the first are not used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
-    /// How long a gap may be.
+    /// How long the time between two samples may be.
     #[serde(skip)]
     pub gap_limit: GapLimit,
 }
 
 impl Settings {
-    /// The defaults for a robot of `joints` joints whose recordings hold `torque`.
+    /// Returns the defaults for a robot of `joints` joints whose recordings hold `torque`.
     pub fn new(torque: Torque, joints: usize) -> Self {
         Self {
             torque,
@@ -173,7 +163,6 @@ impl Settings {
             expansion_point: ExpansionPoint::zero(joints),
             operating_box: None,
             method: Method::default(),
-            notion: Notion::default(),
             disturbance: Disturbance::default(),
             centre: Centre::default(),
             states: States::default(),
@@ -190,14 +179,11 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`] where what the model leaves out was found to have no bound over its box.
+    /// [`Error::Unbounded`] when the model's error was found to have no bound over its box.
     pub fn with_abstraction(self, model: &PolynomialModel) -> Result<Self> {
         let unbounded = |remainder: &Remainder| remainder.bounds.iter().position(Option::is_none);
         if let Some(joint) = model.remainder().and_then(unbounded) {
-            return Err(Error::Setting(format!(
-                "what the model leaves out of the acceleration of joint {} has no bound over its box; give `abstract` a smaller --box or more --most-boxes, or no box at all",
-                joint + 1
-            )));
+            return Err(Error::Unbounded { joint: joint + 1 });
         }
         Ok(Self {
             abstraction: Abstraction { model: model.kind(), order: model.order() },
@@ -211,55 +197,47 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`] that names the setting, its value and what it may be.
+    /// [`Error::SettingCount`] and [`Error::SettingRange`], which name the setting, its value and
+    /// what it may be.
     pub fn validate(&self, joints: usize) -> Result<()> {
         if let Weights::Given(weights) = &self.weights {
-            check_list(
-                "weight",
-                weights,
-                2 * joints,
-                |w| (1e-9..=1e9).contains(&w),
-                "between 1e-9 and 1e9",
-            )?;
+            check_list("weight", weights, joints, 1e-9..=1e9)?;
         }
         if let Noise::Fixed(radii) = &self.noise {
-            check_list(
-                "noise radius",
-                radii,
-                2 * joints,
-                |r| (0.0..=1e9).contains(&r),
-                "between 0 and 1e9",
-            )?;
+            check_list("noise radius", radii, joints, 0.0..=1e9)?;
         }
         if let Some(Tolerance { position, velocity }) = self.explain {
-            check_list("tolerance", &[position, velocity], 2, |t| t >= 0.0, "0 or more")?;
-        }
-        match self.until {
-            Some(until) if !(until >= 0.0 && until.is_finite()) => {
-                Err(Error::Setting(format!("until is {until} s; give a time after the start in s")))
+            for (index, value) in [position, velocity].into_iter().enumerate() {
+                check_range("tolerance", index, value, &(0.0..=f64::MAX))?;
             }
-            _ => Ok(()),
         }
+        self.until.map_or(Ok(()), |until| check_range("until", 0, until, &(0.0..=f64::MAX)))
     }
 }
 
 fn check_list(
-    what: &str,
+    setting: &'static str,
     values: &[f64],
-    count: usize,
-    fits: impl Fn(f64) -> bool,
-    range: &str,
+    joints: usize,
+    range: RangeInclusive<f64>,
 ) -> Result<()> {
-    if values.len() != count {
-        return Err(Error::Setting(format!(
-            "{} {what} values; there are {count} states, q then q̇",
-            values.len()
-        )));
+    let needed = 2 * joints;
+    if values.len() != needed {
+        return Err(Error::SettingCount { setting, given: values.len(), needed });
     }
-    match values.iter().enumerate().find(|(_, v)| !(v.is_finite() && fits(**v))) {
-        Some((i, value)) => {
-            Err(Error::Setting(format!("{what} {} is {value}; it must be {range}", i + 1)))
-        }
-        None => Ok(()),
+    let mut pairs = values.iter().enumerate();
+    pairs.try_for_each(|(index, value)| check_range(setting, index, *value, &range))
+}
+
+fn check_range(
+    setting: &'static str,
+    index: usize,
+    value: f64,
+    range: &RangeInclusive<f64>,
+) -> Result<()> {
+    if range.contains(&value) {
+        return Ok(());
     }
+    let (low, high) = (*range.start(), *range.end());
+    Err(Error::SettingRange { setting, index: index + 1, value, low, high })
 }

@@ -1,8 +1,15 @@
-//! What a conformant model says about motions that were not recorded. "These sets enclose these
-//! runs" is a fact; anything about the next motion is statistical, and needs motions that are
-//! independent and alike. Several suites of one motion count once.
+//! What a conformant model says about motions that were not recorded.
+//!
+//! "These sets enclose these runs" is a fact. Anything about the next motion is statistical, and
+//! needs motions that are independent and alike. Several suites of one motion count once.
+
+use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
+
+use crate::bounds::{clopper_pearson, scenario_bound};
+use crate::problem::recordings::Recordings;
+use crate::verdict::{Verdict, Witness};
 
 /// Confidence of the bounds that are reported.
 pub const CONFIDENCE: f64 = 0.95;
@@ -11,7 +18,7 @@ pub const CONFIDENCE: f64 = 0.95;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Trust {
-    /// Independent motions in the data.
+    /// Number of independent motions in the data.
     pub motions: usize,
     /// How many of them decide the sets (for a fitted model) or violate them (for a check).
     pub deciding: usize,
@@ -24,145 +31,72 @@ pub struct Trust {
 }
 
 impl Trust {
-    /// The scenario bound for a model that was fitted to `motions` motions of which `deciding` have
-    /// a support row.
-    pub fn of_fit(motions: usize, deciding: usize, known: bool) -> Self {
+    /// Returns the scenario bound for sets that were fitted to `recordings` and touch `tight`: the
+    /// rows of support are among the tight ones.
+    #[must_use]
+    pub fn of_fit(recordings: &Recordings, tight: &[Witness]) -> Self {
+        let motions = Motions::of(recordings);
+        let deciding = motions.count(tight.iter().map(|witness| witness.suite.as_str()));
+        let bound = scenario_bound(motions.all(), deciding, 1.0 - CONFIDENCE);
+        Self::new(&motions, deciding, bound, "scenario bound (Campi and Garatti 2018)")
+    }
+
+    /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
+    #[must_use]
+    pub fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
+        let motions = Motions::of(recordings);
+        let violating = verdict.suites.iter().filter(|suite| suite.violations.count > 0);
+        let violating = motions.count(violating.map(|suite| suite.suite.as_str()));
+        let bound = clopper_pearson(motions.all(), violating, 1.0 - CONFIDENCE);
+        Self::new(&motions, violating, bound, "hold-out bound (Clopper and Pearson 1934)")
+    }
+
+    fn new(motions: &Motions, deciding: usize, bound: f64, name: &str) -> Self {
         Self {
-            motions,
+            motions: motions.all(),
             deciding,
-            violation_probability: scenario_bound(motions, deciding, 1.0 - CONFIDENCE),
+            violation_probability: bound,
             confidence: CONFIDENCE,
-            basis: format!(
-                "scenario bound (Campi and Garatti 2018) for independent motions{}",
-                caveat(known)
-            ),
-        }
-    }
-
-    /// The hold-out bound for a check on `motions` motions, not used in the fit, of which
-    /// `violating` left the reachable set.
-    pub fn of_check(motions: usize, violating: usize, known: bool) -> Self {
-        Self {
-            motions,
-            deciding: violating,
-            violation_probability: clopper_pearson(motions, violating, 1.0 - CONFIDENCE),
-            confidence: CONFIDENCE,
-            basis: format!(
-                "hold-out bound (Clopper and Pearson 1934) for independent motions{}",
-                caveat(known)
-            ),
+            basis: format!("{name} for independent motions{}", motions.caveat()),
         }
     }
 }
 
-fn caveat(known: bool) -> &'static str {
-    if known {
-        ""
-    } else {
-        "; runs.csv has no column motion, so each suite was counted as a motion of its own, which is too good if suites share one"
-    }
+/// The motion of each suite; its own name where the source names none.
+struct Motions<'a> {
+    of_suite: Vec<(&'a str, &'a str)>,
+    /// Whether the source names a motion for every suite.
+    are_named: bool,
 }
 
-/// The one-sided Clopper-Pearson upper bound of a probability at confidence 1 - β after `hits` in
-/// `trials`: the p at which that few hits have probability β.
-pub fn clopper_pearson(trials: usize, hits: usize, beta: f64) -> f64 {
-    if hits >= trials {
-        return 1.0;
-    }
-    let tail = |p: f64| {
-        (0..=hits)
-            .map(|k| (ln_choose(trials, k) + power(p, k) + power(1.0 - p, trials - k)).exp())
-            .sum()
-    };
-    bisect(|p| -> f64 { tail(p) }, beta, 0.0, 1.0)
-}
-
-/// The wait-and-judge scenario bound ε(k) of Campi and Garatti (Mathematical Programming 2018,
-/// Theorem 1): with confidence 1 - β, a convex program with `scenarios` scenarios of which
-/// `support` are of support is violated by the next one with probability at most ε.
-///
-/// 1 - ε is the root in (0, 1) of β/(N+1) Σ_{m=k}^{N} C(m,k) t^{m-k} = C(N,k) t^{N-k}.
-pub fn scenario_bound(scenarios: usize, support: usize, beta: f64) -> f64 {
-    let (n, k) = (scenarios, support);
-    if k >= n {
-        return 1.0;
-    }
-    // The quotient of the two sides falls from infinity to below 1 as t grows to 1.
-    let quotient = |t: f64| {
-        let term = |m: usize| {
-            (ln_choose(m, k) - ln_choose(n, k) + power(t, m - k) - power(t, n - k)).exp()
+impl<'a> Motions<'a> {
+    fn of(recordings: &'a Recordings) -> Self {
+        let entries = || recordings.suites.iter().map(|suite| &suite.entry);
+        let motion = |entry: &'a reachtube_recordings::SuiteEntry| {
+            (entry.name.as_str(), entry.motion.as_deref().unwrap_or(&entry.name))
         };
-        beta / (n as f64 + 1.0) * (k..=n).map(term).sum::<f64>()
-    };
-    1.0 - bisect(quotient, 1.0, 0.0, 1.0)
-}
-
-/// k ln x, 0 for k = 0.
-fn power(x: f64, k: usize) -> f64 {
-    if k == 0 { 0.0 } else { k as f64 * x.ln() }
-}
-
-fn ln_choose(n: usize, k: usize) -> f64 {
-    (0..k).map(|i| ((n - i) as f64 / (k - i) as f64).ln()).sum()
-}
-
-/// Where the decreasing function `f` is `value`.
-fn bisect(f: impl Fn(f64) -> f64, value: f64, mut low: f64, mut high: f64) -> f64 {
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if f(middle) > value { low = middle } else { high = middle }
+        let are_named = entries().all(|entry| entry.motion.is_some());
+        Self { of_suite: entries().map(motion).collect(), are_named }
     }
-    high
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+    fn all(&self) -> usize {
+        self.count(self.of_suite.iter().map(|(suite, _)| *suite))
+    }
 
-    #[test]
-    fn without_a_hit_the_hold_out_bound_is_in_closed_form() {
-        for trials in [1, 10, 59, 300] {
-            let exact = 1.0 - 0.05f64.powf(1.0 / trials as f64);
-            assert!((clopper_pearson(trials, 0, 0.05) - exact).abs() < 1e-12);
+    /// Returns the number of distinct motions of some suites.
+    fn count<'s>(&self, suites: impl Iterator<Item = &'s str>) -> usize {
+        let motion = |name: &str| {
+            self.of_suite.iter().find(|(suite, _)| *suite == name).map(|(_, motion)| *motion)
+        };
+        suites.filter_map(motion).collect::<BTreeSet<_>>().len()
+    }
+
+    fn caveat(&self) -> &'static str {
+        if self.are_named {
+            ""
+        } else {
+            "; runs.csv has no column motion, so each suite counts as a motion of its own, which \
+             is too optimistic where suites share one"
         }
-        assert_eq!(clopper_pearson(3, 3, 0.05), 1.0);
-    }
-
-    #[test]
-    fn tabulated_hold_out_bounds() {
-        // 1 of 10: 0.3942, 2 of 20: 0.2826 (one-sided 95 %, standard tables).
-        assert!((clopper_pearson(10, 1, 0.05) - 0.3942).abs() < 5e-5);
-        assert!((clopper_pearson(20, 2, 0.05) - 0.2826).abs() < 5e-5);
-    }
-
-    #[test]
-    fn the_scenario_bound_solves_its_equation_and_grows_with_support() {
-        let (n, beta) = (50, 0.05);
-        let mut last = 0.0;
-        for k in 0..n {
-            let epsilon = scenario_bound(n, k, beta);
-            assert!(epsilon > last && epsilon <= 1.0, "support {k}: {epsilon}");
-            last = epsilon;
-            let t = 1.0 - epsilon;
-            let choose = |m: usize, k: usize| {
-                (0..k).map(|i| (m - i) as f64 / (k - i) as f64).product::<f64>()
-            };
-            let left: f64 =
-                (k..=n).map(|m| choose(m, k) * t.powi((m - k) as i32)).sum::<f64>() * beta / 51.0;
-            let right = choose(n, k) * t.powi((n - k) as i32);
-            assert!((left / right - 1.0).abs() < 1e-6, "support {k}");
-        }
-        assert_eq!(scenario_bound(2, 2, beta), 1.0);
-    }
-
-    #[test]
-    fn the_hold_out_bound_covers_the_true_probability_about_as_often_as_it_says() {
-        // Exact coverage, by summing the binomial over all outcomes.
-        let (trials, p) = (30, 0.1f64);
-        let covered: f64 = (0..=trials)
-            .filter(|&k| clopper_pearson(trials, k, 0.05) >= p)
-            .map(|k| (ln_choose(trials, k) + power(p, k) + power(1.0 - p, trials - k)).exp())
-            .sum();
-        assert!((0.95..0.99).contains(&covered), "{covered}");
     }
 }

@@ -1,25 +1,24 @@
-//! What is finished of a long job, in a file.
+//! The journal of a long search: what is finished, in a file, to resume from.
 
 use std::path::Path;
 
-use reachtube_robot::Robot;
+use reachtube_files::{json, write};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::error::{Error, Result};
-use crate::{Recordings, Settings};
-use reachtube_files::{json, write};
+use crate::problem::problem::Problem;
 
-/// What the file says it is.
+/// The name of the file's format.
 const FORMAT: &str = "reachtube-progress";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
-/// Where a job keeps what is finished, if it does.
+/// Where a search keeps what is finished, if it does.
 #[derive(Debug)]
 pub(super) struct Journal<'a> {
     path: Option<&'a Path>,
-    /// SHA-256 of all that decides the result.
+    /// SHA-256 of everything that decides the result.
     job: String,
 }
 
@@ -34,23 +33,19 @@ struct File<T> {
 }
 
 impl<'a> Journal<'a> {
-    pub fn new(
-        path: Option<&'a Path>,
-        robot: &Robot,
-        settings: &Settings,
-        recordings: &Recordings,
-    ) -> Self {
+    /// Opens the journal of a problem at `path`, or none.
+    pub fn new(path: Option<&'a Path>, problem: &Problem) -> Self {
         let mut digest = Sha256::new();
-        let decides = serde_json::to_string(&(settings, robot.description()));
+        let decides = serde_json::to_string(&(problem.settings(), problem.robot().description()));
         digest.update(decides.expect("settings have only finite numbers and string keys"));
-        for suite in &recordings.suites {
+        for suite in &problem.recordings().suites {
             digest.update(&suite.entry.name);
             suite.runs.iter().for_each(|run| digest.update(&run.sha256));
         }
         Self { path, job: reachtube_files::hex(&digest.finalize()) }
     }
 
-    /// What is finished, where the file is there.
+    /// Returns what is finished, where the file exists.
     ///
     /// # Errors
     ///
@@ -70,7 +65,8 @@ impl<'a> Journal<'a> {
             && value["version"] == VERSION
             && value["job"] == self.job.as_str();
         if !is_ours {
-            let what = "it holds the progress of another job: the robot, the settings or the recordings differ";
+            let what =
+                "it holds the progress of another job, whose robot, settings or recordings differ";
             return Err(wrong(format!("{what}; {remedy}")));
         }
         let file: File<T> =
@@ -96,7 +92,7 @@ impl<'a> Journal<'a> {
         Ok(())
     }
 
-    /// The job is done.
+    /// Removes the file: the job is done.
     pub fn remove(&self) {
         if let Some(path) = self.path {
             let _ = std::fs::remove_file(path);

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 
 /// A sparse matrix, row by row.
 #[derive(Default)]
-pub(super) struct Triplets {
+pub(crate) struct Triplets {
     rows: Vec<usize>,
     columns: Vec<usize>,
     values: Vec<f64>,
@@ -18,9 +18,9 @@ pub(super) struct Triplets {
 }
 
 impl Triplets {
-    /// Entries below 1e-13 are left out: they cannot be told from rounding, and the repair covers
-    /// them.
-    pub(super) fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
+    /// Adds a row. Entries below 1e-13 are dropped: they cannot be told from rounding, and the
+    /// repair covers them.
+    pub fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
         for (column, value) in entries.into_iter().filter(|(_, value)| value.abs() > 1e-13) {
             self.rows.push(self.count);
             self.columns.push(column);
@@ -30,16 +30,20 @@ impl Triplets {
     }
 }
 
-/// An optimal point as the solver found it, the same moved onto its active rows, and the dual
-/// objective.
-pub(super) struct Optimum {
+/// An optimal point as the solver found it, the same point moved onto its active rows, and the
+/// dual objective.
+pub(crate) struct Optimum {
     pub found: Vec<f64>,
     pub polished: Vec<f64>,
     pub dual: f64,
 }
 
-/// min objective·x subject to A x <= bounds.
-pub(super) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<Optimum> {
+/// Minimises objective·x subject to A x <= bounds.
+///
+/// # Errors
+///
+/// [`Error::Program`] when the solver stops without an answer.
+pub(crate) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<Optimum> {
     let (m, n) = (matrix.count, objective.len());
     let a = CscMatrix::new_from_triplets(
         m,

@@ -1,59 +1,60 @@
-//! A model linearised along its motion: how far X0 and U move each state, to first order.
+//! A model linearised along its nominal motion: how far X0 and U move each state, to first order.
 
 use nalgebra::DMatrix;
+use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, Outcome, Run};
 use reachtube_reach::Disturbance;
 use reachtube_scalar::Lanes;
 
-use super::case::Case;
-use super::runs_away;
-use crate::UncertaintySets;
-use crate::error::Result;
-use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
+use crate::error::{Error, Result};
+use crate::problem::case::Case;
+use crate::sets::UncertaintySets;
 
-/// A Runge-Kutta step is so short that h |A| stays below this: its error is then below 1e-7 of the
-/// change.
-pub(super) const STEP_NORM: f64 = 0.1;
+/// Bound of h |A| for a Runge-Kutta step of length h: its error is then below 1e-7 of the change.
+pub(crate) const STEP_NORM: f64 = 0.1;
 
-/// Runs that are simulated at once.
+/// Several motions that are simulated at once.
 pub(super) type Many = Lanes<8>;
 
-/// Samples of a case at which the extremal motions are simulated, at most.
+/// Samples of a case at which worst-case motions are simulated, at most.
 const NODES: usize = 24;
 
-/// The motion of a model from the centre of X0 under the centre of U, and what it is like around
-/// it. Unrounded: nothing that is proved rests on it.
+/// The motion of a model from the centre of X0 under the centre of U, and the linearisation along
+/// it. Unrounded: no proof rests on it.
 #[derive(Debug, Clone)]
 pub(super) struct Sensitivity {
     /// Samples x 2n.
     pub nominal: Vec<f64>,
-    /// Runge-Kutta steps from one sample to the next.
+    /// Number of Runge-Kutta steps from one sample to the next.
     pub substeps: usize,
     /// Samples x 2n x (3n, then 3n): E_k = (Φ(t_k, 0), ∫Φ(t_k, s) B ds), then R_k, as the program
     /// takes them.
     pub coefficients: Vec<f64>,
-    /// Where to look how far the model itself goes.
+    /// Where worst-case motions of the model itself are simulated.
     pub nodes: Vec<Node>,
 }
 
-/// The signs of what moves each state at one sample.
+/// The signs of the sensitivities of each state at one sample.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
     /// The sample.
     pub sample: usize,
     /// For each state, the signs of its row of Φ(t_k, 0): 2n x 2n.
     pub start: Vec<f64>,
-    /// For each earlier sample, input and state, the sign of what that input over that sample does
-    /// to that state: samples x n x 2n.
+    /// For each earlier sample, input and state, the sign of the state's derivative with respect to
+    /// that input over that sample: samples x n x 2n.
     pub input: Vec<f64>,
 }
 
-/// Beyond this |x| a motion has run away, rad or rad/s.
+/// Beyond this |x| a motion counts as having run away, rad or rad/s.
 pub(super) const BOUND: f64 = 1e4;
 
 impl Sensitivity {
-    /// Of `case`, about the centres of `sets`; the time, s, up to which the model could be followed
-    /// where it runs away.
+    /// Linearises the model along `case` about the centres of `sets`.
+    ///
+    /// # Errors
+    ///
+    /// The time, s, up to which the model could be followed, where it runs away.
     pub fn new(
         model: &PolynomialModel,
         case: &Case,
@@ -62,32 +63,32 @@ impl Sensitivity {
     ) -> Result<Self, f64> {
         let n = case.joints();
         let times = case.grid.times();
-        let shifted = |values: &[f64], center: &[f64]| -> Vec<f64> {
-            values.iter().zip(center.iter().cycle()).map(|(x, c)| x + c).collect()
+        let shifted = |values: &[f64], centre: &[f64]| -> Vec<f64> {
+            values.iter().zip(centre.iter().cycle()).map(|(x, c)| x + c).collect()
         };
-        let start = shifted(&case.start, &sets.initial_set.center);
-        let inputs = shifted(&case.inputs, &sets.input_set.center);
+        let start = shifted(&case.start_point(), &sets.initial_set.centre);
+        let inputs = shifted(&case.inputs, &sets.input_set.centre);
         let mut linearisation = Linearisation::new(model);
         let substeps = substeps(&mut linearisation, case, &start);
         let nominal = simulate(model, times, substeps, &start, &inputs)?;
-        let mut tracks = Tracks::new(n, times.len(), disturbance);
+        let mut grown = Sensitivities::new(n, times.len(), disturbance);
         let stride = times.len().div_ceil(NODES).max(1);
         let mut found = Self { nominal, substeps, coefficients: Vec::new(), nodes: Vec::new() };
-        tracks.write_into(&mut found.coefficients);
+        grown.write_into(&mut found.coefficients);
         for k in 1..times.len() {
             let (before, after) = found.nominal[(k - 1) * 2 * n..(k + 1) * 2 * n].split_at(2 * n);
             let middle: Vec<f64> = before.iter().zip(after).map(|(x, y)| 0.5 * (x + y)).collect();
             let (a, b) = linearisation.at(&middle, &inputs[(k - 1) * n..k * n]);
-            tracks.advance(a, b, times[k] - times[k - 1]);
-            tracks.write_into(&mut found.coefficients);
+            grown.advance(a, b, times[k] - times[k - 1]);
+            grown.write_into(&mut found.coefficients);
             if k % stride == 0 || k + 1 == times.len() {
-                found.nodes.push(tracks.node(k));
+                found.nodes.push(grown.node(k));
             }
         }
         Ok(found)
     }
 
-    /// Row i of E_k and of R_k, 3n each.
+    /// Returns row i of E_k and of R_k, 3n entries each.
     pub fn row(&self, joints: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
         let width = 3 * joints;
         let start = (k * 2 * joints + i) * 2 * width;
@@ -95,15 +96,16 @@ impl Sensitivity {
     }
 }
 
-/// The motion of a model along a case from its start under its inputs, samples x 2n, without any
-/// uncertainty. Unrounded.
+/// Simulates a model along a case from its start under its inputs, without any uncertainty: samples
+/// x 2n, unrounded.
 ///
 /// # Errors
 ///
-/// [`Error::RunsAway`](crate::Error::RunsAway).
+/// [`Error::RunsAway`].
 pub(crate) fn nominal(model: &PolynomialModel, case: &Case) -> Result<Vec<f64>> {
-    let substeps = substeps(&mut Linearisation::new(model), case, &case.start);
-    simulate(model, case.grid.times(), substeps, &case.start, &case.inputs)
+    let start = case.start_point();
+    let substeps = substeps(&mut Linearisation::new(model), case, &start);
+    simulate(model, case.grid.times(), substeps, &start, &case.inputs)
         .map_err(|time| runs_away(case, time))
 }
 
@@ -114,9 +116,17 @@ fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> us
     (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
 }
 
-/// (q, q̇) of all samples under `inputs` from `start`; the time, s, up to which the model could be
-/// followed where it runs away.
-pub(super) fn simulate(
+/// Returns the error that the model runs away along a case after `time` (s).
+pub(crate) fn runs_away(case: &Case, time: f64) -> Error {
+    Error::RunsAway { case: case.name.clone(), time }
+}
+
+/// Simulates (q, q̇) at all samples under `inputs` from `start`, samples x 2n.
+///
+/// # Errors
+///
+/// The time, s, up to which the model could be followed, where it runs away.
+pub(crate) fn simulate(
     model: &PolynomialModel,
     times: &[f64],
     substeps: usize,
@@ -139,8 +149,8 @@ pub(super) fn simulate(
     }
 }
 
-/// What each earlier cause has grown to.
-struct Tracks {
+/// The sensitivities of the state at one sample to the start and to every earlier input.
+struct Sensitivities {
     joints: usize,
     disturbance: Disturbance,
     /// Φ(t_k, 0).
@@ -151,7 +161,7 @@ struct Tracks {
     samples: usize,
 }
 
-impl Tracks {
+impl Sensitivities {
     fn new(joints: usize, samples: usize, disturbance: Disturbance) -> Self {
         let columns = joints * samples.saturating_sub(1);
         let inputs = DMatrix::zeros(2 * joints, columns);
@@ -159,7 +169,7 @@ impl Tracks {
         Self { joints, disturbance, start, spare: inputs.clone(), inputs, samples: 0 }
     }
 
-    /// One more step of length h (s) of δẋ = A δx + B δu.
+    /// Advances by one step of length h (s) of δẋ = A δx + B δu.
     fn advance(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) {
         let (n, states) = (self.joints, 2 * self.joints);
         let mut augmented = DMatrix::zeros(states + n, states + n);

@@ -1,40 +1,42 @@
-//! How far a model itself goes, beside how far its linearisation says: the motions that are
-//! extremal for the linearisation, simulated.
+//! Worst-case motions: the starts and inputs that take the linearisation furthest, simulated with
+//! the model itself, which reaches further or less far.
 
 use rayon::prelude::*;
+use reachtube_abstraction::{ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, Run};
 
-use super::case::Case;
-use super::sensitivity::{BOUND, Many, Node, Sensitivity};
-use crate::{Side, UncertaintySets};
-use reachtube_abstraction::{ModelField, PolynomialModel};
+use crate::problem::case::Case;
+use crate::search::sensitivity::{BOUND, Many, Node, Sensitivity};
+use crate::sets::UncertaintySets;
+use crate::side::Side;
 
-/// Rows whose recordings stay below this part of the linearised radius are left as they are: a
-/// small correction does not make them decide.
+/// Rows whose recordings stay below this part of the linearised radius get no correction: a small
+/// one would not make them decide.
 const NEAR: f64 = 0.5;
 
 /// For each sample, state and side, by how much the model reaches further than its linearisation;
-/// negative where it reaches less far. Found at some samples, and interpolated between them.
+/// negative where it reaches less far. It is found at some samples and interpolated between them.
 #[derive(Debug, Clone)]
 pub(super) struct Correction {
     /// Samples x 2n x 2.
     further: Vec<f64>,
     states: usize,
-    /// The earliest time (s) at which an extremal motion ran away.
+    /// The earliest time (s) at which a worst-case motion ran away.
     pub runs_away: Option<f64>,
 }
 
 impl Correction {
-    /// That of a linear model.
+    /// Returns no correction, which is that of a linear model.
     pub fn none(samples: usize, states: usize) -> Self {
         Self { further: vec![0.0; samples * states * 2], states, runs_away: None }
     }
 
+    /// Returns the correction of one row, rad or rad/s.
     pub fn at(&self, k: usize, i: usize, side: Side) -> f64 {
         self.further[(k * self.states + i) * 2 + usize::from(side == Side::Lower)]
     }
 
-    /// Of `case` under `sets`.
+    /// Simulates the worst-case motions of `case` under `sets`.
     ///
     /// # Guarantee
     ///
@@ -68,7 +70,8 @@ impl Correction {
     }
 }
 
-/// 2n x 2: upper and lower; and whether a motion ran away, which counts as no correction.
+/// Returns the corrections at one sample, 2n x 2 (upper, lower), and whether a motion ran away,
+/// which counts as no correction.
 fn at_node(
     model: &PolynomialModel,
     case: &Case,
@@ -89,7 +92,7 @@ fn at_node(
     let all = (0..states).flat_map(|i| [(i, Side::Upper), (i, Side::Lower)]);
     let places: Vec<(usize, Side)> = all.filter(is_near).collect();
     let motions: Vec<_> =
-        places.iter().map(|&(i, side)| extremal(model, case, sets, node, i, side)).collect();
+        places.iter().map(|&(i, side)| worst_case(model, case, sets, node, i, side)).collect();
     let runs: Vec<Run> = motions.iter().map(|(start, inputs)| Run { start, inputs }).collect();
     let mut further = vec![0.0; 2 * states];
     let mut ensemble = Ensemble::<Many>::new(model.states()).bounded_by(BOUND);
@@ -110,7 +113,7 @@ fn at_node(
     (further, outcomes.iter().any(|outcome| !outcome.is_reached()))
 }
 
-/// (R_k r)_i for each state i.
+/// Returns (R_k r)_i for each state i.
 fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usize) -> Vec<f64> {
     let radii = || sets.initial_set.radius.iter().chain(&sets.input_set.radius);
     let of_state = |i: usize| {
@@ -120,8 +123,8 @@ fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usiz
     (0..2 * case.joints()).map(of_state).collect()
 }
 
-/// The start and inputs that take the linearisation furthest.
-fn extremal(
+/// Returns the start and inputs that take the linearisation furthest.
+fn worst_case(
     model: &PolynomialModel,
     case: &Case,
     sets: &UncertaintySets,
@@ -130,14 +133,15 @@ fn extremal(
     side: Side,
 ) -> (Vec<f64>, Vec<f64>) {
     let (n, states) = (case.joints(), 2 * case.joints());
-    let corner = |center: f64, radius: f64, sign: f64| center + side.sign() * sign * radius;
+    let base = case.start_point();
+    let vertex = |centre: f64, radius: f64, sign: f64| centre + side.sign() * sign * radius;
     let (x0, u) = (&sets.initial_set, &sets.input_set);
     let start: Vec<f64> = (0..states)
-        .map(|j| case.start[j] + corner(x0.center[j], x0.radius[j], node.start[i * states + j]))
+        .map(|j| base[j] + vertex(x0.centre[j], x0.radius[j], node.start[i * states + j]))
         .collect();
     let input = |at: usize| {
         let joint = at % n;
-        case.inputs[at] + corner(u.center[joint], u.radius[joint], node.input[at * states + i])
+        case.inputs[at] + vertex(u.centre[joint], u.radius[joint], node.input[at * states + i])
     };
     (model.state(&start[..n], &start[n..]), (0..node.sample * n).map(input).collect())
 }

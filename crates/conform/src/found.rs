@@ -1,0 +1,62 @@
+use serde::{Deserialize, Serialize};
+
+use crate::hulls::Hulls;
+use crate::rows::{Edge, Row};
+use crate::side::Side;
+
+/// Sets that were found for a problem, before the verdict.
+pub(crate) struct Found {
+    /// The sets and their reachable sets.
+    pub hulls: Hulls,
+    /// The cost of the sets.
+    pub cost: f64,
+    /// No sets cost less, for a linear model.
+    pub lower_bound: Option<f64>,
+    /// The paper's sum (21), for a linear model.
+    pub paper_cost: Option<f64>,
+    /// Σ_k Δt Π_i width_i(t_k), eq. (2).
+    pub hull_volume: f64,
+    /// The search, for a model that is not linear.
+    pub search: Option<SearchSummary>,
+    /// Which rows decide the sets.
+    pub deciding: Deciding,
+}
+
+/// Which rows decide the sets.
+pub(crate) enum Deciding {
+    /// Those that touch the reachable set, within a part of its radius.
+    Touching(f64),
+    /// Those named: case, sample, state, side.
+    Rows(std::collections::HashSet<(usize, usize, usize, Side)>),
+}
+
+impl Deciding {
+    /// Returns whether one side of a row decides the sets; `case` is that of the row, where hulls
+    /// belong to cases.
+    pub fn contains(&self, case: Option<usize>, row: &Row, edge: &Edge) -> bool {
+        match self {
+            Self::Touching(part) => edge.excess >= -part * row.radius,
+            Self::Rows(rows) => {
+                let named = |case| rows.contains(&(case, row.sample, row.state, edge.side));
+                edge.excess.is_finite() && case.is_some_and(named)
+            }
+        }
+    }
+}
+
+/// How the sets of a model that is not linear were found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SearchSummary {
+    /// Number of linearisations, each with its program.
+    pub rounds: usize,
+    /// How often the reachable sets of all suites were computed.
+    pub reachable_sets: usize,
+    /// The cost of the linearised sets, Σ_k Σ_i s_i 2 (R_k r)_i, which the programs minimise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linearised_cost: Option<f64>,
+    /// The case and the time (s) at which a simulated motion under the last sets but one left every
+    /// bound.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub runs_away: Option<(String, f64)>,
+}

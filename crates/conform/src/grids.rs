@@ -1,0 +1,83 @@
+use rayon::prelude::*;
+use reachtube_reach::{
+    Disturbance, IntervalMatrix, LinearSystem, Propagation, ReachSets, TimeGrid,
+};
+
+use crate::error::Result;
+use crate::sets::UncertaintySets;
+
+/// A sample grid that suites share, with all that depends on the system and the grid only.
+#[derive(Debug)]
+pub struct Grid {
+    /// e^{A t_k} and Γ(t_k) at the samples.
+    pub propagation: Propagation,
+    /// κ(t_k), the gains of the disturbance, 2n x n for each sample.
+    pub input_gains: Vec<IntervalMatrix>,
+}
+
+impl Grid {
+    /// Computes the reachable sets of the deviation on this grid.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`ReachSets::new`].
+    #[must_use]
+    pub fn reach(&self, sets: &UncertaintySets) -> ReachSets {
+        let UncertaintySets { initial_set, input_set, .. } = sets;
+        ReachSets::new(&self.propagation, &self.input_gains, initial_set, input_set)
+    }
+}
+
+/// The distinct grids of some recordings; a grid that is the beginning of another is not distinct.
+#[derive(Debug)]
+pub struct Grids {
+    grids: Vec<Grid>,
+}
+
+impl Grids {
+    /// Computes e^{At}, Γ(t) and κ(t) over the distinct ones of the grids `times`, the longest
+    /// first, on all cores.
+    ///
+    /// # Errors
+    ///
+    /// When the solution of the system cannot be enclosed over a grid.
+    pub fn new<'a>(
+        times: impl Iterator<Item = &'a TimeGrid>,
+        system: &LinearSystem,
+        disturbance: Disturbance,
+    ) -> Result<Self> {
+        let end = |grid: &TimeGrid| grid.times().last().copied().unwrap_or(0.0);
+        let mut all: Vec<&TimeGrid> = times.collect();
+        all.sort_by(|a, b| b.len().cmp(&a.len()).then(end(b).total_cmp(&end(a))));
+        let mut distinct: Vec<&TimeGrid> = Vec::new();
+        for grid in all {
+            if !distinct.iter().any(|longer| grid.is_prefix_of(longer)) {
+                distinct.push(grid);
+            }
+        }
+        let build = |grid: &&TimeGrid| {
+            let propagation = Propagation::new(system, grid)?;
+            let input_gains = disturbance.input_gains(&propagation);
+            Ok(Grid { propagation, input_gains })
+        };
+        let grids = distinct.par_iter().map(build).collect::<Result<_>>()?;
+        Ok(Self { grids })
+    }
+
+    /// Returns the grids.
+    #[must_use]
+    pub fn as_slice(&self) -> &[Grid] {
+        &self.grids
+    }
+
+    /// Returns the index of the grid that `grid` is, or is the beginning of.
+    ///
+    /// # Panics
+    ///
+    /// When `grid` is not one of those given to [`new`](Self::new).
+    #[must_use]
+    pub fn find(&self, grid: &TimeGrid) -> usize {
+        let fits = |candidate: &Grid| grid.is_prefix_of(candidate.propagation.grid());
+        self.grids.iter().position(fits).expect("every grid of the recordings is in the list")
+    }
+}

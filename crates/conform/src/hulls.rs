@@ -1,0 +1,157 @@
+use rayon::prelude::*;
+use reachtube_reach::{Flowpipe, FlowpipeOutcome, ReachSets};
+use reachtube_recordings::State;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::flowpipes::{Effort, flowpipe};
+use crate::problem::case::Case;
+use crate::problem::problem::Problem;
+use crate::rows::{Row, rows};
+use crate::sets::UncertaintySets;
+
+/// What is known of the reachable set that recordings are compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Enclosure {
+    /// The hull of the set, taken from inside: a value in it is reachable in that state.
+    #[default]
+    Inner,
+    /// A computed set around the reachable set: what a formal analysis uses, and all that can be
+    /// computed for a model that is not linear.
+    Outer,
+}
+
+/// A reachable set that could not be followed to the end: the model may run away under its
+/// uncertainty, or the enclosure grew too wide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lost {
+    /// The suite, and the run where it has an input of its own.
+    pub case: String,
+    /// The last sample time that has a reachable set, s.
+    pub time: f64,
+    /// The state that grew fastest there.
+    pub state: State,
+}
+
+/// The interval hulls of the reachable sets of a problem's model under some uncertainty sets.
+#[derive(Debug)]
+pub struct Hulls {
+    /// The uncertainty sets.
+    pub sets: UncertaintySets,
+    /// The hulls.
+    pub kind: HullKind,
+}
+
+/// Hulls by the kind of model.
+#[derive(Debug)]
+pub enum HullKind {
+    /// Of the deviation of a linear model, on each of the problem's grids.
+    Linear(Vec<ReachSets>),
+    /// Of the state of any other model, for each of the problem's cases.
+    Outer(Vec<Flowpipe>),
+}
+
+impl Hulls {
+    /// Computes the reachable sets under `sets` on all cores.
+    ///
+    /// # Guarantee
+    ///
+    /// For a linear model as [`ReachSets`]: bounds from inside and from outside. For any other
+    /// model outer, as [`Flowpipe`], for every measurable disturbance with values in U.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`]; when a solution cannot be enclosed.
+    pub fn new(problem: &Problem, sets: UncertaintySets) -> Result<Self> {
+        if problem.dynamics().linear_system().is_some() {
+            let grids = problem.grids()?.as_slice();
+            let kind = HullKind::Linear(grids.iter().map(|grid| grid.reach(&sets)).collect());
+            return Ok(Self { sets, kind });
+        }
+        let system = problem.dynamics().polynomial_system()?;
+        let of = |case: &Case| flowpipe(system, case, &sets, Effort::Whole);
+        let flowpipes = problem.cases()?.par_iter().map(of).collect::<Result<_>>()?;
+        Ok(Self { sets, kind: HullKind::Outer(flowpipes) })
+    }
+
+    /// Returns which bound of the reachable set recordings are compared with.
+    #[must_use]
+    pub fn enclosure(&self) -> Enclosure {
+        match self.kind {
+            HullKind::Linear(_) => Enclosure::Inner,
+            HullKind::Outer(_) => Enclosure::Outer,
+        }
+    }
+
+    /// Hands every row of every suite to `visit`, with the index of the suite and, where hulls
+    /// belong to cases, of the case.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`rows`]: deviations of a linear model are outer and its hulls inner; for any other model
+    /// measured states are compared with the outer enclosure.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn for_each_row(
+        &self,
+        problem: &Problem,
+        mut visit: impl FnMut(usize, Option<usize>, Row),
+    ) -> Result<()> {
+        let states = problem.settings().states;
+        match &self.kind {
+            HullKind::Linear(reach) => {
+                let grids = problem.grids()?.as_slice();
+                for deviation in problem.deviations()? {
+                    let times = grids[deviation.grid].propagation.grid().times();
+                    let (suite, hull) = (deviation.suite, &reach[deviation.grid]);
+                    rows(&deviation.envelope, times, hull, &self.sets, states, |row| {
+                        visit(suite, None, row);
+                    });
+                }
+            }
+            HullKind::Outer(flowpipes) => {
+                for (index, (case, flowpipe)) in problem.cases()?.iter().zip(flowpipes).enumerate()
+                {
+                    let times = case.grid.times();
+                    rows(&case.measured, times, flowpipe, &self.sets, states, |row| {
+                        visit(case.suite, Some(index), row);
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the cases whose reachable set could not be followed to the end.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
+        match &self.kind {
+            HullKind::Linear(_) => Ok(Vec::new()),
+            HullKind::Outer(flowpipes) => {
+                let pairs = problem.cases()?.iter().zip(flowpipes);
+                Ok(pairs.filter_map(|(case, flowpipe)| Lost::new(case, flowpipe)).collect())
+            }
+        }
+    }
+}
+
+impl Lost {
+    /// Returns where the reachable set of a case ends, if it ends too early.
+    #[must_use]
+    pub fn new(case: &Case, flowpipe: &Flowpipe) -> Option<Self> {
+        match flowpipe.outcome() {
+            FlowpipeOutcome::Reached => None,
+            FlowpipeOutcome::Failed { time, state, .. } => {
+                let state = State::from_index(*state, case.joints());
+                Some(Self { case: case.name.clone(), time: *time, state })
+            }
+        }
+    }
+}

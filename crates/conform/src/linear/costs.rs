@@ -1,0 +1,32 @@
+//! What the widths of the reachable sets cost.
+
+use std::collections::HashMap;
+
+use crate::linear::block::Block;
+
+/// Returns, for each of several lists of sample times, how much each sample counts: samples at one
+/// time together count 1.
+pub fn shares<'t>(lists: impl Iterator<Item = &'t [f64]> + Clone) -> Vec<Vec<f64>> {
+    let nanoseconds = |t: &f64| (t * 1e9).round() as i64;
+    let mut counts = HashMap::new();
+    lists.clone().flatten().for_each(|t| *counts.entry(nanoseconds(t)).or_insert(0.0) += 1.0);
+    lists.map(|times| times.iter().map(|t| 1.0 / counts[&nanoseconds(t)]).collect()).collect()
+}
+
+/// Returns the cost of each radius (r_x, r_u), 3n, and of each noise radius, 2n, for state weights
+/// `weights`, 2n.
+pub(super) fn cost(blocks: &[Block], shares: &[Vec<f64>], weights: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let (states, unknowns) = (weights.len(), weights.len() / 2 * 3);
+    let (mut cost, mut noise) = (vec![0.0; unknowns], vec![0.0; states]);
+    for (block, shares) in blocks.iter().zip(shares) {
+        let samples = block.coefficients.chunks_exact(states * 2 * unknowns);
+        for (rows, share) in samples.zip(shares) {
+            for (i, row) in rows.chunks_exact(2 * unknowns).enumerate() {
+                let weight = 2.0 * share * weights[i];
+                row[unknowns..].iter().zip(&mut cost).for_each(|(a, w)| *w += weight * a);
+                noise[i] += weight;
+            }
+        }
+    }
+    (cost, noise)
+}

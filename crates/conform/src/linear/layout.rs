@@ -1,0 +1,100 @@
+use reachtube_reach::Hyperrectangle;
+
+use crate::linear::solver::Triplets;
+use crate::sets::UncertaintySets;
+use crate::settings::{Centre, Noise, Settings};
+use crate::side::Side;
+
+/// Which column of the solver's matrix each unknown is: the centres (c_x, c_u) where they are
+/// unknown, the radii (r_x, r_u), and the radii of the noise where they are unknown.
+pub(super) struct Layout {
+    joints: usize,
+    has_centres: bool,
+    /// Cost of each column; that of a centre is the cost of its radius, for scaling only.
+    pub cost: Vec<f64>,
+}
+
+impl Layout {
+    /// Lays out the unknowns for radii of the cost `cost` (3n) and noise radii of `noise_cost`
+    /// (2n).
+    pub fn new(settings: &Settings, cost: &[f64], noise_cost: &[f64]) -> Self {
+        let has_centres = settings.centre != Centre::Zero;
+        let mut columns = if has_centres { cost.to_vec() } else { Vec::new() };
+        columns.extend(cost);
+        if settings.noise == Noise::Free {
+            columns.extend(noise_cost);
+        }
+        // A radius without a cost is in no row (with one sample nothing depends on the input): any
+        // cost makes it 0.
+        let largest = columns.iter().copied().fold(0.0, f64::max);
+        columns.iter_mut().filter(|w| **w == 0.0).for_each(|w| *w = largest);
+        Self { joints: cost.len() / 3, has_centres, cost: columns }
+    }
+
+    /// Returns the number of centres, which is the column of the first radius.
+    pub fn centres(&self) -> usize {
+        if self.has_centres { 3 * self.joints } else { 0 }
+    }
+
+    /// Returns the columns and entries of one side of a row of the program.
+    pub fn entries(
+        &self,
+        centre: &[f64],
+        radius: &[f64],
+        state: usize,
+        side: Side,
+    ) -> Vec<(usize, f64)> {
+        let signed = centre.iter().map(|a| side.sign() * a).take(self.centres());
+        let mut row: Vec<(usize, f64)> = signed.chain(radius.iter().copied()).enumerate().collect();
+        let noise = self.centres() + 3 * self.joints;
+        if self.cost.len() > noise {
+            row.push((noise + state, 1.0));
+        }
+        row
+    }
+
+    /// Adds r >= 0, and |c| <= r where the origin must lie in the sets.
+    pub fn restrict(
+        &self,
+        kind: Centre,
+        triplets: &mut Triplets,
+        bounds: &mut Vec<f64>,
+        unit: &[f64],
+    ) {
+        for column in self.centres()..self.cost.len() {
+            triplets.row([(column, -1.0)]);
+            bounds.push(0.0);
+        }
+        if kind == Centre::Origin {
+            for centre in 0..self.centres() {
+                let radius = centre + self.centres();
+                for sign in [1.0, -1.0] {
+                    triplets.row([(centre, sign * unit[centre] / unit[radius]), (radius, -1.0)]);
+                    bounds.push(0.0);
+                }
+            }
+        }
+    }
+
+    /// Returns the sets that values of the unknowns describe.
+    pub fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
+        let (n, centres) = (self.joints, self.centres());
+        let set = |from: usize, to: usize| {
+            let radius: Vec<f64> =
+                unknowns[centres + from..centres + to].iter().map(|r| r.max(0.0)).collect();
+            let mut centre =
+                if self.has_centres { unknowns[from..to].to_vec() } else { vec![0.0; to - from] };
+            if settings.centre == Centre::Origin {
+                centre.iter_mut().zip(&radius).for_each(|(c, r)| *c = c.clamp(-r, *r));
+            }
+            Hyperrectangle { centre, radius }
+        };
+        let noise = |radius: Vec<f64>| Some(Hyperrectangle { centre: vec![0.0; 2 * n], radius });
+        let noise_set = match &settings.noise {
+            Noise::None => None,
+            Noise::Fixed(given) => noise(given.clone()),
+            Noise::Free => noise(unknowns[centres + 3 * n..].iter().map(|r| r.max(0.0)).collect()),
+        };
+        UncertaintySets { initial_set: set(0, 2 * n), input_set: set(2 * n, 3 * n), noise_set }
+    }
+}

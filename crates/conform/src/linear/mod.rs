@@ -1,0 +1,10 @@
+//! The smallest sets of a linear model: one linear program, and the repair of its answer.
+
+pub(crate) mod block;
+pub(crate) mod costs;
+mod layout;
+pub(crate) mod program;
+pub(crate) mod repair;
+pub(crate) mod solver;
+
+pub(crate) use repair::smallest_sets;

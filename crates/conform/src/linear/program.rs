@@ -1,0 +1,349 @@
+//! The linear program: the smallest sets whose reachable hull reaches as far as the deviations.
+//!
+//! Unknowns are the centres c = (c_x, c_u), the radii r = (r_x, r_u) and, where the noise is free,
+//! its radii r_v. For each sample k and state i, with E_k = (e^{A t_k}, Γ(t_k)) and
+//! R_k = (|e^{A t_k}|, κ(t_k)):
+//!
+//! -  (E_k c)_i + (R_k r)_i + r_v,i >= max d_i(t_k)
+//! - -(E_k c)_i + (R_k r)_i + r_v,i >= max -d_i(t_k)
+//!
+//! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, at which
+//! blocks count by their mean (docs/method.md, corrections A, E and F).
+
+use std::collections::{BTreeMap, HashSet};
+
+use reachtube_reach::Hyperrectangle;
+
+use crate::error::{Error, Result};
+use crate::linear::block::Block;
+use crate::linear::costs::{cost, shares};
+use crate::linear::layout::Layout;
+use crate::linear::solver::{Optimum, Triplets, solve_cone};
+use crate::sets::UncertaintySets;
+use crate::settings::{Noise, Settings};
+use crate::side::Side;
+
+/// A row counts as violated beyond this part of its own size.
+const TOLERANCE: f64 = 1e-10;
+
+/// A row within this part of the radius of the reachable set is called tight.
+pub const TIGHT: f64 = 1e-6;
+
+/// What is below this part of the largest deviation is rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// Number of windows of the horizon; each adds its worst violated row to the next round.
+const WINDOWS: usize = 24;
+
+/// Rounds of row generation at most.
+const ROUNDS: usize = 200;
+
+/// The program.
+pub struct Program<'a> {
+    settings: &'a Settings,
+    joints: usize,
+    blocks: Vec<Block>,
+    /// For each block and sample, how much its widths count.
+    shares: Vec<Vec<f64>>,
+    /// Between what each centre (c_x, c_u) must lie, where that is restricted.
+    centre_bounds: Vec<[f64; 2]>,
+    /// Cost of each radius (r_x, r_u).
+    cost: Vec<f64>,
+    /// Cost of each noise radius.
+    noise_cost: Vec<f64>,
+    /// Largest |d| in the checked states, at least the smallest normal number.
+    scale: f64,
+}
+
+/// What the solver found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The sets; their rows hold to the solver's tolerance only.
+    pub sets: UncertaintySets,
+    /// The dual objective: no sets that satisfy the rows cost less, up to the solver's tolerance.
+    pub lower_bound: f64,
+    /// Number of rows in the whole program.
+    pub rows: usize,
+    /// Number of rows that were generated.
+    pub generated: usize,
+    /// Rounds of row generation.
+    pub rounds: usize,
+}
+
+/// Where a row of the program stands: block, sample, state, side.
+pub type RowIndex = (usize, usize, usize, Side);
+
+impl<'a> Program<'a> {
+    /// Makes the program of some blocks for the state weights `weights`, s, 2n.
+    #[must_use]
+    pub fn new(settings: &'a Settings, weights: &[f64], blocks: Vec<Block>) -> Self {
+        let joints = weights.len() / 2;
+        let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
+        let (cost, noise_cost) = cost(&blocks, &shares, weights);
+        let (centre_bounds, scale) = (Vec::new(), f64::MIN_POSITIVE);
+        let mut program =
+            Self { settings, joints, blocks, shares, centre_bounds, cost, noise_cost, scale };
+        program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program
+    }
+
+    /// Keeps each centre (c_x, c_u) between two numbers.
+    #[must_use]
+    pub fn with_centre_bounds(self, centre_bounds: Vec<[f64; 2]>) -> Self {
+        Self { centre_bounds, ..self }
+    }
+
+    /// Returns the cost of some sets.
+    #[must_use]
+    pub fn cost(&self, sets: &UncertaintySets) -> f64 {
+        let radii = sets.initial_set.radius.iter().chain(&sets.input_set.radius);
+        let noise = (0..2 * self.joints).map(|i| self.noise_cost[i] * sets.noise_radius(i));
+        radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
+    }
+
+    /// Returns the number of rows of the whole program, each side counted.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        let states = self.settings.states.rows(self.joints);
+        self.blocks.iter().map(|block| 2 * states * block.envelope.len()).sum()
+    }
+
+    /// Solves the program by row generation: few of the rows decide, and only they are handed to
+    /// the solver.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Program`] when the solver does not reach an optimum.
+    pub fn solve(&self) -> Result<Solution> {
+        let mut indices = self.first_rows();
+        for round in 1..=ROUNDS {
+            let (candidates, lower_bound) = self.solve_rows(&indices)?;
+            let added = self.violated(&candidates[0], &indices);
+            if added.is_empty() {
+                let [found, polished] = candidates;
+                let better = self.repaired_cost(&polished) < self.repaired_cost(&found);
+                let sets = if better { polished } else { found };
+                let (rows, generated) = (self.rows(), indices.len());
+                return Ok(Solution { sets, lower_bound, rows, generated, rounds: round });
+            }
+            indices.extend(added);
+        }
+        Err(Error::Program(format!(
+            "{ROUNDS} rounds of row generation left violated rows; report this with the data"
+        )))
+    }
+
+    fn largest_bound(&self) -> f64 {
+        self.indices(1).map(|index| self.bound(index).abs()).fold(0.0, f64::max)
+    }
+
+    /// The rows of every `stride`-th sample.
+    fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
+        let states = self.settings.states.rows(self.joints);
+        self.blocks.iter().enumerate().flat_map(move |(b, block)| {
+            (0..block.envelope.len()).step_by(stride).flat_map(move |k| {
+                (0..states).flat_map(move |i| Side::BOTH.map(|side| (b, k, i, side)))
+            })
+        })
+    }
+
+    fn first_rows(&self) -> Vec<RowIndex> {
+        let longest = self.blocks.iter().map(|block| block.envelope.len()).max().unwrap_or(0);
+        self.indices((longest / 8).max(1)).collect()
+    }
+
+    /// The right-hand side of a row: the deviation along its direction, less the known noise.
+    fn bound(&self, (b, k, i, side): RowIndex) -> f64 {
+        let envelope = &self.blocks[b].envelope;
+        let known = match &self.settings.noise {
+            Noise::Fixed(radii) => radii[i],
+            Noise::None | Noise::Free => 0.0,
+        };
+        match side {
+            Side::Upper => envelope.upper(k, i) - known,
+            Side::Lower => -envelope.lower(k, i) - known,
+        }
+    }
+
+    /// The entries of E_k and of R_k in row i.
+    fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+        let width = 3 * self.joints;
+        let start = (k * 2 * self.joints + i) * 2 * width;
+        self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
+    }
+
+    /// Deviation minus reach of a row, unrounded.
+    fn excess(&self, index: RowIndex, unknowns: &Unknowns) -> f64 {
+        let (b, k, i, side) = index;
+        let (centre, radius) = self.row(b, k, i);
+        let reach = side.sign() * dot(centre, &unknowns.centre) + dot(radius, &unknowns.radius);
+        self.bound(index) - reach - unknowns.free_noise[i]
+    }
+
+    /// The worst violated row of each window, state and side that is not among `known` yet.
+    fn violated(&self, sets: &UncertaintySets, known: &[RowIndex]) -> Vec<RowIndex> {
+        let unknowns = self.unknowns(sets);
+        let known: HashSet<&RowIndex> = known.iter().collect();
+        let mut worst: BTreeMap<(usize, usize, usize, bool), (f64, RowIndex)> = BTreeMap::new();
+        for index in self.indices(1) {
+            let excess = self.excess(index, &unknowns);
+            let (b, k, i, side) = index;
+            let reach = dot(self.row(b, k, i).1, &unknowns.radius);
+            let size = self.bound(index).abs().max(reach);
+            if excess <= (TOLERANCE * size).max(ROUNDING * self.scale) || known.contains(&index) {
+                continue;
+            }
+            let window = k * WINDOWS / self.blocks[b].envelope.len();
+            let key = (b, window, i, side == Side::Upper);
+            let entry = worst.entry(key).or_insert((excess, index));
+            if excess > entry.0 {
+                *entry = (excess, index);
+            }
+        }
+        worst.into_values().map(|(_, index)| index).collect()
+    }
+
+    fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
+        let join = |pick: fn(&Hyperrectangle) -> &Vec<f64>| {
+            pick(&sets.initial_set).iter().chain(pick(&sets.input_set)).copied().collect()
+        };
+        let free = self.settings.noise == Noise::Free;
+        let noise = |i: usize| if free { sets.noise_radius(i) } else { 0.0 };
+        Unknowns {
+            centre: join(|set| &set.centre),
+            radius: join(|set| &set.radius),
+            free_noise: (0..2 * self.joints).map(noise).collect(),
+        }
+    }
+
+    /// Solves with the rows `indices` only; returns the sets as found and polished, and the dual
+    /// objective.
+    fn solve_rows(&self, indices: &[RowIndex]) -> Result<([UncertaintySets; 2], f64)> {
+        let layout = Layout::new(self.settings, &self.cost, &self.noise_cost);
+        let largest_cost = layout.cost.iter().copied().fold(0.0, f64::max);
+        // Scale: each unknown so that its cost is the largest one, each row so that its largest
+        // entry is 1.
+        let unit: Vec<f64> = layout.cost.iter().map(|w| largest_cost / w).collect();
+        let (triplets, bounds) = self.constraints(indices, &layout, &unit);
+        let weigh = |(j, w): (usize, &f64)| {
+            if j < layout.centres() { 0.0 } else { w * unit[j] / largest_cost }
+        };
+        let objective: Vec<f64> = layout.cost.iter().enumerate().map(weigh).collect();
+        let Optimum { found, polished, dual } = solve_cone(&objective, &triplets, &bounds)?;
+        // Undo the scaling.
+        let sets = |x: &[f64]| {
+            let unknowns: Vec<f64> =
+                x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
+            layout.sets(&unknowns, self.settings)
+        };
+        let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
+        Ok(([sets(&found), sets(&polished)], lower_bound))
+    }
+
+    /// The scaled rows `indices`, the signs of the radii, and the bounds of the centres.
+    fn constraints(
+        &self,
+        indices: &[RowIndex],
+        layout: &Layout,
+        unit: &[f64],
+    ) -> (Triplets, Vec<f64>) {
+        let mut triplets = Triplets::default();
+        let mut bounds = Vec::new();
+        for &index in indices {
+            let (b, k, i, side) = index;
+            let (centre, radius) = self.row(b, k, i);
+            let entries = layout.entries(centre, radius, i, side);
+            let scale = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
+            triplets.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / scale)));
+            bounds.push(-self.bound(index) / (scale * self.scale));
+        }
+        layout.restrict(self.settings.centre, &mut triplets, &mut bounds, unit);
+        for (centre, [low, high]) in self.centre_bounds.iter().enumerate().take(layout.centres()) {
+            for (sign, bound) in [(1.0, *high), (-1.0, -low)] {
+                triplets.row([(centre, sign)]);
+                bounds.push(bound / (unit[centre] * self.scale));
+            }
+        }
+        (triplets, bounds)
+    }
+
+    /// The cost of the sets once they satisfy every row.
+    fn repaired_cost(&self, sets: &UncertaintySets) -> f64 {
+        self.cost(&sets.inflated(self.worst_ratio(sets), 0.0))
+    }
+
+    /// What known noise adds to every cost.
+    fn fixed_cost(&self) -> f64 {
+        match &self.settings.noise {
+            Noise::Fixed(radii) => dot(radii, &self.noise_cost),
+            Noise::None | Noise::Free => 0.0,
+        }
+    }
+
+    /// Returns the factor by which the radii must grow so that every row holds, at least 1: the
+    /// largest ratio of what a row needs to what the radii give it.
+    #[must_use]
+    pub fn worst_ratio(&self, sets: &UncertaintySets) -> f64 {
+        let unknowns = self.unknowns(sets);
+        let ratio = |index: RowIndex| {
+            let (b, k, i, _) = index;
+            let given = dot(self.row(b, k, i).1, &unknowns.radius);
+            if given > ROUNDING * self.scale {
+                1.0 + self.excess(index, &unknowns) / given
+            } else {
+                1.0
+            }
+        };
+        self.indices(1).map(ratio).fold(1.0, f64::max)
+    }
+
+    /// Returns the rows that touch the hull of the sets' reach, within the part [`TIGHT`] of its
+    /// radius.
+    #[must_use]
+    pub fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
+        let unknowns = self.unknowns(sets);
+        let touches = |index: &RowIndex| {
+            let (b, k, i, _) = *index;
+            let radius = dot(self.row(b, k, i).1, &unknowns.radius) + unknowns.free_noise[i];
+            self.excess(*index, &unknowns) >= -TIGHT * radius
+        };
+        self.indices(1).filter(touches).collect()
+    }
+
+    /// Returns the largest |d| among the rows.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Returns two sums over the interval hull of the reachable set in the units of the paper:
+    /// Σ_k Σ_i (E_k (y1 - y2))_i of eq. (21), and Σ_k Δt Π_i 2 (R_k r)_i of eq. (2).
+    #[must_use]
+    pub fn paper_sums(&self, sets: &UncertaintySets) -> (f64, f64) {
+        let unknowns = self.unknowns(sets);
+        let (mut signed, mut volume) = (0.0, 0.0);
+        for (b, shares) in self.shares.iter().enumerate() {
+            let times = &self.blocks[b].times;
+            for (k, share) in shares.iter().enumerate() {
+                let rows = (0..2 * self.joints).map(|i| self.row(b, k, i));
+                let edges = rows.clone().map(|(centre, _)| 2.0 * dot(centre, &unknowns.radius));
+                signed += share * edges.sum::<f64>();
+                let product: f64 =
+                    rows.map(|(_, radius)| 2.0 * dot(radius, &unknowns.radius)).product();
+                volume += share * product * (times.get(k + 1).unwrap_or(&times[k]) - times[k]);
+            }
+        }
+        (signed, volume)
+    }
+}
+
+/// The unknowns of the program, unscaled.
+struct Unknowns {
+    centre: Vec<f64>,
+    radius: Vec<f64>,
+    free_noise: Vec<f64>,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,62 @@
+use crate::envelope::Envelope;
+use crate::error::Result;
+use crate::found::{Deciding, Found};
+use crate::hulls::Hulls;
+use crate::linear::block::Block;
+use crate::linear::program::{Program, TIGHT};
+use crate::problem::problem::Problem;
+use crate::sets::UncertaintySets;
+use crate::weights::state_weights;
+
+/// Inflations tried after the first repair, each twice the one before.
+const REPAIRS: i32 = 60;
+
+/// Finds the smallest sets of a linear model by one program over all suites, and repairs them until
+/// every row is proved.
+///
+/// # Errors
+///
+/// [`Error::Program`](crate::Error::Program), and as [`Problem::deviations`].
+pub(crate) fn smallest_sets(problem: &Problem) -> Result<Found> {
+    let (settings, joints) = (problem.settings(), problem.joints());
+    let (grids, deviations) = (problem.grids()?, problem.deviations()?);
+    let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
+    let weights = state_weights(&settings.weights, &envelopes, joints);
+    let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
+    let program = Program::new(settings, &weights, blocks);
+    let solution = program.solve()?;
+    let hulls = repair(problem, &program, &solution.sets)?;
+    let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
+    Ok(Found {
+        cost: program.cost(&hulls.sets),
+        lower_bound: Some(solution.lower_bound),
+        paper_cost: Some(paper_cost),
+        hull_volume,
+        search: None,
+        deciding: Deciding::Touching(TIGHT),
+        hulls,
+    })
+}
+
+/// Makes the solver's answer true (docs/method.md, correction H): scales the radii by the worst
+/// ratio, checks with directed rounding, and inflates them by a growing last bit until the check
+/// passes.
+fn repair(problem: &Problem, program: &Program, found: &UncertaintySets) -> Result<Hulls> {
+    let scaled = found.inflated(program.worst_ratio(found), 0.0);
+    let mut hulls = Hulls::new(problem, scaled.clone())?;
+    for attempt in 0..REPAIRS {
+        if encloses(problem, &hulls)? {
+            break;
+        }
+        let bit = f64::EPSILON * 2f64.powi(attempt);
+        hulls = Hulls::new(problem, scaled.inflated(1.0 + bit, bit * program.scale()))?;
+    }
+    Ok(hulls)
+}
+
+/// Returns whether every row holds.
+fn encloses(problem: &Problem, hulls: &Hulls) -> Result<bool> {
+    let mut all = true;
+    hulls.for_each_row(problem, |_, _, row| all &= row.holds())?;
+    Ok(all)
+}

@@ -1,0 +1,317 @@
+//! The model file: what `conform` found, and everything that is needed to use it and to trace it
+//! back.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use nalgebra::{DMatrix, DVector};
+use reachtube_abstraction::{PolynomialModel, Records, TermRecord};
+use reachtube_files::json;
+use reachtube_reach::{Hyperrectangle, LinearSystem};
+use reachtube_robot::{Robot, RobotDescription};
+use serde::{Deserialize, Serialize};
+
+use crate::conformance::Conformance;
+use crate::dynamics::Dynamics;
+use crate::error::{Error, Result};
+use crate::found::SearchSummary;
+use crate::model::records::{DataRecord, Explained};
+use crate::problem::problem::{Problem, Setup};
+use crate::problem::recordings::Recordings;
+use crate::sets::UncertaintySets;
+use crate::settings::Settings;
+use crate::trust::Trust;
+use crate::verdict::{Verdict, Witness};
+
+/// What the field `format` of every model file says.
+pub const FORMAT: &str = "reachtube-model";
+
+/// The version of the format that this library writes and reads; the schema is
+/// `docs/model.schema.json`.
+pub const VERSION: u32 = 2;
+
+/// Relative difference up to which numbers that were computed twice count as the same.
+const SAME: f64 = 1e-9;
+
+const REMEDY: &str = "give a file that `conform --out` wrote";
+
+/// Number of tight values kept in a file at most: as many as a degenerate program may have would
+/// make it unreadable.
+pub const MOST_TIGHT: usize = 500;
+
+/// A model with the uncertainty sets for which it is reachset conformant with the recordings named
+/// in it. SI units; states are ordered q then q̇.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Model {
+    /// The name of the format, [`FORMAT`].
+    pub format: String,
+    /// The version of the format, [`VERSION`].
+    pub version: u32,
+    /// Name and version of the program that wrote the file.
+    pub tool: String,
+    /// Whether the sets were proved to enclose the recordings.
+    pub verified: bool,
+    /// The cost of the sets: Σ_k Σ_i s_i times the width of the reachable set and the noise, over
+    /// all states and distinct sample times; the mean where suites have different sets. `None` where
+    /// a reachable set was lost.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost: Option<f64>,
+    /// The solver's dual objective for a linear model: sets that satisfy the program cost no less,
+    /// up to its tolerance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost_lower_bound: Option<f64>,
+    /// The paper's sum (21) for a linear model, with E where |E| is meant, for comparison.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost_paper: Option<f64>,
+    /// Σ_k Δt Π_i of the hull's edges, eq. (2). `None` where a reachable set was lost.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hull_volume: Option<f64>,
+    /// How the sets of a model that is not linear were found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub search: Option<SearchSummary>,
+    /// Which recordings a motion of the model itself reproduces, where the settings ask for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub explained: Option<Explained>,
+    /// X0 around the nominal initial state, 2n, rad and rad/s.
+    pub initial_set: Hyperrectangle,
+    /// U around the nominal input, n, N m.
+    pub input_set: Hyperrectangle,
+    /// V, the measurement noise, 2n, where it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_set: Option<Hyperrectangle>,
+    /// What was proved.
+    pub proof: Verdict,
+    /// What may be expected of the next motion.
+    pub trust: Trust,
+    /// The recorded points that touch the reachable set and so decide the sets, the closest first,
+    /// 500 at most.
+    pub tight: Vec<Witness>,
+    /// The settings.
+    pub settings: Settings,
+    /// A, 2n x 2n, of a linear model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub a: Vec<Vec<f64>>,
+    /// B, 2n x n.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub b: Vec<Vec<f64>>,
+    /// d of ẋ = A x + B u + d, 2n; zero about q̇ = 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub drift: Vec<f64>,
+    /// Names of the variables of the polynomials of a model that is not linear, as in the file of
+    /// an abstraction.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variables: Vec<String>,
+    /// What the polynomials' variables are offsets from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub origin: Vec<f64>,
+    /// For each joint, the terms of its acceleration, rad/s².
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub acceleration: Vec<Vec<TermRecord>>,
+    /// The recordings.
+    pub data: DataRecord,
+    /// The robot.
+    pub robot: RobotDescription,
+}
+
+impl Model {
+    /// Makes the model of a problem for which sets were found.
+    #[must_use]
+    pub fn new(problem: &Problem, found: &Conformance) -> Self {
+        let (dynamics, settings) = (problem.dynamics(), problem.settings());
+        let UncertaintySets { initial_set, input_set, noise_set } = found.sets.clone();
+        let finite = |value: f64| value.is_finite().then_some(value);
+        let linear = dynamics.linear_system();
+        let polynomial = match linear {
+            Some(_) => Records::default(),
+            None => dynamics.polynomials().records(),
+        };
+        let matrix =
+            |of: fn(&LinearSystem) -> &DMatrix<f64>| linear.map_or_else(Vec::new, |s| rows(of(s)));
+        let explained = |tolerance| Explained::new(problem, tolerance, &found.explanations);
+        Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            tool: reachtube_files::TOOL.into(),
+            verified: found.verdict.conformant,
+            cost: finite(found.cost),
+            cost_lower_bound: found.lower_bound,
+            cost_paper: found.paper_cost,
+            hull_volume: finite(found.hull_volume),
+            search: found.search.clone(),
+            explained: settings.explain.map(explained),
+            initial_set,
+            input_set,
+            noise_set,
+            proof: found.verdict.clone(),
+            trust: found.trust.clone(),
+            tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
+            settings: settings.clone(),
+            a: matrix(LinearSystem::a),
+            b: matrix(LinearSystem::b),
+            drift: linear.map_or_else(Vec::new, |system| system.drift().iter().copied().collect()),
+            variables: polynomial.variables,
+            origin: polynomial.origin,
+            acceleration: polynomial.acceleration,
+            data: DataRecord::new(problem),
+            robot: problem.robot().description().clone(),
+        }
+    }
+
+    /// Reads a model file and checks that its parts fit together.
+    ///
+    /// # Errors
+    ///
+    /// As [`open`](Self::open).
+    pub fn load(path: &Path) -> Result<Self> {
+        Ok(Self::open(path)?.0)
+    }
+
+    /// Reads a model file, checks that its parts fit together, and returns what a problem with
+    /// other recordings needs of it: the robot, the model bit by bit as the file has it, and the
+    /// settings.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::File`], or [`Error::ModelFile`], which says what is wrong.
+    pub fn open(path: &Path) -> Result<(Self, Setup)> {
+        let text = reachtube_files::read_text(path, REMEDY)?;
+        let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
+        let value = json::versioned(&text, FORMAT, VERSION, "conform").map_err(wrong)?;
+        let model: Self = serde_json::from_value(value).map_err(|error| {
+            wrong(format!(
+                "{error}; give the file as `conform --out` wrote it, or run conform again"
+            ))
+        })?;
+        let setup = model.check_sizes().and_then(|()| model.check_parts()).map_err(wrong)?;
+        Ok((model, setup))
+    }
+
+    /// Returns the file's text: JSON, ending with a newline.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        json::to_lines(self)
+    }
+
+    /// Returns X0, U and V.
+    #[must_use]
+    pub fn sets(&self) -> UncertaintySets {
+        UncertaintySets {
+            initial_set: self.initial_set.clone(),
+            input_set: self.input_set.clone(),
+            noise_set: self.noise_set.clone(),
+        }
+    }
+
+    /// Returns whether one of these recordings, by its SHA-256, is among those that the model was
+    /// fitted to.
+    #[must_use]
+    pub fn was_fitted_to(&self, recordings: &Recordings) -> bool {
+        let suites = self.data.suites.iter().flat_map(|suite| &suite.runs);
+        let fitted: HashSet<&str> = suites.map(|run| run.sha256.as_str()).collect();
+        let mut runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
+        runs.any(|run| fitted.contains(run.sha256.as_str()))
+    }
+
+    /// Returns the number of joints n.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.input_set.dimension()
+    }
+
+    fn check_sizes(&self) -> Result<(), String> {
+        let n = self.robot.joints.len();
+        let is = |matrix: &[Vec<f64>], columns: usize| {
+            matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
+        };
+        let set =
+            |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
+        let costs = [self.cost, self.cost_lower_bound, self.cost_paper, self.hull_volume];
+        let is_linear = self.acceleration.is_empty();
+        let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
+        let none = self.a.is_empty() && self.b.is_empty() && self.drift.is_empty();
+        let sets = set(&self.initial_set, 2 * n)
+            && set(&self.input_set, n)
+            && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
+        let point = &self.settings.expansion_point;
+        let fits_box = self.settings.operating_box.as_ref().is_none_or(|sides| sides.is_of(n));
+        let problem = if is_linear && costs.contains(&None) {
+            "it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model does"
+                .into()
+        } else if !(if is_linear { linear } else { none }) {
+            format!("a, b or drift has not the size for the {n} joints of its robot")
+        } else if !sets {
+            format!(
+                "initial_set, input_set or noise_set has not the size for the {n} joints of its \
+                 robot, or a negative radius"
+            )
+        } else if point.q.len() != n || point.qd.len() != n {
+            format!("its expansion point is not one of {n} joints")
+        } else if !fits_box {
+            format!("its operating box is not one of {n} joints")
+        } else {
+            return self.settings.validate(n).map_err(|error| error.to_string());
+        };
+        Err(format!("{problem}; run conform again"))
+    }
+
+    /// Checks that what is in the file twice is the same: where it is not, somebody has changed a
+    /// part. Returns the robot, its model and the settings.
+    fn check_parts(&self) -> Result<Setup, String> {
+        let changed = |what: &str| {
+            format!("{what}: the file was changed after it was written; run conform again")
+        };
+        if self.data.sha256 != self.data.digest() {
+            return Err(changed("data.sha256 is not that of the recordings it lists"));
+        }
+        let holds = self.proof.conformant;
+        if self.verified != holds || holds && self.proof.violations.count > 0 {
+            return Err(changed("verified does not agree with proof"));
+        }
+        let robot = Robot::from_description(&self.robot).map_err(|error| error.to_string())?;
+        let dynamics = self.dynamics(&robot).map_err(|error| error.to_string())?;
+        let dynamics = dynamics.ok_or_else(|| {
+            changed("the matrices or polynomials are not those that its robot and settings ask for")
+        })?;
+        Ok(Setup { robot, dynamics, settings: self.settings.clone() })
+    }
+
+    /// Returns the model bit by bit as the file has it; nothing where its matrices are not those of
+    /// the robot at the expansion point, or a linear model has polynomials instead.
+    fn dynamics(&self, robot: &Robot) -> Result<Option<Dynamics>> {
+        let Settings { abstraction, expansion_point, method, .. } = &self.settings;
+        if !self.acceleration.is_empty() {
+            let records = Records {
+                variables: self.variables.clone(),
+                origin: self.origin.clone(),
+                acceleration: self.acceleration.clone(),
+            };
+            let model = PolynomialModel::of_records(robot, *abstraction, expansion_point, records)?;
+            let dynamics = Dynamics::of(model, *method);
+            return Ok(dynamics.linear_system().is_none().then_some(dynamics));
+        }
+        let made = Dynamics::new(robot, &self.settings)?;
+        let own = LinearSystem::new(
+            matrix(&self.a),
+            matrix(&self.b),
+            DVector::from_vec(self.drift.clone()),
+        )?;
+        let same = made.linear_system().is_some_and(|made| is_near(made, &own));
+        Ok(same.then(|| made.with_linear(own)))
+    }
+}
+
+fn is_near(made: &LinearSystem, own: &LinearSystem) -> bool {
+    let near = |x: &DMatrix<f64>, y: &DMatrix<f64>| (x - y).amax() <= SAME * x.amax().max(y.amax());
+    let drift = (made.drift() - own.drift()).amax() <= SAME * made.drift().amax();
+    near(made.a(), own.a()) && near(made.b(), own.b()) && drift
+}
+
+fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
+    let columns = rows.first().map_or(0, Vec::len);
+    DMatrix::from_row_iterator(rows.len(), columns, rows.iter().flatten().copied())
+}
+
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+}

@@ -1,0 +1,7 @@
+//! The model file.
+
+pub(crate) mod file;
+pub(crate) mod records;
+
+pub use file::{FORMAT, MOST_TIGHT, Model, VERSION};
+pub use records::{DataRecord, Explained, Residual, RunRecord, SuiteRecord};

@@ -1,0 +1,158 @@
+//! What a model file says about its recordings.
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::explain::explanation::Explanation;
+use crate::problem::problem::Problem;
+use crate::problem::suite::{RunSummary, Suite};
+use crate::settings::Tolerance;
+
+/// The recordings beside the closest motions of the model that were found: a start in X0 and an input
+/// in U, held over each sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Explained {
+    /// Number of recordings that are reproduced within the tolerance of the settings.
+    pub runs: usize,
+    /// The residuals of each recording.
+    pub residuals: Vec<Residual>,
+}
+
+/// The largest difference of a recording to the closest motion found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Residual {
+    /// Path in the data set.
+    pub file: String,
+    /// The largest difference of a position, rad; `None` where the motion ran away.
+    pub position: Option<f64>,
+    /// The largest difference of a velocity, rad/s; `None` where the motion ran away.
+    pub velocity: Option<f64>,
+}
+
+/// The recordings that a model encloses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DataRecord {
+    /// SHA-256 over the lines `sha256  file` of all runs, as in the output of sha256sum, in this
+    /// order.
+    pub sha256: String,
+    /// The suites.
+    pub suites: Vec<SuiteRecord>,
+}
+
+/// A test suite in a model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SuiteRecord {
+    /// Its name.
+    pub name: String,
+    /// The motion it is part of, where the index says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
+    /// Its runs.
+    pub runs: Vec<RunRecord>,
+}
+
+/// A run in a model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunRecord {
+    /// Path in the data set.
+    pub file: String,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// Number of samples used.
+    pub samples: usize,
+    /// Time from the first to the last of them, s.
+    pub duration: f64,
+}
+
+impl Explained {
+    /// Sums the search up in one sentence, for people; `tolerance` is that of the settings.
+    #[must_use]
+    pub fn words(&self, tolerance: Tolerance) -> String {
+        let worst = self
+            .residuals
+            .iter()
+            .max_by(|a, b| a.in_tolerances(tolerance).total_cmp(&b.in_tolerances(tolerance)));
+        let Some(worst) = worst else { return "no recording to explain".into() };
+        let median = |of: fn(&Residual) -> Option<f64>| {
+            let mut values: Vec<f64> =
+                self.residuals.iter().map(|r| of(r).unwrap_or(f64::INFINITY)).collect();
+            values.sort_by(f64::total_cmp);
+            format!("{:.2e}", values[values.len() / 2])
+        };
+        let of = |value: Option<f64>| {
+            value.map_or_else(|| "infinitely far".into(), |value| format!("{value:.2e}"))
+        };
+        format!(
+            "a motion of the model itself (start in X0, input in U, held over each sample) was \
+             found within {} rad and {} rad/s of {} of the {} recordings; the closest motions found differ by {} rad and {} rad/s in the median, and by {} rad \
+             and {} rad/s for {}",
+            tolerance.position,
+            tolerance.velocity,
+            self.runs,
+            self.residuals.len(),
+            median(|r| r.position),
+            median(|r| r.velocity),
+            of(worst.position),
+            of(worst.velocity),
+            worst.file
+        )
+    }
+
+    pub(super) fn new(problem: &Problem, tolerance: Tolerance, all: &[Explanation]) -> Self {
+        let is_within =
+            |e: &&Explanation| e.position <= tolerance.position && e.velocity <= tolerance.velocity;
+        let finite = |value: f64| value.is_finite().then_some(value);
+        let residual = |e: &Explanation| Residual {
+            file: problem.entry(e.run).file.clone(),
+            position: finite(e.position),
+            velocity: finite(e.velocity),
+        };
+        Self {
+            runs: all.iter().filter(is_within).count(),
+            residuals: all.iter().map(residual).collect(),
+        }
+    }
+}
+
+impl Residual {
+    /// Returns the larger difference in parts of the tolerance.
+    fn in_tolerances(&self, tolerance: Tolerance) -> f64 {
+        let part = |value: Option<f64>, of: f64| {
+            value.unwrap_or(f64::INFINITY) / of.max(f64::MIN_POSITIVE)
+        };
+        part(self.position, tolerance.position).max(part(self.velocity, tolerance.velocity))
+    }
+}
+
+impl DataRecord {
+    pub(super) fn new(problem: &Problem) -> Self {
+        let run = |run: &RunSummary| RunRecord {
+            file: problem.entry(run.index).file.clone(),
+            sha256: run.sha256.clone(),
+            samples: run.samples,
+            duration: run.duration,
+        };
+        let suite = |suite: &Suite| SuiteRecord {
+            name: suite.entry.name.clone(),
+            motion: suite.entry.motion.clone(),
+            runs: suite.runs.iter().map(run).collect(),
+        };
+        let suites = problem.recordings().suites.iter().map(suite).collect();
+        let record = Self { sha256: String::new(), suites };
+        Self { sha256: record.digest(), ..record }
+    }
+
+    /// Returns the SHA-256 that the record must have.
+    pub(super) fn digest(&self) -> String {
+        let mut digest = Sha256::new();
+        for run in self.suites.iter().flat_map(|suite| &suite.runs) {
+            digest.update(format!("{}  {}\n", run.sha256, run.file));
+        }
+        reachtube_files::hex(&digest.finalize())
+    }
+}

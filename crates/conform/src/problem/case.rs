@@ -1,0 +1,44 @@
+use std::sync::Arc;
+
+use reachtube_reach::{IntervalVector, TimeGrid};
+
+use crate::envelope::Envelope;
+
+/// A case: what one reachable set is computed for. It is a suite whose runs share their input and
+/// nominal start, or one run that has its own.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The suite, and the run where it is a case of its own, for people.
+    pub name: String,
+    /// Index of the suite in [`Recordings::suites`](crate::Recordings::suites).
+    pub suite: usize,
+    /// The run (index in the source) where it is a case of its own.
+    pub run: Option<usize>,
+    /// The sample times.
+    pub grid: Arc<TimeGrid>,
+    /// The input u, row-major, samples x n, N m.
+    pub inputs: Arc<[f64]>,
+    /// The nominal initial state, 2n: the mean of the suite's first states, or the run's own.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer enclosure of the exact mean.
+    pub start: IntervalVector,
+    /// The measured states.
+    pub measured: Arc<Envelope>,
+}
+
+impl Case {
+    /// Returns the number of joints n.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.start.len() / 2
+    }
+
+    /// Returns the nominal initial state in double precision, 2n: the start that defines the
+    /// nominal motion of a model that is not linear.
+    #[must_use]
+    pub fn start_point(&self) -> Vec<f64> {
+        self.start.iter().map(|x| x.mid()).collect()
+    }
+}

@@ -1,0 +1,54 @@
+use std::path::Path;
+use std::sync::Arc;
+
+use reachtube_reach::TimeGrid;
+use reachtube_recordings::{Defect, Run, Torque, check_limits};
+use reachtube_robot::Robot;
+
+/// The sample times of a run and the input u along it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunInput {
+    /// The sample times.
+    pub grid: Arc<TimeGrid>,
+    /// The input u, row-major, samples x n, N m.
+    pub inputs: Arc<[f64]>,
+}
+
+impl RunInput {
+    /// Evaluates the input along a run, eq. (11) of the paper, and checks its units and times.
+    ///
+    /// # Errors
+    ///
+    /// Defects of units and times, under the name `path`.
+    pub(super) fn new(
+        path: &Path,
+        run: &Run,
+        robot: &Robot,
+        torque: Torque,
+    ) -> Result<Self, Vec<Defect>> {
+        let defects = check_limits(path, run, robot);
+        if !defects.is_empty() {
+            return Err(defects);
+        }
+        let grid = TimeGrid::from_times(&run.times).map_err(|error| {
+            let remedy = "sort the samples, drop duplicates";
+            vec![Defect::new(path, None, error.to_string(), remedy)]
+        })?;
+        let mut inputs = Vec::with_capacity(run.torques.len());
+        for k in 0..run.len() {
+            inputs.extend(torque.input(robot, run.q(k), run.qd(k), run.torque(k)));
+        }
+        Ok(Self { grid: Arc::new(grid), inputs: inputs.into() })
+    }
+
+    /// Returns the longer of two inputs when the other is its beginning, and nothing otherwise.
+    /// The input of a run's last sample acts on nothing and is not compared.
+    pub(super) fn merge(self, other: Self, joints: usize) -> Option<Self> {
+        let (short, long) =
+            if self.grid.len() <= other.grid.len() { (self, other) } else { (other, self) };
+        let acting = short.grid.len().saturating_sub(1) * joints;
+        let same =
+            short.grid.is_prefix_of(&long.grid) && short.inputs[..acting] == long.inputs[..acting];
+        same.then_some(long)
+    }
+}

@@ -1,0 +1,15 @@
+//! A model, settings and recordings that are read once: what every step of a conformance takes.
+
+pub(crate) mod case;
+pub(crate) mod input;
+mod kept;
+#[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
+pub(crate) mod problem;
+pub(crate) mod recordings;
+pub(crate) mod suite;
+
+pub use case::Case;
+pub use input::RunInput;
+pub use problem::{Keep, Problem, Setup};
+pub use recordings::Recordings;
+pub use suite::{RunSummary, Suite};

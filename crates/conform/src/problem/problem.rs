@@ -1,0 +1,359 @@
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
+
+use rayon::prelude::*;
+use reachtube_abstraction::{OperatingBox, PolynomialModel};
+use reachtube_reach::IntervalVector;
+use reachtube_recordings::{ReadOptions, Run, RunEntry, RunSource, State};
+use reachtube_robot::Robot;
+use reachtube_scalar::Interval;
+
+use crate::deviation::Deviation;
+use crate::dynamics::Dynamics;
+use crate::envelope::Envelope;
+use crate::error::{Error, Result};
+use crate::grids::Grids;
+use crate::problem::case::Case;
+use crate::problem::input::RunInput;
+use crate::problem::kept::KeptRuns;
+use crate::problem::recordings::Recordings;
+use crate::problem::suite::{RunSummary, Suite, SuiteReader};
+use crate::progress::Progress;
+use crate::settings::{NominalStart, Settings};
+
+/// What decides a conformance besides the recordings: the robot, its model and the settings.
+///
+/// The robot names the joints, turns recorded torques into inputs and is written into the model
+/// file; all that follows the reading uses only the model.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// The robot.
+    pub robot: Robot,
+    /// The model of its motion.
+    pub dynamics: Dynamics,
+    /// The settings.
+    pub settings: Settings,
+}
+
+impl Setup {
+    /// Makes the model of `robot` that `settings` ask for.
+    ///
+    /// # Errors
+    ///
+    /// Settings that do not fit the robot, a robot that is not physical at the expansion point.
+    pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
+        settings.validate(robot.joint_count())?;
+        let dynamics = Dynamics::new(&robot, &settings)?;
+        Ok(Self { robot, dynamics, settings })
+    }
+
+    /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
+    /// operating box.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unbounded`] when the model's error was found to have no bound over its box, and
+    /// settings that do not fit.
+    pub fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
+        let settings = settings.with_abstraction(&model)?;
+        settings.validate(model.joints())?;
+        let robot = Robot::from_description(model.robot())?;
+        let dynamics = Dynamics::of(model, settings.method);
+        Ok(Self { robot, dynamics, settings })
+    }
+}
+
+/// Which runs stay in memory, sample by sample, after they were folded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Keep {
+    /// Those that have a nominal solution of their own.
+    #[default]
+    Needed,
+    /// All, as figures and explanations need them; up to 256 MiB, beyond which runs are read again.
+    All,
+}
+
+/// A problem: a model, settings and recordings, which are read once and folded into what the steps
+/// need. [`conform`](crate::conform), [`check`](crate::check()), [`reach`](crate::reach()) and
+/// [`explain`](crate::explain()) take it.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
+/// use reachtube_recordings::{MemoryRuns, Run, Torque};
+/// use reachtube_robot::Robot;
+///
+/// // Two runs of the arm at rest, a little apart.
+/// let mut runs = MemoryRuns::default();
+/// for offset in [0.0, 0.001] {
+///     let states = [vec![offset; 6], vec![0.0; 6]].concat().repeat(3);
+///     let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18])?;
+///     runs.push(&format!("run{offset}"), Some("A"), None, run);
+/// }
+/// let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6))?;
+/// let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent)?;
+/// let found = conform(&problem, &Silent, None)?;
+/// assert!(found.verdict.conformant);
+/// assert!((found.sets.initial_set.radius[0] - 0.0005).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Problem {
+    setup: Setup,
+    source: Box<dyn RunSource>,
+    recordings: Recordings,
+    kept: HashMap<usize, Run>,
+    grids: OnceLock<Grids>,
+    cases: OnceLock<Vec<Case>>,
+    deviations: OnceLock<Vec<Deviation>>,
+}
+
+impl Problem {
+    /// Reads the suites `names` of `source` (all when none is named) on all cores.
+    ///
+    /// # Errors
+    ///
+    /// Every defect of every run, an unknown suite, a run that starts outside the box over which
+    /// the model's error was bounded.
+    pub fn read(
+        setup: Setup,
+        source: Box<dyn RunSource>,
+        names: &[String],
+        keep: Keep,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let Setup { robot, settings, .. } = &setup;
+        settings.validate(robot.joint_count())?;
+        let kept = KeptRuns::default();
+        let reader = SuiteReader {
+            source: source.as_ref(),
+            options: read_options(&setup),
+            robot,
+            torque: settings.torque,
+            nominal: settings.nominal,
+            kept: &kept,
+            keep_all: keep == Keep::All || settings.explain.is_some(),
+        };
+        let recordings = Recordings::read(&reader, names, progress)?;
+        let (grids, cases, deviations) = Default::default();
+        let kept = kept.into_runs();
+        let mut problem = Self { setup, source, recordings, kept, grids, cases, deviations };
+        problem.check_starts()?;
+        let leaving = problem.leaving_notes();
+        problem.recordings.notes.extend(leaving);
+        Ok(problem)
+    }
+
+    /// Returns the robot.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.setup.robot
+    }
+
+    /// Returns the model.
+    #[must_use]
+    pub fn dynamics(&self) -> &Dynamics {
+        &self.setup.dynamics
+    }
+
+    /// Returns the settings.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.setup.settings
+    }
+
+    /// Returns the recordings.
+    #[must_use]
+    pub fn recordings(&self) -> &Recordings {
+        &self.recordings
+    }
+
+    /// Returns the number of joints n.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.setup.robot.joint_count()
+    }
+
+    /// Returns the source's entry of run `index`.
+    #[must_use]
+    pub fn entry(&self, index: usize) -> &RunEntry {
+        &self.source.runs()[index]
+    }
+
+    /// Returns the samples of run `index`: those in memory, or read once more where they were not
+    /// kept.
+    ///
+    /// # Errors
+    ///
+    /// Defects, or [`Error::Changed`] when the recording is not the one that was read first.
+    pub fn run(&self, index: usize) -> Result<Cow<'_, Run>> {
+        if let Some(run) = self.kept.get(&index) {
+            return Ok(Cow::Borrowed(run));
+        }
+        let run = self
+            .source
+            .read(index, &read_options(&self.setup))
+            .map_err(reachtube_recordings::Error::Defects)?;
+        let summaries = self.recordings.suites.iter().flat_map(|suite| &suite.runs);
+        let read_first = summaries.into_iter().find(|summary| summary.index == index);
+        if read_first.is_some_and(|summary| summary.sha256 != run.sha256) {
+            return Err(Error::Changed { path: self.source.run_name(index) });
+        }
+        Ok(Cow::Owned(run))
+    }
+
+    /// Returns the sample grids of the recordings, with e^{At}, Γ(t) and κ(t) of the linear model.
+    /// They are computed when first asked for.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotLinear`] for any other model; when the solution of the system cannot be enclosed
+    /// over a grid.
+    pub fn grids(&self) -> Result<&Grids> {
+        if let Some(grids) = self.grids.get() {
+            return Ok(grids);
+        }
+        let system = self.dynamics().linear_system().ok_or(Error::NotLinear)?;
+        let runs = self.recordings.suites.iter().flat_map(|suite| &suite.runs);
+        let times = runs.map(|run| run.grid.as_ref());
+        let grids = Grids::new(times, system, self.settings().disturbance)?;
+        Ok(self.grids.get_or_init(|| grids))
+    }
+
+    /// Returns the deviations of all suites from the nominal solutions of the linear model. They
+    /// are computed when first asked for.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, as [`Deviation::new`].
+    ///
+    /// # Errors
+    ///
+    /// As [`grids`](Self::grids) and [`run`](Self::run).
+    pub fn deviations(&self) -> Result<&[Deviation]> {
+        if let Some(deviations) = self.deviations.get() {
+            return Ok(deviations);
+        }
+        let grids = self.grids()?;
+        let of = |suite| self.cases_of(suite, |case| Ok(Deviation::new(grids, &case)));
+        let suites = (0..self.recordings.suites.len()).map(of).collect::<Result<Vec<_>>>()?;
+        Ok(self.deviations.get_or_init(|| Deviation::merge(suites.into_iter().flatten())))
+    }
+
+    /// Returns the cases of all suites, in their order. They are made when first asked for and
+    /// stay in memory.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn cases(&self) -> Result<&[Case]> {
+        if let Some(cases) = self.cases.get() {
+            return Ok(cases);
+        }
+        let suites = 0..self.recordings.suites.len();
+        let parts: Vec<Vec<Case>> =
+            suites.map(|suite| self.cases_of(suite, Ok)).collect::<Result<_>>()?;
+        Ok(self.cases.get_or_init(|| parts.concat()))
+    }
+
+    /// Hands each case of suite `index` to `visit`, on all cores, without keeping it; returns the
+    /// answers in the order of the cases.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and those of `visit`.
+    pub(crate) fn cases_of<T: Send>(
+        &self,
+        index: usize,
+        visit: impl Fn(Case) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let suite = &self.recordings.suites[index];
+        match &suite.shared {
+            Some(input) => Ok(vec![visit(Case {
+                name: format!("suite {}", suite.entry.name),
+                suite: index,
+                run: None,
+                grid: Arc::clone(&input.grid),
+                inputs: Arc::clone(&input.inputs),
+                start: suite.mean_start.clone(),
+                measured: Arc::clone(&suite.envelope),
+            })?]),
+            None => {
+                let own =
+                    |summary: &RunSummary| visit(self.case_of_run(suite, index, summary.index)?);
+                suite.runs.par_iter().map(own).collect()
+            }
+        }
+    }
+
+    fn case_of_run(&self, suite: &Suite, index: usize, run: usize) -> Result<Case> {
+        let recorded = self.run(run)?;
+        let path = self.source.run_name(run);
+        let RunInput { grid, inputs } =
+            RunInput::new(&path, &recorded, self.robot(), self.settings().torque)
+                .map_err(reachtube_recordings::Error::Defects)?;
+        let mut measured = Envelope::new(2 * recorded.joints);
+        measured.include(run as u32, &recorded.states);
+        let start = match self.settings().nominal {
+            NominalStart::Mean => suite.mean_start.clone(),
+            NominalStart::Own => IntervalVector::from_fn(2 * recorded.joints, |i, _| {
+                Interval::point(recorded.state(0)[i])
+            }),
+        };
+        let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
+        let measured = Arc::new(measured);
+        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured })
+    }
+
+    /// Refuses recordings that start outside the box over which the model's error was bounded: an
+    /// initial set that holds them would leave it too.
+    fn check_starts(&self) -> Result<()> {
+        let Some(operating_box) = &self.settings().operating_box else { return Ok(()) };
+        for run in self.recordings.suites.iter().flat_map(|suite| &suite.runs) {
+            for (i, &value) in run.start.iter().enumerate() {
+                let [low, high] = side(operating_box, i);
+                if !(low..=high).contains(&value) {
+                    let (file, state) =
+                        (self.entry(run.index).file.clone(), State::from_index(i, self.joints()));
+                    return Err(Error::StartsOutsideBox { file, state, value, low, high });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Names, for each suite that leaves the box, where it does so first.
+    fn leaving_notes(&self) -> Vec<String> {
+        let Some(operating_box) = &self.settings().operating_box else { return Vec::new() };
+        let leaves = |suite: &Suite| {
+            let envelope = &suite.envelope;
+            let outside = |k: usize, i: usize| {
+                let [low, high] = side(operating_box, i);
+                envelope.upper(k, i) > high || envelope.lower(k, i) < low
+            };
+            let states = envelope.dimension();
+            let mut places = (0..envelope.len()).flat_map(|k| (0..states).map(move |i| (k, i)));
+            let (k, i) = places.find(|&(k, i)| outside(k, i))?;
+            Some(format!(
+                "suite {}: {} leaves the operating box at sample {k}. The model error has no \
+                 proved bound outside the box; there it is covered only by these recordings",
+                suite.entry.name,
+                State::from_index(i, self.joints())
+            ))
+        };
+        self.recordings.suites.iter().filter_map(leaves).collect()
+    }
+}
+
+fn read_options(setup: &Setup) -> ReadOptions {
+    let Settings { gap_limit, until, .. } = setup.settings;
+    ReadOptions { joints: Some(setup.robot.joint_count()), gap_limit, until }
+}
+
+/// The side of the box for state `i`, q then q̇.
+fn side(operating_box: &OperatingBox, i: usize) -> [f64; 2] {
+    let n = operating_box.q.len();
+    if i < n { operating_box.q[i] } else { operating_box.qd[i - n] }
+}

@@ -1,0 +1,220 @@
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+use reachtube_reach::{IntervalVector, TimeGrid};
+use reachtube_recordings::{Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque, run_notes};
+use reachtube_robot::Robot;
+use reachtube_scalar::Interval;
+
+use crate::envelope::Envelope;
+use crate::problem::input::RunInput;
+use crate::problem::kept::KeptRuns;
+use crate::settings::NominalStart;
+
+/// One test suite after reading.
+#[derive(Debug)]
+pub struct Suite {
+    /// The suite's name and runs.
+    pub entry: SuiteEntry,
+    /// What was read of each run, in the order of `entry.runs`.
+    pub runs: Vec<RunSummary>,
+    /// The mean of the runs' first states, 2n.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer enclosure of the exact mean.
+    pub mean_start: IntervalVector,
+    /// The one input of all runs (Definition 2), where they share it and their nominal start: that
+    /// of the longest run, of which the others' are the beginning.
+    pub shared: Option<RunInput>,
+    /// Envelope of the measured states, with run indices of the source.
+    pub envelope: Arc<Envelope>,
+}
+
+/// What is kept of every run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSummary {
+    /// Index in the source.
+    pub index: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// Time from the first to the last sample, s.
+    pub duration: f64,
+    /// The run's grid, or a longer one of the suite that it is the beginning of: runs of one rate
+    /// share one.
+    pub grid: Arc<TimeGrid>,
+    /// The first state, 2n.
+    pub start: Vec<f64>,
+    /// SHA-256 of the recording.
+    pub sha256: String,
+    /// What a user should know about the run.
+    pub notes: Vec<String>,
+}
+
+/// What reading a suite depends on.
+pub(super) struct SuiteReader<'a> {
+    pub source: &'a dyn RunSource,
+    pub options: ReadOptions,
+    pub robot: &'a Robot,
+    pub torque: Torque,
+    pub nominal: NominalStart,
+    pub kept: &'a KeptRuns,
+    /// Whether every run is kept, and not only those that later steps need one by one.
+    pub keep_all: bool,
+}
+
+impl SuiteReader<'_> {
+    /// Reads the runs of a suite on all cores and folds them. The fold's size does not grow with
+    /// the number of runs, except for the summaries; `progress` takes how many runs are done.
+    ///
+    /// # Errors
+    ///
+    /// Every defect of every run.
+    pub fn read(
+        &self,
+        entry: &SuiteEntry,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<Suite, Vec<Defect>> {
+        let n = self.robot.joint_count();
+        let done = AtomicUsize::new(0);
+        let take = |mut part: Part, (place, &index): (usize, &usize)| {
+            match self.read_run(index) {
+                Ok((run, input)) => self.take(&mut part, place, index, run, input),
+                Err(defects) => part.defects.push((place, defects)),
+            }
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            part
+        };
+        let parts = entry.runs.par_iter().enumerate().fold(|| Part::new(n), take);
+        let whole = parts.reduce(|| Part::new(n), |a, b| a.merge(b, n, self.kept));
+        self.suite(entry, whole)
+    }
+
+    fn read_run(&self, index: usize) -> Result<(Run, RunInput), Vec<Defect>> {
+        let run = self.source.read(index, &self.options)?;
+        let input = RunInput::new(&self.source.run_name(index), &run, self.robot, self.torque)?;
+        Ok((run, input))
+    }
+
+    /// Folds one run into `part`. A run is kept when the suite's runs are known to be cases of
+    /// their own, or when it may turn out so: the first one, until a second shares its input.
+    fn take(&self, part: &mut Part, place: usize, index: usize, run: Run, input: RunInput) {
+        let n = run.joints;
+        part.envelope.include(index as u32, &run.states);
+        let summary = RunSummary {
+            index,
+            samples: run.len(),
+            duration: input.grid.times().last().copied().unwrap_or(0.0),
+            grid: part.grid(&input.grid),
+            start: run.state(0).to_vec(),
+            sha256: run.sha256.clone(),
+            notes: run_notes(self.source, index, &run),
+        };
+        part.runs.push((place, summary));
+        let is_first = part.is_empty;
+        part.share(Some(input), n);
+        if self.keep_all || self.nominal == NominalStart::Own || part.shared.is_none() {
+            self.kept.keep(index, run);
+        } else if is_first {
+            part.first = Some((index, run));
+            return;
+        }
+        let first = part.first.take();
+        part.keep_if_own(first, self.kept);
+    }
+
+    fn suite(&self, entry: &SuiteEntry, mut whole: Part) -> Result<Suite, Vec<Defect>> {
+        if !whole.defects.is_empty() {
+            whole.defects.sort_by_key(|(place, _)| *place);
+            return Err(whole.defects.into_iter().flat_map(|(_, defects)| defects).collect());
+        }
+        whole.runs.sort_by_key(|(place, _)| *place);
+        let runs: Vec<RunSummary> = whole.runs.into_iter().map(|(_, run)| run).collect();
+        let own_start = self.nominal == NominalStart::Own;
+        Ok(Suite {
+            entry: entry.clone(),
+            mean_start: mean_start(&runs, self.robot.joint_count()),
+            runs,
+            shared: whole.shared.filter(|_| !own_start),
+            envelope: Arc::new(whole.envelope),
+        })
+    }
+}
+
+/// What a part of a suite's runs is folded into.
+struct Part {
+    runs: Vec<(usize, RunSummary)>,
+    /// The input that all runs so far share, if they do.
+    shared: Option<RunInput>,
+    /// Whether no run has been taken in yet, so that `shared` is not yet known.
+    is_empty: bool,
+    /// The first run, while it is the only one.
+    first: Option<(usize, Run)>,
+    envelope: Envelope,
+    grids: Vec<Arc<TimeGrid>>,
+    defects: Vec<(usize, Vec<Defect>)>,
+}
+
+impl Part {
+    fn new(joints: usize) -> Self {
+        Self {
+            runs: Vec::new(),
+            shared: None,
+            is_empty: true,
+            first: None,
+            envelope: Envelope::new(2 * joints),
+            grids: Vec::new(),
+            defects: Vec::new(),
+        }
+    }
+
+    fn grid(&mut self, grid: &Arc<TimeGrid>) -> Arc<TimeGrid> {
+        if let Some(known) = self.grids.iter().find(|known| grid.is_prefix_of(known)) {
+            return Arc::clone(known);
+        }
+        self.grids.push(Arc::clone(grid));
+        Arc::clone(grid)
+    }
+
+    fn share(&mut self, other: Option<RunInput>, joints: usize) {
+        self.shared = if self.is_empty {
+            other
+        } else {
+            self.shared.take().zip(other).and_then(|(a, b)| a.merge(b, joints))
+        };
+        self.is_empty = false;
+    }
+
+    /// Keeps a first run that turned out to be a case of its own.
+    fn keep_if_own(&self, first: Option<(usize, Run)>, kept: &KeptRuns) {
+        if let (Some((index, run)), None) = (first, &self.shared) {
+            kept.keep(index, run);
+        }
+    }
+
+    fn merge(mut self, other: Self, joints: usize, kept: &KeptRuns) -> Self {
+        if self.is_empty {
+            self.first = other.first;
+        } else if !other.is_empty {
+            let firsts = [self.first.take(), other.first];
+            self.share(other.shared.clone(), joints);
+            firsts.into_iter().for_each(|first| self.keep_if_own(first, kept));
+        }
+        if self.is_empty && !other.is_empty {
+            self.share(other.shared, joints);
+        }
+        self.runs.extend(other.runs);
+        self.defects.extend(other.defects);
+        self.envelope.merge(&other.envelope);
+        self
+    }
+}
+
+fn mean_start(runs: &[RunSummary], joints: usize) -> IntervalVector {
+    let count = Interval::point(runs.len() as f64);
+    DVector::from_fn(2 * joints, |i, _| {
+        runs.iter().fold(Interval::ZERO, |sum, run| sum + Interval::point(run.start[i])) / count
+    })
+}

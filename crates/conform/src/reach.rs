@@ -1,0 +1,203 @@
+//! Reachable sets of a model over recorded suites.
+
+use std::io::{self, Write};
+
+use reachtube_reach::{Flowpipe, ReachSets, Trajectory, Tube, TubeRadii};
+use reachtube_recordings::State;
+use reachtube_scalar::rounding::{add_down, add_up};
+
+use crate::deviation::Nominal;
+use crate::error::Result;
+use crate::grids::Grid;
+use crate::hulls::{HullKind, Hulls, Lost};
+use crate::problem::case::Case;
+use crate::problem::problem::Problem;
+use crate::search::sensitivity::nominal;
+use crate::sets::UncertaintySets;
+
+/// The reachable set over one suite, or over one run that has its own nominal solution.
+#[derive(Debug, Clone)]
+pub struct SuiteReach {
+    /// The suite.
+    pub suite: String,
+    /// The run, where it has its own nominal solution.
+    pub run: Option<String>,
+    /// Sample times, s, K.
+    pub times: Vec<f64>,
+    /// The nominal solution, K x 2n.
+    pub nominal: Vec<f64>,
+    /// Lower bounds at samples, K x 2n.
+    pub lower: Vec<f64>,
+    /// Upper bounds at samples, K x 2n.
+    pub upper: Vec<f64>,
+    /// Bounds over each step between samples, (K - 1) x 2n.
+    pub tube: Tube,
+    /// Number of states 2n.
+    pub dimension: usize,
+    /// Where the set could not be followed further, if so: times end there.
+    pub lost: Option<Lost>,
+}
+
+/// Computes the reachable sets over the recorded suites under the sets of `hulls`, at samples and
+/// between them.
+///
+/// # Guarantee
+///
+/// Outer, directed rounding: `lower` and `upper` enclose the reachable set of the state at each
+/// sample, `tube` at every time of each step. The noise set is not part of it.
+///
+/// # Errors
+///
+/// As [`Problem::run`]; a model that runs away without any uncertainty.
+pub fn reach(problem: &Problem, hulls: &Hulls) -> Result<Vec<SuiteReach>> {
+    match &hulls.kind {
+        HullKind::Linear(reach) => linear(problem, &hulls.sets, reach),
+        HullKind::Outer(flowpipes) => {
+            let of_case = |(case, flowpipe): (&Case, &Flowpipe)| {
+                let nominal = nominal(problem.dynamics().polynomials(), case)?;
+                Ok(SuiteReach::of_flowpipe(problem, case, nominal, flowpipe))
+            };
+            problem.cases()?.iter().zip(flowpipes).map(of_case).collect()
+        }
+    }
+}
+
+fn linear(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    reach: &[ReachSets],
+) -> Result<Vec<SuiteReach>> {
+    let (grids, disturbance) = (problem.grids()?, problem.settings().disturbance);
+    let radii_on = |grid: &Grid| {
+        TubeRadii::new(&grid.propagation, disturbance, &sets.initial_set, &sets.input_set)
+    };
+    let radii: Vec<TubeRadii> = grids.as_slice().iter().map(radii_on).collect();
+    let of_case = |case: Case| {
+        let nominal = Nominal::new(grids, &case);
+        let propagation = &grids.as_slice()[nominal.grid].propagation;
+        let (reach, radii) = (&reach[nominal.grid], &radii[nominal.grid]);
+        let Nominal { trajectory, .. } = nominal;
+        let tube = Tube::new(propagation, &trajectory, &case.inputs, reach, &sets.input_set, radii);
+        let times = propagation.grid().times()[..trajectory.len()].to_vec();
+        Ok(SuiteReach::new(problem, &case, times, &trajectory, reach, tube))
+    };
+    let suites = 0..problem.recordings().suites.len();
+    let parts = suites.map(|suite| problem.cases_of(suite, of_case)).collect::<Result<Vec<_>>>()?;
+    Ok(parts.into_iter().flatten().collect())
+}
+
+impl SuiteReach {
+    fn new(
+        problem: &Problem,
+        case: &Case,
+        times: Vec<f64>,
+        trajectory: &Trajectory,
+        reach: &ReachSets,
+        tube: Tube,
+    ) -> Self {
+        let dimension = 2 * case.joints();
+        let (mut nominal, mut lower, mut upper) = (Vec::new(), Vec::new(), Vec::new());
+        for k in 0..times.len() {
+            for (i, x) in trajectory.state(k).iter().enumerate() {
+                nominal.push(x.mid());
+                lower.push(add_down(x.lo(), reach.lower_outer(k, i)));
+                upper.push(add_up(x.hi(), reach.upper_outer(k, i)));
+            }
+        }
+        let (suite, run) = names(problem, case);
+        Self { suite, run, times, nominal, lower, upper, tube, dimension, lost: None }
+    }
+
+    /// Takes the reachable set as far as the flowpipe goes.
+    fn of_flowpipe(
+        problem: &Problem,
+        case: &Case,
+        mut nominal: Vec<f64>,
+        flowpipe: &Flowpipe,
+    ) -> Self {
+        let (dimension, samples) = (2 * case.joints(), flowpipe.len());
+        nominal.truncate(samples * dimension);
+        let hulls = || (0..samples).flat_map(|k| flowpipe.sample(k));
+        let steps = (0..samples.saturating_sub(1)).flat_map(|k| flowpipe.step(k)).copied();
+        let (suite, run) = names(problem, case);
+        Self {
+            suite,
+            run,
+            times: case.grid.times()[..samples].to_vec(),
+            nominal,
+            lower: hulls().map(|hull| hull.lo()).collect(),
+            upper: hulls().map(|hull| hull.hi()).collect(),
+            tube: Tube::from_boxes(dimension, steps.collect()),
+            dimension,
+            lost: Lost::new(case, flowpipe),
+        }
+    }
+
+    /// Returns a name for files: the suite, and the run where it has its own nominal solution.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match &self.run {
+            None => self.suite.clone(),
+            Some(run) => {
+                let stem = std::path::Path::new(run)
+                    .file_stem()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned();
+                format!("{}_{stem}", self.suite)
+            }
+        }
+    }
+
+    /// Writes the sets at samples as CSV: `t,q1_lower,q1_nominal,q1_upper,...`, one row
+    /// per sample.
+    ///
+    /// # Errors
+    ///
+    /// Those of `out`.
+    pub fn write_samples(&self, out: &mut dyn Write) -> io::Result<()> {
+        let names =
+            |kind: &str, i: usize| format!("{}_{kind}", State::from_index(i, self.dimension / 2));
+        write!(out, "t")?;
+        for i in 0..self.dimension {
+            write!(out, ",{},{},{}", names("lower", i), names("nominal", i), names("upper", i))?;
+        }
+        writeln!(out)?;
+        for (k, t) in self.times.iter().enumerate() {
+            write!(out, "{t}")?;
+            for at in k * self.dimension..(k + 1) * self.dimension {
+                write!(out, ",{},{},{}", self.lower[at], self.nominal[at], self.upper[at])?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the tube as CSV: `t_from,t_to,q1_lower,q1_upper,...`, one row per step.
+    ///
+    /// # Errors
+    ///
+    /// Those of `out`.
+    pub fn write_tube(&self, out: &mut dyn Write) -> io::Result<()> {
+        write!(out, "t_from,t_to")?;
+        for i in 0..self.dimension {
+            let name = State::from_index(i, self.dimension / 2);
+            write!(out, ",{name}_lower,{name}_upper")?;
+        }
+        writeln!(out)?;
+        for k in 0..self.tube.len() {
+            write!(out, "{},{}", self.times[k], self.times[k + 1])?;
+            for bounds in self.tube.bounds(k) {
+                write!(out, ",{},{}", bounds.lo(), bounds.hi())?;
+            }
+            writeln!(out)?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns the suite of a case, and its run where it has its own nominal solution.
+fn names(problem: &Problem, case: &Case) -> (String, Option<String>) {
+    let suite = problem.recordings().suites[case.suite].entry.name.clone();
+    (suite, case.run.map(|index| problem.entry(index).file.clone()))
+}

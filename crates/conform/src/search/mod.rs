@@ -1,0 +1,11 @@
+//! The smallest sets of a model that is not linear: successive linearisation, or bisection as a
+//! baseline.
+
+mod bisection;
+mod journal;
+pub(crate) mod sensitivity;
+mod smallest_sets;
+mod successive;
+mod worst_case;
+
+pub(crate) use smallest_sets::smallest_sets;

@@ -1,0 +1,348 @@
+//! Uncertainty sets of a model that is not linear, by successive linearisation (docs/method.md,
+//! correction K).
+//!
+//! Each round linearises the model along every nominal motion, about the centres found so far, and
+//! solves one linear program over all cases. Worst-case motions, simulated with the model itself,
+//! show where it reaches further than its linearisation, and move the rows of the next round. When
+//! the sets have settled, their reachable sets are enclosed. Rows outside the enclosure are asked
+//! for with a margin, until every recording is enclosed.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use rayon::prelude::*;
+use reachtube_reach::{Flowpipe, Hyperrectangle};
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::flowpipes::{Effort, flowpipe};
+use crate::found::SearchSummary;
+use crate::linear::block::Block;
+use crate::linear::program::{Program, RowIndex, Solution};
+use crate::problem::case::Case;
+use crate::problem::problem::Problem;
+use crate::progress::Progress;
+use crate::rows::rows;
+use crate::search::journal::Journal;
+use crate::search::sensitivity::{Sensitivity, runs_away};
+use crate::search::worst_case::Correction;
+use crate::sets::UncertaintySets;
+use crate::side::Side;
+
+/// Rounds of linearisation after which the sets are taken as they are; with margins at most twice
+/// as many.
+const ROUNDS: usize = 20;
+
+/// Part of the largest radius or centre below which a change counts as settled.
+const SETTLED: f64 = 1e-5;
+
+/// Part of the cost below which its change counts as settled too: where the program has several
+/// answers, the sets may wander among them.
+const SAME_COST: f64 = 1e-6;
+
+/// Centres get less freedom when a change exceeds this part of the one before.
+const SHRINKS: f64 = 0.8;
+
+/// Factor on what is missing with which rows outside the enclosure are asked for.
+const MARGIN: f64 = 1.1;
+
+/// A search for the smallest sets of a problem.
+pub(super) struct SuccessiveLinearisation<'a> {
+    pub problem: &'a Problem,
+    pub cases: &'a [Case],
+    /// The weights of the states in the cost, s, 2n.
+    pub weights: Vec<f64>,
+}
+
+/// The sets that a search found.
+pub(super) struct SearchResult {
+    pub sets: UncertaintySets,
+    pub flowpipes: Vec<Flowpipe>,
+    /// The rows that decide the sets: case, sample, state, side.
+    pub deciding: Vec<RowIndex>,
+    pub summary: SearchSummary,
+}
+
+/// The state of the search between rounds: everything that the next round depends on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SearchState {
+    /// Number of rounds done.
+    pub rounds: usize,
+    /// How often the reachable sets were computed.
+    pub reachable_sets: usize,
+    /// The cost of the linearised sets after the last round.
+    pub cost: f64,
+    /// The change of the sets by that round's program.
+    pub change: f64,
+    /// How far centres may move in the next round, in parts of the largest centre or radius of
+    /// their kind.
+    pub freedom: f64,
+    /// The sets after the last round.
+    pub sets: UncertaintySets,
+    /// The rows that must be reached with a margin, because they were not enclosed.
+    pub margins: Vec<Margin>,
+}
+
+/// A row that must be reached with a margin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Margin {
+    case: usize,
+    sample: usize,
+    state: usize,
+    side: Side,
+    /// rad or rad/s.
+    margin: f64,
+}
+
+/// One linearisation and the answer of its program.
+pub(super) struct Round<'a> {
+    /// The program, with one block per case.
+    program: Program<'a>,
+    pub solution: Solution,
+    /// Where a worst-case motion under the sets of the round before ran away: case and time, s.
+    pub runs_away: Option<(usize, f64)>,
+}
+
+impl SearchState {
+    /// Returns the state before the first round: no uncertainty.
+    pub fn start(joints: usize) -> Self {
+        let (initial_set, input_set) =
+            (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
+        let sets = UncertaintySets { initial_set, input_set, noise_set: None };
+        Self {
+            rounds: 0,
+            reachable_sets: 0,
+            cost: 0.0,
+            change: f64::MAX,
+            freedom: f64::MAX,
+            sets,
+            margins: Vec::new(),
+        }
+    }
+
+    /// Takes the answer of a program and returns whether the sets have settled. Where answers jump
+    /// back and forth, as answers of the same cost may do, centres get less freedom.
+    fn take(&mut self, round: &Round) -> bool {
+        let (change, cost) =
+            (change(&self.sets, &round.solution.sets), round.program.cost(&round.solution.sets));
+        if change > SHRINKS * self.change {
+            self.freedom = 0.5 * self.freedom.min(change);
+        }
+        let is_settled = change <= SETTLED || (cost - self.cost).abs() <= SAME_COST * cost;
+        self.sets = round.solution.sets.clone();
+        (self.change, self.cost, self.rounds) = (change, cost, self.rounds + 1);
+        is_settled
+    }
+
+    /// Returns the bounds of the centres of X0 and U in the next round; none when they are free.
+    fn centre_bounds(&self) -> Vec<[f64; 2]> {
+        if self.freedom == f64::MAX {
+            return Vec::new();
+        }
+        let n = self.sets.input_set.dimension();
+        let around = |set: &Hyperrectangle, kind: Range<usize>| {
+            let reach = self.freedom * largest(set, kind.clone());
+            set.centre[kind].iter().map(|c| [c - reach, c + reach]).collect::<Vec<_>>()
+        };
+        let (x, u) = (&self.sets.initial_set, &self.sets.input_set);
+        [around(x, 0..n), around(x, n..2 * n), around(u, 0..n)].concat()
+    }
+
+    /// Adds margins; those of one row add up.
+    fn add(&mut self, missing: Vec<Margin>) {
+        self.change = f64::MAX;
+        let places = self.margins.iter().enumerate().map(|(at, margin)| (margin.row(), at));
+        let known: HashMap<_, usize> = places.collect();
+        for new in missing {
+            match known.get(&new.row()) {
+                Some(&at) => self.margins[at].margin += new.margin,
+                None => self.margins.push(new),
+            }
+        }
+    }
+}
+
+impl Margin {
+    fn row(&self) -> (usize, usize, usize, Side) {
+        (self.case, self.sample, self.state, self.side)
+    }
+}
+
+impl SuccessiveLinearisation<'_> {
+    /// Runs rounds until every row is enclosed, or no more can be done.
+    ///
+    /// # Errors
+    ///
+    /// When the model cannot be followed along a case, a program is not solved, or the journal
+    /// cannot be written.
+    pub fn run(&self, journal: &Journal, progress: &dyn Progress) -> Result<SearchResult> {
+        let mut state =
+            journal.load()?.unwrap_or_else(|| SearchState::start(self.problem.joints()));
+        loop {
+            // Linearise, solve, and take the answer.
+            let round = self.round(&state)?;
+            let is_settled = state.take(&round);
+            journal.save(&state)?;
+            let SearchState { rounds, cost, change, .. } = &state;
+            progress.finished(&format!(
+                "round {rounds}: the linearised sets cost {cost:.4}; radii and centres changed by \
+                 {change:.1e}"
+            ));
+            if !is_settled && state.rounds < ROUNDS {
+                continue;
+            }
+            // Enclose the reachable sets, and ask for the rows outside with a margin.
+            state.reachable_sets += 1;
+            let flowpipes = self.flowpipes(&state.sets, Effort::Whole)?;
+            let missing = self.missing(&flowpipes, &state.sets);
+            let is_lost = missing.iter().any(|margin| margin.margin.is_infinite());
+            if missing.is_empty() || is_lost || state.rounds >= 2 * ROUNDS {
+                return Ok(self.result(&state, round, flowpipes));
+            }
+            progress.finished(&format!(
+                "{} bounds are not enclosed; the next round asks for them with a margin",
+                missing.len()
+            ));
+            state.add(missing);
+            journal.save(&state)?;
+        }
+    }
+
+    /// Computes the flowpipe of each case under `sets`, on all cores.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`flowpipe`].
+    ///
+    /// # Errors
+    ///
+    /// As [`flowpipe`].
+    pub fn flowpipes(&self, sets: &UncertaintySets, effort: Effort) -> Result<Vec<Flowpipe>> {
+        let system = self.problem.dynamics().polynomial_system()?;
+        self.cases.par_iter().map(|case| flowpipe(system, case, sets, effort)).collect()
+    }
+
+    fn result(&self, state: &SearchState, round: Round, flowpipes: Vec<Flowpipe>) -> SearchResult {
+        let sets = state.sets.clone();
+        let summary = SearchSummary {
+            rounds: state.rounds,
+            reachable_sets: state.reachable_sets,
+            linearised_cost: Some(round.program.cost(&sets)),
+            runs_away: round.runs_away.map(|(case, time)| (self.cases[case].name.clone(), time)),
+        };
+        SearchResult { deciding: round.program.tight(&sets), sets, flowpipes, summary }
+    }
+
+    /// Linearises the model along every case, and solves the program.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn round(&self, state: &SearchState) -> Result<Round<'_>> {
+        let sets = &state.sets;
+        let sensitivities = self.sensitivities(sets)?;
+        let corrections = self.corrections(state, &sensitivities);
+        let ran_away = corrections.iter().enumerate();
+        let runs_away =
+            ran_away.filter_map(|(case, c)| c.runs_away.map(|time| (case, time))).next();
+        let parts = self.cases.iter().zip(sensitivities).zip(&corrections);
+        let mut blocks: Vec<Block> = parts
+            .map(|((case, sensitivity), correction)| block(case, sensitivity, correction, sets))
+            .collect();
+        for margin in &state.margins {
+            let envelope = &mut blocks[margin.case].envelope;
+            envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
+        }
+        let program = Program::new(self.problem.settings(), &self.weights, blocks)
+            .with_centre_bounds(state.centre_bounds());
+        let solution = program.solve()?;
+        Ok(Round { program, solution, runs_away })
+    }
+
+    fn sensitivities(&self, sets: &UncertaintySets) -> Result<Vec<Sensitivity>> {
+        let (model, disturbance) =
+            (self.problem.dynamics().polynomials(), self.problem.settings().disturbance);
+        let of = |case: &Case| {
+            Sensitivity::new(model, case, sets, disturbance).map_err(|time| runs_away(case, time))
+        };
+        self.cases.par_iter().map(of).collect()
+    }
+
+    /// Corrects the linearisation by worst-case motions; not in the first round, which has no sets
+    /// yet.
+    fn corrections(&self, state: &SearchState, sensitivities: &[Sensitivity]) -> Vec<Correction> {
+        let model = self.problem.dynamics().polynomials();
+        let of = |(case, sensitivity): (&Case, &Sensitivity)| match state.rounds {
+            0 => Correction::none(case.grid.len(), 2 * case.joints()),
+            _ => Correction::new(model, case, &state.sets, sensitivity),
+        };
+        self.cases.par_iter().zip(sensitivities).map(of).collect()
+    }
+
+    /// Returns the rows outside the reachable sets, each with what it misses and a little more.
+    fn missing(&self, flowpipes: &[Flowpipe], sets: &UncertaintySets) -> Vec<Margin> {
+        let (mut missing, states) = (Vec::new(), self.problem.settings().states);
+        for (index, (case, flowpipe)) in self.cases.iter().zip(flowpipes).enumerate() {
+            rows(&case.measured, case.grid.times(), flowpipe, sets, states, |row| {
+                for edge in row.edges.iter().filter(|edge| edge.excess > 0.0) {
+                    missing.push(Margin {
+                        case: index,
+                        sample: row.sample,
+                        state: row.state,
+                        side: edge.side,
+                        margin: MARGIN * edge.excess,
+                    });
+                }
+            });
+        }
+        missing
+    }
+}
+
+/// Makes the rows of one case. With x̂ the motion from the centres c of the round before, the new
+/// centres c' and radii r' must satisfy x̂ + E (c' - c) + R r' + correction >= x_m, and likewise
+/// below.
+fn block(
+    case: &Case,
+    sensitivity: Sensitivity,
+    correction: &Correction,
+    sets: &UncertaintySets,
+) -> Block {
+    let (n, states) = (case.joints(), 2 * case.joints());
+    let centre: Vec<f64> =
+        sets.initial_set.centre.iter().chain(&sets.input_set.centre).copied().collect();
+    let from_nominal = |k: usize, i: usize, x: f64| {
+        let (row, _) = sensitivity.row(n, k, i);
+        let moved: f64 = row.iter().zip(&centre).map(|(e, c)| e * c).sum();
+        x - sensitivity.nominal[k * states + i] + moved
+    };
+    let envelope = case.measured.map(
+        |k, i, upper| from_nominal(k, i, upper) - correction.at(k, i, Side::Upper),
+        |k, i, lower| from_nominal(k, i, lower) + correction.at(k, i, Side::Lower),
+    );
+    Block { times: case.grid.times().to_vec(), coefficients: sensitivity.coefficients, envelope }
+}
+
+/// Returns the largest change of a centre or radius, in parts of the largest of its kind:
+/// positions, velocities, inputs.
+fn change(old: &UncertaintySets, new: &UncertaintySets) -> f64 {
+    let n = new.input_set.dimension();
+    let of_kind = |old: &Hyperrectangle, new: &Hyperrectangle, kind: Range<usize>| {
+        let pairs = |x: &[f64], y: &[f64]| -> f64 {
+            kind.clone().map(|i| (x[i] - y[i]).abs()).fold(0.0, f64::max)
+        };
+        let change = pairs(&old.centre, &new.centre).max(pairs(&old.radius, &new.radius));
+        if change == 0.0 { 0.0 } else { change / largest(new, kind) }
+    };
+    let (x, u) = ((&old.initial_set, &new.initial_set), (&old.input_set, &new.input_set));
+    [of_kind(x.0, x.1, 0..n), of_kind(x.0, x.1, n..2 * n), of_kind(u.0, u.1, 0..n)]
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+/// Returns the largest magnitude of a centre or radius.
+fn largest(set: &Hyperrectangle, kind: Range<usize>) -> f64 {
+    set.centre[kind.clone()].iter().chain(&set.radius[kind]).fold(0.0, |max, x| max.max(x.abs()))
+}

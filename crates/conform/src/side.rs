@@ -1,0 +1,25 @@
+use serde::{Deserialize, Serialize};
+
+/// A side of a set along a state axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// The side of the highest values.
+    Upper,
+    /// The side of the lowest values.
+    Lower,
+}
+
+impl Side {
+    /// Both sides, the upper one first.
+    pub const BOTH: [Self; 2] = [Self::Upper, Self::Lower];
+
+    /// Returns 1 for the upper side and -1 for the lower one.
+    #[must_use]
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Upper => 1.0,
+            Self::Lower => -1.0,
+        }
+    }
+}

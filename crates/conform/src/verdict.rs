@@ -1,0 +1,208 @@
+//! The verdict: whether every recording lies in the reachable set, and where not.
+
+use reachtube_recordings::State;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::hulls::{Enclosure, Hulls, Lost};
+use crate::problem::problem::Problem;
+use crate::problem::suite::Suite;
+use crate::rows::{Edge, Row};
+use crate::settings::States;
+use crate::side::Side;
+
+/// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
+/// the recordings of one suite at one time in one state (of one run, where it has a set of its own).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Verdict {
+    /// Whether every row was proved to hold.
+    pub conformant: bool,
+    /// The claim in words.
+    pub claim: String,
+    /// Which bound of the reachable set the rows were compared with.
+    pub enclosure: Enclosure,
+    /// Number of recordings.
+    pub runs: usize,
+    /// Number of rows.
+    pub rows: usize,
+    /// The rows that do not hold.
+    pub violations: Violations,
+    /// The largest excess of a row that has a reachable set, rad or rad/s: not above 0 when all
+    /// rows hold.
+    pub largest_excess: f64,
+    /// Reachable sets that could not be followed to the end; the rows from there on do not hold.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lost: Vec<Lost>,
+    /// The same for each suite.
+    pub suites: Vec<SuiteVerdict>,
+}
+
+/// The verdict on one suite.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SuiteVerdict {
+    /// The suite.
+    pub suite: String,
+    /// Number of its recordings.
+    pub runs: usize,
+    /// Number of its rows.
+    pub rows: usize,
+    /// Its rows that do not hold.
+    pub violations: Violations,
+    /// The recordings that leave the set furthest in some row.
+    pub violating_runs: Vec<String>,
+}
+
+/// Rows that do not hold.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Violations {
+    /// Their number.
+    pub count: usize,
+    /// The one with the largest excess, among those that have a reachable set.
+    pub worst: Option<Witness>,
+}
+
+/// A recorded value at the edge of the reachable set or beyond it, in the words of the recordings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Witness {
+    /// The suite.
+    pub suite: String,
+    /// The recording.
+    pub run: String,
+    /// Sample, from 0.
+    pub sample: usize,
+    /// Time since the first sample, s.
+    pub time: f64,
+    /// Joint, from 1.
+    pub joint: usize,
+    /// The state.
+    pub state: State,
+    /// The side of the set.
+    pub side: Side,
+    /// How far outside the reachable set, rad or rad/s; an upper bound.
+    pub excess: f64,
+    /// Radius of the reachable set there, rad or rad/s.
+    pub radius: f64,
+}
+
+impl Witness {
+    /// Names one side of a row of a suite.
+    #[must_use]
+    pub fn new(problem: &Problem, suite: usize, row: &Row, edge: &Edge) -> Self {
+        let state = State::from_index(row.state, problem.joints());
+        Self {
+            suite: problem.recordings().suites[suite].entry.name.clone(),
+            run: problem.entry(edge.run as usize).file.clone(),
+            sample: row.sample,
+            time: row.time,
+            joint: state.joint + 1,
+            state,
+            side: edge.side,
+            excess: edge.excess,
+            radius: row.radius,
+        }
+    }
+}
+
+impl Violations {
+    fn take(&mut self, witness: Witness) {
+        if self.worst.as_ref().is_none_or(|worst| witness.excess > worst.excess) {
+            self.worst = Some(witness);
+        }
+    }
+}
+
+impl Verdict {
+    /// Compares every row with its hull and hands it to `visit` as well, with the index of its
+    /// suite and, where hulls belong to cases, of its case.
+    ///
+    /// # Guarantee
+    ///
+    /// When `conformant`, every recorded value was proved with directed rounding to lie in the
+    /// interval hull of the reachable set at its sample; of the computed outer enclosure of that
+    /// set where the model is not linear. A row within rounding of the boundary (about 1e-12
+    /// relative) that could not be proved counts as violated.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn new(
+        problem: &Problem,
+        hulls: &Hulls,
+        mut visit: impl FnMut(usize, Option<usize>, &Row),
+    ) -> Result<Self> {
+        let mut suites: Vec<SuiteVerdict> =
+            problem.recordings().suites.iter().map(SuiteVerdict::start).collect();
+        let mut largest_excess = f64::NEG_INFINITY;
+        hulls.for_each_row(problem, |suite, case, row| {
+            suites[suite].take(problem, suite, &row);
+            let finite = row.edges.iter().map(|edge| edge.excess).filter(|x| x.is_finite());
+            largest_excess = finite.fold(largest_excess, f64::max);
+            visit(suite, case, &row);
+        })?;
+        let mut violations = Violations::default();
+        for suite in &suites {
+            violations.count += suite.violations.count;
+            suite.violations.worst.iter().for_each(|worst| violations.take(worst.clone()));
+        }
+        let rows = suites.iter().map(|suite| suite.rows).sum();
+        let (runs, enclosure) = (problem.recordings().run_count(), hulls.enclosure());
+        Ok(Self {
+            conformant: violations.count == 0 && rows > 0,
+            claim: claim(runs, problem.settings().states, enclosure),
+            enclosure,
+            runs,
+            rows,
+            violations,
+            largest_excess: if largest_excess.is_finite() { largest_excess } else { 0.0 },
+            lost: hulls.lost(problem)?,
+            suites,
+        })
+    }
+}
+
+impl SuiteVerdict {
+    fn start(suite: &Suite) -> Self {
+        let violations = Violations::default();
+        Self {
+            suite: suite.entry.name.clone(),
+            runs: suite.runs.len(),
+            rows: 0,
+            violations,
+            violating_runs: Vec::new(),
+        }
+    }
+
+    fn take(&mut self, problem: &Problem, suite: usize, row: &Row) {
+        self.rows += 1;
+        self.violations.count += usize::from(!row.holds());
+        for edge in row.edges.iter().filter(|edge| edge.excess > 0.0 && edge.excess.is_finite()) {
+            let witness = Witness::new(problem, suite, row, edge);
+            if !self.violating_runs.contains(&witness.run) {
+                self.violating_runs.push(witness.run.clone());
+            }
+            self.violations.take(witness);
+        }
+    }
+}
+
+fn claim(runs: usize, states: States, enclosure: Enclosure) -> String {
+    let states = match states {
+        States::All => "position and velocity",
+        States::Positions => "position",
+    };
+    let (set, how) = match enclosure {
+        Enclosure::Inner => ("reachable set", "checked with directed rounding"),
+        Enclosure::Outer => (
+            "computed reachable set",
+            "an outer enclosure with directed rounding, for every measurable disturbance in U",
+        ),
+    };
+    format!(
+        "for each of the {runs} recordings, at each of its samples, the recorded {states} of \
+         every joint lies in the interval hull of the model's {set}; {how}, at samples"
+    )
+}
