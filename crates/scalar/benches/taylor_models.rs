@@ -16,12 +16,12 @@ const ORDERS: [u32; 3] = [1, 2, 3];
 fn model(order: u32, used: usize, shift: f64) -> TaylorModel {
     let domain = TaylorBox::new(
         &TaylorSpace::new(VARIABLES, order).unwrap(),
-        &[Interval::centered(0.3, 0.1); VARIABLES],
+        &[Interval::centred(0.3, 0.1); VARIABLES],
     );
     let number = |x: f64| TaylorModel::from(x);
     let sum = (0..used)
         .fold(number(shift), |sum, i| sum + domain.variable(i) * number(0.1 + 0.01 * i as f64));
-    let sum = sum + TaylorModel::from(Interval::centered(0.0, 1e-3));
+    let sum = sum + TaylorModel::from(Interval::centred(0.0, 1e-3));
     if used < VARIABLES { sum } else { sum.recip() }
 }
 

@@ -104,7 +104,7 @@ proptest! {
         prop_assert!(x.contains(mid));
         prop_assert!(exact(mid) - exact(rad) <= exact(x.lo()) && exact(mid) + exact(rad) >= exact(x.hi()));
         prop_assert!(x.width() == f64::INFINITY || exact(x.width()) >= exact(x.hi()) - exact(x.lo()));
-        prop_assert!(Interval::centered(mid, rad).encloses(&x));
+        prop_assert!(Interval::centred(mid, rad).encloses(&x));
     }
 
     #[test]

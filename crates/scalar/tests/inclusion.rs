@@ -109,8 +109,8 @@ proptest! {
             prop_assert!(f(x).encloses(&hull));
             // Between samples h apart an extremum is missed by at most h²/8.
             let missed = (x.width() / f64::from(samples)).powi(2) / 8.0 + 1e-15;
-            prop_assert!(Interval::centered(0.0, missed).contains(f(x).hi() - hull.hi()));
-            prop_assert!(Interval::centered(0.0, missed).contains(f(x).lo() - hull.lo()));
+            prop_assert!(Interval::centred(0.0, missed).contains(f(x).hi() - hull.hi()));
+            prop_assert!(Interval::centred(0.0, missed).contains(f(x).lo() - hull.lo()));
         }
     }
 }

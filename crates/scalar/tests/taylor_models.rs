@@ -65,7 +65,7 @@ functions! {
 }
 
 fn sides(half: f64) -> [Interval; 3] {
-    [0.3, -0.6, 0.9].map(|mid| Interval::centered(mid, half))
+    [0.3, -0.6, 0.9].map(|mid| Interval::centred(mid, half))
 }
 
 /// Points of a box: a van der Corput sequence a variable, and its corners.
@@ -167,7 +167,7 @@ fn any_model(space: Arc<TaylorSpace>) -> impl Strategy<Value = TaylorModel> {
     let coefficient =
         prop_oneof![4 => -3.0..3.0_f64, 1 => (-8..8_i32).prop_map(f64::from), 1 => any_number()];
     let term = (0..20usize, coefficient);
-    let remainder = prop_oneof![2 => Just(Interval::ZERO), 1 => any_interval(), 2 => (-1.0..1.0_f64, 0.0..1e-3_f64).prop_map(|(mid, rad)| Interval::centered(mid, rad))];
+    let remainder = prop_oneof![2 => Just(Interval::ZERO), 1 => any_interval(), 2 => (-1.0..1.0_f64, 0.0..1e-3_f64).prop_map(|(mid, rad)| Interval::centred(mid, rad))];
     (proptest::collection::vec(term, 0..20), remainder).prop_map(move |(terms, remainder)| {
         let domain = TaylorBox::new(&space, &[Interval::new(-1.0, 1.0).unwrap(); 3]);
         let t = domain.variables();
@@ -322,7 +322,7 @@ fn what_is_not_known_is_entire() {
     }
     // Two coefficients of which each is a number and the sum is not.
     let pair =
-        TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centered(0.0, f64::MAX); 2]);
+        TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centred(0.0, f64::MAX); 2]);
     assert_eq!((pair.variable(0) + pair.variable(1)).range(), Interval::ENTIRE);
     assert_eq!(x.ln().range().lo(), f64::NEG_INFINITY);
     assert!(x.sqrt().range().encloses(&Interval::new(0.0, 1.0).unwrap()));

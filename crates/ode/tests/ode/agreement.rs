@@ -111,7 +111,7 @@ fn runge_kutta_over_intervals_encloses_the_method() {
         dx[0] = x[1].clone();
         dx[1] = u[0].clone() - x[0].clone() * x[0].clone() * x[0].clone();
     }
-    let mut wide = [Interval::centered(0.5, 1e-3), Interval::point(0.0)];
+    let mut wide = [Interval::centred(0.5, 1e-3), Interval::point(0.0)];
     RungeKutta4::new(2).integrate(&mut field, [0.0, 1.0], 20, &mut wide, &[Interval::point(0.1)]);
     for start in [0.499, 0.5, 0.5004, 0.501] {
         let mut x = [start, 0.0];
