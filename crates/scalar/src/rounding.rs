@@ -21,12 +21,12 @@
 
 /// A factor for which x ± |x| · `STEP` rounds to the neighbours of x, for every |x| > [`TINY`].
 ///
-/// The product |x| · `STEP` is slightly above half an ulp and at most one ulp. Rump, Zimmermann, Boldo, Melquiond: Computing predecessor and successor in rounding to nearest,
-/// BIT 49 (2009).
+/// The product |x| · `STEP` is slightly above half an ulp and at most one ulp. Rump, Zimmermann,
+/// Boldo, Melquiond: Computing predecessor and successor in rounding to nearest, BIT 49 (2009).
 const STEP: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
 
-/// A bound above 2⁻⁹⁶⁹ = 2e-292. Above it, |x| · [`STEP`] is a normal number and stays above half an
-/// ulp.
+/// A bound above 2⁻⁹⁶⁹ = 2e-292. Above it, |x| · [`STEP`] is a normal number and stays above half
+/// an ulp.
 const TINY: f64 = 1e-290;
 
 /// Returns whether [`bounds_of_rounded`] is valid for [lo, hi].
@@ -130,8 +130,8 @@ const fn product_with_zero(a: f64, b: f64) -> f64 {
 /// Returns a · b rounded towards +∞. A product with zero is zero, also for an infinite factor.
 ///
 /// # Guarantee
-/// The result is an upper bound of the exact product, within 1 ulp of the tightest one. It never has
-/// the wrong sign.
+/// The result is an upper bound of the exact product, within 1 ulp of the tightest one. It never
+/// has the wrong sign.
 #[inline]
 #[must_use]
 pub const fn mul_up(a: f64, b: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Lanes against `f64`, to the last bit.
+//! Tests of lanes against `f64`, to the last bit.
 
 use proptest::prelude::*;
 use reachtube_scalar::{Elementary, Lanes, Lanewise, Scalar};
@@ -14,7 +14,7 @@ fn polynomial<S: Scalar>(x: S, y: S) -> S {
 
 proptest! {
     #[test]
-    fn each_lane_is_a_number_alone(x: [f64; 8], y: [f64; 8]) {
+    fn each_lane_has_the_bits_of_an_f64(x: [f64; 8], y: [f64; 8]) {
         let bits = |x: [f64; 8]| x.map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() });
         let (a, b) = (Lanes::new(x), Lanes::new(y));
         let alone = core::array::from_fn(|i| polynomial(x[i], y[i]));

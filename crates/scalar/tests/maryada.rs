@@ -1,6 +1,7 @@
-//! Against an independent interval library: maryada 0.2, which computes + - * / √ exactly and
-//! rounds once (its mode "tightest"), exp within one number, and sin and cos by series with
-//! directed rounding.
+//! Tests against an independent interval library, maryada 0.2.
+//!
+//! It computes + - * / √ exactly and rounds once (its mode "tightest"), exp within 1 ulp, and sin
+//! and cos by series with directed rounding.
 
 mod common;
 
@@ -9,8 +10,7 @@ use maryada::{EnclosureOps, Interval as Other, IntervalOps};
 use proptest::prelude::*;
 use reachtube_scalar::Interval;
 
-/// Fails unless both enclosures have a common number, and ours is at most `slack` numbers wider at
-/// either end.
+/// Fails unless both enclosures intersect, and each end of ours is at most `slack` ulps outside.
 fn assert_agree(name: &str, ours: Interval, other: Other, slack: i32) {
     let (lo, hi) = other.bounds();
     let theirs = Interval::new(lo, hi).unwrap();
@@ -26,7 +26,7 @@ fn other(x: Interval) -> Other {
 proptest! {
     #![proptest_config(cases(4000))]
 
-    /// maryada's ends are the tightest: ours must enclose them.
+    /// The ends of maryada are the tightest, so that ours must enclose them.
     #[test]
     fn arithmetic(x in any_interval(), y in any_interval()) {
         let (a, b) = (other(x), other(y));

@@ -55,8 +55,8 @@ impl Mul for Interval {
         let (hl, hh) = (self.hi * rhs.lo, self.hi * rhs.hi);
         let lo = smaller(smaller(ll, lh), smaller(hl, hh));
         let hi = larger(larger(ll, lh), larger(hl, hh));
-        // Each of the four ends is a factor of ll or hh. Where both products are finite, none of the
-        // four products is 0 · ∞.
+        // Each of the four ends is a factor of ll or hh. Where both products are finite, none of
+        // the four products is 0 · ∞.
         if is_far_from_underflow(lo, hi) && (ll + hh).abs() < f64::INFINITY {
             let (lo, hi) = bounds_of_rounded(lo, hi);
             Interval { lo, hi }

@@ -64,8 +64,8 @@ impl Interval {
 impl fmt::Display for Interval {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let write = |x: f64| f.precision().map_or_else(|| format!("{x}"), |p| format!("{x:.p$}"));
-        // One unit of the last written digit; 0 without a precision, where the neighbouring `f64` is
-        // written instead.
+        // One unit of the last written digit; 0 without a precision, where the neighbouring `f64`
+        // is written instead.
         let unit = f.precision().map_or(0.0, |p| 10_f64.powi(-(p.min(400) as i32)));
         let (lo, hi) = (self.lo + 0.0, self.hi + 0.0); // -0 becomes 0
         let mut below = write(lo);

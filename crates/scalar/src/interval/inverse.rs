@@ -31,8 +31,8 @@ impl Interval {
     /// Encloses the angles of the points (x, self), in rad within [-π, π].
     ///
     /// The result is [-π, π], rounded outwards, where the box contains the origin, crosses the
-    /// negative x axis or is unbounded. Elsewhere it corrects the guess of the platform's `atan2` by
-    /// [`sin_cos`](Self::sin_cos).
+    /// negative x axis or is unbounded. Elsewhere it corrects the guess of the platform's `atan2`
+    /// by [`sin_cos`](Self::sin_cos).
     ///
     /// # Guarantee
     /// Outer. For a point, the width is below 4e-15 rad in every test.

@@ -44,8 +44,8 @@ impl Interval {
     /// A negative power of an interval that contains zero is [`ENTIRE`](Self::ENTIRE).
     ///
     /// # Guarantee
-    /// Outer. For n > 0, each end is within 3 (n - 1) ulps of the tightest interval, because a power
-    /// is a chain of products; about n ulps are usual.
+    /// Outer. For n > 0, each end is within 3 (n - 1) ulps of the tightest interval, because a
+    /// power is a chain of products; about n ulps are usual.
     ///
     /// ```
     /// use reachtube_scalar::Interval;

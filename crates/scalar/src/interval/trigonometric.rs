@@ -20,9 +20,11 @@ const LARGEST_ANGLE: f64 = (1 << 20) as f64;
 
 const RANGE: Interval = Interval { lo: -1.0, hi: 1.0 };
 
-/// Returns the series in r² with coefficients ±1 / (2i + first)! of alternating sign, for r² ≤ 0.64.
+/// Returns the series in r² with coefficients ±1 / (2i + first)! of alternating sign, for r² ≤
+/// 0.64.
 ///
-/// Lagrange's remainder is a derivative of sine or cosine, which lies in [-1, 1], over (16 + first)!.
+/// Lagrange's remainder is a derivative of sine or cosine, which lies in [-1, 1], over (16 +
+/// first)!.
 const fn alternating(first: u32, first_is_negative: bool) -> PowerSeries<8> {
     let mut c = [Interval::ZERO; 8];
     let mut i = 0;
@@ -100,8 +102,8 @@ impl ReducedAngle {
         }
     }
 
-    /// Returns a lower and an upper bound of ⌊x / (π/2)⌋. They are equal unless the enclosure of the
-    /// rest contains numbers of both signs.
+    /// Returns a lower and an upper bound of ⌊x / (π/2)⌋. They are equal unless the enclosure of
+    /// the rest contains numbers of both signs.
     fn floor(&self) -> (i64, i64) {
         let rest = self.rest();
         (self.quadrant - i64::from(rest.lo < 0.0), self.quadrant - i64::from(rest.hi < 0.0))

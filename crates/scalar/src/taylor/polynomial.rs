@@ -91,8 +91,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self { form: Form::Constant(value) }
     }
 
-    /// Returns the polynomial with the given terms, in any order. Terms above the order of the space
-    /// are dropped.
+    /// Returns the polynomial with the given terms, in any order. Terms above the order of the
+    /// space are dropped.
     ///
     /// ```
     /// use reachtube_scalar::{TaylorPolynomial, TaylorSpace, TaylorTerm};
@@ -176,8 +176,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         out
     }
 
-    /// Returns the non-zero terms, sorted by degree, then by the exponent of the last variable first.
-    /// The term of a constant has an empty list of exponents.
+    /// Returns the non-zero terms, sorted by degree, then by the exponent of the last variable
+    /// first. The term of a constant has an empty list of exponents.
     pub fn terms(&self) -> Vec<TaylorTerm<C>> {
         let exponents = |m: u128| match self.space() {
             None => Vec::new(),

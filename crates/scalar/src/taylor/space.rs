@@ -142,8 +142,8 @@ impl TaylorSpace {
     /// # Errors
     ///
     /// - [`TaylorSpaceError::Variables`] where `variables` is 0 or above 120.
-    /// - [`TaylorSpaceError::Exponents`] where the exponents of a monomial do not fit into 120 bits.
-    ///   The highest order is 15 for 28 variables, 31 for 24, and 255 for 15 or fewer.
+    /// - [`TaylorSpaceError::Exponents`] where the exponents of a monomial do not fit into 120
+    ///   bits. The highest order is 15 for 28 variables, 31 for 24, and 255 for 15 or fewer.
     pub fn new(variables: usize, order: u32) -> Result<Arc<Self>, TaylorSpaceError> {
         let packing = Packing::new(variables).ok_or(TaylorSpaceError::Variables { variables })?;
         let max_order = packing.largest_exponent();
@@ -184,8 +184,8 @@ impl TaylorSpace {
     ///
     /// # Errors
     ///
-    /// [`TaylorSpaceError::Dense`] where it does not, with the memory it needs and the highest order
-    /// that fits.
+    /// [`TaylorSpaceError::Dense`] where it does not, with the memory it needs and the highest
+    /// order that fits.
     pub fn check_dense(&self) -> Result<(), TaylorSpaceError> {
         if self.fits_dense() {
             return Ok(());

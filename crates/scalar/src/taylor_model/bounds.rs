@@ -10,15 +10,15 @@ use crate::taylor::space::TaylorSpace;
 /// The summands are non-negative numbers, or products of two of them. Each passes through at most
 /// `operations` roundings.
 ///
-/// One rounding costs a factor of at most 1/(1 - u), u = ε/2; k roundings cost less than 1 + 2ku for
-/// ku < 1/2. The two additional ε cover the rounding of this function. The bound excludes underflow,
-/// which costs less than 2⁻¹⁰⁷⁵ per product: [`f64::MIN_POSITIVE`] covers 2⁵² products.
+/// One rounding costs a factor of at most 1/(1 - u), u = ε/2; k roundings cost less than 1 + 2ku
+/// for ku < 1/2. The two additional ε cover the rounding of this function. The bound excludes
+/// underflow, which costs less than 2⁻¹⁰⁷⁵ per product: [`f64::MIN_POSITIVE`] covers 2⁵² products.
 pub(super) fn inflated(x: f64, operations: usize) -> f64 {
     if operations == 0 { x } else { x * (1.0 + (operations + 2) as f64 * f64::EPSILON) }
 }
 
-/// Returns a lower bound of the exact value of a sum of non-negative numbers, without products, that
-/// was computed as x; see [`inflated`].
+/// Returns a lower bound of the exact value of a sum of non-negative numbers, without products,
+/// that was computed as x; see [`inflated`].
 fn deflated(x: f64, operations: usize) -> f64 {
     if operations == 0 { x } else { x * (1.0 - (operations + 2) as f64 * f64::EPSILON) }
 }

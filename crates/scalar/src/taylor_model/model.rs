@@ -9,9 +9,9 @@ use crate::taylor::polynomial::TaylorPolynomial;
 /// interval, which is valid in the whole box.
 ///
 /// The polynomial is a function of the normalised coordinates t ∈ [-1, 1]^k of the box: variable i
-/// of a [`TaylorBox`](crate::TaylorBox) is mid_i + rad_i t_i. Operations truncate it at the order of
-/// its [`TaylorSpace`](crate::TaylorSpace). The remainder encloses the truncation error and every
-/// rounding error. A number belongs to every space, so that dynamics over
+/// of a [`TaylorBox`](crate::TaylorBox) is mid_i + rad_i t_i. Operations truncate it at the order
+/// of its [`TaylorSpace`](crate::TaylorSpace). The remainder encloses the truncation error and
+/// every rounding error. A number belongs to every space, so that dynamics over
 /// [`Scalar`](crate::Scalar) can be evaluated over Taylor models.
 ///
 /// The remainder is [`Interval::ENTIRE`] where an operation has no bound, such as a quotient by a
@@ -52,7 +52,8 @@ pub struct TaylorModel {
 }
 
 impl TaylorModel {
-    /// Returns the model with a polynomial in t, whose coefficients must be finite, and a remainder.
+    /// Returns the model with a polynomial in t, whose coefficients must be finite, and a
+    /// remainder.
     pub(super) fn new(polynomial: TaylorPolynomial<f64>, remainder: Interval) -> Self {
         if remainder == Interval::ENTIRE { Self::entire() } else { Self { polynomial, remainder } }
     }
@@ -109,8 +110,8 @@ impl From<f64> for TaylorModel {
 }
 
 impl From<TaylorPolynomial> for TaylorModel {
-    /// Returns the polynomial in t exactly, or a model without bounds where a coefficient is infinite
-    /// or NaN.
+    /// Returns the polynomial in t exactly, or a model without bounds where a coefficient is
+    /// infinite or NaN.
     fn from(polynomial: TaylorPolynomial) -> Self {
         if polynomial.is_finite() {
             Self { polynomial, remainder: Interval::ZERO }

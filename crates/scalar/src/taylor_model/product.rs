@@ -115,12 +115,12 @@ fn is_power_of_two(k: f64) -> bool {
 
 /// Bounds the rounding error of a product of polynomials over [-1, 1]^k, where `bound` ≥ N(a) N(b).
 ///
-/// The coefficient of a monomial m is a sum of products a_α b_β, α + β = m, in some order. At most S
-/// of them are not zero: S is at most the number of terms of either factor and the number of
+/// The coefficient of a monomial m is a sum of products a_α b_β, α + β = m, in some order. At most
+/// S of them are not zero: S is at most the number of terms of either factor and the number of
 /// divisors of m, which is at most 2^p.
 ///
-/// A product is rounded once itself and in at most S - 1 additions, because adding zero is exact. In
-/// any order of summation it gets a factor 1 + θ, |θ| ≤ γ = S u / (1 - S u), u = ε/2 (Higham,
+/// A product is rounded once itself and in at most S - 1 additions, because adding zero is exact.
+/// In any order of summation it gets a factor 1 + θ, |θ| ≤ γ = S u / (1 - S u), u = ε/2 (Higham,
 /// Accuracy and Stability of Numerical Algorithms, Lemma 3.1).
 ///
 /// Over [-1, 1]^k the sum of the errors is at most γ Σ |a_α| |b_β| ≤ γ N(a) N(b). γ ≤ (S + 1) u for

@@ -28,8 +28,8 @@ pub struct TaylorBox {
 }
 
 impl TaylorBox {
-    /// Returns the box with the given sides (k intervals, one per variable of the space), each in the
-    /// unit of its variable.
+    /// Returns the box with the given sides (k intervals, one per variable of the space), each in
+    /// the unit of its variable.
     ///
     /// # Panics
     ///
@@ -55,8 +55,8 @@ impl TaylorBox {
     ///
     /// # Guarantee
     ///
-    /// Exact, with a zero remainder, where the side is bounded and the order is not 0. Every point of
-    /// the side has a t_i in [-1, 1].
+    /// Exact, with a zero remainder, where the side is bounded and the order is not 0. Every point
+    /// of the side has a t_i in [-1, 1].
     ///
     /// # Panics
     ///
@@ -81,8 +81,8 @@ impl TaylorBox {
     ///
     /// # Guarantee
     ///
-    /// Outer, for every point of `at`. The result is [`Interval::ENTIRE`] where `at` is not a subset
-    /// of this box, because a model is valid only inside it.
+    /// Outer, for every point of `at`. The result is [`Interval::ENTIRE`] where `at` is not a
+    /// subset of this box, because a model is valid only inside it.
     ///
     /// # Panics
     ///

@@ -166,7 +166,8 @@ impl BranchAndBound<'_> {
         self.collect(terms, error)
     }
 
-    /// Restricts the polynomial to half of the side of variable i: x_i = `at` + x_i'/2, `at` = ±1/2.
+    /// Restricts the polynomial to half of the side of variable i: x_i = `at` + x_i'/2, `at` =
+    /// ±1/2.
     fn restricted_to_half(&self, terms: &Terms, i: usize, at: f64, error: &mut f64) -> Terms {
         let packing = self.space.packing;
         let mut all = Vec::with_capacity(2 * terms.len());
@@ -188,8 +189,8 @@ impl BranchAndBound<'_> {
         self.collect(all, error)
     }
 
-    /// Collects like terms, and adds a bound of the rounding of these sums and of three products per
-    /// term to the error.
+    /// Collects like terms, and adds a bound of the rounding of these sums and of three products
+    /// per term to the error.
     fn collect(&self, terms: Terms, error: &mut f64) -> Terms {
         let roundings = (terms.len() + 3) as f64;
         let rounding =
