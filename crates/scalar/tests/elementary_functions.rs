@@ -35,14 +35,19 @@ proptest! {
     #![proptest_config(cases(600))]
 
     #[test]
-    fn sine_and_cosine(x in prop_oneof![-1e5..1e5_f64, -7.0..7.0_f64, -1048576.0..1048576.0_f64, -1e-3..1e-3_f64]) {
+    fn sine_and_cosine(
+        x in prop_oneof![-1e5..1e5_f64, -7.0..7.0_f64, -1048576.0..1048576.0_f64, -1e-3..1e-3_f64],
+    ) {
         // Below 1e-40, the reference is not precise enough; see `small_angles`.
         prop_assume!(x.abs() > 1e-40);
         assert_sin_cos(x);
     }
 
     #[test]
-    fn sine_and_cosine_beside_multiples_of_half_pi(k in -600_000..600_000_i64, steps in -3..=3_i32) {
+    fn sine_and_cosine_beside_multiples_of_half_pi(
+        k in -600_000..600_000_i64,
+        steps in -3..=3_i32,
+    ) {
         prop_assume!(k != 0);
         assert_sin_cos(steps_from(k as f64 * std::f64::consts::FRAC_PI_2, steps));
     }
@@ -54,7 +59,12 @@ proptest! {
 
     /// sin x lies strictly between x and x - x³/6, which are equal or neighbours below 2⁻²⁷.
     #[test]
-    fn small_angles(x in prop_oneof![proptest::num::f64::SUBNORMAL, (-1074..-27_i32).prop_map(|k| 2_f64.powi(k) * 1.1)]) {
+    fn small_angles(
+        x in prop_oneof![
+            proptest::num::f64::SUBNORMAL,
+            (-1074..-27_i32).prop_map(|k| 2_f64.powi(k) * 1.1),
+        ],
+    ) {
         prop_assume!(x != 0.0);
         let sin = Interval::point(x).sin();
         prop_assert!(sin.contains(x) && sin.mig() < x.abs());

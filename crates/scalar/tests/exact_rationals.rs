@@ -50,7 +50,9 @@ proptest! {
         let (down, up) = (sqrt_down(x), sqrt_up(x));
         prop_assert!(square(down) <= exact(x) && square(up) >= exact(x));
         if x > 0.0 {
-            prop_assert!(square(steps_from(down, 2)) > exact(x) && square(steps_from(up, -2)) < exact(x));
+            prop_assert!(
+                square(steps_from(down, 2)) > exact(x) && square(steps_from(up, -2)) < exact(x)
+            );
         }
     }
 
@@ -102,16 +104,28 @@ proptest! {
     fn midpoint_and_radius(x in any_interval()) {
         let (mid, rad) = (x.mid(), x.rad());
         prop_assert!(x.contains(mid));
-        prop_assert!(exact(mid) - exact(rad) <= exact(x.lo()) && exact(mid) + exact(rad) >= exact(x.hi()));
-        prop_assert!(x.width() == f64::INFINITY || exact(x.width()) >= exact(x.hi()) - exact(x.lo()));
+        prop_assert!(
+            exact(mid) - exact(rad) <= exact(x.lo()) && exact(mid) + exact(rad) >= exact(x.hi())
+        );
+        prop_assert!(
+            x.width() == f64::INFINITY || exact(x.width()) >= exact(x.hi()) - exact(x.lo())
+        );
         prop_assert!(Interval::centred(mid, rad).encloses(&x));
     }
 
     #[test]
-    fn decimal_literals(digits in "[0-9]{1,25}", fraction in "[0-9]{0,25}", exponent in -340..320_i32, negative: bool) {
+    fn decimal_literals(
+        digits in "[0-9]{1,25}",
+        fraction in "[0-9]{0,25}",
+        exponent in -340..320_i32,
+        negative: bool,
+    ) {
         let text = format!("{}{digits}.{fraction}e{exponent}", if negative { "-" } else { "" });
         let whole: BigRational = format!("{digits}{fraction}").parse().unwrap();
-        let scale = num_traits::pow(integer(10), (exponent - fraction.len() as i32).unsigned_abs() as usize);
+        let scale = num_traits::pow(
+            integer(10),
+            (exponent - fraction.len() as i32).unsigned_abs() as usize,
+        );
         let size = if exponent < fraction.len() as i32 { whole / scale } else { whole * scale };
         let value = if negative { -size } else { size };
         assert_tight_enclosure(Interval::try_from_decimal(&text).unwrap(), &value, &value, 0);

@@ -47,21 +47,40 @@ proptest! {
     #![proptest_config(cases(2000))]
 
     #[test]
-    fn unary_operations_are_isotonic((x, part) in prop_oneof![interval_and_part(), angle_and_part()]) {
+    fn unary_operations_are_isotonic(
+        (x, part) in prop_oneof![interval_and_part(), angle_and_part()],
+    ) {
         for (name, f) in UNARY {
-            prop_assert!(f(x).encloses(&f(part)), "{name}: {:?} does not enclose {:?}", f(x), f(part));
+            prop_assert!(
+                f(x).encloses(&f(part)),
+                "{name}: {:?} does not enclose {:?}",
+                f(x),
+                f(part)
+            );
         }
     }
 
     #[test]
-    fn binary_operations_are_isotonic((x, a) in interval_and_part(), (y, b) in interval_and_part()) {
+    fn binary_operations_are_isotonic(
+        (x, a) in interval_and_part(),
+        (y, b) in interval_and_part(),
+    ) {
         for (name, f) in BINARY {
-            prop_assert!(f(x, y).encloses(&f(a, b)), "{name}: {:?} does not enclose {:?}", f(x, y), f(a, b));
+            prop_assert!(
+                f(x, y).encloses(&f(a, b)),
+                "{name}: {:?} does not enclose {:?}",
+                f(x, y),
+                f(a, b)
+            );
         }
     }
 
     #[test]
-    fn assigning_operators_agree_with_operators(x in any_interval(), y in any_interval(), z in -10.0..10.0_f64) {
+    fn assigning_operators_agree_with_operators(
+        x in any_interval(),
+        y in any_interval(),
+        z in -10.0..10.0_f64,
+    ) {
         let mut all = [x; 8];
         all[0] += y;
         all[1] -= y;
@@ -103,7 +122,9 @@ proptest! {
     #[test]
     fn sine_of_a_set_is_its_hull((x, _) in angle_and_part()) {
         let samples = 400;
-        let at = |i: i32| Interval::point((x.lo() + x.width() * f64::from(i) / f64::from(samples)).min(x.hi()));
+        let at = |i: i32| {
+            Interval::point((x.lo() + x.width() * f64::from(i) / f64::from(samples)).min(x.hi()))
+        };
         for f in [Interval::sin, Interval::cos] {
             let hull = (0..=samples).map(|i| f(at(i))).reduce(Interval::hull).unwrap();
             prop_assert!(f(x).encloses(&hull));

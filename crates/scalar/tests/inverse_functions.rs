@@ -49,7 +49,9 @@ proptest! {
     #![proptest_config(cases(100))]
 
     #[test]
-    fn logarithm(x in prop_oneof![1e-3..1e3_f64, 0.999..1.001_f64, any_number().prop_map(f64::abs)]) {
+    fn logarithm(
+        x in prop_oneof![1e-3..1e3_f64, 0.999..1.001_f64, any_number().prop_map(f64::abs)],
+    ) {
         prop_assume!(x > 0.0 && x.is_finite());
         assert_ln(x);
     }
@@ -68,7 +70,9 @@ proptest! {
         let (of_set, of_part) = (x.ln(), part.ln());
         prop_assert!(of_set.lo() <= of_part.hi() && of_part.lo() <= of_set.hi());
         if x.lo() > 0.0 {
-            prop_assert!(x.ln().exp().encloses(&x) && x.ln().lo() == Interval::point(x.lo()).ln().lo());
+            prop_assert!(
+                x.ln().exp().encloses(&x) && x.ln().lo() == Interval::point(x.lo()).ln().lo()
+            );
         }
     }
 
@@ -77,13 +81,21 @@ proptest! {
     fn angle_of_a_set((y, v) in interval_and_member(), (x, u) in interval_and_member()) {
         prop_assume!((v != 0.0 || u != 0.0) && v.abs() < 1e300 && u.abs() < 1e300);
         let (angle, of_point) = (y.atan2(x), Interval::point(v).atan2(Interval::point(u)));
-        prop_assert!(angle.lo() <= of_point.hi() && of_point.lo() <= angle.hi(), "{angle:?} {of_point:?}");
-        let crosses = x.lo() < 0.0 && y.lo() < 0.0 && y.hi() >= 0.0 || x.contains_zero() && y.contains_zero();
-        let vertices = || [x.lo(), x.hi()].into_iter().flat_map(|u| [y.lo(), y.hi()].map(|v| (v + 0.0).atan2(u)));
+        prop_assert!(
+            angle.lo() <= of_point.hi() && of_point.lo() <= angle.hi(),
+            "{angle:?} {of_point:?}"
+        );
+        let crosses =
+            x.lo() < 0.0 && y.lo() < 0.0 && y.hi() >= 0.0 || x.contains_zero() && y.contains_zero();
+        let vertices = || {
+            [x.lo(), x.hi()].into_iter().flat_map(|u| [y.lo(), y.hi()].map(|v| (v + 0.0).atan2(u)))
+        };
         if !crosses {
             let highest = vertices().fold(-4.0, f64::max);
             let lowest = vertices().fold(4.0, f64::min);
-            prop_assert!((angle.hi() - highest).abs() < 1e-14 && (angle.lo() - lowest).abs() < 1e-14);
+            prop_assert!(
+                (angle.hi() - highest).abs() < 1e-14 && (angle.lo() - lowest).abs() < 1e-14
+            );
         } else {
             prop_assert_eq!(angle, Interval::new(-Interval::PI.hi(), Interval::PI.hi()).unwrap());
         }

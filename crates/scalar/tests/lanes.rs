@@ -19,7 +19,10 @@ proptest! {
         let (a, b) = (Lanes::new(x), Lanes::new(y));
         let alone = core::array::from_fn(|i| polynomial(x[i], y[i]));
         prop_assert_eq!(bits(polynomial(a, b).to_array()), bits(alone));
-        prop_assert_eq!(bits(a.zip(b, f64::max).to_array()), bits(core::array::from_fn(|i| x[i].max(y[i]))));
+        prop_assert_eq!(
+            bits(a.zip(b, f64::max).to_array()),
+            bits(core::array::from_fn(|i| x[i].max(y[i])))
+        );
         let (sin, cos) = a.sin_cos();
         prop_assert_eq!(bits(sin.to_array()), bits(x.map(f64::sin)));
         prop_assert_eq!(bits(cos.to_array()), bits(x.map(f64::cos)));
@@ -27,7 +30,10 @@ proptest! {
         prop_assert_eq!(bits(a.sqrt().to_array()), bits(x.map(f64::sqrt)));
         prop_assert_eq!(bits(a.exp().to_array()), bits(x.map(f64::exp)));
         prop_assert_eq!(bits(a.ln().to_array()), bits(x.map(f64::ln)));
-        prop_assert_eq!(bits(a.atan2(&b).to_array()), bits(core::array::from_fn(|i| x[i].atan2(y[i]))));
+        prop_assert_eq!(
+            bits(a.atan2(&b).to_array()),
+            bits(core::array::from_fn(|i| x[i].atan2(y[i])))
+        );
     }
 }
 

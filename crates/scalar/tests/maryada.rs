@@ -43,14 +43,20 @@ proptest! {
     }
 
     #[test]
-    fn elementary_functions(lo in -1e5..1e5_f64, width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64]) {
+    fn elementary_functions(
+        lo in -1e5..1e5_f64,
+        width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64],
+    ) {
         let x = Interval::new(lo, lo + width).unwrap();
         assert_agree("sin", x.sin(), other(x).sin(), 1);
         assert_agree("cos", x.cos(), other(x).cos(), 1);
     }
 
     #[test]
-    fn exponential(lo in -745.0..709.0_f64, width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64]) {
+    fn exponential(
+        lo in -745.0..709.0_f64,
+        width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64],
+    ) {
         let x = Interval::new(lo, lo + width).unwrap();
         assert_agree("exp", x.exp(), other(x).exp(), 1);
     }

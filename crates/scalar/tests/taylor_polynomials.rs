@@ -140,12 +140,19 @@ proptest! {
     #![proptest_config(cases(150))]
 
     #[test]
-    fn arithmetic_of_intervals_encloses_exact_coefficients(a in any_polynomial(), b in any_polynomial()) {
+    fn arithmetic_of_intervals_encloses_exact_coefficients(
+        a in any_polynomial(),
+        b in any_polynomial(),
+    ) {
         let ((x, y), (p, q)) = ((enclosed(&a), enclosed(&b)), (naive(&a), naive(&b)));
         assert_coefficients(&(&x + &y), &p.plus(&q, &integer(1)), 0.0);
         assert_coefficients(&(&x - &y), &p.plus(&q, &integer(-1)), 0.0);
         assert_coefficients(&(&x * &y), &p.times(&q), 1e-9);
-        assert_coefficients(&x.scaled(&Interval::point(0.3)), &p.times(&Naive::number(exact(0.3))), 1e-14);
+        assert_coefficients(
+            &x.scaled(&Interval::point(0.3)),
+            &p.times(&Naive::number(exact(0.3))),
+            1e-14,
+        );
         assert_coefficients(&x.powi(3), &p.times(&p).times(&p), 1e-6);
         for divisor in [with_constant(&b, 3.0), with_constant(&b, -0.5)] {
             let quotient = p.times(&naive(&divisor).recip());
@@ -159,12 +166,19 @@ proptest! {
 
     /// The coefficients are rational where the value at the constant is.
     #[test]
-    fn functions_of_intervals_enclose_exact_coefficients(a in any_polynomial(), b in any_polynomial()) {
+    fn functions_of_intervals_enclose_exact_coefficients(
+        a in any_polynomial(),
+        b in any_polynomial(),
+    ) {
         let sign = |i: i64| integer(if i % 4 < 2 { 1 } else { -1 });
         let zero = with_constant(&a, 0.0);
         let one = with_constant(&a, 1.0);
         let four = with_constant(&a, 4.0);
-        assert_coefficients(&enclosed(&zero).exp(), &naive(&zero).composed(|i| factorial(i).recip()), 1e-6);
+        assert_coefficients(
+            &enclosed(&zero).exp(),
+            &naive(&zero).composed(|i| factorial(i).recip()),
+            1e-6,
+        );
         let (sin, cos) = enclosed(&zero).sin_cos();
         let odd = |i: i64| if i % 2 == 1 { sign(i) / factorial(i) } else { BigRational::zero() };
         let even = |i: i64| if i % 2 == 0 { sign(i) / factorial(i) } else { BigRational::zero() };
@@ -176,13 +190,20 @@ proptest! {
         };
         assert_coefficients(&enclosed(&one).ln(), &naive(&one).composed(logarithm), 1e-6);
         // √(4 + δ) = 2 Σ C(1/2, i) (δ/4)^i.
-        let binomial = |i: i64| (1..=i).fold(integer(2), |c, k| c * (integer(3) - integer(2 * k)) / integer(8 * k));
+        let binomial = |i: i64| {
+            (1..=i).fold(integer(2), |c, k| c * (integer(3) - integer(2 * k)) / integer(8 * k))
+        };
         assert_coefficients(&enclosed(&four).sqrt(), &naive(&four).composed(binomial), 1e-6);
         // atan(y / x) for y(0) = 0, x(0) = 1.
         let x = with_constant(&b, 1.0);
-        let arctangent = |i: i64| if i % 2 == 1 { sign(i) / integer(i) } else { BigRational::zero() };
+        let arctangent =
+            |i: i64| if i % 2 == 1 { sign(i) / integer(i) } else { BigRational::zero() };
         let tangent = naive(&zero).times(&naive(&x).recip());
-        assert_coefficients(&enclosed(&zero).atan2(&enclosed(&x)), &tangent.composed(arctangent), 1e-3);
+        assert_coefficients(
+            &enclosed(&zero).atan2(&enclosed(&x)),
+            &tangent.composed(arctangent),
+            1e-3,
+        );
     }
 
     #[test]
@@ -210,14 +231,21 @@ proptest! {
         let e = with_constant(&a, 0.5).exp();
         assert_close(&d(&e).truncated(ORDER - 1), &(&e * &d(&a)).truncated(ORDER - 1));
         let l = with_constant(&a, 2.0).ln();
-        assert_close(&d(&l).truncated(ORDER - 1), &(&d(&a) / &with_constant(&a, 2.0)).truncated(ORDER - 1));
+        assert_close(
+            &d(&l).truncated(ORDER - 1),
+            &(&d(&a) / &with_constant(&a, 2.0)).truncated(ORDER - 1),
+        );
         prop_assert_eq!(d(&d(&a)), a.derivative(i).derivative(i));
         let j = (i + 1) % VARIABLES;
         prop_assert_eq!(a.derivative(i).derivative(j), a.derivative(j).derivative(i));
     }
 
     #[test]
-    fn inverse_functions_cancel(a in any_polynomial(), b in any_polynomial(), constant in 0.3..2.0_f64) {
+    fn inverse_functions_cancel(
+        a in any_polynomial(),
+        b in any_polynomial(),
+        constant in 0.3..2.0_f64,
+    ) {
         let a = with_constant(&(a * TaylorPolynomial::from(0.25)), constant);
         let (sin, cos) = a.sin_cos();
         assert_close(&(&(&sin * &sin) + &(&cos * &cos)), &TaylorPolynomial::from(1.0));
@@ -253,18 +281,25 @@ proptest! {
 
     #[test]
     fn evaluation_and_substitution(
-        f in any_polynomial(), g in proptest::collection::vec(any_polynomial(), VARIABLES), h in proptest::collection::vec(-8..=8_i32, VARIABLES),
+        f in any_polynomial(),
+        g in proptest::collection::vec(any_polynomial(), VARIABLES),
+        h in proptest::collection::vec(-8..=8_i32, VARIABLES),
     ) {
         let h: Vec<f64> = h.into_iter().map(|n| f64::from(n) / 8.0).collect();
         let at: Vec<BigRational> = h.iter().map(|x| exact(*x)).collect();
         let power = |x: &BigRational, e: u8| num_traits::pow(x.clone(), e.into());
-        let term = |(m, c): (&Vec<u8>, &BigRational)| m.iter().zip(&at).fold(c.clone(), |p, (e, x)| p * power(x, *e));
+        let term = |(m, c): (&Vec<u8>, &BigRational)| {
+            m.iter().zip(&at).fold(c.clone(), |p, (e, x)| p * power(x, *e))
+        };
         let reference: BigRational = naive(&f).0.iter().map(term).sum();
         // Coefficients and arguments have few bits, so the evaluation is exact.
         prop_assert_eq!(exact(f.evaluate(&h)), reference.clone());
         let value = f.evaluate(&h.iter().map(|x| Interval::point(*x)).collect::<Vec<_>>());
         assert_encloses(value, &reference, &reference);
-        prop_assert_eq!(exact(PolynomialMap::new(VARIABLES, &[g[0].clone(), f.clone()]).evaluate(&h)[1]), reference.clone());
+        prop_assert_eq!(
+            exact(PolynomialMap::new(VARIABLES, &[g[0].clone(), f.clone()]).evaluate(&h)[1]),
+            reference.clone()
+        );
 
         // A shift by h and back.
         let back: Vec<f64> = h.iter().map(|x| -x).collect();
@@ -281,7 +316,10 @@ proptest! {
     }
 
     #[test]
-    fn embedding_renames_variables(a in any_polynomial(), at in proptest::collection::vec(-2.0..2.0_f64, 5)) {
+    fn embedding_renames_variables(
+        a in any_polynomial(),
+        at in proptest::collection::vec(-2.0..2.0_f64, 5),
+    ) {
         let wide = TaylorSpace::new(5, 6).unwrap();
         let there = a.embedded(&wide, &[4, 0, 2]);
         let (x, y) = (there.evaluate(&at), a.evaluate(&[at[4], at[0], at[2]]));

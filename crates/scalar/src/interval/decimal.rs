@@ -11,8 +11,8 @@ use crate::rounding::{add_up, sub_down};
 /// An error: a text is not a decimal number.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error(
-    "`{text}` is not a decimal number: write digits with an optional sign, point and exponent, as in \
-     -1.5e-3"
+    "`{text}` is not a decimal number: write digits with an optional sign, point and exponent, \
+     as in -1.5e-3"
 )]
 pub struct DecimalError {
     /// The rejected text.

@@ -171,7 +171,9 @@ impl<C: Scalar> Neg for TaylorPolynomial<C> {
 }
 
 macro_rules! operations {
-    ($($Op:ident $op:ident $OpAssign:ident $op_assign:ident |$a:ident, $b:ident| $value:expr;)*) => {$(
+    ($(
+        $Op:ident $op:ident $OpAssign:ident $op_assign:ident |$a:ident, $b:ident| $value:expr;
+    )*) => {$(
         impl<C: Scalar> $Op<&TaylorPolynomial<C>> for &TaylorPolynomial<C> {
             type Output = TaylorPolynomial<C>;
             fn $op(self, rhs: &TaylorPolynomial<C>) -> TaylorPolynomial<C> {

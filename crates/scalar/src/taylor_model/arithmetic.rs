@@ -82,7 +82,9 @@ impl Neg for TaylorModel {
 }
 
 macro_rules! operations {
-    ($($Op:ident $op:ident $OpAssign:ident $op_assign:ident |$a:ident, $b:ident| $value:expr;)*) => {$(
+    ($(
+        $Op:ident $op:ident $OpAssign:ident $op_assign:ident |$a:ident, $b:ident| $value:expr;
+    )*) => {$(
         impl $Op<&TaylorModel> for &TaylorModel {
             type Output = TaylorModel;
             fn $op(self, rhs: &TaylorModel) -> TaylorModel {

@@ -71,7 +71,8 @@ pub fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL | proptest::num::f64::ZERO,
         1 => proptest::num::f64::SUBNORMAL,
-        1 => (0..1000_i32, any::<bool>()).prop_map(|(n, s)| steps_from(f64::MAX, -n) * if s { 1.0 } else { -1.0 }),
+        1 => (0..1000_i32, any::<bool>())
+            .prop_map(|(n, s)| steps_from(f64::MAX, -n) * if s { 1.0 } else { -1.0 }),
         1 => (-1074..1023_i32, -2..=2_i32).prop_map(|(k, n)| steps_from(2_f64.powi(k), n)),
         1 => (-545..-470_i32, -1.0..1.0_f64).prop_map(|(k, m)| m * 2_f64.powi(k)),
         2 => (-50..50_i32).prop_map(f64::from),
@@ -94,7 +95,8 @@ pub fn any_interval() -> impl Strategy<Value = Interval> {
     let between = |a: f64, b: f64| Interval::new(a.min(b), a.max(b)).unwrap();
     prop_oneof![
         1 => any_number().prop_map(Interval::point),
-        1 => (any_number(), 0..5_i32).prop_map(move |(a, n)| between(a, steps_from(a, n).min(f64::MAX))),
+        1 => (any_number(), 0..5_i32)
+            .prop_map(move |(a, n)| between(a, steps_from(a, n).min(f64::MAX))),
         2 => (any_number(), any_number()).prop_map(move |(a, b)| between(a, b)),
         1 => any_number().prop_map(move |a| between(a, 0.0)),
     ]
