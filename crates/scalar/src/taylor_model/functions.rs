@@ -8,9 +8,9 @@ impl TaylorModel {
     /// Returns f(self), where `series(x, n)` encloses f^(i)(ξ) / i! for every ξ of x and i = 0 to
     /// n.
     ///
-    /// Let c be the constant term, near the midpoint of the range, a a value of the model and δ = a
-    /// - c. Then f(a) = Σ f^(i)(c)/i! δ^i + f^(p+1)(ξ)/(p+1)! δ^(p+1) with i ≤ p and ξ between c
-    /// and a. The sum is evaluated by Horner's rule over models.
+    /// Let c be the constant term, near the midpoint of the range, a a value of the model and δ the
+    /// difference a - c. Then f(a) = Σ f^(i)(c)/i! δ^i + f^(p+1)(ξ)/(p+1)! δ^(p+1) with i ≤ p and ξ
+    /// between c and a. The sum is evaluated by Horner's rule over models.
     fn composed(&self, series: impl Fn(Interval, u32) -> Vec<Interval>) -> Self {
         let values = |x| Self::from(series(x, 0)[0]);
         let Some(space) = self.polynomial.space() else { return values(self.range()) };
