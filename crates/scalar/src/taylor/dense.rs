@@ -251,7 +251,7 @@ pub(super) fn terms<'a, C: Scalar>(
         let block = &coefficients[space.block(degree)];
         let monomial = move |at: usize| {
             let factors = &space.factors(degree)[at * degree as usize..][..degree as usize];
-            space.packing.from_factors(factors)
+            space.packing.pack_factors(factors)
         };
         block.iter().enumerate().filter(|(_, c)| !c.is_zero()).map(move |(at, c)| (monomial(at), c))
     };

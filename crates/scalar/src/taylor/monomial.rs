@@ -68,12 +68,12 @@ impl Packing {
     }
 
     /// Packs a monomial given by the exponent of each variable.
-    pub fn from_exponents(self, exponents: &[u8]) -> u128 {
+    pub fn pack_exponents(self, exponents: &[u8]) -> u128 {
         exponents.iter().enumerate().map(|(i, e)| u128::from(*e) * self.variable(i)).sum()
     }
 
     /// Packs a monomial given by its factors x_v, each with exponent 1.
-    pub fn from_factors(self, factors: &[u8]) -> u128 {
+    pub fn pack_factors(self, factors: &[u8]) -> u128 {
         factors.iter().map(|v| self.variable(usize::from(*v))).sum()
     }
 

@@ -119,7 +119,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
             term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() <= space.order()
         };
         let pack =
-            |term: TaylorTerm<C>| (space.packing.from_exponents(&term.exponents), term.coefficient);
+            |term: TaylorTerm<C>| (space.packing.pack_exponents(&term.exponents), term.coefficient);
         let packed = terms.into_iter().filter(fits).map(pack).collect();
         Self::sparse(space, sparse::collect_like_terms(packed))
     }
@@ -219,7 +219,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
             };
         };
         let mut found = C::zero();
-        let wanted = space.packing.from_exponents(exponents);
+        let wanted = space.packing.pack_exponents(exponents);
         self.for_each_term(|m, c| {
             if m == wanted {
                 found = c.clone();
