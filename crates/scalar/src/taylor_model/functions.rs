@@ -125,10 +125,10 @@ impl Elementary for TaylorModel {
         (sine(0), sine(1))
     }
 
-    /// Returns the angle φ + atan z, where φ is within a right angle of all angles of the range and
-    /// z is the slope of the point rotated back by φ.
+    /// Returns the angle φ + atan z.
     ///
-    /// The sum is the angle itself: both differ by a multiple of 2π, and by less than π.
+    /// φ is within a right angle of all angles of the range, and z is the slope of the point rotated
+    /// back by φ. The sum is the angle itself: both differ by a multiple of 2π, and by less than π.
     fn atan2(&self, x: &Self) -> Self {
         let values = self.range().atan2(x.range());
         let number = self.polynomial.space().is_none() && x.polynomial.space().is_none();
