@@ -1,101 +1,68 @@
 //! The adaptive method of Dormand and Prince.
 
-use crate::outcome::is_within;
+use crate::dense_step::DenseStep;
+use crate::outcome::{Cause, Outcome, is_within};
+use crate::run::Run;
 use crate::runge_kutta::add_scaled;
-use crate::step_control::StepControl;
-use crate::{Cause, Outcome, Run, Tolerance, VectorField};
+use crate::step_control::{StepControl, Tolerance};
+use crate::tableau::{ERROR_WEIGHTS, NODES, STAGES, weighted_sum};
+use crate::vector_field::VectorField;
 
-/// Where in the step each stage stands.
-const NODES: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
-
-/// Row i: weights of the slopes before stage i. The last row is the solution of order 5.
-const STAGES: [[f64; 6]; 7] = [
-    [0.0; 6],
-    [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
-    [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
-    [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
-    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
-    [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
-];
-
-/// Solution of order 5 less that of order 4.
-const ERROR: [f64; 7] = [
-    71.0 / 57600.0,
-    0.0,
-    -71.0 / 16695.0,
-    71.0 / 1920.0,
-    -17253.0 / 339200.0,
-    22.0 / 525.0,
-    -1.0 / 40.0,
-];
-
-/// Highest coefficient of the interpolant.
-const DENSE: [f64; 7] = [
-    -12715105075.0 / 11282082432.0,
-    0.0,
-    87487479700.0 / 32700410799.0,
-    -10690763975.0 / 1880347072.0,
-    701980252875.0 / 199316789632.0,
-    -1453857185.0 / 822651844.0,
-    69997945.0 / 29380423.0,
-];
-
-/// The pair of orders 5 and 4 of Dormand & Prince (J. Comput. Appl. Math. 6, 1980) with step
-/// control and an interpolant of order 4 (Hairer, Nørsett & Wanner, Solving Ordinary Differential
-/// Equations I, 1993, sec. II.6); it does not allocate after construction.
+/// The adaptive integrator of Dormand & Prince (J. Comput. Appl. Math. 6, 1980) with an embedded
+/// pair of orders 5 and 4.
+///
+/// It has step size control and an interpolant of order 4 (Hairer, Nørsett & Wanner, Solving
+/// Ordinary Differential Equations I, 1993, sec. II.6). It does not allocate after construction.
 ///
 /// # Examples
 ///
 /// ```
 /// use reachtube_ode::{DormandPrince, Outcome, Tolerance};
 ///
-/// let mut oscillator = |_: f64, x: &[f64], _: &[f64], dx: &mut [f64]| (dx[0], dx[1]) = (x[1], -x[0]);
+/// let mut oscillator = |_: f64, x: &[f64], _: &[f64], dx: &mut [f64]| {
+///     (dx[0], dx[1]) = (x[1], -x[0]);
+/// };
 /// let mut solver = DormandPrince::new(2, Tolerance::default());
 /// let mut x = [1.0, 0.0];
 /// assert_eq!(solver.integrate(&mut oscillator, [0.0, 3.0], &mut x, &[]), Outcome::Reached);
 /// assert!((x[0] - 3.0_f64.cos()).abs() < 1e-7);
 ///
-/// // ẋ = x² from 1 has a pole at t = 1.
+/// // The solution of ẋ = x² from x = 1 has a pole at t = 1 s.
 /// let mut pole = |_: f64, x: &[f64], _: &[f64], dx: &mut [f64]| dx[0] = x[0] * x[0];
-/// let outcome = DormandPrince::new(1, Tolerance::default()).integrate(&mut pole, [0.0, 2.0], &mut [1.0], &[]);
+/// let mut solver = DormandPrince::new(1, Tolerance::default());
+/// let outcome = solver.integrate(&mut pole, [0.0, 2.0], &mut [1.0], &[]);
 /// assert!(matches!(outcome, Outcome::Diverged { time, .. } if (time - 1.0).abs() < 1e-7));
 /// ```
 #[derive(Clone, Debug)]
 pub struct DormandPrince {
     tolerance: Tolerance,
+    /// Bound on |x| of each entry.
     bound: f64,
+    /// Largest number of steps, including rejected ones, over one span.
     step_limit: usize,
     control: StepControl,
+    /// Slopes of the stages (n each).
     slopes: [Vec<f64>; 7],
-    /// The state at a stage, and at last that after the step.
+    /// The state at a stage, and finally the state after the step (n).
     next: Vec<f64>,
+    /// The state of a simulated run, or an interpolated state (n).
     state: Vec<f64>,
 }
 
-/// A step that was taken, and the solution within it.
-#[derive(Clone, Copy, Debug)]
-pub struct DenseStep<'a> {
-    start: f64,
-    end: f64,
-    size: f64,
-    before: &'a [f64],
-    after: &'a [f64],
-    slopes: &'a [Vec<f64>; 7],
-}
-
 impl DormandPrince {
-    /// An integrator of states of `dimension` entries; no bound on |x| but that it be finite, at
-    /// most 100 000 steps a span.
+    /// Returns an integrator for states with `dimension` entries.
+    ///
+    /// |x| must be finite but has no other bound. A span of held input takes at most 100 000 steps.
     ///
     /// # Panics
     ///
-    /// When the absolute tolerance is not positive, or the relative one negative: an entry of 0
-    /// would never meet them.
+    /// Panics where the absolute tolerance is not positive or the relative tolerance is negative,
+    /// because an entry of 0 never meets them.
     pub fn new(dimension: usize, tolerance: Tolerance) -> Self {
         assert!(
             tolerance.absolute > 0.0 && tolerance.relative >= 0.0,
-            "a tolerance of {tolerance:?} is never met"
+            "{tolerance:?} is never met: the absolute tolerance must be positive and the relative \
+             one not negative"
         );
         let zeros = || vec![0.0; dimension];
         Self {
@@ -109,28 +76,26 @@ impl DormandPrince {
         }
     }
 
-    /// The same with a bound on the |x| of each entry, beyond which the solution counts as
-    /// diverged.
+    /// Sets a bound on |x| of each entry, beyond which the solution counts as diverged.
     #[must_use]
     pub fn bounded_by(self, bound: f64) -> Self {
         Self { bound, ..self }
     }
 
-    /// The same with a limit of steps, rejected ones included, over each span of held input.
+    /// Sets the largest number of steps over each span of held input, including rejected ones.
     #[must_use]
     pub fn within_steps(self, step_limit: usize) -> Self {
         Self { step_limit, ..self }
     }
 
-    /// Takes x (n) over [t0, t1] \[s\], t0 ≤ t1, under a held input u (m). Where the solution
-    /// diverges, x is the last good state.
+    /// Integrates x (n) in place over [t0, t1] \[s\], t0 ≤ t1, under a held input u (m).
     ///
-    /// The size of the last step is where the next call begins, so that a motion goes on over the
-    /// jumps of its input.
+    /// Where the solution diverges, x is the last valid state. The next call starts with the step
+    /// size of this one, so that a motion continues over the jumps of its input.
     ///
     /// # Panics
     ///
-    /// When x has another length than the integrator's dimension.
+    /// Panics where the length of x differs from the dimension of the integrator.
     pub fn integrate<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -141,11 +106,12 @@ impl DormandPrince {
         self.integrate_dense(field, span, x, u, |_| {})
     }
 
-    /// As [`integrate`](Self::integrate); `observe` is given each step with the solution within it.
+    /// Integrates like [`integrate`](Self::integrate) and calls `observe` with each accepted step,
+    /// which interpolates the solution.
     ///
     /// # Panics
     ///
-    /// When x has another length than the integrator's dimension.
+    /// Panics where the length of x differs from the dimension of the integrator.
     pub fn integrate_dense<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -154,26 +120,33 @@ impl DormandPrince {
         u: &[f64],
         mut observe: impl FnMut(&DenseStep<'_>),
     ) -> Outcome {
-        assert_eq!(x.len(), self.next.len(), "the state has another length than the integrator");
+        assert_eq!(
+            x.len(),
+            self.next.len(),
+            "the number of states differs from the dimension of the integrator"
+        );
         let resolution = f64::EPSILON * t.abs().max(end.abs());
-        // The last slope of the span before is no use: the input may have jumped.
+        // First slope. That of the previous span is not valid, because the input may have jumped.
         field.rate(t, x, u, &mut self.slopes[0]);
         for _ in 0..self.step_limit {
+            // End of the span, or divergence.
             if !is_within(x, self.bound) {
                 return Outcome::Diverged { time: t, cause: Cause::Bound };
             }
             if t >= end {
                 return Outcome::Reached;
             }
+            // Step size. A remainder below a hundredth of a step is merged into the last step.
             let proposal = match self.control.proposal {
                 Some(proposal) => proposal,
                 None => self.first_step(field, [t, end], x, u),
             };
-            // A remainder of less than a hundredth of a step is taken along.
             let is_last = t + 1.01 * proposal >= end;
             let h = if is_last { end - t } else { proposal };
+            // Stages and error estimate.
             let error = self.attempt(field, t, h, x, u);
             if error <= 1.0 {
+                // Acceptance. The last slope is the first one of the next step.
                 self.control.accept(h, error, h < proposal);
                 let start = t;
                 t = if is_last { end } else { start + h };
@@ -182,6 +155,7 @@ impl DormandPrince {
                 x.copy_from_slice(&self.next);
                 self.slopes.swap(0, 6);
             } else {
+                // Rejection. A step below the resolution of t cannot be reduced further.
                 self.control.reject(h, error);
                 if h <= resolution {
                     self.control.proposal = None;
@@ -192,15 +166,16 @@ impl DormandPrince {
         Outcome::Diverged { time: t, cause: Cause::StepCount }
     }
 
-    /// Runs under an input held from sample to sample of `times` \[s\] (increasing); `observe` is
-    /// given the index of each sample reached, from 0 on, and the state there. Steps end at
-    /// samples, because the input jumps there.
+    /// Simulates a run whose input is held from sample to sample of `times` \[s\] (increasing).
+    ///
+    /// It calls `observe` with the index of each sample that it reaches, from 0 on, and the state
+    /// there (n). Steps end at samples, because the input jumps there.
     ///
     /// # Panics
     ///
-    /// When the start has another length than the integrator's dimension, or the inputs are not a
-    /// row for each sample but the last.
-    pub fn follow<F: VectorField<f64>>(
+    /// Panics where the length of the start differs from the dimension of the integrator. It also
+    /// panics where the inputs do not form one row per sample except the last.
+    pub fn simulate<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
         times: &[f64],
@@ -224,14 +199,15 @@ impl DormandPrince {
         outcome
     }
 
-    /// Samples the solution from x (n) at times\[0\] under one held input u (m), or one that the
-    /// field generates: `observe` is given the index of each sample of `times` \[s\] (increasing)
-    /// and the state there. The interpolant gives it, so that samples cost no steps. x is left at
-    /// the last time.
+    /// Samples the solution from x (n) at `times[0]` under one held input u (m).
+    ///
+    /// It calls `observe` with the index of each sample of `times` \[s\] (increasing) and the state
+    /// there (n). Samples come from the interpolant and need no further steps. Finally, x is the
+    /// state at the last time. A field may also generate its input from time and state.
     ///
     /// # Panics
     ///
-    /// When x has another length than the integrator's dimension.
+    /// Panics where the length of x differs from the dimension of the integrator.
     pub fn sample<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -258,7 +234,7 @@ impl DormandPrince {
         outcome
     }
 
-    /// The stages of a step of h; the norm of its error.
+    /// Computes the stages of a step of size h \[s\] and returns the norm of its error.
     fn attempt<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -277,11 +253,12 @@ impl DormandPrince {
             }
             field.rate(t + NODES[stage] * h, &self.next, u, &mut after[0]);
         }
-        let error = (0..x.len()).map(|i| h * weighted(&ERROR, &self.slopes, i));
+        let error = (0..x.len()).map(|i| h * weighted_sum(&ERROR_WEIGHTS, &self.slopes, i));
         self.tolerance.norm(error, x, &self.next)
     }
 
-    /// A first step by a guess at the second derivative (Hairer, Nørsett & Wanner, sec. II.4).
+    /// Returns the size of the first step \[s\], from an estimate of the second derivative (Hairer,
+    /// Nørsett & Wanner, sec. II.4).
     fn first_step<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -289,54 +266,26 @@ impl DormandPrince {
         x: &[f64],
         u: &[f64],
     ) -> f64 {
+        // A guess from the norms of x and ẋ.
         let norm = |v: &mut dyn Iterator<Item = f64>| self.tolerance.norm(v, x, x);
         let size = norm(&mut x.iter().copied());
         let speed = norm(&mut self.slopes[0].iter().copied());
         let guess = if size < 1e-5 || speed < 1e-5 { 1e-6 } else { 0.01 * size / speed };
         let guess = guess.min(end - t);
+        // The second derivative, from an explicit Euler step.
         for (next, (x, slope)) in self.next.iter_mut().zip(x.iter().zip(&self.slopes[0])) {
             *next = x + guess * slope;
         }
         let [first, second, ..] = &mut self.slopes;
         field.rate(t + guess, &self.next, u, second);
-        let bend =
+        let curvature =
             self.tolerance.norm(first.iter().zip(&*second).map(|(a, b)| b - a), x, x) / guess;
-        let fastest = speed.max(bend);
+        // The step at which the leading error term is about 1 % of the tolerance.
+        let fastest = speed.max(curvature);
         let step =
             if fastest <= 1e-15 { (1e-3 * guess).max(1e-6) } else { (0.01 / fastest).powf(0.2) };
         let step = step.min(100.0 * guess).min(end - t);
-        // NaN where the rate is: any step then shows it.
+        // `step` is NaN where the rate is NaN; a step over the whole span then fails.
         if step > 0.0 { step } else { end - t }
-    }
-}
-
-/// Σ weights · slopes of entry i.
-fn weighted(weights: &[f64; 7], slopes: &[Vec<f64>; 7], i: usize) -> f64 {
-    weights.iter().zip(slopes).map(|(weight, slope)| weight * slope[i]).sum()
-}
-
-impl DenseStep<'_> {
-    /// Time at the start of the step \[s\].
-    pub fn start(&self) -> f64 {
-        self.start
-    }
-
-    /// Time at its end \[s\].
-    pub fn end(&self) -> f64 {
-        self.end
-    }
-
-    /// The solution (n) at a time \[s\] of the step, of order 4, into `x`.
-    pub fn at(&self, time: f64, x: &mut [f64]) {
-        let h = self.size;
-        let theta = (time - self.start) / h;
-        let rest = 1.0 - theta;
-        for (i, x) in x.iter_mut().enumerate() {
-            let change = self.after[i] - self.before[i];
-            let bend = h * self.slopes[0][i] - change;
-            let twist = change - h * self.slopes[6][i] - bend;
-            let last = h * weighted(&DENSE, self.slopes, i);
-            *x = self.before[i] + theta * (change + rest * (bend + theta * (twist + rest * last)));
-        }
     }
 }

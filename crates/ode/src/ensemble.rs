@@ -1,14 +1,17 @@
 //! Thousands of runs by one integrator.
 
-use crate::outcome::is_within;
-use crate::{Cause, Outcome, Run, RungeKutta4, VectorField};
 use reachtube_scalar::Lanewise;
 
-/// Many runs of one field with fixed steps, as many at a time as the number S has lanes.
+use crate::outcome::{Cause, Outcome, is_within};
+use crate::run::Run;
+use crate::runge_kutta::RungeKutta4;
+use crate::vector_field::VectorField;
+
+/// An integrator of many runs of one field with fixed steps, one run per lane of the scalar S.
 ///
-/// Each run has the states of the same run alone over `f64`, to the last bit, where the field's
-/// operations do. A run that diverges does not touch the others. For several threads, give each an
-/// ensemble, a field and a part of the runs.
+/// The states of a run equal those of the same run over `f64`, to the last bit, if the operations
+/// of the field do. A run that diverges does not affect the others. With several threads, each
+/// needs its own ensemble, field and part of the runs.
 ///
 /// # Examples
 ///
@@ -28,7 +31,8 @@ use reachtube_scalar::Lanewise;
 /// let starts: Vec<_> = (0..1000).map(|r| [1e-3 * f64::from(r), 0.0]).collect();
 /// let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &[0.0; 100] }).collect();
 /// let mut highest = 0.0_f64;
-/// let outcomes = Ensemble::<Lanes<8>>::new(2).integrate(&mut Pendulum, &times, 1, &runs, |_run, _sample, x| {
+/// let mut ensemble = Ensemble::<Lanes<8>>::new(2);
+/// let outcomes = ensemble.integrate(&mut Pendulum, &times, 1, &runs, |_run, _sample, x| {
 ///     highest = highest.max(x[0]);
 /// });
 /// assert!(outcomes.iter().all(|outcome| outcome.is_reached()) && highest == 0.999);
@@ -36,15 +40,19 @@ use reachtube_scalar::Lanewise;
 #[derive(Clone, Debug)]
 pub struct Ensemble<S> {
     method: RungeKutta4<S>,
+    /// Bound on |x| of each entry.
     bound: f64,
+    /// States of the runs of one block (n).
     x: Vec<S>,
+    /// Inputs of the runs of one block (m).
     u: Vec<S>,
-    /// The state of one run.
+    /// The state of one run (n).
     row: Vec<f64>,
 }
 
 impl<S: Lanewise> Ensemble<S> {
-    /// For states of `dimension` entries; no bound on |x| but that it be finite.
+    /// Returns an ensemble for states with `dimension` entries. |x| must be finite but has no other
+    /// bound.
     pub fn new(dimension: usize) -> Self {
         Self {
             method: RungeKutta4::new(dimension),
@@ -55,22 +63,23 @@ impl<S: Lanewise> Ensemble<S> {
         }
     }
 
-    /// The same with a bound on the |x| of each entry at samples, beyond which a run counts as
-    /// diverged.
+    /// Sets a bound on |x| of each entry at samples, beyond which a run counts as diverged.
     #[must_use]
     pub fn bounded_by(self, bound: f64) -> Self {
         Self { bound, ..self }
     }
 
-    /// Integrates every run over samples at `times` \[s\] (increasing), with `substeps` Runge-Kutta
-    /// steps from one sample to the next. `observe` is given run, sample (both from 0) and state
-    /// (n), the samples of a run in their order, until the run ends or diverges. The outcomes are
-    /// those of the runs.
+    /// Integrates every run over samples at `times` \[s\] (increasing) and returns one outcome per
+    /// run.
+    ///
+    /// Each span between two samples takes `substeps` Runge-Kutta steps. `observe` gets the indices
+    /// of run and sample, both from 0, and the state (n). The samples of a run arrive in order,
+    /// until the run ends or diverges.
     ///
     /// # Panics
     ///
-    /// When a start has another length than the ensemble's dimension, or inputs differ in length or
-    /// are not a row for each sample but the last.
+    /// Panics where the length of a start differs from the dimension of the ensemble. It also
+    /// panics where inputs differ in length, or do not form one row per sample except the last.
     pub fn integrate<F: VectorField<S>>(
         &mut self,
         field: &mut F,
@@ -103,18 +112,19 @@ impl<S: Lanewise> Ensemble<S> {
         outcomes
     }
 
-    /// Lanes beyond the last run repeat it.
+    /// Loads the starts of a block of runs. Lanes beyond the last run repeat it.
     fn start(&mut self, runs: &[Run<'_>]) {
         let n = self.x.len();
         assert!(
             runs.iter().all(|run| run.start.len() == n),
-            "a start has another length than the ensemble's {n}"
+            "every start needs {n} entries, the dimension of the ensemble"
         );
         for (i, x) in self.x.iter_mut().enumerate() {
             *x = S::from_lanes(|lane| runs[lane.min(runs.len() - 1)].start[i]);
         }
     }
 
+    /// Loads the inputs from sample k on.
     fn hold(&mut self, times: &[f64], runs: &[Run<'_>], k: usize) {
         let m = runs[0].input_dimension(times);
         self.u.resize(m, S::zero());
@@ -123,7 +133,7 @@ impl<S: Lanewise> Ensemble<S> {
         }
     }
 
-    /// Gives each run's state at sample k to `observe`, unless the run has diverged.
+    /// Calls `observe` with the state at sample k of each run that has not diverged.
     fn report(
         &mut self,
         times: &[f64],

@@ -1,14 +1,17 @@
 #![doc = include_str!("../README.md")]
 
+mod dense_step;
 mod dormand_prince;
 mod ensemble;
 mod outcome;
 mod run;
 mod runge_kutta;
 mod step_control;
+mod tableau;
 mod vector_field;
 
-pub use dormand_prince::{DenseStep, DormandPrince};
+pub use dense_step::DenseStep;
+pub use dormand_prince::DormandPrince;
 pub use ensemble::Ensemble;
 pub use outcome::{Cause, Outcome};
 pub use run::Run;

@@ -1,40 +1,42 @@
-/// How an integration ended. A solution that leaves every bound in finite time is an answer, not an
-/// error.
+/// The outcome of an integration.
+///
+/// A solution that leaves every bound in finite time is an outcome, not an error.
 #[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// At the end of the time asked for.
+    /// The integration reached the end of the requested time.
     Reached,
-    /// Before it.
+    /// The integration stopped before the end of the requested time.
     Diverged {
-        /// The last time \[s\] at which the state is known to be good.
+        /// The last time \[s\] with a valid state.
         time: f64,
-        /// What stopped the integration there.
+        /// The reason.
         cause: Cause,
     },
 }
 
-/// What stops an integration.
+/// The reason why an integration stopped early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// An entry of the state is NaN or beyond the bound on |x|.
     Bound,
-    /// No step that time can resolve meets the tolerance: the solution or its rate has a pole, or
-    /// the rate is NaN.
+    /// No step above the resolution of time meets the tolerance. The solution or its rate has a
+    /// pole, or the rate is NaN.
     StepSize,
-    /// The limit of steps was met: the field is stiff, or it chatters across a discontinuity.
+    /// The integration reached its step limit. The field is stiff, or it chatters across a
+    /// discontinuity.
     StepCount,
 }
 
 impl Outcome {
-    /// Whether the end was reached.
+    /// Returns whether the integration reached the end.
     #[must_use]
     pub fn is_reached(&self) -> bool {
         *self == Self::Reached
     }
 }
 
-/// Whether each |x| is at most `bound`; NaN is not.
+/// Returns whether each |x| is at most `bound`; false for NaN.
 pub(crate) fn is_within(x: &[f64], bound: f64) -> bool {
     x.iter().all(|x| x.abs() <= bound)
 }

@@ -1,12 +1,13 @@
-use crate::VectorField;
 use reachtube_scalar::Scalar;
 
-/// The classical Runge-Kutta method of order 4 with fixed steps, over any [`Scalar`]; it does not
-/// allocate after construction.
+use crate::vector_field::VectorField;
+
+/// The classical Runge-Kutta method of order 4 with fixed steps, over any [`Scalar`] (Kutta, Z.
+/// Math. Phys. 46, 1901).
 ///
-/// Kutta, Z. Math. Phys. 46, 1901. Over lanes each lane is a run of its own and has the value of
-/// the same run over `f64`, to the last bit. Over `Interval` the result encloses what the method
-/// gives, not the solution.
+/// It does not allocate after construction. Each SIMD lane is a run of its own and equals the same
+/// run over `f64`, to the last bit. Over `Interval`, the result encloses the result of the method,
+/// not the solution.
 ///
 /// # Examples
 ///
@@ -20,26 +21,28 @@ use reachtube_scalar::Scalar;
 /// ```
 #[derive(Clone, Debug)]
 pub struct RungeKutta4<S> {
+    /// State at a stage (n).
     stage: Vec<S>,
+    /// Slope at a stage (n).
     slope: Vec<S>,
-    /// Weighted sum of the slopes.
+    /// Weighted sum of the slopes (n).
     sum: Vec<S>,
 }
 
 impl<S: Scalar> RungeKutta4<S> {
-    /// An integrator of states of `dimension` entries.
+    /// Returns an integrator for states with `dimension` entries.
     pub fn new(dimension: usize) -> Self {
         let zeros = || vec![S::zero(); dimension];
         Self { stage: zeros(), slope: zeros(), sum: zeros() }
     }
 
-    /// Takes x (n) over [t0, t1] \[s\] in equal steps under a held input u (m).
+    /// Integrates x (n) in place over [t0, t1] \[s\] in equal steps, under a held input u (m).
     ///
-    /// Nothing watches over the result: a solution that diverges leaves infinities or NaN in x.
+    /// It does not check the result: a solution that diverges leaves infinities or NaN in x.
     ///
     /// # Panics
     ///
-    /// When x has another length than the integrator's dimension.
+    /// Panics where the length of x differs from the dimension of the integrator.
     pub fn integrate<F: VectorField<S>>(
         &mut self,
         field: &mut F,
@@ -54,27 +57,32 @@ impl<S: Scalar> RungeKutta4<S> {
         }
     }
 
-    /// Takes x (n) from t to t + h \[s\] under a held input u (m).
+    /// Integrates x (n) in place over one step from t to t + h \[s\], under a held input u (m).
     ///
     /// # Panics
     ///
-    /// When x has another length than the integrator's dimension.
+    /// Panics where the length of x differs from the dimension of the integrator.
     pub fn step<F: VectorField<S>>(&mut self, field: &mut F, t: f64, h: f64, x: &mut [S], u: &[S]) {
-        assert_eq!(x.len(), self.stage.len(), "the state has another length than the integrator");
+        assert_eq!(
+            x.len(),
+            self.stage.len(),
+            "the number of states differs from the dimension of the integrator"
+        );
         field.rate(t, x, u, &mut self.slope);
         self.sum.clone_from_slice(&self.slope);
-        // How far each later stage reaches along the slope before it, and the weight of its own.
-        for (reach, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+        // Stages 2 to 4: the fraction of the step along the previous slope, and the weight of the
+        // stage.
+        for (fraction, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
             self.stage.clone_from_slice(x);
-            add_scaled(&mut self.stage, reach * h, &self.slope);
-            field.rate(t + reach * h, &self.stage, u, &mut self.slope);
+            add_scaled(&mut self.stage, fraction * h, &self.slope);
+            field.rate(t + fraction * h, &self.stage, u, &mut self.slope);
             add_scaled(&mut self.sum, weight, &self.slope);
         }
         add_scaled(x, h / 6.0, &self.sum);
     }
 }
 
-/// x += k y.
+/// Adds k y to x.
 pub(crate) fn add_scaled<S: Scalar>(x: &mut [S], k: f64, y: &[S]) {
     x.iter_mut().zip(y).for_each(|(x, y)| *x += S::from(k) * y.clone());
 }

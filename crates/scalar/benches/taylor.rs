@@ -1,5 +1,4 @@
-//! Truncated Taylor polynomials: dense products, division, sparse products. Compare peers/README
-//! for what other libraries need.
+//! Benchmarks of truncated Taylor polynomials: dense products, quotients and sparse products.
 
 use std::sync::Arc;
 
@@ -10,17 +9,17 @@ fn main() {
     divan::main();
 }
 
-/// Variables and order.
+/// Number of variables and order of each space.
 const SPACES: [(usize, u32); 4] = [(6, 6), (12, 4), (24, 3), (24, 4)];
 
-/// Coefficient products of a dense product: C(2k + p, p).
+/// Returns the number of coefficient products in a dense product, C(2k + p, p).
 fn coefficient_products(variables: usize, order: u32) -> usize {
     (1..=order as usize).fold(1, |c, i| c * (2 * variables + i) / i)
 }
 
-/// A dense series without zeros.
-fn dense<C: Scalar>(space: &Arc<TaylorSpace>, shift: f64) -> TaylorPolynomial<C> {
-    let sum = (0..space.variables()).fold(TaylorPolynomial::<C>::from(2.0 + shift), |sum, i| {
+/// Returns a dense series without zeros.
+fn dense<C: Scalar>(space: &Arc<TaylorSpace>, offset: f64) -> TaylorPolynomial<C> {
+    let sum = (0..space.variables()).fold(TaylorPolynomial::<C>::from(2.0 + offset), |sum, i| {
         sum + TaylorPolynomial::variable(space, i) * TaylorPolynomial::from(0.1 + 0.01 * i as f64)
     });
     sum.recip()
@@ -50,7 +49,7 @@ fn product_of_intervals(bencher: Bencher, (variables, order): (usize, u32)) {
     bencher.counter(count).bench(|| black_box(&a) * black_box(&b));
 }
 
-/// (1 + Σ x_i)^4 by sparse products in a space too large for dense ones.
+/// Computes (1 + Σ x_i)^4 by a sparse product, in a space too large for dense series.
 #[divan::bench]
 fn sparse_power(bencher: Bencher) {
     let space = TaylorSpace::new(24, 12).unwrap();

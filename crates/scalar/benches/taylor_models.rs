@@ -1,4 +1,4 @@
-//! Taylor models of low order in the variables of a robot, next to the polynomials they consist of.
+//! Benchmarks of Taylor models of low order in 18 variables, beside those of their polynomials.
 
 use divan::{Bencher, black_box};
 use reachtube_scalar::{
@@ -12,16 +12,17 @@ fn main() {
 const VARIABLES: usize = 18;
 const ORDERS: [u32; 3] = [1, 2, 3];
 
-/// A model of `used` variables with a remainder: of few, a list of terms; of all, a dense series.
-fn model(order: u32, used: usize, shift: f64) -> TaylorModel {
+/// Returns a model in `used` variables with a remainder. It is a dense series where `used` is the
+/// number of all variables, else a list of terms.
+fn model(order: u32, used: usize, constant: f64) -> TaylorModel {
     let domain = TaylorBox::new(
         &TaylorSpace::new(VARIABLES, order).unwrap(),
-        &[Interval::centered(0.3, 0.1); VARIABLES],
+        &[Interval::centred(0.3, 0.1); VARIABLES],
     );
     let number = |x: f64| TaylorModel::from(x);
     let sum = (0..used)
-        .fold(number(shift), |sum, i| sum + domain.variable(i) * number(0.1 + 0.01 * i as f64));
-    let sum = sum + TaylorModel::from(Interval::centered(0.0, 1e-3));
+        .fold(number(constant), |sum, i| sum + domain.variable(i) * number(0.1 + 0.01 * i as f64));
+    let sum = sum + TaylorModel::from(Interval::centred(0.0, 1e-3));
     if used < VARIABLES { sum } else { sum.recip() }
 }
 
@@ -33,7 +34,8 @@ fn product<const USED: usize>(bencher: Bencher, order: u32) {
 
 #[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
 fn product_of_polynomials<const USED: usize>(bencher: Bencher, order: u32) {
-    let polynomial = |shift| -> TaylorPolynomial { model(order, USED, shift).polynomial().clone() };
+    let polynomial =
+        |constant| -> TaylorPolynomial { model(order, USED, constant).polynomial().clone() };
     let (a, b) = (polynomial(2.0), polynomial(3.0));
     bencher.bench(|| black_box(&a) * black_box(&b));
 }
@@ -46,7 +48,8 @@ fn sum<const USED: usize>(bencher: Bencher, order: u32) {
 
 #[divan::bench(args = ORDERS, consts = [2, VARIABLES])]
 fn sum_of_polynomials<const USED: usize>(bencher: Bencher, order: u32) {
-    let polynomial = |shift| -> TaylorPolynomial { model(order, USED, shift).polynomial().clone() };
+    let polynomial =
+        |constant| -> TaylorPolynomial { model(order, USED, constant).polynomial().clone() };
     let (a, b) = (polynomial(2.0), polynomial(3.0));
     bencher.bench(|| black_box(&a) + black_box(&b));
 }

@@ -1,20 +1,22 @@
-use crate::{Interval, Scalar};
+use crate::interval::closed::Interval;
+use crate::scalar::Scalar;
 
-/// Numbers that elementary functions are known of.
+/// A scalar with elementary functions.
 ///
 /// # Guarantee
 ///
-/// Over `Interval`, and for the coefficients of polynomials over it: outer enclosures.
+/// Over `Interval` and [`TaylorModel`](crate::TaylorModel), and for coefficients of type
+/// `Interval`: outer enclosures.
 pub trait Elementary: Scalar {
-    /// The square root.
+    /// Returns the square root.
     fn sqrt(&self) -> Self;
-    /// The exponential function.
+    /// Returns the exponential function.
     fn exp(&self) -> Self;
-    /// The natural logarithm.
+    /// Returns the natural logarithm.
     fn ln(&self) -> Self;
-    /// Sine and cosine of an angle in rad.
+    /// Returns sine and cosine of an angle in rad.
     fn sin_cos(&self) -> (Self, Self);
-    /// The angle of the point (x, self), in (-pi, pi].
+    /// Returns the angle of the point (x, self) in rad, in (-π, π].
     fn atan2(&self, x: &Self) -> Self;
 }
 

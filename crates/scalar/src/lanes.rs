@@ -1,18 +1,20 @@
 //! Several numbers as one: SIMD lanes.
 
-use crate::{Elementary, Powers};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
 use num_traits::{One, Zero};
 
-/// N numbers in place of one: every operation acts on each lane alone, as it would on an `f64`, to
-/// the last bit.
+use crate::elementary::Elementary;
+use crate::powers::Powers;
+
+/// A scalar of N independent `f64` lanes for SIMD instructions.
 ///
-/// An algorithm over [`Scalar`](crate::Scalar) evaluated over lanes works on N arguments at once.
-/// The compiler turns the loops over the lanes into vector instructions of whatever the target has:
-/// nothing here depends on the platform.
+/// An algorithm over [`Scalar`](crate::Scalar) evaluates N arguments at once over lanes. The
+/// compiler translates the loops over lanes to the vector instructions of the target. The code does
+/// not depend on the platform.
 ///
-/// Nothing is done across lanes: a lane that overflows or is divided by zero leaves the others as
-/// they are.
+/// Each lane has the value of the same operation on `f64`, to the last bit. No operation crosses
+/// lanes: an overflow or a division by zero in one lane does not affect the others.
 ///
 /// # Examples
 ///
@@ -29,7 +31,7 @@ pub struct Lanes<const N: usize>([f64; N]);
 
 /// A scalar of one or more independent `f64`: `f64` itself and [`Lanes`].
 ///
-/// It has what an algorithm over numbers needs beyond [`Elementary`]: branches, taken lane by lane.
+/// It adds functions of single lanes to [`Elementary`], for algorithms with branches.
 ///
 /// # Examples
 ///
@@ -43,26 +45,26 @@ pub struct Lanes<const N: usize>([f64; N]);
 /// assert_eq!(sign(Lanes::new([-3.0, 5.0])), Lanes::new([-1.0, 1.0]));
 /// ```
 pub trait Lanewise: Elementary + Copy {
-    /// Number of lanes, 1 or more.
+    /// The number of lanes, 1 or more.
     const LANES: usize;
 
-    /// Lane i is f(i).
+    /// Returns a scalar whose lane i is f(i).
     fn from_lanes(f: impl FnMut(usize) -> f64) -> Self;
 
-    /// Lane i.
+    /// Returns lane i.
     ///
     /// # Panics
     ///
-    /// Where `i` is [`LANES`](Self::LANES) or more.
+    /// Panics where `i` is [`LANES`](Self::LANES) or more.
     fn lane(self, i: usize) -> f64;
 
-    /// f of each lane.
+    /// Applies f to each lane.
     #[inline(always)]
     fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
         Self::from_lanes(|i| f(self.lane(i)))
     }
 
-    /// f of each lane and the same lane of `other`.
+    /// Applies f to each lane and the same lane of `other`.
     #[inline(always)]
     fn zip(self, other: Self, mut f: impl FnMut(f64, f64) -> f64) -> Self {
         Self::from_lanes(|i| f(self.lane(i), other.lane(i)))
@@ -124,14 +126,14 @@ impl<const N: usize> Elementary for Lanes<N> {
 impl<const N: usize> Powers for Lanes<N> {}
 
 impl<const N: usize> Lanes<N> {
-    /// Lane i is `lanes[i]`.
+    /// Returns a scalar whose lane i is `lanes[i]`.
     #[inline(always)]
     #[must_use]
     pub const fn new(lanes: [f64; N]) -> Self {
         Self(lanes)
     }
 
-    /// The lanes.
+    /// Returns the lanes as an array.
     #[inline(always)]
     #[must_use]
     pub const fn to_array(self) -> [f64; N] {
@@ -140,7 +142,7 @@ impl<const N: usize> Lanes<N> {
 }
 
 impl<const N: usize> From<f64> for Lanes<N> {
-    /// The same number in every lane.
+    /// Returns the same number in every lane.
     #[inline(always)]
     fn from(x: f64) -> Self {
         Self([x; N])
@@ -188,7 +190,7 @@ impl<const N: usize> Zero for Lanes<N> {
         Self([0.0; N])
     }
 
-    /// Whether every lane is 0.
+    /// Returns whether every lane is 0.
     fn is_zero(&self) -> bool {
         self.0.iter().all(|x| *x == 0.0)
     }

@@ -1,11 +1,10 @@
-//! What a number can be: the trait [`Scalar`] that all dynamics is written over; [`Interval`], a
-//! validated number that is right on stable Rust on any platform; [`TaylorPolynomial`] and
-//! [`TaylorModel`], functions in place of numbers; and [`Lanes`], several numbers at once.
+//! Number types for reachability analysis of robots, from intervals to Taylor models.
 #![doc = include_str!("../README.md")]
 
 mod elementary;
 mod interval;
 mod lanes;
+mod powers;
 pub mod rounding;
 mod scalar;
 mod taylor;
@@ -14,9 +13,9 @@ mod taylor_model;
 pub use elementary::Elementary;
 pub use interval::{DecimalError, Interval};
 pub use lanes::{Lanes, Lanewise};
+pub use powers::Powers;
 pub use scalar::Scalar;
 pub use taylor::{
-    MapWorkspace, PolynomialMap, Powers, TaylorPolynomial, TaylorSpace, TaylorSpaceError,
-    TaylorTerm,
+    MapWorkspace, PolynomialMap, TaylorPolynomial, TaylorSpace, TaylorSpaceError, TaylorTerm,
 };
 pub use taylor_model::{TaylorBox, TaylorModel};

@@ -2,12 +2,14 @@ use core::fmt::Debug;
 use core::ops::{AddAssign, Div, DivAssign, MulAssign, Neg, SubAssign};
 use num_traits::{One, Zero};
 
-/// A number that the dynamics of a robot can be evaluated over: `f64`,
-/// [`Interval`](crate::Interval), SIMD [`Lanes`](crate::Lanes), and later Taylor polynomials.
+/// A number type over which the dynamics of a robot can be evaluated.
 ///
-/// Only ring operations, division and conversion of constants are asked for. Sine and cosine are
-/// not: dynamics takes (sin q, cos q) as given, so that it can be evaluated over independent
-/// trigonometric variables (Property A of Liu & Althoff, IROS 2018).
+/// `f64`, [`Interval`](crate::Interval), SIMD [`Lanes`](crate::Lanes),
+/// [`TaylorPolynomial`](crate::TaylorPolynomial) and [`TaylorModel`](crate::TaylorModel) are
+/// scalars. The trait requires ring operations, division and conversion of constants.
+///
+/// It does not require sine and cosine. The dynamics take (sin q, cos q) as arguments and can so be
+/// evaluated over independent trigonometric variables (Property A of Liu & Althoff, IROS 2018).
 ///
 /// # Examples
 ///

@@ -1,4 +1,4 @@
-//! exp, sin and cos against exact rational Taylor sums with π and ln 2 to 440 bits.
+//! Tests of exp, sin and cos against exact rational Taylor sums with π and ln 2 to 440 bits.
 
 mod common;
 
@@ -12,13 +12,13 @@ use reachtube_scalar::Interval;
 static PI: LazyLock<BigRational> = LazyLock::new(pi);
 static LN_2: LazyLock<BigRational> = LazyLock::new(ln_2);
 
-/// How many numbers wider than the tightest an end may be.
+/// Largest distance of an end from the tightest interval, in ulps.
 const SLACK: i32 = 1;
 
 fn assert_sin_cos(x: f64) {
     let (sin, cos) = Interval::point(x).sin_cos();
-    for (value, shift) in [(sin, 0), (cos, 1)] {
-        let reference = reference_sin(x, shift, &PI);
+    for (value, quarter_turns) in [(sin, 0), (cos, 1)] {
+        let reference = reference_sin(x, quarter_turns, &PI);
         let (lo, hi) = (&reference - reference_error(), &reference + reference_error());
         assert_tight_enclosure(value, &lo, &hi, SLACK);
     }
@@ -35,13 +35,19 @@ proptest! {
     #![proptest_config(cases(600))]
 
     #[test]
-    fn sine_and_cosine(x in prop_oneof![-1e5..1e5_f64, -7.0..7.0_f64, -1048576.0..1048576.0_f64, -1e-3..1e-3_f64]) {
-        prop_assume!(x.abs() > 1e-40); // below, the reference is not precise enough: see `small_angles`
+    fn sine_and_cosine(
+        x in prop_oneof![-1e5..1e5_f64, -7.0..7.0_f64, -1048576.0..1048576.0_f64, -1e-3..1e-3_f64],
+    ) {
+        // Below 1e-40, the reference is not precise enough; see `small_angles`.
+        prop_assume!(x.abs() > 1e-40);
         assert_sin_cos(x);
     }
 
     #[test]
-    fn sine_and_cosine_beside_multiples_of_half_pi(k in -600_000..600_000_i64, steps in -3..=3_i32) {
+    fn sine_and_cosine_beside_multiples_of_half_pi(
+        k in -600_000..600_000_i64,
+        steps in -3..=3_i32,
+    ) {
         prop_assume!(k != 0);
         assert_sin_cos(steps_from(k as f64 * std::f64::consts::FRAC_PI_2, steps));
     }
@@ -51,9 +57,14 @@ proptest! {
         assert_exp(x);
     }
 
-    /// sin x lies strictly between x and x - x³/6, which below 2⁻²⁷ are neighbours at most.
+    /// sin x lies strictly between x and x - x³/6, which are equal or neighbours below 2⁻²⁷.
     #[test]
-    fn small_angles(x in prop_oneof![proptest::num::f64::SUBNORMAL, (-1074..-27_i32).prop_map(|k| 2_f64.powi(k) * 1.1)]) {
+    fn small_angles(
+        x in prop_oneof![
+            proptest::num::f64::SUBNORMAL,
+            (-1074..-27_i32).prop_map(|k| 2_f64.powi(k) * 1.1),
+        ],
+    ) {
         prop_assume!(x != 0.0);
         let sin = Interval::point(x).sin();
         prop_assert!(sin.contains(x) && sin.mig() < x.abs());
@@ -61,8 +72,8 @@ proptest! {
     }
 }
 
-/// Where the reduction cancels most: the number rounded from k π/2, k < 660,000, that is nearest to
-/// a multiple of π/2.
+/// The reduction cancels most at the number nearest to a multiple of π/2, among the numbers rounded
+/// from k π/2 with k < 660 000.
 #[test]
 fn closest_to_multiples_of_half_pi() {
     let half_pi = std::f64::consts::FRAC_PI_2;
@@ -110,7 +121,7 @@ fn sine_and_cosine_of_zero_are_exact() {
 }
 
 #[test]
-fn beyond_the_largest_angle_the_whole_range() {
+fn angles_beyond_the_largest_give_the_whole_range() {
     let range = Interval::new(-1.0, 1.0).unwrap();
     for x in [Interval::point(1048576.5), Interval::new(0.0, 1e300).unwrap(), Interval::ENTIRE] {
         assert_eq!(x.sin_cos(), (range, range));
@@ -118,15 +129,14 @@ fn beyond_the_largest_angle_the_whole_range() {
     assert!(Interval::point(1048576.0).sin().width() < 1e-15);
 }
 
-/// An extremum within a step of an end is decided rightly.
+/// An extremum beside an end is found on the correct side of it.
 #[test]
 fn extrema_beside_the_ends() {
     let half_pi = Interval::FRAC_PI_2;
     let before = Interval::new(1.0, half_pi.lo()).unwrap();
     let beyond = Interval::new(1.0, half_pi.hi()).unwrap();
     let after = Interval::new(half_pi.hi(), 2.0).unwrap();
-    // π/2 is no f64: the sine's maximum lies in the second interval only, and there cos changes its
-    // sign.
+    // π/2 is not an f64. The maximum of the sine and the zero of the cosine lie in `beyond` only.
     assert_eq!(beyond.sin().hi(), 1.0);
     assert!(before.cos().lo() > 0.0 && after.cos().hi() < 0.0 && beyond.cos().contains_zero());
     let turn = Interval::new(-3.0, 4.0).unwrap();

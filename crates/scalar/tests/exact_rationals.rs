@@ -1,5 +1,5 @@
-//! Arithmetic against exact rational numbers: enclosure, and tightness in numbers (ulps) beyond the
-//! tightest ends.
+//! Tests of arithmetic against exact rational numbers: enclosure, and distance from the tightest
+//! interval in ulps.
 
 mod common;
 
@@ -9,9 +9,9 @@ use num_traits::Zero;
 use proptest::prelude::*;
 use reachtube_scalar::{Interval, rounding::*};
 
-/// Fails unless [down, up] encloses the exact value, within `slack` numbers of the tightest bounds.
+/// Fails unless [down, up] encloses the exact value within `slack` ulps of the tightest interval.
 fn assert_bounds(down: f64, up: f64, value: &BigRational, slack: i32) {
-    let x = Interval::new(down, up).unwrap_or_else(|| panic!("{down} > {up}, or not bounds"));
+    let x = Interval::new(down, up).unwrap_or_else(|| panic!("[{down}, {up}] is not an interval"));
     assert_tight_enclosure(x, value, value, slack);
 }
 
@@ -50,7 +50,9 @@ proptest! {
         let (down, up) = (sqrt_down(x), sqrt_up(x));
         prop_assert!(square(down) <= exact(x) && square(up) >= exact(x));
         if x > 0.0 {
-            prop_assert!(square(steps_from(down, 2)) > exact(x) && square(steps_from(up, -2)) < exact(x));
+            prop_assert!(
+                square(steps_from(down, 2)) > exact(x) && square(steps_from(up, -2)) < exact(x)
+            );
         }
     }
 
@@ -64,8 +66,8 @@ proptest! {
     #[test]
     fn interval_products(x in any_interval(), y in any_interval()) {
         let (x_ends, y_ends) = (ends(x), ends(y));
-        let corners = x_ends.iter().flat_map(|a| y_ends.iter().map(move |b| a * b));
-        let (lo, hi) = range(corners);
+        let products = x_ends.iter().flat_map(|a| y_ends.iter().map(move |b| a * b));
+        let (lo, hi) = range(products);
         assert_tight_enclosure(x * y, &lo, &hi, 1);
     }
 
@@ -76,8 +78,8 @@ proptest! {
             return Ok(());
         }
         let (x_ends, y_ends) = (ends(x), ends(y));
-        let corners = x_ends.iter().flat_map(|a| y_ends.iter().map(move |b| a / b));
-        let (lo, hi) = range(corners);
+        let quotients = x_ends.iter().flat_map(|a| y_ends.iter().map(move |b| a / b));
+        let (lo, hi) = range(quotients);
         assert_tight_enclosure(x / y, &lo, &hi, 1);
     }
 
@@ -99,19 +101,31 @@ proptest! {
     }
 
     #[test]
-    fn middle_and_radius(x in any_interval()) {
+    fn midpoint_and_radius(x in any_interval()) {
         let (mid, rad) = (x.mid(), x.rad());
         prop_assert!(x.contains(mid));
-        prop_assert!(exact(mid) - exact(rad) <= exact(x.lo()) && exact(mid) + exact(rad) >= exact(x.hi()));
-        prop_assert!(x.width() == f64::INFINITY || exact(x.width()) >= exact(x.hi()) - exact(x.lo()));
-        prop_assert!(Interval::centered(mid, rad).encloses(&x));
+        prop_assert!(
+            exact(mid) - exact(rad) <= exact(x.lo()) && exact(mid) + exact(rad) >= exact(x.hi())
+        );
+        prop_assert!(
+            x.width() == f64::INFINITY || exact(x.width()) >= exact(x.hi()) - exact(x.lo())
+        );
+        prop_assert!(Interval::centred(mid, rad).encloses(&x));
     }
 
     #[test]
-    fn decimal_literals(digits in "[0-9]{1,25}", fraction in "[0-9]{0,25}", exponent in -340..320_i32, negative: bool) {
+    fn decimal_literals(
+        digits in "[0-9]{1,25}",
+        fraction in "[0-9]{0,25}",
+        exponent in -340..320_i32,
+        negative: bool,
+    ) {
         let text = format!("{}{digits}.{fraction}e{exponent}", if negative { "-" } else { "" });
         let whole: BigRational = format!("{digits}{fraction}").parse().unwrap();
-        let scale = num_traits::pow(integer(10), (exponent - fraction.len() as i32).unsigned_abs() as usize);
+        let scale = num_traits::pow(
+            integer(10),
+            (exponent - fraction.len() as i32).unsigned_abs() as usize,
+        );
         let size = if exponent < fraction.len() as i32 { whole / scale } else { whole * scale };
         let value = if negative { -size } else { size };
         assert_tight_enclosure(Interval::try_from_decimal(&text).unwrap(), &value, &value, 0);
@@ -135,7 +149,8 @@ proptest! {
     }
 }
 
-/// Products that round to a power of two or beside it, where the ulp changes, at every magnitude.
+/// The ulp changes at a power of two. This tests products that round to one or beside one, at every
+/// magnitude.
 #[test]
 fn products_beside_every_power_of_two() {
     for exponent in -1080..=1024_i32 {
@@ -148,7 +163,7 @@ fn products_beside_every_power_of_two() {
     }
 }
 
-/// The identities of matrices that must not grow: zeros are kept.
+/// Zeros stay exact, so that sparse matrices keep their zero entries.
 #[test]
 fn zeros_are_exact() {
     for x in [Interval::PI, -Interval::PI, Interval::new(-1e-310, 1e308).unwrap(), Interval::ENTIRE]
@@ -183,7 +198,7 @@ fn overflow_gives_an_infinite_end_only() {
     assert_eq!(huge.powi(3), beyond);
 }
 
-/// Unbounded operands: the limit sets, and no NaN.
+/// Operations on unbounded operands give the limit sets and no NaN.
 #[test]
 fn infinite_ends() {
     let inf = f64::INFINITY;
@@ -203,7 +218,7 @@ fn infinite_ends() {
     assert_eq!(Interval::new(inf, inf), None);
 }
 
-/// A bound that rests on NaN is NaN, in both directions.
+/// A bound of an operation with NaN is NaN, in both directions.
 #[test]
 fn nan_is_never_a_bound() {
     let binary = [add_up, add_down, sub_up, sub_down, mul_up, mul_down, div_up, div_down];
@@ -220,16 +235,16 @@ fn nan_is_never_a_bound() {
 }
 
 #[test]
-fn decimal_corner_cases() {
-    let of = |text| Interval::try_from_decimal(text).unwrap();
-    assert_eq!(of("-0.000e5"), Interval::ZERO);
-    assert_eq!(of("1e400"), Interval::new(f64::MAX, f64::INFINITY).unwrap());
-    assert_eq!(of("-1e-400"), Interval::new(-5e-324, 0.0).unwrap());
+fn decimal_edge_cases() {
+    let parse = |text| Interval::try_from_decimal(text).unwrap();
+    assert_eq!(parse("-0.000e5"), Interval::ZERO);
+    assert_eq!(parse("1e400"), Interval::new(f64::MAX, f64::INFINITY).unwrap());
+    assert_eq!(parse("-1e-400"), Interval::new(-5e-324, 0.0).unwrap());
     assert_eq!(
-        of("9007199254740993"),
+        parse("9007199254740993"),
         Interval::new(9007199254740992.0, 9007199254740994.0).unwrap()
     );
-    assert_eq!(of("1e99999999999999999999").hi(), f64::INFINITY);
+    assert_eq!(parse("1e99999999999999999999").hi(), f64::INFINITY);
     for bad in ["", "nan", "inf", "-Infinity", "0x10", "1,5", "1e", " 1", "."] {
         let error = Interval::try_from_decimal(bad).unwrap_err();
         assert!(error.to_string().contains("decimal number"), "{bad}");

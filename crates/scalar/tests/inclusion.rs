@@ -1,4 +1,4 @@
-//! Set properties: inclusion isotonicity, samples of the operands, identities of sets.
+//! Tests of set properties: inclusion isotonicity, members of the operands, identities of sets.
 
 mod common;
 
@@ -34,7 +34,7 @@ const BINARY: [(&str, Binary); 7] = [
     ("hull", Interval::hull),
 ];
 
-/// Angles that lie within some quadrants, with a part.
+/// Generates an interval of angles in rad, up to 7 rad wide, and a subset of it.
 fn angle_and_part() -> impl Strategy<Value = (Interval, Interval)> {
     (-20.0..20.0_f64, 0.0..7.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64).prop_map(|(lo, width, s, t)| {
         let whole = Interval::new(lo, lo + width).unwrap();
@@ -47,21 +47,40 @@ proptest! {
     #![proptest_config(cases(2000))]
 
     #[test]
-    fn unary_operations_are_isotonic((x, part) in prop_oneof![interval_and_part(), angle_and_part()]) {
+    fn unary_operations_are_isotonic(
+        (x, part) in prop_oneof![interval_and_part(), angle_and_part()],
+    ) {
         for (name, f) in UNARY {
-            prop_assert!(f(x).encloses(&f(part)), "{name}: {:?} does not enclose {:?}", f(x), f(part));
+            prop_assert!(
+                f(x).encloses(&f(part)),
+                "{name}: {:?} does not enclose {:?}",
+                f(x),
+                f(part)
+            );
         }
     }
 
     #[test]
-    fn binary_operations_are_isotonic((x, a) in interval_and_part(), (y, b) in interval_and_part()) {
+    fn binary_operations_are_isotonic(
+        (x, a) in interval_and_part(),
+        (y, b) in interval_and_part(),
+    ) {
         for (name, f) in BINARY {
-            prop_assert!(f(x, y).encloses(&f(a, b)), "{name}: {:?} does not enclose {:?}", f(x, y), f(a, b));
+            prop_assert!(
+                f(x, y).encloses(&f(a, b)),
+                "{name}: {:?} does not enclose {:?}",
+                f(x, y),
+                f(a, b)
+            );
         }
     }
 
     #[test]
-    fn assigning_is_the_same_operation(x in any_interval(), y in any_interval(), z in -10.0..10.0_f64) {
+    fn assigning_operators_agree_with_operators(
+        x in any_interval(),
+        y in any_interval(),
+        z in -10.0..10.0_f64,
+    ) {
         let mut all = [x; 8];
         all[0] += y;
         all[1] -= y;
@@ -89,7 +108,7 @@ proptest! {
         prop_assert_eq!(in_both, x.contains(a) && y.contains(a));
     }
 
-    /// sin² + cos² = 1 over any angle.
+    /// sin² + cos² = 1 holds over any set of angles.
     #[test]
     fn pythagoras((x, part) in angle_and_part()) {
         let (sin, cos) = x.sin_cos();
@@ -98,19 +117,21 @@ proptest! {
         prop_assert!((sin_part.sqr() + cos_part.sqr()).contains(1.0));
     }
 
-    /// The hull of many samples is nearly the set: an enclosure that misses an extremum fails, so
-    /// does a wide one.
+    /// The hull of many samples is nearly the range: an enclosure that misses an extremum or is too
+    /// wide fails.
     #[test]
     fn sine_of_a_set_is_its_hull((x, _) in angle_and_part()) {
         let samples = 400;
-        let at = |i: i32| Interval::point((x.lo() + x.width() * f64::from(i) / f64::from(samples)).min(x.hi()));
+        let at = |i: i32| {
+            Interval::point((x.lo() + x.width() * f64::from(i) / f64::from(samples)).min(x.hi()))
+        };
         for f in [Interval::sin, Interval::cos] {
             let hull = (0..=samples).map(|i| f(at(i))).reduce(Interval::hull).unwrap();
             prop_assert!(f(x).encloses(&hull));
-            // Between samples h apart an extremum is missed by at most h²/8.
+            // Samples at a distance h miss an extremum by at most h²/8.
             let missed = (x.width() / f64::from(samples)).powi(2) / 8.0 + 1e-15;
-            prop_assert!(Interval::centered(0.0, missed).contains(f(x).hi() - hull.hi()));
-            prop_assert!(Interval::centered(0.0, missed).contains(f(x).lo() - hull.lo()));
+            prop_assert!(Interval::centred(0.0, missed).contains(f(x).hi() - hull.hi()));
+            prop_assert!(Interval::centred(0.0, missed).contains(f(x).lo() - hull.lo()));
         }
     }
 }

@@ -1,5 +1,4 @@
-//! Logarithm and angle against the exponential, sine and cosine in exact rational numbers, and as
-//! sets.
+//! Tests of logarithm and angle against exp, sin and cos in exact rational numbers, and as sets.
 
 mod common;
 
@@ -14,7 +13,7 @@ use reachtube_scalar::Interval;
 static PI: LazyLock<BigRational> = LazyLock::new(pi);
 static LN_2: LazyLock<BigRational> = LazyLock::new(ln_2);
 
-/// Fails unless e^lo ≤ x ≤ e^hi: the logarithm of x is enclosed.
+/// Fails unless e^lo ≤ x ≤ e^hi, so that [lo, hi] encloses ln x, and [lo, hi] is narrow.
 fn assert_ln(x: f64) {
     let ln = Interval::point(x).ln();
     let power = |y: f64, error: BigRational| {
@@ -26,18 +25,20 @@ fn assert_ln(x: f64) {
     assert!(ln.width() <= 4e-15 * ln.mag().max(1.0), "ln {x}: {ln:?} is too wide");
 }
 
-/// sin(angle of (x, y) - θ) r = y cos θ - x sin θ, which is not negative as long as θ is below the
-/// angle by less than π.
-fn turned(y: f64, x: f64, angle: f64) -> BigRational {
+/// Computes r sin(φ - θ) = y cos θ - x sin θ for the angle φ of (x, y), at distance r from 0.
+///
+/// It is not negative where θ is below φ by less than π.
+fn rotated(y: f64, x: f64, angle: f64) -> BigRational {
     exact(y) * reference_sin(angle, 1, &PI) - exact(x) * reference_sin(angle, 0, &PI)
 }
 
+/// Fails unless the angle of (x, y) is enclosed, within 4e-15 rad.
 fn assert_angle(y: f64, x: f64) {
     let angle = Interval::point(y).atan2(Interval::point(x));
     let error = reference_error() * (exact(x).abs() + exact(y).abs());
-    assert!(turned(y, x, angle.lo()) >= -&error, "angle of ({x}, {y}) is below {angle:?}");
-    assert!(turned(y, x, angle.hi()) <= error, "angle of ({x}, {y}) is above {angle:?}");
-    // The quadrant: the sign alone could be that of the opposite angle.
+    assert!(rotated(y, x, angle.lo()) >= -&error, "angle of ({x}, {y}) is below {angle:?}");
+    assert!(rotated(y, x, angle.hi()) <= error, "angle of ({x}, {y}) is above {angle:?}");
+    // The signs above also hold for the opposite angle, so the quadrant is checked as well.
     assert!(
         (angle.mid() - y.atan2(x)).abs() < 1e-14 && angle.width() < 4e-15,
         "({x}, {y}): {angle:?}"
@@ -48,7 +49,9 @@ proptest! {
     #![proptest_config(cases(100))]
 
     #[test]
-    fn logarithm(x in prop_oneof![1e-3..1e3_f64, 0.999..1.001_f64, any_number().prop_map(f64::abs)]) {
+    fn logarithm(
+        x in prop_oneof![1e-3..1e3_f64, 0.999..1.001_f64, any_number().prop_map(f64::abs)],
+    ) {
         prop_assume!(x > 0.0 && x.is_finite());
         assert_ln(x);
     }
@@ -63,26 +66,36 @@ proptest! {
 
     #[test]
     fn logarithm_of_a_set((x, part) in interval_and_part()) {
-        // Each end is right, but of two near numbers the lower one may have the higher bound.
+        // Each end is a bound, but the lower of two near numbers can have the higher bound.
         let (of_set, of_part) = (x.ln(), part.ln());
         prop_assert!(of_set.lo() <= of_part.hi() && of_part.lo() <= of_set.hi());
         if x.lo() > 0.0 {
-            prop_assert!(x.ln().exp().encloses(&x) && x.ln().lo() == Interval::point(x.lo()).ln().lo());
+            prop_assert!(
+                x.ln().exp().encloses(&x) && x.ln().lo() == Interval::point(x.lo()).ln().lo()
+            );
         }
     }
 
-    /// Every point of a box has its angle in the box's, whose ends are those of corners.
+    /// The angles of a box contain the angle of each point, and their ends are those of vertices.
     #[test]
     fn angle_of_a_set((y, v) in interval_and_member(), (x, u) in interval_and_member()) {
         prop_assume!((v != 0.0 || u != 0.0) && v.abs() < 1e300 && u.abs() < 1e300);
         let (angle, of_point) = (y.atan2(x), Interval::point(v).atan2(Interval::point(u)));
-        prop_assert!(angle.lo() <= of_point.hi() && of_point.lo() <= angle.hi(), "{angle:?} {of_point:?}");
-        let crosses = x.lo() < 0.0 && y.lo() < 0.0 && y.hi() >= 0.0 || x.contains_zero() && y.contains_zero();
-        let corners = || [x.lo(), x.hi()].into_iter().flat_map(|u| [y.lo(), y.hi()].map(|v| (v + 0.0).atan2(u)));
+        prop_assert!(
+            angle.lo() <= of_point.hi() && of_point.lo() <= angle.hi(),
+            "{angle:?} {of_point:?}"
+        );
+        let crosses =
+            x.lo() < 0.0 && y.lo() < 0.0 && y.hi() >= 0.0 || x.contains_zero() && y.contains_zero();
+        let vertices = || {
+            [x.lo(), x.hi()].into_iter().flat_map(|u| [y.lo(), y.hi()].map(|v| (v + 0.0).atan2(u)))
+        };
         if !crosses {
-            let most = corners().fold(-4.0, f64::max);
-            let least = corners().fold(4.0, f64::min);
-            prop_assert!((angle.hi() - most).abs() < 1e-14 && (angle.lo() - least).abs() < 1e-14);
+            let highest = vertices().fold(-4.0, f64::max);
+            let lowest = vertices().fold(4.0, f64::min);
+            prop_assert!(
+                (angle.hi() - highest).abs() < 1e-14 && (angle.lo() - lowest).abs() < 1e-14
+            );
         } else {
             prop_assert_eq!(angle, Interval::new(-Interval::PI.hi(), Interval::PI.hi()).unwrap());
         }
@@ -90,7 +103,7 @@ proptest! {
 }
 
 #[test]
-fn corners_of_the_plane() {
+fn angles_at_axes_and_extreme_magnitudes() {
     for (y, x) in [
         (0.0, 1.0),
         (1.0, 0.0),

@@ -1,4 +1,4 @@
-//! Lanes against `f64`, to the last bit.
+//! Tests of lanes against `f64`, to the last bit.
 
 use proptest::prelude::*;
 use reachtube_scalar::{Elementary, Lanes, Lanewise, Scalar};
@@ -14,12 +14,15 @@ fn polynomial<S: Scalar>(x: S, y: S) -> S {
 
 proptest! {
     #[test]
-    fn each_lane_is_a_number_alone(x: [f64; 8], y: [f64; 8]) {
+    fn each_lane_has_the_bits_of_an_f64(x: [f64; 8], y: [f64; 8]) {
         let bits = |x: [f64; 8]| x.map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() });
         let (a, b) = (Lanes::new(x), Lanes::new(y));
         let alone = core::array::from_fn(|i| polynomial(x[i], y[i]));
         prop_assert_eq!(bits(polynomial(a, b).to_array()), bits(alone));
-        prop_assert_eq!(bits(a.zip(b, f64::max).to_array()), bits(core::array::from_fn(|i| x[i].max(y[i]))));
+        prop_assert_eq!(
+            bits(a.zip(b, f64::max).to_array()),
+            bits(core::array::from_fn(|i| x[i].max(y[i])))
+        );
         let (sin, cos) = a.sin_cos();
         prop_assert_eq!(bits(sin.to_array()), bits(x.map(f64::sin)));
         prop_assert_eq!(bits(cos.to_array()), bits(x.map(f64::cos)));
@@ -27,7 +30,10 @@ proptest! {
         prop_assert_eq!(bits(a.sqrt().to_array()), bits(x.map(f64::sqrt)));
         prop_assert_eq!(bits(a.exp().to_array()), bits(x.map(f64::exp)));
         prop_assert_eq!(bits(a.ln().to_array()), bits(x.map(f64::ln)));
-        prop_assert_eq!(bits(a.atan2(&b).to_array()), bits(core::array::from_fn(|i| x[i].atan2(y[i]))));
+        prop_assert_eq!(
+            bits(a.atan2(&b).to_array()),
+            bits(core::array::from_fn(|i| x[i].atan2(y[i])))
+        );
     }
 }
 

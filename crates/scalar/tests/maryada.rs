@@ -1,6 +1,7 @@
-//! Against an independent interval library: maryada 0.2, which computes + - * / √ exactly and
-//! rounds once (its mode "tightest"), exp within one number, and sin and cos by series with
-//! directed rounding.
+//! Tests against an independent interval library, maryada 0.2.
+//!
+//! It computes + - * / √ exactly and rounds once (its mode "tightest"), exp within 1 ulp, and sin
+//! and cos by series with directed rounding.
 
 mod common;
 
@@ -9,8 +10,7 @@ use maryada::{EnclosureOps, Interval as Other, IntervalOps};
 use proptest::prelude::*;
 use reachtube_scalar::Interval;
 
-/// Fails unless both enclosures have a common number, and ours is at most `slack` numbers wider at
-/// either end.
+/// Fails unless both enclosures intersect, and each end of ours is at most `slack` ulps outside.
 fn assert_agree(name: &str, ours: Interval, other: Other, slack: i32) {
     let (lo, hi) = other.bounds();
     let theirs = Interval::new(lo, hi).unwrap();
@@ -26,7 +26,7 @@ fn other(x: Interval) -> Other {
 proptest! {
     #![proptest_config(cases(4000))]
 
-    /// maryada's ends are the tightest: ours must enclose them.
+    /// The ends of maryada are the tightest, so that ours must enclose them.
     #[test]
     fn arithmetic(x in any_interval(), y in any_interval()) {
         let (a, b) = (other(x), other(y));
@@ -43,14 +43,20 @@ proptest! {
     }
 
     #[test]
-    fn elementary_functions(lo in -1e5..1e5_f64, width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64]) {
+    fn elementary_functions(
+        lo in -1e5..1e5_f64,
+        width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64],
+    ) {
         let x = Interval::new(lo, lo + width).unwrap();
         assert_agree("sin", x.sin(), other(x).sin(), 1);
         assert_agree("cos", x.cos(), other(x).cos(), 1);
     }
 
     #[test]
-    fn exponential(lo in -745.0..709.0_f64, width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64]) {
+    fn exponential(
+        lo in -745.0..709.0_f64,
+        width in prop_oneof![Just(0.0), 0.0..1e-9_f64, 0.0..7.0_f64],
+    ) {
         let x = Interval::new(lo, lo + width).unwrap();
         assert_agree("exp", x.exp(), other(x).exp(), 1);
     }

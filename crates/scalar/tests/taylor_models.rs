@@ -1,4 +1,5 @@
-//! Every operation of a Taylor model encloses the true function over its box, and not by much more.
+//! Tests that every operation of a Taylor model encloses the exact function over its box, with a
+//! remainder near the sampled error.
 
 mod common;
 
@@ -11,7 +12,7 @@ use num_traits::{One, Zero};
 use proptest::prelude::*;
 use reachtube_scalar::{Elementary, Interval, Scalar, TaylorBox, TaylorModel, TaylorSpace};
 
-/// A function that can be evaluated over any number.
+/// A function that can be evaluated over any scalar with elementary functions.
 trait Function {
     const NAME: &'static str;
     fn at<S: Elementary>(x: &[S]) -> S;
@@ -28,7 +29,7 @@ macro_rules! functions {
                 }
             }
         )*
-        /// Calls a generic check with every function.
+        /// Calls a generic check for every function.
         macro_rules! for_all_functions {
             ($check:ident($arguments:expr)) => { $($check::<$Name>($arguments);)* };
         }
@@ -41,7 +42,7 @@ fn sum_of<S: Scalar>(x: &[S]) -> S {
         .fold(S::from(0.25), |sum, (i, x)| sum + x.clone() * S::from(0.5 - 0.2 * i as f64))
 }
 
-/// Positive over the box: 2 + small linear and quadratic parts.
+/// A function that is positive over the box: 2 + small linear and quadratic parts.
 fn positive<S: Scalar>(x: &[S]) -> S {
     S::from(2.0) + x[0].clone() * x[1].clone() * S::from(0.3) - sum_of(x) * S::from(0.2)
 }
@@ -65,10 +66,10 @@ functions! {
 }
 
 fn sides(half: f64) -> [Interval; 3] {
-    [0.3, -0.6, 0.9].map(|mid| Interval::centered(mid, half))
+    [0.3, -0.6, 0.9].map(|mid| Interval::centred(mid, half))
 }
 
-/// Points of a box: a van der Corput sequence a variable, and its corners.
+/// Returns points of a box: its vertices, and one van der Corput sequence per variable.
 fn points(sides: &[Interval], count: u32) -> Vec<Vec<f64>> {
     let radical = |n: u32, base: u32| {
         let (mut n, mut value, mut unit) = (n, 0.0, 1.0);
@@ -82,7 +83,7 @@ fn points(sides: &[Interval], count: u32) -> Vec<Vec<f64>> {
     let inside = |side: &Interval, s: f64| {
         (side.lo() + s * (side.hi() - side.lo())).clamp(side.lo(), side.hi())
     };
-    let corners = (0..1u32 << sides.len()).map(|bits| {
+    let vertices = (0..1u32 << sides.len()).map(|bits| {
         sides
             .iter()
             .enumerate()
@@ -93,13 +94,13 @@ fn points(sides: &[Interval], count: u32) -> Vec<Vec<f64>> {
     let sequence = (1..count).map(|n| {
         sides.iter().zip(base).map(|(side, base)| inside(side, radical(n, base))).collect()
     });
-    corners.chain(sequence).collect()
+    vertices.chain(sequence).collect()
 }
 
-/// The model of F, and the largest distance of the true values from its polynomial.
+/// Returns the model of F, and the largest distance of the sampled values from its polynomial.
 ///
-/// The truth is an enclosure itself, a few roundings wide: it and the model's set hold the same
-/// number.
+/// Each sampled value is an enclosure itself, a few roundings wide. The check is that it intersects
+/// the enclosure of the model.
 fn checked<F: Function>(order: u32, half: f64, count: u32) -> (TaylorModel, f64) {
     let sides = sides(half);
     let domain = TaylorBox::new(&TaylorSpace::new(3, order).unwrap(), &sides);
@@ -108,18 +109,18 @@ fn checked<F: Function>(order: u32, half: f64, count: u32) -> (TaylorModel, f64)
     let mut largest = 0.0f64;
     for at in points(&sides, count) {
         let at: Vec<Interval> = at.into_iter().map(Interval::point).collect();
-        let truth = F::at(&at);
+        let value = F::at(&at);
         let enclosed = domain.evaluate(&model, &at);
         assert!(
-            enclosed.intersection(truth).is_some(),
-            "{name} at {at:?}: {truth:?} is not in {enclosed:?}"
+            enclosed.intersection(value).is_some(),
+            "{name} at {at:?}: {value:?} is not in {enclosed:?}"
         );
         assert!(
-            range.intersection(truth).is_some(),
-            "{name} at {at:?}: {truth:?} is not in {range:?}"
+            range.intersection(value).is_some(),
+            "{name} at {at:?}: {value:?} is not in {range:?}"
         );
         let polynomial = enclosed.mid() - model.remainder().mid();
-        largest = largest.max((truth.mid() - polynomial).abs());
+        largest = largest.max((value.mid() - polynomial).abs());
     }
     (model, largest)
 }
@@ -129,12 +130,12 @@ fn encloses_samples<F: Function>((order, half): (u32, f64)) {
 }
 
 #[test]
-fn models_enclose_the_truth() {
+fn models_enclose_the_exact_values() {
     for_all_functions!(encloses_samples((3, 0.2)));
 }
 
-/// Where cutting off is nearly all of the error, nearly all of it is found by sampling too: a
-/// remainder that were too small would be found out.
+/// Fails where the remainder is more than `times` the sampled error. Sampling finds nearly all of
+/// the error where truncation dominates it.
 fn is_tight<F: Function>((order, half, times): (u32, f64, f64)) {
     let (model, largest) = checked::<F>(order, half, 3_000);
     let remainder = model.remainder().mag();
@@ -161,18 +162,19 @@ fn wide_boxes_and_low_orders_enclose_too() {
     }
 }
 
-/// Models with random polynomials of 3 variables to order 3, sparse and dense, at magnitudes where
-/// products underflow or overflow.
+/// Generates models in 3 variables to order 3, sparse and dense, at magnitudes where products
+/// underflow or overflow.
 fn any_model(space: Arc<TaylorSpace>) -> impl Strategy<Value = TaylorModel> {
     let coefficient =
         prop_oneof![4 => -3.0..3.0_f64, 1 => (-8..8_i32).prop_map(f64::from), 1 => any_number()];
     let term = (0..20usize, coefficient);
-    let remainder = prop_oneof![2 => Just(Interval::ZERO), 1 => any_interval(), 2 => (-1.0..1.0_f64, 0.0..1e-3_f64).prop_map(|(mid, rad)| Interval::centered(mid, rad))];
+    let small = (-1.0..1.0_f64, 0.0..1e-3_f64).prop_map(|(mid, rad)| Interval::centred(mid, rad));
+    let remainder = prop_oneof![2 => Just(Interval::ZERO), 1 => any_interval(), 2 => small];
     (proptest::collection::vec(term, 0..20), remainder).prop_map(move |(terms, remainder)| {
         let domain = TaylorBox::new(&space, &[Interval::new(-1.0, 1.0).unwrap(); 3]);
         let t = domain.variables();
-        terms.into_iter().fold(TaylorModel::from(remainder), |sum, (place, c)| {
-            let monomial = exponents()[place];
+        terms.into_iter().fold(TaylorModel::from(remainder), |sum, (index, c)| {
+            let monomial = exponents()[index];
             let power =
                 |i: usize| (0..monomial[i]).fold(TaylorModel::from(1.0), |p, _| p * t[i].clone());
             sum + power(0) * power(1) * power(2) * TaylorModel::from(c)
@@ -180,13 +182,13 @@ fn any_model(space: Arc<TaylorSpace>) -> impl Strategy<Value = TaylorModel> {
     })
 }
 
-/// The exponents of the monomials of 3 variables to degree 3.
+/// Returns the exponents of the monomials in 3 variables to degree 3.
 fn exponents() -> Vec<[u8; 3]> {
     let all = (0..64u8).map(|n| [n & 3, n >> 2 & 3, n >> 4]);
     all.filter(|e| e.iter().sum::<u8>() <= 3).collect()
 }
 
-/// The exact values of a model's polynomial, widened by its remainder: the lowest and the highest.
+/// Returns the lowest and the highest value of a model at t, in exact rational numbers.
 fn exact_values(model: &TaylorModel, t: &[BigRational]) -> [BigRational; 2] {
     let power = |x: &BigRational, e: u8| num_traits::pow(x.clone(), e.into());
     let value: BigRational = model
@@ -203,7 +205,7 @@ fn exact_values(model: &TaylorModel, t: &[BigRational]) -> [BigRational; 2] {
     ends(model.remainder()).map(|end| &value + end)
 }
 
-/// Norms of the degrees from 31 on are kept together.
+/// The norms share one entry for all degrees from 31 on, so this tests orders about and above 31.
 #[test]
 fn high_orders() {
     for order in [30, 31, 32, 61, 62, 70] {
@@ -228,35 +230,46 @@ fn high_orders() {
 proptest! {
     #![proptest_config(cases(400))]
 
-    /// Whatever the operands enclose, the result encloses its sum, difference, product and
-    /// quotient, in exact rational numbers.
+    /// For all values that the operands enclose, the result encloses their sum, difference, product
+    /// and quotient in exact rational numbers.
     #[test]
     fn arithmetic_encloses_exact_rationals(
-        (a, b) in Just(TaylorSpace::new(3, 3).unwrap()).prop_flat_map(|s| (any_model(s.clone()), any_model(s))),
+        (a, b) in Just(TaylorSpace::new(3, 3).unwrap())
+            .prop_flat_map(|s| (any_model(s.clone()), any_model(s))),
         t in proptest::collection::vec(-8..=8_i64, 3),
     ) {
         let t: Vec<BigRational> = t.into_iter().map(|t| integer(t) / integer(8)).collect();
         let (xs, ys) = (exact_values(&a, &t), exact_values(&b, &t));
-        let corners = || xs.iter().flat_map(|x| ys.iter().map(move |y| (x, y)));
+        let pairs = || xs.iter().flat_map(|x| ys.iter().map(move |y| (x, y)));
         let check = |name: &str, model: TaylorModel, values: Vec<BigRational>| {
             let [lo, hi] = exact_values(&model, &t);
-            let (lo, hi) = (unless_infinite(model.remainder().lo(), lo), unless_infinite(model.remainder().hi(), hi));
+            let (lo, hi) = (
+                unless_infinite(model.remainder().lo(), lo),
+                unless_infinite(model.remainder().hi(), hi),
+            );
             for value in values {
-                assert!(lo.as_ref().is_none_or(|lo| *lo <= value), "{name}: {value} below {model:?}");
-                assert!(hi.as_ref().is_none_or(|hi| *hi >= value), "{name}: {value} above {model:?}");
+                assert!(
+                    lo.as_ref().is_none_or(|lo| *lo <= value),
+                    "{name}: {value} below {model:?}"
+                );
+                assert!(
+                    hi.as_ref().is_none_or(|hi| *hi >= value),
+                    "{name}: {value} above {model:?}"
+                );
             }
         };
-        check("+", &a + &b, corners().map(|(x, y)| x + y).collect());
-        check("-", &a - &b, corners().map(|(x, y)| x - y).collect());
-        check("*", &a * &b, corners().map(|(x, y)| x * y).collect());
+        check("+", &a + &b, pairs().map(|(x, y)| x + y).collect());
+        check("-", &a - &b, pairs().map(|(x, y)| x - y).collect());
+        check("*", &a * &b, pairs().map(|(x, y)| x * y).collect());
         check("range", TaylorModel::from(a.range()), xs.to_vec());
         let divides = !b.range().contains_zero();
-        let quotients = corners().filter(|_| divides).map(|(x, y)| x / y).collect();
+        let quotients = pairs().filter(|_| divides).map(|(x, y)| x / y).collect();
         check("/", &a / &b, quotients);
         prop_assert!(divides || (&a / &b).remainder() == Interval::ENTIRE);
     }
 }
 
+/// Returns the value of a bound, or `None` where the end of the remainder is infinite.
 fn unless_infinite(end: f64, value: BigRational) -> Option<BigRational> {
     end.is_finite().then_some(value)
 }
@@ -279,7 +292,7 @@ fn numbers_stay_exact() {
     assert_eq!(TaylorModel::from(Interval::ENTIRE) * TaylorModel::zero(), TaylorModel::zero());
 }
 
-/// What is cut off of a square is not negative.
+/// The truncated part of a square is not negative.
 #[test]
 fn squares_at_first_order() {
     let space = TaylorSpace::new(4, 1).unwrap();
@@ -292,23 +305,23 @@ fn squares_at_first_order() {
         assert!(values.mag() < largest * 1.000001 && values.mag() >= largest);
         assert!((if sign > 0.0 { values.lo() } else { -values.hi() }) > -1e-12, "{values:?}");
     }
-    // Nothing is known of the sign of a product of different variables.
+    // A product of different variables can have both signs.
     let product = (&t[0] * &t[1]).remainder();
     assert!(product.encloses(&Interval::new(-1.0, 1.0).unwrap()) && product.width() < 2.000001);
 }
 
 #[test]
-fn what_is_not_known_is_entire() {
+fn operations_without_bounds_give_entire() {
     let space = TaylorSpace::new(1, 4).unwrap();
     let domain = TaylorBox::new(&space, &[Interval::new(-0.5, 1.0).unwrap()]);
     let x = domain.variable(0);
-    let unknown = x.recip();
-    assert_eq!((unknown.remainder(), unknown.range()), (Interval::ENTIRE, Interval::ENTIRE));
+    let entire = x.recip();
+    assert_eq!((entire.remainder(), entire.range()), (Interval::ENTIRE, Interval::ENTIRE));
     for model in [
         TaylorModel::from(1.0) / TaylorModel::zero(),
-        unknown.clone() + x.clone(),
-        unknown.clone() * x.clone(),
-        x.clone() / unknown.clone(),
+        entire.clone() + x.clone(),
+        entire.clone() * x.clone(),
+        x.clone() / entire.clone(),
         TaylorModel::from(f64::NAN),
         TaylorModel::from(f64::MAX) * TaylorModel::from(2.0) * x.clone(),
         (x.clone() + TaylorModel::from(f64::MAX)) + TaylorModel::from(f64::MAX),
@@ -320,21 +333,21 @@ fn what_is_not_known_is_entire() {
         );
         assert!(model.range().contains(1e308) || model.range().contains(-1e308), "{model:?}");
     }
-    // Two coefficients of which each is a number and the sum is not.
+    // The sum of two finite coefficients overflows.
     let pair =
-        TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centered(0.0, f64::MAX); 2]);
+        TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centred(0.0, f64::MAX); 2]);
     assert_eq!((pair.variable(0) + pair.variable(1)).range(), Interval::ENTIRE);
     assert_eq!(x.ln().range().lo(), f64::NEG_INFINITY);
     assert!(x.sqrt().range().encloses(&Interval::new(0.0, 1.0).unwrap()));
-    assert!(unknown.sin_cos().0.range().encloses(&Interval::new(-1.0, 1.0).unwrap()));
-    let whole = unknown.atan2(&x).range();
+    assert!(entire.sin_cos().0.range().encloses(&Interval::new(-1.0, 1.0).unwrap()));
+    let whole = entire.atan2(&x).range();
     assert!(whole.encloses(&Interval::new(-PI, PI).unwrap()) && whole.width() < 7.0);
-    // Beyond the box a model says nothing.
+    // A model is valid only inside the box.
     assert_eq!(domain.evaluate(&x, &[Interval::point(1.01)]), Interval::ENTIRE);
     assert_eq!(TaylorBox::new(&space, &[Interval::ENTIRE]).variable(0).range(), Interval::ENTIRE);
 }
 
-/// The angle jumps at the cut: over a box that crosses it, no polynomial is meant.
+/// The angle jumps at the cut, so a box that crosses it gives an interval without a polynomial.
 #[test]
 fn angles_at_the_cut() {
     let space = TaylorSpace::new(2, 3).unwrap();
@@ -350,5 +363,5 @@ fn angles_at_the_cut() {
     );
     let angle = beside.variable(1).atan2(&beside.variable(0));
     assert!(angle.range().encloses(&Interval::new(3.05, PI).unwrap()) && angle.range().lo() > 3.0);
-    assert!(angle.remainder().mag() < 4e-3); // a value alone would have 0.05
+    assert!(angle.remainder().mag() < 4e-3); // the interval of values alone would have 0.05
 }

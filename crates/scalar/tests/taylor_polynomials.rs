@@ -1,5 +1,5 @@
-//! Truncated polynomials: against naive exact rational arithmetic, and identities of rings and of
-//! calculus.
+//! Tests of truncated polynomials against naive exact rational arithmetic, and by identities of
+//! rings and of calculus.
 
 mod common;
 
@@ -18,7 +18,7 @@ use reachtube_scalar::{
 const VARIABLES: usize = 3;
 const ORDER: u32 = 4;
 
-/// A truncated polynomial as it is taught: exponents and exact coefficients.
+/// A naive truncated polynomial: a map from exponents to exact coefficients.
 #[derive(Clone, Debug, PartialEq)]
 struct Naive(BTreeMap<Vec<u8>, BigRational>);
 
@@ -58,7 +58,7 @@ impl Naive {
         self.0.get(&vec![0; VARIABLES]).cloned().unwrap_or_else(BigRational::zero)
     }
 
-    /// Σ f_i (self - its constant)^i for the coefficients f_i of a series.
+    /// Returns Σ f_i (self - constant)^i for the coefficients f_i of a series.
     fn composed(&self, series: impl Fn(i64) -> BigRational) -> Self {
         let offset = self.plus(&Self::number(self.constant()), &integer(-1));
         (0..=i64::from(ORDER)).rev().fold(Self(BTreeMap::new()), |sum, i| {
@@ -80,11 +80,11 @@ fn space() -> Arc<TaylorSpace> {
     TaylorSpace::new(VARIABLES, ORDER).unwrap()
 }
 
-/// Every coefficient of p encloses the exact one, within `width`.
+/// Fails unless every coefficient of p encloses the exact one and is at most `width` wide.
 fn assert_coefficients(p: &TaylorPolynomial<Interval>, reference: &Naive, width: f64) {
     for exponents in reference.0.keys().cloned().chain(p.terms().into_iter().map(|t| t.exponents)) {
         if exponents.is_empty() {
-            continue; // a constant's term, which is among the reference's too
+            continue; // the term of a constant, which the reference also has
         }
         let value = reference.0.get(&exponents).cloned().unwrap_or_else(BigRational::zero);
         let coefficient = p.coefficient(&exponents);
@@ -93,7 +93,8 @@ fn assert_coefficients(p: &TaylorPolynomial<Interval>, reference: &Naive, width:
     }
 }
 
-/// Polynomials with few or many terms of coefficients n/8; every third one in the dense form.
+/// Generates polynomials with few or many terms and coefficients n/8, every third one in dense
+/// form.
 fn any_polynomial() -> impl Strategy<Value = TaylorPolynomial<f64>> {
     let exponents = proptest::collection::vec(0..=ORDER as u8, VARIABLES);
     let term = (exponents, -24..=24_i32)
@@ -105,13 +106,13 @@ fn any_polynomial() -> impl Strategy<Value = TaylorPolynomial<f64>> {
     })
 }
 
-/// The same polynomial in the dense form: a dense zero is added.
+/// Returns the same polynomial in dense form, by adding a dense zero.
 fn densely<C: Scalar>(p: &TaylorPolynomial<C>, space: &Arc<TaylorSpace>) -> TaylorPolynomial<C> {
     let series = (TaylorPolynomial::from(1.0) + TaylorPolynomial::variable(space, 0)).recip();
     p.clone() + (series.clone() - series)
 }
 
-/// The polynomial with another constant term.
+/// Returns the polynomial with another constant term.
 fn with_constant(p: &TaylorPolynomial<f64>, constant: f64) -> TaylorPolynomial<f64> {
     p.clone() + TaylorPolynomial::from(constant - p.constant_term())
 }
@@ -139,31 +140,45 @@ proptest! {
     #![proptest_config(cases(150))]
 
     #[test]
-    fn arithmetic_of_intervals_encloses_exact_coefficients(a in any_polynomial(), b in any_polynomial()) {
+    fn arithmetic_of_intervals_encloses_exact_coefficients(
+        a in any_polynomial(),
+        b in any_polynomial(),
+    ) {
         let ((x, y), (p, q)) = ((enclosed(&a), enclosed(&b)), (naive(&a), naive(&b)));
         assert_coefficients(&(&x + &y), &p.plus(&q, &integer(1)), 0.0);
         assert_coefficients(&(&x - &y), &p.plus(&q, &integer(-1)), 0.0);
         assert_coefficients(&(&x * &y), &p.times(&q), 1e-9);
-        assert_coefficients(&x.scaled(&Interval::point(0.3)), &p.times(&Naive::number(exact(0.3))), 1e-14);
+        assert_coefficients(
+            &x.scaled(&Interval::point(0.3)),
+            &p.times(&Naive::number(exact(0.3))),
+            1e-14,
+        );
         assert_coefficients(&x.powi(3), &p.times(&p).times(&p), 1e-6);
         for divisor in [with_constant(&b, 3.0), with_constant(&b, -0.5)] {
             let quotient = p.times(&naive(&divisor).recip());
             assert_coefficients(&(&x / &enclosed(&divisor)), &quotient, 1.0);
-            // The coefficients of f64 are those of intervals up to rounding.
+            // The f64 coefficients agree with the interval coefficients up to rounding.
             let rounded = &a / &divisor;
             let middle = (&x / &enclosed(&divisor)).map_coefficients(|c| c.mid());
             prop_assert!(largest(&(&rounded - &middle)) <= 1e-11 * (1.0 + largest(&middle)));
         }
     }
 
-    /// Where the constant is one whose value is rational, so are all coefficients.
+    /// The coefficients are rational where the value at the constant is.
     #[test]
-    fn functions_of_intervals_enclose_exact_coefficients(a in any_polynomial(), b in any_polynomial()) {
+    fn functions_of_intervals_enclose_exact_coefficients(
+        a in any_polynomial(),
+        b in any_polynomial(),
+    ) {
         let sign = |i: i64| integer(if i % 4 < 2 { 1 } else { -1 });
         let zero = with_constant(&a, 0.0);
         let one = with_constant(&a, 1.0);
         let four = with_constant(&a, 4.0);
-        assert_coefficients(&enclosed(&zero).exp(), &naive(&zero).composed(|i| factorial(i).recip()), 1e-6);
+        assert_coefficients(
+            &enclosed(&zero).exp(),
+            &naive(&zero).composed(|i| factorial(i).recip()),
+            1e-6,
+        );
         let (sin, cos) = enclosed(&zero).sin_cos();
         let odd = |i: i64| if i % 2 == 1 { sign(i) / factorial(i) } else { BigRational::zero() };
         let even = |i: i64| if i % 2 == 0 { sign(i) / factorial(i) } else { BigRational::zero() };
@@ -175,18 +190,25 @@ proptest! {
         };
         assert_coefficients(&enclosed(&one).ln(), &naive(&one).composed(logarithm), 1e-6);
         // √(4 + δ) = 2 Σ C(1/2, i) (δ/4)^i.
-        let binomial = |i: i64| (1..=i).fold(integer(2), |c, k| c * (integer(3) - integer(2 * k)) / integer(8 * k));
+        let binomial = |i: i64| {
+            (1..=i).fold(integer(2), |c, k| c * (integer(3) - integer(2 * k)) / integer(8 * k))
+        };
         assert_coefficients(&enclosed(&four).sqrt(), &naive(&four).composed(binomial), 1e-6);
         // atan(y / x) for y(0) = 0, x(0) = 1.
         let x = with_constant(&b, 1.0);
-        let arctangent = |i: i64| if i % 2 == 1 { sign(i) / integer(i) } else { BigRational::zero() };
+        let arctangent =
+            |i: i64| if i % 2 == 1 { sign(i) / integer(i) } else { BigRational::zero() };
         let tangent = naive(&zero).times(&naive(&x).recip());
-        assert_coefficients(&enclosed(&zero).atan2(&enclosed(&x)), &tangent.composed(arctangent), 1e-3);
+        assert_coefficients(
+            &enclosed(&zero).atan2(&enclosed(&x)),
+            &tangent.composed(arctangent),
+            1e-3,
+        );
     }
 
     #[test]
     fn ring((a, b, c) in (any_polynomial(), any_polynomial(), any_polynomial())) {
-        // Coefficients n/8 make sums exact and products of two too.
+        // With coefficients n/8, sums and products of two polynomials are exact.
         prop_assert_eq!((&a + &b) + c.clone(), &a + &(&b + &c));
         prop_assert_eq!(&a * &b, &b * &a);
         prop_assert_eq!(&a * &(&b + &c), &(&a * &b) + &(&a * &c));
@@ -200,7 +222,7 @@ proptest! {
         prop_assert_eq!(assigned, &(&(&a + &b) - &c) * &b);
     }
 
-    /// Derivatives lose one order: products are compared below it.
+    /// A derivative is exact to one order less, so products are compared to that order.
     #[test]
     fn calculus(a in any_polynomial(), b in any_polynomial(), i in 0..VARIABLES) {
         let (product, d) = (&a * &b, |p: &TaylorPolynomial<f64>| p.derivative(i));
@@ -209,19 +231,26 @@ proptest! {
         let e = with_constant(&a, 0.5).exp();
         assert_close(&d(&e).truncated(ORDER - 1), &(&e * &d(&a)).truncated(ORDER - 1));
         let l = with_constant(&a, 2.0).ln();
-        assert_close(&d(&l).truncated(ORDER - 1), &(&d(&a) / &with_constant(&a, 2.0)).truncated(ORDER - 1));
+        assert_close(
+            &d(&l).truncated(ORDER - 1),
+            &(&d(&a) / &with_constant(&a, 2.0)).truncated(ORDER - 1),
+        );
         prop_assert_eq!(d(&d(&a)), a.derivative(i).derivative(i));
         let j = (i + 1) % VARIABLES;
         prop_assert_eq!(a.derivative(i).derivative(j), a.derivative(j).derivative(i));
     }
 
     #[test]
-    fn functions_undo_each_other(a in any_polynomial(), b in any_polynomial(), constant in 0.3..2.0_f64) {
+    fn inverse_functions_cancel(
+        a in any_polynomial(),
+        b in any_polynomial(),
+        constant in 0.3..2.0_f64,
+    ) {
         let a = with_constant(&(a * TaylorPolynomial::from(0.25)), constant);
         let (sin, cos) = a.sin_cos();
         assert_close(&(&(&sin * &sin) + &(&cos * &cos)), &TaylorPolynomial::from(1.0));
         assert_close(&sin.atan2(&cos), &a);
-        // A quarter turn on.
+        // sin(a + π/2) = cos a and cos(a + π/2) = -sin a.
         let turned = (a.clone() + TaylorPolynomial::from(PI / 2.0)).sin_cos();
         assert_close(&turned.0, &cos);
         assert_close(&turned.1, &-sin.clone());
@@ -252,25 +281,32 @@ proptest! {
 
     #[test]
     fn evaluation_and_substitution(
-        f in any_polynomial(), g in proptest::collection::vec(any_polynomial(), VARIABLES), h in proptest::collection::vec(-8..=8_i32, VARIABLES),
+        f in any_polynomial(),
+        g in proptest::collection::vec(any_polynomial(), VARIABLES),
+        h in proptest::collection::vec(-8..=8_i32, VARIABLES),
     ) {
         let h: Vec<f64> = h.into_iter().map(|n| f64::from(n) / 8.0).collect();
         let at: Vec<BigRational> = h.iter().map(|x| exact(*x)).collect();
         let power = |x: &BigRational, e: u8| num_traits::pow(x.clone(), e.into());
-        let term = |(m, c): (&Vec<u8>, &BigRational)| m.iter().zip(&at).fold(c.clone(), |p, (e, x)| p * power(x, *e));
+        let term = |(m, c): (&Vec<u8>, &BigRational)| {
+            m.iter().zip(&at).fold(c.clone(), |p, (e, x)| p * power(x, *e))
+        };
         let reference: BigRational = naive(&f).0.iter().map(term).sum();
-        // Coefficients and arguments of few bits: all of it is exact.
+        // Coefficients and arguments have few bits, so the evaluation is exact.
         prop_assert_eq!(exact(f.evaluate(&h)), reference.clone());
         let value = f.evaluate(&h.iter().map(|x| Interval::point(*x)).collect::<Vec<_>>());
         assert_encloses(value, &reference, &reference);
-        prop_assert_eq!(exact(PolynomialMap::new(VARIABLES, &[g[0].clone(), f.clone()]).evaluate(&h)[1]), reference.clone());
+        prop_assert_eq!(
+            exact(PolynomialMap::new(VARIABLES, &[g[0].clone(), f.clone()]).evaluate(&h)[1]),
+            reference.clone()
+        );
 
-        // There and back: exact likewise.
+        // A shift by h and back.
         let back: Vec<f64> = h.iter().map(|x| -x).collect();
         assert_close(&f.shifted(&h).shifted(&back), &f);
         prop_assert_eq!(exact(f.shifted(&h).constant_term()), reference);
 
-        // f(g(h)) for f and g of degree 2, which a space of order 4 holds whole.
+        // f(g(h)) for f and g of degree 2 is exact in a space of order 4.
         let f = f.truncated(2);
         let g: Vec<_> = g.iter().map(|g| g.truncated(2)).collect();
         let inner: Vec<f64> = g.iter().map(|g| g.evaluate(&h)).collect();
@@ -280,7 +316,10 @@ proptest! {
     }
 
     #[test]
-    fn embedding_renames_variables(a in any_polynomial(), at in proptest::collection::vec(-2.0..2.0_f64, 5)) {
+    fn embedding_renames_variables(
+        a in any_polynomial(),
+        at in proptest::collection::vec(-2.0..2.0_f64, 5),
+    ) {
         let wide = TaylorSpace::new(5, 6).unwrap();
         let there = a.embedded(&wide, &[4, 0, 2]);
         let (x, y) = (there.evaluate(&at), a.evaluate(&[at[4], at[0], at[2]]));
@@ -288,7 +327,7 @@ proptest! {
     }
 }
 
-/// A robot of seven joints needs 28 variables.
+/// A robot with seven joints needs 28 variables.
 #[test]
 fn twenty_eight_variables() {
     let space = TaylorSpace::new(28, 15).unwrap();
@@ -296,7 +335,7 @@ fn twenty_eight_variables() {
         sum + TaylorPolynomial::variable(&space, i)
     });
     let cube = sum.powi(3);
-    // C(30, 3) monomials, with coefficients 1, 3 and 6 of the multinomial theorem.
+    // The cube has C(30, 3) monomials with the multinomial coefficients 1, 3 and 6.
     assert_eq!(cube.term_count(), 4060);
     assert_eq!(cube.evaluate(&[1.0; 28]), 28f64.powi(3));
     assert_eq!(cube.terms().iter().filter(|t| t.coefficient == 6.0).count(), 28 * 27 * 26 / 6);
@@ -324,7 +363,7 @@ fn exponents_of(variables: usize, factors: &[usize]) -> Vec<u8> {
     exponents
 }
 
-/// What cancels leaves no term.
+/// Terms that cancel are not stored.
 #[test]
 fn structural_zeros_are_kept() {
     let space = space();

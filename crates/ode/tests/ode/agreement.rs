@@ -1,11 +1,11 @@
-//! One method against another, and one call against another.
+//! Tests of one method against another, and of one call against another.
 
 use crate::distance;
 use proptest::prelude::*;
 use reachtube_ode::{DormandPrince, Run, RungeKutta4, Tolerance};
 use reachtube_scalar::Interval;
 
-/// A driven, damped pendulum.
+/// A driven, damped pendulum: x = (angle, velocity), u = (torque).
 fn pendulum(_: f64, x: &[f64], u: &[f64], dx: &mut [f64]) {
     (dx[0], dx[1]) = (x[1], u[0] - 9.0 * x[0].sin() - 0.2 * x[1]);
 }
@@ -16,21 +16,30 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn adaptive_is_fixed_with_small_steps(
+    fn adaptive_steps_agree_with_small_fixed_steps(
         start in prop::array::uniform2(-2.0..2.0f64),
         inputs in prop::collection::vec(-3.0..3.0f64, 30),
         gaps in prop::collection::vec(0.01..0.1f64, 30),
     ) {
         let mut times = vec![0.0];
-        times.extend(gaps.iter().scan(0.0, |t, gap| { *t += gap; Some(*t) }));
+        times.extend(gaps.iter().scan(0.0, |t, gap| {
+            *t += gap;
+            Some(*t)
+        }));
         let (mut x, mut fixed) = (start, vec![start]);
         for (k, u) in inputs.iter().enumerate() {
-            RungeKutta4::new(2).integrate(&mut pendulum, [times[k], times[k + 1]], 50, &mut x, &[*u]);
+            RungeKutta4::new(2).integrate(
+                &mut pendulum,
+                [times[k], times[k + 1]],
+                50,
+                &mut x,
+                &[*u],
+            );
             fixed.push(x);
         }
         let mut worst = 0.0_f64;
         let run = Run { start: &start, inputs: &inputs };
-        let outcome = DormandPrince::new(2, FINE).follow(&mut pendulum, &times, run, |k, x| {
+        let outcome = DormandPrince::new(2, FINE).simulate(&mut pendulum, &times, run, |k, x| {
             worst = worst.max(distance(x, &fixed[k]));
         });
         prop_assert!(outcome.is_reached());
@@ -38,8 +47,12 @@ proptest! {
     }
 
     #[test]
-    fn samples_are_the_solution_and_cost_nothing(start in prop::array::uniform2(-2.0..2.0f64), count in 2..200usize) {
-        let times: Vec<f64> = (0..count).map(|k| 0.3 + 4.0 * k as f64 / (count - 1) as f64).collect();
+    fn samples_agree_with_the_solution_and_need_no_evaluations(
+        start in prop::array::uniform2(-2.0..2.0f64),
+        count in 2..200usize,
+    ) {
+        let times: Vec<f64> =
+            (0..count).map(|k| 0.3 + 4.0 * k as f64 / (count - 1) as f64).collect();
         let evaluations = core::cell::Cell::new(0);
         let mut counted = |t: f64, x: &[f64], u: &[f64], dx: &mut [f64]| {
             evaluations.set(evaluations.get() + 1);
@@ -55,13 +68,23 @@ proptest! {
         prop_assert!(outcome.is_reached());
         let with_samples = evaluations.replace(0);
         let span = [times[0], times[count - 1]];
-        prop_assert!(DormandPrince::new(2, FINE).integrate(&mut counted, span, &mut ends[1], &[0.5]).is_reached());
+        prop_assert!(
+            DormandPrince::new(2, FINE)
+                .integrate(&mut counted, span, &mut ends[1], &[0.5])
+                .is_reached()
+        );
         prop_assert_eq!(with_samples, evaluations.get());
         prop_assert_eq!(ends[0], ends[1]);
         prop_assert_eq!(samples.len(), count);
         let mut x = start;
         for k in 1..count {
-            RungeKutta4::new(2).integrate(&mut pendulum, [times[k - 1], times[k]], 2000 / count + 2, &mut x, &[0.5]);
+            RungeKutta4::new(2).integrate(
+                &mut pendulum,
+                [times[k - 1], times[k]],
+                2000 / count + 2,
+                &mut x,
+                &[0.5],
+            );
             prop_assert!(distance(&x, &samples[k]) < 1e-7, "sample {}", k);
         }
     }
@@ -79,15 +102,15 @@ fn the_step_is_kept_over_the_jumps_of_the_input() {
     let run = Run { start: &[0.5, 0.0], inputs: &inputs };
     assert!(
         DormandPrince::new(2, Tolerance::default())
-            .follow(&mut counted, &times, run, |_, _| {})
+            .simulate(&mut counted, &times, run, |_, _| {})
             .is_reached()
     );
-    // A span is one step: the slope anew, and six stages. Only the first one has to find its size.
+    // Each span takes one step with seven evaluations. Only the first span searches its step size.
     assert!((7000..7050).contains(&evaluations), "{evaluations} evaluations");
 }
 
 #[test]
-fn a_solver_that_was_used_gives_the_same_run() {
+fn a_used_solver_gives_the_same_run() {
     let run = Run { start: &[0.5, 0.0], inputs: &[1.0, -1.0] };
     let mut solver = DormandPrince::new(2, Tolerance::default());
     let mut ends = |start: &[f64]| {
@@ -95,7 +118,7 @@ fn a_solver_that_was_used_gives_the_same_run() {
         let run = Run { start, ..run };
         assert!(
             solver
-                .follow(&mut pendulum, &[0.0, 0.7, 1.9], run, |_, x| end.copy_from_slice(x))
+                .simulate(&mut pendulum, &[0.0, 0.7, 1.9], run, |_, x| end.copy_from_slice(x))
                 .is_reached()
         );
         end
@@ -111,7 +134,7 @@ fn runge_kutta_over_intervals_encloses_the_method() {
         dx[0] = x[1].clone();
         dx[1] = u[0].clone() - x[0].clone() * x[0].clone() * x[0].clone();
     }
-    let mut wide = [Interval::centered(0.5, 1e-3), Interval::point(0.0)];
+    let mut wide = [Interval::centred(0.5, 1e-3), Interval::point(0.0)];
     RungeKutta4::new(2).integrate(&mut field, [0.0, 1.0], 20, &mut wide, &[Interval::point(0.1)]);
     for start in [0.499, 0.5, 0.5004, 0.501] {
         let mut x = [start, 0.0];
@@ -124,8 +147,8 @@ fn runge_kutta_over_intervals_encloses_the_method() {
 }
 
 #[test]
-#[should_panic(expected = "7 numbers are no input for each of 2 spans")]
-fn inputs_that_are_no_rows_are_refused() {
+#[should_panic(expected = "7 input entries do not form one row for each of 2 spans")]
+fn inputs_that_do_not_form_rows_panic() {
     let run = Run { start: &[0.0, 0.0], inputs: &[1.0; 7] };
-    let _ = DormandPrince::new(2, FINE).follow(&mut pendulum, &[0.0, 1.0, 2.0], run, |_, _| {});
+    let _ = DormandPrince::new(2, FINE).simulate(&mut pendulum, &[0.0, 1.0, 2.0], run, |_, _| {});
 }

@@ -1,4 +1,4 @@
-//! Orders, from exact solutions.
+//! Tests of the orders of convergence against exact solutions.
 
 use crate::{distance, order};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
@@ -10,8 +10,7 @@ fn linear() -> (DMatrix<f64>, DMatrix<f64>) {
     (a, dmatrix![0.0, 0.0; 1.0, 0.0; 0.3, -2.0])
 }
 
-/// Its solution after t under a held input: the exponential of [[A, B u], [0, 0]] takes (x, 1)
-/// there.
+/// Returns the solution after t under a held input, by the exponential of [[A, B u], [0, 0]].
 fn exact(t: f64, x: &DVector<f64>, u: &DVector<f64>) -> DVector<f64> {
     let (a, b) = linear();
     let mut block = DMatrix::zeros(4, 4);
@@ -38,7 +37,7 @@ fn exact_chirp(t: f64) -> [f64; 2] {
     [(t + t * t).sin(), (t + t * t).cos()]
 }
 
-/// A solver that takes whatever span it is given in one step.
+/// Returns a solver that takes any span in one step.
 fn one_step_solver(dimension: usize) -> DormandPrince {
     let mut solver = DormandPrince::new(dimension, Tolerance { relative: 0.0, absolute: 1e9 });
     let mut at_rest = |_: f64, _: &[f64], _: &[f64], dx: &mut [f64]| dx.fill(0.0);
@@ -88,7 +87,7 @@ fn dormand_prince_is_of_order_5() {
     assert!((found - 5.0).abs() < 0.15, "order {found}");
 }
 
-/// Within one step from an exact state, an interpolant of order 4 errs by h⁵.
+/// Inside one step from an exact state, the error of an interpolant of order 4 grows with h⁵.
 #[test]
 fn dense_output_is_of_order_4() {
     let error = |h: f64| {
@@ -111,7 +110,7 @@ fn dense_output_is_of_order_4() {
 }
 
 #[test]
-fn errors_follow_the_tolerance_and_work_its_fifth_root() {
+fn errors_scale_with_the_tolerance_and_steps_with_its_fifth_root() {
     let run = |tolerance: f64| {
         let (mut evaluations, mut x) = (0, exact_chirp(0.0));
         let mut counted = |t: f64, x: &[f64], u: &[f64], dx: &mut [f64]| {
@@ -128,7 +127,7 @@ fn errors_follow_the_tolerance_and_work_its_fifth_root() {
     };
     let (coarse, fine) = (run(1e-5), run(1e-10));
     assert!(coarse.1 < 1e-3 && fine.1 < 1e-8, "errors {} and {}", coarse.1, fine.1);
-    // 10^(5/5) times the steps, and less by the share of the steps that begin.
+    // A tolerance 10⁵ times smaller needs 10^(5/5) times the steps, up to the first steps.
     let growth = fine.0 / coarse.0;
     assert!((8.0..12.0).contains(&growth), "{} and {} evaluations", coarse.0, fine.0);
 }
@@ -142,7 +141,7 @@ fn a_held_input_gives_the_exact_solution() {
     let tolerance = Tolerance { relative: 1e-10, absolute: 1e-10 };
     let mut samples = 0;
     let outcome =
-        DormandPrince::new(3, tolerance).follow(&mut linear_field(), &times, run, |k, x| {
+        DormandPrince::new(3, tolerance).simulate(&mut linear_field(), &times, run, |k, x| {
             if k > 0 {
                 let u = DVector::from_column_slice(&inputs[2 * k - 2..2 * k]);
                 state = exact(times[k] - times[k - 1], &state, &u);

@@ -1,4 +1,4 @@
-//! What has no solution to the end says so, and where.
+//! Tests that an integration without a solution to the end reports where and why it stopped.
 
 use proptest::prelude::*;
 use reachtube_ode::{Cause, DormandPrince, Ensemble, Outcome, Run, Tolerance, VectorField};
@@ -8,7 +8,7 @@ fn solver() -> DormandPrince {
     DormandPrince::new(1, Tolerance::default())
 }
 
-/// ẋ = x²: x = 1 / (1 / x0 - t).
+/// The field ẋ = x², with the solution x = 1 / (1 / x0 - t).
 struct Square;
 
 impl<S: Lanewise> VectorField<S> for Square {
@@ -20,7 +20,9 @@ impl<S: Lanewise> VectorField<S> for Square {
 proptest! {
     #[test]
     fn a_pole_is_found(start in 0.1..100.0f64) {
-        let Outcome::Diverged { time, .. } = solver().integrate(&mut Square, [0.0, 20.0], &mut [start], &[]) else {
+        let Outcome::Diverged { time, .. } =
+            solver().integrate(&mut Square, [0.0, 20.0], &mut [start], &[])
+        else {
             return Err(TestCaseError::fail("passed a pole"));
         };
         prop_assert!((time * start - 1.0).abs() < 1e-6, "{} for {}", time, 1.0 / start);
@@ -33,7 +35,7 @@ fn a_bound_is_met_in_time() {
     let mut x = [-1.0];
     let outcome = solver().bounded_by(1000.0).integrate(&mut growth, [0.0, 20.0], &mut x, &[]);
     let Outcome::Diverged { time, cause: Cause::Bound } = outcome else { panic!("{outcome:?}") };
-    // At the end of the step that met it.
+    // The time is that at the end of the step that left the bound.
     assert!(
         (time.exp() / 1000.0 - 1.0).abs() < 0.5 && (time.exp() / x[0] + 1.0).abs() < 1e-6,
         "{time} s, {x:?}"
@@ -47,16 +49,16 @@ fn a_bound_is_met_in_time() {
 }
 
 #[test]
-fn no_number_is_no_hang() {
+fn nan_and_chatter_stop_the_integration() {
     let stopped = |outcome, at: f64, why: Cause| {
         let Outcome::Diverged { time, cause } = outcome else { panic!("{outcome:?}") };
-        // Chatter creeps on, by some 1e-6 s a step.
+        // The chattering solution advances by about 1e-6 s per step.
         let slack = if why == Cause::StepCount { 1e-2 } else { 1e-9 };
         assert!((time - at).abs() < slack && cause == why, "{outcome:?}");
     };
     let mut nan = |_: f64, _: &[f64], _: &[f64], dx: &mut [f64]| dx[0] = f64::NAN;
     stopped(solver().integrate(&mut nan, [3.0, 4.0], &mut [1.0], &[]), 3.0, Cause::StepSize);
-    // No number beyond t = 1.
+    // The rate is NaN beyond t = 1 s.
     let mut root = |t: f64, _: &[f64], _: &[f64], dx: &mut [f64]| dx[0] = (1.0 - t).sqrt();
     stopped(solver().integrate(&mut root, [0.0, 4.0], &mut [1.0], &[]), 1.0, Cause::StepSize);
     let mut still = |_: f64, _: &[f64], _: &[f64], dx: &mut [f64]| dx[0] = 0.0;
@@ -69,7 +71,7 @@ fn no_number_is_no_hang() {
 }
 
 #[test]
-fn a_divergence_leaves_a_solver_that_works() {
+fn a_solver_works_after_a_divergence() {
     let mut solver = solver();
     let mut x = [1.0];
     assert!(!solver.integrate(&mut Square, [0.0, 2.0], &mut x, &[]).is_reached());
@@ -82,7 +84,7 @@ fn a_divergence_leaves_a_solver_that_works() {
 }
 
 #[test]
-fn a_run_that_diverges_leaves_its_neighbours() {
+fn a_run_that_diverges_does_not_affect_its_neighbours() {
     let starts = [[0.1], [1.0], [-2.0], [0.5], [5.0]];
     let runs = starts.each_ref().map(|start| Run { start, inputs: &[] });
     let times: Vec<f64> = (0..=300).map(|k| 0.01 * f64::from(k)).collect();
@@ -90,7 +92,7 @@ fn a_run_that_diverges_leaves_its_neighbours() {
     let mut ensemble = Ensemble::<Lanes<4>>::new(1).bounded_by(1e6);
     let outcomes = ensemble.integrate(&mut Square, &times, 10, &runs, |run, sample, x| {
         let exact = 1.0 / (1.0 / starts[run][0] - times[sample]);
-        // Near and past its pole a run of fixed steps is no solution any more.
+        // Near its pole and beyond, a run with fixed steps is not a solution.
         let is_early = starts[run][0] * times[sample] < 0.9;
         assert!((x[0] / exact - 1.0).abs() < 1e-3 || !is_early, "{run}: {} is not {exact}", x[0]);
         reached[run] = sample;

@@ -1,17 +1,18 @@
-//! The integrators against exact solutions and against each other.
+//! Tests of the integrators against exact solutions and against each other.
 
 mod agreement;
 mod convergence;
 mod divergence;
 mod ensemble;
 
-/// Largest |a - b| of two vectors.
+/// Returns the largest |a_i - b_i| of two vectors.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Slope of log error over log step between the first and the last, each (step, error).
+/// Returns the order of convergence: the slope of log error over log step between the first and the
+/// last pair (step, error).
 fn order(errors: &[(f64, f64)]) -> f64 {
     let (first, last) = (errors[0], errors[errors.len() - 1]);
     (first.1 / last.1).ln() / (first.0 / last.0).ln()

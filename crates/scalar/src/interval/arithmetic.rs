@@ -1,18 +1,18 @@
-//! The four operations and what follows from them.
+//! Sums, differences, products, quotients and their operators.
 
 use core::iter::Sum;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
 
-use super::Interval;
+use super::closed::Interval;
 use crate::rounding::{
     add_down, add_up, bounds_of_rounded, div_down, div_up, is_far_from_underflow, mul_down, mul_up,
 };
 
 impl Neg for Interval {
     type Output = Interval;
-    /// Exact.
+    /// Returns the set of -x, exactly.
     #[inline]
     fn neg(self) -> Interval {
         Interval { lo: -self.hi, hi: -self.lo }
@@ -35,12 +35,13 @@ impl Sub for Interval {
     }
 }
 
-/// `f64::min` without its care for NaN: one instruction.
+/// Returns the smaller number; without the NaN handling of `f64::min` it is one instruction.
 #[inline]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
+/// Returns the larger number; without the NaN handling of `f64::max` it is one instruction.
 #[inline]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
@@ -54,8 +55,8 @@ impl Mul for Interval {
         let (hl, hh) = (self.hi * rhs.lo, self.hi * rhs.hi);
         let lo = smaller(smaller(ll, lh), smaller(hl, hh));
         let hi = larger(larger(ll, lh), larger(hl, hh));
-        // Each of the four ends is a factor of ll or hh: where these are finite, no product is 0 ·
-        // ∞.
+        // Each of the four ends is a factor of ll or hh. Where both products are finite, none of
+        // the four products is 0 · ∞.
         if is_far_from_underflow(lo, hi) && (ll + hh).abs() < f64::INFINITY {
             let (lo, hi) = bounds_of_rounded(lo, hi);
             Interval { lo, hi }
@@ -66,15 +67,15 @@ impl Mul for Interval {
 }
 
 impl Interval {
-    /// The product where an end is zero, infinite, or near underflow.
+    /// Encloses the product where an end is zero or infinite, or where a product may underflow.
     fn mul_with_zero_or_infinity(self, rhs: Interval) -> Interval {
-        let ends = [(self.lo, rhs.lo), (self.lo, rhs.hi), (self.hi, rhs.lo), (self.hi, rhs.hi)];
-        let lo = ends.iter().fold(f64::INFINITY, |m, &(a, b)| m.min(mul_down(a, b)));
-        let hi = ends.iter().fold(f64::NEG_INFINITY, |m, &(a, b)| m.max(mul_up(a, b)));
+        let pairs = [(self.lo, rhs.lo), (self.lo, rhs.hi), (self.hi, rhs.lo), (self.hi, rhs.hi)];
+        let lo = pairs.iter().fold(f64::INFINITY, |m, &(a, b)| m.min(mul_down(a, b)));
+        let hi = pairs.iter().fold(f64::NEG_INFINITY, |m, &(a, b)| m.max(mul_up(a, b)));
         Interval { lo, hi }
     }
 
-    /// The quotient by an interval of positive numbers.
+    /// Encloses the quotient by an interval of positive numbers.
     #[inline]
     fn div_by_positive(self, rhs: Interval) -> Interval {
         let lo = div_down(self.lo, if self.lo < 0.0 { rhs.lo } else { rhs.hi });
@@ -85,7 +86,7 @@ impl Interval {
 
 impl Div for Interval {
     type Output = Interval;
-    /// [`Interval::ENTIRE`] where the divisor contains zero.
+    /// Encloses the quotient; it is [`Interval::ENTIRE`] where the divisor contains zero.
     #[inline]
     fn div(self, rhs: Interval) -> Interval {
         if rhs.lo > 0.0 {

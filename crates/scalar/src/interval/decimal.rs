@@ -1,32 +1,33 @@
-//! Decimal text: enclosing what is written, and writing what encloses.
+//! Decimal text: enclosures of literals, and literals that enclose an interval.
 
 use core::cmp::Ordering;
 use core::fmt;
 
 use thiserror::Error;
 
-use super::Interval;
+use super::closed::Interval;
 use crate::rounding::{add_up, sub_down};
 
-/// A text that is not a decimal number.
+/// An error: a text is not a decimal number.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error(
-    "`{text}` is not a decimal number: write digits with an optional sign, point and exponent, as in -1.5e-3"
+    "`{text}` is not a decimal number: write digits with an optional sign, point and exponent, \
+     as in -1.5e-3"
 )]
 pub struct DecimalError {
-    /// The text as it was given.
+    /// The rejected text.
     pub text: String,
 }
 
 impl Interval {
-    /// The number that a decimal literal such as `0.1`, `-3` or `1.5e-3` stands for.
+    /// Encloses the exact value of a decimal literal such as `0.1`, `-3` or `1.5e-3`.
     ///
     /// # Guarantee
     /// The tightest enclosure: a point where the literal is an `f64` exactly, else two neighbouring
     /// numbers.
     ///
     /// # Errors
-    /// [`DecimalError`] where the text is not a decimal number; infinities and NaN are not.
+    /// [`DecimalError`] where the text is not a decimal number. Infinities and NaN are errors.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -38,7 +39,7 @@ impl Interval {
     pub fn try_from_decimal(text: &str) -> Result<Interval, DecimalError> {
         let error = || DecimalError { text: text.to_owned() };
         if text.contains(|c: char| c.is_ascii_alphabetic() && !matches!(c, 'e' | 'E')) {
-            return Err(error()); // "inf" and "nan", which `f64` reads
+            return Err(error()); // `f64` would parse "inf" and "nan"
         }
         let nearest: f64 = text.parse().map_err(|_| error())?;
         Ok(match compare(text, nearest) {
@@ -49,10 +50,10 @@ impl Interval {
     }
 }
 
-/// `[lo, hi]` in decimal, with the precision of the format if there is one.
+/// Formats as `[lo, hi]` in decimal, with the precision of the format if it has one.
 ///
 /// # Guarantee
-/// Outer: what is written encloses the interval exactly.
+/// Outer: the decimal numbers enclose the interval.
 ///
 /// ```
 /// use reachtube_scalar::Interval;
@@ -63,10 +64,10 @@ impl Interval {
 impl fmt::Display for Interval {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let write = |x: f64| f.precision().map_or_else(|| format!("{x}"), |p| format!("{x:.p$}"));
-        // One unit of the last digit written; below it when the shortest text of a number is
-        // written.
+        // One unit of the last written digit; 0 without a precision, where the neighbouring `f64`
+        // is written instead.
         let unit = f.precision().map_or(0.0, |p| 10_f64.powi(-(p.min(400) as i32)));
-        let (lo, hi) = (self.lo + 0.0, self.hi + 0.0); // -0 is written 0
+        let (lo, hi) = (self.lo + 0.0, self.hi + 0.0); // -0 becomes 0
         let mut below = write(lo);
         if lo.is_finite() && compare(&below, lo) == Ordering::Greater {
             below = write(sub_down(lo, unit).min(lo.next_down()));
@@ -79,15 +80,14 @@ impl fmt::Display for Interval {
     }
 }
 
-/// How the number that a decimal literal stands for compares with x, exactly. An infinite x is
-/// beyond every literal.
+/// Compares the exact value of a decimal literal with x. An infinite x is beyond every literal.
 fn compare(literal: &str, x: f64) -> Ordering {
     if x.is_infinite() {
         return 0.0.partial_cmp(&x).expect("x is not NaN");
     }
-    // No f64 has more than 767 significant digits.
+    // An f64 has at most 767 significant digits.
     let exact = format!("{x:.767e}");
-    let (a, b) = (Decimal::of(literal), Decimal::of(&exact));
+    let (a, b) = (Decimal::parse(literal), Decimal::parse(&exact));
     match (a.is_negative, b.is_negative) {
         (false, false) => a.magnitude().cmp(&b.magnitude()),
         (true, true) => b.magnitude().cmp(&a.magnitude()),
@@ -96,7 +96,7 @@ fn compare(literal: &str, x: f64) -> Ordering {
     }
 }
 
-/// ±0.d₁d₂d₃… · 10^exponent, d₁ ≠ 0; zero has no digits and is not negative.
+/// The number ±0.d₁d₂d₃… · 10^exponent with d₁ ≠ 0. Zero has no digits and is not negative.
 struct Decimal {
     is_negative: bool,
     exponent: i64,
@@ -104,8 +104,8 @@ struct Decimal {
 }
 
 impl Decimal {
-    /// Of a text that `f64` can read.
-    fn of(text: &str) -> Decimal {
+    /// Parses a text that `f64` can parse.
+    fn parse(text: &str) -> Decimal {
         let unsigned = text.trim_start_matches(['+', '-']);
         let (mantissa, exponent) = unsigned.split_once(['e', 'E']).unwrap_or((unsigned, "0"));
         let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
@@ -113,7 +113,7 @@ impl Decimal {
         let significant = all.trim_start_matches('0');
         let leading_zeros = (all.len() - significant.len()) as i64;
         let digits = significant.trim_end_matches('0').to_owned();
-        // An exponent too long for i64 is as good as any other that is out of range.
+        // An exponent too long for i64 compares like any other exponent out of range.
         let beyond = if exponent.starts_with('-') { i64::MIN / 2 } else { i64::MAX / 2 };
         let exponent = exponent.parse().unwrap_or(beyond).clamp(i64::MIN / 2, i64::MAX / 2);
         Decimal {
@@ -123,7 +123,7 @@ impl Decimal {
         }
     }
 
-    /// A key in the order of magnitude.
+    /// Returns a key that sorts by magnitude.
     fn magnitude(&self) -> (bool, i64, &str) {
         let is_nonzero = !self.digits.is_empty();
         (is_nonzero, if is_nonzero { self.exponent } else { 0 }, &self.digits)

@@ -1,13 +1,16 @@
-//! Logarithm and the angle of a point: the inverses of functions that are known to be enclosed.
+//! The logarithm and the angle of a point, from enclosures of their inverse functions.
 
-use super::Interval;
+use super::closed::Interval;
 
 impl Interval {
-    /// {ln x} over the positive x of the interval; [`ENTIRE`](Self::ENTIRE) where there is none.
+    /// Encloses {ln x} over the positive x of the interval; it is [`ENTIRE`](Self::ENTIRE) where
+    /// there are none.
+    ///
+    /// It corrects the guess of the platform's `ln` by [`exp`](Self::exp).
     ///
     /// # Guarantee
-    /// Outer; each end within 1e-15 (relative where |ln x| > 1, else absolute). The platform's `ln`
-    /// is a guess that [`exp`](Self::exp) corrects.
+    /// Outer. For a point, the width is at most 4e-15 in every test: absolute where |ln x| ≤ 1,
+    /// relative elsewhere.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -25,18 +28,21 @@ impl Interval {
         Interval { lo, hi }
     }
 
-    /// The angles of the points (x, self), in [-π, π]; all of that where the box holds the origin
-    /// or crosses the negative x axis.
+    /// Encloses the angles of the points (x, self), in rad within [-π, π].
+    ///
+    /// The result is [-π, π], rounded outwards, where the box contains the origin, crosses the
+    /// negative x axis or is unbounded. Elsewhere it corrects the guess of the platform's `atan2`
+    /// by [`sin_cos`](Self::sin_cos).
     ///
     /// # Guarantee
-    /// Outer; each end within 1e-15. The platform's `atan2` is a guess that
-    /// [`sin_cos`](Self::sin_cos) corrects.
+    /// Outer. For a point, the width is below 4e-15 rad in every test.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
     ///
     /// let angle = Interval::ONE.atan2(Interval::new(-1.0, 1.0).unwrap());
-    /// assert!(angle.contains(std::f64::consts::FRAC_PI_4) && angle.contains(2.35) && angle.width() < 1.571);
+    /// assert!(angle.contains(std::f64::consts::FRAC_PI_4) && angle.contains(2.35));
+    /// assert!(angle.width() < 1.571);
     /// ```
     #[must_use]
     pub fn atan2(self, x: Interval) -> Interval {
@@ -46,29 +52,28 @@ impl Interval {
         if on_cut || x.contains_zero() && y.contains_zero() || unbounded {
             return Interval { lo: -Interval::PI.hi, hi: Interval::PI.hi };
         }
-        // Away from the origin and the cut the angle is monotone along each edge, and extreme in a
-        // corner.
-        let corner = |y: f64, x: f64| angle_of(y + 0.0, x);
-        let [a, b, c, d] =
-            [(y.lo, x.lo), (y.lo, x.hi), (y.hi, x.lo), (y.hi, x.hi)].map(|(y, x)| corner(y, x));
+        // Away from the origin and the cut, the angle is monotone along each edge, so its extremes
+        // are at vertices.
+        let [a, b, c, d] = [(y.lo, x.lo), (y.lo, x.hi), (y.hi, x.lo), (y.hi, x.hi)]
+            .map(|(y, x)| angle_of(y + 0.0, x));
         a.hull(b).hull(c.hull(d))
     }
 }
 
-/// ln x = y + ln(1 + t) for 1 + t = x e^(-y), where t / (1 + t) ≤ ln(1 + t) ≤ t.
+/// Encloses ln x = y + ln(1 + t) for 1 + t = x e^(-y), by t / (1 + t) ≤ ln(1 + t) ≤ t.
 fn ln_of(x: f64) -> Interval {
     let y = x.ln();
-    // x and e^-y may be beyond 2^±1022 each; halves are not.
+    // x and e^(-y) can each leave [2^-1022, 2^1022], but e^(-y/2) cannot.
     let root = Interval::point(-0.5 * y).exp();
     let t = Interval::point(x) * root * root - 1.0;
     Interval::point(y) + (t / (t + 1.0)).hull(t)
 }
 
-/// The angle of (x, y) is a guess plus that of the point turned back by the guess, where z - z³/3 ≤
-/// atan z ≤ z for z ≥ 0.
+/// Encloses the angle of (x, y): a guess plus the angle of the point rotated back by the guess.
+///
+/// The rotated point has the slope z, and the angle atan z lies between z (1 - z²) and z.
 fn angle_of(y: f64, x: f64) -> Interval {
-    // A point scaled by a power of two has the same angle, and its products neither overflow nor
-    // vanish.
+    // Scaling by a power of two keeps the angle and prevents overflow and underflow of products.
     let scale = 2f64.powi(-(x.abs().max(y.abs()).log2().floor() as i32).clamp(-1000, 1000));
     let (x, y) = (Interval::point(x) * scale, Interval::point(y) * scale);
     let guess = y.mid().atan2(x.mid());

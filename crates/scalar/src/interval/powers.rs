@@ -1,10 +1,10 @@
-//! Powers, roots, absolute value and order.
+//! Powers, roots, absolute value, minimum and maximum.
 
-use super::Interval;
+use super::closed::Interval;
 use crate::rounding::{mul_down, mul_up, sqrt_down, sqrt_up};
 
 impl Interval {
-    /// {|x|}.
+    /// Returns {|x|}.
     ///
     /// # Guarantee
     /// Exact.
@@ -20,10 +20,10 @@ impl Interval {
         Interval { lo: self.mig(), hi: self.mag() }
     }
 
-    /// {x²}, which unlike `x * x` is never negative.
+    /// Encloses {x²}, which unlike `x * x` contains no negative numbers.
     ///
     /// # Guarantee
-    /// Outer, rounded as [`mul_up`] and [`mul_down`].
+    /// Outer, with the rounding of [`mul_up`] and [`mul_down`].
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -39,12 +39,13 @@ impl Interval {
         Interval { lo: mul_down(mig, mig), hi: mul_up(mag, mag) }
     }
 
-    /// {xⁿ}; x⁰ is 1 for every x, and a negative power of an interval with zero is
-    /// [`ENTIRE`](Self::ENTIRE).
+    /// Encloses {xⁿ}; x⁰ is 1 for every x.
+    ///
+    /// A negative power of an interval that contains zero is [`ENTIRE`](Self::ENTIRE).
     ///
     /// # Guarantee
-    /// Outer. Each end is within 3 (n - 1) numbers of the tightest one for n > 0, since a power is
-    /// a chain of products; about n are usual.
+    /// Outer. For n > 0, each end is within 3 (n - 1) ulps of the tightest interval, because a
+    /// power is a chain of products; about n ulps are usual.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -63,15 +64,16 @@ impl Interval {
         if n < 0 { power.recip() } else { power }
     }
 
-    /// xⁿ where that increases over the interval.
+    /// Encloses {xⁿ} where xⁿ increases over the interval.
     fn increasing_power(self, n: u32) -> Interval {
         Interval { lo: power_of(self.lo, n).lo, hi: power_of(self.hi, n).hi }
     }
 
-    /// {√x} of the numbers x ≥ 0 of the interval; [`ENTIRE`](Self::ENTIRE) where there are none.
+    /// Encloses {√x} over the numbers x ≥ 0 of the interval; it is [`ENTIRE`](Self::ENTIRE) where
+    /// there are none.
     ///
     /// # Guarantee
-    /// Outer, rounded as [`sqrt_up`] and [`sqrt_down`].
+    /// Outer, with the rounding of [`sqrt_up`] and [`sqrt_down`].
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -87,17 +89,17 @@ impl Interval {
         Interval { lo: sqrt_down(self.lo.max(0.0)), hi: sqrt_up(self.hi) }
     }
 
-    /// {1 / x}; [`ENTIRE`](Self::ENTIRE) where the interval contains zero.
+    /// Encloses {1 / x}; it is [`ENTIRE`](Self::ENTIRE) where the interval contains zero.
     ///
     /// # Guarantee
-    /// Outer, as the division.
+    /// Outer, with the rounding of the division.
     #[inline]
     #[must_use]
     pub fn recip(self) -> Interval {
         Interval::ONE / self
     }
 
-    /// {min(x, y)}.
+    /// Returns {min(x, y)} over all x and y of the intervals.
     ///
     /// # Guarantee
     /// Exact.
@@ -107,7 +109,7 @@ impl Interval {
         Interval { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi) }
     }
 
-    /// {max(x, y)}.
+    /// Returns {max(x, y)} over all x and y of the intervals.
     ///
     /// # Guarantee
     /// Exact.
@@ -118,7 +120,7 @@ impl Interval {
     }
 }
 
-/// xⁿ of one end, which may be infinite, by repeated squaring.
+/// Encloses xⁿ for one x, which may be infinite, by repeated squaring.
 fn power_of(x: f64, mut n: u32) -> Interval {
     let mut square = Interval { lo: x, hi: x };
     let mut power = Interval::ONE;

@@ -2,26 +2,30 @@
 
 use core::f64::consts;
 
-use super::Interval;
-use super::taylor::{Series, inverse_factorial};
+use super::closed::Interval;
+use super::power_series::{PowerSeries, inverse_factorial};
 use crate::rounding::two_sum;
 
-/// π/2 = Σ `FRAC_PI_2_PARTS` + `FRAC_PI_2_REST`; each part has at most 32 bits, so that its product
-/// with |k| < 2²⁰ is exact. Four parts, because an `f64` below 2²⁰ can be as near to a multiple of
-/// π/2 as 2⁻⁶⁰ or so.
+/// The leading parts of π/2 = Σ `FRAC_PI_2_PARTS` + `FRAC_PI_2_REST`.
+///
+/// Each part has at most 32 bits, so that its product with |k| < 2²⁰ is exact. There are four parts
+/// because an `f64` below 2²⁰ can be as near to a multiple of π/2 as about 2⁻⁶⁰.
 const FRAC_PI_2_PARTS: [f64; 3] =
     [1.5707963267341256, 6.077100506303966e-11, 2.0222662487111665e-21];
 const FRAC_PI_2_REST: Interval =
     Interval { lo: 8.4784276603689e-32, hi: 8.4784276603689e-32_f64.next_up() };
 
-/// Beyond it [-1, 1] is returned: the reduction would no longer be exact.
+/// The largest |x| in rad for which the reduction is exact. Beyond it, sine and cosine are [-1, 1].
 const LARGEST_ANGLE: f64 = (1 << 20) as f64;
 
 const RANGE: Interval = Interval { lo: -1.0, hi: 1.0 };
 
-/// The series in r² of the coefficients ±1 / (2i + first)!, of alternating sign, for r² ≤ 0.64,
-/// with Lagrange's remainder: a derivative of sine somewhere, which lies in [-1, 1], for the sign.
-const fn alternating(first: u32, first_is_negative: bool) -> Series<8> {
+/// Returns the series in r² with coefficients ±1 / (2i + first)! of alternating sign, for r² ≤
+/// 0.64.
+///
+/// Lagrange's remainder is a derivative of sine or cosine, which lies in [-1, 1], over (16 +
+/// first)!.
+const fn alternating(first: u32, first_is_negative: bool) -> PowerSeries<8> {
     let mut c = [Interval::ZERO; 8];
     let mut i = 0;
     while i < 8 {
@@ -30,26 +34,26 @@ const fn alternating(first: u32, first_is_negative: bool) -> Series<8> {
             if (i % 2 == 0) == first_is_negative { Interval { lo: -a.hi, hi: -a.lo } } else { a };
         i += 1;
     }
-    Series::new(c, inverse_factorial(16 + first).hi, 0.64)
+    PowerSeries::new(c, inverse_factorial(16 + first).hi, 0.64)
 }
 
-/// (sin r - r) / r³.
-static SINE: Series<8> = alternating(3, true);
-/// (cos r - 1 + r²/2) / r⁴.
-static COSINE: Series<8> = alternating(4, false);
+/// The series of (sin r - r) / r³.
+static SINE: PowerSeries<8> = alternating(3, true);
+/// The series of (cos r - 1 + r²/2) / r⁴.
+static COSINE: PowerSeries<8> = alternating(4, false);
 
-/// An angle as quadrant · π/2 + (head + tail), |head + tail| ≤ 0.8.
+/// An angle reduced to quadrant · π/2 + (head + tail) in rad, |head + tail| ≤ 0.8.
 #[derive(Clone, Copy)]
-struct Reduced {
+struct ReducedAngle {
     quadrant: i64,
     head: f64,
     tail: Interval,
 }
 
-impl Reduced {
-    /// Of |x| ≤ [`LARGEST_ANGLE`] (Cody & Waite's reduction with every rounding error kept).
-    fn new(x: f64) -> Reduced {
-        // Any integer would be right; the nearest makes the rest least.
+impl ReducedAngle {
+    /// Reduces |x| ≤ [`LARGEST_ANGLE`] by Cody & Waite's method and keeps every rounding error.
+    fn new(x: f64) -> ReducedAngle {
+        // Any integer is valid; the nearest one gives the smallest rest.
         let k = (x * consts::FRAC_2_PI).round();
         let (mut head, mut tail) = (x, Interval::ZERO);
         let mut errors = [0.0; 3];
@@ -57,38 +61,40 @@ impl Reduced {
             (head, *error) = two_sum(head, -k * part);
         }
         tail -= FRAC_PI_2_REST * k;
-        // Small ones first: the later the error, the smaller.
+        // Later errors are smaller and are added first.
         for error in errors.iter().rev() {
             tail += *error;
         }
-        Reduced { quadrant: k as i64, head, tail }
+        ReducedAngle { quadrant: k as i64, head, tail }
     }
 
+    /// Encloses head + tail.
     fn rest(&self) -> Interval {
         self.tail + self.head
     }
 
-    /// sin(head + tail), where adding the head last costs one rounding only.
+    /// Encloses sin(head + tail). The head is added last, which costs one rounding.
     fn sin_of_rest(&self) -> Interval {
         let r = self.rest();
         let square = r.sqr();
-        (self.tail + r * square * SINE.at(square)) + self.head
+        (self.tail + r * square * SINE.evaluate(square)) + self.head
     }
 
-    /// cos(head + tail) = 1 - b²/2 - (r - b)(r + b)/2 + …, where b is r to 26 bits, so that b² is
-    /// exact.
+    /// Encloses cos(head + tail) = 1 - b²/2 - (r - b)(r + b)/2 + r⁴ COSINE(r²) for r = head + tail.
+    ///
+    /// b holds the leading 26 bits of r, so that b² is exact.
     fn cos_of_rest(&self) -> Interval {
         let r = self.rest();
         let b = leading_bits(self.head);
         let (one_less, error) = two_sum(1.0, -0.5 * b * b);
         let beyond_b = (r - b) * (r + b) * 0.5;
         let square = r.sqr();
-        (square.sqr() * COSINE.at(square) - beyond_b + error) + one_less
+        (square.sqr() * COSINE.evaluate(square) - beyond_b + error) + one_less
     }
 
-    /// sin(x + shift · π/2).
-    fn sin(&self, shift: i64) -> Interval {
-        match (self.quadrant + shift).rem_euclid(4) {
+    /// Encloses sin(x + quarter_turns · π/2).
+    fn sin(&self, quarter_turns: i64) -> Interval {
+        match (self.quadrant + quarter_turns).rem_euclid(4) {
             0 => self.sin_of_rest(),
             1 => self.cos_of_rest(),
             2 => -self.sin_of_rest(),
@@ -96,34 +102,35 @@ impl Reduced {
         }
     }
 
-    /// An integer at or below ⌊x / (π/2)⌋, and one at or above; they agree unless the rest has no
-    /// certain sign.
+    /// Returns a lower and an upper bound of ⌊x / (π/2)⌋. They are equal unless the enclosure of
+    /// the rest contains numbers of both signs.
     fn floor(&self) -> (i64, i64) {
         let rest = self.rest();
         (self.quadrant - i64::from(rest.lo < 0.0), self.quadrant - i64::from(rest.hi < 0.0))
     }
 }
 
-/// The leading 26 bits of x, of which the square is exact; 0 where that might underflow.
+/// Returns the leading 26 bits of x, whose square is exact; 0 where the square might underflow.
 fn leading_bits(x: f64) -> f64 {
     if x.abs() < 1e-9 { 0.0 } else { f64::from_bits(x.to_bits() >> 27 << 27) }
 }
 
-/// Both ends of an interval, reduced; `None` where an end is beyond [`LARGEST_ANGLE`].
-fn reduce(x: Interval) -> Option<[Reduced; 2]> {
+/// Reduces both ends of an interval; `None` where an end is beyond [`LARGEST_ANGLE`].
+fn reduce(x: Interval) -> Option<[ReducedAngle; 2]> {
     if x.mag() > LARGEST_ANGLE {
         return None;
     }
-    let lo = Reduced::new(x.lo);
-    Some([lo, if x.lo == x.hi { lo } else { Reduced::new(x.hi) }])
+    let lo = ReducedAngle::new(x.lo);
+    Some([lo, if x.lo == x.hi { lo } else { ReducedAngle::new(x.hi) }])
 }
 
-/// The values of sin(x + shift · π/2) between the two ends: the hull of those at the ends, and ±1
-/// where a multiple j of π/2 with an extremum lies between.
-fn sin_between([lo, hi]: [Reduced; 2], shift: i64) -> Interval {
-    let mut values = lo.sin(shift).hull(hi.sin(shift));
-    let (before, last) = (lo.floor().0 + shift, hi.floor().1 + shift);
-    // Multiples in (before, last] that leave `remainder` when divided by 4.
+/// Encloses sin(x + quarter_turns · π/2) for x between two ends.
+///
+/// The result is the hull of the values at the ends, and of ±1 where an extremum lies between.
+fn sin_between([lo, hi]: [ReducedAngle; 2], quarter_turns: i64) -> Interval {
+    let mut values = lo.sin(quarter_turns).hull(hi.sin(quarter_turns));
+    let (before, last) = (lo.floor().0 + quarter_turns, hi.floor().1 + quarter_turns);
+    // Whether (before, last] contains an integer j ≡ remainder (mod 4); jπ/2 is then an extremum.
     let is_between = |remainder: i64| before + 1 + (remainder - before - 1).rem_euclid(4) <= last;
     if is_between(1) {
         values.hi = 1.0;
@@ -135,47 +142,48 @@ fn sin_between([lo, hi]: [Reduced; 2], shift: i64) -> Interval {
 }
 
 impl Interval {
-    /// π.
+    /// An enclosure of π.
     ///
     /// # Guarantee
     /// The tightest enclosure.
     pub const PI: Interval = Interval { lo: consts::PI, hi: consts::PI.next_up() };
-    /// π/2.
+    /// An enclosure of π/2.
     ///
     /// # Guarantee
     /// The tightest enclosure.
     pub const FRAC_PI_2: Interval =
         Interval { lo: consts::FRAC_PI_2, hi: consts::FRAC_PI_2.next_up() };
-    /// 2π.
+    /// An enclosure of 2π.
     ///
     /// # Guarantee
     /// The tightest enclosure.
     pub const TAU: Interval = Interval { lo: consts::TAU, hi: consts::TAU.next_up() };
 
-    /// The sine of an angle in rad; see [`sin_cos`](Self::sin_cos).
+    /// Encloses the sine of an angle in rad.
     ///
     /// # Guarantee
-    /// As [`sin_cos`](Self::sin_cos).
+    /// Outer, with the accuracy of [`sin_cos`](Self::sin_cos).
     #[must_use]
     pub fn sin(self) -> Interval {
         reduce(self).map_or(RANGE, |ends| sin_between(ends, 0))
     }
 
-    /// The cosine of an angle in rad; see [`sin_cos`](Self::sin_cos).
+    /// Encloses the cosine of an angle in rad.
     ///
     /// # Guarantee
-    /// As [`sin_cos`](Self::sin_cos).
+    /// Outer, with the accuracy of [`sin_cos`](Self::sin_cos).
     #[must_use]
     pub fn cos(self) -> Interval {
         reduce(self).map_or(RANGE, |ends| sin_between(ends, 1))
     }
 
-    /// (sin x, cos x) of an angle x in rad.
+    /// Encloses {sin x} and {cos x} of an angle x in rad. It does not use the platform's `sin` and
+    /// `cos`.
     ///
     /// # Guarantee
-    /// Outer, for every x, and within [-1, 1]; sin 0 and cos 0 are exact. For angles up to 2²⁰ ≈
-    /// 10⁶ rad each end is the tightest `f64` or (as far as the tests have seen) the next one, also
-    /// beside the zeros; beyond, [-1, 1] is returned. The platform's `sin` and `cos` are not used.
+    /// Outer, for every x, and within [-1, 1]; sin 0 and cos 0 are exact. In every test with
+    /// |x| ≤ 2²⁰ rad, each end is within 1 ulp of the tightest interval, also beside the zeros.
+    /// Beyond 2²⁰ ≈ 10⁶ rad, both results are [-1, 1].
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -196,7 +204,7 @@ mod tests {
 
     use super::*;
 
-    /// π to 60 decimals.
+    /// Compares the parts with π to 60 decimals.
     #[test]
     fn parts_enclose_half_pi() {
         let exact = |x: f64| BigRational::from_float(x).unwrap();

@@ -1,39 +1,41 @@
-//! Dense series: coefficients block by block of one degree, and the product kernel.
+//! Dense series: all coefficients in blocks of one degree each, and the product kernel.
 
 use core::array::from_fn;
 
-use super::arithmetic::{Addition, signed};
+use super::addition::{Addition, negated_if};
 use super::space::TaylorSpace;
 use super::sparse::Term;
-use crate::Scalar;
+use crate::scalar::Scalar;
 
-/// The coefficients of a series, with the blocks that are zero known.
-pub(super) struct Series<'a, C> {
+/// The coefficients of a dense series and a record of its zero blocks.
+pub(super) struct DenseSeries<'a, C> {
     space: &'a TaylorSpace,
     coefficients: &'a [C],
-    zero: [u64; 4],
+    /// Bit d is set where the block of degree d is known to be zero.
+    zero_blocks: [u64; 4],
 }
 
-impl<'a, C: Scalar> Series<'a, C> {
-    /// A series whose zero blocks are looked for.
+impl<'a, C: Scalar> DenseSeries<'a, C> {
+    /// Wraps the coefficients and finds the zero blocks.
     pub fn new(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
         let mut series = Self::full(space, coefficients);
         for degree in 0..=degree(space, coefficients.len()) {
             if coefficients[space.block(degree)].iter().all(C::is_zero) {
-                series.zero[degree as usize / 64] |= 1 << (degree % 64);
+                series.zero_blocks[degree as usize / 64] |= 1 << (degree % 64);
             }
         }
         series
     }
 
-    /// A series none of whose blocks is taken to be zero.
+    /// Wraps the coefficients without a search for zero blocks.
     pub fn full(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
-        Self { space, coefficients, zero: [0; 4] }
+        Self { space, coefficients, zero_blocks: [0; 4] }
     }
 
-    /// The block of one degree; empty where it is zero or above the last stored.
+    /// Returns the block of one degree. It is empty where the block is known to be zero or lies
+    /// above the last stored degree.
     pub fn block(&self, degree: u32) -> &'a [C] {
-        let known_zero = self.zero[degree as usize / 64] >> (degree % 64) & 1 == 1;
+        let known_zero = self.zero_blocks[degree as usize / 64] >> (degree % 64) & 1 == 1;
         let block = self.space.block(degree);
         if known_zero || block.end > self.coefficients.len() {
             &[]
@@ -47,14 +49,14 @@ impl<'a, C: Scalar> Series<'a, C> {
     }
 }
 
-/// The degree of a series of so many coefficients.
+/// Returns the degree of a series with `len` coefficients.
 pub(super) fn degree(space: &TaylorSpace, len: usize) -> u32 {
     (0..=space.order()).find(|d| space.block(*d).end == len).expect("whole blocks are stored")
 }
 
-/// x y to the space's order.
+/// Returns x y, truncated at the order of the space.
 pub(super) fn product<C: Scalar>(space: &TaylorSpace, x: &[C], y: &[C]) -> Vec<C> {
-    let (x, y) = (Series::new(space, x), Series::new(space, y));
+    let (x, y) = (DenseSeries::new(space, x), DenseSeries::new(space, y));
     let high = (x.degree() + y.degree()).min(space.order());
     let mut out = vec![C::zero(); space.dense_len(high)];
     for degree in 0..=high {
@@ -65,35 +67,50 @@ pub(super) fn product<C: Scalar>(space: &TaylorSpace, x: &[C], y: &[C]) -> Vec<C
         if let ([y0], 1..) = (y.block(0), degree) {
             add_scaled(block, y0, x.block(degree));
         }
-        add_inner(space, degree, &x, &y, block);
+        add_inner_products(space, degree, &x, &y, block);
     }
     out
 }
 
-/// Adds Σ x_i y_{d-i} over 0 < i < d to `out`, the block of degree d.
-pub(super) fn add_inner<C: Scalar>(
+/// Adds Σ x_i y_{d-i} over 0 < i < d to `out`, the block of degree d; x_i is the part of x of
+/// degree i.
+pub(super) fn add_inner_products<C: Scalar>(
     space: &TaylorSpace,
     d: u32,
-    x: &Series<C>,
-    y: &Series<C>,
+    x: &DenseSeries<C>,
+    y: &DenseSeries<C>,
     out: &mut [C],
 ) {
     for i in 1..=d / 2 {
         let j = d - i;
         if i == j {
-            add_square(space.table(i, i), x.block(i), y.block(i), out);
+            add_equal_degrees(space.product_table(i, i), x.block(i), y.block(i), out);
         } else {
-            add_mixed(space.table(i, j), [x.block(i), x.block(j)], [y.block(i), y.block(j)], out);
+            add_mixed_degrees(
+                space.product_table(i, j),
+                [x.block(i), x.block(j)],
+                [y.block(i), y.block(j)],
+                out,
+            );
         }
     }
 }
 
-/// out += x_i y_j + y_i x_j: one place of the table serves both products.
-fn add_mixed<C: Scalar>(table: &[u32], [xi, xj]: [&[C]; 2], [yi, yj]: [&[C]; 2], out: &mut [C]) {
+/// Adds x_i y_j + y_i x_j to `out`; one entry of the product table serves both products.
+fn add_mixed_degrees<C: Scalar>(
+    table: &[u32],
+    [xi, xj]: [&[C]; 2],
+    [yi, yj]: [&[C]; 2],
+    out: &mut [C],
+) {
     match (xi.is_empty() || yj.is_empty(), yi.is_empty() || xj.is_empty()) {
         (true, true) => {}
-        (false, true) => rows(table, yj.len(), xi).for_each(|(row, p)| add_row(row, p, yj, out)),
-        (true, false) => rows(table, xj.len(), yi).for_each(|(row, q)| add_row(row, q, xj, out)),
+        (false, true) => {
+            nonzero_rows(table, yj.len(), xi).for_each(|(row, p)| add_row(row, p, yj, out));
+        }
+        (true, false) => {
+            nonzero_rows(table, xj.len(), yi).for_each(|(row, q)| add_row(row, q, xj, out));
+        }
         (false, false) => {
             for ((row, p), q) in table.chunks_exact(xj.len()).zip(xi).zip(yi) {
                 match (p.is_zero(), q.is_zero()) {
@@ -107,8 +124,8 @@ fn add_mixed<C: Scalar>(table: &[u32], [xi, xj]: [&[C]; 2], [yi, yj]: [&[C]; 2],
     }
 }
 
-/// Rows of a table with their factors, those with factor zero left out.
-fn rows<'a, C: Scalar>(
+/// Iterates over the rows of a product table with their non-zero factors.
+fn nonzero_rows<'a, C: Scalar>(
     table: &'a [u32],
     width: usize,
     factors: &'a [C],
@@ -116,8 +133,8 @@ fn rows<'a, C: Scalar>(
     table.chunks_exact(width).zip(factors).filter(|(_, factor)| !factor.is_zero())
 }
 
-/// out += x_i y_i for blocks of one degree.
-fn add_square<C: Scalar>(table: &[u32], x: &[C], y: &[C], out: &mut [C]) {
+/// Adds x_i y_i to `out` for two blocks of one degree i.
+fn add_equal_degrees<C: Scalar>(table: &[u32], x: &[C], y: &[C], out: &mut [C]) {
     if x.is_empty() || y.is_empty() {
         return;
     }
@@ -134,20 +151,22 @@ fn add_square<C: Scalar>(table: &[u32], x: &[C], y: &[C], out: &mut [C]) {
     }
 }
 
+/// Adds p y to `out` at the indices in `row`.
 fn add_row<C: Scalar>(row: &[u32], p: &C, y: &[C], out: &mut [C]) {
     for (at, y) in row.iter().zip(y) {
         out[*at as usize] += p.clone() * y.clone();
     }
 }
 
-/// So many products are formed at once, for vector instructions.
-const CHUNK: usize = 4;
+/// Number of products computed side by side, for vector instructions.
+const UNROLLED: usize = 4;
 
+/// Adds p y + q x to `out` at the indices in `row`.
 fn add_two_rows<C: Scalar>(row: &[u32], [p, q]: [&C; 2], [y, x]: [&[C]; 2], out: &mut [C]) {
     let ((rows, row), (ys, y), (xs, x)) =
-        (row.as_chunks::<CHUNK>(), y.as_chunks::<CHUNK>(), x.as_chunks::<CHUNK>());
+        (row.as_chunks::<UNROLLED>(), y.as_chunks::<UNROLLED>(), x.as_chunks::<UNROLLED>());
     for ((row, y), x) in rows.iter().zip(ys).zip(xs) {
-        let sums: [C; CHUNK] = from_fn(|i| p.clone() * y[i].clone() + q.clone() * x[i].clone());
+        let sums: [C; UNROLLED] = from_fn(|i| p.clone() * y[i].clone() + q.clone() * x[i].clone());
         for (at, sum) in row.iter().zip(sums) {
             out[*at as usize] += sum;
         }
@@ -157,18 +176,18 @@ fn add_two_rows<C: Scalar>(row: &[u32], [p, q]: [&C; 2], [y, x]: [&[C]; 2], out:
     }
 }
 
-/// out += k x.
+/// Adds k x to `out`.
 pub(super) fn add_scaled<C: Scalar>(out: &mut [C], k: &C, x: &[C]) {
     out.iter_mut().zip(x).for_each(|(out, x)| *out += k.clone() * x.clone());
 }
 
-/// The product of a dense series with a list of terms.
+/// Returns the product of a dense series and a list of terms, truncated at the order of the space.
 pub(super) fn product_with_terms<C: Scalar>(
     space: &TaylorSpace,
     terms: &[Term<C>],
     y: &[C],
 ) -> Vec<C> {
-    let y = Series::new(space, y);
+    let y = DenseSeries::new(space, y);
     let packing = space.packing;
     let high = terms.last().map_or(0, |(m, _)| packing.degree(*m) + y.degree()).min(space.order());
     let mut out = vec![C::zero(); space.dense_len(high)];
@@ -176,20 +195,22 @@ pub(super) fn product_with_terms<C: Scalar>(
     for (monomial, c) in terms {
         let i = packing.degree(*monomial);
         packing.factors(*monomial, &mut factors);
-        let a = space.place(&factors);
+        let a = space.index_of(&factors);
         for j in 0..=y.degree().min(high.saturating_sub(i)) {
-            let (from, target) = (y.block(j), &mut out[space.block(i + j)]);
-            match (from.len(), i, j) {
+            let (source, target) = (y.block(j), &mut out[space.block(i + j)]);
+            match (source.len(), i, j) {
                 (0, ..) => {}
-                (_, 0, _) => add_scaled(target, c, from),
-                (_, _, 0) => target[a] += c.clone() * from[0].clone(),
+                (_, 0, _) => add_scaled(target, c, source),
+                (_, _, 0) => target[a] += c.clone() * source[0].clone(),
                 (width, ..) if i <= j => {
-                    add_row(&space.table(i, j)[a * width..][..width], c, from, target)
+                    add_row(&space.product_table(i, j)[a * width..][..width], c, source, target)
                 }
                 _ => {
-                    let column = space.table(j, i)[a..].iter().step_by(space.block(i).len());
+                    // The table lists degree j by degree i here: its column a holds the indices.
+                    let table = space.product_table(j, i);
+                    let column = table[a..].iter().step_by(space.block(i).len());
                     column
-                        .zip(from)
+                        .zip(source)
                         .for_each(|(at, y)| target[*at as usize] += c.clone() * y.clone());
                 }
             }
@@ -198,39 +219,46 @@ pub(super) fn product_with_terms<C: Scalar>(
     out
 }
 
-/// Adds terms, with the sign, to coefficients that have room for them.
+/// Lengthens a series with zeros to `len` coefficients where it is shorter.
+pub(super) fn pad_with_zeros<C: Scalar>(coefficients: &mut Vec<C>, len: usize) {
+    if coefficients.len() < len {
+        coefficients.resize(len, C::zero());
+    }
+}
+
+/// Adds terms to a dense series that is long enough for them, or subtracts them where `minus`.
 pub(super) fn add_terms<C: Scalar>(
     space: &TaylorSpace,
     out: &mut [C],
     terms: &[Term<C>],
     minus: bool,
-    add: &mut impl Addition<C>,
+    addition: &mut impl Addition<C>,
 ) {
     let mut factors = Vec::new();
     for (monomial, c) in terms {
         space.packing.factors(*monomial, &mut factors);
-        let at = space.block(factors.len() as u32).start + space.place(&factors);
-        out[at] = add.sum(&out[at], signed(c, minus));
+        let at = space.block(factors.len() as u32).start + space.index_of(&factors);
+        out[at] = addition.sum(&out[at], negated_if(minus, c));
     }
 }
 
-/// The non-zero coefficients as terms.
+/// Iterates over the terms with non-zero coefficients, in the order of their monomials.
 pub(super) fn terms<'a, C: Scalar>(
     space: &'a TaylorSpace,
     coefficients: &'a [C],
 ) -> impl Iterator<Item = (u128, &'a C)> {
     let of_degree = move |degree: u32| {
         let block = &coefficients[space.block(degree)];
-        let key = move |at: usize| {
+        let monomial = move |at: usize| {
             let factors = &space.factors(degree)[at * degree as usize..][..degree as usize];
-            space.packing.of_factors(factors)
+            space.packing.pack_factors(factors)
         };
-        block.iter().enumerate().filter(|(_, c)| !c.is_zero()).map(move |(at, c)| (key(at), c))
+        block.iter().enumerate().filter(|(_, c)| !c.is_zero()).map(move |(at, c)| (monomial(at), c))
     };
     (0..=degree(space, coefficients.len())).flat_map(of_degree)
 }
 
-/// The derivative in variable i.
+/// Returns the partial derivative in variable i.
 pub(super) fn derivative<C: Scalar>(space: &TaylorSpace, coefficients: &[C], i: usize) -> Vec<C> {
     let high = degree(space, coefficients.len());
     if high == 0 {
@@ -241,7 +269,7 @@ pub(super) fn derivative<C: Scalar>(space: &TaylorSpace, coefficients: &[C], i: 
     for d in 1..high {
         let above = &coefficients[space.block(d + 1)];
         let size = space.block(d).len();
-        let row = &space.table(1, d)[i * size..][..size];
+        let row = &space.product_table(1, d)[i * size..][..size];
         let factors = space.factors(d).chunks_exact(d as usize);
         for ((out, at), factors) in out[space.block(d)].iter_mut().zip(row).zip(factors) {
             let exponent = 1 + factors.iter().filter(|v| usize::from(**v) == i).count();

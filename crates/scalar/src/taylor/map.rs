@@ -1,15 +1,16 @@
-//! Several polynomials of the same variables, prepared for fast evaluation.
+//! Fast evaluation of several polynomials in the same variables.
 
 use std::collections::BTreeMap;
 
 use super::monomial::Packing;
 use super::polynomial::TaylorPolynomial;
-use crate::Scalar;
+use crate::powers::Powers;
+use crate::scalar::Scalar;
 
 /// A map from k variables to m values whose components are polynomials.
 ///
-/// Monomials are shared by the components, and each is one product: the monomial without its first
-/// variable, which comes before it, times a power of that variable.
+/// The components share their monomials. Each monomial costs one product: its parent, which is the
+/// monomial without its first variable, times a power of that variable.
 ///
 /// # Examples
 ///
@@ -26,40 +27,42 @@ use crate::Scalar;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolynomialMap<C = f64> {
     variables: usize,
-    /// Highest exponent of each variable.
-    highest: Vec<u32>,
+    /// Highest exponent of each variable (k entries).
+    highest_exponents: Vec<u32>,
     constants: Vec<C>,
     nodes: Vec<Node>,
-    /// Of each [`GROUP`] components, one group after the other.
+    /// One group for each [`GROUP`] consecutive components.
     groups: Vec<Group<C>>,
-    /// Non-constant terms of all components.
+    /// Number of non-constant terms of all components together.
     term_count: usize,
 }
 
-/// Components that are summed together: they mostly have the same monomials.
+/// Number of components that are summed together. Neighbouring components mostly have the same
+/// monomials.
 const GROUP: usize = 2;
 
-/// Sums that are formed at a time: an addition does not wait for the one before it.
+/// Number of partial sums computed side by side, so that no addition waits for the one before it.
 const SUMS: usize = 2;
 
-/// The non-constant terms of some components.
+/// The non-constant terms of [`GROUP`] components.
 #[derive(Debug, Clone, PartialEq)]
 struct Group<C> {
-    /// Numbers of the monomials that one of the components has, increasing.
+    /// Increasing numbers of the monomials that occur in one of the components.
     monomials: Vec<u32>,
-    /// 0 where a component lacks a monomial.
+    /// Coefficients of each monomial, one per component; 0 where it does not occur.
     coefficients: Vec<[C; GROUP]>,
 }
 
-/// A monomial: its parent (0 is the monomial 1, else a node's number plus 1) times a power.
+/// A monomial: its parent times a power of one variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
+    /// Number of the parent: 0 for the monomial 1, else the index of its node plus 1.
     parent: u32,
-    /// Place in the list of powers.
+    /// Index into the list of powers.
     power: u32,
 }
 
-/// Scratch memory of an evaluation.
+/// Scratch memory for an evaluation.
 #[derive(Debug, Clone)]
 pub struct MapWorkspace<T> {
     powers: Vec<T>,
@@ -67,19 +70,23 @@ pub struct MapWorkspace<T> {
 }
 
 impl<C: Scalar> PolynomialMap<C> {
-    /// The map with the given components, polynomials of one space of `variables` variables or
-    /// constants.
+    /// Returns the map with the given components. Each is a constant or a polynomial of the same
+    /// space, which has `variables` variables.
     ///
     /// # Panics
     ///
-    /// Where a component belongs to a space of another number of variables.
+    /// Panics where a component belongs to a space with another number of variables.
     pub fn new(variables: usize, components: &[TaylorPolynomial<C>]) -> Self {
         let mut packing = Packing::new(variables).expect("1 to 120 variables");
         let mut constants = vec![C::zero(); components.len()];
         let mut monomials: BTreeMap<u128, Vec<(u32, C)>> = BTreeMap::new();
         for (at, component) in components.iter().enumerate() {
             if let Some(space) = component.space() {
-                assert_eq!(space.variables(), variables, "component {at} has other variables");
+                assert_eq!(
+                    space.variables(),
+                    variables,
+                    "component {at} has another number of variables"
+                );
                 packing = space.packing;
             }
             component.for_each_term(|m, c| match m {
@@ -92,7 +99,7 @@ impl<C: Scalar> PolynomialMap<C> {
         let groups = vec![group; components.len().div_ceil(GROUP)];
         let mut map = Self {
             variables,
-            highest: vec![0; variables],
+            highest_exponents: vec![0; variables],
             constants,
             nodes: vec![],
             groups,
@@ -102,14 +109,15 @@ impl<C: Scalar> PolynomialMap<C> {
         map
     }
 
+    /// Numbers the monomials and fills nodes and groups.
     fn fill(&mut self, packing: Packing, monomials: BTreeMap<u128, Vec<(u32, C)>>) {
         for m in monomials.keys() {
             for i in 0..self.variables {
-                self.highest[i] = self.highest[i].max(packing.exponent(*m, i));
+                self.highest_exponents[i] = self.highest_exponents[i].max(packing.exponent(*m, i));
             }
         }
         let starts: Vec<u32> =
-            (0..self.variables).map(|i| self.highest[..i].iter().sum()).collect();
+            (0..self.variables).map(|i| self.highest_exponents[..i].iter().sum()).collect();
         let mut numbers = std::collections::HashMap::with_capacity(monomials.len());
         for (m, terms) in monomials {
             let i = packing.first_variable(m).expect("1 is a constant");
@@ -125,39 +133,39 @@ impl<C: Scalar> PolynomialMap<C> {
         }
     }
 
-    /// Number of variables k.
+    /// Returns the number of variables k.
     pub fn variables(&self) -> usize {
         self.variables
     }
 
-    /// Number of components m.
+    /// Returns the number of components m.
     pub fn components(&self) -> usize {
         self.constants.len()
     }
 
-    /// Number of non-constant terms of all components together.
+    /// Returns the number of non-constant terms of all components together.
     pub fn term_count(&self) -> usize {
         self.term_count
     }
 
-    /// Scratch memory for evaluation over T.
+    /// Returns scratch memory for evaluation over T.
     pub fn workspace<T: Scalar>(&self) -> MapWorkspace<T> {
-        let powers = self.highest.iter().sum::<u32>() as usize;
+        let powers = self.highest_exponents.iter().sum::<u32>() as usize;
         MapWorkspace {
             powers: vec![T::zero(); powers],
             values: vec![T::zero(); self.nodes.len() + 1],
         }
     }
 
-    /// The components at `at` (k values), into `out` (m values). Allocates nothing.
+    /// Evaluates the components at `at` (k values) into `out` (m values), without allocation.
     ///
     /// # Guarantee
     ///
-    /// Over `Interval`: outer enclosures of the components' ranges over the box.
+    /// Over `Interval`: outer enclosures of the ranges of the components over the box `at`.
     ///
     /// # Panics
     ///
-    /// Where `at` or `out` has another length, or the workspace was made for another map.
+    /// Panics where `at` or `out` has another length, or the workspace belongs to another map.
     pub fn evaluate_into<T: Scalar + From<C> + Powers>(
         &self,
         at: &[T],
@@ -167,15 +175,17 @@ impl<C: Scalar> PolynomialMap<C> {
         assert_eq!(
             (at.len(), out.len()),
             (self.variables, self.constants.len()),
-            "k arguments, m values"
+            "a map needs one argument per variable and one value per component"
         );
-        let mut place = 0;
-        for (x, highest) in at.iter().zip(&self.highest) {
+        // Powers of each variable, up to its highest exponent.
+        let mut next = 0;
+        for (x, highest) in at.iter().zip(&self.highest_exponents) {
             for e in 1..=*highest {
-                ws.powers[place] = x.power(e, ws.powers.get(place.wrapping_sub(1)));
-                place += 1;
+                ws.powers[next] = x.power(e, ws.powers.get(next.wrapping_sub(1)));
+                next += 1;
             }
         }
+        // Monomials, each after its parent.
         ws.values[0] = T::one();
         for (number, node) in self.nodes.iter().enumerate() {
             let power = &ws.powers[node.power as usize];
@@ -184,6 +194,7 @@ impl<C: Scalar> PolynomialMap<C> {
                 parent => ws.values[parent as usize].clone() * power.clone(),
             };
         }
+        // Sums of coefficients times monomials.
         let constants = self.constants.chunks(GROUP);
         for ((out, constants), group) in out.chunks_mut(GROUP).zip(constants).zip(&self.groups) {
             let sums = group.sums(&ws.values);
@@ -193,7 +204,7 @@ impl<C: Scalar> PolynomialMap<C> {
         }
     }
 
-    /// The components at `at`, as [`evaluate_into`](Self::evaluate_into).
+    /// Evaluates the components at `at` (k values), like [`evaluate_into`](Self::evaluate_into).
     pub fn evaluate<T: Scalar + From<C> + Powers>(&self, at: &[T]) -> Vec<T> {
         let mut out = vec![T::zero(); self.constants.len()];
         self.evaluate_into(at, &mut self.workspace(), &mut out);
@@ -202,6 +213,7 @@ impl<C: Scalar> PolynomialMap<C> {
 }
 
 impl<C: Scalar> Group<C> {
+    /// Stores the coefficient of a monomial in one component; monomials arrive in order.
     fn push(&mut self, monomial: u32, component: usize, c: C) {
         if self.monomials.last() != Some(&monomial) {
             self.monomials.push(monomial);
@@ -212,7 +224,7 @@ impl<C: Scalar> Group<C> {
         }
     }
 
-    /// Coefficients times monomials, summed for each component.
+    /// Returns Σ coefficient · monomial of each component.
     fn sums<T: Scalar + From<C>>(&self, values: &[T]) -> [T; GROUP] {
         let add = |sums: &mut [T; GROUP], c: &[C; GROUP], monomial: u32| {
             let value = &values[monomial as usize];
@@ -237,27 +249,9 @@ impl<C: Scalar> Group<C> {
     }
 }
 
-/// A number whose powers are formed one after the other.
-pub trait Powers: Scalar {
-    /// self^e, e ≥ 1, given self^(e-1) where e > 1.
-    fn power(&self, e: u32, before: Option<&Self>) -> Self {
-        match before {
-            Some(before) if e > 1 => before.clone() * self.clone(),
-            _ => self.clone(),
-        }
-    }
-}
-
-impl Powers for f64 {}
 impl<C: Scalar> Powers for TaylorPolynomial<C> {}
-impl Powers for crate::Interval {
-    /// Even powers are not negative, which a product of intervals does not see.
-    fn power(&self, e: u32, _: Option<&Self>) -> Self {
-        self.powi(e as i32)
-    }
-}
 
-/// Adds the monomials that others are products of.
+/// Adds the missing parents of monomials, without coefficients.
 fn close_under_parents<C>(packing: Packing, monomials: &mut BTreeMap<u128, Vec<(u32, C)>>) {
     let mut missing: Vec<u128> = monomials.keys().copied().collect();
     while let Some(m) = missing.pop() {

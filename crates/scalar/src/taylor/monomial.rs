@@ -1,20 +1,22 @@
 //! Monomials, packed into one integer.
 
-/// How exponents are packed: the degree in the top byte, below it `bits` for each variable,
-/// variable 0 lowest.
+/// The layout of a packed monomial: the total degree in the top byte, below it `bits` bits for the
+/// exponent of each variable, with variable 0 lowest.
 ///
-/// Packed monomials multiply by addition and compare by degree, then by the exponents of the last
-/// variables first: the order of [`TaylorSpace`](super::TaylorSpace).
+/// The product of two monomials is the sum of their packed integers. Packed monomials compare by
+/// degree, then by the exponents, that of the last variable first; a `TaylorSpace` orders
+/// monomials in the same way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Packing {
     bits: u32,
-    /// The lowest bit of each exponent: none of them is set in a monomial that is a square.
+    /// The lowest bit of each exponent. A monomial is a square where none of these bits is set.
     pub odd_exponents: u128,
 }
 
 const DEGREE_SHIFT: u32 = 120;
 
 impl Packing {
+    /// Returns the layout for 1 to 120 variables, else `None`.
     pub fn new(variables: usize) -> Option<Self> {
         (1..=120).contains(&variables).then(|| {
             let bits = (120 / variables as u32).min(8);
@@ -23,52 +25,62 @@ impl Packing {
         })
     }
 
+    /// Returns the largest exponent that fits.
     pub fn largest_exponent(self) -> u32 {
         (1 << self.bits) - 1
     }
 
+    /// Returns the monomial x_i.
     pub fn variable(self, i: usize) -> u128 {
         1 << DEGREE_SHIFT | 1 << (self.bits * i as u32)
     }
 
-    pub fn degree(self, key: u128) -> u32 {
-        (key >> DEGREE_SHIFT) as u32
+    /// Returns the total degree of a monomial.
+    pub fn degree(self, monomial: u128) -> u32 {
+        (monomial >> DEGREE_SHIFT) as u32
     }
 
-    pub fn exponent(self, key: u128, i: usize) -> u32 {
-        (key >> (self.bits * i as u32)) as u32 & self.largest_exponent()
+    /// Returns the exponent of variable i in a monomial.
+    pub fn exponent(self, monomial: u128, i: usize) -> u32 {
+        (monomial >> (self.bits * i as u32)) as u32 & self.largest_exponent()
     }
 
-    /// The bits of the exponent of variable i.
-    pub fn bits_of(self, i: usize) -> u128 {
+    /// Returns the mask of the bits that hold the exponent of variable i.
+    pub fn exponent_mask(self, i: usize) -> u128 {
         u128::from(self.largest_exponent()) << (self.bits * i as u32)
     }
 
-    /// The monomial without what it has of variable i.
-    pub fn without(self, key: u128, i: usize) -> u128 {
-        key - u128::from(self.exponent(key, i)) * self.variable(i)
+    /// Returns the monomial with the exponent of variable i set to 0.
+    pub fn without(self, monomial: u128, i: usize) -> u128 {
+        monomial - u128::from(self.exponent(monomial, i)) * self.variable(i)
     }
 
-    /// The highest variable of the monomial; `None` for 1.
-    pub fn last_variable(self, key: u128) -> Option<usize> {
-        let exponents = exponents_only(key);
+    /// Returns the highest variable that occurs in the monomial; `None` for the monomial 1.
+    pub fn last_variable(self, monomial: u128) -> Option<usize> {
+        let exponents = exponents_only(monomial);
         (exponents != 0).then(|| ((127 - exponents.leading_zeros()) / self.bits) as usize)
     }
 
-    /// The lowest variable of the monomial; `None` for 1.
-    pub fn first_variable(self, key: u128) -> Option<usize> {
-        let exponents = exponents_only(key);
+    /// Returns the lowest variable that occurs in the monomial; `None` for the monomial 1.
+    pub fn first_variable(self, monomial: u128) -> Option<usize> {
+        let exponents = exponents_only(monomial);
         (exponents != 0).then(|| (exponents.trailing_zeros() / self.bits) as usize)
     }
 
-    pub fn of_factors(self, factors: &[u8]) -> u128 {
+    /// Packs a monomial given by the exponent of each variable.
+    pub fn pack_exponents(self, exponents: &[u8]) -> u128 {
+        exponents.iter().enumerate().map(|(i, e)| u128::from(*e) * self.variable(i)).sum()
+    }
+
+    /// Packs a monomial given by its factors x_v, each with exponent 1.
+    pub fn pack_factors(self, factors: &[u8]) -> u128 {
         factors.iter().map(|v| self.variable(usize::from(*v))).sum()
     }
 
-    /// The factors of the monomial, falling, into `out`.
-    pub fn factors(self, key: u128, out: &mut Vec<u8>) {
+    /// Writes the factors x_v of the monomial into `out`, with descending v.
+    pub fn factors(self, monomial: u128, out: &mut Vec<u8>) {
         out.clear();
-        let mut rest = key;
+        let mut rest = monomial;
         while let Some(v) = self.last_variable(rest) {
             out.push(v as u8);
             rest -= self.variable(v);
@@ -76,7 +88,8 @@ impl Packing {
     }
 }
 
-/// The key without its degree: the order by exponents of the last variables first.
-pub(crate) fn exponents_only(key: u128) -> u128 {
-    key & ((1 << DEGREE_SHIFT) - 1)
+/// Returns the exponents of a packed monomial without its degree. They compare by the exponent of
+/// the last variable first.
+pub(crate) fn exponents_only(monomial: u128) -> u128 {
+    monomial & ((1 << DEGREE_SHIFT) - 1)
 }

@@ -1,27 +1,31 @@
-//! The type [`TaylorPolynomial`]: constructors and accessors.
+//! The type [`TaylorPolynomial`]: storage forms, constructors and accessors.
 
 use std::sync::Arc;
 
-use super::dense;
+use super::addition::PlainAddition;
+use super::dense::{self, pad_with_zeros};
 use super::space::TaylorSpace;
 use super::sparse::{self, Term};
-use crate::Scalar;
+use crate::scalar::Scalar;
 
-/// A polynomial in a [`TaylorSpace`]: terms of total degree above the order are cut off.
+/// A polynomial in a [`TaylorSpace`], truncated at the order of the space.
 ///
-/// The variables are offsets from an expansion point; where they are angles' sines or a robot's
-/// velocities is the user's to know. Three forms, chosen as results need: a constant, which belongs
-/// to every space, so that code written over [`Scalar`] can make one from a number; a sorted list
-/// of terms, for the sparse exact polynomials of a robot's M, g and c; and a dense series, as
-/// division makes it. Copies share memory until one is changed.
+/// The variables are offsets from an expansion point. Their units and meaning are the caller's.
+/// Each result takes one of three storage forms:
 ///
-/// Sums and products are truncated to the order; with coefficients of type
-/// [`Interval`](crate::Interval) each coefficient encloses the exact one.
+/// - a constant, which belongs to every space, so that code over [`Scalar`] can convert a number;
+/// - a sorted list of terms, for sparse polynomials such as those of a robot's M, g and c;
+/// - a dense series, as division and elementary functions compute it.
+///
+/// Clones share memory until one of them is changed.
+///
+/// Sums and products are truncated at the order. With coefficients of type
+/// [`Interval`](crate::Interval), each coefficient encloses the exact one.
 ///
 /// # Panics
 ///
-/// Operations panic where operands belong to spaces that differ in variables or order, and where
-/// division or an elementary function would need a dense series that does not fit
+/// Operations panic where the operands belong to spaces that differ in variables or order. Division
+/// and elementary functions panic where the dense series does not fit
 /// ([`TaylorSpace::check_dense`]).
 ///
 /// # Examples
@@ -40,7 +44,7 @@ pub struct TaylorPolynomial<C = f64> {
     pub(crate) form: Form<C>,
 }
 
-/// How a polynomial is stored.
+/// The storage form of a polynomial.
 #[derive(Clone, Debug)]
 pub(crate) enum Form<C> {
     Constant(C),
@@ -48,79 +52,89 @@ pub(crate) enum Form<C> {
     Dense(Arc<TaylorSpace>, Arc<Vec<C>>),
 }
 
-/// A term of a polynomial.
+/// A term of a polynomial: a coefficient times a monomial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaylorTerm<C> {
-    /// Exponent of each variable.
+    /// Exponent of each variable (k entries).
     pub exponents: Vec<u8>,
     /// Coefficient.
     pub coefficient: C,
 }
 
 impl<C: Scalar> TaylorPolynomial<C> {
-    /// The variable x_i, an offset from the expansion point.
+    /// Returns the variable x_i, an offset from the expansion point.
+    ///
+    /// # Panics
+    ///
+    /// Panics where the space has no variable i.
     pub fn variable(space: &Arc<TaylorSpace>, i: usize) -> Self {
-        assert!(i < space.variables(), "variable {i} of a space of {}", space.variables());
-        let terms = if space.order() == 0 {
-            Vec::new()
-        } else {
-            vec![(space.packing.variable(i), C::one())]
-        };
+        Self::variable_at(space, i, C::zero())
+    }
+
+    /// Returns value + x_i: variable i about the expansion point `value`.
+    ///
+    /// # Panics
+    ///
+    /// Panics where the space has no variable i.
+    pub fn variable_at(space: &Arc<TaylorSpace>, i: usize, value: C) -> Self {
+        let variables = space.variables();
+        assert!(i < variables, "variable {i} of a Taylor space with {variables} variables");
+        let mut terms = sparse::constant(&value);
+        if space.order() > 0 {
+            terms.push((space.packing.variable(i), C::one()));
+        }
         Self::sparse(space, terms)
     }
 
-    /// value + x_i: the variable i near an expansion point.
-    pub fn variable_at(space: &Arc<TaylorSpace>, i: usize, value: C) -> Self {
-        Self::variable(space, i) + Self::constant(value)
-    }
-
-    /// A constant; it belongs to every space.
+    /// Returns a constant, which belongs to every space.
     pub fn constant(value: C) -> Self {
         Self { form: Form::Constant(value) }
     }
 
-    /// A polynomial by its terms, in any order; terms above the space's order are cut off.
+    /// Returns the polynomial with the given terms, in any order. Terms above the order of the
+    /// space are dropped.
     ///
     /// ```
     /// use reachtube_scalar::{TaylorPolynomial, TaylorSpace, TaylorTerm};
     ///
     /// let space = TaylorSpace::new(2, 3).unwrap();
-    /// let f = TaylorPolynomial::from_terms(&space, [TaylorTerm { exponents: vec![2, 1], coefficient: 4.0 }]);
+    /// let term = TaylorTerm { exponents: vec![2, 1], coefficient: 4.0 };
+    /// let f = TaylorPolynomial::from_terms(&space, [term]);
     /// assert_eq!(f.evaluate(&[3.0, 0.5]), 18.0);
     /// ```
     ///
     /// # Panics
     ///
-    /// Where a term has not one exponent a variable.
+    /// Panics where a term does not have one exponent per variable.
     pub fn from_terms(
         space: &Arc<TaylorSpace>,
         terms: impl IntoIterator<Item = TaylorTerm<C>>,
     ) -> Self {
         let fits = |term: &TaylorTerm<C>| {
-            assert_eq!(term.exponents.len(), space.variables(), "one exponent a variable");
+            assert_eq!(
+                term.exponents.len(),
+                space.variables(),
+                "a term needs one exponent per variable"
+            );
             term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() <= space.order()
         };
-        let key = |exponents: &[u8]| -> u128 {
-            exponents
-                .iter()
-                .enumerate()
-                .map(|(i, e)| u128::from(*e) * space.packing.variable(i))
-                .sum()
-        };
-        let all =
-            terms.into_iter().filter(fits).map(|term| (key(&term.exponents), term.coefficient));
-        Self::sparse(space, sparse::collected(all.collect()))
+        let pack =
+            |term: TaylorTerm<C>| (space.packing.pack_exponents(&term.exponents), term.coefficient);
+        let packed = terms.into_iter().filter(fits).map(pack).collect();
+        Self::sparse(space, sparse::collect_like_terms(packed))
     }
 
+    /// Returns the polynomial stored as a list of terms, which must be sorted.
     pub(crate) fn sparse(space: &Arc<TaylorSpace>, terms: Vec<Term<C>>) -> Self {
         Self { form: Form::Sparse(Arc::clone(space), Arc::new(terms)) }
     }
 
+    /// Returns the polynomial stored as a dense series of whole blocks.
     pub(crate) fn dense(space: &Arc<TaylorSpace>, coefficients: Vec<C>) -> Self {
         Self { form: Form::Dense(Arc::clone(space), Arc::new(coefficients)) }
     }
 
-    /// The space; `None` for a constant.
+    /// Returns the space of the polynomial; `None` for a constant.
     pub fn space(&self) -> Option<&Arc<TaylorSpace>> {
         match &self.form {
             Form::Constant(_) => None,
@@ -128,7 +142,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
         }
     }
 
-    /// Calls `visit` with the packed monomial and coefficient of each non-zero term, in order.
+    /// Calls `visit` with the packed monomial and the coefficient of each non-zero term, in order.
     pub(crate) fn for_each_term(&self, mut visit: impl FnMut(u128, &C)) {
         match &self.form {
             Form::Constant(c) if c.is_zero() => {}
@@ -140,14 +154,30 @@ impl<C: Scalar> TaylorPolynomial<C> {
         }
     }
 
+    /// Returns the non-zero terms with packed monomials, in order.
     pub(super) fn packed_terms(&self) -> Vec<Term<C>> {
         let mut terms = Vec::new();
         self.for_each_term(|m, c| terms.push((m, c.clone())));
         terms
     }
 
-    /// The non-zero terms, by degree, then by the exponents of the last variables. A constant's
-    /// term has no exponents.
+    /// Returns the coefficients of a polynomial that belongs to `space`, as a dense series.
+    pub(super) fn coefficients(&self, space: &TaylorSpace) -> Vec<C> {
+        let mut out = vec![C::zero(); space.dense_len(0)];
+        match &self.form {
+            Form::Dense(_, coefficients) => return coefficients.to_vec(),
+            Form::Constant(c) => out[0] = c.clone(),
+            Form::Sparse(_, terms) => {
+                let degree = terms.last().map_or(0, |(m, _)| space.packing.degree(*m));
+                pad_with_zeros(&mut out, space.dense_len(degree));
+                dense::add_terms(space, &mut out, terms, false, &mut PlainAddition);
+            }
+        }
+        out
+    }
+
+    /// Returns the non-zero terms, sorted by degree, then by the exponent of the last variable
+    /// first. The term of a constant has an empty list of exponents.
     pub fn terms(&self) -> Vec<TaylorTerm<C>> {
         let exponents = |m: u128| match self.space() {
             None => Vec::new(),
@@ -162,14 +192,14 @@ impl<C: Scalar> TaylorPolynomial<C> {
         terms
     }
 
-    /// Number of non-zero terms.
+    /// Returns the number of non-zero terms.
     pub fn term_count(&self) -> usize {
         let mut count = 0;
         self.for_each_term(|_, _| count += 1);
         count
     }
 
-    /// The highest total degree of a non-zero term; 0 for the zero polynomial.
+    /// Returns the highest total degree of a non-zero term; 0 for the zero polynomial.
     pub fn degree(&self) -> u32 {
         let mut degree = 0;
         if let Some(space) = self.space() {
@@ -178,7 +208,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         degree
     }
 
-    /// The coefficient of the monomial with the given exponents; zero where there is no such term.
+    /// Returns the coefficient of the monomial with the given exponents, one per variable; zero
+    /// where there is no such term.
     pub fn coefficient(&self, exponents: &[u8]) -> C {
         let Some(space) = self.space() else {
             return if exponents.iter().all(|e| *e == 0) {
@@ -188,11 +219,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
             };
         };
         let mut found = C::zero();
-        let wanted: u128 = exponents
-            .iter()
-            .enumerate()
-            .map(|(i, e)| u128::from(*e) * space.packing.variable(i))
-            .sum();
+        let wanted = space.packing.pack_exponents(exponents);
         self.for_each_term(|m, c| {
             if m == wanted {
                 found = c.clone();
@@ -201,7 +228,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
         found
     }
 
-    /// The value at the expansion point.
+    /// Returns the value at the expansion point.
     pub fn constant_term(&self) -> C {
         match &self.form {
             Form::Constant(c) => c.clone(),
@@ -213,7 +240,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
         }
     }
 
-    /// Whether variable i occurs.
+    /// Returns whether variable i occurs in a non-zero term.
     pub fn depends_on(&self, i: usize) -> bool {
         let mut depends = false;
         if let Some(space) = self.space() {
@@ -222,7 +249,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         depends
     }
 
-    /// Each coefficient mapped, as to intervals or back; zeros are dropped.
+    /// Applies `map` to each stored coefficient, for example to convert it to an interval. Terms
+    /// that become zero are dropped from a list of terms.
     pub fn map_coefficients<D: Scalar>(&self, map: impl Fn(&C) -> D) -> TaylorPolynomial<D> {
         match &self.form {
             Form::Constant(c) => TaylorPolynomial::constant(map(c)),
@@ -238,7 +266,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
 }
 
 impl TaylorPolynomial<f64> {
-    /// Whether no coefficient is infinite or NaN.
+    /// Returns whether all coefficients are finite.
     pub(crate) fn is_finite(&self) -> bool {
         match &self.form {
             Form::Constant(c) => c.is_finite(),
@@ -249,7 +277,7 @@ impl TaylorPolynomial<f64> {
 }
 
 impl<C: Scalar> PartialEq for TaylorPolynomial<C> {
-    /// Whether all terms are the same; the forms may differ.
+    /// Returns whether all terms are equal; the storage forms may differ.
     fn eq(&self, other: &Self) -> bool {
         self.packed_terms() == other.packed_terms()
     }

@@ -1,39 +1,41 @@
 //! Sums and products of lists of terms.
 
-use super::arithmetic::{Addition, Plain, signed};
+use super::addition::{Addition, PlainAddition, negated_if};
 use super::monomial::Packing;
 use super::space::TaylorSpace;
-use crate::Scalar;
+use crate::scalar::Scalar;
 
-/// A packed monomial and its coefficient. Lists of terms are sorted by monomial, each at most once,
-/// none with coefficient zero.
-pub(super) type Term<C> = (u128, C);
+/// A packed monomial and its coefficient.
+///
+/// A list of terms is sorted by monomial. Each monomial occurs once, with a non-zero coefficient.
+pub(crate) type Term<C> = (u128, C);
 
-/// A product by as few terms as this is merged term by term, one by more is collected and sorted.
-const FEW: usize = 4;
+/// Largest number of terms of the shorter factor for which the rows of a product are merged one
+/// by one. For longer factors, all products are collected and sorted.
+const MERGED_ROWS: usize = 4;
 
-/// Products of terms that are collected before they are sorted, so that memory stays near that of
-/// the result.
-const CHUNK: usize = 1 << 20;
+/// Number of products collected before they are sorted. It keeps the memory near that of the
+/// result.
+const BATCH: usize = 1 << 20;
 
-/// a + b, or a - b where `minus`.
-pub(super) fn sum<C: Scalar>(a: &[Term<C>], b: &[Term<C>], minus: bool) -> Vec<Term<C>> {
-    sum_by(a, b, minus, &mut Plain)
+/// Returns a + b, or a - b where `minus`.
+fn sum<C: Scalar>(a: &[Term<C>], b: &[Term<C>], minus: bool) -> Vec<Term<C>> {
+    sum_with(a, b, minus, &mut PlainAddition)
 }
 
-/// [`sum`], by the given addition of coefficients.
-pub(super) fn sum_by<C: Scalar>(
+/// Returns a + b, or a - b where `minus`, by the given addition of coefficients.
+pub(super) fn sum_with<C: Scalar>(
     a: &[Term<C>],
     b: &[Term<C>],
     minus: bool,
-    add: &mut impl Addition<C>,
+    addition: &mut impl Addition<C>,
 ) -> Vec<Term<C>> {
     let mut out = Vec::with_capacity(a.len() + b.len());
     let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
     loop {
         match (a.peek(), b.peek()) {
             (Some(x), Some(y)) if x.0 == y.0 => {
-                let c = add.sum(&x.1, signed(&y.1, minus));
+                let c = addition.sum(&x.1, negated_if(minus, &y.1));
                 if !c.is_zero() {
                     out.push((x.0, c));
                 }
@@ -41,11 +43,11 @@ pub(super) fn sum_by<C: Scalar>(
                 b.next();
             }
             (Some(x), Some(y)) if x.0 > y.0 => {
-                out.push((y.0, signed(&y.1, minus)));
+                out.push((y.0, negated_if(minus, &y.1)));
                 b.next();
             }
             (None, Some(y)) => {
-                out.push((y.0, signed(&y.1, minus)));
+                out.push((y.0, negated_if(minus, &y.1)));
                 b.next();
             }
             (Some(x), _) => {
@@ -57,74 +59,85 @@ pub(super) fn sum_by<C: Scalar>(
     }
 }
 
-/// a b, truncated at the space's order.
+/// Returns a b, truncated at the order of the space.
 pub(super) fn product<C: Scalar>(
     space: &TaylorSpace,
     a: &[Term<C>],
     b: &[Term<C>],
 ) -> Vec<Term<C>> {
-    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
-    if few.len() <= FEW {
-        let rows = few.iter().map(|x| times_term(space, x, many));
+    let (short, long) = if a.len() <= b.len() { (a, b) } else { (b, a) };
+    if short.len() <= MERGED_ROWS {
+        let rows = short.iter().map(|x| product_with_term(space, x, long));
         return rows.reduce(|p, q| sum(&p, &q, false)).unwrap_or_default();
     }
-    let (mut done, mut open) =
-        (Vec::new(), Vec::with_capacity(a.len().saturating_mul(b.len()).min(CHUNK)));
-    for x in few {
-        open.extend(times_term_lazily(space, x, many));
-        if open.len() >= CHUNK {
-            done = sum(&done, &collected(core::mem::take(&mut open)), false);
+    let (mut merged, mut pending) =
+        (Vec::new(), Vec::with_capacity(a.len().saturating_mul(b.len()).min(BATCH)));
+    for x in short {
+        pending.extend(products_with_term(space, x, long));
+        if pending.len() >= BATCH {
+            let batch = collect_like_terms(core::mem::take(&mut pending));
+            merged = sum(&merged, &batch, false);
         }
     }
-    let last = collected(open);
-    if done.is_empty() { last } else { sum(&done, &last, false) }
+    let last = collect_like_terms(pending);
+    if merged.is_empty() { last } else { sum(&merged, &last, false) }
 }
 
-/// Number of pairs of terms whose product is not cut off.
-pub(super) fn pairs<C>(space: &TaylorSpace, a: &[Term<C>], b: &[Term<C>]) -> usize {
+/// Returns the number of pairs of terms whose product is not truncated.
+pub(super) fn count_kept_products<C>(space: &TaylorSpace, a: &[Term<C>], b: &[Term<C>]) -> usize {
     let (packing, order) = (space.packing, space.order());
     let up_to = |degree: u32| b.partition_point(|term| packing.degree(term.0) <= degree);
-    let of_degree = |group: &[Term<C>]| group.len() * up_to(order - packing.degree(group[0].0));
-    a.chunk_by(|x, y| packing.degree(x.0) == packing.degree(y.0)).map(of_degree).sum()
+    let of_group = |group: &[Term<C>]| group.len() * up_to(order - packing.degree(group[0].0));
+    a.chunk_by(|x, y| packing.degree(x.0) == packing.degree(y.0)).map(of_group).sum()
 }
 
-/// The product by one term keeps the order.
-fn times_term<C: Scalar>(space: &TaylorSpace, x: &Term<C>, many: &[Term<C>]) -> Vec<Term<C>> {
-    times_term_lazily(space, x, many).filter(|(_, c)| !c.is_zero()).collect()
+/// Returns the product with one term as a list of terms; such a product keeps the order of terms.
+fn product_with_term<C: Scalar>(
+    space: &TaylorSpace,
+    x: &Term<C>,
+    terms: &[Term<C>],
+) -> Vec<Term<C>> {
+    products_with_term(space, x, terms).filter(|(_, c)| !c.is_zero()).collect()
 }
 
-fn times_term_lazily<'a, C: Scalar>(
+/// Iterates over the products with one term that are not truncated.
+fn products_with_term<'a, C: Scalar>(
     space: &TaylorSpace,
     x: &'a Term<C>,
-    many: &'a [Term<C>],
+    terms: &'a [Term<C>],
 ) -> impl Iterator<Item = Term<C>> + 'a {
     let (packing, order) = (space.packing, space.order());
     let room = (order + 1).saturating_sub(packing.degree(x.0));
-    let fit = many.partition_point(|y| packing.degree(y.0) < room);
-    many[..fit].iter().map(|y| (x.0 + y.0, x.1.clone() * y.1.clone()))
+    let fit = terms.partition_point(|y| packing.degree(y.0) < room);
+    terms[..fit].iter().map(|y| (x.0 + y.0, x.1.clone() * y.1.clone()))
 }
 
-/// Terms in any order, with repetitions, as a list.
-pub(crate) fn collected<C: Scalar>(mut all: Vec<Term<C>>) -> Vec<Term<C>> {
-    all.sort_by_key(|term| term.0);
-    all.dedup_by(|next, kept| {
+/// Sorts terms and adds the coefficients of equal monomials in their given order.
+pub(crate) fn collect_like_terms<C: Scalar>(mut terms: Vec<Term<C>>) -> Vec<Term<C>> {
+    terms.sort_by_key(|term| term.0);
+    terms.dedup_by(|next, kept| {
         let same = next.0 == kept.0;
         if same {
             kept.1 += next.1.clone();
         }
         same
     });
-    all.retain(|(_, c)| !c.is_zero());
-    all
+    terms.retain(|(_, c)| !c.is_zero());
+    terms
 }
 
-/// The terms times k.
+/// Returns the terms times k.
 pub(super) fn scaled<C: Scalar>(terms: &[Term<C>], k: &C) -> Vec<Term<C>> {
-    let times = terms.iter().map(|(m, c)| (*m, c.clone() * k.clone()));
-    times.filter(|(_, c)| !c.is_zero()).collect()
+    let products = terms.iter().map(|(m, c)| (*m, c.clone() * k.clone()));
+    products.filter(|(_, c)| !c.is_zero()).collect()
 }
 
-/// The derivative in variable i.
+/// Returns the list of terms of a constant.
+pub(super) fn constant<C: Scalar>(c: &C) -> Vec<Term<C>> {
+    if c.is_zero() { Vec::new() } else { vec![(0, c.clone())] }
+}
+
+/// Returns the partial derivative in variable i.
 pub(super) fn derivative<C: Scalar>(packing: Packing, terms: &[Term<C>], i: usize) -> Vec<Term<C>> {
     let lower = |(m, c): &Term<C>| match packing.exponent(*m, i) {
         0 => None,

@@ -1,4 +1,4 @@
-//! Evaluation, composition, change of expansion point, derivatives.
+//! Evaluation, composition, change of the expansion point, derivatives.
 
 use std::sync::Arc;
 
@@ -7,22 +7,22 @@ use super::monomial::exponents_only;
 use super::polynomial::{Form, TaylorPolynomial};
 use super::space::TaylorSpace;
 use super::sparse::{self, Term};
-use crate::Scalar;
+use crate::scalar::Scalar;
 
 impl<C: Scalar> TaylorPolynomial<C> {
-    /// The value at offsets `at` from the expansion point, one a variable, by Horner's rule; over
-    /// any scalar that coefficients turn into.
+    /// Evaluates the polynomial by Horner's rule at offsets `at` from the expansion point, one per
+    /// variable. The offsets may be of any scalar type that coefficients convert to.
     ///
-    /// With polynomials as arguments this is composition, truncated in their space: exact to its
-    /// order where they are.
+    /// With polynomials as arguments, the result is the composition, truncated in their space. It
+    /// is exact to the order of that space where the arguments are.
     ///
     /// # Guarantee
     ///
-    /// Over `Interval`: an outer enclosure of the polynomial's range over the box.
+    /// Over `Interval`: an outer enclosure of the range of the polynomial over the box `at`.
     ///
     /// # Panics
     ///
-    /// Where fewer arguments are given than variables occur.
+    /// Panics where a variable occurs for which `at` has no entry.
     pub fn evaluate<T: Scalar + From<C>>(&self, at: &[T]) -> T {
         let Some(space) = self.space() else { return T::from(self.constant_term()) };
         let mut terms = self.packed_terms();
@@ -30,7 +30,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         horner(space, &terms, space.variables(), at)
     }
 
-    /// The partial derivative in variable i. Of a truncated series, it is exact to one order less.
+    /// Returns the partial derivative in variable i. For a truncated series, it is exact to one
+    /// order less.
     pub fn derivative(&self, i: usize) -> Self {
         match &self.form {
             Form::Constant(_) => Self::constant(C::zero()),
@@ -43,7 +44,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
         }
     }
 
-    /// Terms of total degree above `order` cut off.
+    /// Returns the polynomial without its terms of total degree above `order`.
     pub fn truncated(&self, order: u32) -> Self {
         let Some(space) = self.space().cloned() else { return self.clone() };
         let mut terms = self.packed_terms();
@@ -51,15 +52,15 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self::sparse(&space, terms)
     }
 
-    /// The same polynomial about another point: f(x + h) as a polynomial in x. Exact but for
-    /// rounding, for the degree does not rise.
+    /// Returns the Taylor shift f(x + h) as a polynomial in x: the same polynomial about another
+    /// expansion point. It is exact up to rounding, because the degree does not rise.
     ///
     /// # Panics
     ///
-    /// Where `h` has not one entry a variable.
+    /// Panics where `h` does not have one entry per variable.
     pub fn shifted(&self, h: &[C]) -> Self {
         let Some(space) = self.space().cloned() else { return self.clone() };
-        assert_eq!(h.len(), space.variables(), "one offset a variable");
+        assert_eq!(h.len(), space.variables(), "a shift needs one offset per variable");
         let mut terms = self.packed_terms();
         for (i, h) in h.iter().enumerate().filter(|(_, h)| !h.is_zero()) {
             terms = shifted_terms(&space, &terms, i, h);
@@ -67,34 +68,35 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self::sparse(&space, terms)
     }
 
-    /// The polynomial in another space, variable i becoming variable `places[i]`; terms above that
-    /// space's order are cut off.
+    /// Returns the polynomial in another space, where variable i becomes variable `indices[i]`.
+    /// Terms above the order of that space are dropped.
     ///
     /// # Panics
     ///
-    /// Where `places` names a variable that the space does not have.
-    pub fn embedded(&self, space: &Arc<TaylorSpace>, places: &[usize]) -> Self {
+    /// Panics where `indices` names a variable that the space does not have.
+    pub fn embedded(&self, space: &Arc<TaylorSpace>, indices: &[usize]) -> Self {
         let Some(own) = self.space() else { return self.clone() };
         assert!(
-            places.iter().all(|p| *p < space.variables()),
-            "a place beyond the space's variables"
+            indices.iter().all(|i| *i < space.variables()),
+            "{indices:?} names a variable beyond the {} of the space",
+            space.variables()
         );
         let mut factors = Vec::new();
         let mut terms = Vec::new();
         self.for_each_term(|m, c| {
             if own.packing.degree(m) <= space.order() {
                 own.packing.factors(m, &mut factors);
-                let key =
-                    factors.iter().map(|v| space.packing.variable(places[usize::from(*v)])).sum();
-                terms.push((key, c.clone()));
+                let renamed =
+                    factors.iter().map(|v| space.packing.variable(indices[usize::from(*v)])).sum();
+                terms.push((renamed, c.clone()));
             }
         });
-        Self::sparse(space, sparse::collected(terms))
+        Self::sparse(space, sparse::collect_like_terms(terms))
     }
 }
 
-/// Horner's rule in the variable before `end` and those below it; terms sorted by the exponents of
-/// the last variables.
+/// Evaluates terms in the variables below `end` by Horner's rule in the highest of them, and
+/// recursively its coefficients. The terms are sorted by the exponent of the last variable first.
 fn horner<C: Scalar, T: Scalar + From<C>>(
     space: &TaylorSpace,
     terms: &[Term<C>],
@@ -120,7 +122,7 @@ fn horner<C: Scalar, T: Scalar + From<C>>(
     value
 }
 
-/// x_i replaced by x_i + h.
+/// Replaces x_i by x_i + h in a list of terms.
 fn shifted_terms<C: Scalar>(
     space: &TaylorSpace,
     terms: &[Term<C>],
@@ -131,17 +133,17 @@ fn shifted_terms<C: Scalar>(
     let mut all = Vec::with_capacity(2 * terms.len());
     for (m, c) in terms {
         let mut binomial = c.clone();
-        let (mut key, mut exponent) = (*m, packing.exponent(*m, i));
-        all.push((key, c.clone()));
-        // C(e, j) h^{e-j} from one j to the next lower; a ratio of integers below 2^53 is exact
-        // enough only if multiplied first.
+        let (mut monomial, mut exponent) = (*m, packing.exponent(*m, i));
+        all.push((monomial, c.clone()));
+        // C(e, j) h^{e-j} follows from one j to the next lower. The product comes before the
+        // division, so that binomial coefficients below 2^53 stay exact.
         for step in 1..=packing.exponent(*m, i) {
             binomial =
                 binomial * h.clone() * C::from(f64::from(exponent)) / C::from(f64::from(step));
-            key -= packing.variable(i);
+            monomial -= packing.variable(i);
             exponent -= 1;
-            all.push((key, binomial.clone()));
+            all.push((monomial, binomial.clone()));
         }
     }
-    sparse::collected(all)
+    sparse::collect_like_terms(all)
 }

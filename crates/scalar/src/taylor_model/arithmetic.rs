@@ -1,23 +1,26 @@
-//! Sums, and the operators.
+//! Sums, and the operators `+`, `-` and `*`.
 
-use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
 
-use super::TaylorModel;
-use super::bounds::{LANES, inflated};
-use crate::Interval;
+use super::bounds::{PARTIAL_SUMS, inflated};
+use super::model::TaylorModel;
+use crate::interval::closed::Interval;
 use crate::rounding::two_sum;
-use crate::taylor::Addition;
+use crate::taylor::addition::Addition;
 
-/// Adds, and sums up the rounding errors of the sums, which are known exactly.
+/// An addition that also sums the magnitudes of its rounding errors, each of which is computed
+/// exactly.
 #[derive(Default)]
-struct Observed {
-    errors: [f64; LANES],
+struct ErrorTracking {
+    /// Partial sums of |error|.
+    errors: [f64; PARTIAL_SUMS],
+    /// Upper bound of the number of additions in each partial sum.
     count: usize,
 }
 
-impl Addition<f64> for Observed {
+impl Addition<f64> for ErrorTracking {
     fn sum(&mut self, a: &f64, b: f64) -> f64 {
         let (sum, error) = two_sum(*a, b);
         self.errors[0] += error.abs();
@@ -27,8 +30,8 @@ impl Addition<f64> for Observed {
 
     fn accumulate(&mut self, a: &mut [f64], b: &[f64], minus: bool) {
         let sign = if minus { -1.0 } else { 1.0 };
-        let (a_chunks, a_rest) = a[..b.len()].as_chunks_mut::<LANES>();
-        let (b_chunks, b_rest) = b.as_chunks::<LANES>();
+        let (a_chunks, a_rest) = a[..b.len()].as_chunks_mut::<PARTIAL_SUMS>();
+        let (b_chunks, b_rest) = b.as_chunks::<PARTIAL_SUMS>();
         for (a, b) in a_chunks.iter_mut().zip(b_chunks) {
             for ((a, b), errors) in a.iter_mut().zip(b).zip(&mut self.errors) {
                 let (sum, error) = two_sum(*a, sign * b);
@@ -41,28 +44,29 @@ impl Addition<f64> for Observed {
     }
 }
 
-impl Observed {
-    /// An upper bound of all errors; NaN where a sum overflowed.
+impl ErrorTracking {
+    /// Returns an upper bound of the sum of all errors; NaN where a sum overflowed.
     fn total(&self) -> f64 {
-        inflated(self.errors.iter().sum(), self.count + LANES)
+        inflated(self.errors.iter().sum(), self.count + PARTIAL_SUMS)
     }
 }
 
 impl TaylorModel {
-    /// self ± other in place.
+    /// Adds `other` in place, or subtracts it where `minus`.
     fn accumulate(&mut self, other: &Self, minus: bool) {
-        let mut sums = Observed::default();
-        self.polynomial.accumulate_by(&other.polynomial, minus, &mut sums);
+        let mut sums = ErrorTracking::default();
+        self.polynomial.accumulate_with(&other.polynomial, minus, &mut sums);
         self.remainder += if minus { -other.remainder } else { other.remainder };
         let error = sums.total();
         if error != 0.0 {
-            self.remainder += Interval::centered(0.0, error);
+            self.remainder += Interval::centred(0.0, error);
         }
         if self.remainder == Interval::ENTIRE {
-            *self = Self::unknown();
+            *self = Self::entire();
         }
     }
 
+    /// Returns self + other, or self - other where `minus`.
     fn sum(&self, other: &Self, minus: bool) -> Self {
         let mut sum = self.clone();
         sum.accumulate(other, minus);
@@ -78,7 +82,9 @@ impl Neg for TaylorModel {
 }
 
 macro_rules! operations {
-    ($($Op:ident $op:ident $OpAssign:ident $op_assign:ident |$a:ident, $b:ident| $value:expr;)*) => {$(
+    ($(
+        $Op:ident $op:ident $OpAssign:ident $op_assign:ident |$a:ident, $b:ident| $value:expr;
+    )*) => {$(
         impl $Op<&TaylorModel> for &TaylorModel {
             type Output = TaylorModel;
             fn $op(self, rhs: &TaylorModel) -> TaylorModel {
@@ -99,7 +105,6 @@ operations! {
     Add add AddAssign add_assign |a, b| a.sum(b, false);
     Sub sub SubAssign sub_assign |a, b| a.sum(b, true);
     Mul mul MulAssign mul_assign |a, b| a.product(b);
-    Div div DivAssign div_assign |a, b| a.quotient(b);
 }
 
 impl AddAssign for TaylorModel {
@@ -120,19 +125,12 @@ impl MulAssign for TaylorModel {
     }
 }
 
-impl DivAssign for TaylorModel {
-    /// The remainder is [`Interval::ENTIRE`] where the divisor's range holds zero.
-    fn div_assign(&mut self, rhs: Self) {
-        *self = self.quotient(&rhs);
-    }
-}
-
 impl Zero for TaylorModel {
     fn zero() -> Self {
         Self::from(0.0)
     }
 
-    /// Whether the model is the number zero exactly.
+    /// Returns whether the model is exactly the number zero.
     fn is_zero(&self) -> bool {
         self.remainder == Interval::ZERO && self.polynomial.is_zero()
     }

@@ -1,107 +1,114 @@
-//! Bounds of polynomials over [-1, 1]^k, where a monomial is at most 1 in magnitude and one with
-//! even exponents lies in [0, 1].
+//! Bounds of polynomials over [-1, 1]^k. There, the magnitude of a monomial is at most 1, and a
+//! monomial with even exponents lies in [0, 1].
 
-use crate::taylor::Form;
-use crate::{Interval, TaylorPolynomial, TaylorSpace};
+use crate::interval::closed::Interval;
+use crate::taylor::polynomial::{Form, TaylorPolynomial};
+use crate::taylor::space::TaylorSpace;
 
-/// A bound of the exact value of a sum of non-negative numbers and products of two that was
-/// computed as x, in which no number went through more than `operations` roundings.
+/// Returns an upper bound of the exact value of a sum that was computed as x.
 ///
-/// Each rounding takes a factor 1/(1 - u) at most, u = ε/2; k of them less than 1 + 2ku for ku <
-/// 1/2. The two more of ε each cover this product's own rounding. Underflow costs less than 2⁻¹⁰⁷⁵
-/// a product, of which [`f64::MIN_POSITIVE`] covers 2⁵².
+/// The summands are non-negative numbers, or products of two of them. Each passes through at most
+/// `operations` roundings.
+///
+/// One rounding costs a factor of at most 1/(1 - u), u = ε/2; k roundings cost less than 1 + 2ku
+/// for ku < 1/2. The two additional ε cover the rounding of this function. The bound excludes
+/// underflow, which costs less than 2⁻¹⁰⁷⁵ per product: [`f64::MIN_POSITIVE`] covers 2⁵² products.
 pub(super) fn inflated(x: f64, operations: usize) -> f64 {
     if operations == 0 { x } else { x * (1.0 + (operations + 2) as f64 * f64::EPSILON) }
 }
 
-/// A lower bound likewise, of a sum without products.
+/// Returns a lower bound of the exact value of a sum of non-negative numbers, without products,
+/// that was computed as x; see [`inflated`].
 fn deflated(x: f64, operations: usize) -> f64 {
     if operations == 0 { x } else { x * (1.0 - (operations + 2) as f64 * f64::EPSILON) }
 }
 
-/// No sum of magnitudes, nor of products of which it is a bound, overflows below it.
-pub(super) const LARGEST: f64 = 1e300;
+/// A bound of sums of magnitudes, and of products of them, below which none of them overflows.
+pub(super) const OVERFLOW_GUARD: f64 = 1e300;
 
-/// So many sums are formed side by side.
-pub(super) const LANES: usize = 8;
+/// Number of partial sums computed side by side, for vector instructions.
+pub(super) const PARTIAL_SUMS: usize = 8;
 
-/// Σ |c|, rounded up.
-pub(super) fn magnitude(c: &[f64]) -> f64 {
-    let (chunks, rest) = c.as_chunks::<LANES>();
-    let mut sums = [0.0; LANES];
+/// Returns Σ |c|, rounded up.
+pub(super) fn sum_of_magnitudes(c: &[f64]) -> f64 {
+    let (chunks, rest) = c.as_chunks::<PARTIAL_SUMS>();
+    let mut sums = [0.0; PARTIAL_SUMS];
     for chunk in chunks {
         sums.iter_mut().zip(chunk).for_each(|(sum, c)| *sum += c.abs());
     }
     let sum = rest.iter().fold(sums.iter().sum::<f64>(), |sum, c| sum + c.abs());
-    inflated(sum, chunks.len() + 2 * LANES)
+    inflated(sum, chunks.len() + 2 * PARTIAL_SUMS)
 }
 
-/// Norms of the degrees from 31 on are kept together: models of a higher order have wider
-/// remainders than they need.
+/// Number of stored norms. The last one is that of all degrees from 31 on, so models of a higher
+/// order have valid but wider remainders.
 const DEGREES: usize = 32;
 
-/// Upper bounds of Σ |c| over the terms of each degree, which bounds the sum of these terms over
-/// [-1, 1]^k.
+/// Upper bounds of Σ |c| over the terms of each degree. Each is a bound of the sum of these terms
+/// over [-1, 1]^k.
 pub(super) struct Norms {
-    of_degree: [f64; DEGREES],
-    /// So many are not zero by storage.
+    by_degree: [f64; DEGREES],
+    /// Number of leading entries that can differ from zero.
     len: usize,
-    /// Number of stored coefficients.
+    /// Number of stored coefficients of the polynomial.
     pub terms: usize,
 }
 
 impl Norms {
+    /// Computes the norms of a polynomial.
     pub fn new(p: &TaylorPolynomial<f64>) -> Self {
-        let mut norms = Self { of_degree: [0.0; DEGREES], len: 1, terms: 1 };
+        let mut norms = Self { by_degree: [0.0; DEGREES], len: 1, terms: 1 };
         match &p.form {
-            Form::Constant(c) => norms.of_degree[0] = c.abs(),
+            Form::Constant(c) => norms.by_degree[0] = c.abs(),
             Form::Sparse(space, terms) => {
                 for (m, c) in terms.iter() {
                     norms.add(space.packing.degree(*m), c.abs());
                 }
                 norms.terms = terms.len();
-                let sums = norms.of_degree[..norms.len].iter_mut();
+                let sums = norms.by_degree[..norms.len].iter_mut();
                 sums.for_each(|n| *n = inflated(*n, terms.len().saturating_sub(1)));
             }
             Form::Dense(space, coefficients) => {
                 for degree in space.stored_degrees(coefficients.len()) {
-                    norms.add(degree, magnitude(&coefficients[space.block(degree)]));
+                    norms.add(degree, sum_of_magnitudes(&coefficients[space.block(degree)]));
                 }
                 norms.terms = coefficients.len();
-                norms.of_degree[DEGREES - 1] = inflated(norms.of_degree[DEGREES - 1], 256);
+                norms.by_degree[DEGREES - 1] = inflated(norms.by_degree[DEGREES - 1], 256);
             }
         }
         norms
     }
 
     fn add(&mut self, degree: u32, norm: f64) {
-        let place = (degree as usize).min(DEGREES - 1);
-        self.of_degree[place] += norm;
-        self.len = self.len.max(place + 1);
+        let index = (degree as usize).min(DEGREES - 1);
+        self.by_degree[index] += norm;
+        self.len = self.len.max(index + 1);
     }
 
-    /// Σ |c|, rounded up.
+    /// Returns Σ |c| over all terms, rounded up.
     pub fn total(&self) -> f64 {
-        inflated(self.of_degree[..self.len].iter().sum(), self.len - 1)
+        inflated(self.by_degree[..self.len].iter().sum(), self.len - 1)
     }
 
-    /// Σ |c| over the terms of one degree, rounded up; 0 for degrees that are kept together.
-    pub fn of(&self, degree: u32) -> f64 {
-        self.of_degree[..DEGREES - 1].get(degree as usize).copied().unwrap_or(0.0)
+    /// Returns Σ |c| over the terms of one degree, rounded up; 0 for the degrees from 31 on.
+    pub fn of_degree(&self, degree: u32) -> f64 {
+        self.by_degree[..DEGREES - 1].get(degree as usize).copied().unwrap_or(0.0)
     }
 
-    /// Bounds the terms of the product of degree above `order`, but for products of two terms of
-    /// degree `except` whose norm [`of`](Self::of) tells.
-    pub fn cut_off(&self, other: &Self, order: u32, except: u32) -> f64 {
+    /// Bounds the terms of the product whose degree is above `order`.
+    ///
+    /// It excludes products of two terms of degree `except` if [`of_degree`](Self::of_degree)
+    /// returns their norm.
+    pub fn truncation(&self, other: &Self, order: u32, except: u32) -> f64 {
         let (order, last) = (order as usize, DEGREES - 1);
         let except = if except as usize == last { usize::MAX } else { except as usize };
         let (mut sum, mut is_any) = (0.0, false);
-        for (i, a) in self.of_degree[..self.len].iter().enumerate() {
-            // The last norm is that of all higher degrees: cut off where one of them may be.
+        for (i, a) in self.by_degree[..self.len].iter().enumerate() {
+            // The last norm also covers higher degrees. It counts where one of them is truncated.
             let first = if i == last && order > last { 0 } else { (order + 1).saturating_sub(i) };
-            for (j, b) in other.of_degree[..other.len].iter().enumerate() {
-                let is_cut = j >= first || j == last && order > last;
-                if is_cut && !(i == except && j == except) {
+            for (j, b) in other.by_degree[..other.len].iter().enumerate() {
+                let is_truncated = j >= first || j == last && order > last;
+                if is_truncated && !(i == except && j == except) {
                     sum += a * b;
                     is_any |= *a > 0.0 && *b > 0.0;
                 }
@@ -111,18 +118,20 @@ impl Norms {
     }
 }
 
-/// Sums over the terms of a polynomial but the constant: |c|, and |c| < 0 and c > 0 where all
-/// exponents are even.
+/// Sums of |c| over the non-constant terms of a polynomial.
 #[derive(Default)]
-struct Parts {
+struct MagnitudeSums {
+    /// Over all terms.
     all: f64,
+    /// Over the terms with even exponents and c < 0.
     even_negative: f64,
+    /// Over the terms with even exponents and c > 0.
     even_positive: f64,
-    /// Numbers summed.
+    /// Upper bound of the number of summands of each sum.
     count: usize,
 }
 
-impl Parts {
+impl MagnitudeSums {
     fn add_even(&mut self, c: f64) {
         if c < 0.0 {
             self.even_negative -= c;
@@ -131,7 +140,7 @@ impl Parts {
         }
     }
 
-    /// Terms with even exponents go one way only.
+    /// Encloses the sum of the terms. A term with even exponents has the sign of its coefficient.
     fn range(&self) -> Interval {
         let additions = self.count.saturating_sub(1);
         let all = Interval::point(inflated(self.all, additions));
@@ -141,46 +150,46 @@ impl Parts {
     }
 }
 
-/// An outer bound of the polynomial over [-1, 1]^k.
+/// Encloses the range of the polynomial over [-1, 1]^k.
 pub(super) fn range(p: &TaylorPolynomial<f64>) -> Interval {
-    let parts = match &p.form {
+    let sums = match &p.form {
         Form::Constant(c) => return Interval::point(*c),
-        Form::Sparse(space, terms) => sparse_parts(space, terms),
-        Form::Dense(space, coefficients) => dense_parts(space, coefficients),
+        Form::Sparse(space, terms) => sparse_sums(space, terms),
+        Form::Dense(space, coefficients) => dense_sums(space, coefficients),
     };
-    if parts.all < LARGEST {
-        Interval::point(p.constant_term()) + parts.range()
+    if sums.all < OVERFLOW_GUARD {
+        Interval::point(p.constant_term()) + sums.range()
     } else {
         Interval::ENTIRE
     }
 }
 
-fn sparse_parts(space: &TaylorSpace, terms: &[(u128, f64)]) -> Parts {
-    let mut parts = Parts::default();
+fn sparse_sums(space: &TaylorSpace, terms: &[(u128, f64)]) -> MagnitudeSums {
+    let mut sums = MagnitudeSums::default();
     let odd = space.packing.odd_exponents;
     for (m, c) in terms.iter().filter(|(m, _)| *m != 0) {
-        parts.all += c.abs();
-        parts.count += 1;
+        sums.all += c.abs();
+        sums.count += 1;
         if m & odd == 0 {
-            parts.add_even(*c);
+            sums.add_even(*c);
         }
     }
-    parts
+    sums
 }
 
-fn dense_parts(space: &TaylorSpace, coefficients: &[f64]) -> Parts {
-    let mut parts = Parts::default();
+fn dense_sums(space: &TaylorSpace, coefficients: &[f64]) -> MagnitudeSums {
+    let mut sums = MagnitudeSums::default();
     for degree in space.stored_degrees(coefficients.len()).skip(1) {
         let block = &coefficients[space.block(degree)];
-        parts.all += magnitude(block);
-        parts.count += 1;
+        sums.all += sum_of_magnitudes(block);
+        sums.count += 1;
         if degree % 2 == 0 {
-            // Monomials with even exponents are squares: the diagonal of the table of products.
+            // Monomials with even exponents are squares, the diagonal of the product table.
             let size = space.block(degree / 2).len();
-            parts.count += size;
-            let squares = space.table(degree / 2, degree / 2).iter().step_by(size + 1);
-            squares.for_each(|at| parts.add_even(block[*at as usize]));
+            sums.count += size;
+            let squares = space.product_table(degree / 2, degree / 2).iter().step_by(size + 1);
+            squares.for_each(|at| sums.add_even(block[*at as usize]));
         }
     }
-    parts
+    sums
 }

@@ -1,17 +1,19 @@
-//! Quotients.
+//! Quotients and the operator `/`.
 
-use super::TaylorModel;
-use crate::Interval;
+use core::ops::{Div, DivAssign};
+
+use super::model::TaylorModel;
+use crate::interval::closed::Interval;
 
 impl TaylorModel {
-    /// self / divisor, a posteriori: for any polynomial Q, self / divisor = Q + (self - divisor Q)
-    /// / divisor.
+    /// Returns self / divisor with an a posteriori remainder.
     ///
-    /// Q is the series of the quotient of the polynomials; the defect is what it was cut off by,
-    /// rounding and both remainders.
+    /// For any polynomial Q, self / divisor = Q + (self - divisor Q) / divisor. Q is the truncated
+    /// series of the quotient of the polynomials. The defect self - divisor Q consists of the
+    /// truncation error, rounding errors and both remainders.
     pub(super) fn quotient(&self, divisor: &Self) -> Self {
         match divisor.as_number() {
-            Some(0.0) => return Self::unknown(),
+            Some(0.0) => return Self::entire(),
             Some(k) => return self.divided(k),
             None => {}
         }
@@ -27,21 +29,44 @@ impl TaylorModel {
         let quotient = Self::new(quotient, Interval::ZERO);
         let defect = self - &(divisor * &quotient);
         let rest = defect.range() / range;
-        quotient.widened(rest).or_values(whole)
+        quotient.widened(rest).or_enclosure(whole)
     }
 
-    /// 1 / self; the remainder is [`Interval::ENTIRE`] where the range holds zero.
+    /// Returns 1 / self. The remainder is [`Interval::ENTIRE`] where the range contains zero.
     ///
     /// # Guarantee
     ///
-    /// Outer, as every operation.
+    /// Outer.
     #[must_use]
     pub fn recip(&self) -> Self {
         Self::from(1.0).quotient(self)
     }
 
-    /// The model, or its values alone where those say more than its remainder.
-    pub(super) fn or_values(self, values: Interval) -> Self {
-        if self.remainder.width() < values.width() { self } else { Self::from(values) }
+    /// Returns the model, or the enclosure of its range alone where the remainder is as wide.
+    pub(super) fn or_enclosure(self, range: Interval) -> Self {
+        if self.remainder.width() < range.width() { self } else { Self::from(range) }
+    }
+}
+
+impl Div<&TaylorModel> for &TaylorModel {
+    type Output = TaylorModel;
+    fn div(self, rhs: &TaylorModel) -> TaylorModel {
+        self.quotient(rhs)
+    }
+}
+
+impl Div for TaylorModel {
+    type Output = TaylorModel;
+    fn div(mut self, rhs: TaylorModel) -> TaylorModel {
+        self /= rhs;
+        self
+    }
+}
+
+impl DivAssign for TaylorModel {
+    /// Divides in place. The remainder is [`Interval::ENTIRE`] where the range of the divisor
+    /// contains zero.
+    fn div_assign(&mut self, rhs: Self) {
+        *self = self.quotient(&rhs);
     }
 }

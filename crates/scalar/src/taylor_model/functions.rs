@@ -1,39 +1,43 @@
-//! Elementary functions, by Taylor's theorem with Lagrange's remainder.
+//! Elementary functions by Taylor's theorem with Lagrange's remainder.
 
-use super::TaylorModel;
-use crate::{Elementary, Interval};
+use super::model::TaylorModel;
+use crate::elementary::Elementary;
+use crate::interval::closed::Interval;
 
 impl TaylorModel {
-    /// f(self), where `series(x, n)` encloses f^(i)(ξ) / i! for every ξ of x and i = 0, ..., n.
+    /// Returns f(self), where `series(x, n)` encloses f^(i)(ξ) / i! for every ξ of x and i = 0 to
+    /// n.
     ///
-    /// With c near the middle of the values a and δ = a - c: f(a) = Σ f^(i)(c)/i! δ^i +
-    /// f^(p+1)(ξ)/(p+1)! δ^(p+1), i ≤ p, where ξ is between c and a. The sum is formed by Horner's
-    /// rule over models.
+    /// Let c be the constant term, near the midpoint of the range, a a value of the model and δ the
+    /// difference a - c. Then f(a) = Σ f^(i)(c)/i! δ^i + f^(p+1)(ξ)/(p+1)! δ^(p+1) with i ≤ p and ξ
+    /// between c and a. The sum is evaluated by Horner's rule over models.
     fn composed(&self, series: impl Fn(Interval, u32) -> Vec<Interval>) -> Self {
         let values = |x| Self::from(series(x, 0)[0]);
         let Some(space) = self.polynomial.space() else { return values(self.range()) };
-        let (order, center) = (space.order(), self.polynomial.constant_term());
-        let whole = self.range().hull(Interval::point(center));
+        let (order, centre) = (space.order(), self.polynomial.constant_term());
+        let whole = self.range().hull(Interval::point(centre));
         if whole.mag() == f64::INFINITY || order == 0 {
             return values(whole);
         }
-        let offset = self - &Self::from(center);
+        // The sum over i ≤ p.
+        let offset = self - &Self::from(centre);
         let mut sum = Self::from(0.0);
-        for coefficient in series(Interval::point(center), order).into_iter().rev() {
+        for coefficient in series(Interval::point(centre), order).into_iter().rev() {
             sum = &(&sum * &offset) + &Self::from(coefficient);
         }
+        // Lagrange's remainder over the whole range.
         let next = series(whole, order + 1);
         let rest = next[order as usize + 1] * offset.range().powi(order as i32 + 1);
-        sum.widened(rest).or_values(next[0])
+        sum.widened(rest).or_enclosure(next[0])
     }
 }
 
-/// e^x / i!.
+/// Encloses e^x / i! for i = 0 to n.
 fn exponential(x: Interval, n: u32) -> Vec<Interval> {
     over_factorials(n, |_| x.exp())
 }
 
-/// Derivatives by their order, over its factorial.
+/// Encloses the derivatives of order i = 0 to n, each over i!.
 fn over_factorials(n: u32, derivative: impl Fn(u32) -> Interval) -> Vec<Interval> {
     let mut factorial = Interval::ONE;
     let term = |i: u32| {
@@ -46,7 +50,7 @@ fn over_factorials(n: u32, derivative: impl Fn(u32) -> Interval) -> Vec<Interval
     (0..=n).map(term).collect()
 }
 
-/// ln x, then -(-1/x)^i / i; x > 0.
+/// Encloses ln x for i = 0, then -(-1/x)^i / i for i = 1 to n; x > 0.
 fn logarithm(x: Interval, n: u32) -> Vec<Interval> {
     let term = |i: u32| match i {
         0 => x.ln(),
@@ -56,7 +60,7 @@ fn logarithm(x: Interval, n: u32) -> Vec<Interval> {
     (0..=n).map(term).collect()
 }
 
-/// C(1/2, i) √x^(1 - 2i); x > 0.
+/// Encloses C(1/2, i) √x^(1 - 2i) for i = 0 to n; x > 0.
 fn square_root(x: Interval, n: u32) -> Vec<Interval> {
     let root = x.sqrt();
     let mut binomial = Interval::ONE;
@@ -69,7 +73,7 @@ fn square_root(x: Interval, n: u32) -> Vec<Interval> {
     (0..=n).map(term).collect()
 }
 
-/// With θ = atan x: θ, then cos^i θ sin(i (θ + π/2)) / i.
+/// Encloses θ = atan x for i = 0, then cos^i θ sin(i (θ + π/2)) / i for i = 1 to n.
 fn arctangent(x: Interval, n: u32) -> Vec<Interval> {
     let angle = x.atan2(Interval::ONE);
     let cos = angle.cos();
@@ -86,8 +90,8 @@ fn arctangent(x: Interval, n: u32) -> Vec<Interval> {
 ///
 /// # Guarantee
 ///
-/// Outer. Where a function is not smooth over the values (a root of zero, a logarithm of zero, an
-/// angle at the cut or the origin) the result is the interval of its values.
+/// Outer. Where a function is not smooth over the range of the operand, the result is an interval
+/// alone. This concerns the root and the logarithm at zero, and angles at the cut or the origin.
 impl Elementary for TaylorModel {
     fn sqrt(&self) -> Self {
         let values = self.range();
@@ -112,31 +116,31 @@ impl Elementary for TaylorModel {
     }
 
     fn sin_cos(&self) -> (Self, Self) {
-        let sine = |shift: u32| {
+        let sine = |quarter_turns: u32| {
             self.composed(|x, n| {
                 let (sin, cos) = x.sin_cos();
-                over_factorials(n, |i| [sin, cos, -sin, -cos][(i + shift) as usize % 4])
+                over_factorials(n, |i| [sin, cos, -sin, -cos][(i + quarter_turns) as usize % 4])
             })
         };
         (sine(0), sine(1))
     }
 
-    /// φ + atan z for a φ within a right angle of all values, where z is the tangent of the angle
-    /// that is left after turning back by φ.
+    /// Returns the angle φ + atan z.
     ///
-    /// Both sides then differ by a multiple of 2π, and by less than π.
+    /// φ is within a right angle of all angles of the range, and z is the slope of the point rotated
+    /// back by φ. The sum is the angle itself: both differ by a multiple of 2π, and by less than π.
     fn atan2(&self, x: &Self) -> Self {
         let values = self.range().atan2(x.range());
         let number = self.polynomial.space().is_none() && x.polynomial.space().is_none();
         if number || values.width() > 3.0 {
             return Self::from(values);
         }
-        let turn = values.mid();
-        let (sin, cos) = Interval::point(turn).sin_cos();
+        let rotation = values.mid();
+        let (sin, cos) = Interval::point(rotation).sin_cos();
         let (sin, cos) = (Self::from(sin), Self::from(cos));
         let along = &(x * &cos) + &(self * &sin);
         let across = &(self * &cos) - &(x * &sin);
         let angle = across.quotient(&along).composed(arctangent);
-        (angle + Self::from(turn)).or_values(values)
+        (angle + Self::from(rotation)).or_enclosure(values)
     }
 }

@@ -1,34 +1,34 @@
-//! A product of two homogeneous parts is a difference of squares.
+//! Bounds of the product of two homogeneous parts, as a difference of squares.
 
 use super::bounds::inflated;
-use crate::taylor::Form;
-use crate::{Interval, TaylorPolynomial};
+use crate::interval::closed::Interval;
+use crate::taylor::polynomial::{Form, TaylorPolynomial};
 
-/// The values over [-1, 1]^k of the product x y of the terms of one degree of two polynomials of a
-/// space, of which the norms Σ |x_α|, Σ |y_α| are known.
+/// Encloses the product x y over [-1, 1]^k, where x and y are the terms of one degree of two
+/// polynomials. Their norms are N(x) = Σ |x_α| and N(y) = Σ |y_α|.
 ///
-/// x y = ((x + ν y)² - (x - ν y)²) / 4ν for any ν > 0. With ν = N(x) / N(y) that lies in the ±N(x)
-/// N(y) which the norms alone tell, is nearly free of negative numbers where x and y are nearly
-/// multiples of each other, as in a square, and costs no more than the norms.
+/// For any ν > 0, x y = ((x + ν y)² - (x - ν y)²) / 4ν. With ν = N(x) / N(y), this bound is within
+/// ±N(x) N(y), the bound by norms, at about the same cost. It contains few negative numbers where x
+/// and y are nearly positive multiples of each other, as in a square.
 ///
 /// # Guarantee
 ///
-/// Outer. N(x ± ν y) is computed with two roundings a term, which is less than 2ε (N(x) + ν N(y))
-/// in all.
+/// Outer. N(x ± ν y) is computed with two roundings per term, an error of less than
+/// 2ε (N(x) + ν N(y)) in total.
 pub(super) fn product_of_parts(
     x: &TaylorPolynomial,
     y: &TaylorPolynomial,
     degree: u32,
-    [of_x, of_y]: [f64; 2],
+    [norm_x, norm_y]: [f64; 2],
 ) -> Interval {
-    let by_norms = Interval::centered(0.0, of_x) * Interval::centered(0.0, of_y);
+    let by_norms = Interval::centred(0.0, norm_x) * Interval::centred(0.0, norm_y);
     let is_moderate = |norm: f64| (1e-120..1e120).contains(&norm);
-    if !is_moderate(of_x) || !is_moderate(of_y) {
+    if !is_moderate(norm_x) || !is_moderate(norm_y) {
         return by_norms;
     }
-    let ratio = of_x / of_y;
+    let ratio = norm_x / norm_y;
     let Some(norms) = norms_of_sum_and_difference(x, y, degree, ratio) else { return by_norms };
-    let slack = 8.0 * f64::EPSILON * of_x;
+    let slack = 8.0 * f64::EPSILON * norm_x;
     let [above, below] =
         norms.map(|norm| (Interval::point(norm) + slack).sqr() / Interval::point(4.0 * ratio));
     Interval::new(-below.hi(), above.hi())
@@ -36,8 +36,8 @@ pub(super) fn product_of_parts(
         .unwrap_or(by_norms)
 }
 
-/// N(x + ν y) and N(x - ν y) of the terms of one degree, up to rounding of their terms; `None`
-/// where one polynomial is dense and the other is not.
+/// Returns N(x + ν y) and N(x - ν y) over the terms of one degree, up to the rounding of each term.
+/// It is `None` where the polynomials have different storage forms.
 fn norms_of_sum_and_difference(
     x: &TaylorPolynomial,
     y: &TaylorPolynomial,
@@ -72,7 +72,7 @@ fn norms_of_sum_and_difference(
     Some([sums, differences].map(|norm| inflated(norm, count)))
 }
 
-/// Visits the coefficients of two sorted lists, 0 where one has no such monomial.
+/// Visits the coefficients of each monomial in two sorted lists, with 0 where it does not occur.
 fn merge(mut x: &[(u128, f64)], mut y: &[(u128, f64)], mut visit: impl FnMut(f64, f64)) {
     loop {
         match (x, y) {

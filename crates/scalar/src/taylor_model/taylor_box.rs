@@ -1,11 +1,13 @@
-//! The box that models are made over.
+//! The box that Taylor models are defined over.
 
 use std::sync::Arc;
 
-use super::TaylorModel;
-use crate::{Interval, TaylorPolynomial, TaylorSpace};
+use super::model::TaylorModel;
+use crate::interval::closed::Interval;
+use crate::taylor::polynomial::TaylorPolynomial;
+use crate::taylor::space::TaylorSpace;
 
-/// A box of k intervals, in the coordinates of which [`TaylorModel`]s are polynomials.
+/// A box of k intervals. [`TaylorModel`]s are polynomials in its normalised coordinates.
 ///
 /// # Examples
 ///
@@ -26,33 +28,39 @@ pub struct TaylorBox {
 }
 
 impl TaylorBox {
-    /// The box with the given sides, one a variable of the space, in the user's units.
+    /// Returns the box with the given sides (k intervals, one per variable of the space), each in
+    /// the unit of its variable.
     ///
     /// # Panics
     ///
-    /// Where there is not one side a variable.
+    /// Panics where the number of sides differs from the number of variables.
     pub fn new(space: &Arc<TaylorSpace>, sides: &[Interval]) -> Self {
-        assert_eq!(sides.len(), space.variables(), "one side a variable");
+        assert_eq!(sides.len(), space.variables(), "a box needs one side per variable");
         Self { space: Arc::clone(space), sides: sides.to_vec() }
     }
 
-    /// The space of the models' polynomials.
+    /// Returns the space of the polynomials of the models.
     pub fn space(&self) -> &Arc<TaylorSpace> {
         &self.space
     }
 
-    /// The sides, one a variable.
+    /// Returns the sides (k intervals).
     pub fn sides(&self) -> &[Interval] {
         &self.sides
     }
 
-    /// Variable i: mid + rad t_i. A point is a constant; of a side without end nothing more is
-    /// known.
+    /// Returns variable i as the model mid_i + rad_i t_i.
+    ///
+    /// A point is a constant. An unbounded side becomes a remainder.
     ///
     /// # Guarantee
     ///
-    /// Exact, without a remainder, where the side is bounded and the order not 0; t_i in [-1, 1]
-    /// reaches every point of the side.
+    /// Exact, with a zero remainder, where the side is bounded and the order is not 0. Every point
+    /// of the side has a t_i in [-1, 1].
+    ///
+    /// # Panics
+    ///
+    /// Panics where the space has no variable i.
     pub fn variable(&self, i: usize) -> TaylorModel {
         let (side, order) = (self.sides[i], self.space.order());
         let (mid, rad) = (side.mid(), side.rad());
@@ -64,39 +72,39 @@ impl TaylorBox {
         TaylorModel::new(TaylorPolynomial::sparse(&self.space, terms), Interval::ZERO)
     }
 
-    /// All variables.
+    /// Returns all variables as models (k entries).
     pub fn variables(&self) -> Vec<TaylorModel> {
         (0..self.sides.len()).map(|i| self.variable(i)).collect()
     }
 
-    /// The values of a model at points of the box, given in the coordinates of its sides.
+    /// Encloses the values of a model over the box `at` (k intervals), in the units of the sides.
     ///
     /// # Guarantee
     ///
-    /// Outer, for every point of `at` as a box; [`Interval::ENTIRE`] where that is not part of this
-    /// box, for a model says nothing beyond.
+    /// Outer, for every point of `at`. The result is [`Interval::ENTIRE`] where `at` is not a
+    /// subset of this box, because a model is valid only inside it.
     ///
     /// # Panics
     ///
-    /// Where `at` has not one entry a variable.
+    /// Panics where `at` does not have one entry per variable.
     pub fn evaluate(&self, model: &TaylorModel, at: &[Interval]) -> Interval {
-        assert_eq!(at.len(), self.sides.len(), "one argument a variable");
+        assert_eq!(at.len(), self.sides.len(), "an evaluation needs one argument per variable");
         if !self.sides.iter().zip(at).all(|(side, x)| side.encloses(x)) {
             return Interval::ENTIRE;
         }
         let t: Vec<Interval> =
-            self.sides.iter().zip(at).map(|(side, x)| coordinate(*side, *x)).collect();
+            self.sides.iter().zip(at).map(|(side, x)| normalised(*side, *x)).collect();
         model.polynomial().evaluate(&t) + model.remainder()
     }
 }
 
-/// t with x = mid + rad t, for x within the side.
-fn coordinate(side: Interval, x: Interval) -> Interval {
+/// Encloses the normalised coordinate t with x = mid + rad t, for x within the side.
+fn normalised(side: Interval, x: Interval) -> Interval {
     let rad = side.rad();
     if rad == 0.0 || rad == f64::INFINITY {
-        return Interval::ZERO; // no polynomial depends on it
+        return Interval::ZERO; // no polynomial depends on this variable
     }
     let t = (x - side.mid()) / Interval::point(rad);
-    // Rounding alone can leave [-1, 1], for x is within the side.
+    // x is within the side, so that t can leave [-1, 1] only by rounding.
     t.max(Interval::point(-1.0)).min(Interval::ONE)
 }

@@ -1,29 +1,37 @@
-//! Tight bounds of polynomials over [-1, 1]^k: what is monotonic in a variable has its extremes
-//! where that is ±1, and what is not is halved.
+//! Tight bounds of polynomials over [-1, 1]^k by branch and bound.
+//!
+//! A polynomial that is monotonic in a variable has its extremes where that variable is ±1. The box
+//! is bisected where the polynomial is not monotonic.
 
-use super::TaylorModel;
-use super::bounds::{LARGEST, inflated};
+use super::bounds::{OVERFLOW_GUARD, inflated};
+use super::model::TaylorModel;
+use crate::interval::closed::Interval;
 use crate::rounding::{add_up, mul_up};
-use crate::taylor::{collected, exponents_only};
-use crate::{Interval, TaylorPolynomial, TaylorSpace};
+use crate::taylor::monomial::exponents_only;
+use crate::taylor::polynomial::TaylorPolynomial;
+use crate::taylor::space::TaylorSpace;
+use crate::taylor::sparse::collect_like_terms;
 
-/// Halvings of the box at most, one after another.
-const DEEPEST: u32 = 5;
+/// Largest number of nested bisections of the box.
+const MAX_DEPTH: u32 = 5;
 
-/// A part of the width of the range that is not worth halving for.
-const NEGLIGIBLE: f64 = 0.005;
+/// Gap between bound and attained value, relative to Σ |c|, at which bisection stops.
+const RELATIVE_GAP: f64 = 0.005;
 
-/// Packed monomials with their coefficients, those of one monomial beside each other.
+/// Packed monomials with their coefficients; equal monomials are neighbours.
 type Terms = Vec<(u128, f64)>;
 
 impl TaylorModel {
-    /// The values over the box, as [`range`](Self::range), and closer where the polynomial is
-    /// monotonic in some variables or close to it in parts of the box. It costs more.
+    /// Encloses the range over the box, more tightly than [`range`](Self::range) and at a higher
+    /// cost.
+    ///
+    /// The bound is closer where the polynomial is monotonic, or nearly so, in some variables over
+    /// parts of the box.
     ///
     /// # Guarantee
     ///
-    /// Outer. Exact but for rounding and the remainder where the polynomial is monotonic in each
-    /// variable, by more than its non-linear terms.
+    /// Outer. It is exact up to rounding and the remainder where the linear term of each variable
+    /// dominates the derivative of all non-linear terms.
     ///
     /// # Examples
     ///
@@ -38,72 +46,78 @@ impl TaylorModel {
     /// ```
     pub fn tight_range(&self) -> Interval {
         let whole = self.range();
-        let [below, above] = [-1.0, 1.0].map(|sign| highest(&self.polynomial, sign));
+        let [below, above] = [-1.0, 1.0].map(|sign| upper_bound(&self.polynomial, sign));
         let tight = Interval::new(-below, above).map(|range| range + self.remainder);
         tight.and_then(|range| range.intersection(whole)).unwrap_or(whole)
     }
 }
 
-/// An upper bound of `sign` times the polynomial.
-fn highest(p: &TaylorPolynomial, sign: f64) -> f64 {
+/// Returns an upper bound of `sign` times the polynomial over [-1, 1]^k.
+fn upper_bound(p: &TaylorPolynomial, sign: f64) -> f64 {
     let Some(space) = p.space() else { return sign * p.constant_term() };
     let mut terms = Vec::new();
     p.for_each_term(|m, c| terms.push((m, sign * c)));
     let total = inflated(terms.iter().map(|(_, c)| c.abs()).sum(), terms.len());
-    if total >= LARGEST {
+    if total >= OVERFLOW_GUARD {
         return f64::INFINITY;
     }
-    let (best, factors) = (f64::NEG_INFINITY, Vec::new());
+    let (attained, factors) = (f64::NEG_INFINITY, Vec::new());
     let slopes = vec![Slope::default(); space.variables()];
-    Search { space, total, best, slopes, factors }.highest(terms, DEEPEST, 0.0)
+    BranchAndBound { space, total, attained, slopes, factors }.upper_bound(terms, MAX_DEPTH, 0.0)
 }
 
-/// The derivative in one variable: of its linear term, and at most so much of all others.
+/// The partial derivative in one variable over the box.
 #[derive(Clone, Copy, Default)]
 struct Slope {
+    /// Derivative of the linear term.
     linear: f64,
-    others: f64,
+    /// Bound of the magnitude of the derivative of all other terms.
+    non_linear: f64,
 }
 
 impl Slope {
     fn is_monotonic(self) -> bool {
-        self.linear.abs() > self.others
+        self.linear.abs() > self.non_linear
     }
 }
 
-/// Polynomials on their way to a bound of the first one, of which they are restrictions.
-struct Search<'a> {
+/// A branch-and-bound search for an upper bound of a polynomial.
+struct BranchAndBound<'a> {
     space: &'a TaylorSpace,
-    /// Σ |c| of the first.
+    /// Σ |c| over the whole box.
     total: f64,
-    /// The highest value seen, but for rounding.
-    best: f64,
+    /// The highest computed value, up to rounding.
+    attained: f64,
     slopes: Vec<Slope>,
     factors: Vec<u8>,
 }
 
-impl Search<'_> {
-    /// A bound of a polynomial that is within `error` of the one asked for.
-    fn highest(&mut self, mut terms: Terms, depth: u32, mut error: f64) -> f64 {
+impl BranchAndBound<'_> {
+    /// Returns an upper bound of every function that is within `error` of the given terms.
+    fn upper_bound(&mut self, mut terms: Terms, depth: u32, mut error: f64) -> f64 {
+        // Fix the variables in which the polynomial is monotonic, until none is left.
         loop {
             self.differentiate(&terms);
-            let is_done = |(m, _): &(u128, f64)| self.space.packing.degree(*m) <= 1;
-            if terms.iter().all(is_done) || !self.slopes.iter().any(|slope| slope.is_monotonic()) {
+            let is_linear = |(m, _): &(u128, f64)| self.space.packing.degree(*m) <= 1;
+            if terms.iter().all(is_linear) || !self.slopes.iter().any(|slope| slope.is_monotonic())
+            {
                 break;
             }
-            terms = self.at_ends(terms, &mut error);
+            terms = self.restricted_to_maxima(terms, &mut error);
         }
+        // Bound.
         let (bound, middle) = self.bound(&terms);
-        self.best = self.best.max(middle);
-        let widest = (0..self.slopes.len())
-            .max_by(|i, j| self.slopes[*i].others.total_cmp(&self.slopes[*j].others));
-        let is_enough = bound - self.best <= NEGLIGIBLE * self.total;
-        match widest {
-            Some(i) if depth > 0 && !is_enough && self.slopes[i].others > 0.0 => {
+        self.attained = self.attained.max(middle);
+        // Branch: bisect the variable with the largest non-linear derivative.
+        let branching = (0..self.slopes.len())
+            .max_by(|i, j| self.slopes[*i].non_linear.total_cmp(&self.slopes[*j].non_linear));
+        let is_tight = bound - self.attained <= RELATIVE_GAP * self.total;
+        match branching {
+            Some(i) if depth > 0 && !is_tight && self.slopes[i].non_linear > 0.0 => {
                 let [low, high] = [-0.5, 0.5].map(|at| {
                     let mut error = error;
-                    let half = self.half(&terms, i, at, &mut error);
-                    self.highest(half, depth - 1, error)
+                    let half = self.restricted_to_half(&terms, i, at, &mut error);
+                    self.upper_bound(half, depth - 1, error)
                 });
                 low.max(high).min(add_up(bound, error))
             }
@@ -111,6 +125,7 @@ impl Search<'_> {
         }
     }
 
+    /// Computes the slope in each variable.
     fn differentiate(&mut self, terms: &Terms) {
         self.slopes.fill(Slope::default());
         for (m, c) in terms {
@@ -118,22 +133,27 @@ impl Search<'_> {
             match self.factors[..] {
                 [i] => self.slopes[usize::from(i)].linear = *c,
                 _ => {
-                    self.factors.iter().for_each(|i| self.slopes[usize::from(*i)].others += c.abs())
+                    for i in &self.factors {
+                        self.slopes[usize::from(*i)].non_linear += c.abs();
+                    }
                 }
             }
         }
         let count = terms.len() * self.space.order() as usize;
-        self.slopes.iter_mut().for_each(|slope| slope.others = inflated(slope.others, count));
+        for slope in &mut self.slopes {
+            slope.non_linear = inflated(slope.non_linear, count);
+        }
     }
 
-    /// The polynomial where each variable in which it is monotonic has the sign of its slope.
-    fn at_ends(&self, mut terms: Terms, error: &mut f64) -> Terms {
+    /// Restricts the polynomial to its maximum in each variable in which it is monotonic: the
+    /// variable becomes the sign of its slope.
+    fn restricted_to_maxima(&self, mut terms: Terms, error: &mut f64) -> Terms {
         let packing = self.space.packing;
         let monotonic = || self.slopes.iter().enumerate().filter(|(_, slope)| slope.is_monotonic());
-        let fixed = monotonic().fold(0, |bits, (i, _)| bits | packing.bits_of(i));
+        let fixed = monotonic().fold(0, |bits, (i, _)| bits | packing.exponent_mask(i));
         let falling = monotonic().filter(|(_, slope)| slope.linear < 0.0);
         let negative =
-            falling.fold(0, |bits, (i, _)| bits | packing.bits_of(i) & packing.odd_exponents);
+            falling.fold(0, |bits, (i, _)| bits | packing.exponent_mask(i) & packing.odd_exponents);
         for (m, c) in &mut terms {
             if (*m & negative).count_ones() % 2 == 1 {
                 *c = -*c;
@@ -143,39 +163,43 @@ impl Search<'_> {
                 _ => monotonic().fold(*m, |m, (i, _)| packing.without(m, i)),
             };
         }
-        self.collected(terms, error)
+        self.collect(terms, error)
     }
 
-    /// The polynomial over half of the side of variable i, x_i = `at` + x_i'/2.
-    fn half(&self, terms: &Terms, i: usize, at: f64, error: &mut f64) -> Terms {
+    /// Restricts the polynomial to half of the side of variable i: x_i = `at` + x_i'/2, `at` =
+    /// ±1/2.
+    fn restricted_to_half(&self, terms: &Terms, i: usize, at: f64, error: &mut f64) -> Terms {
         let packing = self.space.packing;
         let mut all = Vec::with_capacity(2 * terms.len());
         for (m, c) in terms {
             let exponent = packing.exponent(*m, i);
-            let (mut key, mut choices) = (*m, 1.0);
+            let (mut monomial, mut binomial) = (*m, 1.0);
             for step in 0..=exponent {
-                // c C(e, e - step) at^step / 2^(e - step), of which only the product with c is
-                // rounded up to e = 50.
-                let factor = choices * at.powi(step as i32) * 0.5f64.powi((exponent - step) as i32);
-                all.push((key, c * factor));
-                key = if step < exponent { key - packing.variable(i) } else { key };
-                choices = choices * f64::from(exponent - step) / f64::from(step + 1);
+                // The coefficient is c C(e, e - step) at^step / 2^(e - step). For e ≤ 50, only the
+                // product with c is rounded.
+                let factor =
+                    binomial * at.powi(step as i32) * 0.5f64.powi((exponent - step) as i32);
+                all.push((monomial, c * factor));
+                if step < exponent {
+                    monomial -= packing.variable(i);
+                }
+                binomial = binomial * f64::from(exponent - step) / f64::from(step + 1);
             }
         }
-        self.collected(all, error)
+        self.collect(all, error)
     }
 
-    /// Terms of one monomial summed. The rounding of so many, and of three products in each, is
-    /// added to the error.
-    fn collected(&self, terms: Terms, error: &mut f64) -> Terms {
+    /// Collects like terms, and adds a bound of the rounding of these sums and of three products
+    /// per term to the error.
+    fn collect(&self, terms: Terms, error: &mut f64) -> Terms {
         let roundings = (terms.len() + 3) as f64;
         let rounding =
             add_up(mul_up(roundings * f64::EPSILON, self.total), roundings * f64::MIN_POSITIVE);
         *error = add_up(*error, rounding);
-        collected(terms)
+        collect_like_terms(terms)
     }
 
-    /// A bound over the whole box, and the value in its middle.
+    /// Returns an upper bound over the whole box, and the value at its centre.
     fn bound(&self, terms: &Terms) -> (f64, f64) {
         let odd = self.space.packing.odd_exponents;
         let (mut middle, mut sum) = (0.0, 0.0);
@@ -195,7 +219,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::TaylorTerm;
+    use crate::taylor::polynomial::TaylorTerm;
 
     fn polynomial(terms: &[(&[u8], f64)]) -> TaylorModel {
         let space = TaylorSpace::new(terms[0].0.len(), 8).unwrap();
@@ -208,7 +232,7 @@ mod tests {
 
     #[test]
     fn a_monotonic_polynomial_has_its_exact_range() {
-        // From (-1, -1), where all but the square are below, to (1, 1).
+        // The minimum is near (-1, -1), the maximum is at (1, 1).
         let p = polynomial(&[
             (&[0, 0], 1.0),
             (&[1, 0], 1.0),
@@ -222,21 +246,21 @@ mod tests {
     }
 
     #[test]
-    fn what_turns_is_halved() {
-        // x - x² has its maximum 1/4 at 1/2; 4x³ - 3x goes between -1 and 1 three times.
+    fn polynomials_that_are_not_monotonic_are_bisected() {
+        // x - x² has its maximum 1/4 at 1/2; 4x³ - 3x crosses [-1, 1] three times.
         let hill = polynomial(&[(&[1], 1.0), (&[2], -1.0)]).tight_range();
         assert!(
             hill.hi() >= 0.25 && hill.hi() < 0.27 && hill.lo() <= -2.0 && hill.lo() > -2.0 - 1e-13
         );
         let chebyshev = polynomial(&[(&[3], 4.0), (&[1], -3.0)]).tight_range();
         assert!(
-            chebyshev.encloses(&Interval::centered(0.0, 1.0 - 1e-15)) && chebyshev.width() < 2.1,
+            chebyshev.encloses(&Interval::centred(0.0, 1.0 - 1e-15)) && chebyshev.width() < 2.1,
             "{chebyshev:?}"
         );
     }
 
     #[test]
-    fn values_of_random_polynomials_are_within() {
+    fn bounds_enclose_values_of_random_polynomials() {
         let mut bits = 1u64;
         let mut random = || {
             bits = bits.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
