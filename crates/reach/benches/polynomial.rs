@@ -55,12 +55,12 @@ fn problems() -> Vec<Problem> {
         format!("{problem}, {:?} {:?}", settings.method, settings.pieces)
     };
     let van_der_pol = |settings| {
-        let start = Hyperrectangle { center: vec![1.4, 2.4], radius: vec![0.15, 0.05] };
+        let start = Hyperrectangle { centre: vec![1.4, 2.4], radius: vec![0.15, 0.05] };
         (name("Van der Pol", &settings), systems::van_der_pol(), start, (0.01, 701), settings)
     };
     let laub_loomis = |w: f64, settings| {
         let start = Hyperrectangle {
-            center: vec![1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45],
+            centre: vec![1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45],
             radius: vec![w; 7],
         };
         let name = name(&format!("Laub-Loomis {w}"), &settings);

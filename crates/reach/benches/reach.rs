@@ -34,7 +34,7 @@ fn propagation(grid: &TimeGrid) -> Propagation {
 }
 
 fn sets() -> (Hyperrectangle, Hyperrectangle) {
-    let set = |n: usize| Hyperrectangle { center: vec![0.01; n], radius: vec![0.02; n] };
+    let set = |n: usize| Hyperrectangle { centre: vec![0.01; n], radius: vec![0.02; n] };
     (set(12), set(6))
 }
 
@@ -53,13 +53,13 @@ fn propagate_jittered(bencher: Bencher) {
 #[divan::bench(args = DISTURBANCES)]
 fn gains(bencher: Bencher, disturbance: Disturbance) {
     let propagation = propagation(&uniform());
-    bencher.bench(|| disturbance.gains(black_box(&propagation)));
+    bencher.bench(|| disturbance.input_gains(black_box(&propagation)));
 }
 
 #[divan::bench(args = [Disturbance::Sample, Disturbance::Measurable])]
 fn gains_jittered(bencher: Bencher, disturbance: Disturbance) {
     let propagation = propagation(&jittered());
-    bencher.bench(|| disturbance.gains(black_box(&propagation)));
+    bencher.bench(|| disturbance.input_gains(black_box(&propagation)));
 }
 
 #[divan::bench]
@@ -73,7 +73,7 @@ fn solve(bencher: Bencher) {
 #[divan::bench]
 fn reach_sets(bencher: Bencher) {
     let propagation = propagation(&uniform());
-    let gains = Disturbance::Sample.gains(&propagation);
+    let gains = Disturbance::Sample.input_gains(&propagation);
     let (initial, input) = sets();
     bencher.bench(|| ReachSets::new(black_box(&propagation), &gains, &initial, &input));
 }
@@ -90,7 +90,7 @@ fn tube_radii(bencher: Bencher) {
 fn tube(bencher: Bencher) {
     let propagation = propagation(&uniform());
     let (initial, input) = sets();
-    let gains = Disturbance::Constant.gains(&propagation);
+    let gains = Disturbance::Constant.input_gains(&propagation);
     let reach = ReachSets::new(&propagation, &gains, &initial, &input);
     let radii = TubeRadii::new(&propagation, Disturbance::Constant, &initial, &input);
     let inputs = vec![0.3; 6 * SAMPLES];
@@ -106,6 +106,11 @@ fn linear_reachable_set(bencher: Bencher) {
     bencher.bench(|| {
         let propagation =
             Propagation::new(black_box(&system), black_box(&grid)).expect("a short horizon");
-        ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &input)
+        ReachSets::new(
+            &propagation,
+            &Disturbance::Sample.input_gains(&propagation),
+            &initial,
+            &input,
+        )
     });
 }

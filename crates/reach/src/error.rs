@@ -1,22 +1,22 @@
 use reachtube_scalar::TaylorSpaceError;
 use thiserror::Error;
 
-/// What can be wrong with the input of a reachability computation.
+/// Errors of a reachability computation: invalid input, or a horizon without a finite enclosure.
 #[derive(Debug, Error, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ReachError {
-    /// The matrices of a system do not fit together.
+    /// A matrix or vector has the wrong shape.
     #[error("{what} is {found_rows} x {found_columns}, expected {rows} x {columns}")]
     Shape {
-        /// Which matrix or vector.
+        /// Name of the matrix or vector.
         what: &'static str,
-        /// Expected rows.
+        /// Expected number of rows.
         rows: usize,
-        /// Expected columns.
+        /// Expected number of columns.
         columns: usize,
-        /// Rows found.
+        /// Number of rows found.
         found_rows: usize,
-        /// Columns found.
+        /// Number of columns found.
         found_columns: usize,
     },
     /// An entry is NaN or infinite.
@@ -24,7 +24,7 @@ pub enum ReachError {
         "{what} has the entry {value} in row {row}, column {column}; every entry must be finite"
     )]
     NotFinite {
-        /// Which matrix or vector.
+        /// Name of the matrix or vector.
         what: &'static str,
         /// Row, from 0.
         row: usize,
@@ -33,10 +33,10 @@ pub enum ReachError {
         /// The entry.
         value: f64,
     },
-    /// A radius is below 0.
-    #[error("{what} has the entry {value} in row {row}; a radius is at least 0")]
+    /// A radius is negative.
+    #[error("{what} has the entry {value} in row {row}; a radius must be at least 0")]
     Negative {
-        /// Which vector.
+        /// Name of the vector.
         what: &'static str,
         /// Row, from 0.
         row: usize,
@@ -44,30 +44,35 @@ pub enum ReachError {
         value: f64,
     },
     /// The sample times do not increase.
-    #[error("sample {index} is at {time} s, not after the sample before it at {previous} s")]
+    #[error(
+        "sample {index} is at {time} s, not after the previous sample at {previous} s; \
+         sample times must be finite and increase"
+    )]
     Times {
         /// Index of the offending sample, from 0.
         index: usize,
         /// Its time in s.
         time: f64,
-        /// The time before it in s.
+        /// Time of the previous sample in s.
         previous: f64,
     },
-    /// Taylor models were asked for of a system with trigonometric variables.
+    /// The settings ask for Taylor models of a system with sines and cosines.
     #[error(
-        "Taylor models follow polynomials in states and inputs alone; give sin x and cos x as states of their own, with rates ẋ cos x and -ẋ sin x, or use linearisation"
+        "Taylor models support only polynomials in states and inputs; \
+         add sin x and cos x as states with the rates ẋ cos x and -ẋ sin x, or use linearisation"
     )]
     Trigonometric,
-    /// Taylor models of that order do not exist.
+    /// No Taylor space has this order for this number of states.
     #[error(transparent)]
     Order(#[from] TaylorSpaceError),
-    /// The enclosure of e^{At} grew without bound.
+    /// The enclosure of e^{At} is not finite over the horizon.
     #[error(
-        "the solution cannot be enclosed up to {time} s: rounding errors grow as fast as the system itself; \
-         use a shorter horizon (a sampling step times the norm of A far above 1 also does this)"
+        "no finite enclosure of the solution exists up to {time} s: rounding errors grow as fast \
+         as the system; use a shorter horizon or a shorter sampling step \
+         (a step times the norm of A far above 1 has the same effect)"
     )]
     Horizon {
-        /// The end of the grid in s.
+        /// End of the grid in s.
         time: f64,
     },
 }

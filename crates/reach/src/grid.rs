@@ -1,17 +1,17 @@
 use reachtube_scalar::Interval;
 
-use crate::ReachError;
+use crate::error::ReachError;
 
-/// Relative deviation from k h up to which a grid counts as uniform: far below any real jitter, far
+/// Largest deviation from k h, in steps, of a uniform grid; it is far below any real jitter and far
 /// above the rounding of a printed decimal.
 const UNIFORM_TOLERANCE: f64 = 1e-6;
 
-/// Sample times t_0 = 0 < t_1 < ... in s, measured from the first sample and kept to the
+/// Sample times t_0 = 0 < t_1 < ... in s, measured from the first sample and rounded to a
 /// picosecond.
 ///
-/// Where the times are those of a fixed rate, the grid is `uniform` and t_k is *exactly* k h with
-/// the step h rounded to 12 significant digits, so that 0.004, 0.008, 0.012 is the grid it was
-/// meant to be.
+/// The grid is uniform where the recorded times fit a fixed rate. There t_k is *exactly* k h, with
+/// the step h rounded to 12 significant digits. The decimals 0.004, 0.008, 0.012 thus give the step
+/// 0.004 s.
 ///
 /// # Examples
 ///
@@ -30,12 +30,12 @@ pub struct TimeGrid {
 }
 
 impl TimeGrid {
-    /// The grid of recorded sample times in s.
+    /// Builds the grid of recorded sample times in s.
     ///
     /// # Errors
     ///
-    /// [`ReachError::Times`] when a time is not after the one before it (by a picosecond), or not
-    /// finite.
+    /// Returns [`ReachError::Times`] when a time is not finite or not at least a picosecond after
+    /// the previous one.
     pub fn from_times(recorded: &[f64]) -> Result<Self, ReachError> {
         let origin = recorded.first().copied().unwrap_or(0.0);
         let mut times: Vec<f64> = Vec::with_capacity(recorded.len());
@@ -54,11 +54,11 @@ impl TimeGrid {
         })
     }
 
-    /// The grid 0, h, 2h, ... of `count` samples.
+    /// Builds the grid 0, h, 2h, ... of `count` samples with the step h in s.
     ///
     /// # Panics
     ///
-    /// When the step h (s) is not a finite number > 0.
+    /// Panics when the step is not a finite number > 0.
     pub fn uniform(step: f64, count: usize) -> Self {
         assert!(
             step > 0.0 && step.is_finite(),
@@ -67,27 +67,27 @@ impl TimeGrid {
         Self { times: (0..count).map(|k| k as f64 * step).collect(), step: Some(step) }
     }
 
-    /// The sample times in s, rounded to nearest.
+    /// Returns the sample times in s, rounded to nearest.
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// The step h in s of a uniform grid.
+    /// Returns the step h in s of a uniform grid.
     pub fn step(&self) -> Option<f64> {
         self.step
     }
 
-    /// Number of samples.
+    /// Returns the number of samples.
     pub fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// Whether there is no sample.
+    /// Returns whether the grid has no sample.
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()
     }
 
-    /// The time between samples k and k + 1.
+    /// Encloses the time in s between samples k and k + 1.
     ///
     /// # Guarantee
     ///
@@ -100,13 +100,15 @@ impl TimeGrid {
         }
     }
 
-    /// The longest time between two samples in s (0 for a single sample).
+    /// Returns an upper bound of the longest time in s between two samples; 0 for a single sample.
     pub fn longest_step(&self) -> f64 {
         (1..self.len()).map(|k| self.interval(k - 1).hi()).fold(0.0, f64::max)
     }
 
-    /// Whether every sample of `self` is the sample of the same index of `longer`, exactly: k h of
-    /// a uniform grid with k > 1 may round to a recorded time that it is not.
+    /// Returns whether every sample of `self` is exactly the sample of the same index of `longer`.
+    ///
+    /// A uniform and a recorded grid share at most two samples: for k > 1 the rounded time k h may
+    /// equal a recorded time although the exact k h does not.
     pub fn is_prefix_of(&self, longer: &Self) -> bool {
         if self.len() > longer.len() {
             return false;
@@ -118,18 +120,18 @@ impl TimeGrid {
         }
     }
 
-    /// The first `count` samples.
+    /// Returns the grid of the first `count` samples.
     pub fn prefix(&self, count: usize) -> Self {
         Self { times: self.times[..count.min(self.len())].to_vec(), step: self.step }
     }
 
-    /// Every step divided into `parts`, a power of two; the samples stay where they are.
+    /// Divides every step into `parts`, a power of two; the times of the samples stay the same.
     pub(crate) fn refined(&self, parts: usize) -> Self {
         let count = self.len().saturating_sub(1) * parts + 1;
         if let Some(h) = self.step {
             return Self::uniform(h / parts as f64, count);
         }
-        let time = |at: usize| match (at / parts, at % parts) {
+        let time = |index: usize| match (index / parts, index % parts) {
             (k, 0) => self.times[k],
             (k, part) => {
                 self.times[k] + (self.times[k + 1] - self.times[k]) * (part as f64 / parts as f64)
@@ -139,6 +141,7 @@ impl TimeGrid {
     }
 }
 
+/// Returns the step that all times fit, rounded to 12 significant digits.
 fn uniform_step(times: &[f64]) -> Option<f64> {
     let intervals = times.len().checked_sub(1).filter(|&n| n > 0)?;
     let mean = times[intervals] / intervals as f64;
@@ -179,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn times_that_do_not_increase_are_named() {
+    fn times_that_do_not_increase_are_an_error() {
         let error = TimeGrid::from_times(&[0.0, 0.1, 0.1]).unwrap_err();
         assert_eq!(error, ReachError::Times { index: 2, time: 0.1, previous: 0.1 });
         assert!(TimeGrid::from_times(&[0.0, f64::NAN]).is_err());

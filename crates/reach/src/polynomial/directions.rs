@@ -1,39 +1,47 @@
-//! Which parts of f move the state along one fixed direction.
+//! The parts of f that move the state along one fixed direction.
 
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 use reachtube_scalar::{Interval, TaylorTerm};
 
-use super::angles::Angles;
-use super::shift::ShiftedPolynomial;
+use crate::polynomial::expansion::angles::Angles;
+use crate::polynomial::expansion::monomials::degree;
+use crate::polynomial::expansion::recentred::Recentring;
 
-/// How far the coefficients of a monomial may be from a multiple of a direction, relative to the
-/// largest of all: rounding of products and of sums that cancel, far below any real difference.
+/// Largest distance between the coefficients of a monomial and a multiple of a direction, relative
+/// to the largest coefficient.
+///
+/// It covers the rounding of products and of sums that cancel, and is far below any real
+/// difference.
 const PARALLEL: f64 = 1e-12;
 
 /// A part of f that is a fixed vector times a polynomial in (x, u, sin, cos).
 #[derive(Debug, Clone)]
-pub(super) struct Direction {
-    /// N entries, the largest 1.
+pub(crate) struct Direction {
+    /// The fixed vector, N entries of which the largest is 1.
     pub column: Vec<f64>,
-    pub polynomial: ShiftedPolynomial,
+    /// The polynomial, prepared for recentring.
+    pub polynomial: Recentring,
+    /// The terms of the polynomial.
     pub terms: Vec<TaylorTerm<Interval>>,
 }
 
-/// The monomials of f with the column of their coefficients.
+/// The monomials of f, each with the column of its coefficients.
 type Columns = BTreeMap<Vec<u8>, Vec<Interval>>;
 
-/// The directions of the nonlinear terms: those of the inputs, if they span them; or those that
-/// they themselves have in several components, if they are at most as many as components. Their
-/// terms, and those linear in an input along them, are taken out of `terms`, which keeps what
-/// rounding leaves.
+/// Finds the directions of the nonlinear terms and removes their terms from `terms`.
+///
+/// The directions are the columns of the inputs, if they span all nonlinear terms. Otherwise they
+/// are the distinct columns of the nonlinear terms with several entries, if these are at most as
+/// many as components. Terms linear in an input along a direction are removed too. `terms` keeps
+/// the rounding errors.
 ///
 /// # Guarantee
 ///
-/// Rows and directions together enclose f as it was, for coefficients that may be others of their
-/// intervals at each time.
-pub(super) fn directions(
+/// Remaining terms and directions together enclose the original f, also where coefficients vary
+/// within their intervals over time.
+pub(crate) fn directions(
     angles: &Angles,
     terms: &mut [Vec<TaylorTerm<Interval>>],
 ) -> Vec<Direction> {
@@ -46,7 +54,7 @@ pub(super) fn directions(
         .filter(|(m, _)| is_nonlinear(m))
         .map(|(_, column)| column.as_slice())
         .collect();
-    // The largest are the least blurred by rounding.
+    // The largest columns have the smallest relative rounding errors.
     nonlinear.sort_by(|a, b| largest(b).abs().total_cmp(&largest(a).abs()));
     let inputs =
         columns.iter().filter(|(m, _)| is_input(m)).map(|(_, column)| unit(column)).collect();
@@ -56,20 +64,20 @@ pub(super) fn directions(
         return Vec::new();
     };
     let mut parts: Vec<Vec<TaylorTerm<Interval>>> = vec![Vec::new(); basis.columns.len()];
-    let mut rest = Columns::new();
+    let mut remaining = Columns::new();
     for (exponents, mut column) in columns {
         if is_nonlinear(&exponents) || is_input(&exponents) {
-            for (at, factor) in basis.coordinates(&column).unwrap_or_default() {
+            for (g, factor) in basis.coordinates(&column).unwrap_or_default() {
                 let coefficient = Interval::point(factor);
-                parts[at].push(TaylorTerm { exponents: exponents.clone(), coefficient });
-                let along = basis.columns[at].iter().map(|x| coefficient * *x);
+                parts[g].push(TaylorTerm { exponents: exponents.clone(), coefficient });
+                let along = basis.columns[g].iter().map(|x| coefficient * *x);
                 column.iter_mut().zip(along).for_each(|(own, along)| *own -= along);
             }
         }
-        add_rest(angles, exponents, column, basis.tolerance, &mut rest);
+        add_remaining(angles, exponents, column, basis.tolerance, &mut remaining);
     }
     for (row, terms) in terms.iter_mut().enumerate() {
-        let own = rest.iter().filter(|(_, column)| column[row] != Interval::ZERO);
+        let own = remaining.iter().filter(|(_, column)| column[row] != Interval::ZERO);
         let term = |(m, c): (&Vec<u8>, &Vec<Interval>)| TaylorTerm {
             exponents: m.clone(),
             coefficient: c[row],
@@ -78,24 +86,25 @@ pub(super) fn directions(
     }
     let direction = |(column, terms): (Vec<f64>, Vec<_>)| Direction {
         column,
-        polynomial: ShiftedPolynomial::new(angles, &terms),
+        polynomial: Recentring::new(angles, &terms),
         terms,
     };
     basis.columns.into_iter().zip(parts).map(direction).collect()
 }
 
-/// Directions, and how a column is written in them.
+/// Directions, with the coordinates of columns in them.
 struct Basis {
-    /// The largest entry of each is 1.
+    /// The directions; the largest entry of each is 1.
     columns: Vec<Vec<f64>>,
-    /// From a column to its coordinates, where the directions are taken together.
+    /// Matrix from a column to its coordinates, where a column may combine several directions.
     inverse: Option<DMatrix<f64>>,
-    /// What an entry may be off by.
+    /// Largest error of an entry.
     tolerance: f64,
 }
 
 impl Basis {
-    /// The columns of the inputs, if they are independent and span all the others.
+    /// Builds the basis from the columns of the inputs, if they are linearly independent and span
+    /// all nonlinear columns.
     fn of_inputs(columns: Vec<Vec<f64>>, nonlinear: &[&[Interval]]) -> Option<Self> {
         let tolerance = tolerance(nonlinear);
         let states = columns.first()?.len();
@@ -105,8 +114,8 @@ impl Basis {
         nonlinear.iter().all(|column| basis.coordinates(column).is_some()).then_some(basis)
     }
 
-    /// The columns themselves that have several entries and are no multiples of each other, if they
-    /// are at most as many as components.
+    /// Builds the basis from the nonlinear columns that have several entries and are not multiples
+    /// of each other, if they are at most as many as components.
     fn of_parallels(nonlinear: &[&[Interval]]) -> Option<Self> {
         let mut basis =
             Self { columns: Vec::new(), inverse: None, tolerance: tolerance(nonlinear) };
@@ -122,13 +131,14 @@ impl Basis {
         Some(basis)
     }
 
-    /// The directions that a column is a sum of and the factors, up to the tolerance.
+    /// Returns the indices and factors of the directions whose sum is the column, up to the
+    /// tolerance.
     fn coordinates(&self, column: &[Interval]) -> Option<Vec<(usize, f64)>> {
         let Some(inverse) = &self.inverse else {
-            return self.columns.iter().enumerate().find_map(|(at, direction)| {
+            return self.columns.iter().enumerate().find_map(|(g, direction)| {
                 let pivot =
                     direction.iter().position(|x| *x == 1.0).expect("the largest entry is 1");
-                let factors = vec![(at, column[pivot].mid())];
+                let factors = vec![(g, column[pivot].mid())];
                 self.is_sum(column, &factors).then_some(factors)
             });
         };
@@ -143,39 +153,42 @@ impl Basis {
         self.is_sum(column, &factors).then_some(factors)
     }
 
+    /// Returns whether the column is the sum of factors times directions, up to the tolerance.
     fn is_sum(&self, column: &[Interval], factors: &[(usize, f64)]) -> bool {
-        let sum = |i: usize| {
-            factors.iter().map(|(at, factor)| factor * self.columns[*at][i]).sum::<f64>()
-        };
-        // The factors left out are up to the tolerance each.
+        let sum =
+            |i: usize| factors.iter().map(|(g, factor)| factor * self.columns[*g][i]).sum::<f64>();
+        // Each neglected factor is at most the tolerance.
         let near = (self.columns.len() + 1) as f64 * self.tolerance;
         column.iter().enumerate().all(|(i, x)| (x.mid() - sum(i)).abs() <= near)
     }
 }
 
-/// Of columns of which the first is the largest.
+/// Returns the tolerance for columns of which the first is the largest.
 fn tolerance(columns: &[&[Interval]]) -> f64 {
     PARALLEL * columns.first().map_or(0.0, |column| largest(column).abs())
 }
 
-/// Adds a monomial to the rest; where it is rounding, its sines and cosines are any numbers within
-/// ±1, so that it costs no more than their factor.
-fn add_rest(
+/// Adds a monomial to the remaining terms.
+///
+/// Where only rounding errors remain, sines and cosines are replaced by the interval [-1, 1], which
+/// makes the monomial cheaper.
+fn add_remaining(
     angles: &Angles,
     mut exponents: Vec<u8>,
     mut column: Vec<Interval>,
     tolerance: f64,
-    rest: &mut Columns,
+    remaining: &mut Columns,
 ) {
     let is_rounding = column.iter().all(|x| x.mag() <= tolerance);
     if is_rounding && degree(&exponents[angles.plain..]) > 0 {
         exponents[angles.plain..].fill(0);
         column.iter_mut().for_each(|x| *x = Interval::centered(0.0, x.mag()));
     }
-    let own = rest.entry(exponents).or_insert_with(|| vec![Interval::ZERO; column.len()]);
+    let own = remaining.entry(exponents).or_insert_with(|| vec![Interval::ZERO; column.len()]);
     own.iter_mut().zip(column).for_each(|(own, x)| *own += x);
 }
 
+/// Collects the coefficients of each monomial over all components.
 fn columns(terms: &[Vec<TaylorTerm<Interval>>]) -> Columns {
     let (states, mut columns) = (terms.len(), Columns::new());
     for (row, terms) in terms.iter().enumerate() {
@@ -189,15 +202,13 @@ fn columns(terms: &[Vec<TaylorTerm<Interval>>]) -> Columns {
     columns
 }
 
-fn degree(exponents: &[u8]) -> u32 {
-    exponents.iter().map(|e| u32::from(*e)).sum()
-}
-
+/// Returns the midpoint of largest magnitude.
 fn largest(column: &[Interval]) -> f64 {
     let middle = column.iter().map(|x| x.mid());
     middle.fold(0.0, |largest: f64, x| if x.abs() > largest.abs() { x } else { largest })
 }
 
+/// Divides the midpoints by the one of largest magnitude.
 fn unit(column: &[Interval]) -> Vec<f64> {
     let largest = largest(column);
     column.iter().map(|x| x.mid() / largest).collect()
@@ -209,8 +220,8 @@ mod tests {
 
     const COLUMNS: [[f64; 2]; 2] = [[0.7, 0.1], [0.1, 0.3]];
 
-    /// Terms of two components in two states, two inputs and the sine and cosine of one, which two
-    /// loads drive along two columns; each coefficient is rounded.
+    /// Returns the terms of two components in two states, two inputs and the sine and cosine of one
+    /// state, with rounded coefficients; two loads act along two columns.
     fn terms() -> Vec<Vec<TaylorTerm<Interval>>> {
         let loads = [
             (vec![0, 0, 1, 0, 0, 0], [1.0, 0.0]),
@@ -238,19 +249,19 @@ mod tests {
     }
 
     #[test]
-    fn what_drives_along_the_inputs_is_found_where_monomials_are_shared() {
-        let (before, mut rest) = (terms(), terms());
+    fn directions_of_the_inputs_are_found_where_monomials_are_shared() {
+        let (before, mut remaining) = (terms(), terms());
         let angles = Angles::new(4, &[0], before.iter().flatten());
-        let found = directions(&angles, &mut rest);
+        let found = directions(&angles, &mut remaining);
         assert_eq!(found.len(), 2);
-        // What is left is rounding, without sines and cosines.
-        for term in rest.iter().flatten() {
+        // Only rounding errors remain, without sines and cosines.
+        for term in remaining.iter().flatten() {
             assert!(term.coefficient.mag() < 1e-15 && term.exponents[4..] == [0, 0], "{term:?}");
         }
         let at = [0.4, -0.7, 1.3, 0.2, 0.4f64.sin(), 0.4f64.cos()];
         for i in 0..2 {
             let along: Interval = found.iter().map(|d| value(&d.terms, &at) * d.column[i]).sum();
-            let (own, after) = (value(&before[i], &at), value(&rest[i], &at) + along);
+            let (own, after) = (value(&before[i], &at), value(&remaining[i], &at) + along);
             assert!(
                 after.encloses(&Interval::point(own.mid())) && after.width() < 1e-14,
                 "{own:?} {after:?}"
@@ -259,15 +270,15 @@ mod tests {
     }
 
     #[test]
-    fn many_unlike_columns_stay_components() {
+    fn too_many_distinct_columns_stay_components() {
         let term =
             |a: u8, c: f64| TaylorTerm { exponents: vec![a, 2], coefficient: Interval::point(c) };
         let before = vec![
             vec![term(0, 1.0), term(1, 1.0), term(2, 1.0)],
             vec![term(0, 1.0), term(1, 2.0), term(2, 3.0)],
         ];
-        let mut rest = before.clone();
-        assert!(directions(&Angles::new(2, &[], [].iter()), &mut rest).is_empty());
-        assert_eq!(rest, before);
+        let mut remaining = before.clone();
+        assert!(directions(&Angles::new(2, &[], [].iter()), &mut remaining).is_empty());
+        assert_eq!(remaining, before);
     }
 }

@@ -1,23 +1,17 @@
-//! Reachable sets of polynomial systems with uncertain input.
+//! Reachable sets of polynomial systems with uncertain inputs.
 
-mod angles;
-mod corners;
-mod directions;
-mod exponential;
-mod flowpipe;
-mod follower;
-mod generators;
-mod linearisation;
-mod powers;
-mod rounded;
-mod set;
-mod shift;
-mod step;
-mod system;
-mod taylor;
-mod univariate;
-mod zonotope;
+pub(crate) mod arguments;
+pub(crate) mod directions;
+pub(crate) mod expansion;
+pub(crate) mod flowpipe;
+pub(crate) mod linearise;
+pub(crate) mod propagator;
+pub(crate) mod settings;
+pub(crate) mod system;
+pub(crate) mod taylor;
+pub(crate) mod uncertain_input;
 
-pub use flowpipe::{Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, UncertainInput};
+pub use flowpipe::{Flowpipe, FlowpipeOutcome};
+pub use settings::{FlowpipeMethod, FlowpipeSettings};
 pub use system::PolynomialSystem;
-pub use zonotope::Zonotope;
+pub use uncertain_input::UncertainInput;

@@ -1,15 +1,16 @@
 use reachtube_scalar::{Interval, TaylorPolynomial, TaylorTerm};
 
-use super::angles::Angles;
-use super::directions::{Direction, directions};
-use super::shift::ShiftedPolynomial;
-use crate::ReachError;
+use crate::error::ReachError;
+use crate::polynomial::directions::{Direction, directions};
+use crate::polynomial::expansion::angles::Angles;
+use crate::polynomial::expansion::monomials::degree;
+use crate::polynomial::expansion::recentred::Recentring;
 
-/// The polynomial system ẋ = f(x, u) with N states x and m inputs u; polynomials may be in sines
-/// and cosines of states too.
+/// A polynomial system ẋ = f(x, u) with N states x and m inputs u; f may also contain sines and
+/// cosines of states.
 ///
-/// Coefficients are intervals: a system whose coefficients are known to an ulp only is enclosed
-/// with all systems within. Points are exact numbers ([`Interval::point`]).
+/// Coefficients are intervals, and the reachable sets enclose every system within them. An exact
+/// coefficient is an [`Interval::point`].
 ///
 /// # Examples
 ///
@@ -28,38 +29,38 @@ use crate::ReachError;
 pub struct PolynomialSystem {
     states: usize,
     inputs: usize,
-    /// f as it was given, in (x, u).
-    pub(super) components: Vec<TaylorPolynomial<Interval>>,
-    /// What of each component no direction has.
-    pub(super) rows: Vec<ShiftedPolynomial>,
-    /// f = rows + Σ direction · polynomial.
-    pub(super) directions: Vec<Direction>,
-    /// For each input, the direction that carries it, and the factor.
-    pub(super) carriers: Vec<Option<Carrier>>,
-    pub(super) angles: Angles,
-    /// The highest exponent of each of the N + m variables, and the highest φ_l of each angle.
-    pub(super) highest: Vec<u32>,
+    /// Components of f, in the variables of the constructor.
+    pub(crate) components: Vec<TaylorPolynomial<Interval>>,
+    /// Part of each component that lies along no direction.
+    pub(crate) rows: Vec<Recentring>,
+    /// The directions: f = rows + Σ column · polynomial.
+    pub(crate) directions: Vec<Direction>,
+    /// For each input, the direction that carries it and the factor.
+    pub(crate) carriers: Vec<Option<Carrier>>,
+    pub(crate) angles: Angles,
+    /// Highest exponent of each of the N + m variables, and highest index l of φ_l of each angle.
+    pub(crate) highest: Vec<u32>,
 }
 
-/// An input that enters f as the column of a direction times a factor.
+/// An input that enters f linearly, as a factor times the column of a direction.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Carrier {
+pub(crate) struct Carrier {
     pub direction: usize,
     pub factor: f64,
 }
 
 impl PolynomialSystem {
-    /// The system with the given components, N polynomials in (x, u): `states` + `inputs`
-    /// variables, or constants.
+    /// Builds the system from N components, each a constant or a polynomial in the `states` +
+    /// `inputs` variables (x, u).
     ///
-    /// Terms of several components whose coefficients are those of one fixed direction (as M⁻¹ e_j
-    /// for the torque of joint j) are found, and what is uncertain in them moves the state along
-    /// that direction only.
+    /// Terms whose coefficients form one fixed direction over several components, such as M⁻¹ e_j
+    /// for the torque of joint j, are collected. Their uncertainty then moves the state along that
+    /// direction only.
     ///
     /// # Errors
     ///
-    /// [`ReachError::Shape`] where the number of components or of variables does not fit;
-    /// [`ReachError::NotFinite`] for a coefficient that is not bounded.
+    /// Returns [`ReachError::Shape`] when the number of components or of variables does not fit,
+    /// and [`ReachError::NotFinite`] for an unbounded coefficient.
     pub fn new(
         states: usize,
         inputs: usize,
@@ -68,30 +69,36 @@ impl PolynomialSystem {
         Self::trigonometric(states, inputs, &[], components)
     }
 
-    /// The system with the given components, N polynomials in (x, u, s, c): the states, the inputs,
-    /// then s_i = sin x_j and then c_i = cos x_j for each state j of `angles` (rad).
+    /// Builds the system from N polynomials in (x, u, s, c): the states, the inputs, then
+    /// s_i = sin x_j and then c_i = cos x_j for each state j of `angles` (rad).
     ///
-    /// The sets stay on the circle: s and c are no states but functions of them, and are bounded as
-    /// such, for angles up to 10⁶ rad.
+    /// The sets stay on the circle: s and c are not states but functions of states, and are bounded
+    /// as functions. Sines of angles beyond 10⁶ rad have no bound.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new); [`ReachError::Shape`] for an angle that is no state.
+    /// Returns the errors of [`new`](Self::new), and [`ReachError::Shape`] for an angle whose index
+    /// is not that of a state.
     ///
     /// # Examples
     ///
     /// ```
-    /// use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput};
+    /// use reachtube_reach::{
+    ///     Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid, UncertainInput,
+    /// };
     /// use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
     ///
     /// // A pendulum, q̈ = -sin q; the variables are q, q̇, sin q and cos q.
     /// let space = TaylorSpace::new(4, 2).unwrap();
-    /// let [_, velocity, sine, _] = [0, 1, 2, 3].map(|i| TaylorPolynomial::<Interval>::variable(&space, i));
+    /// let variable = |i| TaylorPolynomial::<Interval>::variable(&space, i);
+    /// let (velocity, sine) = (variable(1), variable(2));
     /// let pendulum = PolynomialSystem::trigonometric(2, 0, &[0], &[velocity, -sine])?;
-    /// let (grid, at_rest) = (TimeGrid::uniform(0.01, 301), Hyperrectangle { center: vec![0.0; 2], radius: vec![0.01, 0.0] });
+    /// let grid = TimeGrid::uniform(0.01, 301);
+    /// let initial = Hyperrectangle { centre: vec![0.0; 2], radius: vec![0.01, 0.0] };
     /// let input = UncertainInput { measured: &[], set: &Hyperrectangle::zero(0) };
-    /// let flowpipe = Flowpipe::new(&pendulum, &grid, &[1.0, 0.0], &at_rest, &input, &FlowpipeSettings::default())?;
-    /// // Its energy stays q̇²/2 - cos q = -cos 1 about.
+    /// let settings = FlowpipeSettings::default();
+    /// let flowpipe = Flowpipe::new(&pendulum, &grid, &[1.0, 0.0], &initial, &input, &settings)?;
+    /// // The energy q̇²/2 - cos q stays near its initial value -cos 1.
     /// let [q, velocity] = flowpipe.sample(300) else { unreachable!() };
     /// let energy = velocity.sqr() * 0.5 - q.cos();
     /// assert!(energy.contains(-1f64.cos()) && energy.width() < 0.1);
@@ -112,11 +119,7 @@ impl PolynomialSystem {
             found_columns: 1,
         };
         if let Some(angle) = angles.iter().find(|angle| **angle >= states) {
-            return Err(shape(
-                "the state that an angle is, with all before it,",
-                states,
-                angle + 1,
-            ));
+            return Err(shape("the vector of states up to the angle", states, angle + 1));
         }
         if components.len() != states {
             return Err(shape("the list of components of f", states, components.len()));
@@ -136,6 +139,7 @@ impl PolynomialSystem {
         Ok(Self::from_terms(states, inputs, angles, components.to_vec(), terms))
     }
 
+    /// Separates the directions from the terms of all components.
     fn from_terms(
         states: usize,
         inputs: usize,
@@ -145,25 +149,25 @@ impl PolynomialSystem {
     ) -> Self {
         let directions = directions(&angles, &mut terms);
         let carriers = (0..inputs).map(|j| carrier(states + j, &directions, &terms)).collect();
-        let rows: Vec<_> =
-            terms.iter().map(|terms| ShiftedPolynomial::new(&angles, terms)).collect();
+        let rows: Vec<_> = terms.iter().map(|terms| Recentring::new(&angles, terms)).collect();
         let mut highest = vec![1; angles.plain + angles.states.len()];
         rows.iter().for_each(|row| row.raise_exponents(&mut highest));
         directions.iter().for_each(|direction| direction.polynomial.raise_exponents(&mut highest));
         Self { states, inputs, components, rows, directions, carriers, angles, highest }
     }
 
-    /// Number of states N.
+    /// Returns the number of states N.
     pub fn states(&self) -> usize {
         self.states
     }
 
-    /// Number of inputs m.
+    /// Returns the number of inputs m.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 }
 
+/// Returns the terms of a component over all variables, or an error for an unbounded coefficient.
 fn checked_terms(
     row: usize,
     variables: usize,
@@ -180,8 +184,10 @@ fn checked_terms(
     Ok(terms)
 }
 
-/// The direction that carries input `variable`, where it enters f linearly and along one direction.
-/// What the direction has of it stays out of `terms` already.
+/// Finds the direction that carries input `variable`, where it enters f linearly and along one
+/// direction only.
+///
+/// `terms` must no longer contain the terms of the directions.
 fn carrier(
     variable: usize,
     directions: &[Direction],
@@ -193,17 +199,14 @@ fn carrier(
     let (direction, carrier) = with_input.next()?;
     let sole = carrier.terms.iter().filter(|term| term.exponents[variable] > 0).collect::<Vec<_>>();
     let [term] = sole[..] else { return None };
-    let is_linear = term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() == 1;
+    let is_linear = degree(&term.exponents) == 1;
     let is_alone = with_input.next().is_none() && is_tiny(variable, terms, term.coefficient.mag());
     (is_linear && is_alone).then(|| Carrier { direction, factor: term.coefficient.mid() })
 }
 
-/// Whether the rows have no more of the variable than the rounding of its coefficients, which is
-/// linear.
+/// Returns whether the rows contain a variable only linearly, with coefficients of the size of
+/// rounding errors.
 fn is_tiny(variable: usize, terms: &[Vec<TaylorTerm<Interval>>], scale: f64) -> bool {
-    let own = terms.iter().flatten().filter(|term| term.exponents[variable] > 0);
-    own.clone().all(|term| {
-        term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() == 1
-            && term.coefficient.mag() <= 1e-9 * scale
-    })
+    let mut own = terms.iter().flatten().filter(|term| term.exponents[variable] > 0);
+    own.all(|term| degree(&term.exponents) == 1 && term.coefficient.mag() <= 1e-9 * scale)
 }

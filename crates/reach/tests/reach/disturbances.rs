@@ -19,8 +19,8 @@ const ROUNDING: f64 = 1e-12;
 
 fn sets() -> (Hyperrectangle, Hyperrectangle) {
     let ramp = |n: usize, low: f64, step: f64| (0..n).map(|i| low + step * i as f64).collect();
-    let initial = Hyperrectangle { center: ramp(12, -0.03, 0.006), radius: ramp(12, 0.002, 0.001) };
-    let input = Hyperrectangle { center: ramp(6, 0.4, -0.2), radius: ramp(6, 0.3, 0.15) };
+    let initial = Hyperrectangle { centre: ramp(12, -0.03, 0.006), radius: ramp(12, 0.002, 0.001) };
+    let input = Hyperrectangle { centre: ramp(6, 0.4, -0.2), radius: ramp(6, 0.3, 0.15) };
     (initial, input)
 }
 
@@ -37,7 +37,7 @@ impl Case {
         let propagation = Propagation::new(&arm(), &TimeGrid::uniform(STEP, SAMPLES)).unwrap();
         let (initial, input) = sets();
         let reach =
-            ReachSets::new(&propagation, &disturbance.gains(&propagation), &initial, &input);
+            ReachSets::new(&propagation, &disturbance.input_gains(&propagation), &initial, &input);
         let (phi, gamma) =
             (propagation.step(0).phi.map(|x| x.mid()), propagation.step(0).gamma.map(|x| x.mid()));
         Self { propagation, reach, phi, gamma }
@@ -58,8 +58,8 @@ impl Case {
                 low - ROUNDING <= least && most <= high + ROUNDING,
                 "{least}, {most} leave {low}, {high} in state {i}, sample {k}"
             );
-            let (center, radius) = (0.5 * (low + high), 0.5 * (high - low));
-            used = used.max((most - center).max(center - least) / radius);
+            let (centre, radius) = (0.5 * (low + high), 0.5 * (high - low));
+            used = used.max((most - centre).max(centre - least) / radius);
         }
         used
     }
@@ -95,7 +95,7 @@ impl Motion {
 
 fn within(set: &Hyperrectangle, unit: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(unit.nrows(), unit.ncols(), |i, j| {
-        set.center[i] + set.radius[i] * unit[(i, j)]
+        set.centre[i] + set.radius[i] * unit[(i, j)]
     })
 }
 
@@ -134,7 +134,7 @@ fn none_of_a_million_disturbances_leaves_the_reachable_sets() {
 /// The corner of `set` to which `row` points.
 fn worst(set: &Hyperrectangle, row: impl Iterator<Item = f64>) -> DMatrix<f64> {
     let corner: Vec<f64> =
-        row.enumerate().map(|(j, x)| set.center[j] + set.radius[j] * x.signum()).collect();
+        row.enumerate().map(|(j, x)| set.centre[j] + set.radius[j] * x.signum()).collect();
     DMatrix::from_vec(corner.len(), 1, corner)
 }
 
@@ -175,8 +175,12 @@ fn the_worst_disturbance_touches_every_face() {
 fn hulls_over_five_seconds_are_known_to_ten_digits() {
     let propagation = Propagation::new(&arm(), &TimeGrid::uniform(0.004, 1251)).unwrap();
     let (initial, input) = sets();
-    let reach =
-        ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &input);
+    let reach = ReachSets::new(
+        &propagation,
+        &Disturbance::Sample.input_gains(&propagation),
+        &initial,
+        &input,
+    );
     for (k, i) in (0..1251).flat_map(|k| (0..12).map(move |i| (k, i))) {
         let (outer, inner) = (reach.upper_outer(k, i), reach.upper_inner(k, i));
         let radius = reach.radius(k, i);

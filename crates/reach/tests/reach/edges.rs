@@ -24,7 +24,7 @@ fn grids() -> Vec<TimeGrid> {
 }
 
 fn sets(n: usize) -> Hyperrectangle {
-    Hyperrectangle { center: vec![0.5; n], radius: vec![0.25; n] }
+    Hyperrectangle { centre: vec![0.5; n], radius: vec![0.25; n] }
 }
 
 /// Everything there is, on every small grid; one result a sample, one box a step.
@@ -33,7 +33,7 @@ fn run_all(system: &LinearSystem) {
     for grid in grids() {
         let propagation = Propagation::new(system, &grid).unwrap();
         for disturbance in DISTURBANCES {
-            let gains = disturbance.gains(&propagation);
+            let gains = disturbance.input_gains(&propagation);
             assert_eq!(gains.len(), grid.len(), "{disturbance:?} on {grid:?}");
             let reach = ReachSets::new(&propagation, &gains, &sets(n), &sets(m));
             assert_eq!(reach.len(), grid.len());

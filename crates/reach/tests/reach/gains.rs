@@ -53,9 +53,9 @@ fn one_joint_has_the_same_gain_under_every_disturbance() {
     let (damping, b) = (2.5, 0.75);
     let joint = system(&[&[0.0, 1.0], &[0.0, -damping]], &[&[0.0], &[b]], &[0.0, 0.0]);
     let propagation = uniform(&joint, 700);
-    let constant = Constant.gains(&propagation);
-    assert_same(&Sample.gains(&propagation), &constant, 1e-12);
-    assert_same(&Measurable.gains(&propagation), &constant, 1e-12);
+    let constant = Constant.input_gains(&propagation);
+    assert_same(&Sample.input_gains(&propagation), &constant, 1e-12);
+    assert_same(&Measurable.input_gains(&propagation), &constant, 1e-12);
     for k in [0, 1, 300, 699] {
         let t = k as f64 * STEP;
         let speed = b * -(-damping * t).exp_m1() / damping;
@@ -77,7 +77,7 @@ fn absolute_cosine(t: f64) -> f64 {
 fn an_oscillator_has_the_integral_of_absolute_sine_and_cosine() {
     for omega in [1.0, 5.0] {
         for grid in [TimeGrid::uniform(STEP, 1500), jittered(1500)] {
-            let gains = Measurable.gains(&on(&grid, &oscillator(omega)));
+            let gains = Measurable.input_gains(&on(&grid, &oscillator(omega)));
             for k in (0..1500).step_by(41) {
                 let t = omega * grid.times()[k];
                 assert_near(gains[k][(0, 0)], absolute_sine(t) / omega, 1e-11, "∫|sin|");
@@ -90,12 +90,12 @@ fn an_oscillator_has_the_integral_of_absolute_sine_and_cosine() {
 #[test]
 fn cells_as_long_as_several_turns_are_resolved() {
     let grid = TimeGrid::uniform(0.5, 9);
-    let gains = Measurable.gains(&on(&grid, &oscillator(100.0)));
+    let gains = Measurable.input_gains(&on(&grid, &oscillator(100.0)));
     for (k, gain) in gains.iter().enumerate() {
         assert_near(gain[(0, 0)], absolute_sine(50.0 * k as f64) / 100.0, 3e-10, "∫|sin|");
     }
     let stiff = system(&[&[-2000.0, 0.0], &[0.0, -0.5]], &[&[2000.0], &[1.0]], &[0.0, 0.0]);
-    let gains = Measurable.gains(&on(&TimeGrid::uniform(0.25, 5), &stiff));
+    let gains = Measurable.input_gains(&on(&TimeGrid::uniform(0.25, 5), &stiff));
     assert_near(gains[4][(0, 0)], 1.0, 1e-10, "stiff");
     assert_near(gains[4][(1, 0)], -2.0 * (-0.5f64).exp_m1(), 1e-12, "slow");
 }
@@ -104,7 +104,7 @@ fn cells_as_long_as_several_turns_are_resolved() {
 fn what_has_decayed_costs_nothing() {
     // Noise of either sign is all that is left of e^{At} B: halving would not end.
     let coupled = system(&[&[-60.0, 25.0], &[20.0, -70.0]], &[&[1.0], &[-1.5]], &[0.0, 0.0]);
-    let gains = Measurable.gains(&uniform(&coupled, 1500));
+    let gains = Measurable.input_gains(&uniform(&coupled, 1500));
     assert!(gains[1499].iter().all(|x| x.width() < 1e-12 * x.hi()), "{}", gains[1499]);
 }
 
@@ -117,7 +117,7 @@ fn a_constant_disturbance_reaches_least_and_a_measurable_one_furthest() {
     ] {
         let propagation = on(&grid, &system);
         let gains =
-            [Constant, Sample, Measurable].map(|disturbance| disturbance.gains(&propagation));
+            [Constant, Sample, Measurable].map(|disturbance| disturbance.input_gains(&propagation));
         for pair in gains.windows(2) {
             for (less, more) in
                 pair[0].iter().flatten_entries().zip(pair[1].iter().flatten_entries())
@@ -128,7 +128,7 @@ fn a_constant_disturbance_reaches_least_and_a_measurable_one_furthest() {
     }
     // Where entries change sign, the three differ for good.
     let propagation = on(&TimeGrid::uniform(0.3, 30), &oscillator(7.0));
-    let at_end = |disturbance: Disturbance| disturbance.gains(&propagation)[29][(0, 0)];
+    let at_end = |disturbance: Disturbance| disturbance.input_gains(&propagation)[29][(0, 0)];
     assert!(at_end(Constant).hi() < 0.2 * at_end(Sample).lo());
     assert!(at_end(Sample).hi() < 0.97 * at_end(Measurable).lo());
 }
@@ -146,11 +146,12 @@ impl<'a, I: Iterator<Item = &'a IntervalMatrix>> FlattenEntries<'a> for I {
 #[test]
 fn a_measurable_disturbance_is_the_limit_of_ever_faster_samples() {
     let system = arm();
-    let measurable = Measurable.gains(&on(&TimeGrid::uniform(0.004, 101), &system))[100].clone();
+    let measurable =
+        Measurable.input_gains(&on(&TimeGrid::uniform(0.004, 101), &system))[100].clone();
     let mut last = f64::INFINITY;
     for parts in [1, 4, 16] {
         let fine = on(&TimeGrid::uniform(0.004 / parts as f64, 100 * parts + 1), &system);
-        let sample = Sample.gains(&fine)[100 * parts].clone();
+        let sample = Sample.input_gains(&fine)[100 * parts].clone();
         assert!(sample.iter().zip(&measurable).all(|(x, y)| x.lo() <= y.hi()));
         let missing =
             sample.iter().zip(&measurable).map(|(x, y)| y.hi() - x.lo()).fold(0.0, f64::max);
@@ -173,7 +174,7 @@ fn a_measurable_disturbance_agrees_with_the_rectangle_rule() {
         let ends = [k, k + 1].map(|k| (fine.exponential(k) * &b).map(|x| x.mid().abs()));
         sum += (&ends[0] + &ends[1]) * (0.5 * h);
     }
-    let gains = Measurable.gains(&on(&TimeGrid::uniform(0.004, 101), &system))[100].clone();
+    let gains = Measurable.input_gains(&on(&TimeGrid::uniform(0.004, 101), &system))[100].clone();
     for (x, &rule) in gains.iter().zip(&sum) {
         assert_near(*x, rule, 2e-6, "trapezoids");
     }
@@ -202,7 +203,8 @@ fn samples_at_any_times_agree_with_the_sum_as_written() {
         let grid = TimeGrid::from_times(&times).unwrap();
         assert_eq!(grid.step(), None);
         let propagation = on(&grid, &system);
-        let (gains, measurable) = (Sample.gains(&propagation), Measurable.gains(&propagation));
+        let (gains, measurable) =
+            (Sample.input_gains(&propagation), Measurable.input_gains(&propagation));
         for k in [1, 2, 30, 89] {
             let sum = brute_force(&system, grid.times(), k);
             for ((x, y), z) in gains[k].iter().zip(&sum).zip(&measurable[k]) {
@@ -221,13 +223,21 @@ fn recorded_times_of_a_fixed_rate_give_the_gains_of_that_rate() {
         let recorded = on(&TimeGrid::from_times(&times).unwrap(), &system);
         let uniform = uniform(&system, 301);
         assert_eq!(recorded.grid().step(), None);
-        let (any_grid, fixed) = (Sample.gains(&recorded), Sample.gains(&uniform));
+        let (any_grid, fixed) = (Sample.input_gains(&recorded), Sample.input_gains(&uniform));
         for (x, y) in any_grid.iter().flatten_entries().zip(fixed.iter().flatten_entries()) {
             assert!(x.lo() <= y.hi() && y.lo() <= x.hi(), "{x:?} misses {y:?}");
             assert!((y.lo() - x.lo()).abs() < 1e-11, "{x:?} is loose below {y:?}");
         }
-        assert_same(&Measurable.gains(&recorded)[..301], &Measurable.gains(&uniform), 1e-11);
-        assert_same(&Constant.gains(&recorded)[..301], &Constant.gains(&uniform), 1e-11);
+        assert_same(
+            &Measurable.input_gains(&recorded)[..301],
+            &Measurable.input_gains(&uniform),
+            1e-11,
+        );
+        assert_same(
+            &Constant.input_gains(&recorded)[..301],
+            &Constant.input_gains(&uniform),
+            1e-11,
+        );
     }
 }
 
@@ -238,7 +248,7 @@ proptest! {
     fn random_systems_keep_the_order_and_the_trapezoids(a in proptest::array::uniform4(-8.0f64..8.0), b in -2.0f64..2.0) {
         let system = system(&[&[a[0], a[1]], &[a[2], a[3]]], &[&[1.0], &[b]], &[0.0, 0.0]);
         let propagation = on(&TimeGrid::uniform(0.02, 41), &system);
-        let [constant, sample, measurable] = [Constant, Sample, Measurable].map(|d| d.gains(&propagation)[40].clone());
+        let [constant, sample, measurable] = [Constant, Sample, Measurable].map(|d| d.input_gains(&propagation)[40].clone());
         let fine = on(&TimeGrid::uniform(0.02 / 64.0, 40 * 64 + 1), &system);
         let b = system.b().map(Interval::point);
         for i in 0..2 {

@@ -72,8 +72,8 @@ proptest! {
     }
 
     #[test]
-    fn a_box_is_valid_when_every_bound_is_in_order(center in proptest::collection::vec(-10.0f64..10.0, 1..6), radius in -1.0f64..1.0) {
-        let set = Hyperrectangle { radius: vec![radius; center.len()], center };
+    fn a_box_is_valid_when_every_bound_is_in_order(centre in proptest::collection::vec(-10.0f64..10.0, 1..6), radius in -1.0f64..1.0) {
+        let set = Hyperrectangle { radius: vec![radius; centre.len()], centre };
         prop_assert_eq!(set.is_valid(), radius >= 0.0);
         let ordered = (0..set.dimension()).all(|i| set.bounds(i).0 <= set.bounds(i).1);
         prop_assert_eq!(set.is_valid(), ordered);
@@ -82,8 +82,8 @@ proptest! {
 
 #[test]
 fn boxes_that_are_none_are_refused() {
-    let set = |center: &[f64], radius: &[f64]| Hyperrectangle {
-        center: center.to_vec(),
+    let set = |centre: &[f64], radius: &[f64]| Hyperrectangle {
+        centre: centre.to_vec(),
         radius: radius.to_vec(),
     };
     assert!(Hyperrectangle::zero(3).is_valid() && set(&[], &[]).is_valid());

@@ -106,7 +106,7 @@ pub fn table2(scale: f64) -> (Hyperrectangle, Hyperrectangle) {
         [-1.0060, 1.0060],
     ];
     let set = |sides: &[[f64; 2]]| Hyperrectangle {
-        center: sides.iter().map(|[low, high]| 0.5 * scale * (low + high)).collect(),
+        centre: sides.iter().map(|[low, high]| 0.5 * scale * (low + high)).collect(),
         radius: sides.iter().map(|[low, high]| 0.5 * scale * (high - low)).collect(),
     };
     (set(&[q, velocity].concat()), set(&input))

@@ -19,8 +19,8 @@ use crate::systems::{
     self, Polynomial, constant, cubic_arm, laub_loomis, linear, van_der_pol, variables,
 };
 
-pub fn set(center: &[f64], radius: &[f64]) -> Hyperrectangle {
-    Hyperrectangle { center: center.to_vec(), radius: radius.to_vec() }
+pub fn set(centre: &[f64], radius: &[f64]) -> Hyperrectangle {
+    Hyperrectangle { centre: centre.to_vec(), radius: radius.to_vec() }
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn a_linear_system_has_the_exact_hull_to_a_few_thousandths() {
         Flowpipe::new(&system, &grid, &[0.1; 12], &initial, &input, &FlowpipeSettings::default())
             .unwrap();
     let propagation = Propagation::new(&arm, &grid).unwrap();
-    let gains = Disturbance::Measurable.gains(&propagation);
+    let gains = Disturbance::Measurable.input_gains(&propagation);
     let exact = ReachSets::new(&propagation, &gains, &initial, &torque);
     let start = reachtube_reach::IntervalVector::from_element(12, Interval::point(0.1));
     let nominal = propagation.solve(&start, &inputs);
@@ -116,7 +116,7 @@ impl Case {
             (0..=steps * self.parts).map(|k| k as f64 * self.step / self.parts as f64).collect();
         let kinds: Vec<bool> = (0..runs).map(|run| run % 2 == 0).collect();
         let mut pick = |set: &Hyperrectangle, corner: bool, out: &mut Vec<f64>| {
-            for (c, r) in set.center.iter().zip(&set.radius) {
+            for (c, r) in set.centre.iter().zip(&set.radius) {
                 out.push(c + r * if corner { random.sign() } else { random.symmetric() });
             }
         };
@@ -192,8 +192,8 @@ pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     let mut any =
         |n: usize, scale: f64| (0..n).map(|_| scale * random.symmetric()).collect::<Vec<f64>>();
     let mut boxed = |n: usize, at: f64, size: f64| {
-        let (center, radius) = (any(n, at), any(n, size).iter().map(|r| r.abs()).collect());
-        Hyperrectangle { center, radius }
+        let (centre, radius) = (any(n, at), any(n, size).iter().map(|r| r.abs()).collect());
+        Hyperrectangle { centre, radius }
     };
     let (start, input) = (boxed(n, 0.5, 0.1), boxed(m, 1.0, 0.2));
     let step = 0.01 + 0.01 * f64::from(seed as u32 % 3);
@@ -201,7 +201,7 @@ pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
         PolynomialSystem::trigonometric(n, m, &(0..angles).collect::<Vec<_>>(), &f).unwrap();
     let settings = FlowpipeSettings {
         method,
-        corners: seed as usize / 6 % 4 * 3,
+        vertex_variables: seed as usize / 6 % 4 * 3,
         order: [None, Some(8)][seed as usize % 2],
         pieces: if seed.is_multiple_of(3) { vec![2; n] } else { vec![] },
         zonotopes: vec![],
@@ -241,11 +241,11 @@ fn simulations_are_as_exact_as_is_assumed() {
         let steps = case.flowpipe.len() - 1;
         let times: Vec<f64> = (0..=2 * steps).map(|k| 0.5 * k as f64 * case.step).collect();
         let corner: Vec<f64> =
-            case.start.center.iter().zip(&case.start.radius).map(|(c, r)| c + r).collect();
+            case.start.centre.iter().zip(&case.start.radius).map(|(c, r)| c + r).collect();
         let inputs: Vec<f64> = (0..2 * steps)
             .flat_map(|k| {
                 let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
-                case.input.center.iter().zip(&case.input.radius).map(move |(c, r)| c + sign * r)
+                case.input.centre.iter().zip(&case.input.radius).map(move |(c, r)| c + sign * r)
             })
             .collect();
         let run = Run { start: &corner, inputs: &inputs };
@@ -283,9 +283,9 @@ fn frustrated() -> Vec<Polynomial> {
 fn corners_give_smaller_sets_and_keep_some_that_are_lost_without() {
     let (f, grid, rest) = (frustrated(), TimeGrid::uniform(0.05, 201), set(&[0.0; 4], &[0.0; 4]));
     let system = PolynomialSystem::new(4, 1, &f).unwrap();
-    let follow = |corners: usize, input: &Hyperrectangle| {
+    let follow = |vertex_variables: usize, input: &Hyperrectangle| {
         let uncertain = UncertainInput { measured: &vec![0.0; 200], set: input };
-        let settings = FlowpipeSettings { corners, ..FlowpipeSettings::default() };
+        let settings = FlowpipeSettings { vertex_variables, ..FlowpipeSettings::default() };
         Flowpipe::new(&system, &grid, &[0.0; 4], &rest, &uncertain, &settings).unwrap()
     };
     let small = set(&[0.0], &[0.05]);

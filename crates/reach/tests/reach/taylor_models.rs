@@ -100,8 +100,12 @@ fn a_linear_system_without_uncertain_input_has_its_exact_hull() {
     let flowpipe =
         Flowpipe::new(&system, &grid, &[0.1; 12], &initial, &input, &of_order(4)).unwrap();
     let propagation = Propagation::new(&arm, &grid).unwrap();
-    let exact =
-        ReachSets::new(&propagation, &Disturbance::Sample.gains(&propagation), &initial, &torque);
+    let exact = ReachSets::new(
+        &propagation,
+        &Disturbance::Sample.input_gains(&propagation),
+        &initial,
+        &torque,
+    );
     let start = reachtube_reach::IntervalVector::from_element(12, Interval::point(0.1));
     let nominal = propagation.solve(&start, &inputs);
     for k in 0..251 {

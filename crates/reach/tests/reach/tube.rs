@@ -31,7 +31,7 @@ impl Case {
     fn new(system: &LinearSystem, grid: &TimeGrid, disturbance: Disturbance, size: f64) -> Self {
         let (n, m) = (system.states(), system.inputs());
         let set =
-            |n: usize, x: f64| Hyperrectangle { center: vec![0.3 * x; n], radius: vec![x; n] };
+            |n: usize, x: f64| Hyperrectangle { centre: vec![0.3 * x; n], radius: vec![x; n] };
         let (initial, input) = (set(n, 0.01 * size), set(m, 0.5 * size));
         let propagation = Propagation::new(system, grid).unwrap();
         let inputs: Vec<f64> =
@@ -42,7 +42,7 @@ impl Case {
             &inputs,
         );
         let reach =
-            ReachSets::new(&propagation, &disturbance.gains(&propagation), &initial, &input);
+            ReachSets::new(&propagation, &disturbance.input_gains(&propagation), &initial, &input);
         let radii = TubeRadii::new(&propagation, disturbance, &initial, &input);
         let tube = Tube::new(&propagation, &nominal, &inputs, &reach, &input, &radii);
         Self { propagation, initial, input, inputs, start, nominal, reach, tube }
@@ -54,7 +54,7 @@ impl Case {
         let (n, m) = (self.initial.dimension(), self.input.dimension());
         let mut random = Random::new(seed);
         let mut corner = |set: &Hyperrectangle| -> Vec<f64> {
-            (0..set.dimension()).map(|i| set.center[i] + set.radius[i] * random.sign()).collect()
+            (0..set.dimension()).map(|i| set.centre[i] + set.radius[i] * random.sign()).collect()
         };
         let mut x =
             DVector::from_vec(self.start.clone()) + DVector::from_vec(corner(&self.initial));
@@ -166,7 +166,7 @@ fn a_peak_between_two_samples_is_held() {
     let start =
         IntervalVector::from_vec(vec![Interval::point(1f64.cos()), Interval::point(1f64.sin())]);
     let nominal = propagation.solve(&start, &[0.0, 0.0]);
-    let gains = Disturbance::Sample.gains(&propagation);
+    let gains = Disturbance::Sample.input_gains(&propagation);
     let reach = ReachSets::new(&propagation, &gains, &initial, &input);
     let radii = TubeRadii::new(&propagation, Disturbance::Sample, &initial, &input);
     let tube = Tube::new(&propagation, &nominal, &[0.0, 0.0], &reach, &input, &radii);
@@ -185,14 +185,14 @@ fn a_radius_that_peaks_between_two_samples_is_held() {
     let propagation =
         Propagation::new(&turning, &TimeGrid::uniform(std::f64::consts::FRAC_PI_3, 3)).unwrap();
     let set = |radius: &[f64]| Hyperrectangle {
-        center: vec![0.0; radius.len()],
+        centre: vec![0.0; radius.len()],
         radius: radius.to_vec(),
     };
     let nominal = propagation.solve(&IntervalVector::from_element(2, Interval::ZERO), &[0.0; 3]);
     for (initial, input, state) in
         [(set(&[1.0, 0.0]), set(&[0.0]), 1), (set(&[0.0, 0.0]), set(&[1.0]), 0)]
     {
-        let gains = Disturbance::Constant.gains(&propagation);
+        let gains = Disturbance::Constant.input_gains(&propagation);
         let reach = ReachSets::new(&propagation, &gains, &initial, &input);
         let radii = TubeRadii::new(&propagation, Disturbance::Constant, &initial, &input);
         let tube = Tube::new(&propagation, &nominal, &[0.0; 3], &reach, &input, &radii);

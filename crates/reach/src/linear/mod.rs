@@ -1,0 +1,21 @@
+//! Reachable sets of linear systems with uncertain inputs.
+
+pub(crate) mod column_sums;
+pub(crate) mod exponential;
+pub(crate) mod hulls;
+pub(crate) mod input_gains;
+pub(crate) mod phi1_series;
+pub(crate) mod propagation;
+pub(crate) mod solution;
+pub(crate) mod sparsity;
+pub(crate) mod step;
+pub(crate) mod system;
+pub(crate) mod tube;
+
+pub use hulls::ReachSets;
+pub use input_gains::Disturbance;
+pub use propagation::Propagation;
+pub use solution::Trajectory;
+pub use step::{Step, step};
+pub use system::LinearSystem;
+pub use tube::{Tube, TubeRadii};

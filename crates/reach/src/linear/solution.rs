@@ -1,0 +1,117 @@
+//! Enclosed solutions of a linear system under a piecewise constant input.
+
+use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::add_up;
+
+use crate::linear::propagation::Propagation;
+use crate::linear::step::Step;
+use crate::sets::interval_matrix::IntervalVector;
+use crate::upward::dot_upward;
+
+/// An enclosed solution at the samples of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    dimension: usize,
+    states: Vec<Interval>,
+}
+
+impl Trajectory {
+    /// Returns the number of samples.
+    pub fn len(&self) -> usize {
+        self.states.len() / self.dimension.max(1)
+    }
+
+    /// Returns whether the trajectory has no sample.
+    pub fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// Returns the state at sample k, N intervals.
+    pub fn state(&self, k: usize) -> &[Interval] {
+        &self.states[k * self.dimension..(k + 1) * self.dimension]
+    }
+}
+
+impl Propagation {
+    /// Encloses the solution from `start` (N) under the piecewise constant input `inputs`.
+    ///
+    /// `inputs` is row-major with one row of m entries per sample. A row holds until the next
+    /// sample; the row of the last sample has no effect. The trajectory has one state per row and
+    /// at most one per sample of the grid; without inputs (m = 0), it covers the whole grid.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding: for every initial state in `start`, the exact solution at each
+    /// sample lies in the trajectory.
+    pub fn solve(&self, start: &IntervalVector, inputs: &[f64]) -> Trajectory {
+        let (n, m) = (self.system().states(), self.system().inputs());
+        let rows = inputs.len().checked_div(m).unwrap_or(usize::MAX);
+        let samples = rows.min(self.grid().len());
+        let mut mid: Vec<f64> = start.iter().map(|x| x.mid()).collect();
+        let mut error = SolutionError::new(start);
+        let mut states = Vec::with_capacity(samples * n);
+        let mut next = vec![Interval::ZERO; n];
+        for k in 0..samples {
+            states.extend(
+                mid.iter().zip(&error.radius).map(|(&mid, &rad)| Interval::centered(mid, rad)),
+            );
+            if k + 1 < samples {
+                advance(self.step(k), &mid, &inputs[k * m..(k + 1) * m], &mut next);
+                error.advance(self, k, &next);
+                mid.iter_mut().zip(&next).for_each(|(mid, next)| *mid = next.mid());
+            }
+        }
+        Trajectory { dimension: n, states }
+    }
+}
+
+/// Encloses one step of the solution, Φ x + Γ u + γ.
+fn advance(step: &Step, x: &[f64], u: &[f64], next: &mut [Interval]) {
+    next.copy_from_slice(step.drift.as_slice());
+    for (matrix, vector) in [(&step.phi, x), (&step.gamma, u)] {
+        for (column, &value) in matrix.column_iter().zip(vector) {
+            let value = Interval::point(value);
+            next.iter_mut()
+                .zip(column.iter())
+                .filter(|(_, x)| **x != Interval::ZERO)
+                .for_each(|(sum, &x)| *sum += x * value);
+        }
+    }
+}
+
+/// Two bounds of the error of a floating-point solution, as for the exponential in
+/// [`Powers`](crate::linear::exponential::powers::Powers).
+struct SolutionError {
+    /// Radius of the initial set.
+    start: Vec<f64>,
+    /// Sum of the defects of all steps so far.
+    defects: Vec<f64>,
+    /// Error bound carried over from the previous sample.
+    carried: Vec<f64>,
+    /// The smaller of the two bounds.
+    radius: Vec<f64>,
+}
+
+impl SolutionError {
+    fn new(start: &IntervalVector) -> Self {
+        let radius: Vec<f64> = start.iter().map(|x| x.rad()).collect();
+        let zero = vec![0.0; radius.len()];
+        Self { start: radius.clone(), defects: zero.clone(), carried: zero, radius }
+    }
+
+    /// Advances the bounds to sample k + 1, where `next` encloses the step of the midpoint.
+    fn advance(&mut self, propagation: &Propagation, k: usize, next: &[Interval]) {
+        let (phi, exponential) = (&propagation.step(k).phi, propagation.exponential(k + 1));
+        for (i, next) in next.iter().enumerate() {
+            self.defects[i] = add_up(self.defects[i], next.rad());
+            self.carried[i] =
+                add_up(dot_upward(phi.row(i).iter().map(|x| x.mag()), &self.radius), next.rad());
+        }
+        for i in 0..next.len() {
+            let start = dot_upward(exponential.row(i).iter().map(|x| x.mag()), &self.start);
+            let bound = propagation.horizon_bound();
+            let defects = dot_upward(bound.row(i).iter().copied(), &self.defects);
+            self.radius[i] = self.carried[i].min(add_up(start, defects));
+        }
+    }
+}
