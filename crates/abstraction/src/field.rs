@@ -19,7 +19,7 @@ use super::{ModelWorkspace, PolynomialModel};
 /// let start = model.state(&[0.3; 6], &[0.0; 6]);
 /// let run = Run { start: &start, inputs: &[1.0; 2 * 6] };
 /// let mut solver = DormandPrince::new(model.states(), Tolerance::default());
-/// let outcome = solver.follow(&mut ModelField::new(&model), &[0.0, 0.004, 0.008], run, |_sample, x| {
+/// let outcome = solver.simulate(&mut ModelField::new(&model), &[0.0, 0.004, 0.008], run, |_sample, x| {
 ///     assert!((x[12] - x[0].sin()).abs() < 1e-8);
 /// });
 /// assert!(outcome.is_reached());

@@ -147,7 +147,7 @@ fn intervals_enclose_numbers_and_derivatives_are_slopes() {
             );
             let x = model.state(&q, &qd);
             let wide = |values: &[f64]| -> Vec<Interval> {
-                values.iter().map(|v| Interval::centered(*v, 0.01)).collect()
+                values.iter().map(|v| Interval::centred(*v, 0.01)).collect()
             };
             let (rate, boxed) = (model.rate(&x, &u), model.rate(&wide(&x), &wide(&u)));
             assert!(rate.iter().zip(&boxed).all(|(r, b)| b.contains(*r)));
@@ -233,7 +233,7 @@ fn simulated_models_are_one_motion_in_every_way() {
         let states = model.states();
         let fine = Tolerance { relative: 1e-10, absolute: 1e-10 };
         let mut solver = DormandPrince::new(states, fine);
-        let outcome = solver.follow(&mut ModelField::new(&model), &times, runs[0], |sample, x| {
+        let outcome = solver.simulate(&mut ModelField::new(&model), &times, runs[0], |sample, x| {
             let error = largest(x.iter().zip(&alone[sample * states..]).map(|(a, b)| a - b));
             assert!(error < 1e-7, "{kind:?}: {error} at sample {sample}");
         });
@@ -254,10 +254,10 @@ fn a_simulated_model_3_moves_as_the_robot() {
     let mut solver = DormandPrince::new(12, Tolerance::default());
     let run = Run { start: &body, inputs: &inputs };
     let mut field = RobotField::new(&robot, DrivenBy::Input);
-    assert!(solver.follow(&mut field, &times, run, |_, x| motion.push(x.to_vec())).is_reached());
+    assert!(solver.simulate(&mut field, &times, run, |_, x| motion.push(x.to_vec())).is_reached());
     let mut solver = DormandPrince::new(24, Tolerance::default());
     let run = Run { start: &start, inputs: &inputs };
-    let outcome = solver.follow(&mut ModelField::new(&model), &times, run, |sample, x| {
+    let outcome = solver.simulate(&mut ModelField::new(&model), &times, run, |sample, x| {
         let error = largest(x.iter().zip(&motion[sample]).map(|(a, b)| a - b));
         assert!(error < 1e-4, "{error} at sample {sample}");
     });

@@ -68,7 +68,7 @@ fn recorded(
         let run = Run { start: &start, inputs: &inputs };
         let mut solver = DormandPrince::new(model.states(), Tolerance::default());
         let outcome =
-            solver.follow(&mut ModelField::new(model), times, run, |_, x| states.extend(&x[..4]));
+            solver.simulate(&mut ModelField::new(model), times, run, |_, x| states.extend(&x[..4]));
         assert!(outcome.is_reached());
         Recorded { times: times.to_vec(), states, torques }
     };

@@ -45,7 +45,7 @@ fn adaptive<const MOTOR: bool>(bencher: Bencher, tolerance: f64) {
     bencher.counter(ItemsCount::new(RUNS)).bench_local(|| {
         for start in &starts {
             let outcome =
-                solver.follow(&mut field, &times, Run { start, inputs: &inputs }, |_, x| {
+                solver.simulate(&mut field, &times, Run { start, inputs: &inputs }, |_, x| {
                     black_box(x);
                 });
             assert!(outcome.is_reached(), "{outcome:?}");

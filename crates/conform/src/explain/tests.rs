@@ -62,7 +62,7 @@ fn record(model: &PolynomialModel, case: &Case, start: &[f64], inputs: &[f64]) -
     let tolerance = Tolerance { relative: 1e-11, absolute: 1e-11 };
     let start = model.state(&start[..JOINTS], &start[JOINTS..]);
     let motion = Motion { start: &start, inputs };
-    let outcome = DormandPrince::new(model.states(), tolerance).follow(
+    let outcome = DormandPrince::new(model.states(), tolerance).simulate(
         &mut ModelField::new(model),
         case.grid.times(),
         motion,

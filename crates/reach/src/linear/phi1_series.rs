@@ -24,7 +24,7 @@ pub(crate) fn phi1_series(x: &IntervalMatrix, connected: &DMatrix<bool>) -> Inte
         let divisor = Interval::point(i as f64 + 1.0);
         sum = &identity + product(x, &sum).map(|entry| entry / divisor);
     }
-    let symmetric = Interval::centered(0.0, remainder);
+    let symmetric = Interval::centred(0.0, remainder);
     sum.zip_map(connected, |entry, linked| if linked { entry + symmetric } else { entry })
 }
 

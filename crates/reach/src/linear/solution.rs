@@ -53,7 +53,7 @@ impl Propagation {
         let mut next = vec![Interval::ZERO; n];
         for k in 0..samples {
             states.extend(
-                mid.iter().zip(&error.radius).map(|(&mid, &rad)| Interval::centered(mid, rad)),
+                mid.iter().zip(&error.radius).map(|(&mid, &rad)| Interval::centred(mid, rad)),
             );
             if k + 1 < samples {
                 advance(self.step(k), &mid, &inputs[k * m..(k + 1) * m], &mut next);

@@ -181,5 +181,5 @@ fn largest(left: &IntervalMatrix, right: &IntervalMatrix) -> IntervalMatrix {
 
 /// Returns [-x̄, x̄] with the upper end x̄ of x >= 0.
 fn symmetric(x: Interval) -> Interval {
-    Interval::centered(0.0, x.hi())
+    Interval::centred(0.0, x.hi())
 }

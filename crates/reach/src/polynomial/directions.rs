@@ -182,7 +182,7 @@ fn add_remaining(
     let is_rounding = column.iter().all(|x| x.mag() <= tolerance);
     if is_rounding && degree(&exponents[angles.plain..]) > 0 {
         exponents[angles.plain..].fill(0);
-        column.iter_mut().for_each(|x| *x = Interval::centered(0.0, x.mag()));
+        column.iter_mut().for_each(|x| *x = Interval::centred(0.0, x.mag()));
     }
     let own = remaining.entry(exponents).or_insert_with(|| vec![Interval::ZERO; column.len()]);
     own.iter_mut().zip(column).for_each(|(own, x)| *own += x);

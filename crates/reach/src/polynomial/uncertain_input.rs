@@ -21,7 +21,7 @@ impl UncertainInput<'_> {
         let m = out.len();
         for (j, out) in out.iter_mut().enumerate() {
             let centre = Interval::point(self.measured[k * m + j]) + self.set.centre[j];
-            *out = centre + Interval::centered(0.0, self.set.radius[j]);
+            *out = centre + Interval::centred(0.0, self.set.radius[j]);
         }
     }
 }

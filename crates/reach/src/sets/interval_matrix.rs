@@ -40,7 +40,7 @@ pub(crate) fn absolute(matrix: &IntervalMatrix) -> IntervalMatrix {
 ///
 /// Outer: each entry contains both ends as real numbers.
 pub(crate) fn ball(mid: &DMatrix<f64>, rad: &DMatrix<f64>) -> IntervalMatrix {
-    mid.zip_map(rad, Interval::centered)
+    mid.zip_map(rad, Interval::centred)
 }
 
 /// Multiplies `left` by `right` and skips zero entries, which are about half of a robot's matrices.

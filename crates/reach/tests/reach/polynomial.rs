@@ -133,7 +133,7 @@ impl Case {
             let (k, part) = (sample / self.parts, sample % self.parts);
             let sides = if part == 0 { self.flowpipe.sample(k) } else { self.flowpipe.step(k) };
             for (i, (side, x)) in sides.iter().zip(x).enumerate() {
-                let near = *side + Interval::centered(0.0, SLACK * (1.0 + x.abs()));
+                let near = *side + Interval::centred(0.0, SLACK * (1.0 + x.abs()));
                 assert!(
                     near.contains(*x),
                     "{x} is not in {side:?}: state {i} at sample {k} and {part} parts"
@@ -293,7 +293,7 @@ fn corners_give_smaller_sets_and_keep_some_that_are_lost_without() {
     for k in 0..201 {
         let sides = without.sample(k).iter().zip(with.sample(k));
         sides.for_each(|(outer, inner)| {
-            assert!((*outer + Interval::centered(0.0, 1e-12)).encloses(inner), "{k}")
+            assert!((*outer + Interval::centred(0.0, 1e-12)).encloses(inner), "{k}")
         });
     }
     assert!(with.sample(200)[0].width() < 0.9 * without.sample(200)[0].width());

@@ -19,11 +19,11 @@ fn simulated_runs_lie_in_the_enclosed_solution() {
     let run = Run { start: &start, inputs: &inputs[..6 * 59] };
     let close = |sample: usize, x: &[f64]| {
         let near =
-            |(exact, x): (&Interval, &f64)| (*exact + Interval::centered(0.0, 1e-8)).contains(*x);
+            |(exact, x): (&Interval, &f64)| (*exact + Interval::centred(0.0, 1e-8)).contains(*x);
         assert!(exact.state(sample).iter().zip(x).all(near), "sample {sample}: {x:?}");
     };
     let fine = Tolerance { relative: 1e-11, absolute: 1e-11 };
-    assert!(DormandPrince::new(12, fine).follow(&mut &system, &times, run, close).is_reached());
+    assert!(DormandPrince::new(12, fine).simulate(&mut &system, &times, run, close).is_reached());
     let mut ensemble = Ensemble::<Lanes<4>>::new(12);
     let outcomes =
         ensemble.integrate(&mut &system, &times, 8, &[run; 3], |_, sample, x| close(sample, x));

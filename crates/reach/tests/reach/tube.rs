@@ -147,7 +147,7 @@ fn the_tube_holds_the_hulls_at_both_samples() {
             for (k, i) in (0..case.tube.len())
                 .flat_map(|k| (0..case.initial.dimension()).map(move |i| (k, i)))
             {
-                let widened = case.tube.bounds(k)[i] + Interval::centered(0.0, ROUNDING);
+                let widened = case.tube.bounds(k)[i] + Interval::centred(0.0, ROUNDING);
                 assert!(
                     widened.encloses(&case.hull(k, i)) && widened.encloses(&case.hull(k + 1, i)),
                     "{k} {i}"

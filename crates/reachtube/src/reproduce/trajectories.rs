@@ -200,7 +200,7 @@ mod tests {
         let mut velocities = Vec::new();
         let run = Run { start, inputs: &motions.inputs[0] };
         let outcome =
-            DormandPrince::new(start.len(), fine).follow(field, &motions.times, run, |_, x| {
+            DormandPrince::new(start.len(), fine).simulate(field, &motions.times, run, |_, x| {
                 velocities.extend_from_slice(&x[6..12]);
             });
         assert!(outcome.is_reached());

@@ -92,7 +92,7 @@ proptest! {
     #[test]
     fn intervals_enclose((robot, q, qd, qdd) in robots_and_states(), radius in 0.0..0.01f64, pick in -1.0..1.0f64) {
         let n = q.len();
-        let wide = |x: &[f64]| x.iter().map(|x| Interval::centered(*x, radius)).collect::<Vec<_>>();
+        let wide = |x: &[f64]| x.iter().map(|x| Interval::centred(*x, radius)).collect::<Vec<_>>();
         let (sin, cos) = robot.sin_cos(&q);
         // Independent sine and cosine: nothing asks for s² + c² = 1.
         let inside = |x: &[f64]| x.iter().map(|x| x + 0.99 * pick * radius).collect::<Vec<_>>();

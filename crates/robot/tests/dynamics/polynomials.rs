@@ -262,7 +262,7 @@ fn taylor_models_of_the_dynamics_enclose_it() {
         0.4, -0.7, 0.9, 0.2, -0.5, 0.3, 0.5, -0.4, 0.6, 0.3, -0.8, 0.2, 1.0, -2.0, 0.5, 1.5, -0.3,
         0.7,
     ];
-    let sides: Vec<Interval> = middle.iter().map(|m| Interval::centered(*m, 0.05)).collect();
+    let sides: Vec<Interval> = middle.iter().map(|m| Interval::centred(*m, 0.05)).collect();
     let domain = TaylorBox::new(&space, &sides);
     let z = domain.variables();
     let (sin, cos): (Vec<_>, Vec<_>) = z[..n].iter().map(Elementary::sin_cos).unzip();
@@ -283,7 +283,7 @@ fn taylor_models_of_the_dynamics_enclose_it() {
             let value = domain.evaluate(model, &place);
             let rounding = 1e-12 * (1.0 + exact.abs());
             assert!(
-                Interval::centered(value.mid(), value.rad() + rounding).contains(exact),
+                Interval::centred(value.mid(), value.rad() + rounding).contains(exact),
                 "{value:?} {exact}"
             );
         }
@@ -312,7 +312,7 @@ fn interval_series_enclose_the_series_of_numbers() {
             let enclosure = interval.coefficient(&term.exponents);
             let slack = 1e-12 * (1.0 + term.coefficient.abs());
             assert!(
-                Interval::centered(enclosure.mid(), enclosure.rad() + slack)
+                Interval::centred(enclosure.mid(), enclosure.rad() + slack)
                     .contains(term.coefficient)
             );
             assert!(enclosure.rad() < 1e-9 * (1.0 + term.coefficient.abs()));

@@ -55,7 +55,7 @@ proptest! {
     fn intervals_enclose_it((robot, q, qd, qdd) in robots_and_states(), radius in 0.0..0.01f64, pick in -1.0..1.0f64) {
         let n = q.len();
         let (sin, cos) = robot.sin_cos(&q);
-        let boxes = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(|x| Interval::centered(*x, radius)).collect::<Vec<_>>());
+        let boxes = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(|x| Interval::centred(*x, radius)).collect::<Vec<_>>());
         let at = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(|x| x + 0.99 * pick * radius).collect::<Vec<_>>());
         let (mut outer, mut value) = (vec![Interval::ZERO; 10 * n * n], vec![0.0; 10 * n * n]);
         let mut ws = RegressorWorkspace::new(&robot);

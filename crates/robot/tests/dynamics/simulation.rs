@@ -77,7 +77,7 @@ proptest! {
         }
         let (mut worst, mut size) = (0.0_f64, 1.0_f64);
         let run = Run { start: &start, inputs: &inputs };
-        let outcome = DormandPrince::new(12, FINE).follow(&mut field, &times, run, |k, x| {
+        let outcome = DormandPrince::new(12, FINE).simulate(&mut field, &times, run, |k, x| {
             worst = worst.max(distance(x, &fixed[k]));
             size = x.iter().fold(size, |a, x| a.max(x.abs()));
         });

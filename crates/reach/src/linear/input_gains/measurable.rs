@@ -134,7 +134,7 @@ impl SecondOrder {
     ///
     /// Outer, directed rounding.
     fn range(&self, start: &IntervalMatrix) -> IntervalMatrix {
-        let from_middle = Interval::centered(0.0, 0.5 * self.longest);
+        let from_middle = Interval::centred(0.0, 0.5 * self.longest);
         let half_square = from_middle.sqr() * 0.5;
         product(start, &self.value)
             + product(start, &self.slope) * from_middle

@@ -141,7 +141,7 @@ impl Polynomial {
             return Interval::ZERO;
         }
         let power = Interval::point(tau.mag()).powi(self.coefficients.len() as i32);
-        Interval::centered(0.0, mul_up(self.tail, power.hi()))
+        Interval::centred(0.0, mul_up(self.tail, power.hi()))
     }
 }
 
@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn halving_stops_at_noise() {
-        let coefficient = |m: i32| Interval::centered(0.0, 1e-6 * 0.1f64.powi(m));
+        let coefficient = |m: i32| Interval::centred(0.0, 1e-6 * 0.1f64.powi(m));
         let noise = Polynomial { coefficients: (0..8).map(coefficient).collect(), tail: 0.0 };
         let integral = noise.integral_of_absolute(Interval::ZERO, Interval::ONE, 0.0);
         assert!(integral.lo() == 0.0 && integral.hi() >= 1e-6 && integral.hi() < 1e-4);

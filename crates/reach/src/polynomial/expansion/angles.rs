@@ -76,7 +76,7 @@ impl Angles {
 
     /// Bounds the magnitudes of the factors at any angle; the plain variables have the bound 0.
     pub fn magnitudes(&self) -> Vec<f64> {
-        let (mut factors, any) = (self.factors(), Interval::centered(0.0, 1.0));
+        let (mut factors, any) = (self.factors(), Interval::centred(0.0, 1.0));
         (0..self.states.len())
             .for_each(|i| self.set_factors(i, [any, any, any.abs()], &mut factors));
         factors.iter().map(|factor| factor.mag()).collect()

@@ -76,7 +76,7 @@ pub(crate) struct RecentredPolynomial {
 
 impl RecentredPolynomial {
     fn coefficient(&self, index: usize) -> Interval {
-        Interval::centered(self.coefficients[index], self.errors[index])
+        Interval::centred(self.coefficients[index], self.errors[index])
     }
 }
 
@@ -269,7 +269,7 @@ impl Recentring {
             + VERTEX_ROUNDINGS * work.vertex_factors.len()) as f64;
         let error = round_up_sum(errors + magnitudes * (roundings * f64::EPSILON), 2 * terms);
         let range = vertices.range().filter(|_| (magnitudes + errors).is_finite());
-        range.map_or(Interval::ENTIRE, |range| range + Interval::centered(0.0, error))
+        range.map_or(Interval::ENTIRE, |range| range + Interval::centred(0.0, error))
     }
 
     /// Chooses the factors whose vertices are enumerated from now on: the factors in the largest

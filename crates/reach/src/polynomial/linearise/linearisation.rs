@@ -169,7 +169,7 @@ impl<'a> Linearisation<'a> {
         let (rows, directions) = out.split_at_mut(n);
         for (i, (out, work)) in rows.iter_mut().zip(&mut expansions.rows).enumerate() {
             let range = system.rows[i].remainder(powers, vertices, work);
-            *out = range + Interval::centered(0.0, linear.rounding_error(i, tube));
+            *out = range + Interval::centred(0.0, linear.rounding_error(i, tube));
         }
         let works = system.directions.iter().zip(&mut expansions.directions);
         for (out, (direction, work)) in directions.iter_mut().zip(works) {

@@ -44,7 +44,7 @@ impl SetPropagator for ZonotopePropagator<'_> {
 
     fn hull(&self, out: &mut Vec<Interval>) {
         let sides = self.set.centre.iter().zip(&self.set.radius);
-        out.extend(sides.map(|(centre, radius)| Interval::centered(*centre, *radius)));
+        out.extend(sides.map(|(centre, radius)| Interval::centred(*centre, *radius)));
     }
 
     fn zonotope(&self) -> Zonotope {

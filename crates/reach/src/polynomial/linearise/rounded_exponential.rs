@@ -154,7 +154,7 @@ mod tests {
                 rounded.error_times(&unit, &mut error);
                 rounded.bound_times(&unit, &mut bound);
                 for i in 0..4 {
-                    let near = |x: f64| Interval::centered(x, error[i]);
+                    let near = |x: f64| Interval::centred(x, error[i]);
                     let phi = rounded.phi.row(i)[j];
                     prop_assert!(near(phi).intersection(exact.phi[(i, j)]).is_some());
                     prop_assert!(error[i] < 1e-12 * largest[(i, j)].hi() + 1e-12);

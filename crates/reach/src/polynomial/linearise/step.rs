@@ -200,7 +200,7 @@ impl<'a> LinearisedStep<'a> {
         // Hull of both ends, widened by the distance from the chord.
         let eighth = (h.sqr() * 0.125).hi();
         for (i, bulge) in bulge.iter().enumerate() {
-            let start = Interval::centered(set.centre[i], set.radius[i]) - point[i];
+            let start = Interval::centred(set.centre[i], set.radius[i]) - point[i];
             let end = linear_solution.end[i] + symmetric(linear_solution.end_radius[i]);
             linear_solution.tube[i] = start.hull(end) + symmetric(round_up_sum(bulge * eighth, 1));
         }
@@ -350,7 +350,7 @@ fn product_error(n: usize) -> f64 {
 }
 
 fn symmetric(radius: f64) -> Interval {
-    Interval::centered(0.0, radius)
+    Interval::centred(0.0, radius)
 }
 
 fn enlarged(x: Interval) -> Interval {

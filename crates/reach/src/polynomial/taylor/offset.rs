@@ -99,7 +99,7 @@ impl Offset {
     ///
     /// Outer.
     pub fn hull(&self) -> impl Iterator<Item = Interval> {
-        self.radius.iter().map(|radius| Interval::centered(0.0, *radius))
+        self.radius.iter().map(|radius| Interval::centred(0.0, *radius))
     }
 }
 

@@ -51,7 +51,7 @@ impl TaylorSet {
                 let space = model.polynomial().space().expect("a variable occurs");
                 nonlinear -= TaylorModel::from(TaylorPolynomial::from_terms(space, [term]));
             }
-            let along_axis = Interval::centered(0.0, self.offset.along_axis(i));
+            let along_axis = Interval::centred(0.0, self.offset.along_axis(i));
             let range = nonlinear.tight_range() + along_axis;
             centre[i] = range.mid();
             columns[n * n + i * n + i] = range.rad();

@@ -177,5 +177,5 @@ fn applied(matrix: &IntervalMatrix, vector: &[Interval]) -> Vec<Interval> {
 }
 
 fn enlarged(x: Interval) -> Interval {
-    x + Interval::centered(0.0, x.width() * ENLARGEMENT + LEAST_ENLARGEMENT)
+    x + Interval::centred(0.0, x.width() * ENLARGEMENT + LEAST_ENLARGEMENT)
 }

@@ -181,7 +181,7 @@ mod tests {
         let monomials = Monomials::new(2, &[&x * &x + u_variable]);
         let start = TaylorSet::new(
             &TaylorSpace::new(1, orders.0).unwrap(),
-            &[Interval::centered(1.0, r)],
+            &[Interval::centred(1.0, r)],
             usize::MAX,
         );
         TimeSeries::new(&monomials, &start, &[u], Interval::point(h), orders.1)
@@ -217,9 +217,9 @@ mod tests {
                 let defect = |tau: f64| h * (p(tau).powi(2) + u) - slope(tau);
                 let taus: Vec<f64> = (0..=1000).map(|k| f64::from(k) / 1000.0).collect();
                 for tau in &taus {
-                    let near = bound + Interval::centered(0.0, 1e-14);
+                    let near = bound + Interval::centred(0.0, 1e-14);
                     assert!(near.contains(defect(*tau)), "{} is not in {bound:?}", defect(*tau));
-                    assert!((series.range(0) + Interval::centered(0.0, 1e-14)).contains(p(*tau)));
+                    assert!((series.range(0) + Interval::centred(0.0, 1e-14)).contains(p(*tau)));
                     largest = largest.max(defect(*tau).abs());
                 }
                 // Integral by Simpson's rule, with an error below 1e-12.
@@ -229,7 +229,7 @@ mod tests {
                     taus.iter().enumerate().map(|(k, tau)| weight(k) * defect(*tau)).sum::<f64>()
                         / 3000.0;
                 assert!(
-                    (integral + Interval::centered(0.0, 1e-12)).contains(sum),
+                    (integral + Interval::centred(0.0, 1e-12)).contains(sum),
                     "{sum} is not in {integral:?}"
                 );
             }

@@ -32,6 +32,6 @@ pub(crate) fn transition(a: &IntervalMatrix) -> (IntervalMatrix, IntervalMatrix)
     let truncated =
         (1..=TERMS).fold(Interval::ONE, |term, i| term * norm / Interval::point(i as f64));
     let tail = truncated / (Interval::ONE - norm / Interval::point(TERMS as f64 + 1.0));
-    let tail = if tail.lo() >= 0.0 { Interval::centered(0.0, tail.hi()) } else { Interval::ENTIRE };
+    let tail = if tail.lo() >= 0.0 { Interval::centred(0.0, tail.hi()) } else { Interval::ENTIRE };
     (sum.map(|x| x + tail), change.map(|x| x + tail))
 }

@@ -60,7 +60,7 @@ proptest! {
         let lo = if is_symmetric { width.map(|width| -0.5 * width) } else { lo };
         let sides = [0, 1].map(|i| Interval::new(lo[i], lo[i] + width[i]).unwrap());
         let [without, with] = ranges(&plan, &powers(&plan, sides), most, &mut work);
-        let near = without + Interval::centered(0.0, 1e-9);
+        let near = without + Interval::centred(0.0, 1e-9);
         prop_assert!(!is_symmetric || near.encloses(&with), "{without:?} {with:?}");
         for point in points {
             let offset = |i: usize| lo[i] + point[i] * width[i];
