@@ -233,10 +233,11 @@ fn simulated_models_are_one_motion_in_every_way() {
         let states = model.states();
         let fine = Tolerance { relative: 1e-10, absolute: 1e-10 };
         let mut solver = DormandPrince::new(states, fine);
-        let outcome = solver.simulate(&mut ModelField::new(&model), &times, runs[0], |sample, x| {
-            let error = largest(x.iter().zip(&alone[sample * states..]).map(|(a, b)| a - b));
-            assert!(error < 1e-7, "{kind:?}: {error} at sample {sample}");
-        });
+        let outcome =
+            solver.simulate(&mut ModelField::new(&model), &times, runs[0], |sample, x| {
+                let error = largest(x.iter().zip(&alone[sample * states..]).map(|(a, b)| a - b));
+                assert!(error < 1e-7, "{kind:?}: {error} at sample {sample}");
+            });
         assert!(outcome.is_reached());
     }
 }

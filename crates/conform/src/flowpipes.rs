@@ -1,8 +1,6 @@
 //! Outer enclosures of the reachable sets of models that are not linear.
 
-use reachtube_reach::{
-    Flowpipe, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,
-};
+use reachtube_reach::{Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInput};
 
 use crate::error::Result;
 use crate::problem::case::Case;

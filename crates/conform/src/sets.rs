@@ -24,7 +24,7 @@ impl UncertaintySets {
     /// alone: where it is known it must stay.
     pub(crate) fn inflated(&self, factor: f64, term: f64) -> Self {
         let inflate = |set: &Hyperrectangle| Hyperrectangle {
-            center: set.center.clone(),
+            centre: set.centre.clone(),
             radius: set.radius.iter().map(|r| r * factor + term).collect(),
         };
         Self {

@@ -7,16 +7,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Mutex;
 
-use common::{Random, Recorded, grid, write_data_set};
-use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelField, ModelKind, PolynomialModel};
-use reachtube_conform::Model;
+use common::{Random, Recorded, check_against, conform_all, grid, read, read_with, write_data_set};
+use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
 use reachtube_conform::{
-    Conformance, Dynamics, Enclosure, Method, Settings, UncertaintySets, Watch, check, conform,
-    conform_dynamics,
+    Conformance, Dynamics, Enclosure, Hulls, Method, Model, Progress, Settings, Setup, Silent,
+    UncertaintySets, check, conform,
 };
 use reachtube_ode::{DormandPrince, Run, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
-use reachtube_recordings::{DataSet, Torque};
+use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
 /// Friction that bends and joints that move each other.
@@ -76,17 +75,16 @@ fn recorded(
 }
 
 /// Two suites of the model.
-fn two_suites(folder: &Path, model: &PolynomialModel) -> DataSet {
+fn two_suites(folder: &Path, model: &PolynomialModel) {
     let suites = [
         ("a", recorded(model, &grid(0.01, 90), 8, [0.02, 0.3], 5)),
         ("b", recorded(model, &grid(0.01, 60), 6, [0.02, 0.3], 6)),
     ];
     write_data_set(folder, &suites);
-    DataSet::open(folder).unwrap()
 }
 
 fn radii(sets: &UncertaintySets) -> Vec<f64> {
-    let all = |set: &Hyperrectangle| [set.center.clone(), set.radius.clone()].concat();
+    let all = |set: &Hyperrectangle| [set.centre.clone(), set.radius.clone()].concat();
     [all(&sets.initial_set), all(&sets.input_set)].concat()
 }
 
@@ -100,18 +98,10 @@ fn assert_close(a: &UncertaintySets, b: &UncertaintySets, tolerance: f64) {
 }
 
 /// The route of models that are not linear, on a linear one.
-fn the_long_way(
-    robot: &Robot,
-    data: &DataSet,
-    names: &[String],
-    settings: &Settings,
-) -> Conformance {
-    let Abstraction { model, order } = settings.abstraction;
-    let model =
-        PolynomialModel::new(robot, model, order, &ExpansionPoint::zero(robot.joint_count()))
-            .unwrap();
-    let dynamics = Dynamics::Polynomial(Box::new(model));
-    conform_dynamics(robot, data, names, settings, dynamics, &Watch::SILENT).unwrap()
+fn the_long_way(robot: &Robot, folder: &Path, names: &[&str], settings: &Settings) -> Conformance {
+    let dynamics = Dynamics::polynomial(model_of(robot, settings));
+    let setup = Setup { robot: robot.clone(), dynamics, settings: settings.clone() };
+    conform_all(&read_with(setup, folder, names))
 }
 
 #[test]
@@ -119,14 +109,14 @@ fn a_linear_model_has_the_sets_of_the_one_program() {
     let folder = tempfile::tempdir().unwrap();
     let robot = bent();
     let linear = settings(ModelKind::One, 1);
-    let data = two_suites(folder.path(), &model_of(&robot, &linear));
+    two_suites(folder.path(), &model_of(&robot, &linear));
     for disturbance in [Disturbance::Sample, Disturbance::Constant] {
         let settings = Settings { disturbance, ..linear.clone() };
-        let short = conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap();
-        let long = the_long_way(&robot, &data, &[], &settings);
-        assert!(short.proof.verified && long.proof.verified);
+        let short = conform_all(&read(&robot, folder.path(), &[], &settings));
+        let long = the_long_way(&robot, folder.path(), &[], &settings);
+        assert!(short.verdict.conformant && long.verdict.conformant);
         assert_eq!(
-            (short.proof.enclosure, long.proof.enclosure),
+            (short.verdict.enclosure, long.verdict.enclosure),
             (Enclosure::Inner, Enclosure::Outer)
         );
         let cost = long.search.as_ref().unwrap().linearised_cost.unwrap();
@@ -146,13 +136,12 @@ fn a_linear_model_has_the_sets_of_the_one_program() {
 #[test]
 fn the_schunk_recordings_have_the_costs_of_the_one_program() {
     let Some(folder) = common::shared("schunk_lwa4p") else { return };
-    let data = DataSet::open(folder).unwrap();
-    let names: Vec<String> = ["A", "B", "D", "E"].map(String::from).to_vec();
-    let long = the_long_way(&Robot::lwa4p(), &data, &names, &Settings::new(Torque::Compensated, 6));
+    let settings = Settings::new(Torque::Compensated, 6);
+    let long = the_long_way(&Robot::lwa4p(), &folder, &["A", "B", "D", "E"], &settings);
     let cost = long.search.as_ref().unwrap().linearised_cost.unwrap();
     // The optimum found by HiGHS, as in the test of the linear route.
     assert!((cost / 6_048.047_985_391_407 - 1.0).abs() < 1e-6, "{cost}");
-    assert!(long.proof.verified && long.cost < 1.001 * cost, "{}", long.cost);
+    assert!(long.verdict.conformant && long.cost < 1.001 * cost, "{}", long.cost);
 }
 
 #[test]
@@ -160,30 +149,30 @@ fn sets_of_each_model_enclose_its_runs_and_are_not_wider_than_what_was_there() {
     for (kind, order) in [(ModelKind::One, 3), (ModelKind::Two, 4), (ModelKind::Three, 3)] {
         let folder = tempfile::tempdir().unwrap();
         let (robot, settings) = (bent(), settings(kind, order));
-        let data = two_suites(folder.path(), &model_of(&robot, &settings));
-        let found = conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap();
+        two_suites(folder.path(), &model_of(&robot, &settings));
+        let problem = read(&robot, folder.path(), &[], &settings);
+        let found = conform_all(&problem);
         let search = found.search.clone().unwrap();
         assert!(
-            found.proof.verified && found.proof.proved == 2 * 4 * 150,
+            found.verdict.conformant && found.verdict.rows == 4 * 150,
             "{kind:?}: {:?}",
-            found.proof
+            found.verdict
         );
         assert!(search.rounds < 20 && search.runs_away.is_none(), "{search:?}");
         // Nominals start at the mean of the runs: sets that were there have at most twice the
         // radius of the starts.
-        let there = Settings { method: Method::Program, ..settings.clone() };
         let widest = |set: &Hyperrectangle| set.radius.iter().fold(0.0, |max: f64, r| max.max(*r));
         assert!(
             widest(&found.sets.initial_set) < 0.1 && widest(&found.sets.input_set) < 0.6,
             "{:?}",
             found.sets
         );
-        let model = Model::new(&robot, &data, &there, &found);
+        let model = Model::new(&problem, &found);
         let path = folder.path().join("model.json");
         std::fs::write(&path, model.to_json()).unwrap();
         let loaded = Model::load(&path).unwrap();
         assert_eq!(loaded, model);
-        assert!(check(&loaded, &data, &[], &there, &|_, _| {}).unwrap().conformant);
+        assert!(check_against(&loaded, folder.path(), &[]).verdict.conformant);
     }
 }
 
@@ -193,14 +182,16 @@ fn sets_of_each_model_enclose_its_runs_and_are_not_wider_than_what_was_there() {
 fn no_radius_can_be_made_smaller_alone() {
     let folder = tempfile::tempdir().unwrap();
     let (robot, settings) = (bent(), settings(ModelKind::One, 3));
-    let data = two_suites(folder.path(), &model_of(&robot, &settings));
-    let found = conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap();
-    let model = Model::new(&robot, &data, &settings, &found);
+    two_suites(folder.path(), &model_of(&robot, &settings));
+    let problem = read(&robot, folder.path(), &[], &settings);
+    let found = conform_all(&problem);
+    let model = Model::new(&problem, &found);
     let largest = found.sets.input_set.radius.iter().fold(0.0, |max: f64, r| max.max(*r));
     for joint in (0..2).filter(|joint| found.sets.input_set.radius[*joint] > 0.1 * largest) {
         let mut smaller = model.clone();
         smaller.input_set.radius[joint] *= 0.95;
-        let answer = check(&smaller, &data, &[], &settings, &|_, _| {}).unwrap();
+        let hulls = Hulls::new(&problem, smaller.sets()).unwrap();
+        let answer = check(&smaller, &problem, &hulls).unwrap().verdict;
         assert!(!answer.conformant && answer.violations.worst.is_some(), "joint {joint}");
     }
 }
@@ -209,13 +200,37 @@ fn no_radius_can_be_made_smaller_alone() {
 fn bisection_costs_more_than_the_programs() {
     let folder = tempfile::tempdir().unwrap();
     let (robot, settings) = (bent(), settings(ModelKind::One, 3));
-    let data = two_suites(folder.path(), &model_of(&robot, &settings));
-    let program = conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap();
+    two_suites(folder.path(), &model_of(&robot, &settings));
+    let program = conform_all(&read(&robot, folder.path(), &[], &settings));
     let bisection = Settings { method: Method::Bisection, ..settings.clone() };
-    let baseline = conform(&robot, &data, &[], &bisection, &Watch::SILENT).unwrap();
-    assert!(program.proof.verified && baseline.proof.verified);
+    let baseline = conform_all(&read(&robot, folder.path(), &[], &bisection));
+    assert!(program.verdict.conformant && baseline.verdict.conformant);
     assert!(baseline.cost > 0.999 * program.cost, "{} for {}", baseline.cost, program.cost);
     assert!(baseline.search.unwrap().reachable_sets > 10 * program.search.unwrap().reachable_sets);
+}
+
+/// Collects what a search reports, and stops it by a panic after some messages.
+struct Interrupting {
+    messages: Mutex<Vec<String>>,
+    stop_after: usize,
+}
+
+impl Interrupting {
+    fn after(stop_after: usize) -> Self {
+        Self { messages: Mutex::default(), stop_after }
+    }
+
+    fn messages(&self) -> Vec<String> {
+        self.messages.lock().unwrap().clone()
+    }
+}
+
+impl Progress for Interrupting {
+    fn finished(&self, what: &str) {
+        let mut messages = self.messages.lock().unwrap();
+        messages.push(what.to_string());
+        assert!(messages.len() < self.stop_after, "interrupted");
+    }
 }
 
 /// An interrupted search goes on where it was, and comes to the same sets bit by bit.
@@ -223,41 +238,25 @@ fn bisection_costs_more_than_the_programs() {
 fn a_search_goes_on_where_it_was_interrupted() {
     let folder = tempfile::tempdir().unwrap();
     let robot = bent();
-    let data = two_suites(folder.path(), &model_of(&robot, &settings(ModelKind::One, 3)));
+    two_suites(folder.path(), &model_of(&robot, &settings(ModelKind::One, 3)));
     let path = folder.path().join("progress.json");
     for method in [Method::Program, Method::Bisection] {
         let settings = Settings { method, ..settings(ModelKind::One, 3) };
-        let told = Mutex::new(Vec::new());
-        let run = |stop_after: usize, resume: Option<&Path>| {
-            told.lock().unwrap().clear();
-            let finished = |words: &str| {
-                let mut told = told.lock().unwrap_or_else(|stopped| stopped.into_inner());
-                told.push(words.to_string());
-                assert!(told.len() < stop_after, "interrupted");
-            };
-            conform(
-                &robot,
-                &data,
-                &[],
-                &settings,
-                &Watch { finished: &finished, resume, ..Watch::SILENT },
-            )
-        };
-        let whole = run(usize::MAX, None).unwrap();
-        let all = told.lock().unwrap().clone();
-        assert!(catch_unwind(AssertUnwindSafe(|| run(3, Some(&path)))).is_err());
-        told.clear_poison();
-        assert!(path.exists());
+        let problem = read(&robot, folder.path(), &[], &settings);
+        let uninterrupted = Interrupting::after(usize::MAX);
+        let whole = conform(&problem, &uninterrupted, None).unwrap();
+        let stopped = Interrupting::after(3);
+        let run = AssertUnwindSafe(|| conform(&problem, &stopped, Some(&path)).map(|_| ()));
+        assert!(catch_unwind(run).is_err() && path.exists());
         let other = Settings { disturbance: Disturbance::Constant, ..settings.clone() };
-        let watch = Watch { resume: Some(&path), ..Watch::SILENT };
-        let refused = conform(&robot, &data, &[], &other, &watch).unwrap_err().to_string();
-        assert!(
-            refused.contains("progress.json: it holds the progress of another job"),
-            "{refused}"
-        );
-        let resumed = run(usize::MAX, Some(&path)).unwrap();
+        let other = read(&robot, folder.path(), &[], &other);
+        let refused = conform(&other, &Silent, Some(&path)).unwrap_err().to_string();
+        let words = "progress.json: it holds the progress of another job";
+        assert!(refused.contains(words), "{refused}");
+        let resuming = Interrupting::after(usize::MAX);
+        let resumed = conform(&problem, &resuming, Some(&path)).unwrap();
         assert_eq!(resumed.sets, whole.sets);
-        assert_eq!(*told.lock().unwrap(), all[3..]);
+        assert_eq!(resuming.messages(), uninterrupted.messages()[3..]);
         assert!(!path.exists());
     }
 }
@@ -271,10 +270,8 @@ fn a_model_that_runs_away_is_refused_with_the_time() {
     // Far above the peak of v (2 + 0.2 v - 0.3 v²).
     runs.iter_mut().for_each(|run| run.torques.iter_mut().for_each(|u| *u = 40.0));
     write_data_set(folder.path(), &[("a", runs)]);
-    let data = DataSet::open(folder.path()).unwrap();
-    let error =
-        conform(&robot, &data, &[], &settings(ModelKind::One, 3), &Watch::SILENT).unwrap_err();
-    let text = error.to_string();
+    let problem = read(&robot, folder.path(), &[], &settings(ModelKind::One, 3));
+    let text = conform(&problem, &Silent, None).unwrap_err().to_string();
     assert!(
         text.contains("suite a: the model runs away after 0.") && text.contains("--until"),
         "{text}"
@@ -287,12 +284,14 @@ fn a_model_that_runs_away_is_refused_with_the_time() {
 fn a_reachable_set_that_is_lost_is_an_answer() {
     let folder = tempfile::tempdir().unwrap();
     let (robot, settings) = (bent(), settings(ModelKind::One, 3));
-    let data = two_suites(folder.path(), &model_of(&robot, &settings));
-    let found = conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap();
-    let mut model = Model::new(&robot, &data, &settings, &found);
+    two_suites(folder.path(), &model_of(&robot, &settings));
+    let problem = read(&robot, folder.path(), &[], &settings);
+    let found = conform_all(&problem);
+    let mut model = Model::new(&problem, &found);
     model.input_set.radius = vec![20.0; 2];
-    let answer = check(&model, &data, &[], &settings, &|_, _| {}).unwrap();
-    assert!(!answer.conformant && answer.lost.len() == 2, "{answer:?}");
-    assert!(answer.violations.count > 0 && answer.violations.worst.is_none());
+    let answer = check(&model, &problem, &Hulls::new(&problem, model.sets()).unwrap()).unwrap();
+    let verdict = &answer.verdict;
+    assert!(!verdict.conformant && verdict.lost.len() == 2, "{answer:?}");
+    assert!(verdict.violations.count > 0 && verdict.violations.worst.is_none());
     serde_json::from_str::<serde_json::Value>(&serde_json::to_string(&answer).unwrap()).unwrap();
 }

@@ -3,26 +3,25 @@
 
 mod common;
 
-use reachtube_conform::Model;
-use reachtube_conform::{Centre, Conformance, Dynamics, Settings, States, Watch, check, conform};
+use std::path::Path;
+
+use common::{check_against, conform_all, read};
+use nalgebra::{DMatrix, DVector};
+use reachtube_conform::{Centre, Conformance, Dynamics, Model, Problem, Settings, States};
 use reachtube_reach::Disturbance;
-use reachtube_recordings::{DataSet, Torque};
+use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
 
-fn names(suites: &str) -> Vec<String> {
-    suites.split(',').map(String::from).collect()
-}
-
 fn conform_with(
-    data: &DataSet,
-    suites: &str,
+    folder: &Path,
+    suites: &[&str],
     adjust: impl Fn(&mut Settings),
-) -> (Settings, Conformance) {
-    let robot = Robot::lwa4p();
+) -> (Problem, Conformance) {
     let mut settings = Settings::new(Torque::Compensated, 6);
     adjust(&mut settings);
-    let found = conform(&robot, data, &names(suites), &settings, &Watch::SILENT).unwrap();
-    (settings, found)
+    let problem = read(&Robot::lwa4p(), folder, suites, &settings);
+    let found = conform_all(&problem);
+    (problem, found)
 }
 
 /// Optimal costs found by HiGHS 1.11 (dual simplex, through SciPy) on the whole program, all 52,224
@@ -57,11 +56,10 @@ const OPTIMA: [(States, Disturbance, [f64; 3]); 6] = [
 #[test]
 fn costs_are_those_of_an_independent_solver_and_the_sets_are_proved() {
     let Some(folder) = common::shared("schunk_lwa4p") else { return };
-    let data = DataSet::open(folder).unwrap();
     for (states, disturbance, costs) in OPTIMA {
         for (centre, optimum) in [Centre::Free, Centre::Origin, Centre::Zero].into_iter().zip(costs)
         {
-            let (_, found) = conform_with(&data, "A,B,D,E", |settings| {
+            let (_, found) = conform_with(&folder, &["A", "B", "D", "E"], |settings| {
                 (settings.states, settings.disturbance, settings.centre) =
                     (states, disturbance, centre);
             });
@@ -77,10 +75,10 @@ fn costs_are_those_of_an_independent_solver_and_the_sets_are_proved() {
                 "{case}: bound {}",
                 lower_bound
             );
-            assert!(found.proof.verified && found.proof.largest_excess <= 0.0, "{case}");
+            assert!(found.verdict.conformant && found.verdict.largest_excess <= 0.0, "{case}");
             let suites_by_samples = 937 + 703 + 234 + 1088;
-            assert_eq!(found.proof.rows, suites_by_samples * 2 * states.rows(6), "{case}");
-            let sets = found.sets.initial_set.center.iter().zip(&found.sets.initial_set.radius);
+            assert_eq!(found.verdict.rows, suites_by_samples * states.rows(6), "{case}");
+            let sets = found.sets.initial_set.centre.iter().zip(&found.sets.initial_set.radius);
             match centre {
                 Centre::Free => {}
                 Centre::Origin => assert!(sets.clone().all(|(c, r)| c.abs() <= *r), "{case}"),
@@ -93,12 +91,13 @@ fn costs_are_those_of_an_independent_solver_and_the_sets_are_proved() {
 #[test]
 fn a_motion_that_was_not_fitted_is_not_claimed_and_a_fitted_one_is() {
     let Some(folder) = common::shared("schunk_lwa4p") else { return };
-    let data = DataSet::open(folder).unwrap();
-    let (settings, found) = conform_with(&data, "A,B,D", |_| {});
-    let model = Model::new(&Robot::lwa4p(), &data, &settings, &found);
-    let fitted = check(&model, &data, &names("B,A"), &settings, &|_, _| {}).unwrap();
-    assert!(fitted.conformant && fitted.violations.count == 0 && fitted.trust.is_none());
-    let other = check(&model, &data, &names("E"), &settings, &|_, _| {}).unwrap();
+    let (problem, found) = conform_with(&folder, &["A", "B", "D"], |_| {});
+    let model = Model::new(&problem, &found);
+    let fitted = check_against(&model, &folder, &["B", "A"]);
+    let verdict = &fitted.verdict;
+    assert!(verdict.conformant && verdict.violations.count == 0 && fitted.trust.is_none());
+    let checked = check_against(&model, &folder, &["E"]);
+    let other = &checked.verdict;
     let worst = other.violations.worst.clone().unwrap();
     assert!(
         !other.conformant
@@ -106,7 +105,7 @@ fn a_motion_that_was_not_fitted_is_not_claimed_and_a_fitted_one_is() {
             && worst.suite == "E"
             && worst.excess > 0.1
     );
-    assert_eq!(other.trust.unwrap().motions, 1);
+    assert_eq!(checked.trust.unwrap().motions, 1);
 }
 
 /// The count of `check` by plain floating point: x̂ by the exact discretisation, the reach by
@@ -114,19 +113,17 @@ fn a_motion_that_was_not_fitted_is_not_claimed_and_a_fitted_one_is() {
 #[test]
 fn violations_are_counted_as_a_plain_simulation_counts_them() {
     let Some(folder) = common::shared("schunk_lwa4p") else { return };
-    let data = DataSet::open(folder).unwrap();
-    let (settings, found) = conform_with(&data, "A,B", |_| {});
-    let model = Model::new(&Robot::lwa4p(), &data, &settings, &found);
-    let checked = check(&model, &data, &names("D,E"), &settings, &|_, _| {}).unwrap();
+    let (problem, found) = conform_with(&folder, &["A", "B"], |_| {});
+    let model = Model::new(&problem, &found);
+    let checked = check_against(&model, &folder, &["D", "E"]).verdict;
+    let data = DataSet::open(&folder).unwrap();
+    let options = ReadOptions { joints: Some(6), ..ReadOptions::default() };
     let mut count = 0;
     let mut worst: f64 = 0.0;
-    for suite in data.select(&names("D,E")).unwrap() {
-        let runs: Vec<_> = suite
-            .runs
-            .iter()
-            .map(|&run| data.read(run, Some(6), Default::default(), None).unwrap())
-            .collect();
-        for (_, _, excess) in plain_excess(&model, &runs) {
+    for suite in data.select(&["D", "E"].map(String::from)).unwrap() {
+        let runs: Vec<_> =
+            suite.runs.iter().map(|&run| data.read(run, &options).unwrap()).collect();
+        for (_, _, excess) in plain_excess(problem.dynamics(), &model, &runs) {
             count += usize::from(excess > 0.0);
             worst = worst.max(excess);
         }
@@ -136,9 +133,8 @@ fn violations_are_counted_as_a_plain_simulation_counts_them() {
 }
 
 /// (sample, state, excess) by plain floating point.
-fn plain_excess(model: &Model, runs: &[reachtube_recordings::Run]) -> Vec<(usize, usize, f64)> {
-    use nalgebra::{DMatrix, DVector};
-    let Dynamics::Linear(system) = model.dynamics().unwrap() else { panic!("model 1 of order 1") };
+fn plain_excess(dynamics: &Dynamics, model: &Model, runs: &[Run]) -> Vec<(usize, usize, f64)> {
+    let system = dynamics.linear_system().expect("model 1 of order 1 is linear");
     let sets = model.sets();
     let vector = |values: &[f64]| -> DVector<f64> { DVector::from_column_slice(values) };
     let zero = DVector::zeros(6);
@@ -146,21 +142,21 @@ fn plain_excess(model: &Model, runs: &[reachtube_recordings::Run]) -> Vec<(usize
         DMatrix::from_columns(&(0..n).map(f).collect::<Vec<_>>())
     };
     let unit = |n: usize, j: usize| DVector::from_fn(n, |i, _| f64::from(u8::from(i == j)));
-    let phi = columns(&|j| common::step(&system, 0.004, &unit(12, j), &zero), 12);
-    let gamma = columns(&|j| common::step(&system, 0.004, &DVector::zeros(12), &unit(6, j)), 6);
+    let phi = columns(&|j| common::step(system, 0.004, &unit(12, j), &zero), 12);
+    let gamma = columns(&|j| common::step(system, 0.004, &DVector::zeros(12), &unit(6, j)), 6);
     let mean =
         runs.iter().map(|run| vector(run.state(0))).sum::<DVector<f64>>() / runs.len() as f64;
     let (mut e, mut g, mut gain) =
         (DMatrix::identity(12, 12), DMatrix::zeros(12, 6), DMatrix::zeros(12, 6));
     let (mut x, mut rows) = (mean, Vec::new());
     for k in 0..runs[0].len() {
-        let center: DVector<f64> =
-            &x + &e * vector(&sets.initial_set.center) + &g * vector(&sets.input_set.center);
+        let centre: DVector<f64> =
+            &x + &e * vector(&sets.initial_set.centre) + &g * vector(&sets.input_set.centre);
         let radius: DVector<f64> =
             e.abs() * vector(&sets.initial_set.radius) + &gain * vector(&sets.input_set.radius);
         for i in 0..12 {
             let furthest =
-                runs.iter().map(|run| (run.state(k)[i] - center[i]).abs()).fold(0.0, f64::max);
+                runs.iter().map(|run| (run.state(k)[i] - centre[i]).abs()).fold(0.0, f64::max);
             rows.push((k, i, furthest - radius[i]));
         }
         x = &phi * x + &gamma * vector(runs[0].torque(k));

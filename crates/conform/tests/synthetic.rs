@@ -2,16 +2,19 @@
 
 mod common;
 
-use common::{Disturbed, Random, Recorded, grid, two_joints, write_data_set};
-use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
-use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel, linear_model};
-use reachtube_conform::Model;
+use std::path::Path;
+
+use common::{
+    Disturbed, Random, Recorded, check_against, conform_all, grid, read, two_joints, write_data_set,
+};
+use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome};
+use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::{
-    Case, Centre, Conformance, Dynamics, Grids, Noise, NominalStart, Recordings, Settings,
-    UncertaintySets, Watch, Weights, check, conform, explain,
+    Centre, Conformance, Model, Noise, NominalStart, Problem, Settings, UncertaintySets, Weights,
+    explain,
 };
 use reachtube_reach::{Disturbance, Hyperrectangle, Propagation, TimeGrid};
-use reachtube_recordings::{DataSet, Torque};
+use reachtube_recordings::{DataSet, ReadOptions, RunSource, Torque};
 use reachtube_robot::Robot;
 
 fn suite(robot: &Robot, times: &[f64], runs: usize, seed: u64) -> Vec<Recorded> {
@@ -20,10 +23,10 @@ fn suite(robot: &Robot, times: &[f64], runs: usize, seed: u64) -> Vec<Recorded> 
     (0..runs).map(|_| arm.record(&mut random)).collect()
 }
 
-fn run(robot: &Robot, folder: &std::path::Path, settings: &Settings) -> (DataSet, Conformance) {
-    let data = DataSet::open(folder).unwrap();
-    let found = conform(robot, &data, &[], settings, &Watch::SILENT).unwrap();
-    (data, found)
+fn run(robot: &Robot, folder: &Path, settings: &Settings) -> (Problem, Conformance) {
+    let problem = read(robot, folder, &[], settings);
+    let found = conform_all(&problem);
+    (problem, found)
 }
 
 #[test]
@@ -38,7 +41,7 @@ fn sets_cost_no_more_than_the_disturbances_that_were_there() {
         ],
     );
     let (_, found) = run(&robot, folder.path(), &Settings::new(Torque::Compensated, 2));
-    assert!(found.proof.verified);
+    assert!(found.verdict.conformant);
     // The nominal solution starts at the mean of the runs, so what was there lies in sets of twice
     // the radius of the starts.
     let truth = |start: f64, input: f64| {
@@ -47,7 +50,7 @@ fn sets_cost_no_more_than_the_disturbances_that_were_there() {
             &TimeGrid::uniform(0.01, 80),
         )
         .unwrap();
-        let gains = Disturbance::Sample.gains(&propagation);
+        let gains = Disturbance::Sample.input_gains(&propagation);
         let at = |k: usize| {
             let e: f64 = propagation.exponential(k).iter().map(|x| 2.0 * start * x.mag()).sum();
             e + gains[k].iter().map(|x| 2.0 * input * x.mag()).sum::<f64>()
@@ -69,14 +72,10 @@ fn each_run_is_explained_by_sets_that_hold_its_disturbances() {
             ("b", suite(&robot, &grid(0.01, 50), 9, 4)),
         ],
     );
-    let data = DataSet::open(folder.path()).unwrap();
-    let names = ["b".to_owned(), "a".to_owned()];
-    let recordings = Recordings::read(&data, &names, &robot, &settings, &|_, _| {}).unwrap();
-    let cases = Case::all(&data, &robot, &settings, &recordings).unwrap();
-    let model = PolynomialModel::new(&robot, ModelKind::One, 1, &ExpansionPoint::zero(2)).unwrap();
+    let problem = read(&robot, folder.path(), &["b", "a"], &settings);
     let explained = |start: f64, input: f64| {
         let set = |dimension, radius| Hyperrectangle {
-            center: vec![0.0; dimension],
+            centre: vec![0.0; dimension],
             radius: vec![radius; dimension],
         };
         let sets = UncertaintySets {
@@ -84,12 +83,16 @@ fn each_run_is_explained_by_sets_that_hold_its_disturbances() {
             input_set: set(2, input),
             noise_set: None,
         };
-        explain(&data, &robot, &settings, &model, &cases, &recordings, &sets).unwrap()
+        explain(&problem, &sets).unwrap()
     };
     // The starts lie within 0.01 of 0, and so within 0.02 of their mean.
     let found = explained(0.02, 0.5);
-    let expected: Vec<usize> =
-        recordings.suites.iter().flat_map(|suite| suite.runs.iter().map(|run| run.index)).collect();
+    let expected: Vec<usize> = problem
+        .recordings()
+        .suites
+        .iter()
+        .flat_map(|suite| suite.runs.iter().map(|run| run.index))
+        .collect();
     assert_eq!(found.iter().map(|explanation| explanation.run).collect::<Vec<_>>(), expected);
     assert!(found.iter().all(|run| run.position < 1e-7 && run.velocity < 1e-6), "{found:?}");
     assert!(explained(0.02, 0.1).iter().all(|run| run.position > 1e-4 || run.velocity > 1e-3));
@@ -103,7 +106,7 @@ fn one_sample_is_its_own_hull() {
         starts.map(|x| Recorded { times: vec![0.0], states: x.to_vec(), torques: vec![0.0; 2] });
     write_data_set(folder.path(), &[("a", runs.to_vec())]);
     let (_, found) = run(&two_joints(), folder.path(), &Settings::new(Torque::Compensated, 2));
-    assert!(found.proof.verified);
+    assert!(found.verdict.conformant);
     assert!((found.cost - (0.4 + 0.2 + 0.4)).abs() < 1e-9, "{}", found.cost);
     for (radius, exact) in found.sets.initial_set.radius.iter().zip([0.2, 0.1, 0.2, 0.0]) {
         assert!((radius - exact).abs() < 1e-9);
@@ -118,7 +121,7 @@ fn recordings_of_the_model_itself_need_sets_of_rounding_only() {
     let exact = Disturbed { robot: &robot, times: &times, start: 0.0, input: 0.0 };
     write_data_set(folder.path(), &[("a", vec![exact.record(&mut Random(1))])]);
     let (_, found) = run(&robot, folder.path(), &Settings::new(Torque::Compensated, 2));
-    assert!(found.proof.verified && found.cost < 1e-10, "{}", found.cost);
+    assert!(found.verdict.conformant && found.cost < 1e-10, "{}", found.cost);
 }
 
 /// Every row handed at once to a simplex solver that shares nothing with the program.
@@ -140,10 +143,11 @@ fn row_generation_finds_the_optimum_of_the_whole_program() {
                 (settings.disturbance, settings.centre, settings.noise) =
                     (disturbance, centre, noise);
                 settings.weights = Weights::Given(vec![1.0, 2.0, 0.5, 0.25]);
-                let (data, found) = run(&robot, folder.path(), &settings);
+                let (_, found) = run(&robot, folder.path(), &settings);
+                let data = DataSet::open(folder.path()).unwrap();
                 let simplex = whole_program(&robot, &data, &settings);
                 let case = format!("{disturbance:?} {centre:?} {:?}", settings.noise);
-                assert!(found.proof.verified, "{case}");
+                assert!(found.verdict.conformant, "{case}");
                 assert!(
                     (found.cost / simplex - 1.0).abs() < 1e-7,
                     "{case}: {} for {simplex}",
@@ -158,7 +162,7 @@ fn row_generation_finds_the_optimum_of_the_whole_program() {
 fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
     let system = linear_model(robot, &ExpansionPoint::zero(2)).unwrap();
     let propagation = Propagation::new(&system, &TimeGrid::uniform(0.02, 40)).unwrap();
-    let gains = settings.disturbance.gains(&propagation);
+    let gains = settings.disturbance.input_gains(&propagation);
     let Weights::Given(weights) = &settings.weights else { unreachable!() };
     let coefficient = |k: usize, i: usize, j: usize| {
         if j < 4 {
@@ -176,9 +180,9 @@ fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
             .map(|(k, i)| 2.0 * weights[i] * gain(k, i, j))
             .sum()
     };
-    let mut problem = Problem::new(OptimizationDirection::Minimize);
+    let mut problem = microlp::Problem::new(OptimizationDirection::Minimize);
     let limit = if settings.centre == Centre::Zero { 0.0 } else { f64::INFINITY };
-    let centers: Vec<_> = (0..6).map(|_| problem.add_var(0.0, (-limit, limit))).collect();
+    let centres: Vec<_> = (0..6).map(|_| problem.add_var(0.0, (-limit, limit))).collect();
     let radii: Vec<_> = (0..6).map(|j| problem.add_var(cost(j), (0.0, f64::INFINITY))).collect();
     let noise: Vec<_> = (0..4)
         .map(|i| {
@@ -194,7 +198,7 @@ fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
         let runs: Vec<_> = suite
             .runs
             .iter()
-            .map(|&run| data.read(run, Some(2), Default::default(), None).unwrap())
+            .map(|&run| data.read(run, &ReadOptions::default()).unwrap())
             .collect();
         let mut x = runs
             .iter()
@@ -209,7 +213,7 @@ fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
                         .map(|run| sign * (run.state(k)[i] - x[i]))
                         .fold(f64::NEG_INFINITY, f64::max);
                     let mut row = vec![(noise[i], 1.0)];
-                    row.extend((0..6).map(|j| (centers[j], sign * coefficient(k, i, j))));
+                    row.extend((0..6).map(|j| (centres[j], sign * coefficient(k, i, j))));
                     row.extend((0..6).map(|j| (radii[j], gain(k, i, j))));
                     problem.add_constraint(row, ComparisonOp::Ge, bound);
                 }
@@ -223,9 +227,9 @@ fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
         }
     }
     if settings.centre == Centre::Origin {
-        for (center, radius) in centers.iter().zip(&radii) {
-            problem.add_constraint([(*center, 1.0), (*radius, -1.0)], ComparisonOp::Le, 0.0);
-            problem.add_constraint([(*center, -1.0), (*radius, -1.0)], ComparisonOp::Le, 0.0);
+        for (centre, radius) in centres.iter().zip(&radii) {
+            problem.add_constraint([(*centre, 1.0), (*radius, -1.0)], ComparisonOp::Le, 0.0);
+            problem.add_constraint([(*centre, -1.0), (*radius, -1.0)], ComparisonOp::Le, 0.0);
         }
     }
     match problem.solve().unwrap() {
@@ -240,23 +244,24 @@ fn runs_with_their_own_input_or_times_have_their_own_nominal_solution() {
     let mut settings = Settings::new(Torque::Compensated, 2);
     let same = tempfile::tempdir().unwrap();
     write_data_set(same.path(), &[("a", suite(&robot, &grid(0.01, 50), 5, 8))]);
-    let (_, shared) = run(&robot, same.path(), &settings);
+    let (shared_problem, shared) = run(&robot, same.path(), &settings);
     // The input of one run is changed in one sample by an amount that nothing can see: only the way
     // of computing differs.
     let mut runs = suite(&robot, &grid(0.01, 50), 5, 8);
     runs[3].torques[20] += 1e-13;
     let other = tempfile::tempdir().unwrap();
     write_data_set(other.path(), &[("a", runs)]);
-    let (_, own) = run(&robot, other.path(), &settings);
+    let (own_problem, own) = run(&robot, other.path(), &settings);
     assert!(
-        shared.recordings.suites[0].shared.is_some() && own.recordings.suites[0].shared.is_none()
+        shared_problem.recordings().suites[0].shared.is_some()
+            && own_problem.recordings().suites[0].shared.is_none()
     );
-    assert!((own.cost / shared.cost - 1.0).abs() < 1e-9 && own.proof.verified);
-    assert!(own.recordings.notes.iter().any(|note| note.contains("own nominal")));
+    assert!((own.cost / shared.cost - 1.0).abs() < 1e-9 && own.verdict.conformant);
+    assert!(own_problem.recordings().notes.iter().any(|note| note.contains("own nominal")));
     // Started at its own first state, a run has no deviation there.
     settings.nominal = NominalStart::Own;
     let (_, started) = run(&robot, same.path(), &settings);
-    assert!(started.proof.verified && started.cost < shared.cost);
+    assert!(started.verdict.conformant && started.cost < shared.cost);
 }
 
 #[test]
@@ -274,13 +279,11 @@ fn suites_of_different_rates_share_a_model() {
     for disturbance in [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable] {
         let mut settings = Settings::new(Torque::Compensated, 2);
         settings.disturbance = disturbance;
-        let (data, found) = run(&robot, folder.path(), &settings);
-        assert!(found.proof.verified);
-        let Dynamics::Linear(system) = &found.dynamics else { panic!("model 1 of order 1") };
-        let grids = Grids::new(&found.recordings, system, disturbance).unwrap();
-        assert_eq!(grids.as_slice().len(), 3);
-        let model = Model::new(&robot, &data, &settings, &found);
-        assert!(check(&model, &data, &[], &settings, &|_, _| {}).unwrap().conformant);
+        let (problem, found) = run(&robot, folder.path(), &settings);
+        assert!(found.verdict.conformant);
+        assert_eq!(problem.grids().unwrap().as_slice().len(), 3);
+        let model = Model::new(&problem, &found);
+        assert!(check_against(&model, folder.path(), &[]).verdict.conformant);
     }
 }
 
@@ -291,17 +294,16 @@ fn a_point_pushed_out_of_the_set_is_the_witness() {
     let mut runs = suite(&robot, &grid(0.01, 60), 6, 31);
     write_data_set(folder.path(), &[("a", runs.clone())]);
     let settings = Settings::new(Torque::Compensated, 2);
-    let (data, found) = run(&robot, folder.path(), &settings);
-    let model = Model::new(&robot, &data, &settings, &found);
+    let (problem, found) = run(&robot, folder.path(), &settings);
+    let model = Model::new(&problem, &found);
     let (k, i) = (37, 1);
     runs[2].states[k * 4 + i] -= 0.5;
     write_data_set(folder.path(), &[("a", runs)]);
-    let checked =
-        check(&model, &DataSet::open(folder.path()).unwrap(), &[], &settings, &|_, _| {}).unwrap();
+    let checked = check_against(&model, folder.path(), &[]).verdict;
     let worst = checked.violations.worst.unwrap();
     assert!(!checked.conformant && checked.violations.count == 1);
     assert_eq!(
-        (worst.run.as_str(), worst.sample, worst.joint, worst.state.as_str()),
+        (worst.run.as_str(), worst.sample, worst.joint, worst.state.to_string().as_str()),
         ("a_02.csv", k, 2, "q2")
     );
     assert!(worst.excess > 0.0 && worst.excess <= 0.5);
@@ -313,11 +315,11 @@ fn a_model_survives_its_file() {
     let folder = tempfile::tempdir().unwrap();
     write_data_set(folder.path(), &[("a", suite(&robot, &grid(0.01, 40), 4, 41))]);
     let settings = Settings::new(Torque::Compensated, 2);
-    let (data, found) = run(&robot, folder.path(), &settings);
-    let model = Model::new(&robot, &data, &settings, &found);
+    let (problem, found) = run(&robot, folder.path(), &settings);
+    let model = Model::new(&problem, &found);
     let path = folder.path().join("model.json");
     std::fs::write(&path, model.to_json()).unwrap();
-    let read = Model::load(&path).unwrap();
-    assert_eq!(read, model);
-    assert!(check(&read, &data, &[], &read.settings, &|_, _| {}).unwrap().conformant);
+    let loaded = Model::load(&path).unwrap();
+    assert_eq!(loaded, model);
+    assert!(check_against(&loaded, folder.path(), &[]).verdict.conformant);
 }

@@ -1,19 +1,23 @@
-use nalgebra::DMatrix;
-use reachtube_ode::{DormandPrince, Run as Motion, Tolerance};
-use reachtube_reach::{Hyperrectangle, TimeGrid};
-use reachtube_robot::Robot;
+use std::sync::Arc;
 
-use super::chain::Chain;
-use super::regulate::regulate;
-use super::{Behaviour, Search};
-use crate::nonlinear::Case;
-use crate::solver::{Triplets, solve_cone};
-use crate::{Envelope, UncertaintySets};
+use nalgebra::DMatrix;
 use rand::RngExt;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::SeedableRng;
 use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
+use reachtube_ode::{DormandPrince, Run as Motion, Tolerance};
+use reachtube_reach::{Hyperrectangle, IntervalVector, TimeGrid};
 use reachtube_recordings::Run;
+use reachtube_robot::Robot;
+use reachtube_scalar::Interval;
+
+use crate::envelope::Envelope;
+use crate::explain::chain::Chain;
+use crate::explain::closest_motion::{Behaviour, ClosestMotion};
+use crate::explain::regulate::regulate;
+use crate::linear::solver::{Triplets, solve_cone};
+use crate::problem::case::Case;
+use crate::sets::UncertaintySets;
 
 const SAMPLES: usize = 120;
 const JOINTS: usize = 6;
@@ -28,7 +32,7 @@ fn models() -> [PolynomialModel; 3] {
 /// Sets off their centre, in numbers whose sums are exact.
 fn sets() -> UncertaintySets {
     let set = |dimension, radius: f64| Hyperrectangle {
-        center: vec![radius / 4.0; dimension],
+        centre: vec![radius / 4.0; dimension],
         radius: vec![radius; dimension],
     };
     UncertaintySets {
@@ -44,10 +48,10 @@ fn case() -> Case {
         name: "a case".into(),
         suite: 0,
         run: None,
-        grid: TimeGrid::uniform(1.0 / 256.0, SAMPLES),
+        grid: Arc::new(TimeGrid::uniform(1.0 / 256.0, SAMPLES)),
         inputs: (0..SAMPLES * JOINTS).map(|at| dyadic(input(at))).collect(),
-        start: (0..2 * JOINTS).map(|i| i as f64 / 16.0).collect(),
-        measured: Envelope::new(2 * JOINTS),
+        start: IntervalVector::from_fn(2 * JOINTS, |i, _| Interval::point(i as f64 / 16.0)),
+        measured: Arc::new(Envelope::new(2 * JOINTS)),
     }
 }
 
@@ -77,10 +81,14 @@ fn record(model: &PolynomialModel, case: &Case, start: &[f64], inputs: &[f64]) -
 fn disturbed(model: &PolynomialModel, case: &Case, sets: &UncertaintySets, reach: f64) -> Run {
     let mut random = SplitMix64::seed_from_u64(7);
     let mut within = |set: &Hyperrectangle, i: usize| {
-        set.center[i] + reach * uniform(&mut random, set.radius[i])
+        set.centre[i] + reach * uniform(&mut random, set.radius[i])
     };
-    let start: Vec<f64> =
-        case.start.iter().enumerate().map(|(i, x)| x + within(&sets.initial_set, i)).collect();
+    let start: Vec<f64> = case
+        .start_point()
+        .iter()
+        .enumerate()
+        .map(|(i, x)| x + within(&sets.initial_set, i))
+        .collect();
     let acting = case.inputs[..(SAMPLES - 1) * JOINTS].iter().enumerate();
     let inputs: Vec<f64> = acting.map(|(at, u)| u + within(&sets.input_set, at % JOINTS)).collect();
     record(model, case, &start, &inputs)
@@ -99,7 +107,12 @@ fn assert_is_witness(
         let (low, high) = set.bounds(i);
         base + low <= x && x <= base + high
     };
-    assert!((0..2 * JOINTS).all(|i| is_in(found.states[i], case.start[i], &sets.initial_set, i)));
+    assert!((0..2 * JOINTS).all(|i| is_in(
+        found.states[i],
+        case.start_point()[i],
+        &sets.initial_set,
+        i
+    )));
     assert_eq!(found.inputs.len(), (SAMPLES - 1) * JOINTS);
     assert!(found.inputs.iter().enumerate().all(|(at, u)| is_in(
         *u,
@@ -122,7 +135,7 @@ fn runs_of_the_model_are_explained() {
     let (case, sets) = (case(), sets());
     for model in models() {
         let run = disturbed(&model, &case, &sets, 1.0);
-        let found = Search::new(&model, &case, &sets, &run).run();
+        let found = ClosestMotion::new(&model, &case, &sets, &run).run();
         assert_is_witness(&model, &case, &sets, &run, &found);
         assert!(
             found.position < 1e-7 && found.velocity < 1e-6,
@@ -137,10 +150,10 @@ fn runs_of_the_model_are_explained() {
 fn a_start_outside_cannot_be_explained() {
     let (case, sets) = (case(), sets());
     for model in models() {
-        let mut start = case.start.clone();
+        let mut start = case.start_point();
         start[0] += sets.initial_set.bounds(0).1 + 0.0625;
         let run = record(&model, &case, &start, &case.inputs[..(SAMPLES - 1) * JOINTS]);
-        let found = Search::new(&model, &case, &sets, &run).run();
+        let found = ClosestMotion::new(&model, &case, &sets, &run).run();
         assert_is_witness(&model, &case, &sets, &run, &found);
         assert!((0.0625..0.064).contains(&found.position), "{}", found.position);
     }
@@ -151,7 +164,7 @@ fn inputs_outside_are_explained_by_larger_sets_only() {
     let (case, sets) = (case(), sets());
     for model in models() {
         let run = disturbed(&model, &case, &sets, 3.0);
-        let found = Search::new(&model, &case, &sets, &run).run();
+        let found = ClosestMotion::new(&model, &case, &sets, &run).run();
         assert_is_witness(&model, &case, &sets, &run, &found);
         assert!(found.largest() > 0.2, "{}", found.largest());
         let larger = UncertaintySets {
@@ -162,7 +175,7 @@ fn inputs_outside_are_explained_by_larger_sets_only() {
             input_set: Hyperrectangle { radius: vec![1.5; JOINTS], ..sets.input_set.clone() },
             noise_set: None,
         };
-        let found = Search::new(&model, &case, &larger, &run).run();
+        let found = ClosestMotion::new(&model, &case, &larger, &run).run();
         assert!(found.largest() < 1e-4, "{}", found.largest());
     }
 }
@@ -177,8 +190,8 @@ fn sets_of_one_point_leave_the_nominal_motion() {
     };
     let model = &models()[1];
     let run = disturbed(model, &case, &sets(), 1.0);
-    let found = Search::new(model, &case, &point, &run).run();
-    assert_eq!(found.states[..2 * JOINTS], case.start);
+    let found = ClosestMotion::new(model, &case, &point, &run).run();
+    assert_eq!(found.states[..2 * JOINTS], case.start_point());
     assert_eq!(found.inputs, case.inputs[..(SAMPLES - 1) * JOINTS]);
     assert_is_witness(model, &case, &point, &run, &found);
 }
@@ -190,7 +203,7 @@ fn one_sample_is_explained_by_the_start() {
     let mut run = disturbed(model, &case, &sets, 1.0);
     run.times.truncate(1);
     run.states.truncate(2 * JOINTS);
-    let found = Search::new(model, &case, &sets, &run).run();
+    let found = ClosestMotion::new(model, &case, &sets, &run).run();
     assert!(found.position < 1e-7 && found.inputs.is_empty());
 }
 

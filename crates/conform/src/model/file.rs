@@ -286,7 +286,8 @@ impl Model {
                 origin: self.origin.clone(),
                 acceleration: self.acceleration.clone(),
             };
-            let model = PolynomialModel::of_records(robot, *abstraction, expansion_point, records)?;
+            let model = PolynomialModel::of_records(robot, *abstraction, expansion_point, records)
+                .map_err(reachtube_abstraction::Error::Setting)?;
             let dynamics = Dynamics::of(model, *method);
             return Ok(dynamics.linear_system().is_none().then_some(dynamics));
         }

@@ -6,7 +6,11 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
+use reachtube_conform::{
+    Check, Conformance, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform,
+};
 use reachtube_reach::{LinearSystem, TimeGrid};
+use reachtube_recordings::DataSet;
 use reachtube_robot::Robot;
 
 /// The folder of real recordings, or none with a word about it.
@@ -31,6 +35,30 @@ impl Random {
         let bits = self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11;
         bits as f64 / (1u64 << 52) as f64 - 1.0
     }
+}
+
+/// Reads the suites `names` of the data set in `folder` (all when none is named).
+pub fn read(robot: &Robot, folder: &Path, names: &[&str], settings: &Settings) -> Problem {
+    read_with(Setup::new(robot.clone(), settings.clone()).unwrap(), folder, names)
+}
+
+pub fn read_with(setup: Setup, folder: &Path, names: &[&str]) -> Problem {
+    let names: Vec<String> = names.iter().map(|name| name.to_string()).collect();
+    let data = DataSet::open(folder).unwrap();
+    Problem::read(setup, Box::new(data), &names, Keep::Needed, &Silent).unwrap()
+}
+
+/// Finds and proves the smallest sets.
+pub fn conform_all(problem: &Problem) -> Conformance {
+    conform(problem, &Silent, None).unwrap()
+}
+
+/// Checks recordings against a model, as its file would.
+pub fn check_against(model: &Model, folder: &Path, names: &[&str]) -> Check {
+    let robot = Robot::from_description(&model.robot).unwrap();
+    let problem = read(&robot, folder, names, &model.settings);
+    let hulls = Hulls::new(&problem, model.sets()).unwrap();
+    check(model, &problem, &hulls).unwrap()
 }
 
 /// One run: times, states (K x 2n), torques (K x n).
