@@ -35,7 +35,8 @@ fn lwa4p_model_1_of_order_3(bencher: Bencher, order: Option<usize>) {
     });
 }
 
-/// A published problem: its name, system, initial set, step (s) and number of samples, and settings.
+/// A published problem: its name, system, initial set, step (s) and number of samples, and
+/// settings.
 type Problem = (String, PolynomialSystem, Hyperrectangle, (f64, usize), FlowpipeSettings);
 
 fn in_pieces(pieces: &[usize]) -> FlowpipeSettings {

@@ -11,8 +11,9 @@ const FRICTION: [f64; 6] = [8.0, 9.0, 5.0, 2.0, 1.2, 0.9];
 
 /// Builds ẋ = [0 I; 0 -M⁻¹D] x + [0; M⁻¹] u with 12 states and 6 inputs.
 ///
-/// M is symmetric and positive definite, since the diagonal dominates its scaled rows. Its couplings
-/// have both signs, so that e^{Aτ} and e^{Aτ} B have entries that are negative or change sign.
+/// M is symmetric and positive definite, since the diagonal dominates its scaled rows. Its
+/// couplings have both signs, so that e^{Aτ} and e^{Aτ} B have entries that are negative or change
+/// sign.
 pub fn arm() -> LinearSystem {
     let n = INERTIA.len();
     let sign = |i: usize, j: usize| if (i + j).is_multiple_of(3) { -1.0 } else { 1.0 };

@@ -47,8 +47,8 @@ impl Case {
         &self.phi * states + &self.gamma * inputs
     }
 
-    /// Fails where a state at sample k leaves the reachable set; returns the largest deviation relative
-    /// to the radius.
+    /// Fails where a state at sample k leaves the reachable set; returns the largest deviation
+    /// relative to the radius.
     fn assert_inside(&self, states: &DMatrix<f64>, k: usize) -> f64 {
         let mut used: f64 = 0.0;
         for i in 0..states.nrows() {

@@ -16,7 +16,9 @@ fn times_of(steps: &[f64], origin: f64) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None, ..ProptestConfig::with_cases(300)
+    })]
 
     #[test]
     fn recorded_times_are_kept_from_the_first_on(steps in steps(), origin in -10.0f64..1e4) {

@@ -170,8 +170,8 @@ fn a_measurable_disturbance_agrees_with_the_trapezoidal_rule() {
     let b = system.b().map(Interval::point);
     let mut sum = nalgebra::DMatrix::zeros(12, 6);
     for k in 0..parts as usize {
-        // Trapezoidal rule for the absolute values; its error at a sign change is below h² times the
-        // slope.
+        // Trapezoidal rule for the absolute values; its error at a sign change is below h² times
+        // the slope.
         let ends = [k, k + 1].map(|k| (fine.exponential(k) * &b).map(|x| x.mid().abs()));
         sum += (&ends[0] + &ends[1]) * (0.5 * h);
     }
@@ -243,7 +243,9 @@ fn recorded_times_of_a_fixed_rate_give_the_gains_of_that_rate() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None, ..ProptestConfig::with_cases(40)
+    })]
 
     #[test]
     fn random_systems_keep_the_order_and_agree_with_trapezoids(

@@ -211,7 +211,9 @@ fn a_trajectory_has_at_most_one_state_per_sample_and_row() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None, ..ProptestConfig::with_cases(40)
+    })]
 
     #[test]
     fn the_exponential_is_a_semigroup(

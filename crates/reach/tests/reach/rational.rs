@@ -1,5 +1,5 @@
-//! The matrices e^{Ah} and Γ(h) in rational numbers: partial sums of the Taylor series, with a bound
-//! of the truncation error.
+//! The matrices e^{Ah} and Γ(h) in rational numbers: partial sums of the Taylor series, with a
+//! bound of the truncation error.
 
 use nalgebra::DMatrix;
 use num_rational::BigRational;
@@ -55,9 +55,10 @@ fn largest_row_sum(matrix: &RationalMatrix) -> Rational {
 
 /// Computes e^{Xh} within 1e-30 in every entry, for a norm of Xh up to 100.
 ///
-/// h is halved until the norm of Xh is at most 1, and the result is squared as often. The truncation
-/// error of 70 terms and their rounding is below 2⁻³¹⁰. Each squaring multiplies an error by at most
-/// twice the norm of the root, and all squarings together by at most 2⁷ e¹⁰⁰ < 2¹⁵².
+/// h is halved until the norm of Xh is at most 1, and the result is squared as often. The
+/// truncation error of 70 terms and their rounding is below 2⁻³¹⁰. Each squaring multiplies an
+/// error by at most twice the norm of the root, and all squarings together by at most 2⁷ e¹⁰⁰ <
+/// 2¹⁵².
 fn exponential(matrix: &RationalMatrix, h: &Rational) -> RationalMatrix {
     let x = each(matrix, |x| x * h);
     if largest_row_sum(&x) > Rational::one() {

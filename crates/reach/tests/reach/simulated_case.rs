@@ -75,9 +75,9 @@ impl Case {
         let times: Vec<f64> =
             (0..=steps * self.parts).map(|k| k as f64 * self.step / self.parts as f64).collect();
         let kinds: Vec<bool> = (0..runs).map(|run| run % 2 == 0).collect();
-        let mut pick = |set: &Hyperrectangle, corner: bool, out: &mut Vec<f64>| {
+        let mut pick = |set: &Hyperrectangle, vertex: bool, out: &mut Vec<f64>| {
             for (c, r) in set.centre.iter().zip(&set.radius) {
-                out.push(c + r * if corner { random.sign() } else { random.symmetric() });
+                out.push(c + r * if vertex { random.sign() } else { random.symmetric() });
             }
         };
         let (mut starts, mut inputs) = (vec![Vec::new(); runs], vec![Vec::new(); runs]);

@@ -53,13 +53,13 @@ fn sines_as_functions_are_within_sines_as_states() {
     ];
     let lifted = PolynomialSystem::new(4, 1, &f).unwrap();
     let input = UncertainInput { measured: &vec![0.1; 100], set: &set(&[0.0], &[1e-3]) };
-    let follow = |system: &PolynomialSystem, start: &[f64], radius: &[f64]| {
+    let propagate = |system: &PolynomialSystem, start: &[f64], radius: &[f64]| {
         let initial = set(&vec![0.0; start.len()], radius);
         Flowpipe::new(system, &grid, start, &initial, &input, &FlowpipeSettings::default()).unwrap()
     };
     let (q, r) = (0.7_f64, 1e-3);
-    let functions = follow(&own, &[q, 0.5], &[r, r]);
-    let states = follow(&lifted, &[q, 0.5, q.sin(), q.cos()], &[r, r, r, r]);
+    let functions = propagate(&own, &[q, 0.5], &[r, r]);
+    let states = propagate(&lifted, &[q, 0.5, q.sin(), q.cos()], &[r, r, r, r]);
     assert!(functions.is_reached() && states.is_reached());
     for k in 1..101 {
         for (own, other) in functions.sample(k).iter().zip(states.sample(k)) {

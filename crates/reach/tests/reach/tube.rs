@@ -96,8 +96,8 @@ impl Case {
         Interval::point(nominal.mid()) + deviation
     }
 
-    /// Returns the mean, over steps and states, of the width of the tube divided by the width of the
-    /// hull of the two samples, minus 1.
+    /// Returns the mean, over steps and states, of the width of the tube divided by the width of
+    /// the hull of the two samples, minus 1.
     fn overhead(&self) -> f64 {
         let n = self.initial.dimension();
         let ratio = |k: usize, i: usize| {
