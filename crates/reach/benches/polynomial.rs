@@ -1,5 +1,5 @@
-//! Reachable sets of polynomial systems: a six-joint arm over 5 s at 250 Hz, and problems of the
-//! ARCH competition, whose final widths are printed.
+//! Benchmarks of the reachable sets of polynomial systems: a six-joint arm over 5 s at 250 Hz, and
+//! problems of the ARCH competition, with their final widths.
 
 #[path = "../tests/reach/arm.rs"]
 mod arm;
@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// 12 states, 6 inputs, the paper's sets, no measured input.
+/// The model has 12 states and 6 inputs; the sets are those of the paper, the measured input is 0.
 #[divan::bench(args = [None, Some(60)])]
 fn lwa4p_model_1_of_order_3(bencher: Bencher, order: Option<usize>) {
     let (system, grid) = (lwa4p::model1(), TimeGrid::uniform(0.004, SAMPLES));
@@ -35,8 +35,8 @@ fn lwa4p_model_1_of_order_3(bencher: Bencher, order: Option<usize>) {
     });
 }
 
-/// A published problem and how it is solved: its name, system, initial set, step and number of
-/// samples, and settings.
+/// A published problem: its name, system, initial set, step (s) and number of samples, and
+/// settings.
 type Problem = (String, PolynomialSystem, Hyperrectangle, (f64, usize), FlowpipeSettings);
 
 fn in_pieces(pieces: &[usize]) -> FlowpipeSettings {

@@ -1,4 +1,5 @@
-//! Reachable sets of a six-joint arm, 12 states and 6 inputs, on a recording of 5 s at 250 Hz.
+//! Benchmarks of the linear reachable sets of a six-joint arm, 12 states and 6 inputs, over 5 s at
+//! 250 Hz.
 
 #[path = "../tests/reach/arm.rs"]
 mod arm;
@@ -23,7 +24,7 @@ fn uniform() -> TimeGrid {
     TimeGrid::uniform(STEP, SAMPLES)
 }
 
-/// Sample times that miss those of the fixed rate by up to a tenth of a step.
+/// Returns sample times that differ from the fixed rate by up to a tenth of a step.
 fn jittered() -> TimeGrid {
     let time = |k: usize| (k as f64 + 0.1 * (k as f64).sin()) * STEP;
     TimeGrid::from_times(&(0..SAMPLES).map(time).collect::<Vec<_>>()).expect("increasing")
@@ -51,13 +52,13 @@ fn propagate_jittered(bencher: Bencher) {
 }
 
 #[divan::bench(args = DISTURBANCES)]
-fn gains(bencher: Bencher, disturbance: Disturbance) {
+fn input_gains(bencher: Bencher, disturbance: Disturbance) {
     let propagation = propagation(&uniform());
     bencher.bench(|| disturbance.input_gains(black_box(&propagation)));
 }
 
 #[divan::bench(args = [Disturbance::Sample, Disturbance::Measurable])]
-fn gains_jittered(bencher: Bencher, disturbance: Disturbance) {
+fn input_gains_jittered(bencher: Bencher, disturbance: Disturbance) {
     let propagation = propagation(&jittered());
     bencher.bench(|| disturbance.input_gains(black_box(&propagation)));
 }
@@ -99,7 +100,7 @@ fn tube(bencher: Bencher) {
     bencher.bench(|| Tube::new(black_box(&propagation), &nominal, &inputs, &reach, &input, &radii));
 }
 
-/// The model and its sets in, the hulls at all samples out.
+/// Measures the whole computation, from the model and its sets to the hulls at all samples.
 #[divan::bench]
 fn linear_reachable_set(bencher: Bencher) {
     let (system, grid, (initial, input)) = (arm(), uniform(), sets());

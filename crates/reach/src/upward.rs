@@ -51,7 +51,8 @@ pub(crate) fn dot_upward(left: impl Iterator<Item = f64> + Clone, right: &[f64])
     sum_upward(terms.clone().map(|(x, y)| x * y).sum(), right.len(), terms)
 }
 
-/// Bounds the sum of `count` products x y >= 0 from above, given its floating-point value `nearest`.
+/// Bounds the sum of `count` products x y >= 0 from above, given its floating-point value
+/// `nearest`.
 ///
 /// `nearest` is at least 1 - γ_N times the exact sum, in any order. Where it is zero, infinite or
 /// near underflow, the terms are summed again with upward rounding.

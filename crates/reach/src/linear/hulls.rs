@@ -22,8 +22,8 @@ pub struct ReachSets {
 }
 
 impl ReachSets {
-    /// Computes the hulls for the initial set X0 (N), the input set U (m) and the input gains κ of a
-    /// [`Disturbance`](crate::Disturbance) on the same grid.
+    /// Computes the hulls for the initial set X0 (N), the input set U (m) and the input gains κ of
+    /// a [`Disturbance`](crate::Disturbance) on the same grid.
     ///
     /// c_k = e^{A t_k} c_x + Γ(t_k) c_u and r_k = |e^{A t_k}| r_x + κ(t_k) r_u.
     ///

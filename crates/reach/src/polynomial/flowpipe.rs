@@ -77,8 +77,8 @@ impl Flowpipe {
     /// under an input with values in u_m + U, at the samples and at all times of the steps, up to
     /// the time of the outcome. The zonotopes contain them too, except for the rounding of the
     /// lengths of their last generators. Products with generators are floating-point products; a
-    /// generator of its own covers the rounding of each step, bounded by γ_n |Φ| times the radius of
-    /// the hull (Rump).
+    /// generator of its own covers the rounding of each step, bounded by γ_n |Φ| times the radius
+    /// of the hull (Rump).
     ///
     /// # Errors
     ///
@@ -86,7 +86,8 @@ impl Flowpipe {
     ///
     /// - [`ReachError::Shape`] when sizes do not fit; the rows of the input must fit the grid;
     /// - [`ReachError::NotFinite`] and [`ReachError::Negative`] for invalid numbers;
-    /// - [`ReachError::Order`] for an order of Taylor models that does not fit the number of states;
+    /// - [`ReachError::Order`] for an order of Taylor models that does not fit the number of
+    ///   states;
     /// - [`ReachError::Trigonometric`] for Taylor models of a system with sines and cosines.
     pub fn new(
         system: &PolynomialSystem,

@@ -12,10 +12,10 @@ pub enum FlowpipeMethod {
     Linearisation,
     /// Taylor models of the state as a function of the initial state.
     ///
-    /// Choose it for a large initial set. The state is a polynomial of degree `order` in the initial
-    /// state and, over each step, in time, plus an offset. The offset obeys ė = A e + B (u - u*) + d
-    /// and is stored as a zonotope. A and B enclose the derivatives of f over the tube of the step,
-    /// which containment proves, and d is the defect of the polynomial.
+    /// Choose it for a large initial set. The state is a polynomial of degree `order` in the
+    /// initial state and, over each step, in time, plus an offset. The offset obeys
+    /// ė = A e + B (u - u*) + d and is stored as a zonotope. A and B enclose the derivatives of f
+    /// over the tube of the step, which containment proves, and d is the defect of the polynomial.
     TaylorModels {
         /// The degree, at least 1; 3 to 5 suits 7 states, up to 12 suits 2 states.
         order: u32,

@@ -1,17 +1,19 @@
-//! A linear system of the shape of a robot arm.
+//! A linear system with the structure of a robot arm.
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use reachtube_reach::LinearSystem;
 
-/// Inertia of each joint alone, kg m².
+/// Inertia of each joint, kg m².
 const INERTIA: [f64; 6] = [2.1, 1.8, 0.9, 0.35, 0.2, 0.12];
 
-/// Viscous friction, N m s/rad.
+/// Viscous friction of each joint, N m s/rad.
 const FRICTION: [f64; 6] = [8.0, 9.0, 5.0, 2.0, 1.2, 0.9];
 
-/// ẋ = [0 I; 0 -M⁻¹D] x + [0; M⁻¹] u with 12 states and 6 inputs: M is symmetric, positive definite
-/// (its scaled rows are dominated by their diagonal) and coupled with both signs, so that e^{Aτ}
-/// and e^{Aτ} B have entries that are negative and that change sign.
+/// Builds ẋ = [0 I; 0 -M⁻¹D] x + [0; M⁻¹] u with 12 states and 6 inputs.
+///
+/// M is symmetric and positive definite, since the diagonal dominates its scaled rows. Its
+/// couplings have both signs, so that e^{Aτ} and e^{Aτ} B have entries that are negative or change
+/// sign.
 pub fn arm() -> LinearSystem {
     let n = INERTIA.len();
     let sign = |i: usize, j: usize| if (i + j).is_multiple_of(3) { -1.0 } else { 1.0 };

@@ -1,5 +1,5 @@
 //! A million disturbances of a six-joint arm stay within the reachable sets, and the worst ones
-//! touch them.
+//! reach their faces.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -11,10 +11,10 @@ use crate::random::Random;
 const SAMPLES: usize = 71;
 const STEP: f64 = 0.004;
 
-/// Disturbances that are simulated at once, as the columns of a matrix.
+/// Number of disturbances simulated at once, as the columns of a matrix.
 const BATCH: usize = 500;
 
-/// What the simulation itself may be off by.
+/// Largest rounding error of the simulation.
 const ROUNDING: f64 = 1e-12;
 
 fn sets() -> (Hyperrectangle, Hyperrectangle) {
@@ -24,7 +24,7 @@ fn sets() -> (Hyperrectangle, Hyperrectangle) {
     (initial, input)
 }
 
-/// A propagation, its reachable sets, and the floating-point step that simulates it.
+/// A propagation, its reachable sets, and the floating-point step of the simulation.
 struct Case {
     propagation: Propagation,
     reach: ReachSets,
@@ -47,7 +47,8 @@ impl Case {
         &self.phi * states + &self.gamma * inputs
     }
 
-    /// The part of the radius that the states at sample k use; fails above 1.
+    /// Fails where a state at sample k leaves the reachable set; returns the largest deviation
+    /// relative to the radius.
     fn assert_inside(&self, states: &DMatrix<f64>, k: usize) -> f64 {
         let mut used: f64 = 0.0;
         for i in 0..states.nrows() {
@@ -65,16 +66,16 @@ impl Case {
     }
 }
 
-/// How the disturbances of a batch move within the unit box.
+/// The motion of the disturbances of a batch within the unit box.
 #[derive(Clone, Copy, Debug)]
 enum Motion {
-    /// Uniform, anew at each sample.
+    /// A new uniform value at each sample.
     Uniform,
-    /// At a corner, anew at each sample.
+    /// A new vertex at each sample.
     BangBang,
-    /// At a corner; each coordinate changes sides now and then.
+    /// A vertex of which each coordinate changes sides at random.
     Switching,
-    /// At a corner that it does not leave.
+    /// A constant vertex.
     Held,
 }
 
@@ -99,7 +100,7 @@ fn within(set: &Hyperrectangle, unit: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// Simulates a batch; the largest part of a radius it uses at the end.
+/// Simulates a batch; returns the largest deviation at the end relative to the radius.
 fn simulate(case: &Case, motion: Motion, seed: u64) -> f64 {
     let mut random = Random::new(seed);
     let (initial, input) = sets();
@@ -127,18 +128,18 @@ fn none_of_a_million_disturbances_leaves_the_reachable_sets() {
     assert!(simulate_batches(&sample, Motion::Uniform, 300_000) > 0.2);
     assert!(simulate_batches(&sample, Motion::BangBang, 300_000) > 0.4);
     assert!(simulate_batches(&sample, Motion::Switching, 200_000) > 0.8);
-    // A corner is held in 2⁶ ways: some batch has the worst one, up to the initial state.
+    // There are 2⁶ constant vertices: some batch contains the worst one, up to the initial state.
     assert!(simulate_batches(&constant, Motion::Held, 200_000) > 0.95);
 }
 
-/// The corner of `set` to which `row` points.
+/// Returns the vertex of `set` to which `row` points.
 fn worst(set: &Hyperrectangle, row: impl Iterator<Item = f64>) -> DMatrix<f64> {
-    let corner: Vec<f64> =
+    let vertex: Vec<f64> =
         row.enumerate().map(|(j, x)| set.centre[j] + set.radius[j] * x.signum()).collect();
-    DMatrix::from_vec(corner.len(), 1, corner)
+    DMatrix::from_vec(vertex.len(), 1, vertex)
 }
 
-/// The end of the solution that goes furthest in state i at sample k.
+/// Returns state i at sample k of the solution that maximises it.
 fn furthest(case: &Case, disturbance: Disturbance, i: usize, k: usize) -> f64 {
     let (initial, input) = sets();
     let mid = |x: &reachtube_scalar::Interval| x.mid();
@@ -154,7 +155,7 @@ fn furthest(case: &Case, disturbance: Disturbance, i: usize, k: usize) -> f64 {
 }
 
 #[test]
-fn the_worst_disturbance_touches_every_face() {
+fn the_worst_disturbance_reaches_every_face() {
     for disturbance in [Disturbance::Constant, Disturbance::Sample] {
         let case = Case::new(disturbance);
         for k in [0, 1, 7, 33, 70] {
@@ -172,7 +173,7 @@ fn the_worst_disturbance_touches_every_face() {
 }
 
 #[test]
-fn hulls_over_five_seconds_are_known_to_ten_digits() {
+fn hulls_over_five_seconds_have_ten_exact_digits() {
     let propagation = Propagation::new(&arm(), &TimeGrid::uniform(0.004, 1251)).unwrap();
     let (initial, input) = sets();
     let reach = ReachSets::new(

@@ -1,4 +1,4 @@
-//! Systems and grids with little in them.
+//! Systems and grids with few samples, states or inputs.
 
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 use reachtube_reach::{
@@ -27,7 +27,8 @@ fn sets(n: usize) -> Hyperrectangle {
     Hyperrectangle { centre: vec![0.5; n], radius: vec![0.25; n] }
 }
 
-/// Everything there is, on every small grid; one result a sample, one box a step.
+/// Runs all computations on every small grid and checks for one result per sample and one box per
+/// step.
 fn run_all(system: &LinearSystem) {
     let (n, m) = (system.states(), system.inputs());
     for grid in grids() {
@@ -78,7 +79,7 @@ fn a_system_that_stands_still_and_one_without_inputs() {
 }
 
 #[test]
-fn matrices_that_do_not_fit_or_are_not_finite_are_named() {
+fn matrices_that_do_not_fit_or_are_not_finite_are_errors() {
     let shape = LinearSystem::new(DMatrix::zeros(2, 2), DMatrix::zeros(3, 1), DVector::zeros(2))
         .unwrap_err();
     assert_eq!(shape.to_string(), "B is 3 x 1, expected 2 x 1");

@@ -1,4 +1,4 @@
-//! One step: e^{Ah}, Γ(h), γ(h).
+//! The matrices e^{Ah}, Γ(h) and γ(h) of one step.
 
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
@@ -7,8 +7,8 @@ use reachtube_scalar::Interval;
 
 use crate::rational::{assert_encloses, exact, exact_step, largest, system};
 
-/// Encloses the exact step, and not by more than `relative` times the largest entry (or 1) of each
-/// matrix.
+/// Fails unless the step encloses the exact one, with widths up to `relative` times the largest
+/// entry of each matrix (for Φ at least 1).
 fn assert_tight(system: &LinearSystem, h: f64, relative: f64) {
     let step = step(system, Interval::point(h));
     let rows = exact_step(system, &exact(h));
@@ -23,7 +23,7 @@ fn assert_tight(system: &LinearSystem, h: f64, relative: f64) {
 }
 
 #[test]
-fn a_double_integrator_is_enclosed_to_the_last_digits_and_keeps_its_zeros() {
+fn a_double_integrator_is_tight_and_keeps_its_zeros() {
     let integrator = system(&[&[0.0, 1.0], &[0.0, 0.0]], &[&[0.0], &[1.0]], &[0.5, -9.81]);
     for h in [1.0 / 1024.0, 0.004, 0.25, 37.5] {
         assert_tight(&integrator, h, if h < 0.5 { 4e-15 } else { 1e-13 });
@@ -47,7 +47,7 @@ fn stiff_unstable_and_coupled_systems_are_tight() {
 
 #[test]
 fn an_entry_below_the_remainder_of_the_series_is_enclosed() {
-    // hⁱ/i! along a chain of integrators; the series stops before the last of them.
+    // The entries along a chain of integrators are hⁱ/i!; the series stops before the last one.
     let chain = DMatrix::from_fn(9, 9, |i, j| if j == i + 1 { 1.0 } else { 0.0 });
     let system =
         LinearSystem::new(chain, DMatrix::from_element(9, 1, 1.0), DVector::zeros(9)).unwrap();
@@ -59,7 +59,7 @@ fn an_entry_below_the_remainder_of_the_series_is_enclosed() {
 }
 
 #[test]
-fn an_interval_of_lengths_holds_each_of_them() {
+fn an_interval_of_lengths_covers_each_length() {
     let damped = system(&[&[0.0, 1.0], &[-2.0, -7.0]], &[&[0.0], &[4.0]], &[0.0, 1.0]);
     let over_all = step(&damped, Interval::new(0.0, 0.125).unwrap());
     for sixteenth in 0..=16 {
@@ -71,7 +71,7 @@ fn an_interval_of_lengths_holds_each_of_them() {
 }
 
 #[test]
-fn what_overflows_is_unbounded_not_wrong() {
+fn an_overflow_gives_an_infinite_bound() {
     let explosive = system(&[&[1e300]], &[&[1.0]], &[0.0]);
     assert_eq!(step(&explosive, Interval::point(1e300)).phi[(0, 0)].hi(), f64::INFINITY);
 }
@@ -95,12 +95,16 @@ proptest! {
     #![proptest_config(cases(100))]
 
     #[test]
-    fn random_systems_over_short_steps(system in any_system(), h in prop_oneof![Just(1.0 / 256.0), Just(0.01), Just(0.0625)]) {
+    fn random_systems_over_short_steps(
+        system in any_system(), h in prop_oneof![Just(1.0 / 256.0), Just(0.01), Just(0.0625)],
+    ) {
         assert_tight(&system, h, 2e-14);
     }
 
     #[test]
-    fn random_systems_over_long_steps(system in any_system(), h in prop_oneof![Just(1.0), Just(3.7)]) {
+    fn random_systems_over_long_steps(
+        system in any_system(), h in prop_oneof![Just(1.0), Just(3.7)],
+    ) {
         let step = step(&system, Interval::point(h));
         let rows = exact_step(&system, &exact(h));
         assert_encloses(&step.phi, &rows, 0, "Φ");

@@ -5,7 +5,7 @@ use reachtube_reach::{Hyperrectangle, PolynomialSystem};
 
 use crate::systems::{Polynomial, constant, variables};
 
-/// M⁻¹ at q = 0, as `reachtube abstract --robot lwa4p --model 1 --order 3` has it, 1/(kg m²).
+/// M⁻¹ at q = 0 in 1/(kg m²), as printed by `reachtube abstract --robot lwa4p --model 1 --order 3`.
 const INVERSE_MASS: [[f64; 6]; 6] = [
     [
         0.5799185615516497,
@@ -57,7 +57,7 @@ const INVERSE_MASS: [[f64; 6]; 6] = [
     ],
 ];
 
-/// Viscous friction of Table III: factors of q̇, q̇² and q̇³.
+/// Viscous friction of Table III: coefficients of q̇, q̇² and q̇³.
 const FRICTION: [[f64; 3]; 6] = [
     [11.52, 0.088, -0.79],
     [10.08, 0.10, -1.02],
@@ -67,7 +67,7 @@ const FRICTION: [[f64; 3]; 6] = [
     [3.53, 0.11, -0.11],
 ];
 
-/// ẋ of the model in (q, q̇, u).
+/// Returns ẋ of the model in the variables (q, q̇, u).
 pub fn components() -> Vec<Polynomial> {
     let z = variables(18, 3);
     let load = |j: usize| {
@@ -86,7 +86,7 @@ pub fn model1() -> PolynomialSystem {
     PolynomialSystem::new(12, 6, &components()).expect("12 components")
 }
 
-/// X0 and U, velocity conformant, as printed, times `scale`.
+/// Returns X0 and U of the velocity-conformant model, as printed, times `scale`.
 pub fn table2(scale: f64) -> (Hyperrectangle, Hyperrectangle) {
     let q = [0.0030, 0.0017, 0.0025, 0.0027, 0.0075, 0.0063].map(|q| [-q, q]);
     let velocity = [

@@ -34,7 +34,7 @@ fn uniform(system: &LinearSystem, samples: usize) -> Propagation {
     Propagation::new(system, &TimeGrid::uniform(STEP, samples)).expect("a short horizon")
 }
 
-/// The times of [`uniform`], recorded, and one more that does not fit them.
+/// Returns the propagation at the times of [`uniform`] and one more that does not fit the rate.
 fn recorded(system: &LinearSystem, samples: usize) -> Propagation {
     let odd = (samples as f64 - 0.5) * STEP;
     let times: Vec<f64> = (0..samples).map(|k| k as f64 * STEP).chain([odd]).collect();
@@ -76,14 +76,14 @@ fn widths_grow_linearly_not_exponentially() {
 }
 
 #[test]
-fn what_decays_keeps_its_digits() {
+fn decaying_entries_keep_their_relative_width() {
     let propagation = uniform(&decay(), 2001);
     let fast = propagation.exponential(2000)[(1, 1)];
     assert!(fast.lo() > 0.0 && fast.width() < 1e-11 * fast.hi(), "{fast:?}");
 }
 
 #[test]
-fn steps_of_many_turns_do_not_make_it_useless() {
+fn steps_of_several_periods_stay_tight() {
     let fast = system(&[&[0.0, 200.0], &[-200.0, 0.0]], &[&[1.0], &[0.0]], &[0.0, 0.0]);
     let propagation = Propagation::new(&fast, &TimeGrid::uniform(0.25, 1001)).unwrap();
     assert!(
@@ -96,7 +96,7 @@ fn steps_of_many_turns_do_not_make_it_useless() {
 }
 
 #[test]
-fn what_grows_beyond_the_rounding_unit_is_still_enclosed() {
+fn growth_beyond_the_rounding_unit_is_enclosed() {
     let explosive = system(&[&[40.0]], &[&[1.0]], &[0.0]);
     let propagation = uniform(&explosive, 513);
     let rows = exact_step(&explosive, &exact(2.0));
@@ -117,7 +117,7 @@ fn recorded_and_uniform_times_agree() {
     }
 }
 
-/// e^{A t_k}, Γ and γ of the exact solution, one exact step after another.
+/// Computes the exact solution by exact steps.
 fn exact_solution(
     system: &LinearSystem,
     start: &[f64],
@@ -184,25 +184,25 @@ fn solutions_agree_with_the_sum_over_the_inputs() {
 }
 
 #[test]
-fn a_set_of_starts_holds_the_solution_from_each_and_little_more() {
+fn a_set_of_initial_states_contains_the_solution_from_each_and_little_more() {
     let (system, inputs) = (rotation(), random_inputs(500, 3));
     let propagation = uniform(&system, 500);
     let start = IntervalVector::from_element(2, Interval::new(-0.5, 0.25).unwrap());
     let trajectory = propagation.solve(&start, &inputs);
     assert!(start.iter().zip(trajectory.state(0)).all(|(x, y)| y.encloses(x) && y.width() < 0.76));
-    for corner in [[-0.5, -0.5], [0.25, -0.5], [0.25, 0.25], [0.0, 0.1]] {
-        let states = exact_solution(&system, &corner, &inputs, 500);
+    for vertex in [[-0.5, -0.5], [0.25, -0.5], [0.25, 0.25], [0.0, 0.1]] {
+        let states = exact_solution(&system, &vertex, &inputs, 500);
         for k in [1, 130, 499] {
             let values = trajectory.state(k).iter().zip(&states[k]);
-            values.for_each(|(x, value)| assert_holds(*x, value, "from a corner"));
+            values.for_each(|(x, value)| assert_holds(*x, value, "from a vertex"));
         }
     }
-    // |cos| + |sin| of the radius is the hull of a turned square.
+    // The hull of a rotated square is at most |cos| + |sin| <= √2 times as wide as the square.
     assert!(trajectory.state(499).iter().all(|x| x.width() < 0.75 * 2f64.sqrt() + 1e-9));
 }
 
 #[test]
-fn no_more_rows_are_followed_than_the_grid_has_samples() {
+fn a_trajectory_has_at_most_one_state_per_sample_and_row() {
     let propagation = uniform(&rotation(), 10);
     let start = IntervalVector::from_element(2, Interval::ONE);
     assert_eq!(propagation.solve(&start, &[1.0; 25]).len(), 10);
@@ -211,12 +211,17 @@ fn no_more_rows_are_followed_than_the_grid_has_samples() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None, ..ProptestConfig::with_cases(40)
+    })]
 
     #[test]
-    fn the_exponential_is_a_semigroup(a in proptest::array::uniform4(-3.0f64..3.0), j in 0usize..150, k in 0usize..150) {
+    fn the_exponential_is_a_semigroup(
+        a in proptest::array::uniform4(-3.0f64..3.0), j in 0usize..150, k in 0usize..150,
+    ) {
         let matrix = dmatrix![a[0], a[1]; a[2], a[3]];
-        let system = LinearSystem::new(matrix, dmatrix![1.0; 0.0], nalgebra::dvector![0.0, 0.0]).unwrap();
+        let drift = nalgebra::dvector![0.0, 0.0];
+        let system = LinearSystem::new(matrix, dmatrix![1.0; 0.0], drift).unwrap();
         let propagation = uniform(&system, 300);
         let product = propagation.exponential(j) * propagation.exponential(k);
         for (x, y) in product.iter().zip(&propagation.exponential(j + k)) {

@@ -1,5 +1,5 @@
-//! e^{Ah} and Γ(h) in exact rational numbers: the partial sum of the Taylor series, with a bound of
-//! what it leaves out.
+//! The matrices e^{Ah} and Γ(h) in rational numbers: partial sums of the Taylor series, with a
+//! bound of the truncation error.
 
 use nalgebra::DMatrix;
 use num_rational::BigRational;
@@ -18,13 +18,12 @@ fn integer(n: usize) -> Rational {
     Rational::from_usize(n).unwrap()
 }
 
-/// What two rational numbers may differ by and still count as the same: far below any rounding of
-/// an `f64` near 1.
+/// Returns the tolerance for equal rational numbers, far below any rounding of an `f64` near 1.
 fn tiny() -> Rational {
     num_traits::pow(integer(10), 30).recip()
 }
 
-/// The multiple of 2⁻³²⁰ below x, so that numerators do not grow with every step.
+/// Returns the largest multiple of 2⁻³²⁰ up to x, so that numerators do not grow with every step.
 pub fn rounded(x: &Rational) -> Rational {
     let scale = num_traits::pow(integer(2), 320);
     (x * &scale).floor() / scale
@@ -54,11 +53,12 @@ fn largest_row_sum(matrix: &RationalMatrix) -> Rational {
     matrix.iter().map(sum).max().unwrap()
 }
 
-/// e^{Xh}, within 1e-30 in every entry as long as the norm of Xh is at most 100.
+/// Computes e^{Xh} within 1e-30 in every entry, for a norm of Xh up to 100.
 ///
-/// h is halved until the norm of Xh is at most 1, and the result squared as often. There the 70
-/// terms and their rounding leave less than 2⁻³¹⁰; each squaring multiplies an error by at most
-/// twice the norm of the root, all of them by at most 2⁷ e¹⁰⁰ < 2¹⁵².
+/// h is halved until the norm of Xh is at most 1, and the result is squared as often. The
+/// truncation error of 70 terms and their rounding is below 2⁻³¹⁰. Each squaring multiplies an
+/// error by at most twice the norm of the root, and all squarings together by at most 2⁷ e¹⁰⁰ <
+/// 2¹⁵².
 fn exponential(matrix: &RationalMatrix, h: &Rational) -> RationalMatrix {
     let x = each(matrix, |x| x * h);
     if largest_row_sum(&x) > Rational::one() {
@@ -76,8 +76,8 @@ fn exponential(matrix: &RationalMatrix, h: &Rational) -> RationalMatrix {
     sum
 }
 
-/// Φ = e^{Ah}, Γ(h) and γ(h) of the system, as the rows [Φ Γ γ]: those of the exponential of [A B
-/// d; 0 0 0].
+/// Computes Φ = e^{Ah}, Γ(h) and γ(h) of the system as the rows [Φ Γ γ] of the exponential of
+/// [A B d; 0 0 0].
 pub fn exact_step(system: &LinearSystem, h: &Rational) -> RationalMatrix {
     let (n, m) = (system.states(), system.inputs());
     let entry = |i: usize, j: usize| match (i < n, j) {
@@ -91,13 +91,13 @@ pub fn exact_step(system: &LinearSystem, h: &Rational) -> RationalMatrix {
     exponential(&augmented, h).into_iter().take(n).collect()
 }
 
-/// Fails unless the interval holds the number, up to the precision of the reference.
+/// Fails unless the interval contains the number, up to the precision of the reference.
 pub fn assert_holds(x: Interval, value: &Rational, what: &str) {
     assert!(exact(x.lo()) <= value + tiny(), "{what}: {x:?} lies above {:?}", value.to_f64());
     assert!(exact(x.hi()) >= value - tiny(), "{what}: {x:?} lies below {:?}", value.to_f64());
 }
 
-/// Fails unless the matrix holds columns `from..` of `rows`; its largest width comes back.
+/// Fails unless the matrix encloses columns `from..` of `rows`; returns its largest width.
 pub fn assert_encloses(
     matrix: &IntervalMatrix,
     rows: &RationalMatrix,
@@ -112,12 +112,12 @@ pub fn assert_encloses(
     matrix.iter().map(|x| x.width()).fold(0.0, f64::max)
 }
 
-/// The largest absolute entry.
+/// Returns the largest absolute entry.
 pub fn largest(matrix: &IntervalMatrix) -> f64 {
     matrix.iter().map(|x| x.mag()).fold(0.0, f64::max)
 }
 
-/// A system with the given rows.
+/// Builds a system from the rows of its matrices.
 pub fn system(a: &[&[f64]], b: &[&[f64]], drift: &[f64]) -> LinearSystem {
     let matrix = |rows: &[&[f64]]| DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j]);
     LinearSystem::new(matrix(a), matrix(b), nalgebra::DVector::from_column_slice(drift))

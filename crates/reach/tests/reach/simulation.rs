@@ -1,4 +1,4 @@
-//! The linear system as a differential equation, against enclosures of its solution.
+//! Numerical integration of the linear system, against enclosures of its solution.
 
 use crate::arm::arm;
 use crate::random::Random;

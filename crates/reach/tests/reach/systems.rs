@@ -1,4 +1,4 @@
-//! Polynomial systems to look at: an arm, and the problems of the ARCH competition.
+//! Polynomial systems for tests: an arm, and problems of the ARCH competition.
 
 use reachtube_reach::{LinearSystem, PolynomialSystem};
 use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
@@ -11,13 +11,13 @@ pub fn constant(x: f64) -> Polynomial {
     Polynomial::constant(Interval::point(x))
 }
 
-/// Variables of a space to the given order.
+/// Returns the variables of a space of the given order.
 pub fn variables(count: usize, order: u32) -> Vec<Polynomial> {
     let space = TaylorSpace::new(count, order).unwrap();
     (0..count).map(|i| Polynomial::variable(&space, i)).collect()
 }
 
-/// A x + B u + d as polynomials.
+/// Returns A x + B u + d as polynomials.
 pub fn linear(system: &LinearSystem) -> Vec<Polynomial> {
     let z = variables(system.states() + system.inputs(), 3);
     let row = |i: usize| {
@@ -29,13 +29,14 @@ pub fn linear(system: &LinearSystem) -> Vec<Polynomial> {
     (0..system.states()).map(row).collect()
 }
 
-/// The arm with a friction torque of -c q̇³ beside the viscous one: c > 0 weakens friction at
-/// speed, as the paper's cubic does.
+/// Returns the arm with a cubic friction torque besides the viscous one.
+///
+/// A positive `softening` weakens friction at speed, like the cubic term of the paper.
 pub fn cubic_arm(softening: f64) -> PolynomialSystem {
     PolynomialSystem::new(12, 6, &cubic_arm_components(softening)).unwrap()
 }
 
-/// ẋ of [`cubic_arm`].
+/// Returns ẋ of [`cubic_arm`].
 pub fn cubic_arm_components(softening: f64) -> Vec<Polynomial> {
     let system = arm();
     let mut f = linear(&system);
@@ -52,24 +53,24 @@ pub fn cubic_arm_components(softening: f64) -> Vec<Polynomial> {
 /// Relative size of the cubic term for each joint.
 const FRICTION: [f64; 6] = [0.8, 1.0, 1.5, 0.1, 0.2, 0.1];
 
-/// ẋ = y, ẏ = (1 - x²) y - x.
+/// Returns the Van der Pol oscillator ẋ = y, ẏ = (1 - x²) y - x.
 pub fn van_der_pol() -> PolynomialSystem {
     PolynomialSystem::new(2, 0, &van_der_pol_components()).unwrap()
 }
 
-/// ẋ of [`van_der_pol`].
+/// Returns ẋ of [`van_der_pol`].
 pub fn van_der_pol_components() -> Vec<Polynomial> {
     let z = variables(2, 3);
     let (x, y) = (&z[0], &z[1]);
     vec![y.clone(), y - &(&(x * x) * y) - x.clone()]
 }
 
-/// The enzymatic network of Laub and Loomis, 7 states.
+/// Returns the enzymatic network of Laub and Loomis, 7 states.
 pub fn laub_loomis() -> PolynomialSystem {
     PolynomialSystem::new(7, 0, &laub_loomis_components()).unwrap()
 }
 
-/// ẋ of [`laub_loomis`].
+/// Returns ẋ of [`laub_loomis`].
 pub fn laub_loomis_components() -> Vec<Polynomial> {
     let z = variables(7, 2);
     let x = |i: usize| &z[i - 1];

@@ -8,7 +8,7 @@ use reachtube_reach::{
 use reachtube_scalar::Interval;
 
 use crate::arm::arm;
-use crate::polynomial::{contain_ten_thousand, random_case, set};
+use crate::simulated_case::{contain_ten_thousand, random_case, set};
 use crate::systems::{self, laub_loomis, linear, van_der_pol, variables};
 
 fn of_order(order: u32) -> FlowpipeSettings {
@@ -18,8 +18,8 @@ fn of_order(order: u32) -> FlowpipeSettings {
     }
 }
 
-/// The flowpipe of a system without inputs.
-fn follow(
+/// Computes the flowpipe of a system without inputs.
+fn propagate(
     system: &PolynomialSystem,
     grid: &TimeGrid,
     start: &Hyperrectangle,
@@ -31,7 +31,7 @@ fn follow(
 }
 
 #[test]
-fn behaviours_of_random_systems_stay_within() {
+fn behaviours_of_random_systems_stay_inside() {
     let used: Vec<f64> = (1..=200_u64)
         .into_par_iter()
         .map(|seed| {
@@ -43,9 +43,9 @@ fn behaviours_of_random_systems_stay_within() {
     assert!(close > 100, "{close} of 200 came close");
 }
 
-/// Inner bounds are those that trajectories were found to reach: [1.800, 1.904] x [0.848, 1.284].
+/// Trajectories found by search reach the inner bound [1.800, 1.904] x [0.848, 1.284].
 #[test]
-fn van_der_pol_is_enclosed_by_hardly_more_than_is_reached() {
+fn van_der_pol_is_enclosed_tightly() {
     let start = set(&[1.4, 2.4], &[0.15, 0.05]);
     let f = systems::van_der_pol_components();
     let flowpipe = contain_ten_thousand(&van_der_pol(), &f, start, (0.01, 701), &of_order(8));
@@ -54,9 +54,9 @@ fn van_der_pol_is_enclosed_by_hardly_more_than_is_reached() {
     assert!(y.lo() <= 0.8485 && y.hi() >= 1.2835 && y.width() < 0.440, "{y:?}");
 }
 
-/// The widths of x4 that trajectories were found to reach are 0.0126 and 0.0255.
+/// Trajectories found by search reach widths of x4 of 0.0126 and 0.0255.
 #[test]
-fn laub_loomis_is_enclosed_by_hardly_more_than_is_reached() {
+fn laub_loomis_is_enclosed_tightly() {
     for (w, order, bound, inner) in [(0.05, 4, 4.5, 0.0125), (0.1, 4, 5.0, 0.0254)] {
         let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[w; 7]);
         let f = systems::laub_loomis_components();
@@ -71,11 +71,11 @@ fn laub_loomis_is_enclosed_by_hardly_more_than_is_reached() {
 
 #[test]
 fn a_solution_in_closed_form_is_enclosed() {
-    // ẋ = x² from [0.9, 1.1]: x = x0 / (1 - x0 t).
+    // The solution of ẋ = x² from [0.9, 1.1] is x = x0 / (1 - x0 t).
     let z = variables(1, 2);
     let square = PolynomialSystem::new(1, 0, &[&z[0] * &z[0]]).unwrap();
     let grid = TimeGrid::uniform(0.01, 61);
-    let flowpipe = follow(&square, &grid, &set(&[1.0], &[0.1]), &of_order(10));
+    let flowpipe = propagate(&square, &grid, &set(&[1.0], &[0.1]), &of_order(10));
     assert!(flowpipe.is_reached());
     let exact = |x0: f64, t: f64| x0 / (1.0 - x0 * t);
     for (k, t) in grid.times().iter().enumerate() {
@@ -126,10 +126,10 @@ fn a_linear_system_without_uncertain_input_has_its_exact_hull() {
 }
 
 #[test]
-fn zonotopes_hold_the_hull_and_are_not_much_larger() {
+fn zonotopes_contain_the_hull_and_are_not_much_larger() {
     let start = set(&[1.4, 2.4], &[0.015, 0.005]);
     let settings = FlowpipeSettings { zonotopes: vec![100], ..of_order(4) };
-    let flowpipe = follow(&van_der_pol(), &TimeGrid::uniform(0.01, 101), &start, &settings);
+    let flowpipe = propagate(&van_der_pol(), &TimeGrid::uniform(0.01, 101), &start, &settings);
     let polygon = flowpipe.zonotopes(100).next().unwrap().polygon(0, 1);
     for (at, side) in flowpipe.sample(100).iter().enumerate() {
         let ends = polygon
@@ -145,9 +145,13 @@ fn zonotopes_hold_the_hull_and_are_not_much_larger() {
 fn fewer_generators_make_larger_sets() {
     let start = set(&[1.4, 2.4], &[0.05, 0.05]);
     let grid = TimeGrid::uniform(0.01, 301);
-    let all = follow(&van_der_pol(), &grid, &start, &of_order(3));
-    let few =
-        follow(&van_der_pol(), &grid, &start, &FlowpipeSettings { order: Some(20), ..of_order(3) });
+    let all = propagate(&van_der_pol(), &grid, &start, &of_order(3));
+    let few = propagate(
+        &van_der_pol(),
+        &grid,
+        &start,
+        &FlowpipeSettings { order: Some(20), ..of_order(3) },
+    );
     assert!(
         all.generators() > 500 && few.generators() <= 40,
         "{} {}",
@@ -160,14 +164,14 @@ fn fewer_generators_make_larger_sets() {
 }
 
 #[test]
-fn what_cannot_be_followed_is_an_answer() {
+fn a_flowpipe_that_stops_early_is_an_outcome() {
     let z = variables(1, 2);
     let square = PolynomialSystem::new(1, 0, &[&z[0] * &z[0]]).unwrap();
     let grid = TimeGrid::uniform(0.01, 201);
-    let flowpipe = follow(&square, &grid, &set(&[1.0], &[0.1]), &of_order(6));
-    // x = 1/(1/x0 - t) has a pole at 1/1.1.
+    let flowpipe = propagate(&square, &grid, &set(&[1.0], &[0.1]), &of_order(6));
+    // The solution x = 1/(1/x0 - t) from x0 = 1.1 has a pole at t = 1/1.1.
     let FlowpipeOutcome::Failed { time, state, widths } = flowpipe.outcome() else {
-        panic!("it has a pole")
+        panic!("the solution has a pole")
     };
     assert!((0.7..1.0 / 1.1).contains(time) && *state == 0 && widths[0] > 1.0, "{time} {widths:?}");
     let last = flowpipe.len() - 1;
@@ -176,7 +180,7 @@ fn what_cannot_be_followed_is_an_answer() {
 }
 
 #[test]
-fn an_order_that_does_not_fit_is_named() {
+fn an_order_that_does_not_fit_is_an_error() {
     let z = variables(40, 1);
     let still = PolynomialSystem::new(40, 0, &z).unwrap();
     let none = Hyperrectangle::zero(0);

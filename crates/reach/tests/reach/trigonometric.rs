@@ -5,10 +5,10 @@ use reachtube_reach::{
     ReachError, TimeGrid, UncertainInput,
 };
 
-use crate::polynomial::{Case, map, set};
+use crate::simulated_case::{Case, map, set};
 use crate::systems::{Polynomial, constant, variables};
 
-/// q̈ = u - sin q - q̇/10 in (q, q̇, u, sin q, cos q).
+/// Returns q̈ = u - sin q - q̇/10 in the variables (q, q̇, u, sin q, cos q).
 fn pendulum() -> Vec<Polynomial> {
     let z = variables(5, 2);
     vec![z[1].clone(), z[2].clone() - z[3].clone() - &z[1] * &constant(0.1)]
@@ -39,7 +39,7 @@ fn a_pendulum_that_turns_over_is_enclosed() {
     assert!(case.simulate(10_000, 3) > 0.5);
 }
 
-/// Sine and cosine as states of their own are the same system.
+/// Sine and cosine as further states describe the same system.
 #[test]
 fn sines_as_functions_are_within_sines_as_states() {
     let grid = TimeGrid::uniform(0.01, 101);
@@ -53,13 +53,13 @@ fn sines_as_functions_are_within_sines_as_states() {
     ];
     let lifted = PolynomialSystem::new(4, 1, &f).unwrap();
     let input = UncertainInput { measured: &vec![0.1; 100], set: &set(&[0.0], &[1e-3]) };
-    let follow = |system: &PolynomialSystem, start: &[f64], radius: &[f64]| {
+    let propagate = |system: &PolynomialSystem, start: &[f64], radius: &[f64]| {
         let initial = set(&vec![0.0; start.len()], radius);
         Flowpipe::new(system, &grid, start, &initial, &input, &FlowpipeSettings::default()).unwrap()
     };
     let (q, r) = (0.7_f64, 1e-3);
-    let functions = follow(&own, &[q, 0.5], &[r, r]);
-    let states = follow(&lifted, &[q, 0.5, q.sin(), q.cos()], &[r, r, r, r]);
+    let functions = propagate(&own, &[q, 0.5], &[r, r]);
+    let states = propagate(&lifted, &[q, 0.5, q.sin(), q.cos()], &[r, r, r, r]);
     assert!(functions.is_reached() && states.is_reached());
     for k in 1..101 {
         for (own, other) in functions.sample(k).iter().zip(states.sample(k)) {
@@ -71,10 +71,9 @@ fn sines_as_functions_are_within_sines_as_states() {
     }
 }
 
-/// Where the angle may be anything its sine is between -1 and 1: the sets grow no faster than that
-/// lets them.
+/// Where the angle is arbitrary, its sine is between -1 and 1, which bounds the growth of the sets.
 #[test]
-fn an_angle_that_may_be_anything_has_bounded_sets() {
+fn an_arbitrary_angle_has_bounded_sets() {
     let system = PolynomialSystem::trigonometric(2, 1, &[0], &pendulum()).unwrap();
     let (grid, start) = (TimeGrid::uniform(0.01, 301), set(&[0.0; 2], &[4.0, 1.0]));
     let input = UncertainInput { measured: &vec![0.0; 300], set: &set(&[0.0], &[0.0]) };
@@ -85,7 +84,7 @@ fn an_angle_that_may_be_anything_has_bounded_sets() {
     let velocity = flowpipe.sample(300)[1];
     let most = 1.0 + 3.0;
     assert!(velocity.hi() > 1.0 && velocity.hi() < most, "{velocity:?}");
-    // Where sines are not known, there is no bound.
+    // The sine of an angle of 10⁹ rad has no bound.
     let far =
         Flowpipe::new(&system, &grid, &[1e9, 0.0], &start, &input, &FlowpipeSettings::default());
     assert!(matches!(far.unwrap().outcome(), FlowpipeOutcome::Failed { time: 0.0, .. }));

@@ -1,4 +1,4 @@
-//! The tube holds what happens between the samples.
+//! The tube contains the states between the samples.
 
 use nalgebra::DVector;
 use reachtube_reach::{
@@ -11,9 +11,10 @@ use crate::arm::arm;
 use crate::random::Random;
 use crate::rational::system;
 
-/// Simulated states in each step.
+/// Number of simulated states in each step.
 const PARTS: usize = 8;
 
+/// Largest rounding error of the simulation.
 const ROUNDING: f64 = 1e-12;
 
 struct Case {
@@ -48,17 +49,18 @@ impl Case {
         Self { propagation, initial, input, inputs, start, nominal, reach, tube }
     }
 
-    /// Simulates one disturbance, `moves` at the beginning of each part of a step, and fails where
-    /// it leaves the tube.
+    /// Simulates one disturbance and fails where the state leaves the tube.
+    ///
+    /// The disturbance takes a new value at each part of a step for which `moves` is true.
     fn assert_inside(&self, seed: u64, moves: impl Fn(usize, usize) -> bool) {
         let (n, m) = (self.initial.dimension(), self.input.dimension());
         let mut random = Random::new(seed);
-        let mut corner = |set: &Hyperrectangle| -> Vec<f64> {
+        let mut vertex = |set: &Hyperrectangle| -> Vec<f64> {
             (0..set.dimension()).map(|i| set.centre[i] + set.radius[i] * random.sign()).collect()
         };
         let mut x =
-            DVector::from_vec(self.start.clone()) + DVector::from_vec(corner(&self.initial));
-        let mut disturbance = DVector::from_vec(corner(&self.input));
+            DVector::from_vec(self.start.clone()) + DVector::from_vec(vertex(&self.initial));
+        let mut disturbance = DVector::from_vec(vertex(&self.input));
         for k in 0..self.tube.len() {
             let part =
                 step(self.propagation.system(), self.propagation.grid().interval(k) / PARTS as f64);
@@ -67,7 +69,7 @@ impl Case {
             let nominal = DVector::from_column_slice(&self.inputs[k * m..(k + 1) * m]);
             for at in 0..PARTS {
                 if moves(k, at) {
-                    disturbance = DVector::from_vec(corner(&self.input));
+                    disturbance = DVector::from_vec(vertex(&self.input));
                 }
                 self.assert_holds(k, &x);
                 x = &phi * x + &gamma * (&nominal + &disturbance) + &drift;
@@ -86,7 +88,7 @@ impl Case {
         }
     }
 
-    /// The hull at sample k in state i, around the nominal solution.
+    /// Returns the hull at sample k in state i, around the nominal solution.
     fn hull(&self, k: usize, i: usize) -> Interval {
         let nominal = self.nominal.state(k)[i];
         let deviation =
@@ -94,8 +96,8 @@ impl Case {
         Interval::point(nominal.mid()) + deviation
     }
 
-    /// The mean over steps and states of the tube's width over that of the hull of the two samples,
-    /// less 1.
+    /// Returns the mean, over steps and states, of the width of the tube divided by the width of
+    /// the hull of the two samples, minus 1.
     fn overhead(&self) -> f64 {
         let n = self.initial.dimension();
         let ratio = |k: usize, i: usize| {
@@ -141,7 +143,7 @@ fn disturbances_stay_inside_between_the_samples() {
 }
 
 #[test]
-fn the_tube_holds_the_hulls_at_both_samples() {
+fn the_tube_contains_the_hulls_at_both_samples() {
     for disturbance in [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable] {
         for case in cases(disturbance) {
             for (k, i) in (0..case.tube.len())
@@ -158,8 +160,9 @@ fn the_tube_holds_the_hulls_at_both_samples() {
 }
 
 #[test]
-fn a_peak_between_two_samples_is_held() {
-    // cos 20 t without any uncertainty: the samples at ±0.05 s about the peak are both cos 1.
+fn a_peak_between_two_samples_is_inside() {
+    // The solution cos 20 t has no uncertainty. The samples 0.05 s before and after the peak are
+    // both cos 1.
     let turning = system(&[&[0.0, 20.0], &[-20.0, 0.0]], &[&[0.0], &[0.0]], &[0.0, 0.0]);
     let propagation = Propagation::new(&turning, &TimeGrid::uniform(0.1, 2)).unwrap();
     let (initial, input) = (Hyperrectangle::zero(2), Hyperrectangle::zero(1));
@@ -178,9 +181,9 @@ fn a_peak_between_two_samples_is_held() {
 }
 
 #[test]
-fn a_radius_that_peaks_between_two_samples_is_held() {
-    // e^{At} = [cos sin; -sin cos] and Γ(t) = (sin t, cos t - 1): |sin| is the same at 60° and
-    // 120°, and 1 between.
+fn a_radius_that_peaks_between_two_samples_is_inside() {
+    // Here e^{At} = [cos sin; -sin cos] and Γ(t) = (sin t, cos t - 1). |sin| has the same value at
+    // 60° and 120°, and is 1 between.
     let turning = system(&[&[0.0, 1.0], &[-1.0, 0.0]], &[&[1.0], &[0.0]], &[0.0, 0.0]);
     let propagation =
         Propagation::new(&turning, &TimeGrid::uniform(std::f64::consts::FRAC_PI_3, 3)).unwrap();
@@ -211,7 +214,8 @@ fn the_overhead_shrinks_with_the_step() {
         let [coarse, middle, fine] =
             [(0.016, 26), (0.004, 101), (0.001, 401)].map(|(h, count)| overhead(h, count));
         println!(
-            "{disturbance:?}: tube over hull of its samples, less 1: {coarse:.4} {middle:.5} {fine:.6}"
+            "{disturbance:?}: width of the tube over the hull of its samples, minus 1: \
+             {coarse:.4} {middle:.5} {fine:.6}"
         );
         assert!(
             middle < 0.5 * coarse && fine < 0.5 * middle && fine < 0.01,

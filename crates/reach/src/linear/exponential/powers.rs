@@ -98,9 +98,9 @@ impl RoundedProducts {
     /// infinite when the search fails.
     ///
     /// Let P = `within_step` >= |e^{As}| over one step, D = Σ|δ_j| and M̃ = max_k |Ẽ_k|. Any M with
-    /// (M̃ + D M) P <= M is a bound, by induction over the samples: |e^{A t_k}| <= |Ẽ_k| + D M where
-    /// M holds up to t_k, and the factor P covers the times up to the next sample. The left side of
-    /// the inequality is then a smaller bound, which is returned.
+    /// (M̃ + D M) P <= M is a bound, by induction over the samples: |e^{A t_k}| <= |Ẽ_k| + D M
+    /// where M holds up to t_k, and the factor P covers the times up to the next sample. The left
+    /// side of the inequality is then a smaller bound, which is returned.
     fn horizon_bound(&self, within_step: &DMatrix<f64>) -> DMatrix<f64> {
         let mut largest = self.mid[0].clone();
         let mut defects = self.mid[0].map(|_| 0.0);

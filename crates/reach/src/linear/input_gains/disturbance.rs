@@ -16,7 +16,8 @@ pub enum Disturbance {
     ///
     /// Conformance then needs a larger input set where an entry of e^{At} B changes sign.
     Constant,
-    /// The disturbance is constant over each sampling step: κ = Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})|.
+    /// The disturbance is constant over each sampling step:
+    /// κ = Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})|.
     #[default]
     Sample,
     /// The disturbance is any measurable function: κ = ∫₀^{t_k} |e^{Aτ} B| dτ.

@@ -13,8 +13,8 @@ const MOST_TERMS: usize = 200;
 /// Largest number of successive halvings of a step in which an entry changes sign.
 const DEEPEST: usize = 40;
 
-/// Largest ratio of |f| to the width of its enclosure at a point for which halving cannot decide the
-/// sign of f.
+/// Largest ratio of |f| to the width of its enclosure at a point for which halving cannot decide
+/// the sign of f.
 const NOISE: f64 = 4.0;
 
 /// The Taylor terms A^m B / m!, m < M, for steps up to a given length.

@@ -8,8 +8,8 @@
 //!
 //! A polynomial of degree D in sine and cosine is therefore a combination of φ₀ .. φ₂_D, where
 //! φ₂ₖ = (κ - m)ᵏ and φ₂ₖ₊₁ = σ (κ - m)ᵏ. The combination is exact and finite, like the recentred
-//! form of a polynomial. The middle m of κ over the set halves the magnitude of products with κ - m.
-//! The removed terms, such as m σ, join the constant and linear parts.
+//! form of a polynomial. The middle m of κ over the set halves the magnitude of products with
+//! κ - m. The removed terms, such as m σ, join the constant and linear parts.
 
 use reachtube_scalar::{Interval, TaylorTerm};
 
@@ -32,8 +32,8 @@ pub(crate) struct Angles {
 }
 
 impl Angles {
-    /// Collects the highest exponents in polynomials with `plain` variables and two more per state in
-    /// `states`.
+    /// Collects the highest exponents in polynomials with `plain` variables and two more per state
+    /// in `states`.
     pub fn new<'a>(
         plain: usize,
         states: &[usize],

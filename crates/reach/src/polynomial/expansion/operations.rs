@@ -71,7 +71,7 @@ fn expanded(angles: &Angles, i: usize, monomial: &[u8]) -> impl Iterator<Item = 
 /// Returns the initial coefficients and the operations that expand all angles.
 ///
 /// `index` holds the index of each monomial of the result; the coefficients of earlier stages
-/// follow behind.
+/// come after them.
 pub(crate) fn angle_operations(
     angles: &Angles,
     stages: &[Stage],
@@ -118,8 +118,8 @@ pub(crate) fn horner_operations(
 ) -> Vec<Operation> {
     let mut operations = Vec::new();
     for variable in 0..plain {
-        let raised = |m: &Vec<u8>| with_exponent(m, variable, m[variable] + 1);
-        let is_end = |m: &Vec<u8>| !index.contains_key(raised(m).as_slice());
+        let next = |m: &Vec<u8>| with_exponent(m, variable, m[variable] + 1);
+        let is_end = |m: &Vec<u8>| !index.contains_key(next(m).as_slice());
         for (_, m) in monomials.iter().filter(|(_, m)| m[variable] > 0 && is_end(m)) {
             let at = |exponent: u8| index[with_exponent(m, variable, exponent).as_slice()] as u32;
             for lowest in 0..m[variable] {

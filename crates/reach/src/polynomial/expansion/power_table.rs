@@ -7,8 +7,8 @@ use crate::polynomial::expansion::sine_bounds::{sine_and_versine, sine_defect};
 /// The powers of the sides of a box, one list per variable.
 ///
 /// Even powers are not negative. The list of an angle holds its φ_l (see
-/// [`angles`](crate::polynomial::expansion::angles)); its sine defect, sin d minus a line, is stored
-/// beside it.
+/// [`angles`](crate::polynomial::expansion::angles)); its sine defect, sin d minus a line, is
+/// stored beside it.
 #[derive(Debug, Clone)]
 pub(crate) struct PowerTable {
     /// Index of the first power of each variable.

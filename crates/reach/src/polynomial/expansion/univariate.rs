@@ -32,8 +32,8 @@ impl Univariate {
 
     /// Returns the slope of the line that fits the powers best over |d| <= r.
     ///
-    /// It is the slope of the first Chebyshev polynomial. For d³ it is 3/4 r², and the difference is
-    /// at most r³/4.
+    /// It is the slope of the first Chebyshev polynomial. For d³ it is 3/4 r², and the difference
+    /// is at most r³/4.
     pub fn slope(&self, coefficients: &[f64], r: f64) -> f64 {
         let (mut slope, mut factor) = (0.0, 1.0);
         // The term of odd e has the slope c_e C(e, (e - 1)/2) / 2^{e-1} r^{e-1}.

@@ -112,8 +112,8 @@ impl<'a> LinearisedStep<'a> {
     /// the tube. Since d is continuous, both hold until the end of the step. The set after the step
     /// is that of the linear system under e and l:
     ///
-    /// ∫₀ʰ e^{As} b e(s) ds ∈ (h/2) (e^{Ah} b + b) \[-r, r\] ⊕ (h³/12) |A|² e^{|A|h} |b| r \[-1,
-    /// 1\],
+    /// ∫₀ʰ e^{As} b e(s) ds ∈
+    /// (h/2) (e^{Ah} b + b) \[-r, r\] ⊕ (h³/12) |A|² e^{|A|h} |b| r \[-1, 1\],
     ///
     /// since e^{As} b is within s (h - s)/2 sup |A² e^{Aσ} b| of its chord, whose two weights s/h
     /// and 1 - s/h have integrals of h/2.

@@ -7,8 +7,8 @@ use crate::sets::interval_matrix::IntervalMatrix;
 use crate::sets::square_matrix::SquareMatrix;
 use crate::upward::round_up_sum;
 
-/// The zonotope {Σ β_l g_l + Σ β_i a_i e_i : |β| <= 1} with generators g_l and lengths a_i along the
-/// axes.
+/// The zonotope {Σ β_l g_l + Σ β_i a_i e_i : |β| <= 1} with generators g_l and lengths a_i along
+/// the axes.
 #[derive(Debug, Clone)]
 pub(crate) struct Offset {
     generators: Generators,
@@ -80,8 +80,8 @@ impl Offset {
         self.measure(&sums);
     }
 
-    /// Computes the radius from `sums` = Σ |g| of the generators in floating point; beyond the limit
-    /// the oldest generators become a box.
+    /// Computes the radius from `sums` = Σ |g| of the generators in floating point; beyond the
+    /// limit the oldest generators become a box.
     fn measure(&mut self, sums: &[f64]) {
         let terms = self.generators.len() + self.axis_lengths.len() + 64;
         for ((radius, axis), sum) in self.radius.iter_mut().zip(&self.axis_lengths).zip(sums) {

@@ -57,9 +57,9 @@ impl TaylorStep {
 
     /// Advances the set over a step of length h under the input u, which may change within it.
     ///
-    /// With the power series P in time and e = x - P, ė = A e + B (u - u*) + d. Here d is the defect
-    /// of P, and A and B are among the derivatives of f between P and x. Containment proves the tube
-    /// of e of this linear system.
+    /// With the power series P in time and e = x - P, ė = A e + B (u - u*) + d. Here d is the
+    /// defect of P, and A and B are among the derivatives of f between P and x. Containment proves
+    /// the tube of e of this linear system.
     ///
     /// # Guarantee
     ///

@@ -1,4 +1,4 @@
-//! The gains κ from the input set to the reachable set.
+//! The input gains κ from the input set to the reachable set.
 
 use std::f64::consts::PI;
 
@@ -22,13 +22,13 @@ fn uniform(system: &LinearSystem, samples: usize) -> Propagation {
     on(&TimeGrid::uniform(STEP, samples), system)
 }
 
-/// Times that miss k h by up to a third of a step.
+/// Returns times that differ from k h by up to a third of a step.
 fn jittered(samples: usize) -> TimeGrid {
     let time = |k: usize| (k as f64 + 0.33 * (1.7 * k as f64).sin()) * STEP;
     TimeGrid::from_times(&(0..samples).map(time).collect::<Vec<_>>()).expect("increasing")
 }
 
-/// e^{Aτ} B = (sin ωτ, cos ωτ).
+/// Returns the system with e^{Aτ} B = (sin ωτ, cos ωτ).
 fn oscillator(omega: f64) -> LinearSystem {
     system(&[&[0.0, omega], &[-omega, 0.0]], &[&[0.0], &[1.0]], &[0.0, 0.0])
 }
@@ -37,7 +37,7 @@ fn assert_near(x: Interval, value: f64, tolerance: f64, what: &str) {
     assert!((x - value).mag() <= tolerance, "{what}: {x:?} is not {value} within {tolerance:e}");
 }
 
-/// Fails unless entry by entry the gains are the same, up to a part `relative` of the largest.
+/// Fails unless all entries of the gains agree within `relative` times the largest.
 fn assert_same(left: &[IntervalMatrix], right: &[IntervalMatrix], relative: f64) {
     let largest = right.last().unwrap().iter().map(|x| x.mag()).fold(0.0, f64::max);
     for (k, (left, right)) in left.iter().zip(right).enumerate() {
@@ -64,11 +64,12 @@ fn one_joint_has_the_same_gain_under_every_disturbance() {
     }
 }
 
-/// ∫₀ᵗ |sin|, ∫₀ᵗ |cos|.
+/// Returns ∫₀ᵗ |sin|.
 fn absolute_sine(t: f64) -> f64 {
     2.0 * (t / PI).floor() + 1.0 - t.rem_euclid(PI).cos()
 }
 
+/// Returns ∫₀ᵗ |cos|.
 fn absolute_cosine(t: f64) -> f64 {
     absolute_sine(t + PI / 2.0) - 1.0
 }
@@ -101,8 +102,8 @@ fn cells_as_long_as_several_turns_are_resolved() {
 }
 
 #[test]
-fn what_has_decayed_costs_nothing() {
-    // Noise of either sign is all that is left of e^{At} B: halving would not end.
+fn halving_stops_where_the_response_has_decayed() {
+    // Only rounding errors of either sign remain of e^{At} B, so halving would not end.
     let coupled = system(&[&[-60.0, 25.0], &[20.0, -70.0]], &[&[1.0], &[-1.5]], &[0.0, 0.0]);
     let gains = Measurable.input_gains(&uniform(&coupled, 1500));
     assert!(gains[1499].iter().all(|x| x.width() < 1e-12 * x.hi()), "{}", gains[1499]);
@@ -126,7 +127,7 @@ fn a_constant_disturbance_reaches_least_and_a_measurable_one_furthest() {
             }
         }
     }
-    // Where entries change sign, the three differ for good.
+    // Where entries change sign, the three gains differ clearly.
     let propagation = on(&TimeGrid::uniform(0.3, 30), &oscillator(7.0));
     let at_end = |disturbance: Disturbance| disturbance.input_gains(&propagation)[29][(0, 0)];
     assert!(at_end(Constant).hi() < 0.2 * at_end(Sample).lo());
@@ -162,15 +163,15 @@ fn a_measurable_disturbance_is_the_limit_of_ever_faster_samples() {
 }
 
 #[test]
-fn a_measurable_disturbance_agrees_with_the_rectangle_rule() {
+fn a_measurable_disturbance_agrees_with_the_trapezoidal_rule() {
     let (system, parts) = (arm(), 4000);
     let h = 0.4 / f64::from(parts);
     let fine = on(&TimeGrid::uniform(h, parts as usize + 1), &system);
     let b = system.b().map(Interval::point);
     let mut sum = nalgebra::DMatrix::zeros(12, 6);
     for k in 0..parts as usize {
-        // The trapezoid of two absolute values; at a sign change it is off by less than h² times a
-        // slope.
+        // Trapezoidal rule for the absolute values; its error at a sign change is below h² times
+        // the slope.
         let ends = [k, k + 1].map(|k| (fine.exponential(k) * &b).map(|x| x.mid().abs()));
         sum += (&ends[0] + &ends[1]) * (0.5 * h);
     }
@@ -180,7 +181,7 @@ fn a_measurable_disturbance_agrees_with_the_rectangle_rule() {
     }
 }
 
-/// Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| as it is written.
+/// Evaluates Σ_j |Γ(t_k - t_j) - Γ(t_k - t_{j+1})| term by term.
 fn brute_force(system: &LinearSystem, times: &[f64], k: usize) -> IntervalMatrix {
     let gamma =
         |j: usize| step(system, Interval::point(times[k]) - Interval::point(times[j])).gamma;
@@ -192,7 +193,7 @@ fn brute_force(system: &LinearSystem, times: &[f64], k: usize) -> IntervalMatrix
 }
 
 #[test]
-fn samples_at_any_times_agree_with_the_sum_as_written() {
+fn samples_at_any_times_agree_with_the_sum_term_by_term() {
     let odd = system(
         &[&[0.0, 6.0, 1.0], &[-6.0, -1.0, 0.0], &[0.5, 2.0, -3.0]],
         &[&[0.0, 1.0], &[1.0, 0.0], &[-2.0, 1.0]],
@@ -242,23 +243,30 @@ fn recorded_times_of_a_fixed_rate_give_the_gains_of_that_rate() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(40) })]
+    #![proptest_config(ProptestConfig {
+        failure_persistence: None, ..ProptestConfig::with_cases(40)
+    })]
 
     #[test]
-    fn random_systems_keep_the_order_and_the_trapezoids(a in proptest::array::uniform4(-8.0f64..8.0), b in -2.0f64..2.0) {
+    fn random_systems_keep_the_order_and_agree_with_trapezoids(
+        a in proptest::array::uniform4(-8.0f64..8.0), b in -2.0f64..2.0,
+    ) {
         let system = system(&[&[a[0], a[1]], &[a[2], a[3]]], &[&[1.0], &[b]], &[0.0, 0.0]);
         let propagation = on(&TimeGrid::uniform(0.02, 41), &system);
-        let [constant, sample, measurable] = [Constant, Sample, Measurable].map(|d| d.input_gains(&propagation)[40].clone());
+        let [constant, sample, measurable] =
+            [Constant, Sample, Measurable].map(|d| d.input_gains(&propagation)[40].clone());
         let fine = on(&TimeGrid::uniform(0.02 / 64.0, 40 * 64 + 1), &system);
         let b = system.b().map(Interval::point);
         for i in 0..2 {
             let value = |k: usize| (fine.exponential(k) * &b)[i].mid().abs();
-            let rule = (0..40 * 64).map(|k| 0.5 * (value(k) + value(k + 1))).sum::<f64>() * 0.02 / 64.0;
-            prop_assert!(constant[i].lo() <= sample[i].hi() && sample[i].lo() <= measurable[i].hi());
-            prop_assert!((measurable[i] - rule).mag() < 1e-4 * measurable[i].hi(), "{:?} {rule}", measurable[i]);
-            // The terms of e^{At} B may cancel, where b all but misses what grows.
+            let trapezoids = (0..40 * 64).map(|k| 0.5 * (value(k) + value(k + 1))).sum::<f64>();
+            let rule = trapezoids * 0.02 / 64.0;
+            let gain = measurable[i];
+            prop_assert!(constant[i].lo() <= sample[i].hi() && sample[i].lo() <= gain.hi());
+            prop_assert!((gain - rule).mag() < 1e-4 * gain.hi(), "{gain:?} {rule}");
+            // The terms of e^{At} B may cancel where b is nearly orthogonal to a growing mode.
             let terms = propagation.exponential(40).iter().map(|x| x.mag()).fold(1.0, f64::max);
-            prop_assert!(measurable[i].width() < 1e-11 * terms, "{:?}", measurable[i]);
+            prop_assert!(gain.width() < 1e-11 * terms, "{gain:?}");
         }
     }
 }
