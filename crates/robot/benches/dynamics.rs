@@ -1,16 +1,18 @@
-//! Time of one call of each algorithm over `f64` and over lanes, which is a state in each lane;
-//! sine and cosine apart.
+//! Time per state of each algorithm over `f64` and over lanes, without sine and cosine unless
+//! stated otherwise.
 //!
-//! UR5 and the LWA 4P's geometry come from the shared oracle files where those are; `lwa4p` is
-//! embedded. Lanes gain by what vectors the target has: compare with RUSTFLAGS="-C
-//! target-cpu=native".
+//! The robots `ur5` and `dh6` need the shared oracle files and are skipped without them; `lwa4p` is
+//! embedded. The gain of lanes depends on the vector instructions of the target, so compare with
+//! RUSTFLAGS="-C target-cpu=native".
 
 #[path = "../tests/dynamics/shared.rs"]
 mod shared;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use reachtube_robot::{BaseParameters, Column, ColumnKind, RegressorWorkspace, Robot, Workspace};
+use reachtube_robot::{
+    BaseParameters, Parameter, ParameterKind, RegressorWorkspace, Robot, Workspace,
+};
 use reachtube_scalar::{Lanes, Lanewise};
 
 const ROBOTS: [&str; 3] = ["ur5", "dh6", "lwa4p"];
@@ -20,11 +22,11 @@ fn main() {
     divan::main();
 }
 
-/// A state in each lane: sin, cos, q, q̇, q̈ and torque.
+/// One state per lane: sin, cos, q, q̇, q̈ and torque.
 type State<S> = [Vec<S>; 6];
 
 fn states<S: Lanewise>(n: usize) -> Vec<State<S>> {
-    // A Weyl sequence: equidistributed and reproducible.
+    // A Weyl sequence is equidistributed and reproducible.
     let mut x = 0.0;
     let mut next = |scale: f64| {
         x = (x + 0.618_033_988_749_894_9) % 1.0;
@@ -39,6 +41,7 @@ fn states<S: Lanewise>(n: usize) -> Vec<State<S>> {
     (0..STATES / S::LANES).map(state).collect()
 }
 
+/// Measures calls for one state after another.
 fn each<S: Lanewise>(
     bencher: Bencher,
     name: &str,
@@ -96,7 +99,7 @@ fn forward_dynamics<S: Lanewise>(bencher: Bencher, name: &str) {
     });
 }
 
-/// Sine and cosine included, as in Pinocchio's `computeJointTorqueRegressor`.
+/// The time includes sine and cosine, as in Pinocchio's `computeJointTorqueRegressor`.
 #[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = ROBOTS)]
 fn inertial_regressor<S: Lanewise>(bencher: Bencher, name: &str) {
     let mut scratch: Option<RegressorWorkspace<S>> = None;
@@ -111,12 +114,12 @@ fn inertial_regressor<S: Lanewise>(bencher: Bencher, name: &str) {
     });
 }
 
-/// All inertial parameters and motors, from 200 states.
+/// The base parameters of all inertial parameters and motor inertias, from 200 states.
 #[divan::bench(args = ROBOTS)]
 fn base_parameters(bencher: Bencher, name: &str) {
-    let kinds = [&ColumnKind::INERTIAL[..], &[ColumnKind::MotorInertia]].concat();
-    let columns = Column::of_joints(6, &kinds);
+    let kinds = [&ParameterKind::INERTIAL[..], &[ParameterKind::MotorInertia]].concat();
+    let parameters = Parameter::of_joints(6, &kinds);
     each::<f64>(bencher, name, |robot, _, _, _| {
-        black_box(BaseParameters::of_robot(robot, &columns));
+        black_box(BaseParameters::of_robot(robot, &parameters));
     });
 }

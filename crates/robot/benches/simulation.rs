@@ -1,4 +1,4 @@
-//! Runs of the LWA 4P with friction, 1 s of motor torque at 250 Hz on one core: items are runs.
+//! Time per run of the LWA 4P with friction: 1 s at 250 Hz on one core. Items are runs.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -13,7 +13,7 @@ fn main() {
     divan::main();
 }
 
-/// Sample times, the starts of the runs, and the torques of all.
+/// Returns sample times, the initial states of the runs, and the torques that all runs share.
 fn recorded() -> (Vec<f64>, Vec<Vec<f64>>, Vec<f64>) {
     let times: Vec<f64> = (0..SAMPLES).map(|k| 0.004 * k as f64).collect();
     let start = |r: usize| (0..12).map(|i| 0.3 * (1.3 * r as f64 + i as f64).sin()).collect();
@@ -22,12 +22,16 @@ fn recorded() -> (Vec<f64>, Vec<Vec<f64>>, Vec<f64>) {
     (times, (0..RUNS).map(start).collect(), torques)
 }
 
-/// One Runge-Kutta step a sample.
-#[divan::bench(types = [f64, Lanes<4>, Lanes<8>], args = [DrivenBy::Motor, DrivenBy::Input], sample_count = 20)]
+/// One Runge-Kutta step per sample.
+#[divan::bench(
+    types = [f64, Lanes<4>, Lanes<8>],
+    args = [DrivenBy::Motor, DrivenBy::Input],
+    sample_count = 20
+)]
 fn fixed<S: Lanewise>(bencher: Bencher, driven_by: DrivenBy) {
     let (robot, (times, starts, inputs)) = (Robot::lwa4p(), recorded());
     let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &inputs }).collect();
-    let mut field = RobotField::<S>::new(&robot, driven_by).sticking_below(0.01);
+    let mut field = RobotField::<S>::new(&robot, driven_by).regularised_below(0.01);
     let mut ensemble = Ensemble::new(12);
     bencher.counter(ItemsCount::new(RUNS)).bench_local(|| {
         ensemble.integrate(&mut field, &times, 1, &runs, |_, _, x| {
@@ -40,7 +44,7 @@ fn fixed<S: Lanewise>(bencher: Bencher, driven_by: DrivenBy) {
 fn adaptive<const MOTOR: bool>(bencher: Bencher, tolerance: f64) {
     let (robot, (times, starts, inputs)) = (Robot::lwa4p(), recorded());
     let driven_by = if MOTOR { DrivenBy::Motor } else { DrivenBy::Input };
-    let mut field = RobotField::new(&robot, driven_by).sticking_below(0.01);
+    let mut field = RobotField::new(&robot, driven_by).regularised_below(0.01);
     let mut solver = DormandPrince::new(12, Tolerance { relative: tolerance, absolute: tolerance });
     bencher.counter(ItemsCount::new(RUNS)).bench_local(|| {
         for start in &starts {

@@ -1,4 +1,4 @@
-//! Vectors of three and symmetric matrices over any [`Scalar`], no more than rigid-body dynamics
+//! 3-vectors and symmetric 3 x 3 matrices over any [`Scalar`], limited to what rigid-body dynamics
 //! needs.
 
 use reachtube_scalar::Scalar;
@@ -11,7 +11,7 @@ pub(crate) struct Vec3<S> {
     pub z: S,
 }
 
-/// A symmetric 3 x 3 matrix by its six entries.
+/// A symmetric 3 x 3 matrix, stored as its six independent entries.
 #[derive(Clone, Debug)]
 pub(crate) struct Sym3<S> {
     pub xx: S,
@@ -22,25 +22,25 @@ pub(crate) struct Sym3<S> {
     pub zz: S,
 }
 
-/// A b.
+/// Returns a b.
 #[inline(always)]
 pub(crate) fn mul<S: Scalar>(a: &S, b: &S) -> S {
     a.clone() * b.clone()
 }
 
-/// k a for a constant of the robot.
+/// Returns k a for a constant k of the robot.
 #[inline(always)]
 pub(crate) fn scale<S: Scalar>(k: f64, a: &S) -> S {
     S::from(k) * a.clone()
 }
 
-/// a b + c d.
+/// Returns a b + c d.
 #[inline(always)]
 pub(crate) fn sum2<S: Scalar>(a: &S, b: &S, c: &S, d: &S) -> S {
     mul(a, b) + mul(c, d)
 }
 
-/// a b - c d.
+/// Returns a b - c d.
 #[inline(always)]
 pub(crate) fn det2<S: Scalar>(a: &S, b: &S, c: &S, d: &S) -> S {
     mul(a, b) - mul(c, d)
@@ -93,6 +93,13 @@ impl<S: Scalar> Vec3<S> {
         self.y += b.y.clone();
         self.z += b.z.clone();
     }
+
+    #[inline(always)]
+    pub fn subtract(&mut self, b: &Self) {
+        self.x -= b.x.clone();
+        self.y -= b.y.clone();
+        self.z -= b.z.clone();
+    }
 }
 
 impl<S: Scalar> Sym3<S> {
@@ -132,61 +139,30 @@ impl<S: Scalar> Sym3<S> {
         self.xz += sum2(&a.x, &b.z, &b.x, &a.z);
         self.yz += sum2(&a.y, &b.z, &b.y, &a.z);
     }
-}
 
-/// The pose of a link in its parent, at the joint's angle: x_parent = Rx(twist) Rz(angle) x_link +
-/// origin.
-///
-/// Two plane rotations cost 8 products a vector where a full matrix costs 9 and must be formed
-/// first.
-#[derive(Clone, Debug)]
-pub(crate) struct Pose<S> {
-    pub sin: S,
-    pub cos: S,
-    pub sin_twist: S,
-    pub cos_twist: S,
-    pub origin: Vec3<S>,
-}
-
-impl<S: Scalar> Pose<S> {
-    /// A free vector from link to parent coordinates.
+    /// Subtracts a bᵀ, which is symmetric because b is parallel to a.
     #[inline(always)]
-    pub fn to_parent(&self, v: &Vec3<S>) -> Vec3<S> {
-        let x = det2(&self.cos, &v.x, &self.sin, &v.y);
-        let y = sum2(&self.sin, &v.x, &self.cos, &v.y);
-        Vec3::new(
-            x,
-            det2(&self.cos_twist, &y, &self.sin_twist, &v.z),
-            sum2(&self.sin_twist, &y, &self.cos_twist, &v.z),
-        )
+    pub fn subtract_product(&mut self, a: &Vec3<S>, b: &Vec3<S>) {
+        self.xx -= mul(&a.x, &b.x);
+        self.xy -= mul(&a.x, &b.y);
+        self.xz -= mul(&a.x, &b.z);
+        self.yy -= mul(&a.y, &b.y);
+        self.yz -= mul(&a.y, &b.z);
+        self.zz -= mul(&a.z, &b.z);
     }
 
-    /// A free vector from parent to link coordinates.
+    /// Adds [p]× H'ᵀ - H [p]×, which is symmetric for H' = H + [p]× M; `h` and `shifted` hold the
+    /// rows of H and H'.
     #[inline(always)]
-    pub fn to_link(&self, v: &Vec3<S>) -> Vec3<S> {
-        let y = sum2(&self.cos_twist, &v.y, &self.sin_twist, &v.z);
-        let z = det2(&self.cos_twist, &v.z, &self.sin_twist, &v.y);
-        Vec3::new(sum2(&self.cos, &v.x, &self.sin, &y), det2(&self.cos, &y, &self.sin, &v.x), z)
-    }
-
-    /// E A Eᵀ for a symmetric A, from link to parent coordinates.
-    #[inline(always)]
-    pub fn symmetric_to_parent(&self, a: &Sym3<S>) -> Sym3<S> {
-        let (s, c) = (&self.sin, &self.cos);
-        let (px, py) = (det2(c, &a.xx, s, &a.xy), det2(c, &a.xy, s, &a.yy));
-        let (qx, qy) = (sum2(s, &a.xx, c, &a.xy), sum2(s, &a.xy, c, &a.yy));
-        let (xx, xy, yy) = (det2(c, &px, s, &py), sum2(s, &px, c, &py), sum2(s, &qx, c, &qy));
-        let (xz, yz) = (det2(c, &a.xz, s, &a.yz), sum2(s, &a.xz, c, &a.yz));
-        let (s, c) = (&self.sin_twist, &self.cos_twist);
-        let (py, pz) = (det2(c, &yy, s, &yz), det2(c, &yz, s, &a.zz));
-        let (qy, qz) = (sum2(s, &yy, c, &yz), sum2(s, &yz, c, &a.zz));
-        Sym3 {
-            xx,
-            xy: det2(c, &xy, s, &xz),
-            xz: sum2(s, &xy, c, &xz),
-            yy: det2(c, &py, s, &pz),
-            yz: sum2(s, &py, c, &pz),
-            zz: sum2(s, &qy, c, &qz),
-        }
+    pub fn add_shift(&mut self, p: &Vec3<S>, h: &[Vec3<S>; 3], shifted: &[Vec3<S>; 3]) {
+        let (x, y, z) = (p.cross(&shifted[0]), p.cross(&shifted[1]), p.cross(&shifted[2]));
+        // Row i of H [p]× is h_i × p.
+        let (hx, hy, hz) = (p.cross(&h[0]), p.cross(&h[1]), p.cross(&h[2]));
+        self.xx += x.x + hx.x;
+        self.xy += y.x.clone() + hx.y;
+        self.xz += z.x.clone() + hx.z;
+        self.yy += y.y + hy.y;
+        self.yz += z.y + hy.z;
+        self.zz += z.z + hz.z;
     }
 }

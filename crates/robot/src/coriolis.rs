@@ -1,15 +1,18 @@
 //! Coriolis and centripetal torque.
 
-use crate::rnea::Weight;
-use crate::{Robot, Workspace};
+use crate::gravity::GravityLoad;
+use crate::robot::Robot;
+use crate::workspace::Workspace;
+use nalgebra::DVector;
 use reachtube_scalar::Scalar;
 
 impl Robot {
-    /// Coriolis and centripetal torque c(q, q̇) of (3) \[N m\], without gravity.
+    /// Computes the Coriolis and centripetal torque c(q, q̇) of (3) \[N m\], without gravity.
     ///
-    /// Slices have one entry a joint: `sin`, `cos` of q and `qd` \[rad/s\]. Evaluated by
-    /// Newton-Euler at zero acceleration; with independent sine and cosine it is that algorithm's
-    /// polynomial, of higher degree than the Christoffel form (12), which it equals on s² + c² = 1.
+    /// All slices have one entry per joint: `sin`, `cos` of q and `qd` \[rad/s\]. The torque is
+    /// that of Newton-Euler at zero acceleration. With independent sine and cosine it is that
+    /// algorithm's polynomial, which has a higher degree than the Christoffel form (12); on
+    /// s² + c² = 1 both are equal.
     ///
     /// # Guarantee
     ///
@@ -22,7 +25,34 @@ impl Robot {
         ws: &mut Workspace<S>,
         c: &mut [S],
     ) {
-        let Workspace { links, rest, .. } = ws;
-        self.newton_euler([sin, cos, qd, rest], Weight::None, links, c);
+        let Workspace { links, zero_acceleration, .. } = ws;
+        self.newton_euler([sin, cos, qd, zero_acceleration], GravityLoad::None, links, c);
+    }
+
+    /// Computes the Coriolis and gravity torque c(q, q̇) + g(q) of (3) \[N m\].
+    ///
+    /// All slices have one entry per joint: `sin`, `cos` of q and `qd` \[rad/s\].
+    ///
+    /// # Guarantee
+    ///
+    /// Over `Interval`: an outer enclosure.
+    pub fn bias_torque<S: Scalar>(
+        &self,
+        sin: &[S],
+        cos: &[S],
+        qd: &[S],
+        ws: &mut Workspace<S>,
+        out: &mut [S],
+    ) {
+        let Workspace { links, zero_acceleration, .. } = ws;
+        self.newton_euler([sin, cos, qd, zero_acceleration], self.gravity_load(), links, out);
+    }
+
+    /// Returns the Coriolis and centripetal torque c(q, q̇) \[N m\] at q \[rad\], q̇ \[rad/s\].
+    pub fn coriolis_torque(&self, q: &[f64], qd: &[f64]) -> DVector<f64> {
+        let (sin, cos) = self.sin_cos(q);
+        let mut c = DVector::zeros(q.len());
+        self.coriolis(&sin, &cos, qd, &mut Workspace::new(self), c.as_mut_slice());
+        c
     }
 }

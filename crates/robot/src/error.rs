@@ -1,41 +1,52 @@
+//! The errors of this crate.
+
 use std::path::PathBuf;
 
-/// Why a robot could not be made.
+/// The reason why a robot could not be made or a question about it has no answer.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RobotError {
     /// No embedded robot has this name and no file could be read.
-    #[error("cannot read robot `{}`: {source}; give the path of a TOML or URDF file or an embedded name (lwa4p)", path.display())]
+    #[error(
+        "cannot read robot `{}`: {source}; give the path of a TOML or URDF file or an embedded \
+         name (lwa4p)",
+        path.display()
+    )]
     Read {
-        /// The name or path that was asked for.
+        /// The requested name or path.
         path: PathBuf,
-        /// What the system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// The text is not TOML or XML, or lacks a field; the parser's message names line, column and
-    /// field.
-    #[error("{origin}: {}\ncorrect it; docs/robot.md describes the format", message.trim_end())]
+    /// The text is not TOML or XML, or a field is missing; the parser's message names line, column
+    /// and field.
+    #[error(
+        "{origin}: {}\ncorrect the text; docs/robot.md describes the format",
+        message.trim_end()
+    )]
     Syntax {
-        /// File or name the text came from.
+        /// The file that the text came from, or its name.
         origin: String,
         /// The parser's message.
         message: String,
     },
-    /// A value makes no robot.
+    /// A value describes no robot.
     #[error("{origin}: {place}{problem}; {remedy}")]
     Invalid {
-        /// File and line, or name, the value came from.
+        /// The file and line that the value came from, or the name of its text.
         origin: String,
-        /// The joint, as "joint `name`: ", or nothing for the robot as a whole.
+        /// The joint, as "joint `name`: ", or empty for the robot as a whole.
         place: String,
-        /// The value and the limit it breaks.
+        /// The value and the limit that it violates.
         problem: String,
         /// What to do.
         remedy: String,
     },
     /// The mass matrix is not positive definite: torque on a joint would accelerate it backward.
     #[error(
-        "robot `{robot}`: joint `{joint}` has the articulated inertia {pivot:.3e} kg m² at q = {q:.4?} rad, where a body's \
-         is positive; correct its inertial parameters or add the motor's armature"
+        "robot `{robot}`: joint `{joint}` has the articulated inertia {pivot:.3e} kg m² at \
+         q = {q:.4?} rad, but it must be positive; correct its inertial parameters or those of \
+         later links, or add the motor's armature"
     )]
     NotPhysical {
         /// The robot's name.
@@ -47,7 +58,7 @@ pub enum RobotError {
         /// The position \[rad\].
         q: Vec<f64>,
     },
-    /// A setting that allows no answer; the message names setting, value and remedy.
+    /// A setting is outside its range; the message names the setting, its value and a remedy.
     #[error("{0}")]
     Setting(String),
 }

@@ -1,29 +1,31 @@
-//! The robot with friction as a differential equation.
+//! The equation of motion of a robot with friction, as a vector field.
 
-use crate::rnea::Weight;
-use crate::{Robot, Workspace};
+use crate::gravity::GravityLoad;
+use crate::robot::Robot;
+use crate::workspace::Workspace;
 use reachtube_ode::VectorField;
 use reachtube_scalar::Lanewise;
 
-/// What the torque is that drives a robot.
+/// The torque that drives a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DrivenBy {
-    /// Motor torque tau_m on the link's side, (4) with (5): M_m q̈ = tau_m - tau_c(g(q), q̇) -
-    /// tau_v(q̇) - c(q, q̇) - g(q).
+    /// Motor torque tau_m on the link side, (4) with (5):
+    /// M_m q̈ = tau_m - tau_c(g(q), q̇) - tau_v(q̇) - c(q, q̇) - g(q).
     Motor,
-    /// The input u of (11), which has gravity and Coulomb friction in it, (10): M_m q̈ = u -
-    /// tau_v(q̇) - c(q, q̇).
+    /// The input u of (11), which already compensates gravity and Coulomb friction, (10):
+    /// M_m q̈ = u - tau_v(q̇) - c(q, q̇).
     Input,
 }
 
-/// The equation of motion of a robot with friction, for the integrators of `reachtube-ode`: x = (q,
-/// q̇) (2n; rad, rad/s), and the torque (n; N m) as the input. Over lanes each lane is a robot of
-/// its own; reused, it does not allocate.
+/// The equation of motion of a robot with friction, for the integrators of `reachtube-ode`.
 ///
-/// Coulomb friction jumps where a joint turns and is 0 at rest. As such it has no stiction: a joint
-/// that would stick chatters about zero velocity, with an amplitude of Coulomb torque times step
-/// over inertia, and an adaptive method takes ever smaller steps there.
-/// [`sticking_below`](Self::sticking_below) makes it continuous.
+/// The state is x = (q, q̇) (2n; rad, rad/s) and the input is the torque (n; N m). Over lanes, each
+/// lane is an independent run. A field that is reused does not allocate.
+///
+/// Coulomb friction jumps where a joint changes direction and is 0 at rest, so it has no stiction.
+/// A joint that would stick chatters about zero velocity, with an amplitude of Coulomb torque times
+/// step over inertia, and an adaptive method takes ever smaller steps there.
+/// [`regularised_below`](Self::regularised_below) makes the friction continuous.
 ///
 /// # Examples
 ///
@@ -35,7 +37,8 @@ pub enum DrivenBy {
 /// let mut field = RobotField::new(&robot, DrivenBy::Input);
 /// let times = [0.0, 0.004, 0.009]; // s, as recorded
 /// let run = Run { start: &[0.0; 12], inputs: &[10.0; 12] };
-/// let outcome = DormandPrince::new(12, Tolerance::default()).simulate(&mut field, &times, run, |sample, x| {
+/// let mut solver = DormandPrince::new(12, Tolerance::default());
+/// let outcome = solver.follow(&mut field, &times, run, |sample, x| {
 ///     assert_eq!(x[0] > 0.0, sample > 0);
 /// });
 /// assert!(outcome.is_reached());
@@ -44,23 +47,25 @@ pub enum DrivenBy {
 pub struct RobotField<'a, S> {
     robot: &'a Robot,
     driven_by: DrivenBy,
-    sticking_speed: f64,
+    /// Speed \[rad/s\] below which Coulomb friction is linear in q̇; 0 for none.
+    regularisation_speed: f64,
     articulated: bool,
     ws: Workspace<S>,
     sin: Vec<S>,
     cos: Vec<S>,
+    /// The load of gravity, then the link-side torque \[N m\].
     torque: Vec<S>,
 }
 
 impl<'a, S: Lanewise> RobotField<'a, S> {
-    /// The motion of one robot.
+    /// Makes the equation of motion of a robot.
     pub fn new(robot: &'a Robot, driven_by: DrivenBy) -> Self {
         let zeros = || vec![S::zero(); robot.joint_count()];
-        let (ws, sticking_speed, articulated) = (Workspace::new(robot), 0.0, false);
+        let (ws, regularisation_speed, articulated) = (Workspace::new(robot), 0.0, false);
         Self {
             robot,
             driven_by,
-            sticking_speed,
+            regularisation_speed,
             articulated,
             ws,
             sin: zeros(),
@@ -69,35 +74,36 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
         }
     }
 
-    /// The same motion by Featherstone's articulated bodies, [`Robot::aba`], in place of
-    /// [`Robot::forward_dynamics`].
+    /// Uses the articulated-body algorithm [`Robot::aba`] in place of [`Robot::forward_dynamics`].
     #[must_use]
     pub fn by_articulated_bodies(self) -> Self {
         Self { articulated: true, ..self }
     }
 
-    /// The same with Coulomb friction in proportion to |q̇| below a speed \[rad/s\], and as it is
-    /// from there on: a joint that would stick creeps, at that speed at most.
+    /// Regularises Coulomb friction: below a speed \[rad/s\] it is proportional to |q̇|, and above
+    /// that speed it is unchanged. A joint that would stick creeps at no more than this speed.
     ///
-    /// Near rest it damps a joint with about Coulomb torque over inertia and speed \[1/s\]; steps
-    /// longer than about 2.5 over that do not follow it.
+    /// Near rest it damps a joint at a rate of about Coulomb torque over inertia and speed \[1/s\].
+    /// Fixed steps should stay below about 2.5 times the inverse of this rate.
     #[must_use]
-    pub fn sticking_below(self, sticking_speed: f64) -> Self {
-        Self { sticking_speed, ..self }
+    pub fn regularised_below(self, regularisation_speed: f64) -> Self {
+        Self { regularisation_speed, ..self }
     }
 
-    /// Turns the load of gravity in `self.torque` into the link-side torque tau_m - tau_c - tau_v.
-    fn take_off_friction(&mut self, qd: &[S], tau_motor: &[S]) {
+    /// Replaces the load of gravity in `self.torque` by the link-side torque
+    /// tau_m - tau_c - tau_v.
+    fn subtract_friction(&mut self, qd: &[S], tau_motor: &[S]) {
         for (i, joint) in self.robot.joints().iter().enumerate() {
             let mut coulomb = joint.friction.coulomb.torque(self.torque[i], qd[i]);
-            if self.sticking_speed > 0.0 {
-                coulomb *= qd[i].map(|qd| (qd.abs() / self.sticking_speed).min(1.0));
+            if self.regularisation_speed > 0.0 {
+                coulomb *= qd[i].map(|qd| (qd.abs() / self.regularisation_speed).min(1.0));
             }
             self.torque[i] = tau_motor[i] - (coulomb + joint.friction.viscous.torque(&qd[i]));
         }
     }
 
-    fn take_off_viscous_friction(&mut self, qd: &[S], u: &[S]) {
+    /// Writes u - tau_v into `self.torque`.
+    fn subtract_viscous_friction(&mut self, qd: &[S], u: &[S]) {
         for (i, joint) in self.robot.joints().iter().enumerate() {
             self.torque[i] = u[i] - joint.friction.viscous.torque(&qd[i]);
         }
@@ -113,22 +119,22 @@ impl<S: Lanewise> VectorField<S> for RobotField<'_, S> {
         for ((sin, cos), q) in self.sin.iter_mut().zip(&mut self.cos).zip(q) {
             (*sin, *cos) = q.sin_cos();
         }
-        let weight = match self.driven_by {
+        let gravity = match self.driven_by {
             DrivenBy::Motor => {
                 self.robot.gravity(&self.sin, &self.cos, &mut self.ws, &mut self.torque);
-                self.take_off_friction(qd, u);
-                self.robot.weight()
+                self.subtract_friction(qd, u);
+                self.robot.gravity_load()
             }
             DrivenBy::Input => {
-                self.take_off_viscous_friction(qd, u);
-                Weight::None
+                self.subtract_viscous_friction(qd, u);
+                GravityLoad::None
             }
         };
         let state = [&self.sin, &self.cos, qd, &self.torque];
         if self.articulated {
-            self.robot.articulate(state, weight, &mut self.ws, acceleration);
+            self.robot.aba_under(gravity, state, &mut self.ws, acceleration);
         } else {
-            self.robot.accelerate(state, weight, &mut self.ws, acceleration);
+            self.robot.forward_dynamics_under(gravity, state, &mut self.ws, acceleration);
         }
     }
 }

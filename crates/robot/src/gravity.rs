@@ -1,14 +1,38 @@
 //! Gravity torque.
 
-use crate::rnea::hand_down;
-use crate::workspace::LinkScratch;
-use crate::{Robot, Workspace};
+use crate::algebra::Vec3;
+use crate::link::Link;
+use crate::robot::Robot;
+use crate::workspace::{LinkScratch, Workspace, accumulate_to_parents};
+use nalgebra::DVector;
 use reachtube_scalar::Scalar;
 
+/// The parameters that gravity acts on, with the base acceleration that has the same effect.
+pub(crate) enum GravityLoad<S> {
+    /// No gravity.
+    None,
+    /// Gravity acts on the inertial parameters.
+    Inertial(Vec3<S>),
+    /// Gravity acts on separate gravity parameters.
+    Separate(Vec3<S>),
+}
+
+impl<S: Scalar> GravityLoad<S> {
+    /// Returns the base acceleration for the inertial parameters, and the one for the separate
+    /// gravity parameters if there are any.
+    pub fn split(self) -> (Vec3<S>, Option<Vec3<S>>) {
+        match self {
+            Self::None => (Vec3::zero(), None),
+            Self::Inertial(acceleration) => (acceleration, None),
+            Self::Separate(acceleration) => (Vec3::zero(), Some(acceleration)),
+        }
+    }
+}
+
 impl Robot {
-    /// Gravity torque g(q) of (3) \[N m\], from the gravity parameters.
+    /// Computes the gravity torque g(q) of (3) \[N m\] from the gravity parameters.
     ///
-    /// Slices have one entry a joint: `sin` and `cos` of q.
+    /// All slices have one entry per joint; `sin` and `cos` are those of q.
     ///
     /// # Guarantee
     ///
@@ -17,7 +41,15 @@ impl Robot {
         self.gravity_pass(sin, cos, &mut ws.links, g);
     }
 
-    /// Newton-Euler of a robot at rest whose base accelerates against gravity.
+    /// Returns the gravity torque g(q) \[N m\] at q \[rad\].
+    pub fn gravity_torque(&self, q: &[f64]) -> DVector<f64> {
+        let (sin, cos) = self.sin_cos(q);
+        let mut g = DVector::zeros(q.len());
+        self.gravity(&sin, &cos, &mut Workspace::new(self), g.as_mut_slice());
+        g
+    }
+
+    /// Runs Newton-Euler for a robot at rest whose base accelerates against gravity.
     pub(crate) fn gravity_pass<S: Scalar>(
         &self,
         sin: &[S],
@@ -29,10 +61,33 @@ impl Robot {
         for (i, (link, scratch)) in self.links.iter().zip(scratch.iter_mut()).enumerate() {
             let pose = link.pose(&sin[i], &cos[i]);
             acceleration = pose.to_link(&acceleration);
-            let (force, moment) = link.lifted(&acceleration);
+            let (force, moment) = gravity_wrench(link, &acceleration);
             *scratch = LinkScratch { pose, force, moment };
         }
-        hand_down(scratch);
+        accumulate_to_parents(scratch);
         g.iter_mut().zip(scratch).for_each(|(g, s)| *g = s.moment.z.clone());
     }
+
+    /// Returns the gravity load of this robot.
+    pub(crate) fn gravity_load<S: Scalar>(&self) -> GravityLoad<S> {
+        let acceleration = self.base_acceleration();
+        if self.separate_gravity {
+            GravityLoad::Separate(acceleration)
+        } else {
+            GravityLoad::Inertial(acceleration)
+        }
+    }
+
+    /// Returns the base acceleration that acts on every mass as gravity does, in the working base
+    /// frame \[m/s²\].
+    fn base_acceleration<S: Scalar>(&self) -> Vec3<S> {
+        Vec3::constant(self.working_gravity.map(|g| -g))
+    }
+}
+
+/// Returns the force and moment that accelerate a link's gravity parameters.
+#[inline(always)]
+pub(crate) fn gravity_wrench<S: Scalar>(link: &Link, acceleration: &Vec3<S>) -> (Vec3<S>, Vec3<S>) {
+    let moment = Vec3::constant(link.gravity_first_moment).cross(acceleration);
+    (acceleration.scaled(&S::from(link.gravity_mass)), moment)
 }

@@ -1,31 +1,36 @@
+//! The inertial parameters of one link.
+
 use crate::placement::Placement;
 use nalgebra::{Matrix3, Matrix4, SymmetricEigen, Vector3};
+
+/// Number of inertial parameters of one link: m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy, Ixz, Iyz, Izz.
+pub(crate) const INERTIAL: usize = 10;
 
 /// The ten inertial parameters of one link, as moments of its mass distribution about a frame's
 /// origin.
 ///
-/// The second moments Σ = ∫ r rᵀ dm stand in for the inertia tensor I = tr(Σ) 1 - Σ: they move with
-/// a frame as R Σ Rᵀ + p hᵀ + h pᵀ + m p pᵀ, and the link is physical if and only if the
-/// pseudo-inertia [[Σ, h], [hᵀ, m]] is positive semidefinite (Wensing, Kim & Slotine, RA-L 2018).
+/// The second moments Σ = ∫ r rᵀ dm replace the inertia tensor I = tr(Σ) 1 - Σ. In another frame
+/// they are R Σ Rᵀ + p hᵀ + h pᵀ + m p pᵀ. The link is physical if and only if the pseudo-inertia
+/// [[Σ, h], [hᵀ, m]] is positive semidefinite (Wensing, Kim & Slotine, RA-L 2018).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkInertia {
     /// Mass m \[kg\].
     pub mass: f64,
-    /// First moment h = m c, c the centre of mass \[kg m\].
+    /// First moment h = m c \[kg m\], with c the centre of mass.
     pub first_moment: Vector3<f64>,
     /// Second moments Σ = ∫ r rᵀ dm about the frame's origin \[kg m²\], symmetric.
     pub second_moments: Matrix3<f64>,
 }
 
 impl LinkInertia {
-    /// A link from its inertia tensor about the frame's origin \[kg m²\].
+    /// Makes a link from its inertia tensor about the frame's origin \[kg m²\].
     pub fn about_origin(mass: f64, first_moment: Vector3<f64>, inertia: &Matrix3<f64>) -> Self {
         let second_moments = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
         Self { mass, first_moment, second_moments }
     }
 
-    /// A link from its centre of mass \[m\] and its inertia tensor about that point \[kg m²\], in
-    /// the frame's axes.
+    /// Makes a link from its centre of mass \[m\] and its inertia tensor about that point
+    /// \[kg m²\], in the frame's axes.
     ///
     /// # Examples
     ///
@@ -44,13 +49,15 @@ impl LinkInertia {
         link
     }
 
-    /// The inertia tensor about the frame's origin \[kg m²\].
+    /// Returns the inertia tensor about the frame's origin \[kg m²\].
     pub fn tensor(&self) -> Matrix3<f64> {
         Matrix3::identity() * self.second_moments.trace() - self.second_moments
     }
 
-    /// Mass, centre of mass \[m\], and ixx, ixy, ixz, iyy, iyz, izz about it \[kg m²\]; about the
-    /// origin where the mass is 0.
+    /// Returns mass \[kg\], centre of mass \[m\], and ixx, ixy, ixz, iyy, iyz, izz about it
+    /// \[kg m²\].
+    ///
+    /// A link without mass has its centre of mass at the origin.
     pub(crate) fn about_own_com(&self) -> (f64, [f64; 3], [f64; 6]) {
         let c = if self.mass == 0.0 { Vector3::zeros() } else { self.first_moment / self.mass };
         let t = self.tensor()
@@ -58,11 +65,11 @@ impl LinkInertia {
         (self.mass, c.into(), [t[(0, 0)], t[(0, 1)], t[(0, 2)], t[(1, 1)], t[(1, 2)], t[(2, 2)]])
     }
 
-    /// The smallest eigenvalue of the pseudo-inertia [[Σ, h], [hᵀ, m]], relative to its largest
-    /// magnitude.
+    /// Returns the smallest eigenvalue of the pseudo-inertia [[Σ, h], [hᵀ, m]], relative to the
+    /// eigenvalue of largest magnitude.
     ///
-    /// Zero or more (to rounding) if and only if some distribution of positive mass has these ten
-    /// parameters.
+    /// Up to rounding, it is zero or more if and only if some distribution of positive mass has
+    /// these ten parameters.
     pub fn smallest_relative_eigenvalue(&self) -> f64 {
         let mut pseudo = Matrix4::zeros();
         pseudo.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.second_moments);
@@ -74,7 +81,8 @@ impl LinkInertia {
         if scale == 0.0 { 0.0 } else { eigenvalues.min() / scale }
     }
 
-    /// The same link about the frame in which the present one has the given placement.
+    /// Returns the same link about another frame, in which the present frame has the placement
+    /// `to`.
     pub(crate) fn moved(&self, to: &Placement) -> Self {
         let (r, p) = (&to.rotation, &to.translation);
         let h = r * self.first_moment;
@@ -87,5 +95,20 @@ impl LinkInertia {
                 + shift.transpose()
                 + self.mass * p * p.transpose(),
         }
+    }
+
+    /// Returns m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's origin.
+    pub fn parameters(&self) -> [f64; INERTIAL] {
+        let (h, i) = (&self.first_moment, self.tensor());
+        let [xx, xy, yy, xz, yz, zz] =
+            [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|k| i[k]);
+        [self.mass, h.x, h.y, h.z, xx, xy, yy, xz, yz, zz]
+    }
+
+    /// Makes a link from m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's
+    /// origin.
+    pub fn from_parameters(p: &[f64; INERTIAL]) -> Self {
+        let tensor = Matrix3::new(p[4], p[5], p[7], p[5], p[6], p[8], p[7], p[8], p[9]);
+        Self::about_origin(p[0], Vector3::new(p[1], p[2], p[3]), &tensor)
     }
 }

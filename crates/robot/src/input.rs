@@ -1,21 +1,23 @@
-//! The input u of the abstracted dynamics (10) and the torques it stands for.
+//! Conversions between motor torque, link-side torque and the input u of the paper's model (10).
 
-use crate::Robot;
+use crate::robot::Robot;
 use nalgebra::DVector;
 
 impl Robot {
-    /// Viscous friction torque tau_v(q̇) of (5) \[N m\], one entry a joint.
+    /// Returns the viscous friction torque tau_v(q̇) of (5) \[N m\], one entry per joint.
     pub fn viscous_torque(&self, qd: &[f64]) -> DVector<f64> {
         let torques = self.joints.iter().zip(qd).map(|(j, qd)| j.friction.viscous.torque(qd));
         DVector::from_iterator(self.joint_count(), torques)
     }
 
-    /// Coulomb friction torque tau_c(g(q), q̇) of (6) to (9) \[N m\], gravity taken for the load.
+    /// Returns the Coulomb friction torque tau_c(g(q), q̇) of (6) to (9) \[N m\], with the gravity
+    /// torque as the load.
     pub fn coulomb_torque(&self, q: &[f64], qd: &[f64]) -> DVector<f64> {
-        self.coulomb_under(&self.gravity_torque(q), qd)
+        self.coulomb_torque_under(&self.gravity_torque(q), qd)
     }
 
-    fn coulomb_under(&self, load: &DVector<f64>, qd: &[f64]) -> DVector<f64> {
+    /// Returns the Coulomb friction torque \[N m\] under a load torque \[N m\].
+    fn coulomb_torque_under(&self, load: &DVector<f64>, qd: &[f64]) -> DVector<f64> {
         let joints = self.joints.iter().zip(load.iter().zip(qd));
         DVector::from_iterator(
             self.joint_count(),
@@ -23,8 +25,8 @@ impl Robot {
         )
     }
 
-    /// The input (11): u = tau_m - tau_c(g(q), q̇) - g(q) \[N m\], for the torque of the motors on
-    /// the link's side.
+    /// Returns the input (11) for a motor torque on the link side:
+    /// u = tau_m - tau_c(g(q), q̇) - g(q) \[N m\].
     ///
     /// # Examples
     ///
@@ -42,19 +44,20 @@ impl Robot {
         tau_motor: &[f64],
     ) -> DVector<f64> {
         let g = self.gravity_torque(q);
-        DVector::from_column_slice(tau_motor) - self.coulomb_under(&g, qd) - g
+        DVector::from_column_slice(tau_motor) - self.coulomb_torque_under(&g, qd) - g
     }
 
-    /// The motor torque that gives an input: the inverse of [`Robot::input_from_motor_torque`] \[N
-    /// m\].
+    /// Returns the motor torque that gives an input \[N m\], which is the inverse of
+    /// [`Robot::input_from_motor_torque`].
     pub fn motor_torque_from_input(&self, q: &[f64], qd: &[f64], u: &[f64]) -> DVector<f64> {
         let g = self.gravity_torque(q);
-        DVector::from_column_slice(u) + self.coulomb_under(&g, qd) + g
+        DVector::from_column_slice(u) + self.coulomb_torque_under(&g, qd) + g
     }
 
-    /// The input of a torque behind all friction: u = tau_l - g(q) + tau_v(q̇) \[N m\].
+    /// Returns the input for a link-side torque, from which all friction is already subtracted:
+    /// u = tau_l - g(q) + tau_v(q̇) \[N m\].
     ///
-    /// Then M_m q̈ + c = u - tau_v = tau_l - g, as (10) has it.
+    /// With this u, model (10) gives M_m q̈ + c = u - tau_v = tau_l - g.
     pub fn input_from_link_torque(&self, q: &[f64], qd: &[f64], tau_link: &[f64]) -> DVector<f64> {
         DVector::from_column_slice(tau_link) - self.gravity_torque(q) + self.viscous_torque(qd)
     }

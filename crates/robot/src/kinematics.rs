@@ -1,10 +1,14 @@
-use crate::Robot;
+//! Link placements and energies.
+
+use crate::link::Link;
 use crate::placement::{Placement, rotation_x, rotation_z};
+use crate::robot::Robot;
 use nalgebra::Vector3;
 
 impl Robot {
-    /// Placement of each link's own frame (as described, not the working one) in the base frame, q
-    /// in rad.
+    /// Returns the placement of each link's original frame in the base frame, for q in rad.
+    ///
+    /// The original frame is the one of the description, not the working frame.
     ///
     /// # Examples
     ///
@@ -18,7 +22,7 @@ impl Robot {
         frames.iter().zip(&self.links).map(|(frame, link)| frame.then(&link.original)).collect()
     }
 
-    /// Placement of each working frame in the base frame.
+    /// Returns the placement of each working frame in the base frame.
     fn working_placements(&self, q: &[f64]) -> Vec<Placement> {
         let (sin, cos) = self.sin_cos(q);
         let mut frame = Placement::rotation(self.base);
@@ -34,17 +38,18 @@ impl Robot {
             .collect()
     }
 
-    /// Kinetic energy ½ q̇ᵀ M_m(q) q̇ \[J\], rotors included, at q \[rad\] and q̇ \[rad/s\].
+    /// Returns the kinetic energy ½ q̇ᵀ M_m(q) q̇ \[J\], rotors included, at q \[rad\] and q̇
+    /// \[rad/s\].
     pub fn kinetic_energy(&self, q: &[f64], qd: &[f64]) -> f64 {
         let qd = nalgebra::DVectorView::from_slice(qd, qd.len());
         0.5 * (self.mass_matrix(q) * qd).dot(&qd)
     }
 
-    /// Potential energy of the gravity parameters \[J\], zero for masses at the base's origin, at q
-    /// \[rad\].
+    /// Returns the potential energy of the gravity parameters \[J\] at q \[rad\]; it is zero for
+    /// masses at the base's origin.
     pub fn potential_energy(&self, q: &[f64]) -> f64 {
         let gravity = Vector3::from(self.gravity_acceleration());
-        let moment = |(frame, link): (&Placement, &crate::chain::Link)| {
+        let moment = |(frame, link): (&Placement, &Link)| {
             frame.rotation * Vector3::from(link.gravity_first_moment)
                 + link.gravity_mass * frame.translation
         };

@@ -2,9 +2,8 @@
 
 mod aba;
 mod algebra;
+mod articulated_body;
 mod base_parameters;
-mod chain;
-mod column;
 mod coriolis;
 mod crba;
 mod description;
@@ -15,39 +14,51 @@ mod forward_dynamics;
 pub mod friction;
 mod gravity;
 mod inertia;
+mod inertial_regressor;
 mod input;
+mod joint;
+mod joint_geometry;
 mod kinematics;
+mod link;
+mod load;
 pub mod ltdl;
+mod motion;
+mod parameter;
 mod physicality;
 mod placement;
 mod polynomial_dynamics;
+mod pose;
+mod random_states;
 mod regressor;
 mod rnea;
 mod robot;
 mod simulate;
-mod singular;
-mod states;
+mod singular_values;
 mod urdf;
 mod workspace;
 
-pub use base_parameters::BaseParameters;
-pub use chain::JointGeometry;
-pub use column::{Column, ColumnKind, Regressor};
-pub use description::{
+pub use base_parameters::base::BaseParameters;
+pub use description::joint_description::{
     Convention, Dh, FrictionDescription, GravityMoments, InertiaPoint, JointDescription,
-    Parameters, PlacementDescription, RobotDescription, SCHEMA_VERSION,
+    PlacementDescription,
 };
+pub use description::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
 pub use error::RobotError;
-pub use excitation::{
-    Criterion, Excitation, ExcitationSettings, FourierTrajectory, MotionSample, Quality,
-};
+pub use excitation::evaluation::Quality;
+pub use excitation::fourier::{FourierTrajectory, MotionSample};
+pub use excitation::optimise::Excitation;
+pub use excitation::settings::{Criterion, ExcitationSettings};
 pub use field::{DrivenBy, RobotField};
 pub use inertia::LinkInertia;
-pub use physicality::Physicality;
+pub use inertial_regressor::RegressorWorkspace;
+pub use joint::Joint;
+pub use joint_geometry::JointGeometry;
+pub use parameter::{Parameter, ParameterKind};
+pub use physicality::outcome::Physicality;
 pub use placement::{Placement, snapped_sin_cos};
 pub use polynomial_dynamics::PolynomialDynamics;
-pub use regressor::RegressorWorkspace;
-pub use robot::{Joint, Robot};
+pub use regressor::Regressor;
+pub use robot::Robot;
 pub use simulate::Trajectory;
-pub use urdf::{Urdf, UrdfEnds};
+pub use urdf::read::{Urdf, UrdfEnds};
 pub use workspace::Workspace;

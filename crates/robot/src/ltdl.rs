@@ -1,21 +1,21 @@
-//! Factorisation M = Lᵀ D L of a symmetric matrix, from the tip of the chain to its base.
+//! Factorisation M = Lᵀ D L of a symmetric matrix, from the last row to the first.
 
 use reachtube_scalar::Scalar;
 
-/// Factors the symmetric n x n matrix `m` (row by row; the lower triangle is read) in place as Lᵀ D
-/// L.
+/// Factors the symmetric n x n matrix `m`, stored row by row, in place as Lᵀ D L.
 ///
-/// L is unit lower triangular and overwrites the strict lower triangle; D overwrites the diagonal.
-/// Pivot D_i equals the articulated inertia about joint i: what moves when torque acts on joint i
-/// while later joints are free. The upper triangle is left as it was. Featherstone, Rigid Body
-/// Dynamics Algorithms, 2008, table 6.3, for a serial chain.
+/// The function reads the lower triangle. L is unit lower triangular and overwrites the strict
+/// lower triangle; D overwrites the diagonal; the upper triangle does not change (Featherstone,
+/// Rigid Body Dynamics Algorithms, 2008, table 6.3, for a serial chain).
 ///
-/// M is positive definite if and only if every pivot is positive; nothing is checked here.
+/// Pivot D_i of a mass matrix is the articulated inertia about joint i, which is the inertia that
+/// torque on joint i feels while all later joints are free. M is positive definite if and only if
+/// every pivot is positive. This function does not check that.
 ///
 /// # Guarantee
 ///
-/// Over `Interval`: each entry encloses that of every symmetric matrix in `m`, or is all reals
-/// where a pivot encloses 0.
+/// Over `Interval`: each entry encloses the entry for every symmetric matrix in `m`, or is all
+/// reals where a pivot encloses 0.
 ///
 /// # Examples
 ///
@@ -44,7 +44,7 @@ pub fn factor<S: Scalar>(m: &mut [S], n: usize) {
     }
 }
 
-/// Solves M x = b in place for the factors from [`factor`]; n is the length of `x`.
+/// Solves M x = b in place with the factors from [`factor`]; n is the length of `x`.
 ///
 /// # Guarantee
 ///

@@ -1,31 +1,33 @@
+//! Poses of frames, and rotations with exact entries.
+
 use nalgebra::{Matrix3, Vector3};
 
-/// The pose of a frame in another: x_outer = rotation x_inner + translation (metres).
+/// The pose of an inner frame in an outer one: x_outer = rotation · x_inner + translation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
-    /// Rotation matrix, its columns the inner frame's axes in outer coordinates.
+    /// Rotation matrix; its columns are the inner frame's axes in outer coordinates.
     pub rotation: Matrix3<f64>,
     /// Origin of the inner frame in outer coordinates \[m\].
     pub translation: Vector3<f64>,
 }
 
 impl Placement {
-    /// The same frame.
+    /// Returns the placement of a frame in itself.
     pub fn identity() -> Self {
         Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
-    /// A rotation alone.
+    /// Makes a placement without translation.
     pub fn rotation(rotation: Matrix3<f64>) -> Self {
         Self { rotation, translation: Vector3::zeros() }
     }
 
-    /// A translation alone \[m\].
+    /// Makes a placement without rotation from a translation \[m\].
     pub fn translation(x: f64, y: f64, z: f64) -> Self {
         Self { rotation: Matrix3::identity(), translation: Vector3::new(x, y, z) }
     }
 
-    /// The pose of a frame known in the inner one.
+    /// Returns the placement in the outer frame of a frame that is placed in the inner one.
     pub fn then(&self, inner: &Self) -> Self {
         Self {
             rotation: self.rotation * inner.rotation,
@@ -34,10 +36,11 @@ impl Placement {
     }
 }
 
-/// Sine and cosine, exact where the angle is within 1e-12 of a multiple of pi/2.
+/// Returns sine and cosine of an angle \[rad\], exact if it is within 1e-12 rad of a multiple of
+/// pi/2.
 ///
-/// The snap keeps the zeros of a robot with right angles exact: its dynamics then has the fewest
-/// terms as polynomial and the narrowest enclosure as interval.
+/// Rounding to the multiple keeps the zeros of a robot with right angles exact. Its dynamics then
+/// has the fewest terms as polynomials and the narrowest enclosures as intervals.
 pub fn snapped_sin_cos(angle: f64) -> (f64, f64) {
     let quarter = (angle / core::f64::consts::FRAC_PI_2).round();
     if (angle - quarter * core::f64::consts::FRAC_PI_2).abs() > 1e-12 {
@@ -51,25 +54,25 @@ pub fn snapped_sin_cos(angle: f64) -> (f64, f64) {
     }
 }
 
-/// Rotation about x by an angle given as (sine, cosine).
+/// Returns the rotation about x by an angle given as (sine, cosine).
 pub(crate) fn rotation_x((s, c): (f64, f64)) -> Matrix3<f64> {
     Matrix3::new(1.0, 0.0, 0.0, 0.0, c, -s, 0.0, s, c)
 }
 
-/// Rotation about z by an angle given as (sine, cosine).
+/// Returns the rotation about z by an angle given as (sine, cosine).
 pub(crate) fn rotation_z((s, c): (f64, f64)) -> Matrix3<f64> {
     Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// A rotation that takes +z to the given unit vector, with exact entries where the vector lies on
-/// an axis.
+/// Returns a rotation that takes +z to a unit vector, with exact entries if the vector lies on an
+/// axis of coordinates.
 pub(crate) fn rotation_from_z(axis: &Vector3<f64>) -> Matrix3<f64> {
     let (x, y, z) = (axis.x, axis.y, axis.z);
     let sin_tilt = x.hypot(y);
     if sin_tilt == 0.0 {
         return rotation_x((0.0, z.signum()));
     }
-    // Turn about z so that the tilt happens about x: z goes to (0, -sin, cos), then to the axis.
+    // A tilt about x takes z to (0, -sin, cos); a rotation about z takes that to the axis.
     rotation_z((x / sin_tilt, -y / sin_tilt)) * rotation_x((sin_tilt, z))
 }
 
@@ -89,7 +92,11 @@ mod tests {
 
     proptest! {
         #[test]
-        fn rotation_from_z_is_a_rotation_onto_the_axis(x in -1.0..1.0f64, y in -1.0..1.0f64, z in -1.0..1.0f64) {
+        fn rotation_from_z_is_a_rotation_onto_the_axis(
+            x in -1.0..1.0f64,
+            y in -1.0..1.0f64,
+            z in -1.0..1.0f64,
+        ) {
             let v = Vector3::new(x, y, z);
             prop_assume!(v.norm() > 1e-3);
             let axis = v.normalize();

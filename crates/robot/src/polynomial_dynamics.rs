@@ -1,22 +1,22 @@
 //! M, c and g as exact polynomials in the sines and cosines of the joint angles.
 
+use crate::robot::Robot;
+use crate::workspace::Workspace;
+use reachtube_scalar::{Scalar, TaylorPolynomial, TaylorSpace, TaylorSpaceError};
 use std::sync::Arc;
 
-use crate::{Robot, Workspace};
-use reachtube_scalar::{Scalar, TaylorPolynomial, TaylorSpace, TaylorSpaceError};
-
-/// The dynamics of a robot as polynomials in (s_1..s_n, c_1..c_n), s_i = sin q_i and c_i = cos q_i
-/// taken as independent variables (Property A).
+/// The dynamics of a robot as polynomials in (s_1..s_n, c_1..c_n), with s_i = sin q_i and
+/// c_i = cos q_i as independent variables (Property A).
 ///
-/// A polynomial on the circle s² + c² = 1 has many extensions off it. Here M is that of the
-/// composite-body algorithm ([`Robot::crba`]) and c follows from it by Christoffel symbols (12), of
-/// degree 2(n - 1) in (s, c) and so of the paper's p_max = 12 with q̇ for six joints;
-/// [`Robot::coriolis`] has another extension, of degree 13 for the LWA 4P.
+/// A polynomial on the circle s² + c² = 1 has many extensions off the circle. Here M is the
+/// extension of the composite-body algorithm ([`Robot::crba`]), and c follows from M by Christoffel
+/// symbols (12). Then c has degree 2(n - 1) in (s, c), which with q̇ is the paper's p_max = 12 for
+/// six joints. [`Robot::coriolis`] has another extension, of degree 13 for the LWA 4P.
 ///
 /// # Guarantee
 ///
-/// Nothing is cut off. Over `Interval`, each coefficient encloses the exact one for the robot's
-/// constants as loaded.
+/// The polynomials are not truncated. Over `Interval`, each coefficient encloses the exact one for
+/// the robot's constants as loaded.
 #[derive(Clone, Debug)]
 pub struct PolynomialDynamics<C = f64> {
     /// The space of the 2n variables.
@@ -28,11 +28,11 @@ pub struct PolynomialDynamics<C = f64> {
 }
 
 impl Robot {
-    /// M and g as polynomials.
+    /// Returns M and g as polynomials.
     ///
     /// # Errors
     ///
-    /// When the robot has so many joints (13 or more) that a monomial does not fit.
+    /// Returns an error if the robot has 13 joints or more, for which a monomial does not fit.
     ///
     /// # Examples
     ///
@@ -48,8 +48,8 @@ impl Robot {
         &self,
     ) -> Result<PolynomialDynamics<C>, TaylorSpaceError> {
         let n = self.joint_count();
-        // Each joint turns second moments once, in two factors, and forces once: no product has
-        // more than two of its s and c.
+        // Each joint rotates second moments once, with two factors, and forces once. No product
+        // has more than two factors s and c of one joint, so 2 n bounds the degree.
         let space = TaylorSpace::new(2 * n, 2 * n as u32)?;
         let variable = |i| TaylorPolynomial::variable(&space, i);
         let (sin, cos): (Vec<_>, Vec<_>) = (0..n).map(|i| (variable(i), variable(n + i))).unzip();
@@ -63,22 +63,25 @@ impl Robot {
 }
 
 impl<C: Scalar> PolynomialDynamics<C> {
-    /// The matrices C_1..C_n of (12), c_i(q, q̇) = q̇ᵀ C_i(q) q̇ \[kg m²\], each n x n, row by row:
-    /// c_ijk = ∂M_ij/∂q_k - ½ ∂M_jk/∂q_i, where ∂/∂q_k = c_k ∂/∂s_k - s_k ∂/∂c_k.
+    /// Returns the matrices C_1..C_n of (12) \[kg m²\], each n x n, row by row, for which
+    /// c_i(q, q̇) = q̇ᵀ C_i(q) q̇.
+    ///
+    /// Their entries are c_ijk = ∂M_ij/∂q_k - ½ ∂M_jk/∂q_i, with ∂/∂q_k = c_k ∂/∂s_k - s_k ∂/∂c_k.
     pub fn christoffel(&self) -> Vec<Vec<TaylorPolynomial<C>>> {
         let n = self.gravity.len();
-        let slopes: Vec<Vec<_>> =
-            (0..n).map(|k| self.mass_matrix.iter().map(|m| self.slope(m, k)).collect()).collect();
+        let derivatives: Vec<Vec<_>> = (0..n)
+            .map(|k| self.mass_matrix.iter().map(|m| self.derivative(m, k)).collect())
+            .collect();
         let half = C::from(0.5);
         let symbol = |i: usize, j: usize, k: usize| {
-            &slopes[k][i * n + j] - &slopes[i][j * n + k].scaled(&half)
+            &derivatives[k][i * n + j] - &derivatives[i][j * n + k].scaled(&half)
         };
         let matrix = |i: usize| (0..n * n).map(|jk| symbol(i, jk / n, jk % n)).collect();
         (0..n).map(matrix).collect()
     }
 
-    /// ∂f/∂q_k.
-    fn slope(&self, f: &TaylorPolynomial<C>, k: usize) -> TaylorPolynomial<C> {
+    /// Returns ∂f/∂q_k.
+    fn derivative(&self, f: &TaylorPolynomial<C>, k: usize) -> TaylorPolynomial<C> {
         let n = self.gravity.len();
         let variable = |i| TaylorPolynomial::variable(&self.space, i);
         &(&variable(n + k) * &f.derivative(k)) - &(&variable(k) * &f.derivative(n + k))

@@ -1,14 +1,19 @@
-use crate::chain::{JointGeometry, Link, reorient};
-use crate::description::RobotDescription;
-use crate::friction::Friction;
-use crate::inertia::LinkInertia;
+//! A robot: the constants of all links and joints.
+
+use crate::description::robot_description::RobotDescription;
+use crate::inertia::{INERTIAL, LinkInertia};
+use crate::joint::Joint;
+use crate::joint_geometry::JointGeometry;
+use crate::link::{Link, working_links};
+use crate::parameter::{Parameter, ParameterKind};
 use nalgebra::{Matrix3, Vector3};
 
-/// A serial robot of revolute joints: its constants. Scratch memory is apart, in a
+/// The constants of a serial robot with revolute joints. Scratch memory is kept separately, in a
 /// [`Workspace`](crate::Workspace).
 ///
-/// At load every link frame is turned so that its joint's axis is +z and the next axis is a twist
-/// about x away; the algorithms work in these frames, results in joint space do not depend on them.
+/// Every link gets a working frame whose +z is the joint's axis and from which the next axis
+/// differs by a twist about x. The algorithms use these frames; results in joint space do not
+/// depend on them.
 ///
 /// # Examples
 ///
@@ -17,8 +22,9 @@ use nalgebra::{Matrix3, Vector3};
 ///
 /// let robot = Robot::lwa4p();
 /// assert_eq!(robot.joint_count(), 6);
-/// let gravity = robot.gravity_torque(&[0.0, 0.3, 0.0, 0.0, 0.0, 0.0]);
-/// let qdd = robot.forward_acceleration(&[0.0, 0.3, 0.0, 0.0, 0.0, 0.0], &[0.0; 6], gravity.as_slice());
+/// let q = [0.0, 0.3, 0.0, 0.0, 0.0, 0.0];
+/// let gravity = robot.gravity_torque(&q);
+/// let qdd = robot.forward_acceleration(&q, &[0.0; 6], gravity.as_slice());
 /// assert!(qdd.amax() < 1e-12);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -26,32 +32,16 @@ pub struct Robot {
     pub(crate) description: RobotDescription,
     pub(crate) joints: Vec<Joint>,
     pub(crate) links: Vec<Link>,
-    /// Whether gravity has mass moments of its own.
+    /// Whether gravity acts on mass moments of its own.
     pub(crate) separate_gravity: bool,
-    /// Gravity in the working base frame [m/s²].
+    /// Gravitational acceleration in the working base frame \[m/s²\].
     pub(crate) working_gravity: [f64; 3],
-    /// Takes working base coordinates to those of the description.
+    /// Rotation from the working base frame to the base frame of the description.
     pub(crate) base: Matrix3<f64>,
 }
 
-/// What a joint adds to the rigid body that it moves.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Joint {
-    /// Name, unique in the robot.
-    pub name: String,
-    /// Lowest and highest position \[rad\].
-    pub position_limits: [f64; 2],
-    /// Highest speed \[rad/s\], where one is known.
-    pub velocity_limit: Option<f64>,
-    /// Gear ratio k_r, where one is known.
-    pub gear_ratio: Option<f64>,
-    /// Motor inertia on the link's side k_r² I_m \[kg m²\].
-    pub armature: f64,
-    /// Friction.
-    pub friction: Friction,
-}
-
 impl Robot {
+    /// Makes a robot from its description and the parts that were computed from it.
     pub(crate) fn assemble(
         description: RobotDescription,
         joints: Vec<Joint>,
@@ -60,44 +50,83 @@ impl Robot {
         gravity_inertias: &[LinkInertia],
     ) -> Self {
         let armatures: Vec<_> = joints.iter().map(|j| j.armature).collect();
-        let (links, base) = reorient(geometry, inertias, gravity_inertias, &armatures);
+        let (links, base) = working_links(geometry, inertias, gravity_inertias, &armatures);
         let working_gravity = (base.transpose() * Vector3::from(description.gravity)).into();
         let separate_gravity = description.joints.iter().any(|j| j.gravity_moments.is_some());
         Self { description, joints, links, separate_gravity, working_gravity, base }
     }
 
-    /// Number of joints n.
+    /// Returns the number of joints n.
     pub fn joint_count(&self) -> usize {
         self.links.len()
     }
 
-    /// The robot's name.
+    /// Returns the robot's name.
     pub fn name(&self) -> &str {
         &self.description.name
     }
 
-    /// The joints from base to tip.
+    /// Returns the joints from base to tip.
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
-    /// What the robot was made from.
+    /// Returns the description that the robot was made from.
     pub fn description(&self) -> &RobotDescription {
         &self.description
     }
 
-    /// Gravitational acceleration in the base frame \[m/s²\].
+    /// Returns the gravitational acceleration in the base frame \[m/s²\].
     pub fn gravity_acceleration(&self) -> [f64; 3] {
         self.description.gravity
     }
 
-    /// (sin q, cos q), n values each, for q in rad.
+    /// Returns (sin q, cos q), n values each, for q in rad.
     ///
     /// # Panics
     ///
-    /// When `q` has another length than the robot has joints.
+    /// Panics if the length of `q` is not the number of joints.
     pub fn sin_cos(&self, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        assert_eq!(q.len(), self.joint_count(), "`{}` takes one position a joint", self.name());
+        assert_eq!(q.len(), self.joint_count(), "`{}` takes one position per joint", self.name());
         q.iter().map(|q| q.sin_cos()).unzip()
+    }
+
+    /// Returns the same robot under another gravitational acceleration in the base frame \[m/s²\].
+    #[must_use]
+    pub fn with_gravity(&self, gravity: [f64; 3]) -> Self {
+        let mut robot = self.clone();
+        robot.description.gravity = gravity;
+        robot.working_gravity = (robot.base.transpose() * Vector3::from(gravity)).into();
+        robot
+    }
+
+    /// Returns the ten inertial parameters of each link \[10 n\] in the order of
+    /// [`Robot::inertial_regressor`], about the origin of the link's own frame.
+    pub fn inertial_parameters(&self) -> Vec<f64> {
+        self.description.joints.iter().flat_map(|j| j.link_inertia().parameters()).collect()
+    }
+
+    /// Returns the values of these parameters in the robot's description, each in its SI unit.
+    ///
+    /// Coulomb friction and offset are those of the four quadrants at no load. If the quadrants
+    /// have slopes, these two values do not describe all of the friction.
+    pub fn parameter_values(&self, parameters: &[Parameter]) -> Vec<f64> {
+        let inertial = self.inertial_parameters();
+        let value = |p: &Parameter| {
+            let (viscous, coulomb) =
+                (&self.joints[p.joint].friction.viscous, &self.joints[p.joint].friction.coulomb);
+            let forward = coulomb.driving_forward.offset + coulomb.braking_forward.offset;
+            let backward = coulomb.driving_backward.offset + coulomb.braking_backward.offset;
+            match p.kind {
+                ParameterKind::MotorInertia => self.joints[p.joint].armature,
+                ParameterKind::Viscous1 => viscous.v1,
+                ParameterKind::Viscous2 => viscous.v2,
+                ParameterKind::Viscous3 => viscous.v3,
+                ParameterKind::Coulomb => 0.25 * (forward - backward),
+                ParameterKind::Offset => 0.25 * (forward + backward),
+                kind => inertial[INERTIAL * p.joint + kind as usize],
+            }
+        };
+        parameters.iter().map(value).collect()
     }
 }

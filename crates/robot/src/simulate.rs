@@ -1,25 +1,27 @@
-//! A motion of the robot with friction under motor torque, in one call.
+//! Simulation of a robot with friction under motor torque, in one call.
 
-use crate::{DrivenBy, Robot, RobotField};
+use crate::field::{DrivenBy, RobotField};
+use crate::robot::Robot;
 use reachtube_ode::RungeKutta4;
 
-/// A simulated motion, sample by sample; row k belongs to time k · `sample_time`.
+/// A simulated motion at samples; row k belongs to time k · `sample_time`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     /// Time between rows \[s\].
     pub sample_time: f64,
-    /// Positions \[rad\], one row a sample, one entry a joint.
+    /// Positions \[rad\], one row per sample, one entry per joint.
     pub q: Vec<Vec<f64>>,
-    /// Velocities \[rad/s\], likewise.
+    /// Velocities \[rad/s\], one row per sample, one entry per joint.
     pub qd: Vec<Vec<f64>>,
 }
 
 impl Robot {
-    /// Simulates from q0 \[rad\], qd0 \[rad/s\] under motor torques \[N m\] on the link's side, row
-    /// k held from sample k to k + 1, with `substeps` Runge-Kutta steps a sample. The trajectory
-    /// has one row more than `tau_motor`.
+    /// Simulates the robot from q0 \[rad\], qd0 \[rad/s\] under motor torques on the link side
+    /// \[N m\].
     ///
-    /// [`RobotField`] has more: other inputs, sample times and integrators, many runs at once.
+    /// Row k of `tau_motor` is held from sample k to k + 1, over `substeps` Runge-Kutta steps. The
+    /// trajectory has one row more than `tau_motor`. [`RobotField`] offers other inputs, sample
+    /// times and integrators, and many runs at once.
     ///
     /// # Examples
     ///

@@ -1,104 +1,72 @@
-use crate::Robot;
-use crate::algebra::{Pose, Sym3, Vec3};
+//! Scratch memory of the algorithms.
+
+use crate::algebra::Vec3;
+use crate::articulated_body::ArticulatedScratch;
+use crate::pose::Pose;
+use crate::robot::Robot;
 use reachtube_scalar::Scalar;
 
-/// Scratch memory of the algorithms for one robot and one scalar: made once, reused, so that no
-/// call allocates.
+/// Scratch memory of the algorithms for one robot and one scalar. It is made once and reused, so
+/// that no call allocates.
 ///
-/// A workspace belongs to the number of joints it was made for; the algorithms panic with another.
+/// A workspace fits robots with the number of joints that it was made for; with another number the
+/// algorithms may panic.
 #[derive(Clone, Debug)]
 pub struct Workspace<S> {
     pub(crate) links: Vec<LinkScratch<S>>,
     pub(crate) articulated: Vec<ArticulatedScratch<S>>,
-    /// n zeros: an acceleration of rest.
-    pub(crate) rest: Vec<S>,
+    /// The acceleration of a robot at rest: n zeros.
+    pub(crate) zero_acceleration: Vec<S>,
+    /// Joint torques, n entries.
     pub(crate) torque: Vec<S>,
-    /// n x n, row by row.
+    /// Mass matrix, n x n, row by row.
     pub(crate) mass_matrix: Vec<S>,
 }
 
-/// What Newton-Euler and the composite bodies keep of a link between their passes.
+/// Values of one link that the Newton-Euler and composite-body algorithms keep between their
+/// passes.
 #[derive(Clone, Debug)]
 pub(crate) struct LinkScratch<S> {
     pub pose: Pose<S>,
     pub force: Vec3<S>,
+    /// Moment about the origin of the link's frame.
     pub moment: Vec3<S>,
-}
-
-/// What the articulated-body algorithm keeps of a link between its passes.
-#[derive(Clone, Debug)]
-pub(crate) struct ArticulatedScratch<S> {
-    pub pose: Pose<S>,
-    /// Velocity-dependent acceleration (angular, linear) relative to the parent's.
-    pub bias_angular: Vec3<S>,
-    pub bias_linear: Vec3<S>,
-    pub body: ArticulatedBody<S>,
-    /// Column of the articulated inertia on the joint's axis: (moment, force).
-    pub axis_moment: Vec3<S>,
-    pub axis_force: Vec3<S>,
-    pub inverse_pivot: S,
-    pub drive: S,
-}
-
-/// An articulated body: (moment, force) = [[I, H], [Hᵀ, M]] (angular, linear acceleration) +
-/// (moment, force) at rest.
-#[derive(Clone, Debug)]
-pub(crate) struct ArticulatedBody<S> {
-    pub inertia: Sym3<S>,
-    /// Rows of H.
-    pub coupling: [Vec3<S>; 3],
-    pub mass: Sym3<S>,
-    pub moment: Vec3<S>,
-    pub force: Vec3<S>,
 }
 
 impl<S: Scalar> Workspace<S> {
-    /// Scratch memory for a robot.
+    /// Allocates scratch memory for a robot.
     pub fn new(robot: &Robot) -> Self {
         let n = robot.joint_count();
         Self {
             links: vec![LinkScratch::blank(); n],
             articulated: vec![ArticulatedScratch::blank(); n],
-            rest: vec![S::zero(); n],
+            zero_acceleration: vec![S::zero(); n],
             torque: vec![S::zero(); n],
             mass_matrix: vec![S::zero(); n * n],
         }
     }
 }
 
-impl<S: Scalar> Pose<S> {
-    fn blank() -> Self {
-        let (zero, one) = (S::zero, S::one);
-        Self { sin: zero(), cos: one(), sin_twist: zero(), cos_twist: one(), origin: Vec3::zero() }
-    }
-}
-
 impl<S: Scalar> LinkScratch<S> {
     fn blank() -> Self {
-        Self { pose: Pose::blank(), force: Vec3::zero(), moment: Vec3::zero() }
+        Self { pose: Pose::identity(), force: Vec3::zero(), moment: Vec3::zero() }
+    }
+
+    /// Adds this link's force and moment to its parent's.
+    #[inline(always)]
+    fn accumulate_to_parent(&self, parent: &mut Self) {
+        let force = self.pose.to_parent(&self.force);
+        parent.moment.accumulate(&self.pose.to_parent(&self.moment));
+        parent.moment.accumulate(&self.pose.origin.cross(&force));
+        parent.force.accumulate(&force);
     }
 }
 
-impl<S: Scalar> ArticulatedScratch<S> {
-    fn blank() -> Self {
-        let zero = Vec3::zero;
-        let symmetric = || Sym3::constant([0.0; 6]);
-        let body = ArticulatedBody {
-            inertia: symmetric(),
-            coupling: [zero(), zero(), zero()],
-            mass: symmetric(),
-            moment: zero(),
-            force: zero(),
-        };
-        Self {
-            pose: Pose::blank(),
-            bias_angular: zero(),
-            bias_linear: zero(),
-            body,
-            axis_moment: zero(),
-            axis_force: zero(),
-            inverse_pivot: S::zero(),
-            drive: S::zero(),
-        }
+/// Adds each link's force and moment to its parent's, from the tip to the base.
+#[inline(always)]
+pub(crate) fn accumulate_to_parents<S: Scalar>(scratch: &mut [LinkScratch<S>]) {
+    for i in (1..scratch.len()).rev() {
+        let (before, after) = scratch.split_at_mut(i);
+        after[0].accumulate_to_parent(&mut before[i - 1]);
     }
 }

@@ -1,13 +1,14 @@
-//! Combinations of parameters in words.
+//! Combinations of parameters as formulas.
 
-use crate::Column;
+use crate::parameter::Parameter;
 
-/// Coefficients are taken for a readable number within this, relative to 1 or their size.
+/// Relative distance up to which a coefficient is printed as a nearby short number.
 const SNAP: f64 = 1e-9;
 
-/// A row of K as `Ixx2 - Iyy2 + Izz2 + J2`, its leading column first, terms with one coefficient in
-/// brackets.
-pub(super) fn words(columns: &[Column], leader: usize, row: &[f64]) -> String {
+/// Formats a row of K as `Ixx2 - Iyy2 + Izz2 + J2`, with the independent parameter `leader` first
+/// and terms of equal coefficients in brackets.
+pub(super) fn format_combination(parameters: &[Parameter], leader: usize, row: &[f64]) -> String {
+    // Terms of equal magnitude form a group: (magnitude, [(sign, index)]).
     let mut groups: Vec<(f64, Vec<(f64, usize)>)> = vec![(1.0, vec![(1.0, leader)])];
     for (k, &value) in row.iter().enumerate().filter(|(k, v)| *k != leader && v.abs() > SNAP) {
         let same =
@@ -23,22 +24,24 @@ pub(super) fn words(columns: &[Column], leader: usize, row: &[f64]) -> String {
         let bracket = members.len() > 1 && factor != Factor::One;
         let outer = if bracket { members[0].0 } else { 1.0 };
         let names: Vec<_> =
-            members.iter().map(|(sign, k)| (sign * outer, columns[*k].to_string())).collect();
+            members.iter().map(|(sign, k)| (sign * outer, parameters[*k].to_string())).collect();
         if bracket {
-            out += &term(outer, &factor.around(&format!("({})", sum(&names))), out.is_empty());
+            out += &term(outer, &factor.times(&format!("({})", sum(&names))), out.is_empty());
         } else {
             for (sign, name) in names {
-                out += &term(sign, &factor.around(&name), out.is_empty());
+                out += &term(sign, &factor.times(&name), out.is_empty());
             }
         }
     }
     out
 }
 
+/// Formats a sum of (sign, name) terms.
 fn sum(terms: &[(f64, String)]) -> String {
     terms.iter().enumerate().map(|(i, (sign, name))| term(*sign, name, i == 0)).collect()
 }
 
+/// Formats a term with its sign.
 fn term(sign: f64, what: &str, first: bool) -> String {
     match (first, sign < 0.0) {
         (true, false) => what.into(),
@@ -48,11 +51,11 @@ fn term(sign: f64, what: &str, first: bool) -> String {
     }
 }
 
-/// Digits of a length that is divided by or squared; with more, chance gives any number such a
-/// form.
+/// Number of digits of a length that is squared or a divisor. With more digits, an arbitrary number
+/// would have such a form by chance.
 const LENGTH: i32 = 5;
 
-/// A positive coefficient as people write it.
+/// A positive coefficient in a readable form.
 #[derive(Debug, PartialEq)]
 enum Factor {
     One,
@@ -61,13 +64,15 @@ enum Factor {
 }
 
 impl Factor {
+    /// Returns the form with the fewest digits: the number, its inverse, a square or an inverse
+    /// square.
     fn of(size: f64) -> Self {
         if (size - 1.0).abs() <= SNAP {
             return Self::One;
         }
         let (inverse, root) = (1.0 / size, size.sqrt());
         let squared = |(cost, text): (i32, String)| (cost + 1, format!("{text}²"));
-        let ways = [
+        let forms = [
             shortest(size, 7).map(|(cost, text)| (cost, Self::Times(text))),
             shortest(inverse, LENGTH).map(|(cost, text)| (cost + 1, Self::Over(text))),
             shortest(root, LENGTH).map(squared).map(|(cost, text)| (cost, Self::Times(text))),
@@ -75,14 +80,15 @@ impl Factor {
                 .map(squared)
                 .map(|(cost, text)| (cost + 1, Self::Over(text))),
         ];
-        let best = ways.into_iter().flatten().min_by_key(|(cost, _)| *cost);
+        let best = forms.into_iter().flatten().min_by_key(|(cost, _)| *cost);
         best.map_or_else(
             || Self::Times(((size * 1e6).round() / 1e6).to_string()),
             |(_, factor)| factor,
         )
     }
 
-    fn around(&self, what: &str) -> String {
+    /// Formats the coefficient times `what`.
+    fn times(&self, what: &str) -> String {
         match self {
             Self::One => what.into(),
             Self::Times(factor) => format!("{factor} {what}"),
@@ -91,7 +97,7 @@ impl Factor {
     }
 }
 
-/// The fewest digits, up to `most`, that give a number, and the number in them.
+/// Returns the smallest number of digits, up to `most`, that represents x, and x with these digits.
 fn shortest(x: f64, most: i32) -> Option<(i32, String)> {
     (1..=most).find_map(|digits| {
         let unit = 10f64.powi(digits - 1 - x.log10().floor() as i32);
@@ -105,8 +111,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coefficients_are_written_as_people_do() {
-        let words = |x: f64| Factor::of(x).around("x");
+    fn coefficients_have_their_shortest_form() {
+        let formatted = |x: f64| Factor::of(x).times("x");
         let third = "0.333333 x";
         let cases = [
             (1.0, "x"),
@@ -116,10 +122,10 @@ mod tests {
             (1.0 / 0.35, "x/0.35"),
             (0.384 * 0.384 + 0.0825 * 0.0825, "0.154262 x"),
         ];
-        cases.iter().for_each(|(x, w)| assert_eq!(words(*x), *w));
-        assert_eq!(words(1.0 / (0.35 * 0.35)), "x/0.35²");
-        assert_eq!(words(0.25), "0.25 x");
-        assert_eq!(words(0.089159), "0.089159 x");
-        assert_eq!(words(1.0 / 3.0 + 1e-7), third);
+        cases.iter().for_each(|(x, text)| assert_eq!(formatted(*x), *text));
+        assert_eq!(formatted(1.0 / (0.35 * 0.35)), "x/0.35²");
+        assert_eq!(formatted(0.25), "0.25 x");
+        assert_eq!(formatted(0.089159), "0.089159 x");
+        assert_eq!(formatted(1.0 / 3.0 + 1e-7), third);
     }
 }

@@ -1,23 +1,26 @@
-//! Values that make no robot, each found with the key it stands under and a remedy.
+//! Checks of a description: the first invalid value, with its key and a remedy.
 
-use super::{InertiaPoint, JointDescription, Parameters, RobotDescription, SCHEMA_VERSION};
+use super::joint_description::{InertiaPoint, JointDescription};
+use super::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
 use crate::inertia::LinkInertia;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
 
-/// Rotations and mass distributions are accepted to this relative error, well above what printing
-/// 12 digits loses.
+/// Relative error up to which rotations and mass distributions are accepted. It is well above the
+/// error of numbers with 12 digits.
 const TOLERANCE: f64 = 1e-9;
 
-/// A value that makes no robot.
-pub(crate) struct Finding {
+/// An invalid value of a description.
+pub(crate) struct InvalidValue {
     /// Index of the joint, or `None` for the robot as a whole.
     pub joint: Option<usize>,
+    /// Key that the value stands under.
     pub key: &'static str,
     pub problem: String,
     pub remedy: &'static str,
 }
 
+/// The result of a check; the error is (key, problem, remedy).
 type Checked = Result<(), (&'static str, String, &'static str)>;
 
 fn require(
@@ -30,9 +33,9 @@ fn require(
 }
 
 impl RobotDescription {
-    /// The first value that makes no robot.
-    pub(crate) fn check(&self) -> Result<(), Finding> {
-        self.check_whole().map_err(|f| finding(None, f))?;
+    /// Checks all values; the error is the first invalid one.
+    pub(crate) fn check(&self) -> Result<(), InvalidValue> {
+        self.check_robot().map_err(|e| invalid(None, e))?;
         let mut names = HashSet::new();
         for (i, joint) in self.joints.iter().enumerate() {
             let unique = names.insert(joint.name.as_str());
@@ -40,26 +43,33 @@ impl RobotDescription {
                 "the name occurs twice".into()
             })
             .and_then(|()| self.check_joint(joint))
-            .map_err(|f| finding(Some(i), f))?;
+            .map_err(|e| invalid(Some(i), e))?;
         }
         Ok(())
     }
 
-    fn check_whole(&self) -> Checked {
+    fn check_robot(&self) -> Checked {
         require(
             self.schema_version == SCHEMA_VERSION,
             "schema_version",
-            "use the version of reachtube that wrote it, or rewrite it",
-            || format!("schema_version {} is not {SCHEMA_VERSION}", self.schema_version),
+            "use the version of reachtube that wrote the description, or convert it",
+            || {
+                format!(
+                    "schema_version {} is not supported, only {SCHEMA_VERSION} is",
+                    self.schema_version
+                )
+            },
         )?;
-        require(!self.joints.is_empty(), "joint", "add a [[joint]] for each joint", || {
-            "no joints".into()
+        require(!self.joints.is_empty(), "joint", "add a [[joint]] table for each joint", || {
+            "the robot has no joints".into()
         })?;
         finite("gravity", &self.gravity)
     }
 
     fn check_joint(&self, joint: &JointDescription) -> Checked {
-        require(!joint.name.is_empty(), "name", "name the joint", || "the name is empty".into())?;
+        require(!joint.name.is_empty(), "name", "give the joint a name", || {
+            "the name is empty".into()
+        })?;
         check_geometry(joint)?;
         check_drive(joint)?;
         check_limits(joint)?;
@@ -71,21 +81,21 @@ impl RobotDescription {
         require(all, "gravity_moments", "give gravity_moments for all joints or for none", || {
             "only some joints have gravity_moments".into()
         })?;
-        if self.parameters == Parameters::Physical { check_body(joint) } else { Ok(()) }
+        if self.parameters == ParameterSet::Physical { check_body(joint) } else { Ok(()) }
     }
 }
 
-fn finding(
+fn invalid(
     joint: Option<usize>,
     (key, problem, remedy): (&'static str, String, &'static str),
-) -> Finding {
-    Finding { joint, key, problem, remedy }
+) -> InvalidValue {
+    InvalidValue { joint, key, problem, remedy }
 }
 
 fn finite(key: &'static str, values: &[f64]) -> Checked {
     let bad = values.iter().find(|v| !v.is_finite());
-    require(bad.is_none(), key, "give a finite number", || {
-        format!("{key} holds {}", bad.unwrap_or(&0.0))
+    require(bad.is_none(), key, "give finite numbers", || {
+        format!("{key} contains {}", bad.unwrap_or(&0.0))
     })
 }
 
@@ -94,18 +104,21 @@ fn check_geometry(joint: &JointDescription) -> Checked {
         joint.dh.is_some() != joint.placement.is_some(),
         if joint.dh.is_some() { "dh" } else { "name" },
         "give either `dh` or `placement`",
-        || "the geometry is given twice or not at all".into(),
+        || match joint.dh {
+            Some(_) => "both `dh` and `placement` are given".into(),
+            None => "neither `dh` nor `placement` is given".into(),
+        },
     )?;
     if let Some(dh) = joint.dh {
-        require(joint.axis.is_none(), "axis", "leave the axis out: with dh it is z", || {
-            "axis beside dh".into()
+        require(joint.axis.is_none(), "axis", "remove `axis`: the axis of `dh` is z", || {
+            "`axis` is given together with `dh`".into()
         })?;
         finite("dh", &[dh.a, dh.alpha, dh.theta, dh.d])?;
     }
     check_placement(joint)?;
     let axis = Vector3::from(joint.axis.unwrap_or([0.0, 0.0, 1.0]));
     finite("axis", axis.as_slice())?;
-    require(axis.norm() > TOLERANCE, "axis", "give the direction of the joint's axis", || {
+    require(axis.norm() > TOLERANCE, "axis", "give a vector of positive length", || {
         format!("the axis {:?} has no direction", axis.as_slice())
     })
 }
@@ -116,7 +129,7 @@ fn check_placement(joint: &JointDescription) -> Checked {
     finite("placement", &placement.rpy.unwrap_or_default())?;
     let Some(rows) = placement.rotation else { return Ok(()) };
     require(placement.rpy.is_none(), "placement", "give either `rotation` or `rpy`", || {
-        "rotation beside rpy".into()
+        "both `rotation` and `rpy` are given".into()
     })?;
     finite("placement", rows.as_flattened())?;
     let r = Matrix3::from_row_slice(rows.as_flattened());
@@ -124,11 +137,12 @@ fn check_placement(joint: &JointDescription) -> Checked {
     require(
         error < TOLERANCE && r.determinant() > 0.0,
         "placement",
-        "print the rotation with 12 digits",
+        "give an orthonormal, right-handed matrix with 12 digits",
         || {
             let det = r.determinant();
             format!(
-                "rotation is not one: |R Rᵀ - 1| = {error:.1e} (limit {TOLERANCE:.0e}), det R = {det:.3}"
+                "`rotation` is not a rotation matrix: |R Rᵀ - 1| = {error:.1e} \
+                 (limit {TOLERANCE:.0e}), det R = {det:.3}"
             )
         },
     )
@@ -138,14 +152,14 @@ fn check_drive(joint: &JointDescription) -> Checked {
     require(
         joint.armature.is_none() || joint.rotor_inertia.is_none(),
         "rotor_inertia",
-        "give either `armature` (link's side) or `rotor_inertia` (motor's side)",
+        "give either `armature` (link side) or `rotor_inertia` (motor side)",
         || "the motor inertia is given twice".into(),
     )?;
     require(
         joint.rotor_inertia.is_none() || joint.gear_ratio.is_some(),
         "rotor_inertia",
-        "add `gear_ratio`, or give `armature` on the link's side",
-        || "rotor_inertia without gear_ratio".into(),
+        "add `gear_ratio`, or give `armature` in place of `rotor_inertia`",
+        || "`rotor_inertia` is given without `gear_ratio`".into(),
     )?;
     let given = [joint.armature, joint.rotor_inertia, joint.gear_ratio];
     for (key, value) in ["armature", "rotor_inertia", "gear_ratio"].into_iter().zip(given) {
@@ -154,7 +168,7 @@ fn check_drive(joint: &JointDescription) -> Checked {
         require(
             value >= 0.0 || key == "gear_ratio",
             key,
-            "give a motor inertia of at least 0",
+            "give a motor inertia of at least 0 kg m²",
             || format!("{key} = {value} is negative"),
         )?;
     }
@@ -166,12 +180,14 @@ fn check_limits(joint: &JointDescription) -> Checked {
     let [low, high] = joint.position_limits.unwrap_or([0.0, 1.0]);
     finite("position_limits", &[low, high])?;
     require(low < high, "position_limits", "give the lower limit first", || {
-        format!("position_limits [{low}, {high}] hold no position")
+        format!(
+            "position_limits [{low}, {high}] rad: the lower limit is not less than the upper one"
+        )
     })?;
     let speed = joint.velocity_limit.unwrap_or(1.0);
     finite("velocity_limit", &[speed])?;
-    require(speed > 0.0, "velocity_limit", "give a positive speed in rad/s", || {
-        format!("velocity_limit = {speed} allows no motion")
+    require(speed > 0.0, "velocity_limit", "give a positive speed", || {
+        format!("velocity_limit = {speed} rad/s is not positive")
     })
 }
 
@@ -190,39 +206,43 @@ fn check_link_numbers(joint: &JointDescription) -> Checked {
         joint.about == InertiaPoint::Origin || joint.first_moment.is_none(),
         "about",
         "set about = \"origin\", or give `com`",
-        || "an inertia about the centre of mass with first_moment".into(),
+        || "`first_moment` is given, but `inertia` is about the centre of mass".into(),
     )?;
-    let heavy = joint.gravity_moments.unwrap_or_default();
-    finite("gravity_moments", &[heavy.mass])?;
-    finite("gravity_moments", &heavy.first_moment)
+    let gravity = joint.gravity_moments.unwrap_or_default();
+    finite("gravity_moments", &[gravity.mass])?;
+    finite("gravity_moments", &gravity.first_moment)
 }
 
 /// Checks that some distribution of mass has these parameters.
 fn check_body(joint: &JointDescription) -> Checked {
-    let remedy =
-        "correct it, or set parameters = \"base\" where only identified combinations are meant";
+    let remedy = "correct the value, or set parameters = \"base\" if only the base parameters have \
+                  a meaning";
     require(joint.mass >= 0.0, "mass", remedy, || format!("mass = {} kg is negative", joint.mass))?;
     let (_, _, about_com) = joint.about_own_com();
-    let principal = principal_spreads(&about_com);
+    let principal = principal_second_moments(&about_com);
     let scale = principal.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
     let least = principal.iter().fold(f64::INFINITY, |a, b| a.min(*b));
     require(least >= -TOLERANCE * scale, "inertia", remedy, || {
         format!(
-            "inertia {:?} about the centre of mass is that of no body: one principal inertia exceeds the sum of the \
-             other two by {:.3e} kg m²",
+            "inertia {:?} kg m² about the centre of mass belongs to no body: one principal moment \
+             of inertia exceeds the sum of the other two by {:.3e} kg m²",
             about_com,
             -2.0 * least
         )
     })?;
     let least = joint.link_inertia().smallest_relative_eigenvalue();
     require(least >= -TOLERANCE, "inertia", remedy, || {
-        format!("mass {} kg and inertia {:?} belong to no body", joint.mass, joint.inertia)
+        format!(
+            "mass {} kg and inertia {:?} kg m² belong to no body: the smallest relative \
+             eigenvalue of the pseudo-inertia is {least:.1e}, but it must be at least 0",
+            joint.mass, joint.inertia
+        )
     })
 }
 
-/// Half of what each principal inertia lacks to the sum of the other two: the principal second
-/// moments.
-fn principal_spreads(inertia: &[f64; 6]) -> [f64; 3] {
+/// Returns the principal second moments: for each principal moment of inertia, half the amount by
+/// which the sum of the other two exceeds it.
+fn principal_second_moments(inertia: &[f64; 6]) -> [f64; 3] {
     let [xx, xy, xz, yy, yz, zz] = *inertia;
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     let link = LinkInertia::about_origin(0.0, Vector3::zeros(), &tensor);

@@ -1,24 +1,28 @@
+//! Periodic motions as Fourier series.
+
 use core::f64::consts::{PI, TAU};
 
-/// Grid points a harmonic at which a series is looked at for its bounds.
+/// Number of grid points per harmonic at which a series is evaluated for its bounds.
 pub(super) const GRID: usize = 20;
 
-/// A periodic motion: for joint i, q_i(t) = c_i + Σ_l (a_il sin(l ω t) - b_il cos(l ω t)) / (l ω),
-/// so that the velocity is Σ_l a_il cos(l ω t) + b_il sin(l ω t) (Swevers et al., IEEE Trans.
-/// Robotics and Automation 13(5), 1997).
+/// A periodic motion with q_i(t) = c_i + Σ_l (a_il sin(l ω t) - b_il cos(l ω t)) / (l ω) for joint
+/// i.
+///
+/// The velocity is Σ_l a_il cos(l ω t) + b_il sin(l ω t) (Swevers et al., IEEE Trans. Robotics and
+/// Automation 13(5), 1997).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FourierTrajectory {
     /// Period 2π/ω \[s\].
     pub period: f64,
-    /// Centres c \[rad\], one a joint.
+    /// Centres c \[rad\], one per joint.
     pub centre: Vec<f64>,
-    /// Amplitudes a of the velocity's cosines \[rad/s\], one row a joint, one entry a harmonic.
+    /// Amplitudes a of the velocity's cosines \[rad/s\], one row per joint, one entry per harmonic.
     pub cosine: Vec<Vec<f64>>,
-    /// Amplitudes b of the velocity's sines \[rad/s\], likewise.
+    /// Amplitudes b of the velocity's sines \[rad/s\], one row per joint, one entry per harmonic.
     pub sine: Vec<Vec<f64>>,
 }
 
-/// One sample of a motion, one entry a joint.
+/// One sample of a motion, with one entry per joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionSample {
     /// Time \[s\].
@@ -32,12 +36,12 @@ pub struct MotionSample {
 }
 
 impl FourierTrajectory {
-    /// Number of joints.
+    /// Returns the number of joints.
     pub fn joint_count(&self) -> usize {
         self.centre.len()
     }
 
-    /// Position, velocity and acceleration at a time \[s\].
+    /// Returns position, velocity and acceleration at a time \[s\].
     pub fn at(&self, t: f64) -> MotionSample {
         let joints = (0..self.joint_count()).map(|i| self.joint_at(i, t));
         let (mut q, mut qd, mut qdd) = (Vec::new(), Vec::new(), Vec::new());
@@ -49,6 +53,7 @@ impl FourierTrajectory {
         MotionSample { t, q, qd, qdd }
     }
 
+    /// Returns position, velocity and acceleration of joint i.
     fn joint_at(&self, i: usize, t: f64) -> [f64; 3] {
         let mut out = [self.centre[i], 0.0, 0.0];
         for (l, (a, b)) in self.cosine[i].iter().zip(&self.sine[i]).enumerate() {
@@ -61,38 +66,40 @@ impl FourierTrajectory {
         out
     }
 
-    /// One period in samples, both ends included, at least at the given rate \[1/s\].
+    /// Samples one period, both ends included, with at least the given rate \[1/s\].
     pub fn samples(&self, rate: f64) -> Vec<MotionSample> {
         let count = (self.period * rate).ceil().max(1.0) as usize;
         (0..=count).map(|k| self.at(self.period * k as f64 / count as f64)).collect()
     }
 
-    /// Bounds of a joint's position at all times \[rad\].
+    /// Returns bounds of a joint's position at all times \[rad\].
     ///
     /// # Guarantee
     ///
-    /// Outer for the series as it is, up to rounding: between M equidistant samples of a period a
-    /// trigonometric polynomial of degree N exceeds its largest sample by no more than the factor
-    /// 1/cos(π N / M) (Ehlich & Zeller 1964), here 1.013.
+    /// Up to rounding, the bounds are outer bounds of the series. Between M equidistant samples of
+    /// a period, a trigonometric polynomial of degree N exceeds its largest sample by a factor of
+    /// at most 1/cos(π N / M) (Ehlich & Zeller 1964), which is 1.013 here.
     pub fn position_range(&self, joint: usize) -> [f64; 2] {
         let (low, high) = self.extremes(joint, 0);
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * excess());
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * grid_excess());
         [middle - half, middle + half]
     }
 
-    /// A bound of a joint's speed at all times \[rad/s\], in the sense of
+    /// Returns a bound of a joint's speed at all times \[rad/s\], with the guarantee of
     /// [`FourierTrajectory::position_range`].
     pub fn speed_bound(&self, joint: usize) -> f64 {
         let (low, high) = self.extremes(joint, 1);
-        high.max(-low) * excess()
+        high.max(-low) * grid_excess()
     }
 
-    /// A bound of the magnitude of a joint's acceleration at all times \[rad/s²\], likewise.
+    /// Returns a bound of the magnitude of a joint's acceleration at all times \[rad/s²\], with the
+    /// guarantee of [`FourierTrajectory::position_range`].
     pub fn acceleration_bound(&self, joint: usize) -> f64 {
         let (low, high) = self.extremes(joint, 2);
-        high.max(-low) * excess()
+        high.max(-low) * grid_excess()
     }
 
+    /// Returns the extremes on the grid of a joint's position or one of its derivatives.
     fn extremes(&self, joint: usize, derivative: usize) -> (f64, f64) {
         let count = GRID * self.cosine[joint].len().max(1);
         let values = (0..count)
@@ -101,7 +108,7 @@ impl FourierTrajectory {
     }
 }
 
-/// How far a series can exceed its values on the grid.
-pub(super) fn excess() -> f64 {
+/// Returns the factor by which a series can exceed its largest value on the grid.
+pub(super) fn grid_excess() -> f64 {
     1.0 / (PI / GRID as f64).cos()
 }

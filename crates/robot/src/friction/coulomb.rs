@@ -1,10 +1,12 @@
+//! Coulomb friction.
+
 use reachtube_scalar::Lanewise;
 
-/// Load-dependent Coulomb friction of one joint: a straight line in the load torque for each motor
-/// quadrant, eqs. (6) to (9), after Hamon et al. (AIM 2010).
+/// Load-dependent Coulomb friction of one joint: a linear function of the load torque for each
+/// motor quadrant, (6) to (9), after Hamon et al. (AIM 2010).
 ///
-/// The quadrants are named by what the motor does, so that friction dissipates: as printed, (6) and
-/// (8) would let it push the joint along.
+/// The quadrants are named by whether the motor drives or brakes. With the conditions as printed in
+/// the paper, friction of (6) and (8) would not dissipate (docs/method.md, correction L).
 ///
 /// # Examples
 ///
@@ -27,7 +29,7 @@ pub struct Coulomb {
     pub braking_forward: LoadLine,
 }
 
-/// A torque linear in the load: offset + slope · load.
+/// A torque that is linear in the load: offset + slope · load.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LoadLine {
     /// Torque at no load \[N m\].
@@ -37,8 +39,8 @@ pub struct LoadLine {
 }
 
 impl Coulomb {
-    /// The coefficients a1 to a8: offset \[N m\] and slope of driving forward, driving backward,
-    /// braking backward and braking forward, in this order.
+    /// Makes friction from the coefficients a1 to a8: offset \[N m\] and slope of driving forward,
+    /// driving backward, braking backward and braking forward, in this order.
     pub fn from_coefficients(a: [f64; 8]) -> Self {
         let line = |i: usize| LoadLine { offset: a[i], slope: a[i + 1] };
         Self {
@@ -49,22 +51,23 @@ impl Coulomb {
         }
     }
 
-    /// The same magnitude \[N m\] against the motion in every quadrant.
+    /// Makes friction of one magnitude \[N m\] against the motion in every quadrant.
     pub fn constant(magnitude: f64) -> Self {
         let (plus, minus) = (magnitude, -magnitude);
         Self::from_coefficients([plus, 0.0, minus, 0.0, minus, 0.0, plus, 0.0])
     }
 
-    /// Friction torque \[N m\] at a load torque \[N m\] and a joint velocity \[rad/s\].
+    /// Returns the friction torque \[N m\] at a load torque \[N m\] and a joint velocity \[rad/s\].
     ///
-    /// At q̇ = 0 it is 0: stiction is a set of torques, not a value, and belongs to the
-    /// uncertainty. At zero load the joint brakes, by the convention of the fields. Over lanes each
-    /// has its own quadrant.
+    /// The torque is 0 at q̇ = 0, because stiction is a set of torques, not a value, and belongs to
+    /// the uncertainty. A moving joint without load counts as braking. Over lanes, each lane has
+    /// its own quadrant.
     pub fn torque<S: Lanewise>(&self, load: S, qd: S) -> S {
-        load.zip(qd, |load, qd| self.of_lane(load, qd))
+        load.zip(qd, |load, qd| self.torque_in_lane(load, qd))
     }
 
-    fn of_lane(&self, load: f64, qd: f64) -> f64 {
+    /// Returns the torque for one lane.
+    fn torque_in_lane(&self, load: f64, qd: f64) -> f64 {
         if qd == 0.0 {
             return 0.0;
         }

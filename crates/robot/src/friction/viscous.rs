@@ -1,6 +1,8 @@
+//! Viscous friction.
+
 use reachtube_scalar::Scalar;
 
-/// Viscous friction of one joint as a cubic (5): tau_v = v1 q̇ + v2 q̇² + v3 q̇³ \[N m\], q̇ in
+/// Cubic viscous friction of one joint (5): tau_v = v1 q̇ + v2 q̇² + v3 q̇³ \[N m\], with q̇ in
 /// rad/s.
 ///
 /// # Examples
@@ -16,15 +18,15 @@ use reachtube_scalar::Scalar;
 pub struct Viscous {
     /// Linear coefficient \[N m s/rad\].
     pub v1: f64,
-    /// Quadratic coefficient \[N m s²/rad²\]; it acts in the same direction whichever way the joint
-    /// moves.
+    /// Quadratic coefficient \[N m s²/rad²\]. Its torque has the same sign for both directions of
+    /// motion.
     pub v2: f64,
     /// Cubic coefficient \[N m s³/rad³\].
     pub v3: f64,
 }
 
 impl Viscous {
-    /// tau_v(q̇) \[N m\] by Horner's rule.
+    /// Returns tau_v(q̇) \[N m\] by Horner's rule.
     ///
     /// # Guarantee
     ///
@@ -34,7 +36,7 @@ impl Viscous {
         (S::from(self.v1) + inner * qd.clone()) * qd.clone()
     }
 
-    /// d tau_v / d q̇ \[N m s/rad\].
+    /// Returns the derivative d tau_v / d q̇ \[N m s/rad\].
     ///
     /// # Guarantee
     ///

@@ -1,12 +1,14 @@
 //! Proof that the mass matrix is positive definite over the position limits, by branch and bound.
 
-use crate::{Robot, Workspace, ltdl};
+use crate::ltdl;
+use crate::robot::Robot;
+use crate::workspace::Workspace;
 use reachtube_scalar::Interval;
 
-/// A joint's interval \[rad\] that is not halved further.
+/// Width \[rad\] below which a joint's interval is not bisected further.
 const LEAST_WIDTH: f64 = 1e-6;
 
-/// A box of positions with the sines and cosines in it.
+/// A box of positions with enclosures of their sines and cosines.
 #[derive(Clone)]
 struct PositionBox {
     q: Vec<Interval>,
@@ -15,17 +17,19 @@ struct PositionBox {
 }
 
 impl PositionBox {
+    /// Sets the interval of one joint.
     fn set(&mut self, joint: usize, q: Interval) {
         self.q[joint] = q;
         (self.sin[joint], self.cos[joint]) = q.sin_cos();
     }
 
+    /// Returns the two halves along one joint.
     fn halves(&self, joint: usize) -> [Self; 2] {
         let q = self.q[joint];
         [self.part(joint, q.lo(), q.mid()), self.part(joint, q.mid(), q.hi())]
     }
 
-    /// The part with one joint between two values.
+    /// Returns the part in which one joint lies between two values.
     fn part(&self, joint: usize, low: f64, high: f64) -> Self {
         let mut part = self.clone();
         part.set(joint, Interval::new(low, high).unwrap_or(self.q[joint]));
@@ -34,23 +38,25 @@ impl PositionBox {
 }
 
 impl Robot {
-    /// Tries to prove that M_m(q) is positive definite at every position within the limits, where
-    /// the links alone do not show it ([`Robot::check_physical`]), as for base parameters.
+    /// Tries to prove that M_m(q) is positive definite at every position within the limits.
     ///
-    /// Branch and bound: interval arithmetic over boxes of positions, halved where they are too
-    /// wide. Gives the number of boxes, or `None` where more than `most_boxes` would be needed,
-    /// which says nothing about M. The LWA 4P takes about 45,000 boxes and 2 s.
+    /// This is for robots whose links alone are no proof ([`Robot::check_physical`]), such as those
+    /// with base parameters. The proof is a branch and bound with interval arithmetic over boxes of
+    /// positions; boxes that are too wide are bisected. Returns the number of boxes, or `None` if
+    /// more than `most_boxes` would be needed, which implies nothing about M. The LWA 4P takes
+    /// about 45,000 boxes and 2 s.
     ///
     /// # Guarantee
     ///
-    /// A number is a proof for the robot's constants as loaded, under outward rounding.
+    /// A returned number is a proof for the robot's constants as loaded, under outward rounding.
     ///
     /// # Examples
     ///
     /// ```
     /// use reachtube_robot::Robot;
     ///
-    /// let pendulum = Robot::from_toml(include_str!("../../examples/double_pendulum.toml"), "double pendulum").unwrap();
+    /// let text = include_str!("../../examples/double_pendulum.toml");
+    /// let pendulum = Robot::from_toml(text, "double pendulum").unwrap();
     /// assert!(pendulum.prove_positive_definite(1000).is_some());
     /// ```
     pub fn prove_positive_definite(&self, most_boxes: usize) -> Option<usize> {
@@ -76,6 +82,7 @@ impl Robot {
         Some(closed)
     }
 
+    /// Returns the box of all positions within the limits.
     fn position_limits_box(&self) -> PositionBox {
         let limits = self.joints.iter().map(|j| j.position_limits);
         let q: Vec<_> =
@@ -85,15 +92,17 @@ impl Robot {
     }
 }
 
-/// Positive definiteness of M over boxes of positions.
+/// Checks positive definiteness of M over boxes of positions.
 struct Cover<'a> {
     robot: &'a Robot,
     ws: Workspace<Interval>,
-    probe: Workspace<f64>,
+    centre_ws: Workspace<f64>,
+    /// M over the box.
     m: Vec<Interval>,
     /// W M.
-    half: Vec<Interval>,
-    middle: Vec<f64>,
+    product: Vec<Interval>,
+    /// M at the box's centre, then its factors.
+    centre: Vec<f64>,
     w: Vec<f64>,
 }
 
@@ -103,47 +112,48 @@ impl<'a> Cover<'a> {
         Self {
             robot,
             ws: Workspace::new(robot),
-            probe: Workspace::new(robot),
+            centre_ws: Workspace::new(robot),
             m: vec![Interval::ZERO; n * n],
-            half: vec![Interval::ZERO; n * n],
-            middle: vec![0.0; n * n],
+            product: vec![Interval::ZERO; n * n],
+            centre: vec![0.0; n * n],
             w: vec![0.0; n * n],
         }
     }
 
-    /// Positive only where every M(q) of the box is positive definite.
+    /// Returns a number that is positive only if M(q) is positive definite everywhere in the box.
     ///
-    /// With M(mid) ≈ Lᵀ D L, the matrix W M Wᵀ for W = D^(-1/2) L^(-T) is near 1; M is positive
-    /// definite if W M Wᵀ is diagonally dominant (Gershgorin), whatever the error of W.
+    /// With M(mid) ≈ Lᵀ D L and W = D^(-1/2) L^(-T), the matrix W M Wᵀ is near 1. M is positive
+    /// definite if W M Wᵀ is diagonally dominant (Gershgorin), for any rounding error of W.
     fn slack(&mut self, positions: &PositionBox) -> f64 {
         let n = positions.q.len();
         self.robot.crba(&positions.sin, &positions.cos, &mut self.ws, &mut self.m);
         let (sin, cos): (Vec<_>, Vec<_>) = positions.q.iter().map(|q| q.mid().sin_cos()).unzip();
-        self.robot.crba(&sin, &cos, &mut self.probe, &mut self.middle);
-        ltdl::factor(&mut self.middle, n);
-        if !whitening(&self.middle, &mut self.w, n) {
+        self.robot.crba(&sin, &cos, &mut self.centre_ws, &mut self.centre);
+        ltdl::factor(&mut self.centre, n);
+        if !whitening(&self.centre, &mut self.w, n) {
             return f64::NEG_INFINITY;
         }
         for i in 0..n {
             for j in 0..n {
-                self.half[i * n + j] =
-                    product(&self.w[i * n + i..(i + 1) * n], &self.m[j * n + i..]);
+                self.product[i * n + j] =
+                    dot(&self.w[i * n + i..(i + 1) * n], &self.m[j * n + i..]);
             }
         }
         (0..n).map(|i| self.dominance(i, n).lo()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Diagonal entry less the magnitudes of the others in row i of W M Wᵀ.
+    /// Returns the diagonal entry minus the magnitudes of the other entries in row i of W M Wᵀ.
     fn dominance(&self, i: usize, n: usize) -> Interval {
-        let entry = |j: usize| product(&self.w[j * n + j..(j + 1) * n], &self.half[i * n + j..]);
+        let entry = |j: usize| dot(&self.w[j * n + j..(j + 1) * n], &self.product[i * n + j..]);
         let others = (0..n).filter(|j| *j != i);
         others.fold(entry(i), |rest, j| rest - Interval::point(entry(j).mag()))
     }
 
-    /// The two joints whose halving should help most: those with the greatest slack were one of
-    /// them known exactly.
+    /// Returns the two joints to bisect: those with the largest slack if their position is fixed at
+    /// the middle.
     ///
-    /// Two at a time spares half the scoring. The first joint never matters to M.
+    /// Bisecting two joints at a time halves the number of evaluations. M does not depend on the
+    /// first joint.
     fn best_splits(&mut self, positions: &PositionBox) -> Vec<usize> {
         let wide = (1..positions.q.len()).filter(|i| positions.q[*i].width() > LEAST_WIDTH);
         let scored = wide.map(|i| {
@@ -156,13 +166,14 @@ impl<'a> Cover<'a> {
     }
 }
 
-/// Sum of products.
-fn product(w: &[f64], m: &[Interval]) -> Interval {
+/// Returns an enclosure of Σ w m.
+fn dot(w: &[f64], m: &[Interval]) -> Interval {
     w.iter().zip(m).fold(Interval::ZERO, |sum, (w, m)| sum + Interval::point(*w) * *m)
 }
 
-/// W = D^(-1/2) L^(-T) of the factors of [`ltdl`], upper triangular, row by row; false where a
-/// pivot is not positive.
+/// Computes W = D^(-1/2) L^(-T) from the factors of [`ltdl`], upper triangular, row by row.
+///
+/// Returns false if a pivot is not positive.
 fn whitening(factors: &[f64], w: &mut [f64], n: usize) -> bool {
     for i in (0..n).rev() {
         let pivot = factors[i * n + i];

@@ -1,19 +1,23 @@
 //! Search for a position where the mass matrix is not positive definite.
 
-use super::Physicality;
-use crate::{Robot, RobotError, Workspace, ltdl};
+use super::outcome::Physicality;
+use crate::error::RobotError;
+use crate::ltdl;
+use crate::robot::Robot;
+use crate::workspace::Workspace;
 
-/// Positions that the search samples before it descends.
+/// Number of positions that the search samples before the descents.
 const SAMPLES: usize = 20_000;
-/// Sweeps over the joints of each descent; the step shrinks from 0.5 rad by 0.7 a sweep to about
-/// 1e-4 rad.
+/// Number of sweeps over the joints in each descent. The step shrinks from 0.5 rad by a factor 0.7
+/// per sweep to about 1e-4 rad.
 const SWEEPS: usize = 24;
 
 impl Robot {
-    /// Samples and descends on each joint's pivot.
+    /// Searches for the smallest pivot of each joint by sampling and descent.
     pub(super) fn search_pivots(&self) -> Result<Physicality, RobotError> {
         let n = self.joint_count();
         let mut probe = Probe::new(self);
+        // Sampling: the best position for each joint's pivot.
         let mut best = vec![(f64::INFINITY, vec![0.0; n]); n];
         for k in 0..SAMPLES {
             let q = self.spread_position(k);
@@ -24,6 +28,7 @@ impl Robot {
                 }
             }
         }
+        // Descent from each of these positions.
         for (joint, (pivot, q)) in best.iter_mut().enumerate() {
             self.descend(&mut probe, joint, pivot, q)?;
         }
@@ -32,8 +37,8 @@ impl Robot {
         Ok(Physicality::Searched { positions: probe.count, joint, pivot, q })
     }
 
-    /// The k-th point of an evenly spread sequence in the position limits: Roberts' generalised
-    /// golden ratio.
+    /// Returns point k of an evenly spread sequence in the position limits (Roberts' sequence, from
+    /// the generalised golden ratio).
     fn spread_position(&self, k: usize) -> Vec<f64> {
         let n = self.joint_count() as i32;
         let ratio = (0..60).fold(1.5_f64, |x, _| (1.0 + x).powf(1.0 / f64::from(n + 1)));
@@ -46,6 +51,7 @@ impl Robot {
             .collect()
     }
 
+    /// Lowers one joint's pivot by coordinate descent from `q`.
     fn descend(
         &self,
         probe: &mut Probe,
@@ -56,17 +62,17 @@ impl Robot {
         let mut step = 0.5;
         for _ in 0..SWEEPS {
             for i in 0..q.len() {
-                let here = q[i];
+                let centre = q[i];
                 let [low, high] = self.joints[i].position_limits;
-                let mut stay = here;
-                for there in [here - step, here + step] {
-                    q[i] = there.clamp(low, high);
+                let mut best = centre;
+                for next in [centre - step, centre + step] {
+                    q[i] = next.clamp(low, high);
                     let found = probe.pivots(q)?[joint];
                     if found < *pivot {
-                        (*pivot, stay) = (found, q[i]);
+                        (*pivot, best) = (found, q[i]);
                     }
                 }
-                q[i] = stay;
+                q[i] = best;
             }
             step *= 0.7;
         }
@@ -74,7 +80,7 @@ impl Robot {
     }
 }
 
-/// The pivots at one position after another.
+/// Evaluates pivots and counts the positions.
 struct Probe<'a> {
     robot: &'a Robot,
     ws: Workspace<f64>,
@@ -95,15 +101,16 @@ impl<'a> Probe<'a> {
         }
     }
 
-    /// The pivots at q, or the witness where one is not positive.
+    /// Returns the pivots at q; the error is a witness if a pivot is not positive.
     fn pivots(&mut self, q: &[f64]) -> Result<Vec<f64>, RobotError> {
         let n = q.len();
         let (sin, cos) = self.robot.sin_cos(q);
         self.robot.crba(&sin, &cos, &mut self.ws, &mut self.m);
         ltdl::factor(&mut self.m, n);
         self.count += 1;
-        // Pivots below a non-positive one mean nothing: the factorisation runs from the tip.
         self.pivots.iter_mut().enumerate().for_each(|(i, p)| *p = self.m[i * n + i]);
+        // The factorisation starts at the tip. Pivots nearer the base than a pivot that is not
+        // positive have no meaning.
         match (0..n).rev().find(|i| self.pivots[*i] <= 0.0) {
             None => Ok(self.pivots.clone()),
             Some(joint) => Err(RobotError::NotPhysical {

@@ -1,10 +1,12 @@
-//! The TOML file beside a URDF: what URDF has no place for.
+//! The companion of a URDF: a TOML file for the values that URDF cannot express.
 
-use crate::{FrictionDescription, JointDescription, Parameters, RobotDescription, RobotError};
+use crate::description::joint_description::{FrictionDescription, JointDescription};
+use crate::description::robot_description::{ParameterSet, RobotDescription};
+use crate::error::RobotError;
 use serde::{Deserialize, Serialize};
 
-/// Ends of the chain, gravity, and motor and friction of joints; each value comes before that of
-/// the URDF.
+/// Ends of the chain, gravity, and motors and friction of joints. Each value overrides that of the
+/// URDF.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Companion {
@@ -17,11 +19,12 @@ pub(super) struct Companion {
     #[serde(skip_serializing_if = "Option::is_none")]
     gravity: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    parameters: Option<Parameters>,
+    parameters: Option<ParameterSet>,
     #[serde(rename = "joint", default)]
     joints: Vec<Drive>,
 }
 
+/// Motor and friction of one joint.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct Drive {
@@ -37,7 +40,8 @@ struct Drive {
 }
 
 impl Companion {
-    /// Reads it; empty where the text is a whole robot, which has a `schema_version`.
+    /// Reads a companion. A text with a `schema_version` describes a robot of its own, for which
+    /// the result is empty.
     pub fn parse(text: &str, origin: &str) -> Result<Self, RobotError> {
         let syntax = |e: toml::de::Error| RobotError::Syntax {
             origin: origin.into(),
@@ -51,7 +55,7 @@ impl Companion {
         Ok(Self { origin: origin.into(), ..companion })
     }
 
-    /// Writes its values into a description.
+    /// Writes the values into a description.
     pub fn apply(&self, description: &mut RobotDescription) -> Result<(), RobotError> {
         description.gravity = self.gravity.unwrap_or(description.gravity);
         description.parameters = self.parameters.unwrap_or(description.parameters);
@@ -61,7 +65,7 @@ impl Companion {
             let joint = joint.ok_or_else(|| RobotError::Invalid {
                 origin: self.origin.clone(),
                 place: format!("joint `{}`: ", drive.name),
-                problem: "the chain has no such joint".into(),
+                problem: "the chain has no joint with this name".into(),
                 remedy: format!("name one of {}", names.join(", ")),
             })?;
             drive.apply(joint);
@@ -69,8 +73,12 @@ impl Companion {
         Ok(())
     }
 
-    /// The motors and friction of a description.
-    pub fn of(description: &RobotDescription, base: Option<String>, tip: Option<String>) -> Self {
+    /// Makes the companion with the motors and friction of a description.
+    pub fn from_description(
+        description: &RobotDescription,
+        base: Option<String>,
+        tip: Option<String>,
+    ) -> Self {
         let drive = |j: &JointDescription| Drive {
             name: j.name.clone(),
             gear_ratio: j.gear_ratio,
@@ -90,7 +98,7 @@ impl Companion {
 }
 
 impl Drive {
-    /// One way of giving the motor inertia displaces the other.
+    /// Writes the values into a joint. An armature replaces a rotor inertia and the reverse.
     fn apply(&self, joint: &mut JointDescription) {
         joint.gear_ratio = self.gear_ratio.or(joint.gear_ratio);
         if self.armature.is_some() || self.rotor_inertia.is_some() {

@@ -1,26 +1,28 @@
-//! From a chain of elements to a description.
+//! Conversion of a chain of elements to a description.
 
 use super::chain::Chain;
 use super::document::{Tree, TreeJoint, element};
-use crate::description::Finding;
+use crate::description::check::InvalidValue;
+use crate::description::joint_description::{
+    Convention, FrictionDescription, InertiaPoint, JointDescription, PlacementDescription,
+};
+use crate::description::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
+use crate::error::RobotError;
 use crate::inertia::LinkInertia;
 use crate::placement::Placement;
-use crate::{
-    Convention, FrictionDescription, InertiaPoint, JointDescription, Parameters,
-    PlacementDescription, RobotDescription, RobotError, SCHEMA_VERSION,
-};
 use nalgebra::{Matrix3, Vector3};
 
-/// A moving link, what is fixed to it, and its joint.
+/// A moving link with its joint.
 #[derive(Clone, Debug)]
 pub(super) struct MovedLink {
     pub link: String,
     pub joint: String,
-    /// Links fixed to it, whose mass is taken as its own.
+    /// Links that are fixed to the link and lumped into it.
     pub lumped: Vec<String>,
 }
 
 impl<'a> Tree<'a> {
+    /// Returns the description of a chain, and its moving links.
     pub fn describe(
         &self,
         chain: &Chain<'a>,
@@ -42,7 +44,7 @@ impl<'a> Tree<'a> {
         let description = RobotDescription {
             schema_version: SCHEMA_VERSION,
             name: root.attribute("name").unwrap_or("robot").into(),
-            parameters: Parameters::Physical,
+            parameters: ParameterSet::Physical,
             convention: Convention::Standard,
             gravity: self.gravity(chain.base)?,
             joints,
@@ -50,18 +52,20 @@ impl<'a> Tree<'a> {
         Ok((description, moved))
     }
 
-    /// Earth's gravity along -z of the root, in the base; joints between them at zero.
+    /// Returns Earth's gravity along -z of the root in the base frame, with the joints between root
+    /// and base at zero.
     fn gravity(&self, base: &'a str) -> Result<[f64; 3], RobotError> {
-        let mut down = Vector3::new(0.0, 0.0, -9.81);
+        let mut gravity = Vector3::new(0.0, 0.0, -9.81);
         let joints: Vec<_> = self.above(base).collect();
         for k in joints.into_iter().rev() {
-            down = self.placement_of(self.joints[k].node)?.rotation.transpose() * down;
+            gravity = self.placement_of(self.joints[k].node)?.rotation.transpose() * gravity;
         }
-        Ok(down.into())
+        Ok(gravity.into())
     }
 
-    /// The masses that move with a link, each placed in it, and the names of those fixed to it.
-    #[expect(clippy::type_complexity, reason = "two lists that are made in one walk")]
+    /// Returns the bodies that move with a link, each with its placement in the link, and the names
+    /// of the links that are fixed to it.
+    #[expect(clippy::type_complexity, reason = "one walk over the tree makes both lists")]
     fn bodies(
         &self,
         link: &'a str,
@@ -84,10 +88,12 @@ impl<'a> Tree<'a> {
                     return Err(self.error(
                         joint.node,
                         format!(
-                            "the chain branches: this {} joint hangs on the moving link `{link}`",
+                            "the chain branches: this {} joint is carried by the moving link \
+                             `{link}`",
                             joint.kind
                         ),
-                        "only serial chains are handled; make the joint fixed, or take the branch out",
+                        "only serial chains are supported; make the joint fixed, or remove the \
+                         branch",
                     ));
                 }
             }
@@ -95,7 +101,7 @@ impl<'a> Tree<'a> {
         Ok((bodies, lumped))
     }
 
-    /// The `<inertial>` of a link; none weighs nothing.
+    /// Returns the `<inertial>` of a link; a link without one has no mass.
     fn body(&self, link: &str) -> Result<Option<Body>, RobotError> {
         let Some(inertial) = self.links[link].and_then(|node| element(node, "inertial")) else {
             return Ok(None);
@@ -114,11 +120,12 @@ impl<'a> Tree<'a> {
                 entry("iyz")?,
                 entry("izz")?,
             ],
-            turned: self.origin_of(inertial)?.1 != [0.0; 3],
+            rotated: self.origin_of(inertial)?.1 != [0.0; 3],
             frame: self.placement_of(inertial)?,
         }))
     }
 
+    /// Describes a joint; `before` is the placement of the fixed joints before it.
     fn joint(
         &self,
         joint: &TreeJoint<'a>,
@@ -160,7 +167,8 @@ impl<'a> Tree<'a> {
         })
     }
 
-    /// Position and velocity limits; zeros stand for fields that an exporter left empty.
+    /// Returns position and velocity limits. Zeros are fields that an exporter left empty, and mean
+    /// no limit.
     fn limits(&self, joint: &TreeJoint<'a>) -> Result<(Option<[f64; 2]>, Option<f64>), RobotError> {
         let Some(limit) = element(joint.node, "limit") else { return Ok((None, None)) };
         let [low, high] = [self.number(limit, "lower")?, self.number(limit, "upper")?]
@@ -170,6 +178,7 @@ impl<'a> Tree<'a> {
         Ok((position, self.number(limit, "velocity")?.filter(|v| *v != 0.0)))
     }
 
+    /// Returns the friction that `<dynamics>` describes.
     fn friction(&self, joint: &TreeJoint<'a>) -> Result<FrictionDescription, RobotError> {
         let Some(dynamics) = element(joint.node, "dynamics") else { return Ok(Default::default()) };
         let get = |name| Ok(self.number(dynamics, name)?.unwrap_or(0.0));
@@ -178,14 +187,13 @@ impl<'a> Tree<'a> {
         Ok(FrictionDescription { coulomb, viscous: [damping, 0.0, 0.0] })
     }
 
-    /// Where in the URDF a value stands that makes no robot.
-    pub fn locate(&self, moved: &[MovedLink], finding: &Finding) -> (String, String) {
+    /// Returns origin and place of an invalid value in the URDF.
+    pub fn locate(&self, moved: &[MovedLink], value: &InvalidValue) -> (String, String) {
         let root = self.document.root_element();
-        let joint =
-            finding.joint.and_then(|i| self.joints.iter().find(|j| j.name == moved[i].joint));
+        let joint = value.joint.and_then(|i| self.joints.iter().find(|j| j.name == moved[i].joint));
         let inner =
             |node, tags: &[&str]| tags.iter().find_map(|tag| element(node, tag)).unwrap_or(node);
-        let node = joint.map_or(root, |joint| match finding.key {
+        let node = joint.map_or(root, |joint| match value.key {
             "mass" | "com" | "inertia" => {
                 self.links[joint.child].map_or(joint.node, |link| inner(link, &["inertial"]))
             }
@@ -202,19 +210,22 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// An `<inertial>`.
+/// The body that an `<inertial>` describes.
 struct Body {
     mass: f64,
     inertia: [f64; 6],
-    turned: bool,
+    /// Whether `frame` rotates the link's axes.
+    rotated: bool,
+    /// Frame of the inertia in the link.
     frame: Placement,
 }
 
 impl Body {
-    fn weighs(&self) -> bool {
+    fn has_inertia(&self) -> bool {
         self.mass != 0.0 || self.inertia != [0.0; 6]
     }
 
+    /// Returns the inertia in the frame of the moving link, where the body's link has `placement`.
     fn in_link(&self, placement: &Placement) -> LinkInertia {
         let [xx, xy, xz, yy, yz, zz] = self.inertia;
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
@@ -223,18 +234,19 @@ impl Body {
     }
 }
 
-/// Mass, centre of mass and inertia about it in the link's axes, of all bodies together; numbers of
-/// a single body whose frame is not turned are taken as they are.
+/// Returns mass, centre of mass, and inertia about it in the link's axes, for all bodies together.
+///
+/// The numbers of a single body whose frame is not rotated are returned without rounding.
 fn lump(bodies: &[(Placement, Body)]) -> (f64, [f64; 3], [f64; 6]) {
-    let heavy: Vec<_> = bodies.iter().filter(|(_, body)| body.weighs()).collect();
-    match heavy[..] {
+    let bodies: Vec<_> = bodies.iter().filter(|(_, body)| body.has_inertia()).collect();
+    match bodies[..] {
         [] => (0.0, [0.0; 3], [0.0; 6]),
-        [(placement, body)] if !body.turned && *placement == Placement::identity() => {
+        [(placement, body)] if !body.rotated && *placement == Placement::identity() => {
             (body.mass, body.frame.translation.into(), body.inertia)
         }
         _ => {
             let mut whole = LinkInertia::about_origin(0.0, Vector3::zeros(), &Matrix3::zeros());
-            for (placement, body) in heavy {
+            for (placement, body) in bodies {
                 let part = body.in_link(placement);
                 whole.mass += part.mass;
                 whole.first_moment += part.first_moment;

@@ -1,22 +1,23 @@
-//! Elements of a URDF, with errors that say where.
+//! Elements of a URDF, and errors with their location.
 
-use crate::RobotError;
+use crate::error::RobotError;
 use crate::placement::Placement;
 use nalgebra::Rotation3;
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, HashMap};
 
-/// Links and joints of a URDF by name.
+/// The links and joints of a URDF.
 pub(super) struct Tree<'a> {
     pub document: &'a Document<'a>,
     pub origin: &'a str,
-    /// Links in the order of their names; `None` for a `world` that is only named.
+    /// Links by name; `None` for a `world` link without an element.
     pub links: BTreeMap<&'a str, Option<Node<'a, 'a>>>,
     pub joints: Vec<TreeJoint<'a>>,
-    /// The joint that carries a link.
+    /// Index of the joint that carries each link.
     pub carrier: HashMap<&'a str, usize>,
 }
 
+/// A joint of a URDF.
 #[derive(Clone, Copy)]
 pub(super) struct TreeJoint<'a> {
     pub node: Node<'a, 'a>,
@@ -32,22 +33,26 @@ impl TreeJoint<'_> {
     }
 }
 
-pub(super) fn parse<'a>(text: &'a str, origin: &str) -> Result<Document<'a>, RobotError> {
+/// Parses XML text; `origin` names it in errors.
+pub(super) fn parse_document<'a>(text: &'a str, origin: &str) -> Result<Document<'a>, RobotError> {
     Document::parse(text).map_err(|e| RobotError::Syntax {
         origin: origin.into(),
-        message: format!("no well-formed XML: {e}"),
+        message: format!("the text is not well-formed XML: {e}"),
     })
 }
 
+/// Returns the child elements with a tag.
 pub(super) fn elements<'a>(node: Node<'a, 'a>, tag: &str) -> impl Iterator<Item = Node<'a, 'a>> {
     node.children().filter(move |n| n.is_element() && n.tag_name().name() == tag)
 }
 
+/// Returns the first child element with a tag.
 pub(super) fn element<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
     elements(node, tag).next()
 }
 
 impl<'a> Tree<'a> {
+    /// Collects the links and joints of a document.
     pub fn new(document: &'a Document<'a>, origin: &'a str) -> Result<Self, RobotError> {
         let mut tree = Self {
             document,
@@ -67,7 +72,7 @@ impl<'a> Tree<'a> {
             return Err(tree.error(
                 node,
                 "this is a xacro file".into(),
-                "expand it with xacro first",
+                "expand it with the program xacro first",
             ));
         }
         tree.add_links(root)?;
@@ -105,12 +110,12 @@ impl<'a> Tree<'a> {
                     "give each joint its own name",
                 ));
             }
-            if let Some(lacking) =
+            if let Some(missing) =
                 [joint.parent, joint.child].iter().find(|l| !self.links.contains_key(**l))
             {
                 return Err(self.error(
                     node,
-                    format!("there is no link `{lacking}`"),
+                    format!("there is no link `{missing}`"),
                     "add the link, or correct the name",
                 ));
             }
@@ -118,8 +123,8 @@ impl<'a> Tree<'a> {
                 let other = self.joints[other].name;
                 return Err(self.error(
                     node,
-                    format!("link `{}` already hangs on joint `{other}`", joint.child),
-                    "let each link be the child of one joint",
+                    format!("link `{}` is already the child of joint `{other}`", joint.child),
+                    "make each link the child of one joint",
                 ));
             }
             self.joints.push(joint);
@@ -127,7 +132,8 @@ impl<'a> Tree<'a> {
         Ok(())
     }
 
-    /// An error at an element: file and line, the joint or link it belongs to, and its tag.
+    /// Makes an error at an element, with file and line, the joint or link that it belongs to, and
+    /// its tag.
     pub fn error(&self, node: Node, problem: String, remedy: &str) -> RobotError {
         let line = self.document.text_pos_at(node.range().start).row;
         let owner = node
@@ -152,31 +158,35 @@ impl<'a> Tree<'a> {
         }
     }
 
+    /// Returns the first child element with a tag.
     pub fn child(&self, node: Node<'a, 'a>, tag: &str) -> Result<Node<'a, 'a>, RobotError> {
-        element(node, tag).ok_or_else(|| self.error(node, format!("<{tag}> is lacking"), "add it"))
+        element(node, tag).ok_or_else(|| self.error(node, format!("<{tag}> is missing"), "add it"))
     }
 
+    /// Returns the text of an attribute.
     pub fn attribute(&self, node: Node<'a, 'a>, name: &str) -> Result<&'a str, RobotError> {
         node.attribute(name)
-            .ok_or_else(|| self.error(node, format!("the attribute `{name}` is lacking"), "add it"))
+            .ok_or_else(|| self.error(node, format!("the attribute `{name}` is missing"), "add it"))
     }
 
-    /// A number, `None` where the attribute is absent.
+    /// Returns the number in an attribute, or `None` if the attribute is absent.
     pub fn number(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<f64>, RobotError> {
         node.attribute(name).map(|text| self.to_number(node, name, text)).transpose()
     }
 
+    /// Converts text to a finite number.
     pub fn to_number(&self, node: Node<'a, 'a>, name: &str, text: &str) -> Result<f64, RobotError> {
         let finite = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
         finite.ok_or_else(|| {
             self.error(
                 node,
-                format!("{name} = \"{text}\" is no number"),
+                format!("{name} = \"{text}\" is not a finite number"),
                 "write one finite number in SI units",
             )
         })
     }
 
+    /// Returns the three numbers in an attribute, or `None` if the attribute is absent.
     pub fn triple(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<[f64; 3]>, RobotError> {
         let Some(text) = node.attribute(name) else { return Ok(None) };
         let numbers: Vec<_> = text
@@ -185,17 +195,22 @@ impl<'a> Tree<'a> {
             .collect::<Result<_, _>>()?;
         let triple = numbers.try_into().map(Some);
         triple.map_err(|_| {
-            self.error(node, format!("{name} = \"{text}\" are not three numbers"), "write three")
+            self.error(
+                node,
+                format!("{name} = \"{text}\" is not three numbers"),
+                "write three numbers",
+            )
         })
     }
 
-    /// (xyz, rpy) of the `<origin>` in an element; zeros where it is absent.
+    /// Returns xyz \[m\] and rpy \[rad\] of the `<origin>` in an element; zeros if it is absent.
     pub fn origin_of(&self, node: Node<'a, 'a>) -> Result<([f64; 3], [f64; 3]), RobotError> {
         let Some(origin) = element(node, "origin") else { return Ok(Default::default()) };
         let get = |name| Ok(self.triple(origin, name)?.unwrap_or_default());
         Ok((get("xyz")?, get("rpy")?))
     }
 
+    /// Returns the placement that the `<origin>` in an element describes.
     pub fn placement_of(&self, node: Node<'a, 'a>) -> Result<Placement, RobotError> {
         let (translation, [roll, pitch, yaw]) = self.origin_of(node)?;
         let rotation = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();

@@ -1,14 +1,14 @@
-//! Changes of XML text in place: what is not touched stays as it is, byte for byte.
+//! Edits of XML text in place that keep all other text byte for byte.
 
 use core::ops::Range;
 use roxmltree::Node;
 
-/// Replacements of ranges of a text.
+/// Replacements of byte ranges of a text.
 #[derive(Default)]
 pub(super) struct Edits(Vec<(Range<usize>, String)>);
 
 impl Edits {
-    /// Gives an attribute of an element a value.
+    /// Sets an attribute of an element, and adds the attribute if it is absent.
     pub fn set(&mut self, node: Node, name: &str, value: &str) {
         let edit = match node.attribute_node(name) {
             Some(attribute) => (attribute.range_value(), value.into()),
@@ -24,7 +24,7 @@ impl Edits {
         self.0.push(edit);
     }
 
-    /// Gives attributes of a child element their values; adds the child where there is none.
+    /// Sets attributes of the first child element with a tag, and adds the child if it is absent.
     pub fn set_child(&mut self, node: Node<'_, '_>, tag: &str, values: &[(&str, String)]) {
         match node.children().find(|n| n.is_element() && n.tag_name().name() == tag) {
             Some(child) => values.iter().for_each(|(name, value)| self.set(child, name, value)),
@@ -32,7 +32,7 @@ impl Edits {
         }
     }
 
-    /// Adds an element at the end of another, indented as its siblings are.
+    /// Adds an element at the end of another, with the indentation of its siblings.
     pub fn add(&mut self, node: Node, new: &str) {
         let (text, range) = (node.document().input_text(), node.range());
         let line = text[..range.start].rfind('\n').map_or(0, |k| k + 1);
@@ -49,7 +49,7 @@ impl Edits {
         if let Some(sibling) = last {
             self.0.push((sibling.range().end..sibling.range().end, new));
         } else if text[range.clone()].ends_with("/>") {
-            // <tag/> must be opened first.
+            // <tag/> becomes <tag>...</tag>.
             let tag = text[range.start + 1..]
                 .split(|c: char| c.is_whitespace() || c == '/')
                 .next()
@@ -61,7 +61,7 @@ impl Edits {
         }
     }
 
-    /// The text with all changes made.
+    /// Applies all edits and returns the new text.
     pub fn apply(mut self, text: &str) -> String {
         self.0.sort_by_key(|(range, _)| range.start);
         let (mut out, mut at) = (String::with_capacity(text.len()), 0);
@@ -74,7 +74,7 @@ impl Edits {
     }
 }
 
-/// `<tag name="value" .../>`.
+/// Formats the element `<tag name="value" .../>`.
 pub(super) fn empty_element(tag: &str, values: &[(&str, String)]) -> String {
     let attributes: String =
         values.iter().map(|(name, value)| format!(" {name}=\"{value}\"")).collect();

@@ -1,16 +1,16 @@
-//! Gear ratio and rotor inertia, which URDF itself has no place for, from the extensions in use.
+//! Gear ratio and rotor inertia from common extensions of URDF, which itself has no elements for
+//! them.
 
 use super::document::{Tree, TreeJoint, elements};
-use crate::RobotError;
+use crate::error::RobotError;
 use roxmltree::Node;
 
 impl<'a> Tree<'a> {
-    /// Gear ratio and rotor inertia \[kg m²\] of a joint.
+    /// Returns gear ratio and rotor inertia \[kg m²\] of a joint.
     ///
-    /// From a `<transmission>` that names the joint: `mechanicalReduction` (ROS) or `gear_ratio`,
-    /// and `rotor_inertia` (Drake), as text or as attribute `value`, in it or in its `<actuator>`;
-    /// or from the same elements in the joint. A rotor inertia without a ratio is on the link's
-    /// side.
+    /// They are elements of the joint, or of a `<transmission>` that names the joint, or of its
+    /// `<actuator>`: `mechanicalReduction` (ROS) or `gear_ratio`, and `rotor_inertia` (Drake), as
+    /// text or as attribute `value`. A rotor inertia without a ratio is on the link side.
     pub fn motor(&self, joint: &TreeJoint<'a>) -> Result<(Option<f64>, Option<f64>), RobotError> {
         let names = |t: &Node<'a, 'a>| {
             elements(*t, "joint").any(|j| j.attribute("name") == Some(joint.name))
@@ -31,6 +31,7 @@ impl<'a> Tree<'a> {
         Ok((ratio.or(rotor.map(|_| 1.0)), rotor))
     }
 
+    /// Returns the number in an element.
     fn value(&self, node: Node<'a, 'a>) -> Result<f64, RobotError> {
         let text = node.attribute("value").or(node.text()).unwrap_or("");
         self.to_number(node, node.tag_name().name(), text)

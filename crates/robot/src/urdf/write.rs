@@ -1,36 +1,41 @@
-//! Identified values written into the URDF they came from.
+//! Writing of identified values into the URDF that the robot was read from.
 
 use super::companion::Companion;
-use super::document::{self, Tree, element};
+use super::describe::MovedLink;
+use super::document::{Tree, element, parse_document};
 use super::edit::{Edits, empty_element};
-use super::{MovedLink, Urdf};
-use crate::{Robot, RobotError};
+use super::read::Urdf;
+use crate::error::RobotError;
+use crate::parameter::{Parameter, ParameterKind};
+use crate::robot::Robot;
 use roxmltree::Node;
 
 impl Urdf {
-    /// The URDF text with the inertia and friction of another robot with the same joints.
+    /// Returns the URDF text with the inertia and friction of another robot with the same joints.
     ///
-    /// Only what differs from the robot as read is written, all other text stays byte for byte:
-    /// `<inertial>` of moving links, about the centre of mass in the link's axes, and `<dynamics>`
-    /// of joints. What is identified of a link is identified with all that is fixed to it: the
-    /// whole goes into the moving link, and the mass and inertia of links that were lumped become
-    /// 0. URDF has no place for motor inertia, nor for friction beyond a viscous and a Coulomb
-    /// coefficient (those at no load are written); [`Urdf::companion`] has them.
+    /// Only values that differ from the robot as read change; all other text stays byte for byte.
+    /// The values are `<inertial>` of moving links, about the centre of mass in the link's axes,
+    /// and `<dynamics>` of joints. The identified inertia of a link includes the links that are
+    /// fixed to it. It is written to the moving link, and the mass and inertia of the fixed links
+    /// become 0.
+    ///
+    /// URDF has no elements for motor inertia, nor for friction beyond a viscous and a Coulomb
+    /// coefficient (which are written for no load). [`Urdf::companion`] has these values.
     ///
     /// # Errors
     ///
-    /// [`RobotError::Invalid`] when the robot has other joints, or a changed link has a first
-    /// moment without a mass, which no `<inertial>` can say.
+    /// Returns [`RobotError::Invalid`] if the robot has other joints, or if a changed link has a
+    /// first moment without a mass, which no `<inertial>` can express.
     pub fn updated(&self, robot: &Robot) -> Result<String, RobotError> {
         let names = |r: &Robot| r.joints().iter().map(|j| j.name.clone()).collect::<Vec<_>>();
         if names(robot) != names(&self.robot) {
             return Err(self.invalid(
                 String::new(),
-                format!("the robot to write has the joints {:?}", names(robot)),
-                format!("write one with the joints {:?}", names(&self.robot)),
+                format!("the robot to write has other joints: {:?}", names(robot)),
+                format!("write a robot with the joints {:?}", names(&self.robot)),
             ));
         }
-        let document = document::parse(&self.text, &self.origin)?;
+        let document = parse_document(&self.text, &self.origin)?;
         let tree = Tree::new(&document, &self.origin)?;
         let mut edits = Edits::default();
         for (i, moved) in self.moved.iter().enumerate() {
@@ -40,17 +45,21 @@ impl Urdf {
         Ok(edits.apply(&self.text))
     }
 
-    /// The TOML text to stand beside the updated URDF: motors, friction and gravity of a robot.
+    /// Returns the companion of the updated URDF as TOML text: motors, friction and gravity of a
+    /// robot.
     pub fn companion(&self, robot: &Robot) -> String {
         let tip = self.moved.last().map(|m| m.link.clone());
-        let companion = Companion::of(robot.description(), Some(self.base.clone()), tip);
-        toml::to_string(&companion).expect("numbers and names are TOML")
+        let companion =
+            Companion::from_description(robot.description(), Some(self.base.clone()), tip);
+        toml::to_string(&companion).expect("numbers and names are valid TOML")
     }
 
+    /// Makes an error about the robot to write.
     fn invalid(&self, place: String, problem: String, remedy: String) -> RobotError {
         RobotError::Invalid { origin: self.origin.clone(), place, problem, remedy }
     }
 
+    /// Writes the inertia of moving link i if it differs.
     fn write_inertia(
         &self,
         tree: &Tree,
@@ -67,8 +76,11 @@ impl Urdf {
         if link.mass == 0.0 && link.first_moment.amax() != 0.0 {
             return Err(self.invalid(
                 format!("link `{}`: ", moved.link),
-                format!("no mass, but the first moment {:?} kg m", link.first_moment.as_slice()),
-                "write physical parameters, with a mass for each link".into(),
+                format!(
+                    "the link has no mass, but the first moment {:?} kg m",
+                    link.first_moment.as_slice()
+                ),
+                "write physical parameters with a positive mass for this link".into(),
             ));
         }
         write_inertial(node, &robot.description().joints[i].about_own_com(), edits);
@@ -77,12 +89,13 @@ impl Urdf {
                 tree.links[name.as_str()].and_then(|node| element(node, "inertial"))
             {
                 edits.set_child(inertial, "mass", &[("value", "0".into())]);
-                edits.set_child(inertial, "inertia", &tensor(&[0.0; 6]));
+                edits.set_child(inertial, "inertia", &tensor_attributes(&[0.0; 6]));
             }
         }
         Ok(())
     }
 
+    /// Writes the friction of joint i if it differs.
     fn write_friction(
         &self,
         tree: &Tree,
@@ -91,10 +104,9 @@ impl Urdf {
         robot: &Robot,
         edits: &mut Edits,
     ) {
-        use crate::ColumnKind::{Coulomb, Viscous1};
-        let values = |r: &Robot| {
-            r.column_values(&[Viscous1, Coulomb].map(|kind| crate::Column { joint: i, kind }))
-        };
+        let kinds = [ParameterKind::Viscous1, ParameterKind::Coulomb];
+        let parameters = kinds.map(|kind| Parameter { joint: i, kind });
+        let values = |r: &Robot| r.parameter_values(&parameters);
         let (old, new) = (values(&self.robot), values(robot));
         let Some(joint) = tree.joints.iter().find(|j| j.name == moved.joint) else { return };
         let changed = ["damping", "friction"].into_iter().zip(old.iter().zip(&new));
@@ -108,10 +120,10 @@ impl Urdf {
     }
 }
 
-/// Writes mass, centre of mass and inertia about it, as [`crate::JointDescription`] has them.
+/// Writes mass \[kg\], centre of mass \[m\] and inertia about it \[kg m²\] into a link.
 fn write_inertial(link: Node, (mass, com, inertia): &(f64, [f64; 3], [f64; 6]), edits: &mut Edits) {
-    let origin = [("xyz", words(com)), ("rpy", "0 0 0".into())];
-    let (mass, inertia) = ([("value", mass.to_string())], tensor(inertia));
+    let origin = [("xyz", format_triple(com)), ("rpy", "0 0 0".into())];
+    let (mass, inertia) = ([("value", mass.to_string())], tensor_attributes(inertia));
     let parts: [(&str, &[(&str, String)]); 3] =
         [("origin", &origin), ("mass", &mass), ("inertia", &inertia)];
     match link.children().find(|n| n.is_element() && n.tag_name().name() == "inertial") {
@@ -128,12 +140,13 @@ fn write_inertial(link: Node, (mass, com, inertia): &(f64, [f64; 3], [f64; 6]), 
     }
 }
 
-fn tensor(inertia: &[f64; 6]) -> [(&'static str, String); 6] {
+/// Returns the attributes of an `<inertia>`.
+fn tensor_attributes(inertia: &[f64; 6]) -> [(&'static str, String); 6] {
     let names = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
     core::array::from_fn(|k| (names[k], inertia[k].to_string()))
 }
 
-/// Three numbers in the fewest digits that give them back.
-fn words(x: &[f64; 3]) -> String {
+/// Formats three numbers in the fewest digits that round-trip.
+fn format_triple(x: &[f64; 3]) -> String {
     x.map(|x| x.to_string()).join(" ")
 }

@@ -1,10 +1,10 @@
-//! Base parameters against the counts of Pinocchio's regressor (`shared/oracle`, `base_parameters`)
-//! and the paper's Table III.
+//! Base parameters against those of Pinocchio's regressor (`shared/oracle`, `base_parameters`) and
+//! the paper's Table III.
 
 use crate::shared::{oracle, oracle_robot};
-use reachtube_robot::{BaseParameters, Column, ColumnKind, Regressor, Robot};
+use reachtube_robot::{BaseParameters, Parameter, ParameterKind, Regressor, Robot};
 
-/// The 23 combinations of `shared/lwa4p/README.md`, in the words that Table III has for them.
+/// The 23 combinations of `shared/lwa4p/README.md` as formulas with the names of Table III.
 const TABLE_III: [&str; 23] = [
     "Iyy1 + J1 + Iyy2 - Izz2 - J2 + Izz3",
     "m2 - Izz2/0.35² - J2/0.35² + m3 + m4 + m5 + m6",
@@ -31,7 +31,7 @@ const TABLE_III: [&str; 23] = [
     "J6",
 ];
 
-/// A coefficient as it is printed, times or over a number or its square.
+/// Reads a printed coefficient: a number or the square of a number.
 fn number(text: &str) -> f64 {
     match text.strip_suffix('²') {
         Some(root) => root.parse::<f64>().unwrap().powi(2),
@@ -39,10 +39,10 @@ fn number(text: &str) -> f64 {
     }
 }
 
-/// A combination in words (without brackets) as a row over the columns.
-fn row(words: &str, columns: &[Column]) -> Vec<f64> {
-    let (mut row, mut sign, mut factor) = (vec![0.0; columns.len()], 1.0, 1.0);
-    for word in words.split_whitespace() {
+/// Returns the coefficients of a formula without brackets, one per parameter.
+fn row(formula: &str, parameters: &[Parameter]) -> Vec<f64> {
+    let (mut row, mut sign, mut factor) = (vec![0.0; parameters.len()], 1.0, 1.0);
+    for word in formula.split_whitespace() {
         match word {
             "+" => sign = 1.0,
             "-" => sign = -1.0,
@@ -50,7 +50,7 @@ fn row(words: &str, columns: &[Column]) -> Vec<f64> {
             _ => {
                 let (name, over) =
                     word.split_once('/').map_or((word, 1.0), |(name, over)| (name, number(over)));
-                let k = columns.iter().position(|c| c.to_string() == name).unwrap();
+                let k = parameters.iter().position(|p| p.to_string() == name).unwrap();
                 row[k] = sign * factor / over;
                 factor = 1.0;
             }
@@ -59,41 +59,44 @@ fn row(words: &str, columns: &[Column]) -> Vec<f64> {
     row
 }
 
-fn all_columns() -> Vec<Column> {
-    Column::of_joints(6, &[&ColumnKind::INERTIAL[..], &[ColumnKind::MotorInertia]].concat())
+fn all_parameters() -> Vec<Parameter> {
+    Parameter::of_joints(
+        6,
+        &[&ParameterKind::INERTIAL[..], &[ParameterKind::MotorInertia]].concat(),
+    )
 }
 
-fn named_columns() -> Vec<Column> {
-    let named = |c: &Column| {
-        TABLE_III.iter().any(|r| r.split([' ', '/']).any(|word| word == c.to_string()))
+fn named_parameters() -> Vec<Parameter> {
+    let named = |p: &Parameter| {
+        TABLE_III.iter().any(|r| r.split([' ', '/']).any(|word| word == p.to_string()))
     };
-    all_columns().into_iter().filter(named).collect()
+    all_parameters().into_iter().filter(named).collect()
 }
 
-/// The robot of Table III whose gravity acts on its inertial parameters, as in its regressor.
+/// Gravity acts on the inertial parameters here, as in the regressor of Table III.
 #[test]
 fn table_iii_lies_in_the_row_space() {
     let robot = Robot::lwa4p();
-    let columns = named_columns();
-    let base = BaseParameters::of_robot(&robot, &columns);
+    let parameters = named_parameters();
+    let base = BaseParameters::of_robot(&robot, &parameters);
     assert_eq!(base.count(), 23);
     assert!(base.gap()[0] > 1e-3 && base.gap()[1] < 1e-14, "{:?}", base.gap());
-    let residual = |words: &str| {
-        let row = row(words, &columns);
+    let residual = |formula: &str| {
+        let row = row(formula, &parameters);
         let leaders: Vec<_> = base.independent().iter().map(|k| row[*k]).collect();
         let found = base.combinations().tr_mul(&nalgebra::DVector::from_vec(leaders));
         (found - nalgebra::DVector::from_vec(row)).amax()
     };
-    for words in TABLE_III {
-        assert!(residual(words) < 1e-12, "{words}: {:e}", residual(words));
+    for formula in TABLE_III {
+        assert!(residual(formula) < 1e-12, "{formula}: {:e}", residual(formula));
     }
-    // As printed in the paper: with a minus that motion does not show.
+    // The paper prints this combination with a minus sign, which is not identifiable.
     assert!(residual("m2 - Izz2/0.35² + J2/0.35² + m3 + m4 + m5 + m6") > 1.0);
 }
 
 #[test]
 fn combinations_read_like_table_iii() {
-    let base = BaseParameters::of_robot(&Robot::lwa4p(), &named_columns());
+    let base = BaseParameters::of_robot(&Robot::lwa4p(), &named_parameters());
     let names = base.names();
     assert_eq!(names[0], "Iyy1 + J1 + Iyy2 - Izz2 - J2 + Izz3");
     let expected = [
@@ -105,12 +108,12 @@ fn combinations_read_like_table_iii() {
         "mz5 + mz6 + 0.1548 m6",
         "Ixx6 - Iyy6",
     ];
-    for words in expected {
-        assert!(names.contains(&words.to_string()), "{words} is not among {names:#?}");
+    for formula in expected {
+        assert!(names.contains(&formula.to_string()), "{formula} is not among {names:#?}");
     }
 }
 
-/// The counts and gaps of Pinocchio's regressor over other random states.
+/// The oracle has the counts and gaps of Pinocchio's regressor over other random states.
 #[test]
 fn counts_and_gaps_agree_with_pinocchio() {
     for name in ["ur5", "dh6"] {
@@ -119,7 +122,7 @@ fn counts_and_gaps_agree_with_pinocchio() {
         else {
             return;
         };
-        let inertial = Column::of_joints(6, &ColumnKind::INERTIAL);
+        let inertial = Parameter::of_joints(6, &ParameterKind::INERTIAL);
         let check = |base: BaseParameters, key: &str| {
             let expected = &oracle["base_parameters"];
             assert_eq!(base.count() as u64, expected[key].as_u64().unwrap(), "{name} {key}");
@@ -129,12 +132,12 @@ fn counts_and_gaps_agree_with_pinocchio() {
                 let ratio = above / gap[0].as_f64().unwrap();
                 assert!(
                     (0.2..5.0).contains(&ratio),
-                    "{name} {key}: {above} is {ratio} of the oracle's"
+                    "{name} {key}: {above} is {ratio} times the oracle's value"
                 );
             }
         };
         check(BaseParameters::of_robot(&robot, &inertial), "inertial");
-        check(BaseParameters::of_robot(&robot, &all_columns()), "inertial_plus_armature");
+        check(BaseParameters::of_robot(&robot, &all_parameters()), "inertial_plus_armature");
         check(
             BaseParameters::of_robot(&robot.with_gravity([0.0; 3]), &inertial),
             "inertial_no_gravity",
@@ -145,33 +148,34 @@ fn counts_and_gaps_agree_with_pinocchio() {
     }
 }
 
-/// Y θ = Y_b K θ, at states that the base was not made from, friction and offsets included.
+/// Y θ = Y_b K θ holds at states other than those of the base, friction and offsets included.
 #[test]
 fn the_base_regressor_gives_the_same_torque() {
-    use ColumnKind::{Coulomb, MotorInertia, Offset, Viscous1, Viscous3};
+    use ParameterKind::{Coulomb, MotorInertia, Offset, Viscous1, Viscous3};
     let robot = Robot::lwa4p();
     let kinds =
-        [&ColumnKind::INERTIAL[..], &[MotorInertia, Viscous1, Viscous3, Coulomb, Offset]].concat();
-    let columns = Column::of_joints(6, &kinds);
-    let base = BaseParameters::of_robot(&robot, &columns);
+        [&ParameterKind::INERTIAL[..], &[MotorInertia, Viscous1, Viscous3, Coulomb, Offset]]
+            .concat();
+    let parameters = Parameter::of_joints(6, &kinds);
+    let base = BaseParameters::of_robot(&robot, &parameters);
     assert_eq!(base.count(), 40 + 4 * 6);
-    let theta: Vec<_> = (0..columns.len()).map(|k| ((k * k) as f64).sin()).collect();
+    let theta: Vec<_> = (0..parameters.len()).map(|k| ((k * k) as f64).sin()).collect();
     let beta = base.reduce(&theta);
     let state = |k: usize| {
         [0.1, 0.7, 1.9].map(|a| (0..6).map(|i| (a * (i + 3 * k) as f64).cos()).collect())
     };
-    let y = Regressor::new(&robot, &columns).stacked(&(0..20).map(state).collect::<Vec<_>>());
+    let y = Regressor::new(&robot, &parameters).stacked(&(0..20).map(state).collect::<Vec<_>>());
     let tau = &y * nalgebra::DVector::from_column_slice(&theta);
     let scale = tau.amax();
     assert!((base.select(&y) * &beta - &tau).amax() < 1e-11 * scale);
-    let near = base.lift_near(beta.as_slice(), &vec![1.0; columns.len()]);
+    let near = base.lift_near(beta.as_slice(), &vec![1.0; parameters.len()]);
     for lifted in [base.lift(beta.as_slice()), near.clone()] {
         assert!((base.reduce(lifted.as_slice()) - &beta).amax() < 1e-12 * beta.amax());
         assert!((&y * lifted - &tau).amax() < 1e-11 * scale);
     }
-    // Nearer to the prior than θ itself, which has the same base parameters.
+    // The result is nearer to the prior than θ, which has the same base parameters.
     let distance = |x: &[f64]| x.iter().map(|x| (x - 1.0).powi(2)).sum::<f64>();
     assert!(distance(near.as_slice()) < distance(&theta));
-    let invisible: Vec<_> = base.invisible().iter().map(Column::to_string).collect();
-    assert_eq!(invisible.join(" "), "m1 mx1 my1 mz1 Ixx1 Ixy1 Ixz1 Iyz1 Izz1");
+    let unidentifiable: Vec<_> = base.unidentifiable().iter().map(Parameter::to_string).collect();
+    assert_eq!(unidentifiable.join(" "), "m1 mx1 my1 mz1 Ixx1 Ixy1 Ixz1 Iyz1 Izz1");
 }

@@ -1,6 +1,6 @@
-//! Agreement of vectors.
+//! Comparison of vectors.
 
-/// Asserts agreement to 1e-10 of the largest entry.
+/// Asserts that two vectors agree within 1e-10 of the largest expected entry.
 pub fn assert_close(found: &[f64], expected: &[f64], what: &str) {
     assert_eq!(found.len(), expected.len(), "{what}");
     let scale = expected.iter().fold(0.0, |a: f64, b| a.max(b.abs()));

@@ -1,4 +1,4 @@
-//! Reading robots, and the words for those that cannot be.
+//! Descriptions of robots, and the errors of invalid ones.
 
 use reachtube_robot::{Robot, RobotDescription};
 
@@ -18,7 +18,7 @@ fn error_of(text: &str) -> String {
     Robot::from_toml(text, "pendulum.toml").unwrap_err().to_string()
 }
 
-/// The error after one line of the pendulum is replaced.
+/// Returns the error after one line of the pendulum is replaced.
 fn error_with(line: &str, by: &str) -> String {
     assert!(PENDULUM.contains(line));
     error_of(&PENDULUM.replace(line, by))
@@ -29,8 +29,8 @@ fn errors_name_line_joint_value_and_remedy() {
     let mass = error_with("mass = 2.0", "mass = -2.0");
     assert_eq!(
         mass,
-        "pendulum.toml:8: joint `hinge`: mass = -2 kg is negative; correct it, or set parameters = \"base\" where only \
-         identified combinations are meant"
+        "pendulum.toml:8: joint `hinge`: mass = -2 kg is negative; correct the value, or set \
+         parameters = \"base\" if only the base parameters have a meaning"
     );
     let axis = error_with("axis = [0.0, 2.0, 0.0]", "axis = [0.0, 0.0, 0.0]");
     assert!(
@@ -41,7 +41,7 @@ fn errors_name_line_joint_value_and_remedy() {
     );
     let com = error_with("com = [0.0, 0.0, -0.5]", "com = [0.0, nan, -0.5]");
     assert!(
-        com.starts_with("pendulum.toml:9: joint `hinge`: com holds NaN; give a finite"),
+        com.starts_with("pendulum.toml:9: joint `hinge`: com contains NaN; give finite"),
         "{com}"
     );
     let inertia = error_with(
@@ -55,7 +55,10 @@ fn errors_name_line_joint_value_and_remedy() {
     );
     assert!(inertia.contains("exceeds the sum of the other two by 1.000e-1 kg m²"), "{inertia}");
     let version = error_with("schema_version = 1", "schema_version = 7");
-    assert!(version.starts_with("pendulum.toml:1: schema_version 7 is not 1"), "{version}");
+    assert!(
+        version.starts_with("pendulum.toml:1: schema_version 7 is not supported, only 1 is"),
+        "{version}"
+    );
 }
 
 #[test]
@@ -67,12 +70,12 @@ fn the_parser_names_line_and_field() {
 }
 
 #[test]
-fn geometry_and_drives_that_make_no_sense_are_refused() {
+fn invalid_geometry_and_drives_are_refused() {
     let skew = "placement = { rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.1], [0.0, 0.0, 1.0]] }";
     let placement = "placement = { translation = [0.0, 0.0, 1.0] }";
     assert!(
         error_with(placement, skew)
-            .contains("joint `hinge`: rotation is not one: |R Rᵀ - 1| = 1.0e-1")
+            .contains("joint `hinge`: `rotation` is not a rotation matrix: |R Rᵀ - 1| = 1.0e-1")
     );
     let mirror = skew.replace("0.1]", "0.0]").replace("[1.0, 0.0, 0.0]", "[-1.0, 0.0, 0.0]");
     assert!(error_with(placement, &mirror).contains("det R = -1"));
@@ -87,17 +90,18 @@ fn geometry_and_drives_that_make_no_sense_are_refused() {
     );
     assert!(
         error_with("mass = 2.0", "mass = 2.0\nposition_limits = [1.0, 1.0]")
-            .contains("hold no position")
+            .contains("position_limits [1, 1] rad: the lower limit is not less")
     );
     assert!(
-        error_with("mass = 2.0", "mass = 2.0\nvelocity_limit = 0.0").contains("allows no motion")
+        error_with("mass = 2.0", "mass = 2.0\nvelocity_limit = 0.0")
+            .contains("velocity_limit = 0 rad/s is not positive")
     );
     let twice = format!("{PENDULUM}\n{}", PENDULUM.split_once("\n\n").unwrap().1);
     assert!(error_of(&twice).starts_with("pendulum.toml:13: joint `hinge`: the name occurs twice"));
 }
 
 #[test]
-fn base_parameters_may_be_those_of_no_body() {
+fn base_parameters_need_not_belong_to_a_body() {
     let base =
         PENDULUM.replace("name = \"pendulum\"", "name = \"pendulum\"\nparameters = \"base\"");
     assert!(Robot::from_toml(&base.replace("mass = 2.0", "mass = -2.0"), "base").is_ok());
@@ -117,7 +121,7 @@ fn descriptions_survive_json() {
     assert_eq!(Robot::from_description(&back).unwrap(), robot);
 }
 
-/// Craig's convention is the standard one with a and alpha a joint later.
+/// In Craig's convention, a and alpha belong to the next joint.
 #[test]
 fn both_conventions_give_the_same_robot() {
     let rows = [[0.3, 0.4, 0.1, 0.2], [0.5, -0.7, 0.2, 0.1], [0.2, 1.1, -0.3, 0.4]];
@@ -140,8 +144,7 @@ fn both_conventions_give_the_same_robot() {
     let standard = Robot::from_toml(&text("standard", false), "standard").unwrap();
     let modified = Robot::from_toml(&text("modified", true), "modified").unwrap();
     let q = [0.3, -0.8, 1.2];
-    // The last standard frame lies a, alpha further on; the origins of the second joints' frames
-    // agree.
+    // The last standard frame is a and alpha beyond the modified one.
     let last = &modified.link_placements(&q)[2];
     let end = last.translation + last.rotation * nalgebra::Vector3::new(rows[2][0], 0.0, 0.0);
     assert!((standard.link_placements(&q)[2].translation - end).norm() < 1e-15);

@@ -1,12 +1,13 @@
-//! Exciting motions: within the limits everywhere, reproducible, and better than the motions they
-//! began with.
+//! Exciting motions: they are within the limits everywhere, reproducible, and better than the
+//! motions that the search starts at.
 
-use reachtube_robot::{Column, ColumnKind, Criterion, ExcitationSettings, Robot};
+use reachtube_robot::{Criterion, ExcitationSettings, Parameter, ParameterKind, Robot};
 
-fn columns() -> Vec<Column> {
-    Column::of_joints(
+fn parameters() -> Vec<Parameter> {
+    Parameter::of_joints(
         6,
-        &[&ColumnKind::INERTIAL[..], &[ColumnKind::MotorInertia, ColumnKind::Viscous1]].concat(),
+        &[&ParameterKind::INERTIAL[..], &[ParameterKind::MotorInertia, ParameterKind::Viscous1]]
+            .concat(),
     )
 }
 
@@ -17,14 +18,14 @@ fn settings() -> ExcitationSettings {
 #[test]
 fn limits_hold_at_all_times() {
     let robot = Robot::lwa4p();
-    let motion = robot.excitation(&columns(), &settings()).unwrap().trajectory;
+    let motion = robot.excitation(&parameters(), &settings()).unwrap().trajectory;
     for (i, joint) in robot.joints().iter().enumerate() {
         let ([low, high], [from, to]) = (joint.position_limits, motion.position_range(i));
         let (speed, acceleration) = (motion.speed_bound(i), motion.acceleration_bound(i));
         assert!(
             low <= from && to <= high && speed <= 0.9 * 1.2 + 1e-12 && acceleration <= 6.0 + 1e-12
         );
-        // One of the limits is met, to the excess that the bound allows for.
+        // One of the bounds reaches its limit.
         let used = [(to - from) / (0.9 * (high - low)), speed / (0.9 * 1.2), acceleration / 6.0];
         assert!(used.iter().any(|u| *u > 1.0 - 1e-9), "{used:?}");
         for sample in motion.samples(1000.0) {
@@ -38,9 +39,9 @@ fn limits_hold_at_all_times() {
 }
 
 #[test]
-fn samples_are_one_function_and_its_derivatives() {
+fn velocities_and_accelerations_are_derivatives_of_the_positions() {
     let motion = Robot::lwa4p()
-        .excitation(&columns(), &ExcitationSettings { trials: 1, ..settings() })
+        .excitation(&parameters(), &ExcitationSettings { trials: 1, ..settings() })
         .unwrap()
         .trajectory;
     let samples = motion.samples(1000.0);
@@ -62,34 +63,37 @@ fn samples_are_one_function_and_its_derivatives() {
 }
 
 #[test]
-fn it_is_reproducible_and_better_than_before() {
+fn the_result_is_reproducible_and_better_than_its_start() {
     let robot = Robot::lwa4p();
-    let found = robot.excitation(&columns(), &settings()).unwrap();
-    assert_eq!(found, robot.excitation(&columns(), &settings()).unwrap());
-    // 46 base parameters: three nats each are a standard deviation 4.5 times smaller.
-    assert!(found.quality.log_determinant > found.before.log_determinant + 46.0, "{found:?}");
+    let found = robot.excitation(&parameters(), &settings()).unwrap();
+    assert_eq!(found, robot.excitation(&parameters(), &settings()).unwrap());
+    // The gain is at least one nat for each of the 46 base parameters.
+    assert!(
+        found.quality.log_determinant > found.initial_quality.log_determinant + 46.0,
+        "{found:?}"
+    );
     let other =
-        robot.excitation(&columns(), &ExcitationSettings { seed: 2, ..settings() }).unwrap();
+        robot.excitation(&parameters(), &ExcitationSettings { seed: 2, ..settings() }).unwrap();
     assert_ne!(found.trajectory, other.trajectory);
     let conditioned = ExcitationSettings { criterion: Criterion::Condition, ..settings() };
-    let found = robot.excitation(&columns(), &conditioned).unwrap();
+    let found = robot.excitation(&parameters(), &conditioned).unwrap();
     assert!(
-        found.quality.condition < 0.5 * found.before.condition,
+        found.quality.condition < 0.5 * found.initial_quality.condition,
         "{:?} {:?}",
         found.quality,
-        found.before
+        found.initial_quality
     );
 }
 
 #[test]
-fn settings_without_a_motion_are_refused() {
+fn settings_outside_their_range_are_refused() {
     let error = |change: fn(&mut ExcitationSettings)| {
         let mut settings = settings();
         change(&mut settings);
-        Robot::lwa4p().excitation(&columns(), &settings).unwrap_err().to_string()
+        Robot::lwa4p().excitation(&parameters(), &settings).unwrap_err().to_string()
     };
-    assert_eq!(error(|s| s.period = 0.0), "period = 0 s; give a positive time");
-    assert_eq!(error(|s| s.harmonics = 1), "harmonics = 1; give 2 or more");
+    assert_eq!(error(|s| s.period = 0.0), "period = 0 s is not positive; give a positive time");
+    assert_eq!(error(|s| s.harmonics = 1), "harmonics = 1 is too few; give 2 or more");
     assert!(error(|s| s.margin = 1.5).contains("margin = 1.5"));
-    assert!(error(|s| s.torque_noise = vec![1.0, 2.0]).contains("give none or 6 positive ones"));
+    assert!(error(|s| s.torque_noise = vec![1.0, 2.0]).contains("give no standard deviation or 6"));
 }

@@ -2,7 +2,7 @@
 
 use crate::random::robots_and_states;
 use proptest::prelude::*;
-use reachtube_robot::{Robot, Workspace, ltdl};
+use reachtube_robot::{Physicality, Robot, Workspace, ltdl};
 use reachtube_scalar::Interval;
 
 pub fn close(found: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
@@ -14,7 +14,7 @@ pub fn close(found: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
 
 proptest! {
     #[test]
-    fn forward_dynamics_undoes_rnea((robot, q, qd, qdd) in robots_and_states()) {
+    fn forward_dynamics_inverts_rnea((robot, q, qd, qdd) in robots_and_states()) {
         let tau = robot.inverse_dynamics(&q, &qd, &qdd);
         let (sin, cos) = robot.sin_cos(&q);
         let mut back = vec![0.0; q.len()];
@@ -37,27 +37,33 @@ proptest! {
     #[test]
     fn rnea_is_the_sum_of_its_parts((robot, q, qd, qdd) in robots_and_states()) {
         let acceleration = nalgebra::DVector::from_column_slice(&qdd);
-        let sum = robot.mass_matrix(&q) * acceleration + robot.coriolis_torque(&q, &qd) + robot.gravity_torque(&q);
+        let sum = robot.mass_matrix(&q) * acceleration
+            + robot.coriolis_torque(&q, &qd)
+            + robot.gravity_torque(&q);
         close(robot.inverse_dynamics(&q, &qd, &qdd).as_slice(), sum.as_slice())?;
     }
 
     #[test]
     fn gravity_is_the_gradient_of_potential_energy((robot, q, _, _) in robots_and_states()) {
         let g = robot.gravity_torque(&q);
-        let slope = |i: usize, h: f64| {
+        let energy = |i: usize, h: f64| {
             let mut at = q.clone();
             at[i] += h;
             robot.potential_energy(&at)
         };
-        // Fourth-order central difference: error about h⁴.
+        // The fourth-order central difference has an error of about h⁴.
         let h = 1e-3;
-        let gradient = |i| (8.0 * (slope(i, h) - slope(i, -h)) - slope(i, 2.0 * h) + slope(i, -2.0 * h)) / (12.0 * h);
+        let gradient = |i| {
+            let near = 8.0 * (energy(i, h) - energy(i, -h));
+            (near - energy(i, 2.0 * h) + energy(i, -2.0 * h)) / (12.0 * h)
+        };
         for i in 0..q.len() {
             prop_assert!((g[i] - gradient(i)).abs() < 1e-8 * (1.0 + g.amax()));
         }
     }
 
-    /// q̇ᵀ c = ½ q̇ᵀ Ṁ q̇: Coriolis torque does no work of its own.
+    /// q̇ᵀ c = ½ q̇ᵀ Ṁ q̇: the power of the Coriolis torque is the change of kinetic energy through
+    /// M.
     #[test]
     fn power_is_balanced((robot, q, qd, _) in robots_and_states()) {
         let energy = |t: f64| {
@@ -65,53 +71,64 @@ proptest! {
             robot.kinetic_energy(&at, &qd)
         };
         let h = 1e-3;
-        let rate = (8.0 * (energy(h) - energy(-h)) - energy(2.0 * h) + energy(-2.0 * h)) / (12.0 * h);
-        let work: f64 = robot.coriolis_torque(&q, &qd).iter().zip(&qd).map(|(c, v)| c * v).sum();
-        prop_assert!((work - rate).abs() < 1e-7 * (1.0 + energy(0.0)));
+        let near = 8.0 * (energy(h) - energy(-h));
+        let rate = (near - energy(2.0 * h) + energy(-2.0 * h)) / (12.0 * h);
+        let power: f64 = robot.coriolis_torque(&q, &qd).iter().zip(&qd).map(|(c, v)| c * v).sum();
+        prop_assert!((power - rate).abs() < 1e-7 * (1.0 + energy(0.0)));
     }
 
     #[test]
     fn pivots_are_articulated_inertias((robot, q, _, tau) in robots_and_states()) {
-        // Torque on the last joint alone, all others fixed by their inertia: pivot n is M_nn; the
-        // product of the pivots is det M.
+        // Pivot n is M_nn, and the product of the pivots is det M.
         let mut m = robot.mass_matrix(&q);
         let (n, det) = (q.len(), m.determinant());
         let b = &m * nalgebra::DVector::from_column_slice(&tau);
         let last = m[(n - 1, n - 1)];
         ltdl::factor(m.as_mut_slice(), n);
-        // Row by row and symmetric: the strict lower triangle is nalgebra's upper one.
+        // `ltdl` stores row by row, so its lower triangle is the upper one of nalgebra.
         let pivots: Vec<_> = (0..n).map(|i| m[(i, i)]).collect();
         close(&[pivots.iter().product::<f64>(), pivots[n - 1]], &[det, last])?;
         let mut x = b.as_slice().to_vec();
         ltdl::solve(m.as_slice(), &mut x);
         close(&x, &tau)?;
-        let Ok(reachtube_robot::Physicality::Links { least_pivot }) = robot.check_physical() else { return Ok(()) };
+        let Ok(Physicality::Links { least_pivot }) = robot.check_physical() else {
+            return Ok(());
+        };
         prop_assert!(pivots.iter().all(|p| *p >= least_pivot * (1.0 - 1e-12)));
     }
 
     #[test]
-    fn intervals_enclose((robot, q, qd, qdd) in robots_and_states(), radius in 0.0..0.01f64, pick in -1.0..1.0f64) {
+    fn intervals_enclose(
+        (robot, q, qd, qdd) in robots_and_states(),
+        radius in 0.0..0.01f64,
+        pick in -1.0..1.0f64,
+    ) {
         let n = q.len();
-        let wide = |x: &[f64]| x.iter().map(|x| Interval::centred(*x, radius)).collect::<Vec<_>>();
+        let wide = |x: &[f64]| {
+            x.iter().map(|x| Interval::centered(*x, radius)).collect::<Vec<_>>()
+        };
         let (sin, cos) = robot.sin_cos(&q);
-        // Independent sine and cosine: nothing asks for s² + c² = 1.
+        // Sine and cosine are independent: s² + c² = 1 is not required.
         let inside = |x: &[f64]| x.iter().map(|x| x + 0.99 * pick * radius).collect::<Vec<_>>();
         let boxes = [&sin, &cos, &qd, &qdd].map(|x| wide(x));
         let points = [&sin, &cos, &qd, &qdd].map(|x| inside(x));
         let mut wide_ws = Workspace::<Interval>::new(&robot);
         let mut ws = Workspace::<f64>::new(&robot);
         let (mut outer, mut value) = (vec![Interval::ZERO; n * n], vec![0.0; n * n]);
-        // Each f64 operation rounds to a value within the outward-rounded one, so no slack is
-        // needed.
-        let encloses = |outer: &[Interval], value: &[f64]| outer.iter().zip(value).all(|(o, v)| o.contains(*v));
-        robot.rnea(&boxes[0], &boxes[1], &boxes[2], &boxes[3], &mut wide_ws, &mut outer[..n]);
+        // Each f64 operation rounds to a value within the outward-rounded interval, so no tolerance
+        // is needed.
+        let encloses = |outer: &[Interval], value: &[f64]| {
+            outer.iter().zip(value).all(|(o, v)| o.contains(*v))
+        };
+        let [sin_box, cos_box, qd_box, last_box] = &boxes;
+        robot.rnea(sin_box, cos_box, qd_box, last_box, &mut wide_ws, &mut outer[..n]);
         robot.rnea(&points[0], &points[1], &points[2], &points[3], &mut ws, &mut value[..n]);
         prop_assert!(encloses(&outer[..n], &value[..n]));
         prop_assert!(outer[..n].iter().all(|o| o.width().is_finite()));
         robot.crba(&boxes[0], &boxes[1], &mut wide_ws, &mut outer);
         robot.crba(&points[0], &points[1], &mut ws, &mut value);
         prop_assert!(encloses(&outer, &value));
-        robot.aba(&boxes[0], &boxes[1], &boxes[2], &boxes[3], &mut wide_ws, &mut outer[..n]);
+        robot.aba(sin_box, cos_box, qd_box, last_box, &mut wide_ws, &mut outer[..n]);
         robot.aba(&points[0], &points[1], &points[2], &points[3], &mut ws, &mut value[..n]);
         prop_assert!(encloses(&outer[..n], &value[..n]));
     }
@@ -122,17 +139,20 @@ proptest! {
 
     #[test]
     fn a_free_motion_keeps_its_energy((robot, q, qd, _) in robots_and_states()) {
-        let energy = |q: &[f64], qd: &[f64]| robot.kinetic_energy(q, qd) + robot.potential_energy(q);
+        let energy =
+            |q: &[f64], qd: &[f64]| robot.kinetic_energy(q, qd) + robot.potential_energy(q);
         let free = vec![vec![0.0; q.len()]; 50];
         let motion = robot.simulate(&q, &qd, &free, 0.002, 8);
         let (start, end) = (energy(&q, &qd), energy(&motion.q[50], &motion.qd[50]));
-        let scale = robot.kinetic_energy(&motion.q[50], &motion.qd[50]) + robot.kinetic_energy(&q, &qd) + start.abs();
+        let kinetic =
+            robot.kinetic_energy(&motion.q[50], &motion.qd[50]) + robot.kinetic_energy(&q, &qd);
+        let scale = kinetic + start.abs();
         prop_assert!((end - start).abs() < 1e-6 * (1.0 + scale), "{start} J became {end} J");
     }
 }
 
 #[test]
-fn friction_takes_energy_away() {
+fn friction_dissipates_energy() {
     let robot =
         Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
     let motion = robot.simulate(&[2.0, -1.0], &[0.0, 0.0], &vec![vec![0.0; 2]; 10000], 0.002, 4);
@@ -143,7 +163,8 @@ fn friction_takes_energy_away() {
         .map(|(q, qd)| robot.kinetic_energy(q, qd) + robot.potential_energy(q))
         .collect();
     assert!(energies.windows(2).all(|w| w[1] <= w[0] + 1e-6));
-    // Gravity overcomes Coulomb friction at the start, and friction all motion by the end.
+    // Gravity overcomes Coulomb friction at the start, and friction has stopped the motion at the
+    // end.
     assert!(energies[0] - energies[10000] > 1.0);
     assert!(robot.kinetic_energy(&motion.q[10000], &motion.qd[10000]) < 1e-6);
 }
@@ -172,8 +193,8 @@ fn the_double_pendulum_has_its_textbook_mass_matrix() {
 }
 
 proptest! {
-    /// Under the load of gravity, for which Table III was identified; joint 5 would be driven from
-    /// 10 N m on.
+    /// The load is that of gravity, for which Table III was identified. Under loads above 10 N m,
+    /// the friction of joint 5 would not dissipate.
     #[test]
     fn coulomb_friction_dissipates(
         q in prop::collection::vec(-3.2..3.2f64, 6),
@@ -188,16 +209,17 @@ proptest! {
     #[test]
     fn viscous_slope_is_the_derivative(qd in -2.0..2.0f64) {
         for viscous in Robot::lwa4p().joints().iter().map(|j| j.friction.viscous) {
-            // Exact for a cubic but for the h² v3 term, which is taken off.
+            // For a cubic, the central difference is exact up to the term h² v3.
             let h = 1e-3;
-            let slope = (viscous.torque(&(qd + h)) - viscous.torque(&(qd - h))) / (2.0 * h) - viscous.v3 * h * h;
+            let difference = (viscous.torque(&(qd + h)) - viscous.torque(&(qd - h))) / (2.0 * h);
+            let slope = difference - viscous.v3 * h * h;
             prop_assert!((slope - viscous.slope(&qd)).abs() < 1e-10);
         }
     }
 
-    /// (10) with (11) is (4) with (5).
+    /// Model (10) with the input (11) equals (4) with (5).
     #[test]
-    fn the_input_stands_for_the_motor_torque(
+    fn the_input_is_equivalent_to_the_motor_torque(
         q in prop::collection::vec(-3.0..3.0f64, 6),
         qd in prop::collection::vec(-1.2..1.2f64, 6),
         tau_motor in prop::collection::vec(-50.0..50.0f64, 6),
@@ -207,9 +229,13 @@ proptest! {
         let tau_link = nalgebra::DVector::from_column_slice(&tau_motor) - friction;
         let qdd = robot.forward_acceleration(&q, &qd, tau_link.as_slice());
         let u = robot.input_from_motor_torque(&q, &qd, &tau_motor);
-        close(robot.input_from_link_torque(&q, &qd, tau_link.as_slice()).as_slice(), u.as_slice())?;
-        let moved = robot.mass_matrix(&q) * qdd + robot.coriolis_torque(&q, &qd) + robot.viscous_torque(&qd);
+        let from_link = robot.input_from_link_torque(&q, &qd, tau_link.as_slice());
+        close(from_link.as_slice(), u.as_slice())?;
+        let moved = robot.mass_matrix(&q) * qdd
+            + robot.coriolis_torque(&q, &qd)
+            + robot.viscous_torque(&qd);
         close(moved.as_slice(), u.as_slice())?;
-        close(robot.motor_torque_from_input(&q, &qd, u.as_slice()).as_slice(), &tau_motor)?;
+        let back = robot.motor_torque_from_input(&q, &qd, u.as_slice());
+        close(back.as_slice(), &tau_motor)?;
     }
 }

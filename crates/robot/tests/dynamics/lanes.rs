@@ -1,4 +1,4 @@
-//! The dynamics over lanes is that over `f64`, to the last bit.
+//! The dynamics over lanes equals the dynamics over `f64` to the last bit.
 
 use crate::random::robots_and_states;
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use reachtube_ode::{Ensemble, Run, VectorField};
 use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
 use reachtube_scalar::{Elementary, Lanes, Lanewise};
 
-/// Lane k of each: the numbers shifted and stretched.
+/// Returns lanes that hold the numbers scaled and shifted by different amounts.
 fn spread<const N: usize>(x: &[f64]) -> Vec<Lanes<N>> {
     x.iter().map(|x| Lanes::from_lanes(|k| x * (1.0 + 0.37 * k as f64) - 0.1 * k as f64)).collect()
 }
@@ -15,7 +15,7 @@ fn lane<const N: usize>(x: &[Lanes<N>], k: usize) -> Vec<f64> {
     x.iter().map(|x| x.lane(k)).collect()
 }
 
-/// The algorithms over [sin, cos, q̇, q̈ or torque]; all results in one row.
+/// Runs the algorithms for [sin, cos, q̇, q̈ or torque] and returns all results in one vector.
 fn dynamics<S: Lanewise>(robot: &Robot, [sin, cos, qd, load]: [&[S]; 4]) -> Vec<S> {
     let (n, mut ws) = (robot.joint_count(), Workspace::new(robot));
     let mut out = vec![S::zero(); 5 * n + n * n];
@@ -58,19 +58,21 @@ proptest! {
         same_in_every_lane::<3>(&robot, [&q, &qd, &load])?;
     }
 
-    /// Each lane in a quadrant of friction of its own.
+    /// The lanes are in different quadrants of friction.
     #[test]
     fn motions_with_friction_agree(
         x in prop::collection::vec(-1.5..1.5f64, 12),
         torque in prop::collection::vec(-40.0..40.0f64, 6),
-        sticking_speed in prop_oneof![Just(0.0), 0.01..1.0f64],
+        speed in prop_oneof![Just(0.0), 0.01..1.0f64],
         driven_by in prop_oneof![Just(DrivenBy::Motor), Just(DrivenBy::Input)],
     ) {
         let robot = Robot::lwa4p();
         let (state, torques) = (spread::<8>(&x), spread::<8>(&torque));
         let mut rate = vec![Lanes::from(0.0); 12];
-        RobotField::new(&robot, driven_by).sticking_below(sticking_speed).rate(0.0, &state, &torques, &mut rate);
-        let mut field = RobotField::new(&robot, driven_by).sticking_below(sticking_speed);
+        RobotField::new(&robot, driven_by)
+            .regularised_below(speed)
+            .rate(0.0, &state, &torques, &mut rate);
+        let mut field = RobotField::new(&robot, driven_by).regularised_below(speed);
         for k in 0..8 {
             let mut alone = vec![0.0; 12];
             field.rate(0.0, &lane(&state, k), &lane(&torques, k), &mut alone);
@@ -80,7 +82,7 @@ proptest! {
 }
 
 #[test]
-fn an_ensemble_is_its_runs_alone() {
+fn an_ensemble_equals_its_runs_alone() {
     let robot = Robot::lwa4p();
     let starts: Vec<Vec<f64>> = (0..21)
         .map(|r| (0..12).map(|i| (1.3 * f64::from(r) + f64::from(i)).sin()).collect())
@@ -97,7 +99,7 @@ fn an_ensemble_is_its_runs_alone() {
     assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
     for (start, end) in starts.iter().zip(&ends) {
         let motion = robot.simulate(&start[..6], &start[6..], &torques, 0.004, 2);
-        // Spans are differences of sample times there, and 4 ms here.
+        // The ensemble's steps are differences of sample times; here they are 4 ms.
         let alone = [&motion.q[20][..], &motion.qd[20]].concat();
         assert!(
             alone.iter().zip(end).all(|(a, b)| (a - b).abs() < 1e-9),

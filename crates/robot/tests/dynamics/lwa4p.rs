@@ -1,5 +1,5 @@
-//! The embedded Schunk LWA 4P against an independent evaluation of the paper's Table III by the
-//! regressor of its standard inertial parameters (`shared/lwa4p/oracle.json`).
+//! The embedded Schunk LWA 4P against an independent evaluation of the paper's Table III with the
+//! regressor of the standard inertial parameters (`shared/lwa4p/oracle.json`).
 
 use crate::close::assert_close;
 use crate::shared::{numbers, oracle};

@@ -1,4 +1,5 @@
-//! The crate against independent oracles, its identities, and what it says of robots that are none.
+//! The crate against independent oracles, identities of its algorithms, and errors of invalid
+//! robots.
 
 mod base_parameters;
 mod close;

@@ -1,17 +1,17 @@
-//! Which robots have a positive definite mass matrix, and what is said of those that do not.
+//! Checks for a positive definite mass matrix, and the errors of robots without one.
 
 use crate::shared::{description, oracle, oracle_robot};
 use reachtube_robot::{
-    GravityMoments, JointDescription, Parameters, Physicality, Robot, RobotError,
+    GravityMoments, JointDescription, ParameterSet, Physicality, Robot, RobotError,
 };
 
 #[test]
 fn lwa4p_is_proved_over_its_position_limits() {
     let robot = Robot::lwa4p();
     let Physicality::Searched { joint, pivot, .. } = robot.check_physical().unwrap() else {
-        panic!("single links of base parameters are no bodies")
+        panic!("links with base parameters are no bodies")
     };
-    // The last pivot is constant: J6 + Izz6.
+    // The last pivot is J6 + Izz6 at all positions.
     assert_eq!(joint, 5);
     assert!((pivot - (0.637 + 0.00569)).abs() < 1e-12);
     assert!(robot.prove_positive_definite(60_000).is_some());
@@ -33,7 +33,7 @@ fn robots_of_bodies_are_proved_by_their_links() {
 fn a_violation_is_found_and_named() {
     let Some(oracle) = oracle("oracle/dh6.json") else { return };
     let mut description = description(&oracle);
-    description.parameters = Parameters::Base;
+    description.parameters = ParameterSet::Base;
     description.joints[2].mass = -12.0;
     let robot = Robot::from_description(&description).unwrap();
     let pivots_at = |q: &[f64]| {
@@ -41,9 +41,9 @@ fn a_violation_is_found_and_named() {
         reachtube_robot::ltdl::factor(m.as_mut_slice(), 6);
         m.diagonal()
     };
-    assert!(pivots_at(&[0.0; 6]).min() > 0.1, "the search has to leave zero");
+    assert!(pivots_at(&[0.0; 6]).min() > 0.1, "the mass matrix at q = 0 shows no violation");
     let Err(RobotError::NotPhysical { joint, q, pivot, .. }) = robot.check_physical() else {
-        panic!("physical?")
+        panic!("the violation was not found")
     };
     let at = robot.joints().iter().position(|j| j.name == joint).unwrap();
     assert!(pivot <= 0.0 && pivots_at(&q)[at] == pivot);

@@ -1,5 +1,5 @@
-//! Dynamics against Pinocchio 4.1.0 (`shared/oracle/*.json`): UR5 by placements, the LWA 4P's
-//! geometry both ways.
+//! Dynamics against Pinocchio 4.1.0 (`shared/oracle/*.json`): the UR5 by placements, and the LWA
+//! 4P's geometry by placements and by Denavit-Hartenberg parameters.
 
 use crate::close::assert_close;
 use crate::shared::{description, numbers, oracle};
@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use reachtube_robot::{Dh, Robot, RobotDescription, Workspace};
 use serde_json::Value;
 
-/// The same robot in Denavit-Hartenberg frames. The oracle's link frame is the joint frame after
-/// theta, so that x_dh = Rx(-alpha) (x - (a, 0, d)).
+/// Describes the same robot in Denavit-Hartenberg frames. The oracle's link frame is the joint
+/// frame after theta, so that x_dh = Rx(-alpha) (x - (a, 0, d)).
 fn dh_description(oracle: &Value) -> RobotDescription {
     let mut description = description(oracle);
     for (joint, row) in description.joints.iter_mut().zip(oracle["dh_standard"].as_array().unwrap())
@@ -17,16 +17,18 @@ fn dh_description(oracle: &Value) -> RobotDescription {
         let (a, alpha, theta, d) = (get("a"), get("alpha"), get("theta_offset"), get("d"));
         (joint.placement, joint.axis) = (None, None);
         joint.dh = Some(Dh { a, alpha, theta, d });
-        let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), -alpha);
-        joint.com = joint.com.map(|c| (turn * (Vector3::from(c) - Vector3::new(a, 0.0, d))).into());
+        let rotation = Rotation3::from_axis_angle(&Vector3::x_axis(), -alpha);
+        joint.com =
+            joint.com.map(|c| (rotation * (Vector3::from(c) - Vector3::new(a, 0.0, d))).into());
         let [xx, xy, xz, yy, yz, zz] = joint.inertia;
-        let t = turn * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * turn.inverse();
+        let t = rotation * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * rotation.inverse();
         joint.inertia = [t[(0, 0)], t[(0, 1)], t[(0, 2)], t[(1, 1)], t[(1, 2)], t[(2, 2)]];
     }
     description
 }
 
-fn agrees(robot: &Robot, oracle: &Value) {
+/// Compares all algorithms with the oracle.
+fn assert_agreement(robot: &Robot, oracle: &Value) {
     let n = robot.joint_count();
     let mut ws = Workspace::new(robot);
     for state in oracle["states"].as_array().unwrap() {
@@ -64,7 +66,7 @@ fn agrees(robot: &Robot, oracle: &Value) {
 fn ur5_by_placements_agrees_with_pinocchio() {
     let Some(oracle) = oracle("oracle/ur5.json") else { return };
     let robot = Robot::from_description(&description(&oracle)).unwrap();
-    agrees(&robot, &oracle);
+    assert_agreement(&robot, &oracle);
     for state in oracle["states"].as_array().unwrap() {
         let tip = robot.link_placements(&numbers(&state["q"]))[5].translation;
         assert_close(tip.as_slice(), &numbers(&state["ee_p"]), "ee_p");
@@ -74,11 +76,11 @@ fn ur5_by_placements_agrees_with_pinocchio() {
 #[test]
 fn dh6_by_placements_agrees_with_pinocchio() {
     let Some(oracle) = oracle("oracle/dh6.json") else { return };
-    agrees(&Robot::from_description(&description(&oracle)).unwrap(), &oracle);
+    assert_agreement(&Robot::from_description(&description(&oracle)).unwrap(), &oracle);
 }
 
 #[test]
 fn dh6_by_denavit_hartenberg_agrees_with_pinocchio() {
     let Some(oracle) = oracle("oracle/dh6.json") else { return };
-    agrees(&Robot::from_description(&dh_description(&oracle)).unwrap(), &oracle);
+    assert_agreement(&Robot::from_description(&dh_description(&oracle)).unwrap(), &oracle);
 }

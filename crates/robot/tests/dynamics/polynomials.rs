@@ -1,5 +1,5 @@
-//! Dynamics over Taylor polynomials: M, c and g as exact polynomials, and series against 40-digit
-//! arithmetic.
+//! Dynamics over Taylor polynomials: M, c and g as exact polynomials, and series expansions against
+//! 40-digit arithmetic.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use serde_json::Value;
 use crate::close::assert_close;
 use crate::shared::{description, numbers, oracle, oracle_robot};
 
-/// c_i = q̇ᵀ C_i q̇ at numbers.
+/// Returns c_i = q̇ᵀ C_i q̇ at (sin, cos) = `at`.
 fn christoffel_torque(matrices: &[Vec<TaylorPolynomial>], at: &[f64], qd: &[f64]) -> Vec<f64> {
     let n = qd.len();
     let entry = |c: &TaylorPolynomial, jk: usize| c.evaluate(at) * qd[jk / n] * qd[jk % n];
@@ -55,8 +55,8 @@ fn polynomials_of_the_ur5_agree_with_numbers() {
     );
 }
 
-/// Degrees by counting: M has two factors of each angle after the first, and so has C; with q̇ that
-/// is the paper's p_max = 12.
+/// M and C have two factors of each angle after the first, so their degree is 10; with q̇ it is the
+/// paper's p_max = 12.
 #[test]
 fn degrees_and_terms_of_the_lwa4p() {
     let dynamics = Robot::lwa4p().polynomial_dynamics::<f64>().unwrap();
@@ -68,7 +68,7 @@ fn degrees_and_terms_of_the_lwa4p() {
         dynamics.mass_matrix.iter().all(|m| !m.depends_on(0) && !m.depends_on(6)),
         "M does not depend on q1"
     );
-    // Right angles keep their zeros: no term is left over from rounding.
+    // Right angles keep their zeros, so rounding leaves no small terms.
     let terms = |list: &[TaylorPolynomial]| -> usize {
         list.iter().map(TaylorPolynomial::term_count).sum()
     };
@@ -97,7 +97,7 @@ fn coefficients_over_intervals_enclose_those_over_numbers() {
     }
 }
 
-/// What the dynamics of a robot takes, along a line or in all directions.
+/// The arguments of the dynamics as polynomials.
 struct Motion {
     q: Vec<TaylorPolynomial>,
     qd: Vec<TaylorPolynomial>,
@@ -109,7 +109,7 @@ impl Motion {
         self.q.iter().map(Elementary::sin_cos).unzip()
     }
 
-    /// q̈ by one of both algorithms.
+    /// Returns q̈ by one of the two algorithms.
     fn acceleration(&self, robot: &Robot, by_articulated_bodies: bool) -> Vec<TaylorPolynomial> {
         let (sin, cos) = self.sin_cos();
         let mut ws = Workspace::new(robot);
@@ -130,7 +130,7 @@ impl Motion {
     }
 }
 
-/// The motion (q, q̇, tau) = start + t · direction in one variable t.
+/// Returns (q, q̇, tau) = start + t · direction in one variable t.
 fn along(space: &Arc<TaylorSpace>, case: &Value) -> Motion {
     let line = |start: &str, direction: &str| {
         let pairs = numbers(&case[start]).into_iter().zip(numbers(&case[direction]));
@@ -143,7 +143,7 @@ fn along(space: &Arc<TaylorSpace>, case: &Value) -> Motion {
     Motion { q: line("q0", "dq"), qd: line("qd0", "dqd"), tau: line("tau0", "dtau") }
 }
 
-/// All of (q, q̇, tau) as variables.
+/// Returns (q, q̇, tau) with every entry as a variable.
 fn about(space: &Arc<TaylorSpace>, case: &Value) -> Motion {
     let n = space.variables() / 3;
     let group = |start: &str, first: usize| {
@@ -153,7 +153,8 @@ fn about(space: &Arc<TaylorSpace>, case: &Value) -> Motion {
     Motion { q: group("q0", 0), qd: group("qd0", n), tau: group("tau0", 2 * n) }
 }
 
-/// Coefficients t^0.. of series in t against the oracle, to 1e-9 of the largest of each joint.
+/// Asserts that the coefficients of t^0 to t^order agree with the oracle within 1e-9 of the largest
+/// coefficient of each joint.
 fn assert_coefficients(found: &[TaylorPolynomial], case: &Value, key: &str, order: usize) {
     for (joint, expected) in found.iter().zip(case[key].as_array().unwrap()) {
         let expected = numbers(expected);
@@ -165,7 +166,7 @@ fn assert_coefficients(found: &[TaylorPolynomial], case: &Value, key: &str, orde
     }
 }
 
-/// Directional coefficients are unique, whatever the algorithm.
+/// The coefficients along a line do not depend on the algorithm.
 #[test]
 fn series_along_a_line_agree_with_40_digit_arithmetic() {
     let space = TaylorSpace::new(1, 6).unwrap();
@@ -181,7 +182,7 @@ fn series_along_a_line_agree_with_40_digit_arithmetic() {
     }
 }
 
-/// The series in all 18 variables, then composed with the line.
+/// The series in all 18 variables is composed with the line.
 #[test]
 fn series_in_all_variables_agree_with_40_digit_arithmetic() {
     for (name, order) in [("ur5", 4), ("dh6", 5)] {
@@ -201,8 +202,8 @@ fn series_in_all_variables_agree_with_40_digit_arithmetic() {
     }
 }
 
-/// rnea and crba differ as polynomials in independent s and c, and agree on the circle: s and c as
-/// series of one angle.
+/// The polynomials of rnea and crba differ for independent s and c. They agree on the circle, where
+/// s and c are series of one angle.
 #[test]
 fn the_extensions_off_the_circle_agree_on_it() {
     let robot = Robot::lwa4p();
@@ -237,7 +238,7 @@ fn the_extensions_off_the_circle_agree_on_it() {
     }
 }
 
-/// rnea, crba and aba over a box of (q, q̇, q̈ or tau), one algorithm after the other.
+/// Returns the results of rnea, aba and crba for [sin, cos, q̇, q̈ or tau].
 fn all_algorithms<S: Scalar>(robot: &Robot, [sin, cos, qd, last]: [&[S]; 4]) -> Vec<S> {
     let n = robot.joint_count();
     let mut ws = Workspace::new(robot);
@@ -250,8 +251,8 @@ fn all_algorithms<S: Scalar>(robot: &Robot, [sin, cos, qd, last]: [&[S]; 4]) -> 
     out
 }
 
-/// Taylor models of the dynamics hold 10,000 points of it, and are less than a third as wide as
-/// intervals, mostly by what truly varies.
+/// Taylor models enclose the dynamics at 10,000 points and are less than a third as wide as
+/// intervals. Their remainders are a small part of their width.
 #[test]
 fn taylor_models_of_the_dynamics_enclose_it() {
     let robot = Robot::lwa4p();
@@ -292,7 +293,7 @@ fn taylor_models_of_the_dynamics_enclose_it() {
     assert!(largest < 0.05 * tight, "{largest}");
 }
 
-/// A robot over any scalar, as a check that nothing but ring operations and division is asked for.
+/// The dynamics over any scalar uses only ring operations and division.
 #[test]
 fn interval_series_enclose_the_series_of_numbers() {
     fn series<C: Scalar + Elementary>(robot: &Robot) -> Vec<TaylorPolynomial<C>> {
@@ -310,9 +311,9 @@ fn interval_series_enclose_the_series_of_numbers() {
     for (number, interval) in series::<f64>(&robot).iter().zip(&series::<Interval>(&robot)) {
         for term in number.terms() {
             let enclosure = interval.coefficient(&term.exponents);
-            let slack = 1e-12 * (1.0 + term.coefficient.abs());
+            let tolerance = 1e-12 * (1.0 + term.coefficient.abs());
             assert!(
-                Interval::centred(enclosure.mid(), enclosure.rad() + slack)
+                Interval::centered(enclosure.mid(), enclosure.rad() + tolerance)
                     .contains(term.coefficient)
             );
             assert!(enclosure.rad() < 1e-9 * (1.0 + term.coefficient.abs()));

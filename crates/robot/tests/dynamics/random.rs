@@ -2,11 +2,10 @@
 
 use proptest::prelude::*;
 use reachtube_robot::{
-    Dh, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot, RobotDescription,
+    Dh, InertiaPoint, JointDescription, ParameterSet, PlacementDescription, Robot, RobotDescription,
 };
 
-/// A body of a few random points, so that its parameters are physical; half the joints by DH, half
-/// by placement.
+/// Makes a joint whose link is a body of four random points, so that its parameters are physical.
 fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
     let points = x[..12].chunks(3).map(|c| nalgebra::Vector3::new(c[0], c[1], c[2]));
     let mass = 1.0 + x[12].abs();
@@ -36,7 +35,7 @@ fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
     }
 }
 
-/// Robots of 1 to 7 joints without friction.
+/// Generates robots with 1 to 7 joints and no friction.
 pub fn robots() -> impl Strategy<Value = Robot> {
     let joints =
         prop::collection::vec((prop::collection::vec(-1.0..1.0f64, 22), any::<bool>()), 1..8);
@@ -44,7 +43,7 @@ pub fn robots() -> impl Strategy<Value = Robot> {
         let description = RobotDescription {
             schema_version: 1,
             name: "random".into(),
-            parameters: Parameters::Physical,
+            parameters: ParameterSet::Physical,
             convention: Default::default(),
             gravity,
             joints: joints
@@ -57,7 +56,7 @@ pub fn robots() -> impl Strategy<Value = Robot> {
     })
 }
 
-/// A robot with three vectors for it: q, q̇ and q̈ or torque.
+/// Generates a robot with three vectors: q, q̇, and q̈ or torque.
 pub fn robots_and_states() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>, Vec<f64>)> {
     robots().prop_flat_map(|robot| {
         let n = robot.joint_count();

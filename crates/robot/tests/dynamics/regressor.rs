@@ -1,4 +1,4 @@
-//! The regressor against rnea, Pinocchio 4.1.0 (`shared/oracle`, `Y_rows`), and its f64 values
+//! The regressor against rnea and Pinocchio 4.1.0 (`shared/oracle`, `Y_rows`), and its `f64` values
 //! against intervals.
 
 use crate::close::assert_close;
@@ -6,11 +6,11 @@ use crate::identities::close;
 use crate::random::robots_and_states;
 use crate::shared::{numbers, oracle, oracle_robot};
 use proptest::prelude::*;
-use reachtube_robot::{Column, ColumnKind, Regressor, RegressorWorkspace, Robot, Workspace};
+use reachtube_robot::{Parameter, ParameterKind, Regressor, RegressorWorkspace, Robot, Workspace};
 use reachtube_scalar::Interval;
 
 #[test]
-fn it_agrees_with_pinocchio() {
+fn regressors_agree_with_pinocchio() {
     for name in ["ur5", "dh6"] {
         let (Some(robot), Some(oracle)) =
             (oracle_robot(name), oracle(&format!("oracle/{name}.json")))
@@ -21,7 +21,7 @@ fn it_agrees_with_pinocchio() {
             let [q, qd, qdd] = ["q", "qd", "qdd"].map(|key| numbers(&state[key]));
             let y = robot.inertial_regressor_matrix(&q, &qd, &qdd);
             let rows: Vec<_> = state["Y_rows"].as_array().unwrap().iter().map(numbers).collect();
-            // The oracle leaves out the columns of links before the joint, which are zero.
+            // The oracle omits the columns of links before the joint, which are zero.
             let whole = rows
                 .iter()
                 .enumerate()
@@ -32,31 +32,40 @@ fn it_agrees_with_pinocchio() {
 }
 
 proptest! {
-    /// Also off the circle: Y θ is rnea's polynomial in independent sine and cosine.
+    /// Y θ is rnea's polynomial in independent sine and cosine, off the circle too.
     #[test]
-    fn times_the_parameters_it_is_rnea(
+    fn regressor_times_parameters_is_rnea(
         (robot, sin, qd, qdd) in robots_and_states(),
         cos in prop::collection::vec(-2.0..2.0f64, 8),
     ) {
         let n = qd.len();
         let (mut tau, mut y) = (vec![0.0; n], vec![f64::NAN; 10 * n * n]);
         robot.rnea(&sin, &cos, &qd, &qdd, &mut Workspace::new(&robot), &mut tau);
-        robot.inertial_regressor(&sin, &cos, &qd, &qdd, &mut RegressorWorkspace::new(&robot), &mut y);
+        let mut ws = RegressorWorkspace::new(&robot);
+        robot.inertial_regressor(&sin, &cos, &qd, &qdd, &mut ws, &mut y);
         let theta = robot.inertial_parameters();
         let torque: Vec<f64> = y
             .chunks(10 * n)
             .zip(robot.joints().iter().zip(&qdd))
-            .map(|(row, (j, qdd))| row.iter().zip(&theta).map(|(y, p)| y * p).sum::<f64>() + j.armature * qdd)
+            .map(|(row, (j, qdd))| {
+                row.iter().zip(&theta).map(|(y, p)| y * p).sum::<f64>() + j.armature * qdd
+            })
             .collect();
         close(&torque, &tau)?;
     }
 
     #[test]
-    fn intervals_enclose_it((robot, q, qd, qdd) in robots_and_states(), radius in 0.0..0.01f64, pick in -1.0..1.0f64) {
+    fn intervals_enclose_the_regressor(
+        (robot, q, qd, qdd) in robots_and_states(),
+        radius in 0.0..0.01f64,
+        pick in -1.0..1.0f64,
+    ) {
         let n = q.len();
         let (sin, cos) = robot.sin_cos(&q);
-        let boxes = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(|x| Interval::centred(*x, radius)).collect::<Vec<_>>());
-        let at = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(|x| x + 0.99 * pick * radius).collect::<Vec<_>>());
+        let wide = |x: &f64| Interval::centered(*x, radius);
+        let inside = |x: &f64| x + 0.99 * pick * radius;
+        let boxes = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(wide).collect::<Vec<_>>());
+        let at = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(inside).collect::<Vec<_>>());
         let (mut outer, mut value) = (vec![Interval::ZERO; 10 * n * n], vec![0.0; 10 * n * n]);
         let mut ws = RegressorWorkspace::new(&robot);
         robot.inertial_regressor(&boxes[0], &boxes[1], &boxes[2], &boxes[3], &mut ws, &mut outer);
@@ -66,28 +75,30 @@ proptest! {
     }
 }
 
-/// The double pendulum's friction has no load dependence, so all of its motor torque is linear in
-/// the columns.
+/// The double pendulum's friction does not depend on the load, so its motor torque is linear in the
+/// parameters.
 #[test]
-fn all_columns_together_give_the_motor_torque() {
-    use ColumnKind::{Coulomb, MotorInertia, Offset, Viscous1, Viscous2, Viscous3};
+fn all_parameters_together_give_the_motor_torque() {
+    use ParameterKind::{Coulomb, MotorInertia, Offset, Viscous1, Viscous2, Viscous3};
     let robot =
         Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
-    let kinds =
-        [&ColumnKind::INERTIAL[..], &[MotorInertia, Viscous1, Viscous2, Viscous3, Coulomb, Offset]]
-            .concat();
-    let columns = Column::of_joints(2, &kinds);
-    let theta = nalgebra::DVector::from_vec(robot.column_values(&columns));
+    let kinds = [
+        &ParameterKind::INERTIAL[..],
+        &[MotorInertia, Viscous1, Viscous2, Viscous3, Coulomb, Offset],
+    ]
+    .concat();
+    let parameters = Parameter::of_joints(2, &kinds);
+    let theta = nalgebra::DVector::from_vec(robot.parameter_values(&parameters));
     let (q, qd, qdd) = (vec![0.4, -1.1], vec![0.7, -2.0], vec![3.0, 1.0]);
-    let y = Regressor::new(&robot, &columns).stacked(&[[q.clone(), qd.clone(), qdd.clone()]]);
+    let y = Regressor::new(&robot, &parameters).stacked(&[[q.clone(), qd.clone(), qdd.clone()]]);
     let expected = robot.inverse_dynamics(&q, &qd, &qdd)
         + robot.viscous_torque(&qd)
         + robot.coulomb_torque(&q, &qd);
     assert_close((y * &theta).as_slice(), expected.as_slice(), "motor torque");
 
-    let twice = robot.description().with_values(&columns, (2.0 * &theta).as_slice()).unwrap();
+    let twice = robot.description().with_values(&parameters, (2.0 * &theta).as_slice()).unwrap();
     let twice = Robot::from_description(&twice).unwrap();
-    assert_close(&twice.column_values(&columns), (2.0 * &theta).as_slice(), "values");
+    assert_close(&twice.parameter_values(&parameters), (2.0 * &theta).as_slice(), "values");
     assert_close(
         twice.inverse_dynamics(&q, &qd, &qdd).as_slice(),
         (2.0 * robot.inverse_dynamics(&q, &qd, &qdd)).as_slice(),
@@ -97,7 +108,9 @@ fn all_columns_together_give_the_motor_torque() {
 
 #[test]
 fn names_are_those_of_the_literature() {
-    let names: Vec<_> =
-        Column::of_joints(1, &ColumnKind::INERTIAL).iter().map(Column::to_string).collect();
+    let names: Vec<_> = Parameter::of_joints(1, &ParameterKind::INERTIAL)
+        .iter()
+        .map(Parameter::to_string)
+        .collect();
     assert_eq!(names.join(" "), "m1 mx1 my1 mz1 Ixx1 Ixy1 Iyy1 Ixz1 Iyz1 Izz1");
 }

@@ -1,22 +1,22 @@
-//! Reading the oracles.
+//! Reading of the oracle files.
 
 use reachtube_robot::{
-    Convention, InertiaPoint, JointDescription, Parameters, PlacementDescription, Robot,
+    Convention, InertiaPoint, JointDescription, ParameterSet, PlacementDescription, Robot,
     RobotDescription, SCHEMA_VERSION,
 };
 use serde_json::Value;
 
-/// The JSON file in the shared folder, or `None` with a word on what is lacking.
+/// Reads a JSON file of the shared folder; if it is missing, prints a note and returns `None`.
 pub fn oracle(path: &str) -> Option<Value> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
     let Ok(text) = std::fs::read_to_string(format!("{folder}{path}")) else {
-        eprintln!("skipped: the folder `shared` beside the repository lacks {path}");
+        eprintln!("skipped: {path} is missing in the folder `shared` beside the repository");
         return None;
     };
     Some(serde_json::from_str(&text).unwrap())
 }
 
-/// The numbers of a JSON array.
+/// Returns the numbers of a JSON array.
 pub fn numbers(v: &Value) -> Vec<f64> {
     v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
@@ -47,19 +47,19 @@ fn joint(link: &Value) -> JointDescription {
     }
 }
 
-/// The robot of an oracle by explicit placements.
+/// Describes the robot of an oracle by placements.
 pub fn description(oracle: &Value) -> RobotDescription {
     RobotDescription {
         schema_version: SCHEMA_VERSION,
         name: oracle["name"].as_str().unwrap().into(),
-        parameters: Parameters::Physical,
+        parameters: ParameterSet::Physical,
         convention: Convention::Standard,
         gravity: triple(&oracle["gravity"]),
         joints: oracle["links"].as_array().unwrap().iter().map(joint).collect(),
     }
 }
 
-/// The robot of `shared/oracle/<name>.json`, where the folder is.
+/// Returns the robot of `shared/oracle/<name>.json`, if that file exists.
 pub fn oracle_robot(name: &str) -> Option<Robot> {
     let oracle = oracle(&format!("oracle/{name}.json"))?;
     Some(Robot::from_description(&description(&oracle)).unwrap())

@@ -1,4 +1,4 @@
-//! Motions: what they obey, and whichever way they are computed.
+//! Simulated motions: energy, friction, and agreement of the ways to compute them.
 
 use crate::random::robots_and_states;
 use proptest::prelude::*;
@@ -21,13 +21,16 @@ proptest! {
     #[test]
     fn a_free_motion_keeps_its_energy_at_every_sample((robot, q, qd, _) in robots_and_states()) {
         let n = robot.joint_count();
-        let energies = |x: &[f64]| [robot.kinetic_energy(&x[..n], &x[n..]), robot.potential_energy(&x[..n])];
+        let energies = |x: &[f64]| {
+            [robot.kinetic_energy(&x[..n], &x[n..]), robot.potential_energy(&x[..n])]
+        };
         let (mut x, torque) = ([q, qd].concat(), vec![0.0; n]);
         let start: f64 = energies(&x).iter().sum();
         let times: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
         let (mut worst, mut largest) = (0.0_f64, 1.0_f64);
         let mut field = RobotField::new(&robot, DrivenBy::Motor);
-        let outcome = DormandPrince::new(2 * n, FINE).sample(&mut field, &times, &mut x, &torque, |_, x| {
+        let mut solver = DormandPrince::new(2 * n, FINE);
+        let outcome = solver.sample(&mut field, &times, &mut x, &torque, |_, x| {
             let [kinetic, potential] = energies(x);
             largest = largest.max(kinetic).max(potential.abs());
             worst = worst.max((kinetic + potential - start).abs());
@@ -36,9 +39,9 @@ proptest! {
         prop_assert!(worst < 1e-6 * largest, "{} J of {} J", worst, largest);
     }
 
-    /// (10) under the input (11) is (4) with (5) under the motor torque.
+    /// Model (10) under the input (11) equals (4) with (5) under the motor torque.
     #[test]
-    fn both_inputs_give_one_motion(
+    fn both_inputs_give_the_same_motion(
         x in prop::collection::vec(-1.2..1.2f64, 12),
         torque in prop::collection::vec(-50.0..50.0f64, 6),
     ) {
@@ -53,24 +56,26 @@ proptest! {
         let by_motor = rate(DrivenBy::Motor, &torque);
         let scale = by_motor.iter().fold(1.0_f64, |a, b| a.max(b.abs()));
         prop_assert!(distance(&by_motor, &rate(DrivenBy::Input, u.as_slice())) < 1e-11 * scale);
-        // And (3) gives the torque back.
+        // Inverse dynamics (3) returns the torque.
         let friction = robot.coulomb_torque(q, qd) + robot.viscous_torque(qd);
         let back = robot.inverse_dynamics(q, qd, &by_motor[6..]) + friction;
         prop_assert!(distance(back.as_slice(), &torque) < 1e-10 * scale);
         prop_assert_eq!(&by_motor[..6], qd);
     }
 
-    /// Under the input u, whose friction is smooth, on sample times that jitter.
+    /// The input u, for which friction is smooth, is held between sample times with jitter.
     #[test]
-    fn adaptive_is_fixed_with_small_steps(
+    fn adaptive_steps_agree_with_small_fixed_steps(
         start in prop::collection::vec(-0.5..0.5f64, 12),
         inputs in prop::collection::vec(-20.0..20.0f64, 6 * 25),
         jitter in prop::collection::vec(-1e-3..1e-3f64, 26),
     ) {
         let robot = Robot::lwa4p();
-        let times: Vec<f64> = jitter.iter().enumerate().map(|(k, jitter)| 0.004 * k as f64 + jitter).collect();
+        let times: Vec<f64> =
+            jitter.iter().enumerate().map(|(k, jitter)| 0.004 * k as f64 + jitter).collect();
         let mut field = RobotField::new(&robot, DrivenBy::Input);
-        let (mut method, mut x, mut fixed) = (RungeKutta4::new(12), start.clone(), vec![start.clone()]);
+        let (mut method, mut x) = (RungeKutta4::new(12), start.clone());
+        let mut fixed = vec![start.clone()];
         for (k, u) in inputs.chunks_exact(6).enumerate() {
             method.integrate(&mut field, [times[k], times[k + 1]], 20, &mut x, u);
             fixed.push(x.clone());
@@ -86,11 +91,11 @@ proptest! {
     }
 }
 
-/// A controller is a closure around the field: it holds a joint where gravity would take it.
+/// A controller is a closure around the field. This one holds the joints against gravity.
 #[test]
 fn a_generated_input_holds_the_robot() {
     let robot = double_pendulum();
-    let mut body = RobotField::new(&robot, DrivenBy::Motor).sticking_below(1e-3);
+    let mut body = RobotField::new(&robot, DrivenBy::Motor).regularised_below(1e-3);
     let wanted = [1.0, -0.5];
     let mut held = |t: f64, x: &[f64], _: &[f64], dx: &mut [f64]| {
         let gravity = robot.gravity_torque(&x[..2]);
@@ -101,20 +106,20 @@ fn a_generated_input_holds_the_robot() {
     let outcome =
         DormandPrince::new(4, Tolerance::default()).integrate(&mut held, [0.0, 4.0], &mut x, &[]);
     assert!(outcome.is_reached());
-    // Coulomb friction of 0.16 N m against 20 N m/rad.
+    // The steady-state error is at most Coulomb friction over stiffness: 0.16 N m / (20 N m/rad).
     assert!(
         distance(&x[..2], &wanted) < 0.16 / 20.0 + 1e-3 && distance(&x[2..], &[0.0; 2]) < 1e-3,
         "{x:?}"
     );
 }
 
-/// From a swing to rest, over each joint's turns.
+/// The motion goes from a swing to rest and each joint changes direction many times.
 #[test]
-fn sticking_joints_come_to_rest_in_few_steps() {
+fn regularised_joints_come_to_rest_in_few_steps() {
     let robot = double_pendulum();
     let (times, torque) = ([0.0, 5.0, 10.0, 20.0], [0.0; 2]);
     let mut evaluations = 0;
-    let mut body = RobotField::new(&robot, DrivenBy::Motor).sticking_below(1e-2);
+    let mut body = RobotField::new(&robot, DrivenBy::Motor).regularised_below(1e-2);
     let mut counted = |t: f64, x: &[f64], u: &[f64], dx: &mut [f64]| {
         evaluations += 1;
         body.rate(t, x, u, dx);
@@ -138,9 +143,9 @@ fn sticking_joints_come_to_rest_in_few_steps() {
     assert!(evaluations < 60_000, "{evaluations} evaluations");
 }
 
-/// Without it the solver says that it cannot, in bounded time.
+/// Without regularisation, the solver reports in bounded time that it cannot proceed.
 #[test]
-fn chatter_is_said() {
+fn chatter_is_reported() {
     let robot = double_pendulum();
     let mut field = RobotField::new(&robot, DrivenBy::Motor);
     let mut solver = DormandPrince::new(4, Tolerance::default()).within_steps(5000);

@@ -1,40 +1,14 @@
-//! URDF in and out: real files of the shared folder against the oracles, and the words for files
-//! that are no robot.
+//! Reading and writing of URDF: real files of the shared folder against the oracles, and the errors
+//! of invalid files.
 
 use crate::close::assert_close;
 use crate::shared::{description, numbers, oracle};
-use reachtube_robot::{Column, ColumnKind, Robot, Urdf, UrdfEnds};
+use reachtube_robot::{Parameter, ParameterKind, Robot, Urdf, UrdfEnds};
 
 const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
 
-const ARM: &str = r#"<?xml version="1.0"?>
-<robot name="arm">
-  <link name="base"/>
-  <link name="mount"><inertial><mass value="9"/><inertia ixx="1" iyy="1" izz="1"/></inertial></link>
-  <joint name="mounting" type="fixed"><parent link="base"/><child link="mount"/><origin xyz="0 0 1" rpy="0 0.5 0"/></joint>
-  <!-- kept as it is -->
-  <link name="upper">
-    <inertial>
-      <origin xyz="0.1 0.2 0.3" rpy="0.1 0.2 0.3"/>
-      <mass value="2.0" /><inertia ixx="0.3" ixy="0.01" ixz="0" iyy="0.4" iyz="-0.02" izz="0.5"/>
-    </inertial>
-  </link>
-  <joint name="shoulder" type="revolute">
-    <origin xyz="0.1 0 0.2" rpy="0 0 0.7"/><parent link="mount"/><child link="upper"/>
-    <axis xyz="0 1 0"/>
-    <limit lower="-1" upper="2" effort="10" velocity="3"/>
-    <dynamics damping="0.5"/>
-  </joint>
-  <link name="bracket"><inertial><mass value="0.5"/><origin xyz="0 0.1 0"/><inertia ixx="0.01" iyy="0.02" izz="0.02"/></inertial></link>
-  <joint name="bolts" type="fixed"><parent link="upper"/><child link="bracket"/><origin xyz="0.3 0 0" rpy="1 0 0"/></joint>
-  <link name="lower"/>
-  <joint name="elbow" type="continuous"><parent link="bracket"/><child link="lower"/><origin xyz="0 0 0.4"/></joint>
-  <link name="tool"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01"/></inertial></link>
-  <joint name="flange" type="fixed"><parent link="lower"/><child link="tool"/><origin xyz="0 0.2 0"/></joint>
-  <transmission name="t"><joint name="elbow"/><actuator name="m"><mechanicalReduction>50</mechanicalReduction>
-    <rotor_inertia value="1e-4"/></actuator></transmission>
-</robot>
-"#;
+/// An arm with fixed joints, a motor, friction and a link without inertia.
+const ARM: &str = include_str!("arm.urdf");
 
 fn read(text: &str) -> Urdf {
     Urdf::parse(text, "arm.urdf", &UrdfEnds::default()).unwrap()
@@ -44,7 +18,7 @@ fn error_of(text: &str) -> String {
     Urdf::parse(text, "arm.urdf", &UrdfEnds::default()).unwrap_err().to_string()
 }
 
-/// The error after one part of the arm is replaced.
+/// Returns the error after one part of the arm is replaced.
 fn error_with(part: &str, by: &str) -> String {
     assert!(ARM.contains(part), "{part}");
     error_of(&ARM.replacen(part, by, 1))
@@ -53,14 +27,14 @@ fn error_with(part: &str, by: &str) -> String {
 fn shared_urdf(path: &str) -> Option<Urdf> {
     let path = format!("{SHARED}{path}");
     if !std::path::Path::new(&path).exists() {
-        eprintln!("skipped: the folder `shared` beside the repository lacks {path}");
+        eprintln!("skipped: {path} is missing");
         return None;
     }
     Some(Urdf::load(path, &UrdfEnds::default()).unwrap())
 }
 
 #[test]
-fn oracles_urdfs_agree_with_pinocchio() {
+fn urdfs_of_the_oracles_agree_with_pinocchio() {
     for name in ["ur5", "dh6"] {
         let (Some(urdf), Some(oracle)) =
             (shared_urdf(&format!("oracle/{name}.urdf")), oracle(&format!("oracle/{name}.json")))
@@ -73,7 +47,7 @@ fn oracles_urdfs_agree_with_pinocchio() {
         for state in oracle["states"].as_array().unwrap() {
             let [q, qd, mut qdd] = ["q", "qd", "qdd"].map(|key| numbers(&state[key]));
             let tau = robot.inverse_dynamics(&q, &qd, &qdd);
-            // The armature is not in the URDF.
+            // The URDF has no armature.
             qdd.iter_mut().zip(&armatures).for_each(|(qdd, a)| *qdd *= a);
             assert_close(
                 (tau + nalgebra::DVector::from_vec(qdd)).as_slice(),
@@ -95,7 +69,7 @@ fn real_files_are_read_with_limits_friction_and_gears() {
     };
     let joints = ur10e.robot().joints();
     assert_eq!(joints.len(), 6);
-    // Eleven digits of pi and two of 2 pi, as they stand in the file.
+    // The file has pi with eleven digits.
     assert!(
         core::f64::consts::PI < joints[2].position_limits[1]
             && joints[2].position_limits[1] < core::f64::consts::PI + 1e-11
@@ -112,8 +86,8 @@ fn real_files_are_read_with_limits_friction_and_gears() {
         (joints[0].friction.viscous.v1, joints[0].friction.coulomb.driving_forward.offset),
         (0.001, 0.16)
     );
-    // The second link's frame is upside down there: hanging, as in the embedded description, is q =
-    // 0 for both.
+    // The second link's frame is upside down in the URDF, but q = 0 is the hanging position in
+    // both.
     let described =
         Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
     let loaded = Robot::load(&format!("{SHARED}data/double_pendulum/acrobot.urdf")).unwrap();
@@ -121,14 +95,15 @@ fn real_files_are_read_with_limits_friction_and_gears() {
     assert!((a - b).amax() < 1e-4);
 }
 
-/// Everything rigid, moved by hand: what is fixed to a link counts as part of it.
+/// The expected values are computed by hand.
 #[test]
 fn fixed_links_are_lumped() {
     let urdf = read(ARM);
     let (robot, upper) = (urdf.robot(), &urdf.robot().description().joints[0]);
     assert_eq!(urdf.moved_links().collect::<Vec<_>>(), ["upper", "lower"]);
     assert_eq!(upper.mass, 2.5);
-    // The bracket's centre of mass: its joint at (0.3, 0, 0), turned about x by 1, and 0.1 along y.
+    // The bracket's joint is at (0.3, 0, 0), rotated about x by 1 rad; its centre of mass is 0.1 m
+    // along y.
     let bracket = [0.3, 0.1 * 1f64.cos(), 0.1 * 1f64.sin()];
     let com = upper.com.unwrap();
     let expected: Vec<f64> =
@@ -138,7 +113,7 @@ fn fixed_links_are_lumped() {
     let parallel: f64 =
         (0..3).map(|i| ([0.1, 0.2, 0.3][i] - bracket[i]).powi(2)).sum::<f64>() * (2.0 * 0.5 / 2.5);
     assert!((trace - (1.2 + 0.05 + 2.0 * parallel)).abs() < 1e-14);
-    // The elbow: 0.4 along the bracket's turned z. The base's mount does not move.
+    // The elbow is 0.4 m along the bracket's z. The mount on the base does not move.
     let at = &robot.link_placements(&[0.0, 0.0]);
     let elbow = at[0].rotation.transpose() * (at[1].translation - at[0].translation);
     assert_close(elbow.as_slice(), &[0.3, -0.4 * 1f64.sin(), 0.4 * 1f64.cos()], "elbow");
@@ -166,55 +141,55 @@ fn a_base_may_be_named_and_keeps_the_direction_of_gravity() {
     assert_close(torque(&from_mount).as_slice(), torque(&whole).as_slice(), "torque");
     assert!(from_mount.robot().gravity_acceleration()[0].abs() > 1.0);
     let elsewhere = Urdf::parse(ARM, "arm.urdf", &ends("tool", "upper")).unwrap_err().to_string();
-    assert!(elsewhere.contains("tip `upper` does not hang on base `tool`"), "{elsewhere}");
+    assert!(elsewhere.contains("base `tool` does not carry tip `upper`"), "{elsewhere}");
     let unknown = Urdf::parse(ARM, "arm.urdf", &ends("base", "hand")).unwrap_err().to_string();
     assert!(
         unknown.contains("no link `hand` for the tip; name one of `base`, `bracket`, `lower`"),
         "{unknown}"
     );
     let short = Urdf::parse(ARM, "arm.urdf", &ends("base", "mount")).unwrap_err().to_string();
-    assert!(short.contains("no joint moves between base `base` and tip `mount`"), "{short}");
+    assert!(short.contains("no moving joint between base `base` and tip `mount`"), "{short}");
 }
 
 #[test]
-fn what_is_not_identified_stays_byte_for_byte() {
+fn text_that_does_not_change_is_kept_byte_for_byte() {
     let urdf = read(ARM);
     assert_eq!(urdf.updated(urdf.robot()).unwrap(), ARM);
-    let columns = [ColumnKind::Mass, ColumnKind::Viscous1, ColumnKind::Coulomb]
-        .map(|kind| Column { joint: 0, kind });
-    let changed = urdf.robot().description().with_values(&columns, &[2.6, 0.6, 0.25]).unwrap();
+    let parameters = [ParameterKind::Mass, ParameterKind::Viscous1, ParameterKind::Coulomb]
+        .map(|kind| Parameter { joint: 0, kind });
+    let changed = urdf.robot().description().with_values(&parameters, &[2.6, 0.6, 0.25]).unwrap();
     let text = urdf.updated(&Robot::from_description(&changed).unwrap()).unwrap();
     let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
     let (old, new) = (lines(ARM), lines(&text));
     assert_eq!(old.len(), new.len());
     let differ: Vec<_> = (0..old.len()).filter(|i| old[*i] != new[*i]).map(|i| i + 1).collect();
-    // The upper link's origin, mass and inertia; the shoulder's dynamics; the bracket, which is in
-    // the whole now.
+    // These are the upper link's origin, mass and inertia, the shoulder's dynamics, and the
+    // bracket, whose mass is now part of the upper link.
     assert_eq!(differ, [9, 10, 17, 19]);
     assert_eq!(new[16], "    <dynamics friction=\"0.25\" damping=\"0.6\"/>");
-    let bracket = "<mass value=\"0\"/><origin xyz=\"0 0.1 0\"/><inertia ixy=\"0\" ixz=\"0\" iyz=\"0\" ixx=\"0\" iyy=\"0\" izz=\"0\"/>";
+    let bracket = "<mass value=\"0\"/><origin xyz=\"0 0.1 0\"/>\
+                   <inertia ixy=\"0\" ixz=\"0\" iyz=\"0\" ixx=\"0\" iyy=\"0\" izz=\"0\"/>";
     assert!(new[18].contains(bracket), "{}", new[18]);
 }
 
-/// Reading, writing and reading again give the same robot, motors and friction through the
-/// companion.
+/// Reading, writing and reading again give the same robot; the companion has motors and friction.
 #[test]
 fn round_trips() {
     let urdf = read(ARM);
     let kinds = [
-        &ColumnKind::INERTIAL[..],
-        &[ColumnKind::MotorInertia, ColumnKind::Viscous1, ColumnKind::Coulomb],
+        &ParameterKind::INERTIAL[..],
+        &[ParameterKind::MotorInertia, ParameterKind::Viscous1, ParameterKind::Coulomb],
     ];
-    let columns = Column::of_joints(2, &kinds.concat());
+    let parameters = Parameter::of_joints(2, &kinds.concat());
     let values: Vec<_> =
-        urdf.robot().column_values(&columns).iter().map(|v| 1.1 * v + 1e-3).collect();
+        urdf.robot().parameter_values(&parameters).iter().map(|v| 1.1 * v + 1e-3).collect();
     let changed = Robot::from_description(
-        &urdf.robot().description().with_values(&columns, &values).unwrap(),
+        &urdf.robot().description().with_values(&parameters, &values).unwrap(),
     )
     .unwrap();
     let (text, companion) = (urdf.updated(&changed).unwrap(), urdf.companion(&changed));
     let back = Urdf::parse_with(&text, "arm.urdf", &companion, &UrdfEnds::default()).unwrap();
-    assert_close(&back.robot().column_values(&columns), &values, "parameters");
+    assert_close(&back.robot().parameter_values(&parameters), &values, "parameters");
     assert_eq!(back.robot().joints(), changed.joints());
     assert_eq!(back.updated(back.robot()).unwrap(), text);
     assert_eq!(
@@ -229,27 +204,29 @@ fn round_trips() {
 }
 
 #[test]
-fn the_companion_names_motors_ends_and_its_mistakes() {
+fn the_companion_gives_motors_and_ends_and_its_errors_name_the_joint() {
     let with = |toml: &str| Urdf::parse_with(ARM, "arm.urdf", toml, &UrdfEnds::default());
-    let text = "tip = \"tool\"\ngravity = [0.0, 0.0, 0.0]\n[[joint]]\nname = \"elbow\"\narmature = 0.7\n\
+    let text = "tip = \"tool\"\ngravity = [0.0, 0.0, 0.0]\n\
+                [[joint]]\nname = \"elbow\"\narmature = 0.7\n\
                 friction = { viscous = [1.0, 0.0, 0.5] }\n";
     let robot = with(text).unwrap().into_robot();
     assert_eq!((robot.joints()[1].armature, robot.joints()[1].friction.viscous.v3), (0.7, 0.5));
     assert_eq!(robot.gravity_torque(&[0.3, 0.4]).amax(), 0.0);
     let error = with(&text.replace("elbow", "knee")).unwrap_err().to_string();
     assert!(
-        error
-            .contains("joint `knee`: the chain has no such joint; name one of `shoulder`, `elbow`"),
+        error.contains(
+            "joint `knee`: the chain has no joint with this name; name one of `shoulder`, `elbow`"
+        ),
         "{error}"
     );
     let error = with(&text.replace("armature", "armatur")).unwrap_err().to_string();
     assert!(error.contains("line 5") && error.contains("`armatur`"), "{error}");
-    // A whole robot beside the URDF is not meant for it.
+    // A TOML file with a schema_version is a robot of its own, not a companion.
     assert_eq!(with("schema_version = 1\nname = \"other\"").unwrap().robot(), read(ARM).robot());
 }
 
 #[test]
-fn joints_that_are_not_handled_are_refused_by_name() {
+fn unsupported_joints_are_refused_by_name() {
     let kind = "<joint name=\"elbow\" type=\"continuous\">";
     for (name, verb) in
         [("prismatic", "is prismatic"), ("floating", "is floating"), ("planar", "is planar")]
@@ -267,29 +244,29 @@ fn joints_that_are_not_handled_are_refused_by_name() {
         error.starts_with("arm.urdf:22: joint `elbow`, <mimic>: the joint mimics `shoulder`"),
         "{error}"
     );
-    let finger = "<link name=\"finger\"/><joint name=\"slide\" type=\"revolute\"><parent link=\"upper\"/>\
-                  <child link=\"finger\"/></joint>\n</robot>";
+    let finger = "<link name=\"finger\"/><joint name=\"slide\" type=\"revolute\">\
+                  <parent link=\"upper\"/><child link=\"finger\"/></joint>\n</robot>";
     let branched = ARM.replace("</robot>", finger);
     let error = error_of(&branched);
     assert!(
-        error.contains("tip is not clear: `finger`, `lower` each are a link that moves"),
+        error.contains("tip is ambiguous: `finger`, `lower` carry no other moving link"),
         "{error}"
     );
     let ends = UrdfEnds { base: None, tip: Some("tool".into()) };
     let error = Urdf::parse(&branched, "arm.urdf", &ends).unwrap_err().to_string();
     assert!(
         error.starts_with(
-            "arm.urdf:27: joint `slide`: the chain branches: this revolute joint hangs"
+            "arm.urdf:27: joint `slide`: the chain branches: this revolute joint is carried"
         ),
         "{error}"
     );
 }
 
 #[test]
-fn broken_files_are_answered_with_line_and_element() {
+fn errors_of_invalid_files_name_line_and_element() {
     let error = error_with("</robot>", "");
-    assert!(error.starts_with("arm.urdf: no well-formed XML: "), "{error}");
-    assert!(error_of("pendulum\n").contains("no well-formed XML"));
+    assert!(error.starts_with("arm.urdf: the text is not well-formed XML: "), "{error}");
+    assert!(error_of("pendulum\n").contains("not well-formed XML"));
     assert!(
         error_of("<sdf/>").contains("arm.urdf:1: <sdf>: the root element is <sdf>; give a URDF")
     );
@@ -297,27 +274,29 @@ fn broken_files_are_answered_with_line_and_element() {
     assert!(error.starts_with("arm.urdf:13: joint `shoulder`: there is no link `uper`"), "{error}");
     let error = error_with("<parent link=\"mount\"/>", "");
     assert!(
-        error.starts_with("arm.urdf:13: joint `shoulder`: <parent> is lacking; add it"),
+        error.starts_with("arm.urdf:13: joint `shoulder`: <parent> is missing; add it"),
         "{error}"
     );
     let error = error_with("<parent link=\"mount\"/>", "<parent link=\"tool\"/>");
-    assert!(error.contains("hangs on itself; let the joints form a tree"), "{error}");
+    assert!(error.contains("carries itself; change the parents"), "{error}");
     let error = error_with("<mass value=\"2.0\" />", "<mass value=\"two\" />");
     assert!(
-        error.starts_with("arm.urdf:10: link `upper`, <mass>: value = \"two\" is no number; write"),
+        error.starts_with(
+            "arm.urdf:10: link `upper`, <mass>: value = \"two\" is not a finite number; write"
+        ),
         "{error}"
     );
     let error = error_with("<mass value=\"2.0\" />", "<mass />");
-    assert!(error.contains("link `upper`, <mass>: the attribute `value` is lacking"), "{error}");
+    assert!(error.contains("link `upper`, <mass>: the attribute `value` is missing"), "{error}");
     let error = error_with("rpy=\"0 0 0.7\"", "rpy=\"0 0.7\"");
     assert!(
-        error.starts_with("arm.urdf:14: joint `shoulder`, <origin>: rpy = \"0 0.7\" are not three"),
+        error.starts_with("arm.urdf:14: joint `shoulder`, <origin>: rpy = \"0 0.7\" is not three"),
         "{error}"
     );
     let error = error_with("lower=\"-1\"", "lower=\"3\"");
     assert!(
         error.starts_with(
-            "arm.urdf:16: joint `shoulder`, link `upper`: position_limits [3, 2] hold"
+            "arm.urdf:16: joint `shoulder`, link `upper`: position_limits [3, 2] rad: the"
         ),
         "{error}"
     );
@@ -331,8 +310,8 @@ fn broken_files_are_answered_with_line_and_element() {
     assert!(error.starts_with("arm.urdf:21: link `lower`: the name occurs twice"), "{error}");
     let error =
         error_with("<link name=\"base\"/>", "<joint name=\"x\"><child link=\"upper\"/></joint>");
-    assert!(error.contains("joint `x`: the attribute `type` is lacking"), "{error}");
-    // Without any mass the robot is read, and refused as none that moves.
+    assert!(error.contains("joint `x`: the attribute `type` is missing"), "{error}");
+    // A robot without mass is read, but it is not physical.
     let weightless = ARM
         .replace(
             "<mass value=\"1\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\"/>",
@@ -343,10 +322,10 @@ fn broken_files_are_answered_with_line_and_element() {
     assert!(error.contains("joint `elbow` has the articulated inertia"), "{error}");
 }
 
-/// A file that lost a line, or everything after some byte, is read or answered; what is read can be
-/// written.
+/// Files without one of the lines, or cut at a byte, are either read or refused with an error. What
+/// is read can be written.
 #[test]
-fn damaged_files_are_read_or_answered() {
+fn damaged_files_are_read_or_refused() {
     let lines: Vec<_> = ARM.lines().collect();
     let without = |k: usize| {
         lines
@@ -361,13 +340,13 @@ fn damaged_files_are_read_or_answered() {
     let mut read = 0;
     for text in (0..lines.len()).map(without).chain(cut) {
         let Ok(urdf) = Urdf::parse(&text, "arm.urdf", &UrdfEnds::default()) else { continue };
-        let masses = Column::of_joints(urdf.robot().joint_count(), &[ColumnKind::Mass]);
+        let masses = Parameter::of_joints(urdf.robot().joint_count(), &[ParameterKind::Mass]);
         let changed =
             urdf.robot().description().with_values(&masses, &vec![3.0; masses.len()]).unwrap();
         let Ok(changed) = Robot::from_description(&changed) else { continue };
         let back = Urdf::parse(&urdf.updated(&changed).unwrap(), "arm.urdf", &UrdfEnds::default())
             .unwrap();
-        assert_close(&back.robot().column_values(&masses), &vec![3.0; masses.len()], "masses");
+        assert_close(&back.robot().parameter_values(&masses), &vec![3.0; masses.len()], "masses");
         read += 1;
     }
     assert!(read >= 5, "{read}");

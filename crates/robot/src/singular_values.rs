@@ -1,11 +1,11 @@
-//! Singular values by an iteration that is known to end.
+//! Singular values by an iteration that always ends.
 
 use nalgebra::{DMatrix, SVD};
 
-/// Singular values, descending.
+/// Returns the singular values of a matrix in descending order.
 ///
-/// nalgebra's iteration need not end at its own threshold; when it does not within its steps it is
-/// given a wider one.
+/// nalgebra's iteration may not converge to its own threshold. If it exceeds its number of steps,
+/// it runs again with a wider threshold.
 pub(crate) fn singular_values(matrix: &DMatrix<f64>) -> Vec<f64> {
     let steps = 100 * (1 + matrix.nrows().min(matrix.ncols()));
     let attempt =
@@ -19,7 +19,8 @@ pub(crate) fn singular_values(matrix: &DMatrix<f64>) -> Vec<f64> {
     values
 }
 
-/// Roots of the eigenvalues of Aᵀ A: half the digits, which is more than none.
+/// Returns the roots of the eigenvalues of Aᵀ A, which have half the digits of a singular value
+/// decomposition.
 fn by_eigenvalues(matrix: &DMatrix<f64>) -> Vec<f64> {
     matrix.tr_mul(matrix).symmetric_eigenvalues().iter().map(|x| x.max(0.0).sqrt()).collect()
 }

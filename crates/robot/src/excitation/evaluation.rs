@@ -1,76 +1,73 @@
-//! How well a motion shows parameters.
+//! Evaluation of how well a motion identifies parameters.
 
-use super::ExcitationSettings;
-use super::shape::Shape;
-use crate::singular::singular_values;
-use crate::{BaseParameters, Regressor, Robot};
+use super::fourier::GRID;
+use super::search_space::SearchSpace;
+use super::settings::{Criterion, ExcitationSettings};
+use crate::base_parameters::base::BaseParameters;
+use crate::regressor::Regressor;
+use crate::robot::Robot;
+use crate::singular_values::singular_values;
 use nalgebra::DMatrix;
 
-/// What an exciting motion is chosen for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Criterion {
-    /// D-optimal: the smallest ellipsoid of confidence; units of the parameters do not matter.
-    #[default]
-    LogDeterminant,
-    /// The smallest condition number of the base regressor with columns of unit length.
-    Condition,
-}
-
-/// How well a motion shows base parameters, from 20 samples a harmonic.
+/// How well a motion identifies base parameters, computed from 20 samples per harmonic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// ln det of the information matrix Y_bᵀ W Y_b / samples in SI units, W the inverse variances
-    /// of torque; -∞ where some combination is not shown.
+    /// ln det of the information matrix Y_bᵀ W Y_b / samples in SI units, with the inverse
+    /// variances of torque as W; -∞ if a base parameter does not affect the torque.
     pub log_determinant: f64,
     /// Condition number of the weighted Y_b with columns of unit length.
     pub condition: f64,
 }
 
-/// Judges motions, with the memory for it.
-pub(super) struct Judge<'a> {
+/// Evaluates motions, with scratch memory.
+pub(super) struct Evaluator<'a> {
     regressor: Regressor<'a>,
     criterion: Criterion,
+    /// Inverse standard deviation of each joint's torque.
     weights: Vec<f64>,
     independent: Vec<usize>,
     states: Vec<[Vec<f64>; 3]>,
+    /// Regressor of all parameters at one state, row by row.
     row: Vec<f64>,
+    /// Weighted base regressor of all states.
     stacked: DMatrix<f64>,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> Evaluator<'a> {
     pub fn new(robot: &'a Robot, base: &BaseParameters, settings: &ExcitationSettings) -> Self {
-        let (n, points) = (robot.joint_count(), super::fourier::GRID * settings.harmonics);
+        let (n, points) = (robot.joint_count(), GRID * settings.harmonics);
         let weight = |i: usize| settings.torque_noise.get(i).map_or(1.0, |s| 1.0 / s);
         Self {
-            regressor: Regressor::new(robot, base.columns()),
+            regressor: Regressor::new(robot, base.parameters()),
             criterion: settings.criterion,
             weights: (0..n).map(weight).collect(),
             independent: base.independent().to_vec(),
             states: vec![core::array::from_fn(|_| vec![0.0; n]); points],
-            row: vec![0.0; n * base.columns().len()],
+            row: vec![0.0; n * base.parameters().len()],
             stacked: DMatrix::zeros(n * points, base.count()),
         }
     }
 
-    /// The criterion, to be made large.
-    pub fn value(&mut self, shape: &Shape, x: &[f64]) -> f64 {
-        self.stack(shape, x);
+    /// Returns the criterion, which is to be maximised.
+    pub fn value(&mut self, space: &SearchSpace, x: &[f64]) -> f64 {
+        self.stack(space, x);
         match self.criterion {
             Criterion::LogDeterminant => self.log_determinant(),
             Criterion::Condition => -self.condition(),
         }
     }
 
-    pub fn quality(&mut self, shape: &Shape, x: &[f64]) -> Quality {
-        self.stack(shape, x);
+    /// Returns the quality of the motion.
+    pub fn quality(&mut self, space: &SearchSpace, x: &[f64]) -> Quality {
+        self.stack(space, x);
         Quality { log_determinant: self.log_determinant(), condition: self.condition() }
     }
 
-    /// The weighted base regressor over the motion.
-    fn stack(&mut self, shape: &Shape, x: &[f64]) {
-        debug_assert_eq!(shape.points(), self.states.len());
-        shape.states(&shape.trajectory(x), &mut self.states);
-        let width = self.regressor.columns().len();
+    /// Computes the weighted base regressor over the motion.
+    fn stack(&mut self, space: &SearchSpace, x: &[f64]) {
+        debug_assert_eq!(space.points(), self.states.len());
+        space.states(&space.trajectory(x), &mut self.states);
+        let width = self.regressor.parameters().len();
         for (k, [q, qd, qdd]) in self.states.iter().enumerate() {
             self.regressor.fill(q, qd, qdd, &mut self.row);
             for (i, weight) in self.weights.iter().enumerate() {
@@ -82,8 +79,10 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// By columns of unit length, whose lengths are added afterwards: units then do not cost
-    /// digits.
+    /// Returns ln det of the information matrix.
+    ///
+    /// The columns are scaled to unit length and their lengths are added afterwards, so that
+    /// different units do not cost digits.
     fn log_determinant(&self) -> f64 {
         let lengths: Vec<f64> = self.stacked.column_iter().map(|c| c.norm()).collect();
         if lengths.contains(&0.0) {
@@ -100,6 +99,7 @@ impl<'a> Judge<'a> {
             .map_or(f64::NEG_INFINITY, |l| own + 2.0 * l.l_dirty().diagonal().map(f64::ln).sum())
     }
 
+    /// Returns the condition number with columns of unit length.
     fn condition(&self) -> f64 {
         let mut unit = self.stacked.clone();
         for mut column in unit.column_iter_mut() {
@@ -110,7 +110,10 @@ impl<'a> Judge<'a> {
             column.unscale_mut(length);
         }
         let values = singular_values(&unit.qr().r());
-        // Also when there is no column at all.
-        values.first().zip(values.last()).map_or(f64::INFINITY, |(most, least)| most / least)
+        // Infinite too if there is no column.
+        values
+            .first()
+            .zip(values.last())
+            .map_or(f64::INFINITY, |(largest, smallest)| largest / smallest)
     }
 }

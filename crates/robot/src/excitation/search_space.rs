@@ -1,28 +1,32 @@
-//! From free numbers to motions within the limits: the search has no constraints left.
+//! A parametrisation of the motions within the limits by unconstrained numbers.
 
-use super::fourier::{FourierTrajectory, excess};
-use super::{ExcitationSettings, fourier::GRID};
-use crate::Robot;
+use super::fourier::{FourierTrajectory, GRID, grid_excess};
+use super::settings::ExcitationSettings;
+use crate::robot::Robot;
 use core::f64::consts::TAU;
 
-/// Turns a vector of free numbers into a motion: for each joint a place within the room left, then
-/// a and b of each harmonic, of which only the direction counts.
-pub(super) struct Shape {
+/// Maps unconstrained vectors to motions within the limits.
+///
+/// For each joint, a vector has one number for the centre of the motion, then a and b of each
+/// harmonic. Only the direction of (a, b) matters: the series is scaled until it reaches a limit.
+pub(super) struct SearchSpace {
     period: f64,
     harmonics: usize,
     from_rest: bool,
     limits: Vec<Limits>,
-    /// Cosine and sine of 2π k / M for each of the M grid points.
+    /// Cosine and sine of 2π k / M at each of the M grid points.
     circle: Vec<[f64; 2]>,
 }
 
+/// The limits of one joint.
 struct Limits {
+    /// Middle and half width of the position range \[rad\].
     position: [f64; 2],
     speed: f64,
     acceleration: f64,
 }
 
-impl Shape {
+impl SearchSpace {
     pub fn new(robot: &Robot, settings: &ExcitationSettings) -> Self {
         let limits = robot.joints().iter().enumerate().map(|(i, joint)| {
             let [low, high] = joint.position_limits;
@@ -45,19 +49,19 @@ impl Shape {
         }
     }
 
-    /// How many free numbers there are.
+    /// Returns the number of entries of a vector.
     pub fn len(&self) -> usize {
         self.limits.len() * (1 + 2 * self.harmonics)
     }
 
-    /// The motion of free numbers.
+    /// Returns the motion of a vector.
     pub fn trajectory(&self, x: &[f64]) -> FourierTrajectory {
         let (mut centre, mut cosine, mut sine) = (Vec::new(), Vec::new(), Vec::new());
         for (x, limits) in x.chunks_exact(1 + 2 * self.harmonics).zip(&self.limits) {
             let (a, b) = x[1..].split_at(self.harmonics);
             let (mut a, mut b) = (a.to_vec(), b.to_vec());
             if self.from_rest {
-                take_to_rest(&mut a, &mut b);
+                project_to_rest(&mut a, &mut b);
             }
             let grid = self.grid(&a, &b);
             let (scale, middle, half) = self.fit(&grid, limits);
@@ -69,7 +73,7 @@ impl Shape {
         FourierTrajectory { period: self.period, centre, cosine, sine }
     }
 
-    /// States of a motion on the grid, into rows of (q, q̇, q̈).
+    /// Writes the states (q, q̇, q̈) of a motion at the grid points, one entry per grid point.
     pub fn states(&self, motion: &FourierTrajectory, out: &mut [[Vec<f64>; 3]]) {
         for i in 0..self.limits.len() {
             for (state, values) in out.iter_mut().zip(self.grid(&motion.cosine[i], &motion.sine[i]))
@@ -80,12 +84,12 @@ impl Shape {
         }
     }
 
-    /// Number of states on the grid.
+    /// Returns the number of grid points.
     pub fn points(&self) -> usize {
         self.circle.len()
     }
 
-    /// Position about 0, velocity and acceleration on the grid.
+    /// Returns position about 0, velocity and acceleration of a series at the grid points.
     fn grid(&self, a: &[f64], b: &[f64]) -> Vec<[f64; 3]> {
         let point = |k: usize| {
             let mut out = [0.0; 3];
@@ -101,23 +105,28 @@ impl Shape {
         (0..self.circle.len()).map(point).collect()
     }
 
-    /// The scale at which a motion first meets a limit, and the middle and half of its range there.
+    /// Returns the scale at which a motion reaches a limit, and the middle and half width of its
+    /// position range at this scale.
     fn fit(&self, grid: &[[f64; 3]], limits: &Limits) -> (f64, f64, f64) {
-        let most = |k: usize| grid.iter().fold(0.0, |m: f64, x| m.max(x[k].abs()));
+        let largest = |k: usize| grid.iter().fold(0.0, |m: f64, x| m.max(x[k].abs()));
         let low = grid.iter().fold(f64::INFINITY, |m, x| m.min(x[0]));
         let high = grid.iter().fold(f64::NEG_INFINITY, |m, x| m.max(x[0]));
         let half = 0.5 * (high - low);
-        let bounds =
-            [(half, limits.position[1]), (most(1), limits.speed), (most(2), limits.acceleration)];
-        let scale =
-            bounds.iter().fold(f64::INFINITY, |s, (most, bound)| s.min(bound / (most * excess())));
+        let bounds = [
+            (half, limits.position[1]),
+            (largest(1), limits.speed),
+            (largest(2), limits.acceleration),
+        ];
+        let scale = bounds
+            .iter()
+            .fold(f64::INFINITY, |s, (value, bound)| s.min(bound / (value * grid_excess())));
         let scale = if half > 0.0 { scale } else { 0.0 };
-        (scale, 0.5 * scale * (low + high), scale * half * excess())
+        (scale, 0.5 * scale * (low + high), scale * half * grid_excess())
     }
 }
 
-/// The nearest series with velocity Σ a = 0 and acceleration ω Σ l b = 0 at t = 0.
-fn take_to_rest(a: &mut [f64], b: &mut [f64]) {
+/// Projects a series onto those with velocity Σ a = 0 and acceleration ω Σ l b = 0 at t = 0.
+fn project_to_rest(a: &mut [f64], b: &mut [f64]) {
     let n = a.len() as f64;
     let mean = a.iter().sum::<f64>() / n;
     a.iter_mut().for_each(|a| *a -= mean);

@@ -1,0 +1,66 @@
+//! The description of a robot.
+
+use super::joint_description::{Convention, JointDescription};
+use serde::{Deserialize, Serialize};
+
+/// The version of the format that this crate writes, and the only one that it reads.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// The description of a robot in SI units (m, rad, kg, s, N m), with the structure of the TOML
+/// format.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_robot::{Robot, RobotDescription};
+///
+/// let pendulum = r#"
+///     schema_version = 1
+///     name = "pendulum"
+///
+///     [[joint]]
+///     name = "hinge"
+///     placement = { translation = [0.0, 0.0, 1.0] }
+///     axis = [1.0, 0.0, 0.0]
+///     mass = 2.0
+///     com = [0.0, 0.0, -0.5]
+/// "#;
+/// let robot = Robot::from_toml(pendulum, "pendulum.toml").unwrap();
+/// assert!((robot.mass_matrix(&[0.3])[(0, 0)] - 0.5).abs() < 1e-15);
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RobotDescription {
+    /// Version of the format: [`SCHEMA_VERSION`].
+    pub schema_version: u32,
+    /// The robot's name.
+    pub name: String,
+    /// Meaning of the inertial parameters.
+    #[serde(default)]
+    pub parameters: ParameterSet,
+    /// Denavit-Hartenberg convention of the joints' `dh`.
+    #[serde(default)]
+    pub convention: Convention,
+    /// Gravitational acceleration in the base frame \[m/s²\]; the default is 9.81 m/s² along -z.
+    #[serde(default = "earth_gravity")]
+    pub gravity: [f64; 3],
+    /// The joints from base to tip, each with the link it moves.
+    #[serde(rename = "joint")]
+    pub joints: Vec<JointDescription>,
+}
+
+fn earth_gravity() -> [f64; 3] {
+    [0.0, 0.0, -9.81]
+}
+
+/// The meaning of the inertial parameters of the links.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ParameterSet {
+    /// Each link is a body: its mass and inertia must belong to some distribution of mass.
+    #[default]
+    Physical,
+    /// Only the base parameters (the combinations that torque depends on) have a meaning. The
+    /// values of a single link have none and may even be negative.
+    Base,
+}

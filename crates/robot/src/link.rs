@@ -1,0 +1,141 @@
+//! Links in the working frames of the algorithms.
+
+use crate::algebra::{Sym3, Vec3};
+use crate::inertia::LinkInertia;
+use crate::joint_geometry::JointGeometry;
+use crate::placement::{Placement, rotation_from_z, rotation_z};
+use crate::pose::Pose;
+use nalgebra::Matrix3;
+use reachtube_scalar::Scalar;
+
+/// The constants of one link in its working frame.
+///
+/// The working frame has its origin on the joint's axis and +z along it. Its rotation about z is
+/// chosen so that the next axis differs by a twist about x alone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Link {
+    /// Sine of the twist about the parent's x axis.
+    pub sin_twist: f64,
+    /// Cosine of the twist about the parent's x axis.
+    pub cos_twist: f64,
+    /// Sine of the angle that is added to q.
+    pub sin_offset: f64,
+    /// Cosine of the angle that is added to q.
+    pub cos_offset: f64,
+    /// Origin in the parent's working frame \[m\].
+    pub origin: [f64; 3],
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// First moment \[kg m\].
+    pub first_moment: [f64; 3],
+    /// Second moments Σ: xx, xy, xz, yy, yz, zz \[kg m²\].
+    pub second_moments: [f64; 6],
+    /// Motor inertia on the link side \[kg m²\].
+    pub armature: f64,
+    /// Mass that gravity acts on \[kg\].
+    pub gravity_mass: f64,
+    /// First moment that gravity acts on \[kg m\].
+    pub gravity_first_moment: [f64; 3],
+    /// Half the first moment \[kg m\] that the mass of this and all later links would have at
+    /// `origin`, in the parent's working frame.
+    pub half_shift: [f64; 3],
+    /// Placement of the link's original frame in its working frame.
+    pub original: Placement,
+}
+
+impl Link {
+    /// Returns the pose in the parent for sin q and cos q.
+    #[inline(always)]
+    pub fn pose<S: Scalar>(&self, sin: &S, cos: &S) -> Pose<S> {
+        let (s0, c0) = (S::from(self.sin_offset), S::from(self.cos_offset));
+        Pose {
+            sin: sin.clone() * c0.clone() + cos.clone() * s0.clone(),
+            cos: cos.clone() * c0 - sin.clone() * s0,
+            sin_twist: S::from(self.sin_twist),
+            cos_twist: S::from(self.cos_twist),
+            origin: Vec3::constant(self.origin),
+        }
+    }
+
+    /// Returns the first and second moments.
+    #[inline(always)]
+    pub fn moments<S: Scalar>(&self) -> (Vec3<S>, Sym3<S>) {
+        (Vec3::constant(self.first_moment), Sym3::constant(self.second_moments))
+    }
+}
+
+/// The Euler angles of R = Rz(lead) Rx(twist) Rz(lag), each as (sine, cosine).
+struct Zxz {
+    lead: (f64, f64),
+    twist: (f64, f64),
+    lag: (f64, f64),
+}
+
+impl Zxz {
+    fn of(r: &Matrix3<f64>) -> Self {
+        let tilt = r[(0, 2)].hypot(r[(1, 2)]);
+        let lead = if tilt == 0.0 { (0.0, 1.0) } else { (r[(0, 2)] / tilt, -r[(1, 2)] / tilt) };
+        // The first row of Rz(-lead) R is (cos lag, -sin lag, 0). It is well conditioned for
+        // parallel axes too.
+        let rest = rotation_z(lead).transpose() * r;
+        Self { lead, twist: (tilt, r[(2, 2)]), lag: (-rest[(0, 1)], rest[(0, 0)]) }
+    }
+}
+
+/// Returns sine and cosine of the sum of two angles.
+fn sum_of_angles((sa, ca): (f64, f64), (sb, cb): (f64, f64)) -> (f64, f64) {
+    (sa * cb + ca * sb, ca * cb - sa * sb)
+}
+
+/// Returns the links in their working frames, and the rotation R of the working base frame:
+/// x_base = R x_working.
+pub(crate) fn working_links(
+    joints: &[JointGeometry],
+    inertias: &[LinkInertia],
+    gravity_inertias: &[LinkInertia],
+    armatures: &[f64],
+) -> (Vec<Link>, Matrix3<f64>) {
+    // Frames with +z along each axis, and the constant placements between them.
+    let axes: Vec<_> =
+        joints.iter().map(|j| Placement::rotation(rotation_from_z(&j.axis))).collect();
+    let mut before = Placement::identity();
+    let mut constants = Vec::with_capacity(joints.len());
+    let mut originals = Vec::with_capacity(joints.len());
+    for (joint, axis) in joints.iter().zip(&axes) {
+        constants.push(before.then(&joint.before).then(axis));
+        before = Placement::rotation(axis.rotation.transpose()).then(&joint.after);
+        originals.push(before.clone());
+    }
+    // Each rotation about z belongs to the joint before or after it; what is left is a twist.
+    let angles: Vec<_> = constants.iter().map(|c| Zxz::of(&c.rotation)).collect();
+    let links = (0..joints.len())
+        .map(|i| {
+            let next_lead = angles.get(i + 1).map_or((0.0, 1.0), |t| t.lead);
+            let offset = sum_of_angles(angles[i].lag, next_lead);
+            let original =
+                Placement::rotation(rotation_z(next_lead).transpose()).then(&originals[i]);
+            let inertia = inertias[i].moved(&original);
+            let gravity_inertia = gravity_inertias[i].moved(&original);
+            let later_mass: f64 = inertias[i..].iter().map(|l| l.mass).sum();
+            let origin = rotation_z(angles[i].lead).transpose() * constants[i].translation;
+            let m = &inertia.second_moments;
+            Link {
+                sin_twist: angles[i].twist.0,
+                cos_twist: angles[i].twist.1,
+                sin_offset: offset.0,
+                cos_offset: offset.1,
+                origin: origin.into(),
+                mass: inertia.mass,
+                first_moment: inertia.first_moment.into(),
+                second_moments: [m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 1)], m[(1, 2)], m[(2, 2)]],
+                armature: armatures[i],
+                gravity_mass: gravity_inertia.mass,
+                gravity_first_moment: gravity_inertia.first_moment.into(),
+                half_shift: (0.5 * later_mass * origin).into(),
+                original,
+            }
+        })
+        .collect();
+    let base = angles.first().map_or_else(Matrix3::identity, |t| rotation_z(t.lead));
+    (links, base)
+}

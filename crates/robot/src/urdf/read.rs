@@ -1,0 +1,146 @@
+//! Reading of a URDF.
+
+use super::companion::Companion;
+use super::describe::MovedLink;
+use super::document::{Tree, parse_document};
+use crate::error::RobotError;
+use crate::robot::Robot;
+use std::path::Path;
+
+/// The ends of the chain that is read from a URDF.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct UrdfEnds {
+    /// Link that does not move; the default is the root.
+    pub base: Option<String>,
+    /// Link at the end of the chain; the default is the only link that moves and carries no other
+    /// moving link.
+    pub tip: Option<String>,
+}
+
+/// A URDF and the robot read from it. It keeps the text, so that identified values can be written
+/// back.
+///
+/// - **Chain**: revolute and continuous joints. Links that are fixed to a moving link are lumped
+///   into it; links that do not move are ignored.
+/// - **Gravity**: 9.81 m/s² along -z of the root.
+/// - **Friction**: `<dynamics>` gives viscous and Coulomb friction.
+/// - **Motors**: `mechanicalReduction` (or `gear_ratio`) and `rotor_inertia` of a `<transmission>`,
+///   or the companion, a TOML file beside the URDF.
+/// - **Angles** are used as written: 1.57079632679 is not rounded to pi/2.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_robot::{Urdf, UrdfEnds};
+///
+/// let text = r#"<robot name="pendulum">
+///   <link name="base"/>
+///   <link name="arm"><inertial>
+///     <origin xyz="0 0 -0.5"/><mass value="2"/>
+///     <inertia ixx="0.1" iyy="0.1" izz="0.02" ixy="0" ixz="0" iyz="0"/>
+///   </inertial></link>
+///   <joint name="hinge" type="continuous">
+///     <parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+///   </joint>
+/// </robot>"#;
+/// let urdf = Urdf::parse(text, "pendulum.urdf", &UrdfEnds::default()).unwrap();
+/// assert!((urdf.robot().mass_matrix(&[0.3])[(0, 0)] - 0.6).abs() < 1e-15);
+/// assert_eq!(urdf.updated(urdf.robot()).unwrap(), text);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Urdf {
+    pub(super) text: String,
+    /// Name of the text in errors.
+    pub(super) origin: String,
+    /// Base link of the chain.
+    pub(super) base: String,
+    pub(super) moved: Vec<MovedLink>,
+    pub(super) robot: Robot,
+}
+
+impl Urdf {
+    /// Reads a URDF file and its companion, the TOML file of the same base name beside it.
+    ///
+    /// The companion is optional. A TOML file with a `schema_version` is a robot of its own and no
+    /// companion. Values of the companion override those of the URDF, and `ends` overrides the ends
+    /// in the companion.
+    ///
+    /// # Errors
+    ///
+    /// Returns a [`RobotError`] with file, line, element, joint or link, and remedy: for XML that
+    /// is not well-formed, for missing links or numbers, and for prismatic, planar, floating and
+    /// mimic joints or branches in the chain.
+    pub fn load(path: impl AsRef<Path>, ends: &UrdfEnds) -> Result<Self, RobotError> {
+        let path = path.as_ref();
+        let read = |path: &Path| {
+            std::fs::read_to_string(path)
+                .map_err(|source| RobotError::Read { path: path.into(), source })
+        };
+        let text = read(path)?;
+        let companion = path.with_extension("toml");
+        let companion = if companion.exists() {
+            Companion::parse(&read(&companion)?, &companion.display().to_string())?
+        } else {
+            Companion::default()
+        };
+        Self::read(text, &path.display().to_string(), ends, companion)
+    }
+
+    /// Reads URDF text; `origin` names it in errors.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Urdf::load`].
+    pub fn parse(text: &str, origin: &str, ends: &UrdfEnds) -> Result<Self, RobotError> {
+        Self::read(text.into(), origin, ends, Companion::default())
+    }
+
+    /// Reads URDF text with the TOML text of its companion.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Urdf::load`].
+    pub fn parse_with(
+        text: &str,
+        origin: &str,
+        companion: &str,
+        ends: &UrdfEnds,
+    ) -> Result<Self, RobotError> {
+        let companion = Companion::parse(companion, &format!("{origin} (companion)"))?;
+        Self::read(text.into(), origin, ends, companion)
+    }
+
+    fn read(
+        text: String,
+        origin: &str,
+        ends: &UrdfEnds,
+        companion: Companion,
+    ) -> Result<Self, RobotError> {
+        let document = parse_document(&text, origin)?;
+        let tree = Tree::new(&document, origin)?;
+        let chain = tree.chain(
+            ends.base.as_deref().or(companion.base.as_deref()),
+            ends.tip.as_deref().or(companion.tip.as_deref()),
+        )?;
+        let (mut description, moved) = tree.describe(&chain)?;
+        companion.apply(&mut description)?;
+        let robot = Robot::checked(&description, |value| tree.locate(&moved, value))?;
+        let base = chain.base.to_string();
+        Ok(Self { origin: origin.into(), base, moved, robot, text })
+    }
+
+    /// Returns the robot as read.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Returns the robot as read and drops the URDF.
+    pub fn into_robot(self) -> Robot {
+        self.robot
+    }
+
+    /// Returns the links that the joints move, from base to tip.
+    pub fn moved_links(&self) -> impl Iterator<Item = &str> {
+        self.moved.iter().map(|m| m.link.as_str())
+    }
+}
