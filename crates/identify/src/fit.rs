@@ -1,33 +1,39 @@
-use super::regression::{
-    Solution, Triangle, huber_weight, robust_deviation, root_mean_square,
-    samples_per_independent_one,
+use crate::regression::residuals::{
+    autocorrelation_time, huber_row_factor, robust_standard_deviation, root_mean_square,
 };
-use super::samples::Samples;
+use crate::regression::solution::Solution;
+use crate::regression::triangular_factor::TriangularFactor;
+use crate::samples::Samples;
 use serde::Serialize;
 
-/// Rounds of reweighting; the weights move by less than a percent after three.
+/// Condition beyond which a combination of parameters counts as undetermined: a rigid robot's torque
+/// is not known to one part in ten thousand of a column.
+pub const CONDITION_LIMIT: f64 = 1e4;
+
+/// Rounds of reweighting; the weights change by less than 1 % after three.
 const ROUNDS: usize = 4;
 
-/// A joint's torque is never taken as known better than this part of its size.
-const LEAST_DEVIATION: f64 = 1e-6;
+/// Lower bound of a joint's standard deviation, relative to the root mean square of its torque.
+const MIN_RELATIVE_DEVIATION: f64 = 1e-6;
 
-/// A robust regression over groups of samples that differ in how exact they are.
+/// A robust regression over groups of samples that differ in their noise.
 #[derive(Debug, Clone)]
 pub struct Fit {
-    /// The factor of all rows, in units of their standard deviation, as many as are independent.
-    pub whitened: Triangle,
-    /// The solution: smallest where the rows leave some of it open.
+    /// Triangular factor of all rows in units of their standard deviation, weighted so that only
+    /// independent samples count.
+    pub whitened: TriangularFactor,
+    /// The solution of the whitened rows.
     pub solution: Solution,
-    /// For each group, joint by joint.
+    /// Quality of the fit, one entry per group and joint.
     pub joints: Vec<Vec<JointFit>>,
 }
 
-/// How well one joint's torque was fitted in a group of samples.
+/// Quality of the fit of one joint's torque in a group of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JointFit {
-    /// Rows that counted.
+    /// Number of rows that were used.
     pub rows: usize,
-    /// How many of them are independent, by the autocorrelation of the residuals.
+    /// Number of independent rows by the autocorrelation of the residuals.
     pub independent: f64,
     /// Root mean square of the residuals \[N m\].
     pub residual: f64,
@@ -35,22 +41,25 @@ pub struct JointFit {
     pub torque: f64,
     /// Robust standard deviation of the residuals \[N m\].
     pub deviation: f64,
-    /// Part of the rows beyond three deviations.
+    /// Share of the rows whose residual exceeds three standard deviations.
     pub outliers: f64,
 }
 
 impl JointFit {
-    /// Residual over torque, root mean squares.
+    /// Returns the ratio of the residual to the torque, both as root mean squares.
+    #[must_use]
     pub fn relative(&self) -> f64 {
         if self.torque > 0.0 { self.residual / self.torque } else { 0.0 }
     }
 }
 
 impl Fit {
-    /// Fits θ to groups with the same columns: least squares with weights per group and joint,
-    /// iterated with Huber's weights (unless `plain`); the final rows are weighted by how many are
-    /// independent.
-    pub fn of(groups: &[&Samples], plain: bool) -> Self {
+    /// Fits θ to groups with the same columns by iteratively reweighted least squares.
+    ///
+    /// Each group and joint has its own standard deviation. Outliers lose weight by Huber's function
+    /// unless `plain` is set. The final weights count independent samples only.
+    pub fn of_groups(groups: &[&Samples], plain: bool) -> Self {
+        // First weights: the reciprocal size of each joint's torque.
         let first = |samples: &&Samples| {
             let size = |joint: usize| {
                 root_mean_square(flat(samples, &samples.torque, joint).into_iter())
@@ -60,6 +69,7 @@ impl Fit {
             (0..samples.len()).map(|r| sizes[r % samples.joints].recip()).collect()
         };
         let mut weights: Vec<Vec<f64>> = groups.iter().map(first).collect();
+        // Reweighting.
         for _ in 0..ROUNDS {
             let theta = joined(groups, &weights).solve().x;
             for (samples, weights) in groups.iter().zip(&mut weights) {
@@ -71,6 +81,7 @@ impl Fit {
                 );
             }
         }
+        // Quality of the fit, and weights that count independent samples only.
         let theta = joined(groups, &weights).solve().x;
         let mut joints = Vec::new();
         for (samples, weights) in groups.iter().zip(&mut weights) {
@@ -87,17 +98,22 @@ impl Fit {
     }
 }
 
-fn joined(groups: &[&Samples], weights: &[Vec<f64>]) -> Triangle {
-    let parts: Vec<Triangle> =
-        groups.iter().zip(weights).map(|(samples, weights)| samples.triangle(weights)).collect();
-    Triangle::of_all(&parts)
+fn joined(groups: &[&Samples], weights: &[Vec<f64>]) -> TriangularFactor {
+    let parts: Vec<TriangularFactor> = groups
+        .iter()
+        .zip(weights)
+        .map(|(samples, weights)| samples.weighted_factor(weights))
+        .collect();
+    TriangularFactor::joined(&parts)
 }
 
 fn flat(samples: &Samples, values: &[f64], joint: usize) -> Vec<f64> {
-    samples.of_joint(values, joint).concat()
+    samples.joint_values(values, joint).concat()
 }
 
-/// One over the standard deviation of each row, less for outliers; `inflation` rows count as one.
+/// Returns the factor of each row: the reciprocal of its standard deviation, less for outliers.
+///
+/// `inflation` gives, per joint, the number of rows that count as one independent row.
 fn reweighted(samples: &Samples, residuals: &[f64], plain: bool, inflation: &[f64]) -> Vec<f64> {
     let deviation = |joint: usize| {
         deviation(&flat(samples, residuals, joint), &flat(samples, &samples.torque, joint), plain)
@@ -105,33 +121,34 @@ fn reweighted(samples: &Samples, residuals: &[f64], plain: bool, inflation: &[f6
     let deviations: Vec<f64> = (0..samples.joints).map(deviation).collect();
     let weight = |(r, residual): (usize, &f64)| {
         let joint = r % samples.joints;
-        let huber = if plain { 1.0 } else { huber_weight(*residual, deviations[joint]) };
+        let huber = if plain { 1.0 } else { huber_row_factor(*residual, deviations[joint]) };
         huber / (deviations[joint] * inflation[joint].sqrt())
     };
     residuals.iter().enumerate().map(weight).collect()
 }
 
-/// The standard deviation of a joint's residuals: robust, but never below what exact data would
-/// give.
+/// Returns the standard deviation of a joint's residuals, robust unless `plain`.
+///
+/// The lower bound keeps the weights finite for exact data.
 fn deviation(residuals: &[f64], torque: &[f64], plain: bool) -> f64 {
     let size = root_mean_square(torque.iter().copied()).max(f64::MIN_POSITIVE);
     let spread = if plain {
         root_mean_square(residuals.iter().copied())
     } else {
-        robust_deviation(residuals)
+        robust_standard_deviation(residuals)
     };
-    spread.max(LEAST_DEVIATION * size)
+    spread.max(MIN_RELATIVE_DEVIATION * size)
 }
 
 fn joint_fit(samples: &Samples, residuals: &[f64], joint: usize) -> JointFit {
-    let (own, torque) =
-        (samples.of_joint(residuals, joint), flat(samples, &samples.recorded, joint));
-    let all = own.concat();
-    let series: Vec<&[f64]> = own.iter().map(Vec::as_slice).collect();
+    let by_log = samples.joint_values(residuals, joint);
+    let torque = flat(samples, &samples.recorded, joint);
+    let all = by_log.concat();
+    let series: Vec<&[f64]> = by_log.iter().map(Vec::as_slice).collect();
     let deviation = deviation(&all, &torque, false);
     JointFit {
         rows: all.len(),
-        independent: all.len() as f64 / samples_per_independent_one(&series),
+        independent: all.len() as f64 / autocorrelation_time(&series),
         residual: root_mean_square(all.iter().copied()),
         torque: root_mean_square(torque.into_iter()),
         deviation,

@@ -1,71 +1,68 @@
 use crate::error::Result;
+use crate::friction::fit::FrictionFit;
+use crate::friction::joints::coefficients;
+use crate::gravity::alternation::fit_gravity_and_friction;
+use crate::gravity::fit::GravityFit;
+use crate::inertia::columns::FrictionColumns;
+use crate::inertia::description::description;
+use crate::inertia::fit::{InertiaFit, fit_inertia};
+use crate::inputs::Inputs;
+use crate::plausibility::gain::{Gain, GainLikelihood, gains};
+use crate::plausibility::warnings::{Checked, poor_prediction};
+use crate::prepare::log::Log;
+use crate::samples::{KnownTorque, Samples};
+use crate::settings::IdentifySettings;
+use crate::validate::simulation::{WindowErrors, simulate};
+use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
+use crate::variant::{set_gravity_moments, with_friction, with_gravity_of_links};
+use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
 use std::path::Path;
 
-use reachtube_robot::{Robot, RobotDescription};
+/// Number of steps that progress reports.
+const STEPS: usize = 4;
 
-use crate::friction::FrictionFit;
-use crate::gravity::GravityFit;
-use crate::inertia::InertiaFit;
-use crate::prepare::{self, Log, LogEntry, RawLog};
-use crate::samples::{Known, Samples, Sampling};
-use crate::settings::IdentifySettings;
-use crate::suspect::Gain;
-use crate::validate::{LogValidation, TorqueTrace, WindowErrors};
-use crate::{gravity, inertia, suspect, validate};
-
-/// Samples are taken at this many times the cut-off: more would only repeat what the filter let
-/// pass.
-const SAMPLES_PER_CUT_OFF: f64 = 6.0;
-
-/// Slow is below this part of a joint's high speeds.
-const SLOW_SHARE: f64 = 0.02;
-
-/// A joint's high speeds: this quantile.
-const HIGH_SPEED: f64 = 0.99;
-
-/// A robot identified from recordings, and what is known of how good it is.
+/// A robot identified from recordings, with the quality of its fits and its validation.
 #[derive(Debug, Clone)]
 pub struct Identification {
-    /// The robot that was found.
+    /// Description of the identified robot.
     pub description: RobotDescription,
-    /// How the recordings were changed before the fits, a sentence each.
+    /// Changes to the recordings before the fits, one sentence each.
     pub changes: Vec<String>,
-    /// Speeds below which torque was not used \[rad/s\], joint by joint.
+    /// Speeds below which torque was not used \[rad/s\], one entry per joint.
     pub slow: Vec<f64>,
-    /// Gravity; none without poses at rest and slow motions.
+    /// The gravity fit; `None` without poses at rest and slow motions.
     pub gravity: Option<GravityFit>,
-    /// Friction of the joints that slow motions show.
+    /// The friction fits of the joints that move alone in the friction recordings.
     pub friction: Vec<FrictionFit>,
-    /// Inertial parameters.
+    /// The fit of the inertial parameters.
     pub inertia: InertiaFit,
-    /// Gains of the joints' torque against each other.
+    /// Gains of the joints' torques relative to each other.
     pub gains: Vec<Gain>,
-    /// The robot on the recordings that were kept back, or, without any, on those it was fitted to.
+    /// Errors of the predicted torque in the validation recordings.
+    ///
+    /// Without validation recordings they are the errors in the exciting motions.
     pub validation: Vec<LogValidation>,
-    /// Whether these were kept back.
+    /// Whether there were validation recordings, to which nothing was fitted.
     pub kept_back: bool,
-    /// Forward simulations over the same recordings.
+    /// Errors of forward simulations over the same recordings, one entry per duration.
     pub windows: Vec<WindowErrors>,
-    /// Torque over time for figures.
+    /// Torque over time of the same recordings, for figures.
     pub traces: Vec<TorqueTrace>,
-    /// What looks wrong or could not be done.
+    /// Warnings about implausible results and steps that were not possible.
     pub warnings: Vec<String>,
 }
 
-/// The recordings of a job, prepared.
-struct Logs {
-    rest: Vec<Log>,
-    friction: Vec<Log>,
-    dynamic: Vec<Log>,
-    validate: Vec<Log>,
-}
-
-/// Identifies a robot from recordings; their paths are taken from `folder` on. `progress` is told
-/// how many of four steps are done.
+/// Identifies a robot from recordings.
+///
+/// `robot` gives the geometry and the prior of the links. Relative paths in `settings` start at
+/// `folder`. `progress` receives the number of finished steps and the number of all steps.
 ///
 /// # Errors
 ///
-/// Defects of the recordings, settings that do not fit, a fit that is not possible.
+/// - [`Error::Recordings`](crate::Error::Recordings) and [`Error::File`](crate::Error::File) report
+///   recordings with defects and files that cannot be read.
+/// - The other variants of [`Error`](crate::Error) report settings that do not suit the robot or the
+///   recordings, and fits that are not possible.
 pub fn identify(
     robot: &Robot,
     settings: &IdentifySettings,
@@ -73,67 +70,54 @@ pub fn identify(
     progress: &dyn Fn(usize, usize),
 ) -> Result<Identification> {
     settings.validate(robot.joint_count())?;
-    let robot = &own_gravity(robot, settings.model.motor_inertia)?;
-    let (logs, cut_off, mut changes) = read(robot, settings, folder)?;
-    progress(1, 4);
     let model = &settings.model;
-    let slow = slow_speeds(&logs, robot.joint_count(), model.slow);
-    let sampling =
-        Sampling { rate: SAMPLES_PER_CUT_OFF * cut_off, slow: slow.clone(), margin: 0.5 / cut_off };
-    changes.push(format!(
-        "logs were thinned to {:.1} samples a second, and a joint's torque was left out where, within {:.0} ms, it is slower than {} rad/s",
-        sampling.rate,
-        1e3 * sampling.margin,
-        slow.iter().map(|slow| format!("{slow:.3}")).collect::<Vec<_>>().join(", ")
-    ));
-    let first =
-        gravity::fit(robot, &logs.rest, &logs.friction, &sampling, model.rest_speed, model.robust)?;
-    progress(2, 4);
-    let coefficients = gravity::coefficients(&first.friction, robot);
+    let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
+
+    // Recordings, filtered and downsampled.
+    let inputs = Inputs::read(robot, settings, folder)?;
+    progress(1, STEPS);
+
+    // Gravity and friction in alternation.
+    let (rest, slow, sampling) = (&inputs.rest, &inputs.friction, &inputs.sampling);
+    let first = fit_gravity_and_friction(robot, rest, slow, sampling, model)?;
+    progress(2, STEPS);
+
+    // Inertial parameters, with the friction and its load subtracted.
+    let friction = coefficients(&first.friction, robot);
     let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
-    let known = gravity::with_friction(load, &coefficients)?;
-    let friction = inertia::Friction {
-        refit: model.refit_friction || first.friction.len() < robot.joint_count(),
+    let known = with_friction(load, &friction)?;
+    let friction_columns = FrictionColumns {
+        fitted: model.refit_friction || first.friction.len() < robot.joint_count(),
         cubic: model.cubic.unwrap_or(!first.friction.is_empty()),
     };
-    let rests: &[Log] = if model.separate_gravity { &[] } else { &logs.rest };
-    let inertia = inertia::fit(robot, &known, [&logs.dynamic, rests], &sampling, model, friction)?;
-    let mut description = inertia::description(robot, &inertia, &coefficients)?;
-    if model.separate_gravity
-        && let Some(gravity) = &first.gravity
-    {
-        gravity::separate(&mut description, &gravity.robot);
+    let rest: &[Log] = if model.separate_gravity { &[] } else { rest };
+    let logs = [&inputs.dynamic[..], rest];
+    let inertia = fit_inertia(robot, &known, logs, sampling, model, friction_columns)?;
+    let mut description = description(robot, &inertia, &friction)?;
+    if let Some(gravity) = first.gravity.as_ref().filter(|_| model.separate_gravity) {
+        set_gravity_moments(&mut description, &gravity.robot);
     }
     let found = Robot::from_description(&description)?;
-    progress(3, 4);
-    let kept_back = !logs.validate.is_empty();
-    let tried = if kept_back { &logs.validate } else { &logs.dynamic };
-    let (validation, traces) = validate::predict(&found, &known, tried, &sampling, &inertia);
-    let windows = validate::simulate(&found, tried, &model.windows);
-    let moving =
-        Samples::of(robot, &inertia.columns, &logs.dynamic, &sampling, &Known::Friction(&known));
-    let consistency = suspect::Consistency::of(&moving, &inertia.joints);
-    let gains = suspect::gains(robot, &moving, &consistency);
-    let mut warnings = first.notes;
-    warnings.extend(inertia.not_shown());
-    warnings.extend(suspect::words(
-        robot,
-        &inertia,
-        &coefficients,
-        (&consistency, &gains),
-        &logs.dynamic,
-        &moving,
-        &sampling,
-    ));
-    warnings.extend(kept_back.then(|| validate::poor(robot, &validation)).into_iter().flatten());
-    progress(4, 4);
-    let (gravity, friction) = (first.gravity, first.friction);
+    progress(3, STEPS);
+
+    // Validation and plausibility.
+    let (kept_back, tried) = inputs.validation();
+    let (validation, traces) = predict_torque(&found, &known, tried, sampling, &inertia);
+    let windows = simulate(&found, tried, &model.windows);
+    let (gains, implausible) = check([robot, &known], &inertia, &friction, &inputs);
+    let mut warnings = first.warnings;
+    warnings.extend(inertia.undetermined_warning());
+    warnings.extend(implausible);
+    if kept_back {
+        warnings.extend(poor_prediction(robot, &validation));
+    }
+    progress(STEPS, STEPS);
     Ok(Identification {
         description,
-        changes,
-        slow,
-        gravity,
-        friction,
+        slow: inputs.sampling.slow,
+        changes: inputs.changes,
+        gravity: first.gravity,
+        friction: first.friction,
         inertia,
         gains,
         validation,
@@ -144,52 +128,19 @@ pub fn identify(
     })
 }
 
-/// The same robot with gravity from its links; without motors where the torque does not drive them.
-fn own_gravity(robot: &Robot, motor_inertia: bool) -> Result<Robot> {
-    let mut description = robot.description().clone();
-    for joint in &mut description.joints {
-        joint.gravity_moments = None;
-        if !motor_inertia {
-            (joint.armature, joint.rotor_inertia) = (None, None);
-        }
-    }
-    Ok(Robot::from_description(&description)?)
-}
-
-/// Reads and prepares all recordings; the cut-off; what was changed.
-fn read(
-    robot: &Robot,
-    settings: &IdentifySettings,
-    folder: &Path,
-) -> Result<(Logs, f64, Vec<String>)> {
-    let own = |entries: &[LogEntry]| prepare::read(entries, folder, robot, &settings.prepare);
-    let groups = [
-        own(&settings.rest)?,
-        own(&settings.friction)?,
-        own(&settings.dynamic)?,
-        own(&settings.validate)?,
-    ];
-    let exciting: Vec<&RawLog> = groups[2].iter().collect();
-    let cut_off = prepare::cut_off(&exciting, &settings.prepare)?;
-    let counts = groups.each_ref().map(Vec::len);
-    let prepared = prepare::prepare(&groups.concat(), &settings.prepare, cut_off)?;
-    let mut logs = prepared.logs.into_iter();
-    let [rest, friction, dynamic, validate] =
-        counts.map(|count| logs.by_ref().take(count).collect());
-    Ok((Logs { rest, friction, dynamic, validate }, cut_off, prepared.changes))
-}
-
-/// For each joint 2 % of the speed that it exceeds 1 % of the time it moves at all, or the speed
-/// given.
-fn slow_speeds(logs: &Logs, joints: usize, given: Option<f64>) -> Vec<f64> {
-    let own = |joint: usize| {
-        let of = |log: &Log| {
-            log.qd.iter().skip(joint).step_by(joints).map(|v| v.abs()).collect::<Vec<_>>()
-        };
-        let mut speeds: Vec<f64> = logs.friction.iter().chain(&logs.dynamic).flat_map(of).collect();
-        speeds.sort_by(f64::total_cmp);
-        let high = speeds.get((HIGH_SPEED * speeds.len() as f64) as usize).copied().unwrap_or(0.0);
-        (SLOW_SHARE * high).max(1e-4)
-    };
-    (0..joints).map(|joint| given.unwrap_or_else(|| own(joint))).collect()
+/// Returns the gains of the joints and warnings about implausible results.
+fn check(
+    [robot, known]: [&Robot; 2],
+    fit: &InertiaFit,
+    friction: &[FrictionDescription],
+    inputs: &Inputs,
+) -> (Vec<Gain>, Vec<String>) {
+    let (logs, sampling) = (&inputs.dynamic, &inputs.sampling);
+    let known = KnownTorque::Friction(known);
+    let samples = &Samples::in_motion(robot, &fit.columns, logs, sampling, &known);
+    let likelihood = GainLikelihood::new(samples, &fit.joints);
+    let gains = gains(robot, samples, &likelihood);
+    let checked = Checked { robot, fit, friction, logs, samples, sampling };
+    let warnings = checked.warnings(&likelihood, &gains);
+    (gains, warnings)
 }

@@ -1,34 +1,74 @@
-//! The nominal model from recordings: gravity, then friction, then inertia (step 1 of the paper,
-//! its appendix).
+//! Identifies the nominal model of a robot from recordings: step 1 of the paper and its appendix.
 //!
-//! [`identify`] prepares recordings ([`prepare`]), fits gravity to poses at rest and slow motions,
-//! friction (5) to (9) with the gravity torque for its load, and the inertial parameters to
-//! exciting motions; makes the links bodies that can exist ([`feasible`]); and tries the robot on
-//! recordings kept back.
+//! [`identify`] is the whole job. It takes a [`Robot`](reachtube_robot::Robot) with known geometry,
+//! and [`IdentifySettings`] that name recordings. It returns an [`Identification`]: a robot
+//! description with gravity, friction and inertial parameters, their standard errors, the errors on
+//! validation recordings, and warnings.
+//!
+//! # Examples
+//!
+//! ```no_run
+//! use reachtube_identify::{IdentifySettings, identify};
+//! use reachtube_robot::Robot;
+//! use std::path::Path;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let robot = Robot::load("arm.urdf")?;
+//! let settings = IdentifySettings::from_toml(
+//!     r#"
+//!         static = ["poses"]
+//!         friction = ["slow"]
+//!         dynamic = ["a.csv", "b.csv"]
+//!         validate = ["c.csv"]
+//!     "#,
+//!     "settings",
+//! )?;
+//! let progress = |done, steps| eprintln!("step {done} of {steps}");
+//! let found = identify(&robot, &settings, Path::new("recordings"), &progress)?;
+//! found.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+//! std::fs::write("arm.toml", found.robot_toml())?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Steps and modules
+//!
+//! 1. [`prepare`] reads recordings, samples them evenly, filters them without phase shift,
+//!    differentiates them, and cuts them into windows.
+//! 2. Gravity is fitted to poses at rest and slow motions ([`GravityFit`]). [`friction`] fits
+//!    friction (5) to (9) to slow motions, with the gravity torque as its load. The two alternate.
+//! 3. The inertial parameters are fitted to exciting motions ([`InertiaFit`]). [`bodies`] finds the
+//!    physically consistent links nearest to the data.
+//! 4. The identified robot predicts the torque of validation recordings ([`LogValidation`]) and
+//!    their motion ([`WindowErrors`]). Implausible signs, gains ([`Gain`]) and residuals give
+//!    warnings.
+//!
+//! [`regression`] is the least squares underneath.
 
+pub mod bodies;
 mod error;
-pub mod feasible;
 mod fit;
 pub mod friction;
 mod gravity;
 mod identification;
 mod inertia;
+mod inputs;
+mod plausibility;
 pub mod prepare;
 pub mod regression;
 mod samples;
 mod settings;
 mod summary;
-mod suspect;
 mod validate;
+mod variant;
 
+pub use error::{Error, Result};
 pub use fit::{Fit, JointFit};
 pub use friction::{FrictionFit, JointFriction};
 pub use gravity::GravityFit;
+pub use identification::{Identification, identify};
 pub use inertia::{BaseParameter, InertiaFit, PhysicalFit};
+pub use plausibility::Gain;
 pub use settings::{IdentifySettings, ModelSettings, Prior};
 pub use summary::Summary;
-pub use suspect::Gain;
 pub use validate::{JointError, LogValidation, TorqueTrace, WindowErrors};
-
-pub use error::{Error, Result};
-pub use identification::{Identification, identify};

@@ -1,82 +1,88 @@
-use super::prepare::{Log, rests};
-use super::regression::Triangle;
+use crate::prepare::log::Log;
+use crate::prepare::rest::rest_intervals;
+use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::DVector;
 use rayon::prelude::*;
 use reachtube_robot::{Column, ColumnKind, Regressor, Robot};
 use std::ops::Range;
 
-/// Rows of the regression tau = Y θ of a group of logs: n rows a sample, one a joint.
+/// Shortest rest that counts as a pose \[s\].
+const SHORTEST_REST: f64 = 0.5;
+
+/// Rows of the regression τ = Y θ for a group of logs: n rows per sample, one per joint.
 #[derive(Debug, Clone)]
 pub struct Samples {
     /// Number of joints n.
     pub joints: usize,
-    /// What the columns of Y are.
+    /// The columns of Y.
     pub columns: Vec<Column>,
-    /// Y, row-major.
+    /// Y, row-major rows x columns.
     regressor: Vec<f64>,
-    /// Torque of each row less what is known of it \[N m\].
+    /// Torque of each row minus the known torque \[N m\].
     pub torque: Vec<f64>,
-    /// Torque of each row as recorded \[N m\].
+    /// Recorded torque of each row \[N m\].
     pub recorded: Vec<f64>,
-    /// Whether a row counts: not where its joint is too slow for friction to have a value.
+    /// Whether a row is used; rows of slow joints are not, because friction has no unique value at
+    /// rest.
     pub used: Vec<bool>,
-    /// The rows of each log.
+    /// Range of the rows of each log.
     pub logs: Vec<Range<usize>>,
 }
 
-/// How samples are taken from logs.
+/// Rules for taking samples from logs.
 #[derive(Debug, Clone)]
 pub struct Sampling {
-    /// Rate of the samples \[Hz\]; logs are thinned to it.
+    /// Rate to which logs are downsampled \[Hz\].
     pub rate: f64,
-    /// Speed below which a joint's row does not count \[rad/s\], n entries.
+    /// Speed below which a joint's row is not used \[rad/s\], n entries.
     pub slow: Vec<f64>,
-    /// Time before and after a joint is slow in which its row does not count either \[s\].
+    /// Time before and after a slow sample in which a joint's row is not used \[s\].
     pub margin: f64,
 }
 
 impl Samples {
-    /// Samples of logs with these columns, less a known torque, a function of q \[rad\] and q̇
-    /// \[rad/s\].
-    pub fn of(
+    /// Takes samples from logs of motions and subtracts the known torque.
+    pub fn in_motion(
         robot: &Robot,
         columns: &[Column],
         logs: &[Log],
         sampling: &Sampling,
-        known: &Known,
+        known: &KnownTorque,
     ) -> Self {
-        let parts = logs.par_iter().map(|log| Self::of_log(robot, columns, log, sampling, known));
+        let parts = logs.par_iter().map(|log| Self::from_log(robot, columns, log, sampling, known));
         Self::joined(robot.joint_count(), columns, parts.collect())
     }
 
-    fn of_log(
+    fn from_log(
         robot: &Robot,
         columns: &[Column],
         log: &Log,
         sampling: &Sampling,
-        known: &Known,
+        known: &KnownTorque,
     ) -> Self {
-        let mut own = Self::empty(robot.joint_count(), columns);
+        let mut samples = Self::empty(robot.joint_count(), columns);
         let mut regressor = Regressor::new(robot, columns);
-        let moves = log.moves(&sampling.slow, sampling.margin);
+        let moves = log.moving_mask(&sampling.slow, sampling.margin);
         let stride = (1.0 / (sampling.rate * log.step)).floor().max(1.0) as usize;
         for k in (0..log.len()).step_by(stride) {
-            own.push(&mut regressor, [log.q(k), log.qd(k), log.qdd(k)], log.tau(k), known);
-            own.used.extend_from_slice(&moves[k * log.joints..(k + 1) * log.joints]);
+            samples.push(&mut regressor, [log.q(k), log.qd(k), log.qdd(k)], log.tau(k), known);
+            samples.used.extend_from_slice(&moves[k * log.joints..(k + 1) * log.joints]);
         }
-        own
+        samples
     }
 
-    /// One sample a rest: the means of q and tau where no joint moved faster than `speed` \[rad/s\]
-    /// for half a second. Friction columns are 0.
-    pub fn of_rests(robot: &Robot, columns: &[Column], logs: &[Log], speed: f64) -> Self {
+    /// Takes one sample per rest: the means of q and τ over an interval of at least 0.5 s in which no
+    /// joint moves faster than `speed` \[rad/s\].
+    ///
+    /// Columns of friction are 0.
+    pub fn at_rest(robot: &Robot, columns: &[Column], logs: &[Log], speed: f64) -> Self {
         let n = robot.joint_count();
         let mut all = Self::empty(n, columns);
         let mut regressor = Regressor::new(robot, columns);
         let still = vec![0.0; n];
         for log in logs {
             let first = all.torque.len();
-            for rest in rests(&log.qd, n, speed, (0.5 / log.step) as usize) {
+            for rest in rest_intervals(&log.qd, n, speed, (SHORTEST_REST / log.step) as usize) {
                 let mean = |values: &[f64]| -> Vec<f64> {
                     let sum =
                         |joint: usize| rest.clone().map(|k| values[k * n + joint]).sum::<f64>();
@@ -86,12 +92,13 @@ impl Samples {
                     &mut regressor,
                     [&mean(&log.q), &still, &still],
                     &mean(&log.tau),
-                    &Known::Nothing,
+                    &KnownTorque::None,
                 );
                 all.used.extend(vec![true; n]);
             }
             all.logs.push(first..all.torque.len());
         }
+        // The offset of friction is the only friction column that is not 0 at zero velocity.
         let width = columns.len();
         let offsets = (0..width).filter(|c| columns[*c].kind == ColumnKind::Offset);
         offsets
@@ -117,7 +124,7 @@ impl Samples {
         regressor: &mut Regressor,
         [q, qd, qdd]: [&[f64]; 3],
         tau: &[f64],
-        known: &Known,
+        known: &KnownTorque,
     ) {
         let at = self.regressor.len();
         self.regressor.resize(at + self.joints * self.columns.len(), 0.0);
@@ -144,70 +151,71 @@ impl Samples {
         all
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.torque.len()
     }
 
-    /// Whether there is no row.
+    /// Returns whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.torque.is_empty()
     }
 
-    /// Row r of Y.
+    /// Returns row r of Y.
     pub fn row(&self, r: usize) -> &[f64] {
         let width = self.columns.len();
         &self.regressor[r * width..(r + 1) * width]
     }
 
-    /// Y θ \[N m\], row by row.
+    /// Returns Y θ \[N m\], one entry per row.
     pub fn predicted(&self, theta: &DVector<f64>) -> Vec<f64> {
         let row = |r: usize| self.row(r).iter().zip(theta.iter()).map(|(y, t)| y * t).sum();
         (0..self.len()).into_par_iter().map(row).collect()
     }
 
-    /// Torque less Y θ \[N m\], row by row.
+    /// Returns the torque minus Y θ \[N m\], one entry per row.
     pub fn residuals(&self, theta: &DVector<f64>) -> Vec<f64> {
         self.torque.iter().zip(self.predicted(theta)).map(|(tau, y)| tau - y).collect()
     }
 
-    /// The triangular factor of the rows that count, each times its weight.
-    pub fn triangle(&self, weights: &[f64]) -> Triangle {
-        let counted: Vec<usize> =
+    /// Returns the triangular factor of the used rows, each multiplied by its entry of `weights`.
+    pub fn weighted_factor(&self, weights: &[f64]) -> TriangularFactor {
+        let used: Vec<usize> =
             (0..self.len()).filter(|r| self.used[*r] && weights[*r] > 0.0).collect();
         let p = self.columns.len();
-        Triangle::of_rows(&counted, p, |r, out| {
+        TriangularFactor::from_written_rows(&used, p, |r, out| {
             out[..p].iter_mut().zip(self.row(r)).for_each(|(o, y)| *o = weights[r] * y);
             out[p] = weights[r] * self.torque[r];
         })
     }
 
-    /// The values of one joint's rows that count, log by log.
-    pub fn of_joint(&self, values: &[f64], joint: usize) -> Vec<Vec<f64>> {
-        let own = |rows: &Range<usize>| {
+    /// Returns the values of one joint's used rows, one list per log.
+    pub fn joint_values(&self, values: &[f64], joint: usize) -> Vec<Vec<f64>> {
+        let in_log = |rows: &Range<usize>| {
             let rows = rows.clone().skip(joint).step_by(self.joints);
             rows.filter(|r| self.used[*r]).map(|r| values[r]).collect()
         };
-        self.logs.iter().map(own).collect()
+        self.logs.iter().map(in_log).collect()
     }
 }
 
-/// Torque that is known before a fit.
+/// Torque that is known before a fit and subtracted from the recorded torque.
 #[derive(Debug, Clone, Copy)]
-pub enum Known<'a> {
-    /// None.
-    Nothing,
-    /// The friction of a robot, its gravity torque as the load.
+pub enum KnownTorque<'a> {
+    /// No torque.
+    None,
+    /// The friction of a robot, with the robot's gravity torque as its load.
     Friction(&'a Robot),
-    /// All that a robot says of its torque.
+    /// The whole torque of a robot: inverse dynamics and friction.
     All(&'a Robot),
 }
 
-impl Known<'_> {
+impl KnownTorque<'_> {
+    /// Returns the torque of all joints \[N m\].
     fn torque(&self, [q, qd, qdd]: [&[f64]; 3]) -> Option<DVector<f64>> {
         let friction = |robot: &Robot| robot.coulomb_torque(q, qd) + robot.viscous_torque(qd);
         match self {
-            Self::Nothing => None,
+            Self::None => None,
             Self::Friction(robot) => Some(friction(robot)),
             Self::All(robot) => Some(robot.inverse_dynamics(q, qd, qdd) + friction(robot)),
         }

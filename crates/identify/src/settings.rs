@@ -1,9 +1,12 @@
-use super::prepare::{LogEntry, PrepareSettings};
 use crate::error::{Error, Result};
+use crate::prepare::entry::LogEntry;
+use crate::prepare::settings::PrepareSettings;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// What is identified from which recordings, and how: the settings file of `reachtube identify`.
+/// Settings of an identification: the recordings, their preparation and the model.
+///
+/// The settings file of `reachtube identify` has this form.
 ///
 /// # Examples
 ///
@@ -27,62 +30,68 @@ use std::path::Path;
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct IdentifySettings {
-    /// The robot: an embedded name, a TOML or a URDF file.
+    /// The robot: an embedded name, or the path of a TOML or URDF file.
     pub robot: Option<String>,
     /// Recordings of poses at rest, for gravity.
     #[serde(rename = "static")]
     pub rest: Vec<LogEntry>,
-    /// Recordings of one slow joint at a time, for friction (and gravity).
+    /// Recordings of slow motions of one joint at a time, for friction and gravity.
     pub friction: Vec<LogEntry>,
     /// Recordings of exciting motions, for the inertial parameters.
     pub dynamic: Vec<LogEntry>,
-    /// Recordings kept back: nothing is fitted to them.
+    /// Validation recordings; nothing is fitted to them.
     pub validate: Vec<LogEntry>,
-    /// How recordings are prepared.
+    /// Settings of the preparation of recordings.
     pub prepare: PrepareSettings,
-    /// What is fitted.
+    /// Settings of the model and its fits.
     pub model: ModelSettings,
 }
 
-/// What is fitted, and how.
+/// Settings of the model and its fits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ModelSettings {
-    /// Whether the torque drives the motors' inertia too: not where it is measured behind the gear.
+    /// Whether the recorded torque also drives the motors' inertia.
+    ///
+    /// Set it to false if the torque is measured behind the gear.
     pub motor_inertia: bool,
-    /// Whether friction is fitted once more, as a change, with the inertial parameters; always
-    /// where there are no friction recordings.
+    /// Whether corrections of friction are fitted together with the inertial parameters.
+    ///
+    /// A joint without a friction fit always makes this necessary.
     pub refit_friction: bool,
-    /// Whether viscous friction has a cubic term where it is fitted with the inertial parameters;
-    /// where left out, if there are friction recordings.
+    /// Whether viscous friction has a cubic term when it is fitted with the inertial parameters.
+    ///
+    /// By default it has one if friction recordings gave a fit.
     pub cubic: Option<bool>,
-    /// Speed below which a joint's torque is not used \[rad/s\], for friction has no value there; 2
-    /// % of each joint's high speeds where left out.
+    /// Speed below which a joint's torque is not used \[rad/s\], because friction has no unique value
+    /// at rest.
+    ///
+    /// By default it is 2 % of the 99th percentile of each joint's speed.
     pub slow: Option<f64>,
-    /// Speed up to which the robot is at rest \[rad/s\].
+    /// Speed up to which the robot counts as at rest \[rad/s\].
     pub rest_speed: f64,
-    /// Whether outliers lose weight (Huber); plain least squares otherwise.
+    /// Whether outliers lose weight by Huber's function; otherwise least squares is plain.
     pub robust: bool,
-    /// Whether the links must be bodies that can exist.
+    /// Whether the links must be physically consistent.
     pub physical: bool,
-    /// What decides where the recordings do not.
+    /// Prior of the links in directions that the recordings do not determine.
     pub prior: Prior,
-    /// How much the prior counts: in independent samples a link, roughly.
+    /// Weight of the prior, roughly in independent samples per link.
     pub prior_strength: f64,
-    /// Whether gravity keeps mass moments of its own, from the first fit, as in the paper.
+    /// Whether gravity keeps its own mass moments from the gravity fit, as in the paper.
     pub separate_gravity: bool,
-    /// Lengths of the forward simulations over the recordings kept back \[s\].
+    /// Durations of the forward simulations over the validation recordings \[s\].
     pub windows: Vec<f64>,
 }
 
-/// What decides where the recordings leave links open.
+/// The prior of the links in directions that the recordings do not determine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Prior {
     /// The links of the robot's description.
     #[default]
     Description,
-    /// Balls about the links' origins: the description's links are not used.
+    /// Solid balls about the links' origins; the links of the description are not used.
     None,
 }
 
@@ -105,68 +114,61 @@ impl Default for ModelSettings {
 }
 
 impl IdentifySettings {
-    /// Settings from TOML text; `origin` names it in errors.
+    /// Parses settings from TOML text; errors name it `origin`.
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`] with line and field.
+    /// [`Error::Syntax`] with line, column and field.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self> {
-        let wrong = |error: toml::de::Error| {
-            Error::Setting(format!("{origin}: {}", error.to_string().trim_end()))
-        };
-        toml::from_str(text).map_err(wrong)
+        toml::from_str(text)
+            .map_err(|error| Error::Syntax { origin: origin.into(), message: error.to_string() })
     }
 
-    /// Settings from a TOML file.
+    /// Reads settings from a TOML file.
     ///
     /// # Errors
     ///
-    /// [`Error::File`], or as [`IdentifySettings::from_toml`].
+    /// [`Error::File`] if the file cannot be read, and [`Error::Syntax`] if it cannot be parsed.
     pub fn load(path: &Path) -> Result<Self> {
         let text =
             reachtube_files::read_text(path, "give a settings file as docs/identify.md describes")?;
         Self::from_toml(&text, &path.display().to_string())
     }
 
-    /// Whether the settings fit a robot of so many joints.
+    /// Checks the settings for a robot with a number of joints.
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`] with the value and its limit.
+    /// [`Error::NoExcitingMotions`], [`Error::GainCount`], [`Error::Gain`] or
+    /// [`Error::NotPositive`].
     pub fn validate(&self, joints: usize) -> Result<()> {
-        let wrong = |words: String| Err(Error::Setting(words));
         if self.dynamic.is_empty() {
-            return wrong(
-                "no recordings of exciting motions: name some with --dynamic or dynamic = [..]"
-                    .into(),
-            );
+            return Err(Error::NoExcitingMotions);
         }
         let gains = &self.prepare.gains;
         if !gains.is_empty() && gains.len() != joints {
-            return wrong(format!(
-                "gains: {} given; give one for each of the {joints} joints, in their order",
-                gains.len()
-            ));
+            return Err(Error::GainCount { given: gains.len(), joints });
         }
-        if let Some(gain) = gains.iter().find(|gain| **gain == 0.0 || !gain.is_finite()) {
-            return wrong(format!(
-                "gains: {gain} turns no torque into N m; give numbers other than 0"
-            ));
+        if let Some(joint) = gains.iter().position(|gain| *gain == 0.0 || !gain.is_finite()) {
+            return Err(Error::Gain { number: joint + 1, gain: gains[joint] });
         }
-        let model = &self.model;
-        let positive = [
-            ("model.rest_speed", model.rest_speed),
-            ("model.prior_strength", model.prior_strength),
-        ];
-        let slow = model.slow.map(|slow| ("model.slow", slow));
-        let windows = model.windows.iter().map(|window| ("model.windows", *window));
-        match positive
+        self.model.validate()
+    }
+}
+
+impl ModelSettings {
+    fn validate(&self) -> Result<()> {
+        let always =
+            [("model.rest_speed", self.rest_speed), ("model.prior_strength", self.prior_strength)];
+        let slow = self.slow.map(|slow| ("model.slow", slow));
+        let windows = self.windows.iter().map(|window| ("model.windows", *window));
+        let wrong = always
             .into_iter()
             .chain(slow)
             .chain(windows)
-            .find(|(_, value)| !(*value > 0.0 && value.is_finite()))
-        {
-            Some((name, value)) => wrong(format!("{name} = {value} must be above 0")),
+            .find(|(_, value)| !(*value > 0.0 && value.is_finite()));
+        match wrong {
+            Some((setting, value)) => Err(Error::NotPositive { setting, value }),
             None => Ok(()),
         }
     }
@@ -177,20 +179,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mistake_is_found_with_its_line() {
+    fn a_syntax_error_names_file_line_and_field() {
         let error = IdentifySettings::from_toml(
             "dynamic = [\"a.csv\"]\n[model]\nmotorinertia = true\n",
             "s.toml",
         );
-        let words = error.unwrap_err().to_string();
-        assert!(
-            words.contains("s.toml") && words.contains("line 3") && words.contains("motorinertia"),
-            "{words}"
-        );
+        let message = error.unwrap_err().to_string();
+        for part in ["s.toml", "line 3", "motorinertia"] {
+            assert!(message.contains(part), "{message}");
+        }
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn settings_that_do_not_suit_the_robot_are_errors() {
         let given = IdentifySettings {
             dynamic: vec![std::path::PathBuf::from("a.csv").into()],
             ..Default::default()

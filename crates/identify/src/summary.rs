@@ -1,45 +1,51 @@
-use super::{
-    BaseParameter, Gain, GravityFit, Identification, JointFit, JointFriction, LogValidation,
-    PhysicalFit, WindowErrors,
-};
+use crate::fit::JointFit;
+use crate::friction::fit::JointFriction;
+use crate::gravity::fit::GravityFit;
+use crate::identification::Identification;
+use crate::inertia::base::BaseParameter;
+use crate::inertia::physical::PhysicalFit;
+use crate::plausibility::gain::Gain;
+use crate::validate::simulation::WindowErrors;
+use crate::validate::torque::LogValidation;
 use reachtube_robot::RobotDescription;
 use serde::Serialize;
 
-/// An identification as `--json` prints it.
+/// The part of an identification that `reachtube identify --json` prints.
 #[derive(Debug, Serialize)]
 pub struct Summary<'a> {
-    /// The robot that was found.
+    /// Description of the identified robot.
     pub robot: &'a RobotDescription,
-    /// How the recordings were changed.
+    /// Changes to the recordings, one sentence each.
     pub changes: &'a [String],
-    /// Speeds below which torque was not used \[rad/s\].
+    /// Speeds below which torque was not used \[rad/s\], one entry per joint.
     pub slow: &'a [f64],
-    /// Gravity.
+    /// The gravity fit.
     pub gravity: &'a Option<GravityFit>,
-    /// Friction.
+    /// The fitted friction of joints with a fit.
     pub friction: Vec<&'a JointFriction>,
-    /// How well the torque of exciting motions was fitted, joint by joint.
+    /// Quality of the fit to exciting motions, one entry per joint.
     pub inertia: &'a [JointFit],
-    /// The combinations that torque shows.
+    /// The identifiable combinations of parameters.
     pub parameters: &'a [BaseParameter],
-    /// Condition of their regression, columns scaled to unit length.
+    /// Condition number of the base regressor, columns scaled to unit length.
     pub condition: f64,
-    /// What it costs that every link is a body.
+    /// Effect of the constraint that every link is physically consistent.
     pub physical: &'a Option<PhysicalFit>,
-    /// Gains of the joints' torque against each other.
+    /// Gains of the joints' torques relative to each other.
     pub gains: &'a [Gain],
-    /// Torque on recordings kept back.
+    /// Errors of the predicted torque in the validation recordings.
     pub validation: &'a [LogValidation],
-    /// Whether they were kept back.
+    /// Whether there were validation recordings, to which nothing was fitted.
     pub kept_back: bool,
-    /// Forward simulations.
+    /// Errors of forward simulations, one entry per duration.
     pub windows: &'a [WindowErrors],
-    /// What looks wrong or could not be done.
+    /// Warnings about implausible results and steps that were not possible.
     pub warnings: &'a [String],
 }
 
 impl Identification {
-    /// What `--json` prints.
+    /// Returns what `reachtube identify --json` prints.
+    #[must_use]
     pub fn summary(&self) -> Summary<'_> {
         Summary {
             robot: &self.description,
@@ -59,8 +65,9 @@ impl Identification {
         }
     }
 
-    /// The robot that was found as a file that `conform` reads.
+    /// Returns the identified robot as the text of a robot file that `reachtube conform` reads.
+    #[must_use]
     pub fn robot_toml(&self) -> String {
-        toml::to_string(&self.description).expect("a description has string keys")
+        toml::to_string(&self.description).expect("the keys of a description are strings")
     }
 }

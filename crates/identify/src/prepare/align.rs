@@ -1,13 +1,19 @@
-use super::Log;
+use crate::prepare::log::Log;
 
-/// By how many seconds a repeated run is late against a reference, from the shift at which their
-/// velocities agree best; none where the runs do not overlap or nothing moves.
+/// Samples that are compared for one shift, at most about this many.
+const MAX_COMPARED: usize = 2000;
+
+/// Returns the delay of a run against a reference \[s\]: the shift at which their velocities agree
+/// best.
 ///
-/// Evenly sampled logs of the same step. Shifts up to half the shorter run are tried; between
-/// samples the best one is that of the parabola through the three around it. The measure is the
-/// mean squared difference of all joints' velocities over the overlap, which, unlike a correlation,
-/// does not favour long overlaps.
-pub fn lateness(reference: &Log, run: &Log) -> Option<f64> {
+/// Both logs must have the same sample time. Shifts of up to half the shorter log are tried, and a
+/// parabola through the best shift and its neighbours refines it between samples. The cost of a
+/// shift is the mean squared difference of all joints' velocities over the overlap. Unlike a
+/// correlation, it does not favour long overlaps.
+///
+/// The result is `None` if the logs do not overlap.
+#[must_use]
+pub fn delay(reference: &Log, run: &Log) -> Option<f64> {
     let most = (reference.len().min(run.len()) / 2) as isize;
     let cost = |shift: isize| difference(reference, run, shift);
     let best = (-most..=most).min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;
@@ -17,10 +23,11 @@ pub fn lateness(reference: &Log, run: &Log) -> Option<f64> {
     here.is_finite().then_some((best as f64 + part.clamp(-0.5, 0.5)) * reference.step)
 }
 
+/// Returns the mean squared difference of velocities, infinite without overlap.
 fn difference(reference: &Log, run: &Log, shift: isize) -> f64 {
     let first = (-shift).max(0) as usize;
     let last = (reference.len() as isize).min(run.len() as isize - shift).max(0) as usize;
-    let stride = (last.saturating_sub(first) / 2000).max(1);
+    let stride = (last.saturating_sub(first) / MAX_COMPARED).max(1);
     let (mut sum, mut count) = (0.0, 0);
     for k in (first..last).step_by(stride) {
         let pairs = reference.qd(k).iter().zip(run.qd((k as isize + shift) as usize));
@@ -37,14 +44,14 @@ mod tests {
     fn bump(centre: f64) -> Log {
         let qd: Vec<f64> =
             (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
-        Log { qd, ..Log::blank("bump", 1, 400, 0.01) }
+        Log { qd, ..Log::zeros("bump", 1, 400, 0.01) }
     }
 
     #[test]
-    fn a_late_run_is_found_between_samples() {
-        let late = lateness(&bump(1.5), &bump(1.8133)).unwrap();
+    fn a_delay_is_found_between_samples() {
+        let late = delay(&bump(1.5), &bump(1.8133)).unwrap();
         assert!((late - 0.3133).abs() < 2e-4, "{late}");
-        let early = lateness(&bump(1.5), &bump(1.2)).unwrap();
+        let early = delay(&bump(1.5), &bump(1.2)).unwrap();
         assert!((early + 0.3).abs() < 2e-4, "{early}");
     }
 }

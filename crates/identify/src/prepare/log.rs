@@ -1,76 +1,83 @@
-use reachtube_recordings::Run;
-
 /// A recording prepared for regression: K evenly spaced samples of n joints, filtered without
-/// delay.
+/// phase shift.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
-    /// The file's name.
+    /// Name of the file.
     pub name: String,
     /// Number of joints n.
     pub joints: usize,
     /// Time between samples \[s\].
     pub step: f64,
-    /// Time of the first sample after that of the recording's first \[s\].
+    /// Time of the first sample, counted from the first sample of the recording \[s\].
     pub start: f64,
     /// Positions \[rad\], row-major K x n.
     pub q: Vec<f64>,
-    /// Velocities \[rad/s\], likewise.
+    /// Velocities \[rad/s\], row-major K x n.
     pub qd: Vec<f64>,
-    /// Accelerations \[rad/s²\], likewise.
+    /// Accelerations \[rad/s²\], row-major K x n.
     pub qdd: Vec<f64>,
-    /// Torques \[N m\] after the gains, likewise.
+    /// Torques \[N m\] after the gains, row-major K x n.
     pub tau: Vec<f64>,
 }
 
 impl Log {
-    /// A log of zeros.
-    pub fn blank(name: &str, joints: usize, samples: usize, step: f64) -> Self {
+    /// Returns a log whose samples are zero.
+    #[must_use]
+    pub fn zeros(name: &str, joints: usize, samples: usize, step: f64) -> Self {
         let zeros = vec![0.0; joints * samples];
         let [q, qd, qdd, tau] = [zeros.clone(), zeros.clone(), zeros.clone(), zeros];
         Self { name: name.into(), joints, step, start: 0.0, q, qd, qdd, tau }
     }
 
-    /// Number of samples K.
+    /// Returns the number of samples K.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.q.len() / self.joints
     }
 
-    /// Whether there is no sample.
+    /// Returns whether there is no sample.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.q.is_empty()
     }
 
-    /// Positions at sample k \[rad\].
+    /// Returns the positions at sample k \[rad\], n entries.
+    #[must_use]
     pub fn q(&self, k: usize) -> &[f64] {
         &self.q[k * self.joints..(k + 1) * self.joints]
     }
 
-    /// Velocities at sample k \[rad/s\].
+    /// Returns the velocities at sample k \[rad/s\], n entries.
+    #[must_use]
     pub fn qd(&self, k: usize) -> &[f64] {
         &self.qd[k * self.joints..(k + 1) * self.joints]
     }
 
-    /// Accelerations at sample k \[rad/s²\].
+    /// Returns the accelerations at sample k \[rad/s²\], n entries.
+    #[must_use]
     pub fn qdd(&self, k: usize) -> &[f64] {
         &self.qdd[k * self.joints..(k + 1) * self.joints]
     }
 
-    /// Torques at sample k \[N m\].
+    /// Returns the torques at sample k \[N m\], n entries.
+    #[must_use]
     pub fn tau(&self, k: usize) -> &[f64] {
         &self.tau[k * self.joints..(k + 1) * self.joints]
     }
 
-    /// Time of sample k after the recording's first \[s\].
+    /// Returns the time of sample k, counted from the first sample of the recording \[s\].
+    #[must_use]
     pub fn time(&self, k: usize) -> f64 {
         self.start + k as f64 * self.step
     }
 
-    /// Whether each joint moves, row-major K x n: not slower than `slow` \[rad/s\], and not for
-    /// `margin` \[s\] before and after.
+    /// Returns whether each joint moves at each sample, row-major K x n.
     ///
-    /// A low-pass spreads the step of Coulomb friction where a joint turns over about half a period
-    /// of its cut-off.
-    pub fn moves(&self, slow: &[f64], margin: f64) -> Vec<bool> {
+    /// A joint moves if it is at least as fast as its entry of `slow` \[rad/s\] throughout `margin`
+    /// \[s\] before and after the sample. The margin is needed because a low-pass spreads the step of
+    /// Coulomb friction at a reversal over about half a period of its cut-off.
+    #[must_use]
+    pub fn moving_mask(&self, slow: &[f64], margin: f64) -> Vec<bool> {
         let reach = (margin / self.step).round() as usize;
         let mut moves = vec![true; self.qd.len()];
         for (joint, slow) in slow.iter().enumerate() {
@@ -87,8 +94,9 @@ impl Log {
         moves
     }
 
-    /// The samples `range` alone.
-    pub fn part(&self, range: std::ops::Range<usize>) -> Self {
+    /// Returns the log of the samples in `range`.
+    #[must_use]
+    pub fn interval(&self, range: std::ops::Range<usize>) -> Self {
         let n = self.joints;
         let rows = |values: &[f64]| values[range.start * n..range.end * n].to_vec();
         let [q, qd, qdd, tau] =
@@ -106,36 +114,16 @@ impl Log {
     }
 }
 
-/// A recording as it was read, with its columns in the order of the robot's joints.
-#[derive(Debug, Clone)]
-pub struct RawLog {
-    /// The file's name.
-    pub name: String,
-    /// The samples.
-    pub run: Run,
-}
-
-impl RawLog {
-    /// One column: values of `joint` by sample.
-    pub(super) fn column<'a>(
-        &'a self,
-        which: fn(&'a Run, usize) -> &'a [f64],
-        joint: usize,
-    ) -> impl Fn(usize) -> f64 + 'a {
-        move |k| which(&self.run, k)[joint]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_joint_moves_where_it_is_fast_and_does_not_turn_soon() {
-        let mut log = Log::blank("turns", 1, 20, 0.1);
+    fn a_joint_does_not_move_near_a_reversal() {
+        let mut log = Log::zeros("reversal", 1, 20, 0.1);
         log.qd = (0..20).map(|k| if k == 10 { 0.0 } else { 1.0 }).collect();
-        let at_rest: Vec<usize> = (0..20).filter(|k| !log.moves(&[0.5], 0.2)[*k]).collect();
+        let at_rest: Vec<usize> = (0..20).filter(|k| !log.moving_mask(&[0.5], 0.2)[*k]).collect();
         assert_eq!(at_rest, [8, 9, 10, 11, 12]);
-        assert_eq!(log.moves(&[0.5], 0.0).iter().filter(|moves| !**moves).count(), 1);
+        assert_eq!(log.moving_mask(&[0.5], 0.0).iter().filter(|moves| !**moves).count(), 1);
     }
 }

@@ -1,10 +1,14 @@
 use std::f64::consts::PI;
 
-/// A Butterworth low-pass of order 4 that is run forward and backward, so that it delays nothing.
+/// Length of the transients at both ends that a user of the filter should cut, in periods of the
+/// cut-off.
+pub(super) const TRANSIENT_PERIODS: f64 = 2.5;
+
+/// A Butterworth low-pass of order 4 that runs forward and backward, so that it has zero phase.
 ///
-/// After both passes the gain is 1/2 at the cut-off and (1 + (f / f_c)⁸)⁻¹ near it. Ends are
-/// continued point-symmetrically (Gustafsson 1996 discusses the choices), and each pass starts in
-/// the steady state of its first sample.
+/// After both passes the gain is 1/2 at the cut-off f_c, and about (1 + (f / f_c)⁸)⁻¹ at other
+/// frequencies f. The signal is extended point-symmetrically at its ends (Gustafsson 1996 discusses
+/// the choices). Each pass starts in the steady state of its first sample.
 ///
 /// # Examples
 ///
@@ -16,13 +20,13 @@ use std::f64::consts::PI;
 /// let before = line.clone();
 /// filter.zero_phase(&mut line);
 /// let change = |k: usize| (line[k] - before[k]).abs();
-/// assert!((0..200).all(|k| change(k) < 1e-3)); // a transient at the ends
-/// assert!((60..140).all(|k| change(k) < 1e-6)); // nothing three periods of the cut-off away
+/// assert!((0..200).all(|k| change(k) < 1e-3)); // transients at the ends
+/// assert!((60..140).all(|k| change(k) < 1e-6)); // three periods away from the ends
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LowPass {
     sections: [Section; 2],
-    /// Samples in a period of the cut-off.
+    /// Number of samples in a period of the cut-off.
     period: usize,
 }
 
@@ -34,12 +38,14 @@ struct Section {
 }
 
 impl LowPass {
-    /// A filter with its cut-off and the sample rate in Hz; none where the cut-off is not between 0
-    /// and half the rate.
+    /// Returns a filter for a cut-off and a sample rate \[Hz\].
+    ///
+    /// The result is `None` if the cut-off is not between 0 and half the rate.
+    #[must_use]
     pub fn new(cut_off: f64, rate: f64) -> Option<Self> {
         let between = cut_off > 0.0 && cut_off < 0.5 * rate && rate.is_finite();
         let period = (rate / cut_off).ceil() as usize;
-        // The pole pairs of order 4 stand 22.5° and 67.5° off the real axis.
+        // The pole pairs of order 4 lie at angles of 22.5° and 67.5° from the real axis.
         let damping = [PI / 8.0, 3.0 * PI / 8.0].map(f64::cos);
         between.then(|| Self { sections: damping.map(|d| Section::new(cut_off / rate, d)), period })
     }
@@ -50,9 +56,11 @@ impl LowPass {
         let pad = (3 * self.period).min(last);
         let (start, end) = (signal[0], signal[last]);
         let mut padded = Vec::with_capacity(signal.len() + 2 * pad);
+        // Point-symmetric extension of both ends.
         padded.extend((1..=pad).rev().map(|k| 2.0 * start - signal[k]));
         padded.extend_from_slice(signal);
         padded.extend((1..=pad).map(|k| 2.0 * end - signal[last - k]));
+        // One pass forward, one backward.
         for _ in 0..2 {
             self.sections.iter().for_each(|section| section.run(&mut padded));
             padded.reverse();
@@ -62,7 +70,9 @@ impl LowPass {
 }
 
 impl Section {
-    /// By the bilinear transform, the cut-off as a part of the sample rate kept in place.
+    /// Designs a section by the bilinear transform, prewarped at the cut-off.
+    ///
+    /// `cut_off` is a share of the sample rate.
     fn new(cut_off: f64, damping: f64) -> Self {
         let w = (PI * cut_off).tan();
         let scale = 1.0 / (1.0 + 2.0 * damping * w + w * w);
@@ -71,15 +81,16 @@ impl Section {
         Self { b: [gain, 2.0 * gain, gain], a }
     }
 
+    /// Filters a signal in place (transposed direct form II).
     fn run(&self, signal: &mut [f64]) {
         let ([b0, b1, b2], [a1, a2]) = (self.b, self.a);
         let steady = signal.first().copied().unwrap_or(0.0);
-        let mut late = (b2 - a2) * steady;
-        let mut next = (b1 - a1) * steady + late;
+        let mut delayed = (b2 - a2) * steady;
+        let mut next = (b1 - a1) * steady + delayed;
         for x in signal {
             let y = b0 * *x + next;
-            next = b1 * *x - a1 * y + late;
-            late = b2 * *x - a2 * y;
+            next = b1 * *x - a1 * y + delayed;
+            delayed = b2 * *x - a2 * y;
             *x = y;
         }
     }
@@ -96,35 +107,35 @@ mod tests {
         let mut signal: Vec<f64> = (0..4000).map(wave).collect();
         filter.zero_phase(&mut signal);
         let middle = 1000..3000;
-        // In phase with the wave that went in, or it would be less.
+        // Correlation with the input: a phase shift would reduce it.
         2.0 * middle.clone().map(|k| signal[k] * wave(k)).sum::<f64>() / middle.len() as f64
     }
 
     #[test]
-    fn the_gain_is_that_of_two_passes() {
+    fn the_gain_equals_that_of_two_passes() {
         assert!((amplitude(10.0) - 0.5).abs() < 1e-3, "{}", amplitude(10.0));
         assert!((amplitude(1.0) - 1.0).abs() < 1e-6);
-        // Frequencies are warped by tan: 20 Hz of 200 Hz stands for tan(0.1 π) / tan(0.05 π) times
-        // the cut-off.
+        // The bilinear transform warps frequencies: 20 Hz at a rate of 200 Hz corresponds to
+        // tan(0.1 π) / tan(0.05 π) times the cut-off.
         let warped = (0.1 * PI).tan() / (0.05 * PI).tan();
         assert!((amplitude(20.0) - 1.0 / (1.0 + warped.powi(8))).abs() < 1e-4);
     }
 
     #[test]
-    fn nothing_is_delayed_and_ends_stay() {
+    fn a_symmetric_pulse_stays_symmetric() {
         let filter = LowPass::new(5.0, 100.0).unwrap();
         let mut signal: Vec<f64> =
             (0..401).map(|k| (-((k as f64 - 200.0) / 12.0).powi(2)).exp()).collect();
         filter.zero_phase(&mut signal);
         let peak = (0..401).max_by(|a, b| signal[*a].total_cmp(&signal[*b])).unwrap();
         assert_eq!(peak, 200);
-        // What is left of the transients of the ends, 200 samples away.
+        // Only the transients from the ends, 200 samples away, break the symmetry.
         let skew = (0..200).map(|k| (signal[k] - signal[400 - k]).abs()).fold(0.0, f64::max);
         assert!(skew < 1e-6, "{skew}");
     }
 
     #[test]
-    fn a_cut_off_beyond_what_is_sampled_is_none() {
+    fn a_cut_off_above_half_the_sample_rate_is_none() {
         assert!(LowPass::new(50.0, 100.0).is_none() && LowPass::new(0.0, 100.0).is_none());
         let short = &mut [1.0, 2.0];
         LowPass::new(1.0, 100.0).unwrap().zero_phase(short);

@@ -1,19 +1,20 @@
 use std::ops::Range;
 
-/// The stretches of samples in which no joint moves faster than `speed` \[rad/s\], each at least
-/// `shortest` samples long.
+/// Returns the intervals of samples in which no joint moves faster than `speed` \[rad/s\].
 ///
-/// `qd` is row-major, samples x `joints`.
+/// `qd` holds velocities \[rad/s\], row-major samples x `joints`. Intervals of fewer than `shortest`
+/// samples are omitted.
 ///
 /// # Examples
 ///
 /// ```
-/// use reachtube_identify::prepare::rests;
+/// use reachtube_identify::prepare::rest_intervals;
 ///
 /// let qd = [0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.0];
-/// assert_eq!(rests(&qd, 1, 0.1, 2), [0..2, 4..7]);
+/// assert_eq!(rest_intervals(&qd, 1, 0.1, 2), [0..2, 4..7]);
 /// ```
-pub fn rests(qd: &[f64], joints: usize, speed: f64, shortest: usize) -> Vec<Range<usize>> {
+#[must_use]
+pub fn rest_intervals(qd: &[f64], joints: usize, speed: f64, shortest: usize) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = 0;
     let mut close = |range: Range<usize>| {

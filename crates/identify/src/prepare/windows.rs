@@ -1,68 +1,69 @@
-use super::{Log, lateness};
 use crate::error::Result;
+use crate::prepare::align::delay;
+use crate::prepare::log::Log;
 use reachtube_files::write::atomically;
 use reachtube_recordings::column_names;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Prepared recordings cut into windows: test suites for `conform`.
+/// Prepared recordings cut into windows, which are test suites for `reachtube conform`.
 #[derive(Debug, Clone)]
 pub struct Windows {
     /// The windows.
     pub windows: Vec<Window>,
-    /// How repeats were shifted, a sentence each.
+    /// Shifts of repeats, one sentence each.
     pub changes: Vec<String>,
 }
 
-/// A stretch of a log.
+/// An interval of a log.
 #[derive(Debug, Clone)]
 pub struct Window {
-    /// The suite: one window of one motion.
+    /// Name of the test suite, which holds one window of one motion.
     pub suite: String,
-    /// The motion: the log, or the log that is repeated.
+    /// Name of the motion: that of the log, or the common part of the names of its repeats.
     pub motion: String,
-    /// The samples; times count from the window's start.
+    /// The samples.
     pub log: Log,
 }
 
-/// Cuts logs into windows of a duration \[s\], or leaves them whole. Logs whose names differ after
-/// the last `_` only are repeats of a motion where `repeats` is set: they are aligned with the
-/// first by their velocities, and each window of a motion is a suite with a run a repeat. What does
-/// not fill a window is left out.
+/// Cuts logs into windows of a duration \[s\]; without a duration each log is one window.
+///
+/// With `repeats`, logs whose names differ only after the last `_` are repeats of one motion. They
+/// are aligned with the first repeat by their velocities, and each window of the motion is a suite
+/// with one run per repeat. A rest that does not fill a window is dropped.
+#[must_use]
 pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
     let motion_of = |log: &Log| match log.name.rsplit_once('_') {
         Some((motion, _)) if repeats => motion.to_string(),
         _ => log.name.clone(),
     };
+    // Repeats and their delays against the first.
     let motions: Vec<String> = logs.iter().map(motion_of).collect();
     let first =
         |index: usize| motions.iter().position(|motion| *motion == motions[index]).unwrap_or(index);
-    let late: Vec<f64> = (0..logs.len())
-        .map(|index| {
-            if first(index) == index {
-                0.0
-            } else {
-                lateness(&logs[first(index)], &logs[index]).unwrap_or(0.0)
-            }
-        })
-        .collect();
+    let late = |index: usize| match first(index) {
+        reference if reference == index => 0.0,
+        reference => delay(&logs[reference], &logs[index]).unwrap_or(0.0),
+    };
+    let delays: Vec<f64> = (0..logs.len()).map(late).collect();
     let mut found = Windows { windows: Vec::new(), changes: Vec::new() };
     for (index, (log, motion)) in logs.iter().zip(&motions).enumerate() {
-        if late[index] != 0.0 {
+        if delays[index] != 0.0 {
             let reference = &logs[first(index)].name;
             found.changes.push(format!(
-                "{} is {:.1} ms late against {reference}; it was shifted by whole samples",
+                "{} lags {reference} by {:.1} ms and was shifted by whole samples to align",
                 log.name,
-                1e3 * late[index]
+                1e3 * delays[index]
             ));
         }
-        // The earliest repeat keeps its start.
+        // Samples to skip: the earliest repeat starts at its first sample.
         let same = (0..logs.len()).filter(|other| motions[*other] == *motion);
-        let earliest = same.map(|other| late[other]).fold(0.0, f64::min);
-        let skip = ((late[index] - earliest) / log.step).round() as usize;
+        let earliest = same.map(|other| delays[other]).fold(0.0, f64::min);
+        let skip = ((delays[index] - earliest) / log.step).round() as usize;
         let rest = log.len().saturating_sub(skip + 1);
         let length =
             duration.map_or(rest, |duration| (duration / log.step).round().max(1.0) as usize);
+        // Windows of whole length.
         for k in 0..rest.checked_div(length).unwrap_or(0) {
             let start = skip + k * length;
             let suite =
@@ -70,7 +71,7 @@ pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
             found.windows.push(Window {
                 suite,
                 motion: motion.clone(),
-                log: log.part(start..start + length + 1),
+                log: log.interval(start..start + length + 1),
             });
         }
     }
@@ -78,11 +79,13 @@ pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
 }
 
 impl Windows {
-    /// Writes the windows as CSV files with their index runs.csv into a folder.
+    /// Writes the windows as CSV files into a folder, with their index runs.csv.
+    ///
+    /// Times in a file count from the start of its window.
     ///
     /// # Errors
     ///
-    /// [`Error::File`](crate::Error::File).
+    /// [`Error::File`](crate::Error::File) if a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let mut index = String::from("file,suite,motion\n");
         for (number, window) in self.windows.iter().enumerate() {
@@ -120,7 +123,7 @@ mod tests {
     fn bump(name: &str, centre: f64) -> Log {
         let qd: Vec<f64> =
             (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
-        Log { qd, ..Log::blank(name, 1, 400, 0.01) }
+        Log { qd, ..Log::zeros(name, 1, 400, 0.01) }
     }
 
     #[test]
@@ -130,7 +133,7 @@ mod tests {
         let suites: Vec<&str> = found.windows.iter().map(|w| w.suite.as_str()).collect();
         assert_eq!(suites[..3], ["A_w01", "A_w02", "A_w03"]);
         assert_eq!(suites.iter().filter(|s| **s == "A_w02").count(), 2);
-        assert!(found.changes[0].contains("A_2 is 300.0 ms late"), "{:?}", found.changes);
+        assert!(found.changes[0].contains("A_2 lags A_1 by 300.0 ms"), "{:?}", found.changes);
         let peak = |w: &Window| {
             (0..w.log.len()).max_by(|a, b| w.log.qd(*a)[0].total_cmp(&w.log.qd(*b)[0])).unwrap()
         };
@@ -139,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_a_data_set() {
+    fn the_written_files_are_a_data_set() {
         let folder = tempfile::tempdir().unwrap();
         windows(&[bump("a", 1.0)], None, false).write(folder.path()).unwrap();
         let data = reachtube_recordings::DataSet::open(folder.path()).unwrap();

@@ -1,12 +1,16 @@
-//! Least squares over many rows: by triangular factors that are joined, robust to outliers, with
-//! standard errors that know how many samples are independent.
+//! Least squares over many rows.
+//!
+//! [`TriangularFactor`] condenses any number of rows to a triangular matrix, and factors of parts
+//! are joined. [`Solution`] holds the parameters with their covariance and names those that the
+//! rows do not determine. Residuals give the weights of a robust fit and the number of independent
+//! samples.
 
-mod residuals;
-mod solution;
-mod triangle;
+pub(crate) mod residuals;
+pub(crate) mod solution;
+pub(crate) mod triangular_factor;
 
 pub use residuals::{
-    huber_weight, robust_deviation, root_mean_square, samples_per_independent_one,
+    autocorrelation_time, huber_row_factor, robust_standard_deviation, root_mean_square,
 };
 pub use solution::Solution;
-pub use triangle::Triangle;
+pub use triangular_factor::TriangularFactor;

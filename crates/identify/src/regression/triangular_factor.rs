@@ -1,35 +1,36 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Rows that are factored in one go.
+/// Number of rows that are factored at once.
 const CHUNK: usize = 1024;
 
-/// What least squares keeps of any number of rows [a, y]: the triangular factor R of [A, y].
+/// The triangular factor of any number of rows [a, y], which is all that least squares needs.
 ///
-/// ‖A x - y‖² = ‖R x - z‖² + rest² for all x. Factors of parts are joined by factoring them again,
-/// so rows can be added in any number.
+/// With p columns in A, ‖A x - y‖² = ‖R x - z‖² + residual² for all x. Factors of parts are joined
+/// by factoring them again, so that rows can be added in any number.
 #[derive(Debug, Clone)]
-pub struct Triangle {
-    /// p x p, upper triangular.
+pub struct TriangularFactor {
+    /// R, p x p, upper triangular.
     pub r: DMatrix<f64>,
-    /// p entries.
+    /// z, p entries.
     pub z: DVector<f64>,
-    /// What no x can fit.
-    pub rest: f64,
+    /// Norm of the residual of the best x.
+    pub residual: f64,
 }
 
-impl Triangle {
-    /// Of rows [a, y], each of p + 1 entries, row-major.
-    pub fn of(rows: &[f64], columns: usize) -> Self {
+impl TriangularFactor {
+    /// Factors rows [a, y] of p + 1 entries each, given row-major.
+    #[must_use]
+    pub fn from_rows(rows: &[f64], columns: usize) -> Self {
         let width = columns + 1;
         let all: Vec<usize> = (0..rows.len() / width).collect();
-        Self::of_rows(&all, columns, |index, row| {
+        Self::from_written_rows(&all, columns, |index, row| {
             row.copy_from_slice(&rows[index * width..][..width])
         })
     }
 
-    /// Of the rows [a, y] that `write` writes for each index.
-    pub fn of_rows(
+    /// Factors the rows [a, y] that `write` fills in, one for each index.
+    pub fn from_written_rows(
         indices: &[usize],
         columns: usize,
         write: impl Fn(usize, &mut [f64]) + Sync,
@@ -43,17 +44,17 @@ impl Triangle {
             factor(DMatrix::from_row_slice(part.len(), width, &rows))
         };
         let parts: Vec<_> = indices.par_chunks(CHUNK).map(part).collect();
-        Self::joined(parts, width)
+        Self::from_parts(parts, width)
     }
 
-    /// Of the rows of several.
-    pub fn of_all<'a>(triangles: impl IntoIterator<Item = &'a Self>) -> Self {
-        let parts: Vec<_> = triangles.into_iter().map(Self::augmented).collect();
+    /// Joins the rows of several factors into one factor.
+    pub fn joined<'a>(factors: impl IntoIterator<Item = &'a Self>) -> Self {
+        let parts: Vec<_> = factors.into_iter().map(Self::augmented).collect();
         let width = parts.first().map_or(1, DMatrix::ncols);
-        Self::joined(parts, width)
+        Self::from_parts(parts, width)
     }
 
-    fn joined(parts: Vec<DMatrix<f64>>, width: usize) -> Self {
+    fn from_parts(parts: Vec<DMatrix<f64>>, width: usize) -> Self {
         let stack = parts.into_iter().reduce(|above, below| factor(stacked(&above, &below)));
         let mut whole = DMatrix::zeros(width, width);
         if let Some(stack) = stack {
@@ -67,7 +68,7 @@ impl Triangle {
         Self {
             r: whole.view((0, 0), (p, p)).into_owned(),
             z: whole.view((0, p), (p, 1)).column(0).into_owned(),
-            rest: whole[(p, p)].abs(),
+            residual: whole[(p, p)].abs(),
         }
     }
 
@@ -76,27 +77,29 @@ impl Triangle {
         let mut whole = DMatrix::zeros(p + 1, p + 1);
         whole.view_mut((0, 0), (p, p)).copy_from(&self.r);
         whole.view_mut((0, p), (p, 1)).column_mut(0).copy_from(&self.z);
-        whole[(p, p)] = self.rest;
+        whole[(p, p)] = self.residual;
         whole
     }
 
-    /// Of the same rows with other columns: A · `map` in place of A (p x k).
-    pub fn mapped(&self, map: &DMatrix<f64>) -> Self {
+    /// Returns the factor of the rows [A · `map`, y], where `map` is p x k.
+    #[must_use]
+    pub fn with_mapped_columns(&self, map: &DMatrix<f64>) -> Self {
         let (p, k) = map.shape();
         let mut rows = DMatrix::zeros(p + 1, k + 1);
         rows.view_mut((0, 0), (p, k)).copy_from(&(&self.r * map));
         rows.view_mut((0, k), (p, 1)).column_mut(0).copy_from(&self.z);
-        rows[(p, k)] = self.rest;
-        Self::joined(vec![factor(rows)], k + 1)
+        rows[(p, k)] = self.residual;
+        Self::from_parts(vec![factor(rows)], k + 1)
     }
 
-    /// The sum of squares ‖A x - y‖².
-    pub fn squares(&self, x: &DVector<f64>) -> f64 {
-        (&self.r * x - &self.z).norm_squared() + self.rest * self.rest
+    /// Returns the sum of squares ‖A x - y‖².
+    #[must_use]
+    pub fn sum_of_squares(&self, x: &DVector<f64>) -> f64 {
+        (&self.r * x - &self.z).norm_squared() + self.residual * self.residual
     }
 }
 
-/// The triangular factor of rows.
+/// Returns the triangular factor of a QR decomposition.
 fn factor(rows: DMatrix<f64>) -> DMatrix<f64> {
     rows.qr().unpack_r()
 }
@@ -118,32 +121,46 @@ mod tests {
             .prop_map(move |v| DMatrix::from_row_slice(rows, 4, &v))
     }
 
-    fn triangle(rows: &DMatrix<f64>) -> Triangle {
-        Triangle::of(rows.transpose().as_slice(), rows.ncols() - 1)
+    fn factor_of(rows: &DMatrix<f64>) -> TriangularFactor {
+        TriangularFactor::from_rows(rows.transpose().as_slice(), rows.ncols() - 1)
     }
 
     proptest! {
         #[test]
-        fn sums_of_squares_are_those_of_the_rows(rows in (1..40_usize).prop_flat_map(matrix), x in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64]) {
+        fn sums_of_squares_equal_those_of_the_rows(
+            rows in (1..40_usize).prop_flat_map(matrix),
+            x in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64],
+        ) {
             let x = DVector::from_row_slice(&x);
             let squares = (rows.columns(0, 3) * &x - rows.column(3)).norm_squared();
-            prop_assert!((triangle(&rows).squares(&x) - squares).abs() < 1e-9 * (1.0 + squares));
+            let error = (factor_of(&rows).sum_of_squares(&x) - squares).abs();
+            prop_assert!(error < 1e-9 * (1.0 + squares));
         }
 
         #[test]
-        fn parts_make_the_whole(above in matrix(7), below in matrix(9), x in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64]) {
+        fn parts_add_up_to_the_whole(
+            above in matrix(7),
+            below in matrix(9),
+            x in [-2.0..2.0, -2.0..2.0, -2.0..2.0_f64],
+        ) {
             let x = DVector::from_row_slice(&x);
-            let parts = [triangle(&above), triangle(&below)];
-            let squares = parts[0].squares(&x) + parts[1].squares(&x);
-            prop_assert!((Triangle::of_all(&parts).squares(&x) - squares).abs() < 1e-9 * (1.0 + squares));
+            let parts = [factor_of(&above), factor_of(&below)];
+            let squares = parts[0].sum_of_squares(&x) + parts[1].sum_of_squares(&x);
+            let joined = TriangularFactor::joined(&parts).sum_of_squares(&x);
+            prop_assert!((joined - squares).abs() < 1e-9 * (1.0 + squares));
         }
 
         #[test]
-        fn columns_are_combined(rows in matrix(12), x in [-2.0..2.0, -2.0..2.0_f64]) {
+        fn mapped_columns_equal_mapped_parameters(
+            rows in matrix(12),
+            x in [-2.0..2.0, -2.0..2.0_f64],
+        ) {
             let map = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 0.5, 2.0, 0.0, -1.0]);
             let x = DVector::from_row_slice(&x);
-            let whole = triangle(&rows);
-            prop_assert!((whole.mapped(&map).squares(&x) - whole.squares(&(&map * &x))).abs() < 1e-9 * (1.0 + whole.squares(&(&map * &x))));
+            let whole = factor_of(&rows);
+            let squares = whole.sum_of_squares(&(&map * &x));
+            let mapped = whole.with_mapped_columns(&map).sum_of_squares(&x);
+            prop_assert!((mapped - squares).abs() < 1e-9 * (1.0 + squares));
         }
     }
 
@@ -153,6 +170,7 @@ mod tests {
         let whole = DMatrix::from_row_slice(5000, 3, &rows);
         let x = DVector::from_row_slice(&[0.3, -0.2]);
         let squares = (whole.columns(0, 2) * &x - whole.column(2)).norm_squared();
-        assert!((Triangle::of(&rows, 2).squares(&x) - squares).abs() < 1e-9 * squares);
+        let factor = TriangularFactor::from_rows(&rows, 2);
+        assert!((factor.sum_of_squares(&x) - squares).abs() < 1e-9 * squares);
     }
 }

@@ -1,0 +1,46 @@
+use crate::error::Result;
+use crate::inertia::columns::inertia_part;
+use crate::inertia::fit::InertiaFit;
+use crate::variant::with_parameters;
+use reachtube_robot::{
+    Column, ColumnKind, FrictionDescription, Parameters, Robot, RobotDescription,
+};
+
+/// Returns the description of the identified robot.
+///
+/// Its friction is `friction`, one entry per joint, plus the friction that was fitted together with
+/// the inertial parameters.
+///
+/// # Errors
+///
+/// [`Error::Robot`](crate::Error::Robot) if the parameters give no robot.
+pub fn description(
+    robot: &Robot,
+    found: &InertiaFit,
+    friction: &[FrictionDescription],
+) -> Result<RobotDescription> {
+    let (columns, values) = inertia_part(&found.columns, &found.values);
+    let mut out = with_parameters(robot, &columns, &values)?.description().clone();
+    out.parameters = if found.physical.is_some() { Parameters::Physical } else { Parameters::Base };
+    for (joint, friction) in out.joints.iter_mut().zip(friction) {
+        joint.friction = *friction;
+    }
+    for (column, value) in found.columns.iter().zip(found.values.iter()) {
+        add_friction(&mut out.joints[column.joint].friction, column, *value);
+    }
+    Ok(out)
+}
+
+/// Adds the value of a friction column; other columns change nothing.
+fn add_friction(friction: &mut FrictionDescription, column: &Column, value: f64) {
+    let FrictionDescription { coulomb, viscous } = friction;
+    // Offsets of driving forward, driving backward, braking backward, braking forward.
+    let mut add = |signs: [f64; 4]| (0..4).for_each(|q| coulomb[2 * q] += signs[q] * value);
+    match column.kind {
+        ColumnKind::Coulomb => add([1.0, -1.0, -1.0, 1.0]),
+        ColumnKind::Offset => add([1.0; 4]),
+        ColumnKind::Viscous1 => viscous[0] += value,
+        ColumnKind::Viscous3 => viscous[2] += value,
+        _ => {}
+    }
+}

@@ -1,0 +1,11 @@
+//! Inertial parameters by linear regression, and the nearest physically consistent links.
+
+pub(crate) mod base;
+pub(crate) mod columns;
+pub(crate) mod description;
+pub(crate) mod fit;
+pub(crate) mod physical;
+
+pub use base::BaseParameter;
+pub use fit::InertiaFit;
+pub use physical::PhysicalFit;

@@ -1,0 +1,64 @@
+use crate::error::{Error, Result};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Recordings named in settings: a CSV file or a folder of them, whole or an interval of time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum LogEntry {
+    /// A CSV file, or a folder with all its CSV files except runs.csv, in the order of their names.
+    Path(PathBuf),
+    /// An interval of time of each of these files.
+    Stretch {
+        /// The file or folder.
+        path: PathBuf,
+        /// First time that is used \[s\].
+        #[serde(default)]
+        from: f64,
+        /// Last time that is used \[s\].
+        #[serde(default)]
+        until: Option<f64>,
+    },
+}
+
+impl LogEntry {
+    /// Returns the path, the first time and the last time \[s\].
+    pub(super) fn parts(&self) -> (&Path, f64, Option<f64>) {
+        match self {
+            Self::Path(path) => (path, 0.0, None),
+            Self::Stretch { path, from, until } => (path, *from, *until),
+        }
+    }
+}
+
+impl From<PathBuf> for LogEntry {
+    fn from(path: PathBuf) -> Self {
+        Self::Path(path)
+    }
+}
+
+/// Returns the file itself, or the recordings of a folder sorted by name.
+pub(super) fn csv_files(path: &Path) -> Result<Vec<PathBuf>> {
+    let unreadable = |source| reachtube_files::Error::Read {
+        path: path.to_path_buf(),
+        source,
+        remedy: "give a CSV file of one recording, or a folder of them",
+    };
+    if !path.metadata().map_err(unreadable)?.is_dir() {
+        return Ok(vec![path.to_path_buf()]);
+    }
+    let entries = std::fs::read_dir(path).map_err(unreadable)?;
+    let mut files: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| {
+            path.extension().is_some_and(|e| e == "csv")
+                && path.file_name().is_some_and(|f| f != "runs.csv")
+        })
+        .collect();
+    files.sort();
+    if files.is_empty() {
+        return Err(Error::NoCsvFile { folder: path.to_path_buf() });
+    }
+    Ok(files)
+}

@@ -1,0 +1,21 @@
+use reachtube_recordings::Run;
+
+/// A recording as read, with its columns in the order of the robot's joints.
+#[derive(Debug, Clone)]
+pub struct RawLog {
+    /// Name of the file.
+    pub name: String,
+    /// The samples.
+    pub run: Run,
+}
+
+impl RawLog {
+    /// Returns one column as a function of the sample: the values of `joint` in `which`.
+    pub(super) fn column<'a>(
+        &'a self,
+        which: fn(&'a Run, usize) -> &'a [f64],
+        joint: usize,
+    ) -> impl Fn(usize) -> f64 + 'a {
+        move |k| which(&self.run, k)[joint]
+    }
+}

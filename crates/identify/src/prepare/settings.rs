@@ -1,0 +1,37 @@
+use serde::{Deserialize, Serialize};
+
+/// Settings of how recordings are prepared.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PrepareSettings {
+    /// Names of the robot's joints in the order of the recordings' columns.
+    ///
+    /// An empty list stands for the robot's own order.
+    pub joints: Vec<String>,
+    /// Factors that multiply the recorded torques, one per joint in the robot's order.
+    ///
+    /// They have the unit N m/A where currents were recorded. An empty list stands for 1.
+    pub gains: Vec<f64>,
+    /// Cut-off frequency of the low-pass \[Hz\]; by default it is chosen from the recordings.
+    pub cut_off: Option<f64>,
+    /// Source of the velocity.
+    pub velocity: VelocitySource,
+    /// Longest allowed time between samples \[s\].
+    ///
+    /// By default it is 1.9 times the usual time at a fixed rate, and 10 times the usual time where
+    /// the sample times jitter.
+    pub max_gap: Option<f64>,
+}
+
+/// The source of a log's velocity.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum VelocitySource {
+    /// The source from which the low-pass removes less, chosen for each log.
+    #[default]
+    Quieter,
+    /// The recorded velocity.
+    Recorded,
+    /// The derivative of the filtered position.
+    Differentiated,
+}
