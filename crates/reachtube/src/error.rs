@@ -32,9 +32,10 @@ pub enum Error {
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
-    /// A figure or page could not be drawn.
+    /// A figure or page could not be made.
+    #[cfg(feature = "report")]
     #[error(transparent)]
-    Report(#[from] crate::report::ReportError),
+    Report(#[from] crate::report::error::ReportError),
 }
 
 /// A result of this crate.

@@ -3,7 +3,9 @@
 pub mod demo;
 mod error;
 mod motion;
+pub mod number;
 mod random;
+#[cfg(feature = "report")]
 pub mod report;
 pub mod reproduce;
 

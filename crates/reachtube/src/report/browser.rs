@@ -1,8 +1,9 @@
-//! The page in a headless browser: its script runs to the end, and nothing is complained about.
+//! Tests of the page in a headless browser: its script runs to the end, and the console stays empty.
 //!
-//! The test needs Chromium or Chrome on the PATH and says so where there is none.
+//! The tests need Chromium or Chrome on the PATH; without one they print that they are skipped.
 
-use super::{sample, write_html};
+use super::html::write_html;
+use super::sample;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -10,6 +11,7 @@ use std::{env, fs, thread};
 
 const BROWSERS: [&str; 4] =
     ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+/// Time that a browser may take.
 const PATIENCE: Duration = Duration::from_secs(120);
 const QUIET: [&str; 13] = [
     "--headless",
@@ -35,7 +37,8 @@ fn browser() -> Option<PathBuf> {
         .find(|path| path.is_file())
 }
 
-/// Opens a page; the document that its script leaves, or what went wrong.
+/// Opens a page and returns the document that its script leaves, or a message about what went
+/// wrong.
 fn open(browser: &Path, html: &str) -> Result<String, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let at = |name: &str| folder.path().join(name);
@@ -85,8 +88,8 @@ fn page() -> String {
     String::from_utf8(html).unwrap()
 }
 
-/// The browser, or a word about why the test is skipped.
-fn browser_or_word() -> Option<PathBuf> {
+/// Finds a browser, or prints that the test is skipped.
+fn browser_or_notice() -> Option<PathBuf> {
     let found = browser();
     if found.is_none() {
         println!("skipped: none of {BROWSERS:?} is on the PATH, so no page can be opened");
@@ -95,8 +98,8 @@ fn browser_or_word() -> Option<PathBuf> {
 }
 
 #[test]
-fn the_page_opens_without_a_complaint_and_shows_one_figure() {
-    let Some(browser) = browser_or_word() else { return };
+fn the_page_opens_without_a_message_and_shows_one_figure() {
+    let Some(browser) = browser_or_notice() else { return };
     let dom = open(&browser, &page()).unwrap();
     assert_eq!(dom.matches("<svg").count(), 4);
     let hidden = |start: &str| dom.split(start).skip(1).filter(|tag| has_hidden(tag)).count();
@@ -107,8 +110,9 @@ fn the_page_opens_without_a_complaint_and_shows_one_figure() {
 
 #[test]
 fn the_buttons_choose_the_suite_the_view_and_the_run() {
-    let Some(browser) = browser_or_word() else { return };
-    let click = "<script>for (const b of ['#suites [value=\"1\"]', '#views [value=deviation]', '#suite-1 .runs button']) \
+    let Some(browser) = browser_or_notice() else { return };
+    let click = "<script>for (const b of \
+                 ['#suites [value=\"1\"]', '#views [value=deviation]', '#suite-1 .runs button']) \
                  document.querySelector(b).click();</script></body>";
     let dom = open(&browser, &page().replace("</body>", click)).unwrap();
     let shown = |start: &str| -> Vec<bool> {
@@ -124,8 +128,8 @@ fn has_hidden(tag: &str) -> bool {
 }
 
 #[test]
-fn a_complaint_or_a_broken_script_is_seen() {
-    let Some(browser) = browser_or_word() else { return };
+fn a_message_or_a_broken_script_is_reported() {
+    let Some(browser) = browser_or_notice() else { return };
     let planted = page().replace("</body>", "<script>console.error(\"planted\")</script></body>");
     assert!(open(&browser, &planted).unwrap_err().contains("planted"));
     let fetching =

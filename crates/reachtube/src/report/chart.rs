@@ -1,36 +1,49 @@
-//! One plot of dots and lines as SVG: for results that are no reachable sets.
+//! One plot of dots and lines as SVG, for results other than reachable sets.
 
-use super::figure::{Canvas, DrawResult};
+use super::canvas::{Canvas, DrawResult, svg_document};
+use super::decimate::{Point, decimate};
+use super::error::ReportError;
 use super::layout::units;
-use super::number::tick;
-use super::panel::{GRID, INK};
-use super::text::{clean, escape};
-use super::{ReportError, decimate};
+use super::style::{GRID, INK, centred, font, tick_style};
+use super::text::clean;
+use crate::number::tick_label;
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// Width of the document \[px\].
 const WIDTH: f64 = 400.0;
+/// Height of the document \[px\].
 const HEIGHT: f64 = 230.0;
+/// Height of the title \[px\].
 const TITLE: f64 = 20.0;
+/// Room left of the plot \[px\].
 const LEFT: f64 = 56.0;
+/// Part of the room left of the plot that holds the axis' label \[px\].
+const Y_LABEL: f64 = 14.0;
+/// Room below the plot \[px\].
 const BELOW: f64 = 36.0;
+/// Part of the room below the plot that holds the axis' label \[px\].
+const X_LABEL: f64 = 16.0;
+/// Room right of the plot \[px\].
 const RIGHT: f64 = 10.0;
+/// Radius of a dot \[px\].
 const DOT: f64 = 1.6;
+/// Width of a line, in drawing units.
 const LINE: u32 = 10;
 
-/// Dots that are drawn of a series; more would hide each other.
+/// Largest number of dots drawn of a series; more would hide each other.
 const MOST_DOTS: usize = 500;
 
 /// A plot.
 #[derive(Debug, Clone, Default)]
 pub struct Chart {
-    /// What is plotted, above the plot.
+    /// The heading above the plot.
     pub title: String,
     /// Label of the horizontal axis with its unit.
     pub x: String,
     /// Label of the vertical axis with its unit.
     pub y: String,
-    /// Drawn one on the other.
+    /// The series, each drawn over the one before it.
     pub series: Vec<Series>,
 }
 
@@ -39,110 +52,105 @@ pub struct Chart {
 pub struct Series {
     /// Points (x, y).
     pub points: Vec<(f64, f64)>,
-    /// As dots, else as a line; the points of a line go from left to right.
+    /// Whether to draw dots; else a line, whose points go from left to right.
     pub dots: bool,
     /// Red, green, blue.
     pub colour: [u8; 3],
 }
 
-/// A chart as a complete SVG document.
+type Axes<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Draws a chart as a complete SVG document.
 ///
 /// # Errors
 ///
-/// Numbers that are not finite, or what the drawing library refuses.
+/// Fails for numbers that are not finite, and where the drawing library fails.
 pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
-    let points = || chart.series.iter().flat_map(|series| &series.points);
-    if let Some((index, (x, y))) =
-        points().enumerate().find(|(_, (x, y))| !(x.is_finite() && y.is_finite()))
-    {
-        let value = if x.is_finite() { *y } else { *x };
-        return Err(ReportError::NotFinite {
-            place: chart.title.clone(),
+    check(chart)?;
+    svg_document([WIDTH, HEIGHT], &chart.title, |canvas| draw(canvas, chart)).map_err(|cause| {
+        ReportError::Draw { figure: format!("chart {}", chart.title), cause: cause.to_string() }
+    })
+}
+
+fn check(chart: &Chart) -> Result<(), ReportError> {
+    let mut points = chart.series.iter().flat_map(|series| &series.points).enumerate();
+    match points.find(|(_, (x, y))| !(x.is_finite() && y.is_finite())) {
+        None => Ok(()),
+        Some((index, (x, y))) => Err(ReportError::NotFinite {
+            place: format!("chart {}", chart.title),
             what: "points".into(),
             index,
-            value,
-        });
+            value: if x.is_finite() { *y } else { *x },
+        }),
     }
-    let size = (units(WIDTH) as u32, units(HEIGHT) as u32);
-    let mut drawing = String::new();
-    let canvas = SVGBackend::with_string(&mut drawing, size).into_drawing_area();
-    draw(&canvas, chart).map_err(|cause| ReportError::Draw {
-        suite: chart.title.clone(),
-        cause: cause.to_string(),
-    })?;
-    drop(canvas);
-    let body = drawing.split_once('>').map_or("", |(_, body)| body);
-    Ok(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {} {}\" \
-         stroke-linejoin=\"round\" role=\"img\" aria-label=\"{}\">{body}",
-        size.0,
-        size.1,
-        escape(&chart.title)
-    ))
 }
 
 fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
-    canvas.fill(&WHITE)?;
+    labels(canvas, chart)?;
     let [x, y] = [range(chart, |p| p.0), range(chart, |p| p.1)];
-    let font = |size: f64| ("sans-serif", f64::from(units(size)) * 1.24).into_font();
-    let style = |font: FontDesc<'static>| {
-        TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Center, VPos::Center))
-    };
-    let middle = units(LEFT + 0.5 * (WIDTH - LEFT - RIGHT));
-    canvas.draw_text(
-        &clean(&chart.title),
-        &style(font(12.0).style(FontStyle::Bold)),
-        (middle, units(10.0)),
-    )?;
-    canvas.draw_text(&clean(&chart.x), &style(font(11.0)), (middle, units(HEIGHT - 9.0)))?;
-    let turned = style(font(11.0).transform(FontTransform::Rotate270));
-    canvas.draw_text(
-        &clean(&chart.y),
-        &turned,
-        (units(9.0), units(TITLE + 0.5 * (HEIGHT - TITLE - BELOW))),
-    )?;
     let plot = canvas.clone().shrink(
-        (units(14.0), units(TITLE)),
-        (units(WIDTH - 14.0 - RIGHT), units(HEIGHT - TITLE - 16.0)),
+        (units(Y_LABEL), units(TITLE)),
+        (units(WIDTH - Y_LABEL - RIGHT), units(HEIGHT - TITLE - X_LABEL)),
     );
     let mut axes = ChartBuilder::on(&plot)
-        .set_label_area_size(LabelAreaPosition::Left, units(LEFT - 14.0))
-        .set_label_area_size(LabelAreaPosition::Bottom, units(BELOW - 16.0))
+        .set_label_area_size(LabelAreaPosition::Left, units(LEFT - Y_LABEL))
+        .set_label_area_size(LabelAreaPosition::Bottom, units(BELOW - X_LABEL))
         .build_cartesian_2d(x[0]..x[1], y[0]..y[1])?;
     axes.configure_mesh()
         .max_light_lines(0)
         .bold_line_style(GRID.stroke_width(6))
         .axis_style(INK.stroke_width(6))
-        .label_style(("sans-serif", f64::from(units(10.5)) * 1.24, &INK))
+        .label_style(tick_style())
         .set_all_tick_mark_size(units(3.0))
         .x_labels(7)
         .y_labels(6)
-        .x_label_formatter(&|value| tick(*value, x[1] - x[0]))
-        .y_label_formatter(&|value| tick(*value, y[1] - y[0]))
+        .x_label_formatter(&|value| tick_label(*value, x[1] - x[0]))
+        .y_label_formatter(&|value| tick_label(*value, y[1] - y[0]))
         .draw()?;
-    for series in &chart.series {
-        let [red, green, blue] = series.colour;
-        let colour = RGBColor(red, green, blue);
-        if series.dots {
-            let stride = series.points.len().div_ceil(MOST_DOTS).max(1);
-            let dot = |point: &(f64, f64)| Circle::new(*point, units(DOT), colour.filled());
-            axes.draw_series(series.points.iter().step_by(stride).map(dot))?;
-        } else {
-            let (column, tolerance) =
-                ((x[1] - x[0]) / (2.0 * WIDTH), (y[1] - y[0]) / (20.0 * HEIGHT));
-            let line = decimate::decimate(&series.points, column, tolerance);
-            axes.draw_series([PathElement::new(line, colour.stroke_width(LINE))])?;
-        }
-    }
-    canvas.present()
+    let (column, tolerance) = ((x[1] - x[0]) / (2.0 * WIDTH), (y[1] - y[0]) / (20.0 * HEIGHT));
+    chart.series.iter().try_for_each(|series| match series.dots {
+        true => dots(&mut axes, series),
+        false => line(&mut axes, series, column, tolerance),
+    })
 }
 
-/// The range of a coordinate with some room; 1 about what does not vary.
-fn range(chart: &Chart, of: fn(&(f64, f64)) -> f64) -> [f64; 2] {
-    let values = || chart.series.iter().flat_map(|series| series.points.iter().map(of));
+/// Writes the title and the labels of the axes.
+fn labels(canvas: &Canvas, chart: &Chart) -> DrawResult {
+    let middle = units(LEFT + 0.5 * (WIDTH - LEFT - RIGHT));
+    let title = centred(font(12.0, FontStyle::Bold));
+    let label = font(11.0, FontStyle::Normal);
+    let turned = centred(label.transform(FontTransform::Rotate270));
+    canvas.draw_text(&clean(&chart.title), &title, (middle, units(10.0)))?;
+    canvas.draw_text(&clean(&chart.x), &centred(label), (middle, units(HEIGHT - 9.0)))?;
+    let beside = (units(9.0), units(TITLE + 0.5 * (HEIGHT - TITLE - BELOW)));
+    canvas.draw_text(&clean(&chart.y), &turned, beside)
+}
+
+fn dots(axes: &mut Axes, series: &Series) -> DrawResult {
+    let stride = series.points.len().div_ceil(MOST_DOTS).max(1);
+    let colour = colour(series);
+    let dot = |point: &Point| Circle::new(*point, units(DOT), colour.filled());
+    axes.draw_series(series.points.iter().step_by(stride).map(dot))?;
+    Ok(())
+}
+
+fn line(axes: &mut Axes, series: &Series, column: f64, tolerance: f64) -> DrawResult {
+    let line = decimate(&series.points, column, tolerance);
+    axes.draw_series([PathElement::new(line, colour(series).stroke_width(LINE))])?;
+    Ok(())
+}
+
+fn colour(series: &Series) -> RGBColor {
+    let [red, green, blue] = series.colour;
+    RGBColor(red, green, blue)
+}
+
+/// Returns the range of a coordinate with a margin of 5 %; a width of 1 around a constant.
+fn range(chart: &Chart, coordinate: fn(&Point) -> f64) -> [f64; 2] {
+    let values = || chart.series.iter().flat_map(|series| series.points.iter().map(coordinate));
     let (low, high) =
         (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-    // What differs by rounding only does not vary.
+    // Values that differ by rounding only count as constant.
     match (low.is_finite(), high - low > 1e-9 * high.abs().max(low.abs()).max(1e-3)) {
         (true, true) => [low - 0.05 * (high - low), high + 0.05 * (high - low)],
         (true, false) => [low - 0.5, high + 0.5],
@@ -153,6 +161,7 @@ fn range(chart: &Chart, of: fn(&(f64, f64)) -> f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use roxmltree::Document;
 
     #[test]
     fn dots_and_lines_are_drawn_and_texts_escaped() {
@@ -168,14 +177,19 @@ mod tests {
             ],
         };
         let svg = chart_svg(&chart).unwrap();
-        assert_eq!(svg.matches("<circle").count(), 500);
+        let document = Document::parse(&svg).unwrap();
+        let tags = |name: &str| {
+            document.descendants().filter(|node| node.tag_name().name() == name).count()
+        };
+        assert_eq!((tags("circle"), tags("b")), (500, 0));
+        assert_eq!(document.root_element().attribute("aria-label"), Some("a <b> & c"));
         assert!(
             svg.contains("stroke=\"#090807\"") && !svg.contains("<b>") && svg.ends_with("</svg>\n")
         );
     }
 
     #[test]
-    fn what_cannot_be_drawn_is_refused_and_nothing_is_a_plot() {
+    fn infinite_points_are_refused_and_no_points_are_a_plot() {
         let mut chart = Chart {
             series: vec![Series { points: vec![(0.0, f64::NAN)], ..Series::default() }],
             ..Chart::default()

@@ -1,7 +1,9 @@
-//! Shapes and values are checked before anything is drawn, so that a wrong input is named instead
-//! of misdrawn.
+//! Checks of shapes and values before anything is drawn, so that a wrong input is named instead of
+//! misdrawn.
 
-use super::{Band, Bounds, Nominal, ReportError, RunTrace, SetsTable, SuiteFigure, TightSpot};
+use super::error::ReportError;
+use super::page::{Bounds, SetsTable};
+use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 
 /// Checks the shapes, the times and the values of a suite.
 pub(super) fn suite(figure: &SuiteFigure) -> Result<(), ReportError> {
@@ -35,8 +37,10 @@ pub(super) fn sets(table: &SetsTable) -> Result<(), ReportError> {
     Ok(())
 }
 
+/// The suite that is checked, for the messages.
 struct Place<'a> {
     suite: &'a str,
+    /// Number of states, 2n.
     states: usize,
 }
 

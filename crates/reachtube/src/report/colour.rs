@@ -1,10 +1,11 @@
-//! The colours of the lines: blue for the first or coldest run to red for the last or hottest, as
-//! in Fig. 4.
+//! The colours of the runs, as in Fig. 4: from blue for the first or coldest run to red for the last
+//! or hottest.
 
-use super::RunTrace;
+use super::suite_figure::RunTrace;
 use plotters::style::RGBColor;
 
-/// Blue, violet, magenta, red: all darker than the bands they are drawn on.
+/// Red, green and blue of the scale's colours, all darker than the bands: blue, indigo, violet,
+/// magenta, red.
 const ANCHORS: [[f64; 3]; 5] = [
     [18.0, 70.0, 200.0],
     [84.0, 72.0, 214.0],
@@ -13,7 +14,7 @@ const ANCHORS: [[f64; 3]; 5] = [
     [222.0, 30.0, 30.0],
 ];
 
-/// The colour at `heat` in 0..=1.
+/// Returns the colour at `heat` in 0..=1.
 pub(super) fn colour(heat: f64) -> RGBColor {
     let place = heat.clamp(0.0, 1.0) * (ANCHORS.len() - 1) as f64;
     let below = (place as usize).min(ANCHORS.len() - 2);
@@ -24,20 +25,20 @@ pub(super) fn colour(heat: f64) -> RGBColor {
     RGBColor(mix(0), mix(1), mix(2))
 }
 
-/// The colour as the figures print it: `#1246C8`.
+/// Returns the colour as the figures print it, such as `#1246C8`.
 pub(super) fn hex(colour: RGBColor) -> String {
     format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2)
 }
 
-/// What the colours of a suite's runs mean.
+/// The places of a suite's runs on the scale of colours.
 pub(super) struct Heat {
-    /// One value in 0..=1 a run.
+    /// One value in 0..=1 per run.
     pub(super) values: Vec<f64>,
-    /// The two ends of the scale in words.
+    /// Labels of the two ends of the scale.
     pub(super) ends: [String; 2],
 }
 
-/// Temperature where every run has one, else the order of recording.
+/// Places runs by temperature where every run has one, else by the order of recording.
 pub(super) fn heat(runs: &[RunTrace]) -> Heat {
     let temperatures: Option<Vec<f64>> = runs.iter().map(|run| run.temperature).collect();
     match temperatures {
@@ -52,6 +53,7 @@ pub(super) fn heat(runs: &[RunTrace]) -> Heat {
     }
 }
 
+/// Scales values to 0..=1, and returns their smallest and largest too.
 fn relative(values: &[f64]) -> (Vec<f64>, [f64; 2]) {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -1,22 +1,23 @@
-//! A line thinned to what a plot can show, without losing an excursion.
+//! Thinning of a line to what a plot can show, without losing an excursion.
 
 /// A point (time \[s\], value).
 pub(super) type Point = (f64, f64);
 
-/// Thins a line to the samples that a plot can show: of every column `column` wide (in time) the
-/// lowest and the highest sample, then without the samples that a straight line already passes
-/// within `tolerance` (in value). Times strictly increase.
+/// Thins a line to the samples that a plot can show.
+///
+/// From every column of width `column` (in time) it takes the lowest and the highest sample. Then
+/// it drops the samples that a straight line already passes within `tolerance` (in value). Times
+/// must strictly increase.
 ///
 /// # Guarantee
 ///
-/// Inner and outer within `tolerance`: every point kept is a sample, and in every column the line
-/// reaches the lowest and the highest sample up to `tolerance`, plus the rounding of one linear
-/// interpolation.
+/// Every point kept is a sample. In every column the line reaches the lowest and the highest sample
+/// within `tolerance`, plus the rounding of one linear interpolation.
 pub(super) fn decimate(points: &[Point], column: f64, tolerance: f64) -> Vec<Point> {
     straighten(&extremes(points, column), tolerance)
 }
 
-/// Lowest and highest sample of every column, in the order of time, and the two ends.
+/// Returns the lowest and the highest sample of every column, in the order of time, and both ends.
 fn extremes(points: &[Point], column: f64) -> Vec<Point> {
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
         return Vec::new();
@@ -43,9 +44,10 @@ fn low_and_high(group: &[Point]) -> (Point, Point) {
     })
 }
 
-/// Drops the points that the line between their kept neighbours passes within `tolerance`: the
-/// slopes that a line from the last kept point may still have narrow with every point passed, and a
-/// point outside them starts anew.
+/// Drops the points that the line between their kept neighbours passes within `tolerance`.
+///
+/// Every point passed narrows the slopes that a line from the last kept point may have. A point
+/// outside these slopes ends the line, and the next line starts at the point before it.
 fn straighten(points: &[Point], tolerance: f64) -> Vec<Point> {
     let Some((&first, rest)) = points.split_first() else {
         return Vec::new();
@@ -76,7 +78,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The drawn line at a time.
+    /// Returns the value of the drawn line at a time.
     fn drawn(line: &[Point], time: f64) -> f64 {
         let after = line.partition_point(|point| point.0 < time).clamp(1, line.len() - 1);
         let (a, b) = (line[after - 1], line[after]);
@@ -97,7 +99,11 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_excursion_is_kept(points in walk(), column in 1e-3..1.0_f64, tolerance in 0.0..0.1_f64) {
+        fn every_excursion_is_kept(
+            points in walk(),
+            column in 1e-3..1.0_f64,
+            tolerance in 0.0..0.1_f64,
+        ) {
             let line = decimate(&points, column, tolerance);
             let slack = tolerance + 1e-12;
             for group in points.chunk_by(|a, b| {
@@ -111,11 +117,16 @@ mod tests {
         }
 
         #[test]
-        fn kept_points_are_samples_in_order(points in walk(), column in 1e-3..1.0_f64, tolerance in 0.0..0.1_f64) {
+        fn kept_points_are_samples_in_order(
+            points in walk(),
+            column in 1e-3..1.0_f64,
+            tolerance in 0.0..0.1_f64,
+        ) {
             let line = decimate(&points, column, tolerance);
             prop_assert!(line.iter().all(|point| points.contains(point)));
             prop_assert!(line.windows(2).all(|pair| pair[0].0 < pair[1].0));
-            prop_assert_eq!((line[0], line[line.len() - 1]), (points[0], points[points.len() - 1]));
+            let ends = |line: &[Point]| (line[0], line[line.len() - 1]);
+            prop_assert_eq!(ends(&line), ends(&points));
         }
 
         #[test]

@@ -1,34 +1,36 @@
-//! The page: verdict, figures, sets, tight spots, settings, and what may be trusted, in one file.
+//! The page of a model as HTML: verdict, figures, sets, tight spots, settings, and their meaning.
 
-use super::text::escape;
-use super::{
-    Page, ReportError, RunTrace, SuiteFigure, View, check, colour, figure::suite_svg,
-    layout::Layout, tables,
-};
+use super::error::ReportError;
+use super::figure::suite_svg;
+use super::layout::Layout;
+use super::page::{Page, Verdict};
+use super::skeleton::{document, pair_of_lists, section};
+use super::suite_figure::{RunTrace, SuiteFigure, View};
+use super::text::Text;
+use super::{check, colour, tables};
+use crate::number::significant;
+use maud::{Markup, PreEscaped, html};
 use std::io::Write;
 
-const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
-/// The browser is told what the page promises: nothing is loaded from anywhere.
-const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
-/// Writes the page as one HTML file that needs nothing else: it can be mailed, archived and
-/// printed. Without JavaScript all figures are shown one below the other; with it, one suite and
-/// one view at a time.
+/// Writes the page as one HTML file that needs no other file: it can be mailed, archived and
+/// printed.
 ///
-/// The printed bounds of the sets are rounded outward. The same page gives the same bytes.
+/// Without JavaScript all figures are shown one below the other; with it, one suite and one view at
+/// a time. The printed bounds of the sets are rounded outward. Equal pages give equal bytes.
 ///
 /// # Errors
 ///
-/// What [`suite_svg`] refuses, bounds that are not finite, and failures of `out`.
+/// Fails for figures that [`suite_svg`] refuses, bounds that are not finite, and where `out` fails.
 ///
 /// # Examples
 ///
 /// ```
 /// use reachtube::report::{Page, Verdict, write_html};
 ///
-/// let verdict = Verdict { ok: true, words: "All 73 runs lie in the reachable set.".into(), ..Verdict::default() };
+/// let words = "All 73 runs lie in the reachable set.".into();
+/// let verdict = Verdict { ok: true, words, ..Verdict::default() };
 /// let mut html = Vec::new();
 /// write_html(&Page { title: "LWA 4P".into(), verdict, ..Page::default() }, &mut html)?;
 /// assert!(String::from_utf8(html).unwrap().contains("All 73 runs"));
@@ -36,122 +38,108 @@ const POLICY: &str =
 /// ```
 pub fn write_html(page: &Page, out: &mut impl Write) -> Result<(), ReportError> {
     page.sets.iter().try_for_each(check::sets)?;
-    let figures = page.suites.iter().enumerate().map(|(index, suite)| suite_section(index, suite));
-    let figures: Vec<String> = figures.collect::<Result<_, _>>()?;
-    out.write_all(top(&page.title, &page.subtitle).as_bytes())?;
-    out.write_all(verdict(page).as_bytes())?;
-    if !figures.is_empty() {
-        out.write_all(controls(page).as_bytes())?;
-        figures.iter().try_for_each(|figure| out.write_all(figure.as_bytes()))?;
-        out.write_all(b"</section>\n")?;
-    }
-    out.write_all(rest(page).as_bytes())?;
-    out.write_all(format!("</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n").as_bytes())?;
+    let suites = page.suites.iter().enumerate().map(|(index, suite)| suite_section(index, suite));
+    let suites: Vec<Markup> = suites.collect::<Result<_, _>>()?;
+    let body = html! {
+        (verdict(&page.verdict))
+        @if !suites.is_empty() { (figures(page, &suites)) }
+        @if !page.sets.is_empty() { (sets(page)) }
+        @if !suites.is_empty() { (section("Where the sets are tight", &tables::tight(page))) }
+        (meaning(page))
+        @if !page.facts.is_empty() {
+            (section("Settings and provenance", &tables::facts(&page.facts)))
+        }
+        @if !page.notes.is_empty() { (notes(page)) }
+    };
+    out.write_all(document(&page.title, &page.subtitle, &body, Some(SCRIPT)).as_bytes())?;
     Ok(())
 }
 
-/// The head of a page, up to its heading.
-pub(super) fn top(title: &str, subtitle: &str) -> String {
-    let title = escape(title);
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n\
-         <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n\
-         <header><h1>{title}</h1>\n<p>{}</p></header>\n",
-        escape(subtitle)
-    )
-}
-
-fn verdict(page: &Page) -> String {
-    let verdict = &page.verdict;
-    let (class, word) = if verdict.ok { ("ok", "Conformant") } else { ("bad", "Not conformant") };
-    format!(
-        "<section class=\"verdict {class}\" aria-labelledby=\"verdict\">\n<h2 id=\"verdict\">{word}</h2>\n\
-         <p class=\"words\">{}</p>\n<div class=\"pair\">\n{}{}</div>\n</section>\n",
-        escape(&verdict.words),
-        titled_list("Proved", "yes", &verdict.proved),
-        titled_list("Not proved", "no", &verdict.not_proved),
-    )
-}
-
-/// A heading and its points; nothing where there are none.
-pub(super) fn titled_list(title: &str, class: &str, points: &[String]) -> String {
-    if points.is_empty() {
-        return String::new();
+fn verdict(verdict: &Verdict) -> Markup {
+    let (class, word) =
+        if verdict.ok { ("verdict ok", "Conformant") } else { ("verdict bad", "Not conformant") };
+    html! {
+        section class=(class) aria-labelledby="verdict" {
+            h2 #verdict { (word) }
+            p.words { (Text(&verdict.words)) }
+            (pair_of_lists([
+                ("Proved", "yes", &verdict.proved),
+                ("Not proved", "no", &verdict.not_proved),
+            ]))
+        }
     }
-    let points: String =
-        points.iter().map(|point| format!("<li>{}</li>\n", escape(point))).collect();
-    format!("<div>\n<h3>{title}</h3>\n<ul class=\"{class}\">\n{points}</ul>\n</div>\n")
 }
 
-/// The head of the figures: a button a suite and a button a view, shown by the script only.
-fn controls(page: &Page) -> String {
-    let suites: String = page
-        .suites
-        .iter()
-        .enumerate()
-        .map(|(k, suite)| button(&k.to_string(), &suite.suite))
-        .collect();
-    let both = page.suites.iter().any(|suite| suite.views().len() == 2);
-    let views = [("motion", "Motion"), ("deviation", "Deviation from the nominal")];
-    let views: String = views.map(|(value, label)| button(value, label)).concat();
-    let views = if both { group("views", "View", &views) } else { String::new() };
-    let suites =
-        if page.suites.len() > 1 { group("suites", "Suite", &suites) } else { String::new() };
-    format!(
-        "<section id=\"figures\" aria-labelledby=\"figures-title\">\n<h2 id=\"figures-title\">Recordings in the reachable set</h2>\n\
-         <div class=\"controls\">{suites}{views}</div>\n"
-    )
+/// Returns the figures under their buttons, one per suite and one per view; only the script shows
+/// the buttons.
+fn figures(page: &Page, suites: &[Markup]) -> Markup {
+    let both_views = page.suites.iter().any(|suite| suite.views().len() == 2);
+    html! {
+        section #figures aria-labelledby="figures-title" {
+            h2 #figures-title { "Recordings in the reachable set" }
+            div.controls {
+                @if page.suites.len() > 1 {
+                    div.choice #suites role="group" aria-label="Suite" hidden {
+                        @for (k, suite) in page.suites.iter().enumerate() {
+                            (button(&k.to_string(), &suite.suite))
+                        }
+                    }
+                }
+                @if both_views {
+                    div.choice #views role="group" aria-label="View" hidden {
+                        (button("motion", "Motion"))
+                        (button("deviation", "Deviation from the nominal"))
+                    }
+                }
+            }
+            @for suite in suites { (suite) }
+        }
+    }
 }
 
-fn group(id: &str, label: &str, buttons: &str) -> String {
-    format!(
-        "<div class=\"choice\" id=\"{id}\" role=\"group\" aria-label=\"{label}\" hidden>{buttons}</div>"
-    )
+fn button(value: &str, label: &str) -> Markup {
+    html! {
+        button type="button" value=(value) aria-pressed="false" { (Text(label)) }
+    }
 }
 
-fn button(value: &str, label: &str) -> String {
-    format!(
-        "<button type=\"button\" value=\"{value}\" aria-pressed=\"false\">{}</button>",
-        escape(label)
-    )
+fn suite_section(index: usize, suite: &SuiteFigure) -> Result<Markup, ReportError> {
+    let figures = suite.views().iter().map(|&view| figure(suite, view));
+    let figures: Vec<Markup> = figures.collect::<Result<_, _>>()?;
+    let name = Text(&suite.suite);
+    Ok(html! {
+        section.suite id={ "suite-" (index) } data-suite=(index) aria-label={ "Suite " (name) } {
+            h3 { "Suite " (name) }
+            @for figure in figures { (figure) }
+            @if !suite.runs.is_empty() { (runs(suite)) }
+        }
+    })
 }
 
-fn suite_section(index: usize, suite: &SuiteFigure) -> Result<String, ReportError> {
-    let views = suite.views();
-    let figures: String =
-        views.iter().map(|&view| figure(suite, view)).collect::<Result<_, _>>()?;
-    let name = escape(&suite.suite);
-    Ok(format!(
-        "<section class=\"suite\" id=\"suite-{index}\" data-suite=\"{index}\" aria-label=\"Suite {name}\">\n\
-         <h3>Suite {name}</h3>\n{figures}{}</section>\n",
-        chips(suite)
-    ))
-}
-
-fn figure(suite: &SuiteFigure, view: View) -> Result<String, ReportError> {
+fn figure(suite: &SuiteFigure, view: View) -> Result<Markup, ReportError> {
     let svg = suite_svg(suite, view)?;
     let name = if view == View::Motion { "motion" } else { "deviation" };
     let width = Layout::new(suite.joints.len()).width();
-    let choice =
-        if suite.views().len() == 2 { format!(" data-view=\"{name}\"") } else { String::new() };
-    Ok(format!(
-        "<figure{choice}>\n<div class=\"wide\" style=\"--width:{width}px\" tabindex=\"0\" role=\"region\" aria-label=\"Figure, {name}\">\n{svg}</div>\n\
-         <figcaption>{}</figcaption>\n</figure>\n",
-        caption(suite, view)
-    ))
+    let choice = (suite.views().len() == 2).then_some(name);
+    Ok(html! {
+        figure data-view=[choice] {
+            div.wide style={ "--width:" (width) "px" } tabindex="0" role="region"
+                aria-label={ "Figure, " (name) } {
+                (PreEscaped(svg))
+            }
+            figcaption { (caption(suite, view)) }
+        }
+    })
 }
 
 fn caption(suite: &SuiteFigure, view: View) -> String {
     let what = match view {
         View::Motion => "The recorded states",
-        View::Deviation => "The recorded states minus the nominal trajectory",
+        View::Deviation => "The recorded states minus the nominal solution",
     };
     let rings = match suite.tight.len() {
         0 => "",
-        _ => " Rings mark the samples that decide the sets, or leave them furthest.",
+        _ => " Rings mark the samples that decide the sets or lie furthest outside them.",
     };
     let outside = suite.tight.iter().filter(|spot| spot.margin < 0.0).count();
     let outside = match outside {
@@ -160,74 +148,74 @@ fn caption(suite: &SuiteFigure, view: View) -> String {
         more => format!(" The larger red rings mark {more} samples outside the set."),
     };
     format!(
-        "{what} of {} runs (lines) in the reachable set (grey), from {} to {} s. Between samples the edges of the set \
-         are joined by straight lines.{rings}{outside}",
+        "{what} of {} runs (lines) in the reachable set (grey), from {} to {} s. Between samples \
+         the edges of the set are joined by straight lines.{rings}{outside}",
         suite.runs.len(),
-        super::number::short(suite.times[0], 5),
-        super::number::short(suite.times[suite.times.len() - 1], 5),
+        significant(suite.times[0], 5),
+        significant(suite.times[suite.times.len() - 1], 5),
     )
 }
 
-/// The runs by name and colour, each with the number of support rows it decides; choosing one
-/// singles out its lines.
-fn chips(suite: &SuiteFigure) -> String {
-    if suite.runs.is_empty() {
-        return String::new();
-    }
+/// Returns the runs by name and colour, each with the number of support rows it decides. Choosing a
+/// run highlights its lines.
+fn runs(suite: &SuiteFigure) -> Markup {
     let heat = colour::heat(&suite.runs).values;
-    let chips: String = suite.runs.iter().zip(heat).map(|(run, heat)| chip(run, heat)).collect();
     let idle = suite.runs.iter().filter(|run| run.touches == 0).count();
-    format!(
-        "<p class=\"hint\">Runs and the support rows each decides ({idle} of {} decide none):</p>\n\
-         <ul class=\"runs\">\n{chips}</ul>\n",
-        suite.runs.len()
-    )
+    html! {
+        p.hint {
+            "Runs and the number of support rows that each decides (" (idle) " of "
+            (suite.runs.len()) " decide none):"
+        }
+        ul.runs {
+            @for (run, heat) in suite.runs.iter().zip(heat) { li { (run_button(run, heat)) } }
+        }
+    }
 }
 
-fn chip(run: &RunTrace, heat: f64) -> String {
+fn run_button(run: &RunTrace, heat: f64) -> Markup {
     let stroke = colour::hex(colour::colour(heat));
-    let degrees =
-        run.temperature.map_or(String::new(), |degrees| format!(" <small>{degrees:.1} °C</small>"));
-    let touches = if run.touches == 0 { String::new() } else { format!(" <b>{}</b>", run.touches) };
-    format!(
-        "<li><button type=\"button\" data-stroke=\"{stroke}\" aria-pressed=\"false\"><i style=\"background:{stroke}\"></i>{}{degrees}{touches}</button></li>\n",
-        escape(&run.name)
-    )
+    html! {
+        button type="button" data-stroke=(stroke) aria-pressed="false" {
+            i style={ "background:" (stroke) } {}
+            (Text(&run.name))
+            @if let Some(degrees) = run.temperature {
+                " " small { (format!("{degrees:.1} °C")) }
+            }
+            @if run.touches > 0 { " " b { (run.touches) } }
+        }
+    }
 }
 
-/// What follows the figures.
-fn rest(page: &Page) -> String {
-    let mut html = String::new();
-    if !page.sets.is_empty() {
-        let tables: String = page.sets.iter().map(tables::sets).collect();
-        let words = "<p>Printed bounds are rounded outward at their last digit: the printed sets contain the checked ones. \
-                     The bars share one scale a column; their middle is 0.</p>\n";
-        html += &section(
-            "Uncertainty sets",
-            &format!("<div class=\"tables\">\n{tables}</div>\n{words}"),
-        );
-    }
-    if !page.suites.is_empty() {
-        html += &section("Where the sets are tight", &tables::tight(page));
-    }
-    let trust = titled_list("You may rely on", "yes", &page.trust)
-        + &titled_list("Do not conclude", "no", &page.caution);
-    if !trust.is_empty() {
-        html += &section("What may be trusted", &format!("<div class=\"pair\">\n{trust}</div>\n"));
-    }
-    if !page.facts.is_empty() {
-        html += &section("Settings and provenance", &tables::facts(&page.facts));
-    }
-    if !page.notes.is_empty() {
-        let notes: String =
-            page.notes.iter().map(|note| format!("<p>{}</p>\n", escape(note))).collect();
-        html += &section("Notes", &notes);
-    }
-    html
+fn sets(page: &Page) -> Markup {
+    let body = html! {
+        div.tables {
+            @for table in &page.sets { (tables::sets(table)) }
+        }
+        p {
+            "Printed bounds are rounded outward at their last digit: the printed sets contain the \
+             checked ones. The bars of a column share one scale; their middle is 0."
+        }
+    };
+    section("Uncertainty sets", &body)
 }
 
-pub(super) fn section(title: &str, body: &str) -> String {
-    format!("<section>\n<h2>{title}</h2>\n{body}</section>\n")
+/// Returns what the reader may and may not conclude; nothing where the page does not say.
+fn meaning(page: &Page) -> Markup {
+    if page.trust.is_empty() && page.caution.is_empty() {
+        return Markup::default();
+    }
+    let lists = pair_of_lists([
+        ("You may rely on", "yes", &page.trust),
+        ("Do not conclude", "no", &page.caution),
+    ]);
+    section("What may be trusted", &lists)
+}
+
+fn notes(page: &Page) -> Markup {
+    let notes = html! {
+        @for note in &page.notes { p { (Text(note)) } }
+    };
+    section("Notes", &notes)
 }
 
 #[cfg(test)]
@@ -242,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_a_suite_and_view() {
+    fn each_view_of_each_suite_has_a_figure() {
         let html = written(&sample::page());
         assert_eq!(html.matches("<svg").count(), 4);
         assert_eq!(html.matches("</svg>").count(), 4);
@@ -271,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn the_verdict_is_said_in_words() {
+    fn the_verdict_is_given_in_words() {
         let mut page = sample::page();
         assert!(written(&page).contains(">Conformant<"));
         page.verdict.ok = false;
@@ -290,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disk_that_is_full_is_an_error() {
+    fn a_full_disk_is_an_error() {
         let mut room = [0_u8; 100];
         let error = write_html(&sample::page(), &mut &mut room[..]).unwrap_err();
         assert!(matches!(error, ReportError::Io(_)));

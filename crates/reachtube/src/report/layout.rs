@@ -1,27 +1,37 @@
-//! Where things stand in a figure, in pixels: positions above velocities, a column a joint, up to
-//! six columns abreast.
+//! The grid of a figure in pixels: positions above velocities, one column per joint, at most six
+//! columns in a row.
 
-/// Drawing units a pixel: the drawing library places on integers, and a pixel is too coarse for a
+/// Drawing units per pixel: the drawing library places on integers, and a pixel is too coarse for a
 /// thin band.
 pub(super) const UNITS: f64 = 8.0;
 
+/// Width of a full figure \[px\].
 const WIDTH: f64 = 1240.0;
+/// Largest width of a column \[px\].
 const WIDEST_CELL: f64 = 600.0;
+/// Columns that a row holds at most.
 const MOST_COLUMNS: usize = 6;
+/// Room left of the first column \[px\].
 const LEFT: f64 = 20.0;
+/// Room above the first row \[px\].
+const ABOVE: f64 = 8.0;
+/// Height of the row of joint names \[px\].
 const JOINT_NAME: f64 = 22.0;
+/// Height of a plot \[px\].
 const PLOT_HEIGHT: f64 = 172.0;
+/// Room below a plot of positions \[px\].
 const BELOW_POSITION: f64 = 12.0;
+/// Room below a plot of velocities, for the time axis \[px\].
 const BELOW_VELOCITY: f64 = 36.0;
 
 /// Room left of a plot for its tick labels \[px\].
 pub(super) const BESIDE_PLOT: f64 = 44.0;
 /// Room right of a plot \[px\].
 pub(super) const AFTER_PLOT: f64 = 10.0;
-/// Height of a line of the legend \[px\].
+/// Height of a row of the legend \[px\].
 pub(super) const LEGEND_ROW: f64 = 22.0;
 
-/// Pixels in drawing units.
+/// Converts pixels to drawing units.
 pub(super) fn units(pixels: f64) -> i32 {
     (pixels * UNITS).round() as i32
 }
@@ -35,7 +45,7 @@ pub(super) struct Rect {
     pub(super) height: f64,
 }
 
-/// The grid of panels under `legend_rows` lines of legend.
+/// The grid of panels below the legend.
 pub(super) struct Layout {
     joints: usize,
     columns: usize,
@@ -44,34 +54,34 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout for so many joints.
+    /// Returns the layout for a number of joints, without a legend.
     pub(super) fn new(joints: usize) -> Self {
         let columns = joints.div_ceil(joints.div_ceil(MOST_COLUMNS));
         let cell = ((WIDTH - LEFT) / columns as f64).floor().min(WIDEST_CELL);
         Layout { joints, columns, cell, top: 0.0 }
     }
 
-    /// The same below a legend of so many rows.
+    /// Returns the layout moved below a legend with `legend_rows` rows.
     pub(super) fn below(self, legend_rows: usize) -> Self {
-        Layout { top: 8.0 + LEGEND_ROW * legend_rows as f64, ..self }
+        Layout { top: ABOVE + LEGEND_ROW * legend_rows as f64, ..self }
     }
 
-    /// Width of the figure \[px\].
+    /// Returns the width of the figure \[px\].
     pub(super) fn width(&self) -> f64 {
         LEFT + self.cell * self.columns as f64
     }
 
-    /// Height of the figure \[px\].
+    /// Returns the height of the figure \[px\].
     pub(super) fn height(&self) -> f64 {
         self.top + self.block() * self.joints.div_ceil(self.columns) as f64
     }
 
-    /// Width and height of a plot without its labels \[px\].
+    /// Returns the width and height of a plot without its labels \[px\].
     pub(super) fn plot(&self) -> (f64, f64) {
         (self.cell - BESIDE_PLOT - AFTER_PLOT, PLOT_HEIGHT)
     }
 
-    /// The panel of a state: the plot and its tick labels.
+    /// Returns the panel of a state: the plot and its tick labels.
     pub(super) fn panel(&self, state: usize) -> Rect {
         let joint = state % self.joints;
         let mut y = self.block_top(state) + JOINT_NAME;
@@ -82,26 +92,27 @@ impl Layout {
         Rect { x, y, width: self.cell, height: PLOT_HEIGHT + self.below_plot(state) }
     }
 
-    /// Room below the plot of a state \[px\].
+    /// Returns the room below the plot of a state \[px\].
     pub(super) fn below_plot(&self, state: usize) -> f64 {
         if self.is_velocity(state) { BELOW_VELOCITY } else { BELOW_POSITION }
     }
 
-    /// Whether the state is a velocity: the lower row, which carries the time axis.
+    /// Tells whether the state is a velocity, which is drawn in the lower row with the time axis.
     pub(super) fn is_velocity(&self, state: usize) -> bool {
         state >= self.joints
     }
 
-    /// Whether the panel of this state starts a row.
+    /// Tells whether the panel of the state is the first of its row.
     pub(super) fn starts_row(&self, state: usize) -> bool {
         (state % self.joints).is_multiple_of(self.columns)
     }
 
-    /// Top of the row of joint names that the state belongs to \[px\].
+    /// Returns the top of the state's row of joint names \[px\].
     pub(super) fn block_top(&self, state: usize) -> f64 {
         self.top + self.block() * ((state % self.joints) / self.columns) as f64
     }
 
+    /// Returns the height of a joint's name and its two panels \[px\].
     fn block(&self) -> f64 {
         JOINT_NAME + 2.0 * PLOT_HEIGHT + BELOW_POSITION + BELOW_VELOCITY
     }

@@ -1,49 +1,66 @@
-//! The legend of a figure: what the bands, the colours and the rings mean, in lines that fit the
-//! figure's width.
+//! The legend of a figure: bands, colours and rings, in lines that fit the figure's width.
 
+use super::canvas::{Canvas, DrawResult};
 use super::colour::{Heat, colour};
-use super::figure::{Canvas, DrawResult};
 use super::layout::{LEGEND_ROW, units};
-use super::panel::{BAND, INK, INNER, ring};
+use super::style::{BAND, INNER, font, ring, starting};
+use super::suite_figure::{SuiteFigure, View};
 use super::text::clean;
-use super::{SuiteFigure, View};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+/// Left edge of the first entry \[px\].
 const LEFT: f64 = 20.0;
+/// Room between two entries \[px\].
 const GAP: f64 = 22.0;
+/// Width of the sample of a band or ring \[px\].
 const SWATCH: f64 = 22.0;
+/// Room between a sample and its label \[px\].
+const LABEL_GAP: f64 = 6.0;
+/// Width of the scale of colours \[px\].
 const SCALE: f64 = 120.0;
+/// Number of colours of the scale.
 const SCALE_STEPS: usize = 40;
-/// Mean width of a character of the legend's font \[px\]; the page's font is not known here.
+/// Mean width of a character \[px\]; the page's font is not known when the figure is drawn.
 const CHARACTER: f64 = 6.0;
+/// Width of the title over that of a label with as many characters.
+const TITLE_WIDTH: f64 = 1.25;
 
 /// One entry.
 enum Entry {
+    /// The suite and the view.
     Title(String),
+    /// Fill and edge of a band, and its label.
     Band([RGBColor; 2], String),
+    /// The scale of the runs' colours, and the labels of its ends.
     Scale([String; 2]),
+    /// Whether the ring marks samples outside the set, and its label.
     Ring(bool, String),
 }
 
 impl Entry {
+    /// Estimates the width \[px\].
     fn width(&self) -> f64 {
         let text = |text: &str| text.chars().count() as f64 * CHARACTER;
         match self {
-            Entry::Title(title) => 1.25 * text(title),
-            Entry::Band(_, label) | Entry::Ring(_, label) => SWATCH + 6.0 + text(label),
-            Entry::Scale(ends) => SCALE + 12.0 + ends.iter().map(|end| text(end)).sum::<f64>(),
+            Entry::Title(title) => TITLE_WIDTH * text(title),
+            Entry::Band(_, label) | Entry::Ring(_, label) => SWATCH + LABEL_GAP + text(label),
+            Entry::Scale(ends) => {
+                SCALE + 2.0 * LABEL_GAP + ends.iter().map(|end| text(end)).sum::<f64>()
+            }
         }
     }
 }
 
+/// An entry with its left edge \[px\] and its row.
+type Placed = (Entry, f64, usize);
+
 /// The entries of a figure and their places.
 pub(super) struct Legend {
-    entries: Vec<(Entry, f64, usize)>,
+    entries: Vec<Placed>,
 }
 
 impl Legend {
-    /// The legend of a suite for a figure so wide \[px\].
+    /// Returns the legend of a suite for a figure of a width \[px\].
     pub(super) fn new(figure: &SuiteFigure, view: View, heat: &Heat, width: f64) -> Self {
         let mut entries = vec![Entry::Title(title(figure, view)), band(BAND, &figure.band.label)];
         entries.extend(figure.inner.iter().map(|inner| band(INNER, &inner.label)));
@@ -60,12 +77,12 @@ impl Legend {
         Legend { entries: flow(entries, width) }
     }
 
-    /// How many lines it takes.
+    /// Returns the number of rows.
     pub(super) fn rows(&self) -> usize {
         self.entries.last().map_or(0, |entry| entry.2 + 1)
     }
 
-    /// Draws it at the top of the figure.
+    /// Draws the legend at the top of the figure.
     pub(super) fn draw(&self, canvas: &Canvas) -> DrawResult {
         self.entries.iter().try_for_each(|(entry, x, row)| {
             draw_entry(canvas, entry, *x, 6.0 + LEGEND_ROW * (*row as f64 + 0.5))
@@ -85,8 +102,8 @@ fn band(colours: [RGBColor; 2], label: &str) -> Entry {
     Entry::Band(colours, if label.is_empty() { "reachable set".into() } else { clean(label) })
 }
 
-/// Entries from left to right, on a new line where the next one does not fit.
-fn flow(entries: Vec<Entry>, width: f64) -> Vec<(Entry, f64, usize)> {
+/// Places entries from left to right, on a new row where the next one does not fit.
+fn flow(entries: Vec<Entry>, width: f64) -> Vec<Placed> {
     let (mut x, mut row) = (LEFT, 0);
     let mut placed = Vec::with_capacity(entries.len());
     for entry in entries {
@@ -100,45 +117,51 @@ fn flow(entries: Vec<Entry>, width: f64) -> Vec<(Entry, f64, usize)> {
     placed
 }
 
+/// Draws an entry whose left edge is `x` and whose middle is `y` \[px\].
 fn draw_entry(canvas: &Canvas, entry: &Entry, x: f64, y: f64) -> DrawResult {
     match entry {
-        Entry::Title(title) => write(canvas, title, x, y, true),
+        Entry::Title(title) => write(canvas, title, x, y, font(13.0, FontStyle::Bold)),
         Entry::Band(colours, label) => {
-            let corners = [(units(x), units(y - 5.0)), (units(x + SWATCH), units(y + 5.0))];
-            canvas.draw(&Rectangle::new(corners, colours[0].filled()))?;
-            for (_, edge) in corners {
-                let path = vec![(corners[0].0, edge), (corners[1].0, edge)];
-                canvas.draw(&PathElement::new(path, colours[1].stroke_width(8)))?;
-            }
-            write(canvas, label, x + SWATCH + 6.0, y, false)
+            draw_band(canvas, *colours, x, y)?;
+            write_label(canvas, label, x + SWATCH + LABEL_GAP, y)
         }
         Entry::Scale(ends) => draw_scale(canvas, ends, x, y),
         Entry::Ring(outside, label) => {
             canvas.draw(&ring((units(x + SWATCH / 2.0), units(y)), *outside))?;
-            write(canvas, label, x + SWATCH + 6.0, y, false)
+            write_label(canvas, label, x + SWATCH + LABEL_GAP, y)
         }
     }
 }
 
+fn draw_band(canvas: &Canvas, [fill, edge]: [RGBColor; 2], x: f64, y: f64) -> DrawResult {
+    let corners = [(units(x), units(y - 5.0)), (units(x + SWATCH), units(y + 5.0))];
+    canvas.draw(&Rectangle::new(corners, fill.filled()))?;
+    corners.iter().try_for_each(|(_, height)| {
+        let path = vec![(corners[0].0, *height), (corners[1].0, *height)];
+        canvas.draw(&PathElement::new(path, edge.stroke_width(8)))
+    })
+}
+
 fn draw_scale(canvas: &Canvas, ends: &[String; 2], x: f64, y: f64) -> DrawResult {
-    write(canvas, &ends[0], x, y, false)?;
-    let x = x + ends[0].chars().count() as f64 * CHARACTER + 6.0;
+    write_label(canvas, &ends[0], x, y)?;
+    let x = x + ends[0].chars().count() as f64 * CHARACTER + LABEL_GAP;
     let step = SCALE / SCALE_STEPS as f64;
     for k in 0..SCALE_STEPS {
         let from = x + step * k as f64;
-        // Each to the end, under the next: edges that only meet would show as seams.
+        // Each colour reaches to the end, under the next: edges that only meet show as seams.
         let corners = [(units(from), units(y - 4.0)), (units(x + SCALE), units(y + 4.0))];
-        canvas
-            .draw(&Rectangle::new(corners, colour(k as f64 / (SCALE_STEPS - 1) as f64).filled()))?;
+        let fill = colour(k as f64 / (SCALE_STEPS - 1) as f64).filled();
+        canvas.draw(&Rectangle::new(corners, fill))?;
     }
-    write(canvas, &ends[1], x + SCALE + 6.0, y, false)
+    write_label(canvas, &ends[1], x + SCALE + LABEL_GAP, y)
 }
 
-fn write(canvas: &Canvas, text: &str, x: f64, y: f64, title: bool) -> DrawResult {
-    let (size, style) = if title { (13.0, FontStyle::Bold) } else { (11.5, FontStyle::Normal) };
-    let font = FontDesc::new(FontFamily::SansSerif, f64::from(units(size)) * 1.24, style);
-    let style = TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-    canvas.draw_text(text, &style, (units(x), units(y)))
+fn write_label(canvas: &Canvas, text: &str, x: f64, y: f64) -> DrawResult {
+    write(canvas, text, x, y, font(11.5, FontStyle::Normal))
+}
+
+fn write(canvas: &Canvas, text: &str, x: f64, y: f64, font: FontDesc<'static>) -> DrawResult {
+    canvas.draw_text(text, &starting(font), (units(x), units(y)))
 }
 
 #[cfg(test)]

@@ -1,25 +1,20 @@
-//! One panel: what of a suite it shows, and the drawing of it.
+//! One panel of a figure: the lines of one state, and their drawing.
 
+use super::canvas::{Canvas, DrawResult};
 use super::decimate::{Point, decimate};
-use super::figure::{Canvas, DrawResult};
 use super::layout::{self, Layout, Rect, units};
-use super::number::tick;
-use super::{Nominal, Side, SuiteFigure, TightSpot, View};
+use super::style::{BAND, GRID, INNER, ring, tick_style};
+use super::suite_figure::{Nominal, SuiteFigure, TightSpot, View};
+use crate::number::tick_label;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-/// Fill and edge of the reachable set.
-pub(super) const BAND: [RGBColor; 2] = [RGBColor(226, 230, 235), RGBColor(140, 149, 159)];
-/// Fill and edge of the second reachable set.
-pub(super) const INNER: [RGBColor; 2] = [RGBColor(180, 188, 197), RGBColor(99, 108, 118)];
-/// Text and axes.
-pub(super) const INK: RGBColor = RGBColor(31, 35, 40);
-/// Rings of tight spots, and of samples outside the set.
-pub(super) const RINGS: [RGBColor; 2] = [INK, RGBColor(207, 19, 34)];
-
-pub(super) const GRID: RGBColor = RGBColor(238, 240, 243);
+/// Width of the line of a run, in drawing units.
 const RUN_WIDTH: u32 = 7;
+/// Width of the edge of a band, in drawing units.
 const EDGE_WIDTH: u32 = 7;
+/// Width of a panel per time label \[px\].
+const TIME_LABEL: f64 = 28.0;
 /// How far a thinned line may pass from a sample \[px\].
 const TOLERANCE: f64 = 0.1;
 
@@ -30,12 +25,14 @@ pub(super) struct Content {
     runs: Vec<Vec<Point>>,
     /// The tight spots, and whether they lie outside.
     marks: Vec<(Point, bool)>,
+    /// Ends of the time axis \[s\].
     time: [f64; 2],
+    /// Ends of the value axis \[rad\] or \[rad/s\].
     value: [f64; 2],
 }
 
 impl Content {
-    /// Everything of one state, in full.
+    /// Returns every line and mark of one state, not thinned.
     pub(super) fn new(figure: &SuiteFigure, view: View, state: usize) -> Self {
         let nominal = match (&figure.nominal, view) {
             (Nominal::Shared(nominal), View::Deviation) => Some(nominal[state].as_slice()),
@@ -44,35 +41,27 @@ impl Content {
         let line = |times: &[f64], values: &[f64]| relative(times, values, &figure.times, nominal);
         let bands = [Some(&figure.band), figure.inner.as_ref()].into_iter().flatten();
         let bands = bands
-            .map(|band| [&band.lower, &band.upper].map(|edge| line(&figure.times, &edge[state])));
+            .map(|band| [&band.lower, &band.upper].map(|edge| line(&figure.times, &edge[state])))
+            .collect();
         let runs: Vec<_> =
             figure.runs.iter().map(|run| line(&run.times, &run.states[state])).collect();
-        let n = figure.joints.len();
-        let shown = |spot: &&TightSpot| {
-            spot.state == state || (spot.side == Side::Plane && spot.state % n == state % n)
-        };
-        let marks = figure.tight.iter().filter(shown);
-        let marks = marks.filter_map(|spot| {
-            let line = &runs[spot.run];
-            (!line.is_empty())
-                .then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
-        });
-        let marks = marks.collect();
-        Content { bands: bands.collect(), runs, marks, time: [0.0; 2], value: [0.0; 2] }.ranged()
+        let spots = figure.tight.iter().filter(|spot| spot.state == state);
+        let marks = spots.filter_map(|spot| mark(spot, &runs[spot.run])).collect();
+        Content { bands, runs, marks, time: [0.0; 2], value: [0.0; 2] }.ranged()
     }
 
-    /// The ranges of the axes: everything fits, with a little air above and below.
+    /// Sets the ranges of the axes: everything fits, with a margin above and below.
     fn ranged(mut self) -> Self {
         let points = || self.bands.iter().flatten().chain(&self.runs).flatten();
         let time = range(points().map(|point| point.0));
         let value = range(points().map(|point| point.1));
-        let air = 0.05 * (value[1] - value[0]).max(1e-6 * value[1].abs()).max(1e-9);
+        let margin = 0.05 * (value[1] - value[0]).max(1e-6 * value[1].abs()).max(1e-9);
         self.time = time;
-        self.value = [value[0] - air, value[1] + air];
+        self.value = [value[0] - margin, value[1] + margin];
         self
     }
 
-    /// The same thinned to what a plot of this size \[px\] shows.
+    /// Thins the lines to what a plot of a width and height \[px\] shows.
     pub(super) fn thinned(mut self, (width, height): (f64, f64)) -> Self {
         let column = (self.time[1] - self.time[0]) / width;
         let tolerance = TOLERANCE * (self.value[1] - self.value[0]) / height;
@@ -83,7 +72,14 @@ impl Content {
     }
 }
 
-/// A line, minus the nominal where there is one; then only over the nominal's times.
+/// Returns the mark of a tight spot on the line of its run; none where the line is empty.
+fn mark(spot: &TightSpot, line: &[Point]) -> Option<(Point, bool)> {
+    (!line.is_empty())
+        .then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
+}
+
+/// Returns a line, minus the nominal solution where there is one. With a nominal solution, the line
+/// covers only the times of `grid`, at which the nominal solution is given.
 fn relative(times: &[f64], values: &[f64], grid: &[f64], nominal: Option<&[f64]>) -> Vec<Point> {
     let points = times.iter().copied().zip(values.iter().copied());
     let Some(nominal) = nominal else {
@@ -97,7 +93,7 @@ fn relative(times: &[f64], values: &[f64], grid: &[f64], nominal: Option<&[f64]>
         .collect()
 }
 
-/// The value of a line (not empty) at a time; beyond its ends, that of the end.
+/// Returns the value of a non-empty line at a time; beyond its ends, the value at the end.
 fn interpolate(line: &[Point], time: f64) -> f64 {
     let after = line.partition_point(|point| point.0 < time);
     if after == 0 || after == line.len() {
@@ -121,22 +117,14 @@ pub(super) fn draw(
     content: &Content,
     colours: &[RGBColor],
 ) -> DrawResult {
-    let mut chart = ChartBuilder::on(&place(canvas, layout.panel(state)))
+    let Content { time, value, .. } = content;
+    let mut chart = ChartBuilder::on(&part(canvas, layout.panel(state)))
         .set_label_area_size(LabelAreaPosition::Left, units(layout::BESIDE_PLOT))
         .set_label_area_size(LabelAreaPosition::Bottom, units(layout.below_plot(state)))
         .margin_right(units(layout::AFTER_PLOT))
-        .build_cartesian_2d(content.time[0]..content.time[1], content.value[0]..content.value[1])?;
+        .build_cartesian_2d(time[0]..time[1], value[0]..value[1])?;
     axes(&mut chart, layout, state, content)?;
-    chart.draw_series(
-        content.bands.iter().zip([BAND, INNER]).map(|(band, style)| fill(band, style[0])),
-    )?;
-    for (band, style) in content.bands.iter().zip([BAND, INNER]) {
-        // After both fills, so that the edge of the outer set is seen where the second one exceeds
-        // it.
-        let edge =
-            |line: &Vec<Point>| PathElement::new(line.clone(), style[1].stroke_width(EDGE_WIDTH));
-        chart.draw_series(band.iter().map(edge))?;
-    }
+    bands(&mut chart, content)?;
     let lines = content.runs.iter().zip(colours);
     chart.draw_series(
         lines.map(|(run, colour)| PathElement::new(run.clone(), colour.stroke_width(RUN_WIDTH))),
@@ -145,39 +133,47 @@ pub(super) fn draw(
     Ok(())
 }
 
+/// Draws the bands. The edges come after both fills, so that the edge of the outer set is visible
+/// where the second set exceeds it.
+fn bands(chart: &mut Chart, content: &Content) -> DrawResult {
+    let styled = || content.bands.iter().zip([BAND, INNER]);
+    chart.draw_series(styled().map(|(band, [colour, _])| fill(band, colour)))?;
+    for (band, [_, colour]) in styled() {
+        let edge =
+            |line: &Vec<Point>| PathElement::new(line.clone(), colour.stroke_width(EDGE_WIDTH));
+        chart.draw_series(band.iter().map(edge))?;
+    }
+    Ok(())
+}
+
 fn fill([lower, upper]: &[Vec<Point>; 2], colour: RGBColor) -> Polygon<Point> {
     Polygon::new(lower.iter().chain(upper.iter().rev()).copied().collect::<Vec<_>>(), colour)
 }
 
-/// The mark of a tight spot; larger and red where it lies outside.
-pub(super) fn ring<Coord>(point: Coord, outside: bool) -> Circle<Coord, i32> {
-    let (radius, width) = if outside { (6.0, 16) } else { (4.0, 10) };
-    Circle::new(point, units(radius), RINGS[usize::from(outside)].stroke_width(width))
-}
-
-fn place<'a>(canvas: &Canvas<'a>, at: Rect) -> Canvas<'a> {
+fn part<'a>(canvas: &Canvas<'a>, at: Rect) -> Canvas<'a> {
     canvas.clone().shrink((units(at.x), units(at.y)), (units(at.width), units(at.height)))
 }
 
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
+/// Draws the axes; the upper panel of a joint shares the time labels of the lower one.
 fn axes(chart: &mut Chart, layout: &Layout, state: usize, content: &Content) -> DrawResult {
     let (time, value) = (content.time[1] - content.time[0], content.value[1] - content.value[0]);
-    let time_labels = (layout.plot().0 / 28.0) as usize;
     let time_label =
-        |t: &f64| if layout.is_velocity(state) { tick(*t, time) } else { String::new() };
-    let value_label = |x: &f64| tick(*x, value);
-    let mut mesh = chart.configure_mesh();
-    mesh.max_light_lines(0)
+        |t: &f64| if layout.is_velocity(state) { tick_label(*t, time) } else { String::new() };
+    let value_label = |x: &f64| tick_label(*x, value);
+    chart
+        .configure_mesh()
+        .max_light_lines(0)
         .bold_line_style(GRID.stroke_width(6))
         .axis_style(BAND[1].stroke_width(8))
-        .label_style(("sans-serif", units(10.5) as f64 * 1.24, &INK))
+        .label_style(tick_style())
         .set_all_tick_mark_size(units(3.0))
-        .x_labels(time_labels)
+        .x_labels((layout.plot().0 / TIME_LABEL) as usize)
         .y_labels(6)
         .x_label_formatter(&time_label)
-        .y_label_formatter(&value_label);
-    mesh.draw()
+        .y_label_formatter(&value_label)
+        .draw()
 }
 
 #[cfg(test)]

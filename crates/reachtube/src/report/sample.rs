@@ -1,8 +1,10 @@
 //! A small invented result, for the tests of this module.
 
-use super::*;
+use super::page::{JointSets, Page, SetsTable, Verdict};
+use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
+use reachtube_conform::Side;
 
-/// A suite of sine motions of so many joints, with three runs, two bands, and two tight spots.
+/// Returns a suite of sine motions with three runs, two bands, and two tight spots.
 pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
     let times: Vec<f64> = (0..201).map(|k| f64::from(k) * 0.01).collect();
     let nominal: Vec<Vec<f64>> = (0..2 * joints).map(|state| wave(&times, state)).collect();
@@ -39,7 +41,7 @@ pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
                 side: Side::Upper,
                 margin: 1.25e-6,
             },
-            TightSpot { run: 0, time_s: 1.0, state: 0, side: Side::Plane, margin: 0.0 },
+            TightSpot { run: 0, time_s: 1.0, state: 0, side: Side::Lower, margin: 0.0 },
         ],
         nominal: Nominal::Shared(nominal),
         times,
@@ -50,7 +52,7 @@ fn wave(times: &[f64], state: usize) -> Vec<f64> {
     times.iter().map(|t| (t * (1.0 + state as f64)).sin()).collect()
 }
 
-/// A table of sets of so many joints.
+/// Returns a table of the sets of a number of joints.
 pub(super) fn sets(joints: usize) -> SetsTable {
     let row = |joint| JointSets {
         joint: format!("joint {joint}"),
@@ -65,7 +67,7 @@ pub(super) fn sets(joints: usize) -> SetsTable {
     }
 }
 
-/// A whole page whose every text is hostile.
+/// Returns a whole page in which every text contains markup.
 pub(super) fn page() -> Page {
     let hostile = |what: &str| format!("{what} <script>alert(\"x\")</script> & 'more'");
     Page {

@@ -1,112 +1,154 @@
 //! The tables of the page: the uncertainty sets, the tight spots, the settings.
 
-use super::number::{decimals, outward, short};
-use super::text::escape;
-use super::{Bounds, Page, SetsTable, Side, SuiteFigure, TightSpot};
+use super::page::{Bounds, JointSets, Page, SetsTable};
+use super::skeleton::wide_table;
+use super::suite_figure::{SuiteFigure, TightSpot};
+use super::text::Text;
+use crate::number::{column_decimals, outward, significant};
+use maud::{Markup, PreEscaped, html};
+use reachtube_conform::Side;
 
-/// A column of a table of sets: its heading, its unit, its intervals.
-type Column = (&'static str, &'static str, Vec<Bounds>);
+/// A column of a table of sets.
+struct Column {
+    /// The set, as HTML.
+    set: &'static str,
+    /// The quantity.
+    quantity: &'static str,
+    unit: &'static str,
+    /// One interval per joint.
+    intervals: Vec<Bounds>,
+}
 
-/// The uncertainty sets per joint, as Table II.
-pub(super) fn sets(table: &SetsTable) -> String {
+/// Returns the uncertainty sets per joint, as Table II.
+pub(super) fn sets(table: &SetsTable) -> Markup {
     let columns = columns(table);
-    let heads: String = columns.iter().map(|(name, unit, _)| head(name, unit)).collect();
-    let cells: Vec<Vec<String>> = columns.iter().map(|(_, _, column)| intervals(column)).collect();
-    let row = |(row, sets): (usize, &super::JointSets)| {
-        let cells: String = cells.iter().map(|column| column[row].as_str()).collect();
-        format!("<tr><th scope=\"row\">{}</th>{cells}</tr>\n", escape(&sets.joint))
+    let cells: Vec<Vec<Markup>> =
+        columns.iter().map(|column| interval_cells(&column.intervals)).collect();
+    let head = html! {
+        th scope="col" { "Joint" }
+        @for column in &columns { (column_head(column)) }
     };
-    let rows: String = table.joints.iter().enumerate().map(row).collect();
-    format!(
-        "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"{0}\"><table class=\"sets\">\n\
-         <caption>{0}</caption>\n<thead><tr><th scope=\"col\">Joint</th>{heads}</tr></thead>\n\
-         <tbody>\n{rows}</tbody></table></div>\n",
-        escape(&table.notion)
-    )
+    let rows = html! {
+        @for (row, joint) in table.joints.iter().enumerate() {
+            tr {
+                th scope="row" { (Text(&joint.joint)) }
+                @for column in &cells { (column[row]) }
+            }
+        }
+    };
+    wide_table(&table.notion, &head, &rows)
 }
 
 fn columns(table: &SetsTable) -> Vec<Column> {
-    let column = |pick: fn(&super::JointSets) -> Bounds| table.joints.iter().map(pick).collect();
-    let mut columns: Vec<Column> = vec![
-        ("X<sub>0</sub>: q", "rad", column(|joint| joint.x0_q)),
-        ("X<sub>0</sub>: q̇", "rad/s", column(|joint| joint.x0_qd)),
-        ("U", "N m", column(|joint| joint.u)),
+    let column = |set, quantity, unit, pick: fn(&JointSets) -> Bounds| Column {
+        set,
+        quantity,
+        unit,
+        intervals: table.joints.iter().map(pick).collect(),
+    };
+    let mut columns = vec![
+        column("X<sub>0</sub>", ": q", "rad", |joint| joint.x0_q),
+        column("X<sub>0</sub>", ": q̇", "rad/s", |joint| joint.x0_qd),
+        column("U", "", "N m", |joint| joint.u),
     ];
     if table.joints.iter().any(|joint| joint.noise.is_some()) {
-        columns.push(("V: q", "rad", column(|joint| joint.noise.unwrap_or_default()[0])));
-        columns.push(("V: q̇", "rad/s", column(|joint| joint.noise.unwrap_or_default()[1])));
+        columns.push(column("V", ": q", "rad", |joint| joint.noise.unwrap_or_default()[0]));
+        columns.push(column("V", ": q̇", "rad/s", |joint| joint.noise.unwrap_or_default()[1]));
     }
     columns
 }
 
-fn head(name: &str, unit: &str) -> String {
-    format!("<th scope=\"col\">{name} <span class=\"unit\">[{unit}]</span></th>")
+fn column_head(column: &Column) -> Markup {
+    html! {
+        th scope="col" {
+            (PreEscaped(column.set)) (column.quantity) " " (unit(column.unit))
+        }
+    }
 }
 
-/// The cells of a column: each interval in digits, and as a bar on the scale of the column's
+fn unit(unit: &str) -> Markup {
+    html! { span.unit { "[" (unit) "]" } }
+}
+
+/// Returns the cells of a column: each interval in digits, and as a bar on the scale of the column's
 /// largest bound.
-fn intervals(column: &[Bounds]) -> Vec<String> {
-    let decimals = decimals(column);
+fn interval_cells(column: &[Bounds]) -> Vec<Markup> {
+    let decimals = column_decimals(column);
     let largest =
         column.iter().flatten().fold(f64::MIN_POSITIVE, |most, bound| most.max(bound.abs()));
     let cell = |bounds: &Bounds| {
         let [lower, upper] = outward(*bounds, decimals);
         let [from, to] = bounds.map(|bound| 50.0 + 50.0 * bound / largest);
-        format!(
-            "<td>[{lower}, {upper}]<span class=\"bar\"><i style=\"left:{from:.1}%;width:{:.1}%\"></i></span></td>",
-            to - from
-        )
+        let bar = format!("left:{from:.1}%;width:{:.1}%", to - from);
+        html! {
+            td { "[" (lower) ", " (upper) "]" span.bar { i style=(bar) {} } }
+        }
     };
     column.iter().map(cell).collect()
 }
 
-/// The tight spots of all suites, in the order given.
-pub(super) fn tight(page: &Page) -> String {
-    let rows: String = page
-        .suites
-        .iter()
-        .flat_map(|suite| suite.tight.iter().map(move |spot| spot_row(suite, spot)))
-        .collect();
-    if rows.is_empty() {
-        return "<p>None was listed.</p>\n".into();
+/// Returns the tight spots of all suites, in the order given.
+pub(super) fn tight(page: &Page) -> Markup {
+    if page.suites.iter().all(|suite| suite.tight.is_empty()) {
+        return html! { p { "No tight spots were listed." } };
     }
-    format!(
-        "<div class=\"tall\" tabindex=\"0\" role=\"region\" aria-label=\"Tight spots\"><table>\n\
-         <thead><tr><th scope=\"col\">Suite</th><th scope=\"col\">Run</th>\
-         <th scope=\"col\" class=\"number\">Time <span class=\"unit\">[s]</span></th><th scope=\"col\">State</th>\
-         <th scope=\"col\">Side</th><th scope=\"col\" class=\"number\">Margin</th><th scope=\"col\">Unit</th></tr></thead>\n\
-         <tbody>\n{rows}</tbody></table></div>\n"
-    )
+    html! {
+        div.tall tabindex="0" role="region" aria-label="Tight spots" {
+            table {
+                thead {
+                    tr {
+                        th scope="col" { "Suite" }
+                        th scope="col" { "Run" }
+                        th.number scope="col" { "Time " (unit("s")) }
+                        th scope="col" { "State" }
+                        th scope="col" { "Side" }
+                        th.number scope="col" { "Margin" }
+                        th scope="col" { "Unit" }
+                    }
+                }
+                tbody {
+                    @for suite in &page.suites {
+                        @for spot in &suite.tight { (spot_row(suite, spot)) }
+                    }
+                }
+            }
+        }
+    }
 }
 
-fn spot_row(suite: &SuiteFigure, spot: &TightSpot) -> String {
-    let (side, unit) = match spot.side {
-        Side::Lower => ("lower", suite.state_unit(spot.state)),
-        Side::Upper => ("upper", suite.state_unit(spot.state)),
-        Side::Plane => ("facet in (q, q̇)", "scaled"),
+fn spot_row(suite: &SuiteFigure, spot: &TightSpot) -> Markup {
+    let side = match spot.side {
+        Side::Lower => "lower",
+        Side::Upper => "upper",
     };
     let outside = spot.margin < 0.0;
-    let (class, word) = if outside { (" class=\"outside\"", " outside") } else { ("", "") };
-    format!(
-        "<tr{class}><td>{}</td><td>{}</td><td class=\"number\">{}</td><td>{}</td><td>{side}</td>\
-         <td class=\"number\">{}{word}</td><td>{unit}</td></tr>\n",
-        escape(&suite.suite),
-        escape(&suite.runs[spot.run].name),
-        short(spot.time_s, 6),
-        escape(&suite.spot_label(spot)),
-        short(spot.margin, 3),
-    )
+    html! {
+        tr class=[outside.then_some("outside")] {
+            td { (Text(&suite.suite)) }
+            td { (Text(&suite.runs[spot.run].name)) }
+            td.number { (significant(spot.time_s, 6)) }
+            td { (Text(&suite.state_label(spot.state))) }
+            td { (side) }
+            td.number { (significant(spot.margin, 3)) @if outside { " outside" } }
+            td { (suite.state_unit(spot.state)) }
+        }
+    }
 }
 
-/// Names and values.
-pub(super) fn facts(facts: &[(String, String)]) -> String {
-    let row = |(name, value): &(String, String)| {
-        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape(name), escape(value))
-    };
-    format!(
-        "<table class=\"facts\"><tbody>\n{}</tbody></table>\n",
-        facts.iter().map(row).collect::<String>()
-    )
+/// Returns a table of names and values.
+pub(super) fn facts(facts: &[(String, String)]) -> Markup {
+    html! {
+        table.facts {
+            tbody {
+                @for (name, value) in facts {
+                    tr {
+                        th scope="row" { (Text(name)) }
+                        td { (Text(value)) }
+                    }
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -116,7 +158,7 @@ mod tests {
 
     #[test]
     fn sets_print_their_intervals_and_units() {
-        let html = sets(&sample::sets(3));
+        let html = sets(&sample::sets(3)).into_string();
         assert_eq!(html.matches("<td>[-2.7201, 3.6017]").count(), 3);
         assert_eq!(html.matches("scope=\"row\"").count(), 3);
         assert!(html.contains("V: q ") && html.contains("[N m]"));
@@ -126,16 +168,15 @@ mod tests {
     fn noise_has_no_columns_where_none_was_modelled() {
         let mut table = sample::sets(1);
         table.joints[0].noise = None;
-        assert!(!sets(&table).contains("V: q"));
+        assert!(!sets(&table).into_string().contains("V: q"));
     }
 
     #[test]
-    fn a_sample_outside_is_called_so() {
+    fn a_sample_outside_is_marked() {
         let mut page = sample::page();
-        assert!(!tight(&page).contains("outside"));
+        assert!(!tight(&page).into_string().contains("outside"));
         page.suites[0].tight[0].margin = -0.01;
-        assert!(
-            tight(&page).contains("class=\"outside\"") && tight(&page).contains("-0.01 outside")
-        );
+        let html = tight(&page).into_string();
+        assert!(html.contains("class=\"outside\"") && html.contains("-0.01 outside"));
     }
 }

@@ -1,25 +1,20 @@
 //! Texts from outside (names of suites, runs, joints) made safe for HTML and SVG.
 
-/// The text without the characters that XML forbids.
+use maud::Render;
+
+/// Replaces the characters that XML forbids by spaces.
 pub(super) fn clean(text: &str) -> String {
     let allowed = |c: char| !c.is_control() && !matches!(c, '\u{FFFE}' | '\u{FFFF}');
     text.chars().map(|c| if allowed(c) { c } else { ' ' }).collect()
 }
 
-/// The text as the content of an element or of a quoted attribute.
-pub(super) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in clean(text).chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            other => escaped.push(other),
-        }
+/// A text from outside, which maud renders escaped and without the characters that XML forbids.
+pub(super) struct Text<'a>(pub(super) &'a str);
+
+impl Render for Text<'_> {
+    fn render_to(&self, buffer: &mut String) {
+        clean(self.0).render_to(buffer);
     }
-    escaped
 }
 
 #[cfg(test)]
@@ -28,8 +23,9 @@ mod tests {
 
     #[test]
     fn markup_becomes_text() {
-        assert_eq!(escape("<b a=\"1\" c='2'>&"), "&lt;b a=&quot;1&quot; c=&#39;2&#39;&gt;&amp;");
-        assert_eq!(escape("a\u{0}b\nc"), "a b c");
-        assert_eq!(escape("q̇ 5 °C"), "q̇ 5 °C");
+        let rendered = |text| Text(text).render().into_string();
+        assert_eq!(rendered("<b a=\"1\" c='2'>&"), "&lt;b a=&quot;1&quot; c='2'&gt;&amp;");
+        assert_eq!(rendered("a\u{0}b\nc"), "a b c");
+        assert_eq!(rendered("q̇ 5 °C"), "q̇ 5 °C");
     }
 }

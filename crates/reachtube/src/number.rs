@@ -1,0 +1,255 @@
+//! Numbers as text for people: few digits, but enough to tell what a number is.
+//!
+//! The command and the report print through these functions, so that a value looks the same in
+//! both. Files that a program reads back keep every digit and do not use them.
+
+/// Magnitude below which four decimals would hide a number.
+const SMALL: f64 = 1e-3;
+
+/// Magnitude below which six decimals would hide a number.
+const TINY: f64 = 1e-5;
+
+/// Magnitude from which decimals carry no information.
+const LARGE: f64 = 1e5;
+
+/// Decimals of the uncertainty sets in Table II of the paper.
+const PAPER_DECIMALS: i32 = 4;
+
+/// Formats a number with four decimals, or with an exponent where it is very small or large.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube::number::four_decimals;
+///
+/// assert_eq!([-0.25, 2.1e-9].map(four_decimals), ["-0.2500", "2.1e-9"]);
+/// ```
+#[must_use]
+pub fn four_decimals(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (SMALL..LARGE).contains(&size) => format!("{value:.4}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// Formats a number as it was typed, rounded to at most six significant digits.
+#[must_use]
+pub fn six_digits(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
+    if rounded != 0.0 && rounded.abs() < SMALL {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    }
+}
+
+/// Formats an interval by its ends, or by centre ± radius where its ends would look equal.
+///
+/// The result is rounded to nearest and encloses nothing; see [`outward`] for bounds that do.
+#[must_use]
+pub fn interval((low, high): (f64, f64)) -> String {
+    let (size, radius) = (low.abs().max(high.abs()), 0.5 * (high - low));
+    let centre = 0.5 * (low + high);
+    if radius == 0.0 {
+        four_decimals(centre)
+    } else if radius < SMALL * size {
+        format!("{} ± {radius:.1e}", four_decimals(centre))
+    } else if (TINY..LARGE).contains(&size) {
+        let decimals = (1.0 - radius.log10().floor()).clamp(4.0, 6.0) as usize;
+        format!("[{}, {}]", fixed(low, decimals), fixed(high, decimals))
+    } else {
+        format!("[{low:.2e}, {high:.2e}]")
+    }
+}
+
+/// Formats a number with `decimals` decimals; a result of zero has no sign.
+#[must_use]
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    text.strip_prefix('-')
+        .filter(|rest| rest.bytes().all(|b| b == b'0' || b == b'.'))
+        .map_or(text.clone(), String::from)
+}
+
+/// Formats a number with `digits` significant digits and without trailing zeros; below 1e-4 and
+/// from 1e6 on with an exponent.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-4..=5).contains(&exponent) {
+        return format!("{value:.*e}", digits.saturating_sub(1));
+    }
+    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+    without_trailing_zeros(format!("{value:.decimals$}"))
+}
+
+/// Formats the label of a tick at `value` on an axis of length `span`, in the axis' unit.
+#[must_use]
+pub fn tick_label(value: f64, span: f64) -> String {
+    if value.abs() < 1e-9 * span {
+        return "0".into();
+    }
+    if !(1e-3..1e6).contains(&span) {
+        return significant(value, 2);
+    }
+    let decimals = (1 - span.log10().floor() as i32).max(0) as usize;
+    without_trailing_zeros(format!("{value:.decimals$}"))
+}
+
+fn without_trailing_zeros(text: String) -> String {
+    if !text.contains('.') {
+        return text;
+    }
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+/// Returns the number of decimals that shows three digits of the largest bound of a table's
+/// column: 4, as in the paper's Table II, to 12.
+#[must_use]
+pub fn column_decimals(column: &[[f64; 2]]) -> usize {
+    let largest = column.iter().flatten().fold(0.0_f64, |most, bound| most.max(bound.abs()));
+    if largest == 0.0 {
+        PAPER_DECIMALS as usize
+    } else {
+        (2 - largest.log10().floor() as i32).clamp(PAPER_DECIMALS, 12) as usize
+    }
+}
+
+/// Formats the bounds `[lower, upper]` with `decimals` decimals, each rounded away from the
+/// interval.
+///
+/// # Guarantee
+///
+/// Outer: the printed bounds, read back as `f64`, enclose the interval.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube::number::outward;
+///
+/// assert_eq!(outward([-0.00311, 0.00311], 4), ["-0.0032", "0.0032"]);
+/// ```
+#[must_use]
+pub fn outward(bounds: [f64; 2], decimals: usize) -> [String; 2] {
+    let upper = downward(-bounds[1], decimals);
+    let upper = match upper.strip_prefix('-') {
+        Some(positive) => positive.to_string(),
+        None if upper == "0" => upper,
+        None => format!("-{upper}"),
+    };
+    [downward(bounds[0], decimals), upper]
+}
+
+/// Formats the largest number with `decimals` decimals that is not above `value`.
+fn downward(value: f64, decimals: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let nearest = format!("{value:.decimals$}");
+    let read: f64 = nearest.parse().unwrap_or(f64::NAN);
+    let text = if read <= value {
+        nearest
+    } else {
+        format!("{:.decimals$}", read - 10f64.powi(-(decimals as i32)))
+    };
+    if text.parse() == Ok(0.0) { "0".into() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn printed_bounds_enclose(
+            a in -1e4..1e4_f64,
+            width in 0.0..1e-2_f64,
+            decimals in 1..8_usize,
+        ) {
+            let printed = outward([a, a + width], decimals).map(|t| t.parse::<f64>().unwrap());
+            prop_assert!(printed[0] <= a && a + width <= printed[1]);
+            let digit = 1.000_001 * 10f64.powi(-(decimals as i32));
+            prop_assert!(a - printed[0] <= digit && printed[1] - (a + width) <= digit);
+        }
+
+        #[test]
+        fn significant_digits_are_kept(value in -1e8..1e8_f64) {
+            let read: f64 = significant(value, 4).parse().unwrap();
+            prop_assert!((read - value).abs() <= 5.1e-4 * value.abs());
+        }
+    }
+
+    #[test]
+    fn small_numbers_keep_their_digits() {
+        let shown = [0.0, 2.1e-9, -0.25, 12.34567, 3.2e7].map(four_decimals);
+        assert_eq!(shown, ["0", "2.1e-9", "-0.2500", "12.3457", "3.2e7"]);
+    }
+
+    #[test]
+    fn long_numbers_are_rounded_and_short_ones_kept() {
+        let shown = [0.0, 0.079, -23.13210017081165, 4.1e-18, 160.0].map(six_digits);
+        assert_eq!(shown, ["0", "0.079", "-23.1321", "4.1e-18", "160"]);
+    }
+
+    #[test]
+    fn intervals_show_their_width() {
+        let shown = [
+            (0.0, 0.0),
+            (-0.1, 0.25),
+            (-1e-6, 0.25),
+            (-6.8e-4, 3.94e-4),
+            (-2.1e-9, 2.1e-9),
+            (0.5 - 3e-8, 0.5 + 3e-8),
+            (0.5, 0.5),
+        ];
+        let expected = [
+            "0",
+            "[-0.1000, 0.2500]",
+            "[0.0000, 0.2500]",
+            "[-0.00068, 0.00039]",
+            "[-2.10e-9, 2.10e-9]",
+            "0.5000 ± 3.0e-8",
+            "0.5000",
+        ];
+        assert_eq!(shown.map(interval), expected);
+    }
+
+    #[test]
+    fn bounds_of_table_two_are_printed_as_in_the_paper() {
+        assert_eq!(outward([-0.0317, 1.2140], 4), ["-0.0317", "1.2140"]);
+        assert_eq!(outward([0.0, 0.0], 4), ["0", "0"]);
+        assert_eq!(outward([-0.00311, 0.00311], 4), ["-0.0032", "0.0032"]);
+        assert_eq!(outward([-0.5, -0.12345], 4), ["-0.5000", "-0.1234"]);
+        assert_eq!(outward([0.00001, 0.00002], 4), ["0", "0.0001"]);
+        assert_eq!(outward([-0.00002, -0.00001], 4), ["-0.0001", "0"]);
+    }
+
+    #[test]
+    fn decimals_follow_the_largest_bound() {
+        assert_eq!(column_decimals(&[[-1.0, 7.1559]]), 4);
+        assert_eq!(column_decimals(&[[-0.0075, 0.0012]]), 5);
+        assert_eq!(column_decimals(&[[0.0, 0.0]]), 4);
+    }
+
+    #[test]
+    fn ticks_have_the_digits_of_their_step() {
+        assert_eq!(tick_label(0.300_000_000_000_000_04, 0.8), "0.3");
+        assert_eq!(tick_label(-0.25, 1.1), "-0.2");
+        assert_eq!(tick_label(1e-17, 1.0), "0");
+        assert_eq!(tick_label(2e-5, 1e-4), "2.0e-5");
+    }
+
+    #[test]
+    fn significant_digits_have_no_trailing_zeros() {
+        assert_eq!(significant(3.744, 4), "3.744");
+        assert_eq!(significant(0.25, 4), "0.25");
+        assert_eq!(significant(1.25e-7, 3), "1.25e-7");
+        assert_eq!(significant(1200.0, 2), "1200");
+    }
+}

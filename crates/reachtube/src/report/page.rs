@@ -1,0 +1,67 @@
+//! The contents of a page: verdict, figures, uncertainty sets, settings, and what they mean.
+
+use super::suite_figure::SuiteFigure;
+
+/// A closed interval `[lower, upper]`, in the unit that the field holding it names.
+pub type Bounds = [f64; 2];
+
+/// The contents of a page. Texts are plain text; the page escapes them.
+#[derive(Debug, Clone, Default)]
+pub struct Page {
+    /// Heading, such as the robot's name.
+    pub title: String,
+    /// One line under the heading.
+    pub subtitle: String,
+    /// The answer, shown first.
+    pub verdict: Verdict,
+    /// The figures, in the order of their buttons; the first one is open.
+    pub suites: Vec<SuiteFigure>,
+    /// The uncertainty sets: one table per notion of conformance (Table II has two).
+    pub sets: Vec<SetsTable>,
+    /// Settings and provenance: name and value.
+    pub facts: Vec<(String, String)>,
+    /// Claims that the reader may rely on.
+    pub trust: Vec<String>,
+    /// Conclusions that the reader must not draw.
+    pub caution: Vec<String>,
+    /// Further remarks, one paragraph each.
+    pub notes: Vec<String>,
+}
+
+/// The outcome in words.
+#[derive(Debug, Clone, Default)]
+pub struct Verdict {
+    /// Whether every recording was proved to be enclosed, in the notion that `words` names.
+    pub ok: bool,
+    /// The outcome as one sentence.
+    pub words: String,
+    /// Claims that were checked with directed rounding.
+    pub proved: Vec<String>,
+    /// Claims that were not checked, or hold only with a stated confidence.
+    pub not_proved: Vec<String>,
+}
+
+/// The uncertainty sets of all joints for one notion of conformance (one half of Table II).
+#[derive(Debug, Clone, Default)]
+pub struct SetsTable {
+    /// The notion, such as "position and velocity conformant".
+    pub notion: String,
+    /// One row per joint.
+    pub joints: Vec<JointSets>,
+}
+
+/// The uncertainty sets of one joint (a row of Table II).
+#[derive(Debug, Clone, Default)]
+pub struct JointSets {
+    /// The joint's name.
+    pub joint: String,
+    /// Initial position set X0 \[rad\].
+    pub x0_q: Bounds,
+    /// Initial velocity set X0 \[rad/s\].
+    pub x0_qd: Bounds,
+    /// Input set U \[N m\].
+    pub u: Bounds,
+    /// Measurement noise V of position \[rad\] and velocity \[rad/s\]; `None` where no noise was
+    /// modelled.
+    pub noise: Option<[Bounds; 2]>,
+}

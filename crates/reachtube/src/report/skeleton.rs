@@ -1,0 +1,84 @@
+//! The parts that all pages share: the document around a page, sections, and lists.
+
+use super::text::Text;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("page.css");
+/// The browser enforces that the page loads nothing from anywhere.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+
+/// Returns a page as one HTML document that needs no other file.
+pub(super) fn document(
+    title: &str,
+    subtitle: &str,
+    body: &Markup,
+    script: Option<&'static str>,
+) -> String {
+    let document = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                link rel="icon" href="data:,";
+                title { (Text(title)) }
+                style { (PreEscaped("\n")) (PreEscaped(STYLE)) }
+            }
+            body {
+                main {
+                    header {
+                        h1 { (Text(title)) }
+                        p { (Text(subtitle)) }
+                    }
+                    (body)
+                }
+                @if let Some(script) = script {
+                    script { (PreEscaped("\n")) (PreEscaped(script)) }
+                }
+            }
+        }
+    };
+    document.into_string() + "\n"
+}
+
+/// Returns a section under a heading.
+pub(super) fn section(title: &str, body: &Markup) -> Markup {
+    html! {
+        section { h2 { (title) } (body) }
+    }
+}
+
+/// Returns two lists of points side by side, each with its title and class; nothing of an empty
+/// list.
+pub(super) fn pair_of_lists(lists: [(&str, &str, &[String]); 2]) -> Markup {
+    html! {
+        div.pair {
+            @for (title, class, points) in lists {
+                @if !points.is_empty() {
+                    div {
+                        h3 { (title) }
+                        ul class=(class) {
+                            @for point in points { li { (Text(point)) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns a table in a region that scrolls sideways on a narrow screen, named by its caption.
+pub(super) fn wide_table(caption: &str, head: &Markup, rows: &Markup) -> Markup {
+    html! {
+        div.wide tabindex="0" role="region" aria-label=(Text(caption)) {
+            table.sets {
+                caption { (Text(caption)) }
+                thead { tr { (head) } }
+                tbody { (rows) }
+            }
+        }
+    }
+}
