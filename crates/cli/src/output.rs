@@ -2,8 +2,9 @@
 
 use std::io::{ErrorKind, Write};
 
-use reachtube::{Error, Result};
 use serde::Serialize;
+
+use crate::error::{Error, Result};
 
 /// Notes that are printed.
 const MOST_NOTES: usize = 20;

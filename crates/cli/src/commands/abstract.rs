@@ -1,16 +1,69 @@
+//! `reachtube abstract`: a simple model of a robot's forward dynamics.
+
+use std::fmt::Write;
+use std::path::PathBuf;
 use std::time::Instant;
 
-use reachtube::abstraction::{ExpansionPoint, OperatingBox, PolynomialModel};
-use reachtube::{Result, write};
+use clap::Args;
+use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube::write;
 use reachtube_robot::Robot;
 use serde_json::json;
 
-use super::Outcome;
-use crate::args::AbstractArgs;
+use crate::error::Result;
+use crate::numbers::{interval, number};
+use crate::option_values::{MODELS, numbered_choice};
+use crate::outcome::Outcome;
+use crate::output;
 use crate::progress::Progress;
-use crate::{output, words};
+use crate::table::table;
 
-pub fn run(args: &AbstractArgs, json: bool) -> Result<Outcome> {
+const HELP: &str = "\
+Examples:
+  reachtube abstract --robot lwa4p --model 2 --order 5 --out model2.json
+  reachtube abstract --robot lwa4p --model 1 --order 1 --at 0,0.5,0,0,0,0 --out model1.json
+  reachtube abstract --robot lwa4p --model 3 --order 3 --box 0.2,0.3,2
+      with a proved bound of the model error over the box
+
+`conform --abstraction FILE` finds the uncertainty sets of a model that --out wrote.";
+
+/// Make a simple model of a robot's forward dynamics
+///
+/// The models are those of Liu and Althoff (2018), Sec. IV-B. --box proves a bound of the model
+/// error, the forward dynamics minus the model.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
+    #[arg(long)]
+    pub robot: String,
+    /// Model of the paper
+    #[arg(long, default_value = "1", value_parser = numbered_choice::<ModelKind>(MODELS))]
+    pub model: ModelKind,
+    /// Order of the Taylor polynomials, 1 or more
+    #[arg(long, default_value_t = 1, value_name = "P")]
+    pub order: u32,
+    /// Expansion point, separated by commas: n positions in rad; or also n velocities in rad/s; or
+    /// also n inputs in N m [default: 0]
+    #[arg(long, value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,..")]
+    pub at: Vec<f64>,
+    /// Prove a bound of the model error over a box about the expansion point: radii of positions
+    /// in rad, velocities in rad/s and inputs in N m; 3 numbers, or 3n
+    #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
+    pub operating_box: Vec<f64>,
+    /// Print the polynomials, one line per joint, instead of the summary
+    #[arg(long, conflicts_with = "json")]
+    pub print: bool,
+    /// Largest number of parts that --box is cut into; more parts give a tighter bound and take
+    /// longer [default: 16 to 2000, fewer for larger models]
+    #[arg(long, value_name = "COUNT")]
+    pub most_boxes: Option<usize>,
+    /// Write the model to this JSON file
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     robot.check_physical()?;
     let point = ExpansionPoint::from_values(&args.at, robot.joint_count())?;
@@ -45,7 +98,66 @@ pub fn run(args: &AbstractArgs, json: bool) -> Result<Outcome> {
             "seconds": seconds,
         }))?;
     } else {
-        output::print(&words::abstraction(&model, seconds))?;
+        output::print(&summary(&model, seconds))?;
     }
     Ok(Outcome::Done)
+}
+
+/// The result of `abstract`.
+fn summary(model: &PolynomialModel, seconds: f64) -> String {
+    let mut text = String::new();
+    let point = model.expansion_point();
+    let at = |name: &str, values: &[f64]| match values.iter().all(|v| *v == 0.0) {
+        true => format!("{name} = 0"),
+        false => format!("{name} = {values:?}"),
+    };
+    let _ = writeln!(
+        text,
+        "model {} of order {} of {}, about {} rad, {} rad/s, {} N m",
+        u32::from(model.kind()),
+        model.order(),
+        model.robot().name,
+        at("q", &point.q),
+        at("qd", &point.qd),
+        at("u", &point.input())
+    );
+    let _ = writeln!(
+        text,
+        "{} states, degree {}, {} terms, made in {}\n",
+        model.states(),
+        model.degree(),
+        model.term_count(),
+        duration(seconds)
+    );
+    let rows: Vec<Vec<String>> =
+        (0..model.joints()).map(|i| joint_of_abstraction(model, i)).collect();
+    match model.remainder() {
+        Some(remainder) => {
+            text.push_str(&table(&["joint", "terms", "left out [rad/s^2], proved", "seen"], &rows));
+            let _ = writeln!(
+                text,
+                "\nleft out: forward dynamics minus model, over the box (cut into {}); seen: the largest that a search found in it",
+                remainder.boxes
+            );
+        }
+        None => text.push_str(&table(&["joint", "terms"], &rows)),
+    }
+    text
+}
+
+fn joint_of_abstraction(model: &PolynomialModel, i: usize) -> Vec<String> {
+    let mut row = vec![
+        model.robot().joints[i].name.clone(),
+        model.acceleration()[i].term_count().to_string(),
+    ];
+    if let Some(remainder) = model.remainder() {
+        let bound = remainder.bounds[i].map(|[low, high]| interval((low, high)));
+        row.push(bound.unwrap_or_else(|| "no bound found".into()));
+        row.push(number(remainder.seen[i]));
+    }
+    row
+}
+
+fn duration(seconds: f64) -> String {
+    if seconds < 1.0 { format!("{:.1} ms", 1e3 * seconds) } else { format!("{seconds:.2} s") }
 }

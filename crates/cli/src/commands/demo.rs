@@ -1,20 +1,47 @@
-use std::path::Path;
+//! `reachtube demo`: every step on a simulated arm.
 
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 use reachtube::conform::{Check, Settings, Watch, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::recordings::{DataSet, Torque};
-use reachtube::{Model, Result, write};
+use reachtube::{Model, write};
 use reachtube_robot::Robot;
 use serde_json::json;
 
-use super::{Opened, Outcome, report};
-use crate::args::{DataArgs, DemoArgs};
+use super::{check, conform};
+use crate::data_arguments::DataArguments;
+use crate::error::Result;
+use crate::opened::Opened;
+use crate::outcome::Outcome;
+use crate::output;
 use crate::progress::Progress;
-use crate::{output, words};
+use crate::report_files;
+
+const HELP: &str = "\
+Example:
+  reachtube demo --out demo
+      then open demo/report/report.html in a browser";
+
+/// Run every step on a simulated arm: record, conform, check, report
+///
+/// The folder receives the recordings, the model and two report pages: one on the recordings that
+/// the model was made from, one on motions that were held out.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Folder for the recordings, the model and the reports
+    #[arg(long, value_name = "FOLDER", default_value = "reachtube-demo")]
+    pub out: PathBuf,
+    /// Seed of the random numbers; the same seed gives the same recordings
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
 
 /// The whole job on a virtual arm. Its outcome is that of the model on the recordings it was made
 /// from; that motions held out leave its sets is part of what the demo shows.
-pub fn run(args: &DemoArgs, json: bool) -> Result<Outcome> {
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::lwa4p();
     let folder = args.out.join("recordings");
     let options = DemoOptions { seed: args.seed, ..DemoOptions::default() };
@@ -38,9 +65,9 @@ pub fn run(args: &DemoArgs, json: bool) -> Result<Outcome> {
     } else {
         let words = format!(
             "{}\n{}\n{}",
-            words::model(&model),
+            conform::summary(&model),
             held_out_words(&recorded),
-            words::check(&held_out)
+            check::summary(&held_out)
         );
         output::print(&words)?;
     }
@@ -65,7 +92,7 @@ fn page(
     suites: &[String],
     to: &Path,
 ) -> Result<Check> {
-    let args = DataArgs {
+    let args = DataArguments {
         data: folder.to_path_buf(),
         suites: suites.to_vec(),
         torque: Torque::Compensated,
@@ -73,7 +100,7 @@ fn page(
         max_gap: None,
     };
     let opened = Opened::with(model.clone(), robot.clone(), &args)?;
-    let (page, _) = report::write(&opened, to)?;
+    let (page, _) = report_files::write(&opened, to)?;
     output::note(&format!("wrote {}", page.display()));
     opened.check()
 }

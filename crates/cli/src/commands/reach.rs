@@ -1,14 +1,43 @@
+//! `reachtube reach`: a model's reachable sets along recorded suites.
+
 use std::path::PathBuf;
 
+use clap::Args;
 use reachtube::conform::SuiteReach;
 use reachtube::report::page;
-use reachtube::{Result, write};
+use reachtube::write;
 use serde_json::json;
 
-use super::{Opened, Outcome, files, report};
-use crate::args::ReachArgs;
+use crate::data_arguments::ModelArguments;
+use crate::error::Result;
+use crate::file_names;
 use crate::numbers::number;
-use crate::{output, words};
+use crate::opened::Opened;
+use crate::outcome::Outcome;
+use crate::output;
+use crate::report_files;
+use crate::table::table;
+use crate::verdict::lost;
+
+const HELP: &str = "\
+Example:
+  reachtube reach --model model.json --data recordings --suites A --torque compensated --out reach
+
+Writes A.csv (reachable set at samples), A_tube.csv (over each step, an outer enclosure) and the
+figures A_*.svg to the folder.
+
+Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
+
+/// Compute a model's reachable sets along recorded test suites, at samples and between them
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Folder for the CSV files and figures
+    #[arg(long, value_name = "FOLDER", default_value = "reach")]
+    pub out: PathBuf,
+}
 
 /// The reachable set of a suite or run, and where it was written.
 struct Written<'a> {
@@ -17,7 +46,7 @@ struct Written<'a> {
     tube: PathBuf,
 }
 
-pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model)?;
     write::try_at(&args.out.join("A.csv"))?;
     let recordings = opened.recordings()?;
@@ -25,14 +54,14 @@ pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
     let reach = opened.reach(&recordings)?;
     let check = opened.check()?;
     let mut written = Vec::new();
-    for (reach, name) in reach.iter().zip(files::of_reach(&reach)) {
+    for (reach, name) in reach.iter().zip(file_names::of_reach(&reach)) {
         let samples = args.out.join(format!("{name}.csv"));
         write::atomically(&samples, |out| reach.write_samples(out))?;
         let tube = args.out.join(format!("{name}_tube.csv"));
         write::atomically(&tube, |out| reach.write_tube(out))?;
         written.push(Written { reach, samples, tube });
     }
-    report::write_figures(&page(&opened.sources(&recordings, &reach, &check))?, &args.out)?;
+    report_files::write_figures(&page(&opened.sources(&recordings, &reach, &check))?, &args.out)?;
     if json {
         let rows: Vec<_> = written.iter().map(Written::json).collect();
         output::print_json(&json!({ "reach": rows }))?;
@@ -41,11 +70,11 @@ pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
         let rows: Vec<_> = written.iter().map(Written::words).collect();
         output::print(&format!(
             "reachable sets; widths at the last sample\n{}",
-            words::table(&header, &rows)
+            table(&header, &rows)
         ))?;
     }
     for lost in reach.iter().filter_map(|reach| reach.lost.as_ref()) {
-        output::note(&words::lost(lost));
+        output::note(&self::lost(lost));
     }
     Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
 }

@@ -1,24 +1,49 @@
+//! `reachtube robot`: how a robot's description is understood.
+
 use std::fmt::Write;
 
+use clap::{Args, Subcommand};
 use nalgebra::DMatrix;
 use reachtube::abstraction::ExpansionPoint;
-use reachtube::{Error, Result};
-use reachtube_robot::{JointDescription, Physicality, Robot};
+use reachtube_robot::{Joint, JointDescription, Physicality, Robot};
 use serde_json::json;
 
-use super::Outcome;
-use crate::args::RobotShowArgs;
+use crate::error::{Error, Result};
 use crate::numbers::{digits, fixed};
-use crate::{output, words};
+use crate::outcome::Outcome;
+use crate::output;
+use crate::table::table;
 
-pub fn show(args: &RobotShowArgs, json: bool) -> Result<Outcome> {
+/// Show how reachtube understands a robot's description
+#[derive(Debug, Subcommand)]
+pub enum RobotCommand {
+    Show(ShowArguments),
+}
+
+const SHOW_HELP: &str = "\
+Examples:
+  reachtube robot show arm.toml
+  reachtube robot show lwa4p --at 0,0.5,0,0,0,0";
+
+/// Print a robot's geometry, inertia, friction and mass matrix
+///
+/// The command fails for a robot that cannot exist: one whose mass matrix is not positive definite.
+#[derive(Debug, Args)]
+#[command(after_help = SHOW_HELP)]
+pub struct ShowArguments {
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
+    pub robot: String,
+    /// Positions q_a of the mass matrix M(q_a), one per joint in rad, separated by commas
+    /// [default: 0]
+    #[arg(long, value_name = "Q,..", value_delimiter = ',', allow_hyphen_values = true)]
+    pub at: Vec<f64>,
+}
+
+pub fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     let joints = robot.joint_count();
     if !args.at.is_empty() && args.at.len() != joints {
-        return Err(Error::Setting(format!(
-            "--at: {} given; give {joints} positions in rad",
-            args.at.len()
-        )));
+        return Err(Error::PositionCount { given: args.at.len(), joints });
     }
     let at = ExpansionPoint::from_values(&args.at, joints)?;
     let physicality = robot.check_physical()?;
@@ -55,7 +80,7 @@ fn describe(robot: &Robot, q: &[f64], mass: &DMatrix<f64>, physicality: &Physica
         "motor inertia [kg m^2]",
         "viscous v1, v2, v3",
     ];
-    text.push_str(&words::table(&header, &rows));
+    text.push_str(&table(&header, &rows));
     text.push_str("\nlinks, and Coulomb friction\n");
     let rows: Vec<Vec<String>> = robot.description().joints.iter().map(link_row).collect();
     let header = [
@@ -66,7 +91,7 @@ fn describe(robot: &Robot, q: &[f64], mass: &DMatrix<f64>, physicality: &Physica
         "inertia xx xy xz yy yz zz [kg m^2]",
         "Coulomb a1..a8",
     ];
-    text.push_str(&words::table(&header, &rows));
+    text.push_str(&table(&header, &rows));
     let _ = writeln!(text, "\nM(q_a) with motors [kg m^2], q_a = {q:?} rad:");
     for row in mass.row_iter() {
         let cells: Vec<String> = row.iter().map(|m| format!("{:>9}", fixed(*m, 5))).collect();
@@ -79,7 +104,7 @@ fn describe(robot: &Robot, q: &[f64], mass: &DMatrix<f64>, physicality: &Physica
     text
 }
 
-fn joint_row(joint: &reachtube_robot::Joint) -> Vec<String> {
+fn joint_row(joint: &Joint) -> Vec<String> {
     let viscous = &joint.friction.viscous;
     let maybe = |value: Option<f64>| value.map_or_else(|| "-".into(), |value| format!("{value}"));
     vec![

@@ -3,19 +3,19 @@ use std::path::{Path, PathBuf};
 use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
 use reachtube::report::write_identified_html;
-use reachtube::{Error, Result, write};
+use reachtube::write;
 use reachtube_robot::{Robot, Urdf, UrdfEnds};
 
-use super::Outcome;
-use crate::args::IdentifyArgs;
+use super::arguments::Arguments;
+use super::summary::summary;
+use crate::error::{Error, Result};
+use crate::outcome::Outcome;
+use crate::output;
 use crate::progress::Progress;
-use crate::{identified, output};
 
-pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (settings, folder) = settings(args)?;
-    let name = settings.robot.clone().ok_or_else(|| {
-        Error::Setting("no robot: name one with --robot or robot = \"..\" in the settings".into())
-    })?;
+    let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);
     let robot = Robot::load(&name)?;
     check_urdf(args, &name)?;
@@ -31,7 +31,7 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&found.summary())?;
     } else {
-        output::print(&identified::words(&found))?;
+        output::print(&summary(&found))?;
     }
     found.warnings.iter().for_each(|warning| output::note(&format!("warning: {warning}")));
     Ok(Outcome::Done)
@@ -39,24 +39,19 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
 
 /// Whether a URDF can be written: from one that was read, and with its companion beside it in place
 /// of no other output.
-fn check_urdf(args: &IdentifyArgs, robot: &str) -> Result<()> {
+fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
     let Some(urdf) = &args.urdf else { return Ok(()) };
     if Path::new(robot).extension().is_none_or(|extension| extension != "urdf") {
-        return Err(Error::Setting(format!(
-            "--urdf writes new values into the robot's URDF, and {robot} is none; give a robot from URDF, or leave --urdf out"
-        )));
+        return Err(Error::NotUrdf { robot: robot.into() });
     }
     let companion = urdf.with_extension("toml");
     if args.out.as_ref() == Some(&companion) {
-        return Err(Error::Setting(format!(
-            "--out {} is where --urdf puts motors and friction; choose another name for one of them",
-            companion.display()
-        )));
+        return Err(Error::CompanionTaken { path: companion });
     }
     Ok(())
 }
 
-fn files(args: &IdentifyArgs, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
+fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
     let save = |path: &Path, text: String| {
         write::atomically(path, |out| out.write_all(text.as_bytes()))?;
         output::note(&format!("wrote {}", path.display()));
@@ -83,7 +78,7 @@ fn files(args: &IdentifyArgs, found: &Identification, urdf: Option<&Urdf>) -> Re
 
 /// The settings of the file and the command line, and the folder that paths are relative to: that
 /// of the settings file, or the present one.
-fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
+fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     let mut settings = match &args.settings {
         Some(path) => IdentifySettings::load(path)?,
         None => IdentifySettings::default(),
@@ -114,7 +109,7 @@ fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
 
 /// A robot of the settings file lies beside it; one of the command line, and an embedded one, is
 /// what it is.
-fn from_folder(name: &str, args: &IdentifyArgs, folder: &Path) -> String {
+fn from_folder(name: &str, args: &Arguments, folder: &Path) -> String {
     let beside = folder.join(name);
     if args.robot.is_none() && beside.exists() { beside.display().to_string() } else { name.into() }
 }

@@ -1,13 +1,13 @@
-//! A robot that was identified, in words.
+//! The text that `identify` prints.
 
 use std::fmt::Write;
 
 use reachtube::identify::{Identification, JointFit, LogValidation, WindowErrors};
 
 use crate::numbers::number;
-use crate::words::table;
+use crate::table::table;
 
-pub fn words(found: &Identification) -> String {
+pub fn summary(found: &Identification) -> String {
     let mut text = format!("{}: identified\n", found.description.name);
     gravity(&mut text, found);
     friction(&mut text, found);
