@@ -22,10 +22,10 @@ use clap::Parser;
 
 use crate::outcome::Outcome;
 
-/// Exit code for a result that is not conformant.
+/// Exit code of a result that is not conformant.
 const NOT_CONFORMANT: u8 = 1;
 
-/// Exit code for an error.
+/// Exit code of an error.
 const ERROR: u8 = 2;
 
 fn main() -> ExitCode {

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::output;
 use crate::progress::Progress;
 
-/// A model, and recordings read with its settings.
+/// A model, and the data set that is read with its settings.
 pub struct Opened {
     pub model: Model,
     robot: Robot,
@@ -22,16 +22,19 @@ pub struct Opened {
 }
 
 impl Opened {
+    /// Opens the model file and the data set.
     pub fn new(args: &ModelArguments) -> Result<Self> {
         let model = Model::load(&args.model)?;
         let robot = model.robot()?;
         Self::with(model, robot, &args.data)
     }
 
+    /// Opens the data set for a model in memory.
     pub fn with(model: Model, robot: Robot, args: &DataArguments) -> Result<Self> {
         if let (None, Some(until)) = (args.until, model.settings.until) {
             output::note(&format!(
-                "samples later than {until} s after the first are not used, as in the fit; --until changes that"
+                "samples later than {until} s after the first are not used, as when the sets were \
+                 found; --until changes the limit"
             ));
         }
         let settings = Settings {
@@ -45,25 +48,28 @@ impl Opened {
         Ok(Self { model, robot, settings, data, suites: args.suites.clone() })
     }
 
+    /// Checks the recordings against the model.
     pub fn check(&self) -> Result<Check> {
         let bar = Progress::new();
         let show = |done: usize, total: usize| bar.show(done, total);
         Ok(check_recordings(&self.model, &self.data, &self.suites, &self.settings, &show)?)
     }
 
+    /// Reads the recordings.
     pub fn recordings(&self) -> Result<Recordings> {
         let bar = Progress::new();
         let show = |done: usize, total: usize| bar.show(done, total);
         Ok(Recordings::read(&self.data, &self.suites, &self.robot, &self.settings, &show)?)
     }
 
+    /// Computes the reachable set of each suite.
     pub fn reach(&self, recordings: &Recordings) -> Result<Vec<SuiteReach>> {
         let _bar = Progress::new();
         let Self { model, robot, settings, data, .. } = self;
         Ok(reach_suites(data, robot, settings, &model.dynamics()?, &model.sets(), recordings)?)
     }
 
-    /// What the page is made from.
+    /// Returns the parts that the report page is made from.
     pub fn sources<'a>(
         &'a self,
         recordings: &'a Recordings,

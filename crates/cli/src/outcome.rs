@@ -1,14 +1,15 @@
-//! What a command that did not fail came to.
+//! The result of a command that did not fail, as its exit code reports it.
 
-/// What a command came to when it did not fail.
+/// The result of a command that did not fail.
 pub enum Outcome {
-    /// Done; where there is a verdict, it is conformant.
+    /// The command is done, and a verdict, if there is one, is conformant.
     Done,
-    /// Not conformant.
+    /// The verdict is not conformant.
     NotConformant,
 }
 
 impl Outcome {
+    /// Returns the outcome of a verdict.
     pub fn of(conformant: bool) -> Self {
         if conformant { Self::Done } else { Self::NotConformant }
     }

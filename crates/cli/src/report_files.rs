@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::file_names;
 use crate::opened::Opened;
 
-/// Writes the page and its figures into `folder`; returns the page's path, and notes on the
+/// Writes the page and its figures to `folder`. Returns the page's path and notes on the
 /// recordings.
 pub fn write(opened: &Opened, folder: &Path) -> Result<(PathBuf, Vec<String>)> {
     let path = folder.join("report.html");
@@ -26,7 +26,7 @@ pub fn write(opened: &Opened, folder: &Path) -> Result<(PathBuf, Vec<String>)> {
     Ok((path, notes))
 }
 
-/// Writes each view of each suite as SVG: A_motion.svg, A_deviation.svg.
+/// Writes one SVG file per suite and view: A_motion.svg, A_deviation.svg.
 pub fn write_figures(page: &Page, folder: &Path) -> Result<()> {
     for (figure, name) in page.suites.iter().zip(file_names::of_figures(&page.suites)) {
         for &view in figure.views() {

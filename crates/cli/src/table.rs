@@ -1,11 +1,11 @@
 //! Tables and plurals.
 
-/// A word for so many.
+/// Returns the word in the number that `count` asks for.
 pub fn plural(count: usize, word: &str) -> String {
     format!("{word}{}", if count == 1 { "" } else { "s" })
 }
 
-/// A table with right-aligned columns, the first left-aligned.
+/// Lays out a table: the first column is left-aligned, the others are right-aligned.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());

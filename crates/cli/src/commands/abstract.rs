@@ -86,57 +86,53 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if args.print {
         output::print(&model.to_string())?;
     } else if json {
-        let terms: Vec<usize> = model.acceleration().iter().map(|f| f.term_count()).collect();
-        output::print_json(&json!({
-            "model": model.kind(),
-            "order": model.order(),
-            "states": model.states(),
-            "variables": model.layout().names(),
-            "degree": model.degree(),
-            "terms": terms,
-            "remainder": model.remainder(),
-            "seconds": seconds,
-        }))?;
+        output::print_json(&json_summary(&model, seconds))?;
     } else {
         output::print(&summary(&model, seconds))?;
     }
     Ok(Outcome::Done)
 }
 
-/// The result of `abstract`.
+fn json_summary(model: &PolynomialModel, seconds: f64) -> serde_json::Value {
+    let terms: Vec<usize> = model.acceleration().iter().map(|f| f.term_count()).collect();
+    json!({
+        "model": model.kind(),
+        "order": model.order(),
+        "states": model.states(),
+        "variables": model.layout().names(),
+        "degree": model.degree(),
+        "terms": terms,
+        "remainder": model.remainder(),
+        "seconds": seconds,
+    })
+}
+
+/// Returns the result of `abstract`, with one line per joint.
 fn summary(model: &PolynomialModel, seconds: f64) -> String {
-    let mut text = String::new();
     let point = model.expansion_point();
-    let at = |name: &str, values: &[f64]| match values.iter().all(|v| *v == 0.0) {
-        true => format!("{name} = 0"),
-        false => format!("{name} = {values:?}"),
-    };
-    let _ = writeln!(
-        text,
-        "model {} of order {} of {}, about {} rad, {} rad/s, {} N m",
+    let mut text = format!(
+        "model {} of order {} of {}, expanded about {} rad, {} rad/s, {} N m\n\
+         {} states, degree {}, {} terms, computed in {}\n\n",
         u32::from(model.kind()),
         model.order(),
         model.robot().name,
-        at("q", &point.q),
-        at("qd", &point.qd),
-        at("u", &point.input())
-    );
-    let _ = writeln!(
-        text,
-        "{} states, degree {}, {} terms, made in {}\n",
+        coordinates("q", &point.q),
+        coordinates("qd", &point.qd),
+        coordinates("u", &point.input()),
         model.states(),
         model.degree(),
         model.term_count(),
         duration(seconds)
     );
-    let rows: Vec<Vec<String>> =
-        (0..model.joints()).map(|i| joint_of_abstraction(model, i)).collect();
+    let rows: Vec<_> = (0..model.joints()).map(|joint| joint_row(model, joint)).collect();
     match model.remainder() {
         Some(remainder) => {
-            text.push_str(&table(&["joint", "terms", "left out [rad/s^2], proved", "seen"], &rows));
+            let header = ["joint", "terms", "model error [rad/s^2], proved", "largest found"];
+            text.push_str(&table(&header, &rows));
             let _ = writeln!(
                 text,
-                "\nleft out: forward dynamics minus model, over the box (cut into {}); seen: the largest that a search found in it",
+                "\nmodel error: forward dynamics minus model, at every point of the box \
+                 (cut into {} parts)\nlargest found: its largest magnitude in a search of the box",
                 remainder.boxes
             );
         }
@@ -145,15 +141,22 @@ fn summary(model: &PolynomialModel, seconds: f64) -> String {
     text
 }
 
-fn joint_of_abstraction(model: &PolynomialModel, i: usize) -> Vec<String> {
+fn coordinates(name: &str, values: &[f64]) -> String {
+    match values.iter().all(|v| *v == 0.0) {
+        true => format!("{name} = 0"),
+        false => format!("{name} = {values:?}"),
+    }
+}
+
+fn joint_row(model: &PolynomialModel, joint: usize) -> Vec<String> {
     let mut row = vec![
-        model.robot().joints[i].name.clone(),
-        model.acceleration()[i].term_count().to_string(),
+        model.robot().joints[joint].name.clone(),
+        model.acceleration()[joint].term_count().to_string(),
     ];
     if let Some(remainder) = model.remainder() {
-        let bound = remainder.bounds[i].map(|[low, high]| interval((low, high)));
+        let bound = remainder.bounds[joint].map(|[low, high]| interval((low, high)));
         row.push(bound.unwrap_or_else(|| "no bound found".into()));
-        row.push(number(remainder.seen[i]));
+        row.push(number(remainder.seen[joint]));
     }
     row
 }

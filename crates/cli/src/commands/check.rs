@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use clap::Args;
-use reachtube::conform::{Check, Place};
+use reachtube::conform::{Check, Place, SuiteCheck};
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
@@ -40,46 +40,47 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::of(check.conformant))
 }
 
-/// The result of `check`.
+/// Returns the result of `check`, with one line per suite.
 pub fn summary(check: &Check) -> String {
-    let mut text = String::new();
     let verdict = if check.conformant { "conformant" } else { "not conformant" };
-    let _ = writeln!(
-        text,
-        "{verdict}: {} {}; {} of {} values (suite, sample, state) outside the reachable set\n",
+    let mut text = format!(
+        "{verdict}: {} {}; {} of {} values (suite, sample, state) outside the reachable set, at \
+         samples\n\n",
         check.runs,
         plural(check.runs, "recording"),
         check.violations.count,
         check.rows
     );
-    let row = |suite: &reachtube::conform::SuiteCheck| {
-        vec![
-            suite.suite.clone(),
-            suite.runs.to_string(),
-            suite.rows.to_string(),
-            suite.violations.count.to_string(),
-            suite.violations.worst.as_ref().map_or_else(|| "-".into(), witness),
-        ]
-    };
-    let rows: Vec<_> = check.suites.iter().map(row).collect();
-    text.push_str(&table(&["suite", "runs", "values", "outside", "furthest"], &rows));
-    check.lost.iter().for_each(|lost| text.push_str(&format!("{}\n", self::lost(lost))));
-    match &check.trust {
-        Some(held_out) => {
-            let _ = writeln!(text, "\n{}", trust(held_out, "leave the set"));
-        }
-        None => text.push_str(
-            "\nthe model was fitted to some of these recordings: this says nothing about the next motion\n",
-        ),
+    let rows: Vec<_> = check.suites.iter().map(suite_row).collect();
+    text.push_str(&table(&["suite", "runs", "values", "outside", "furthest outside"], &rows));
+    for set in &check.lost {
+        let _ = writeln!(text, "{}", lost(set));
     }
+    let next_motion = match &check.trust {
+        Some(held_out) => trust(held_out, "leave the set"),
+        None => {
+            "no bound for the next motion: the model was fitted to some of these recordings".into()
+        }
+    };
+    let _ = writeln!(text, "\n{next_motion}");
     text
 }
 
-/// A place in one line.
+fn suite_row(suite: &SuiteCheck) -> Vec<String> {
+    vec![
+        suite.suite.clone(),
+        suite.runs.to_string(),
+        suite.rows.to_string(),
+        suite.violations.count.to_string(),
+        suite.violations.worst.as_ref().map_or_else(|| "-".into(), witness),
+    ]
+}
+
+/// Describes a value outside the reachable set in one line.
 fn witness(place: &Place) -> String {
     let unit = if place.state.starts_with("qd") { "rad/s" } else { "rad" };
     format!(
-        "{} at {:.3} s: joint {}, {} {} {unit} beyond the {} side",
+        "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
         place.run,
         place.time,
         place.joint,

@@ -39,8 +39,8 @@ pub struct Arguments {
     pub seed: u64,
 }
 
-/// The whole job on a virtual arm. Its outcome is that of the model on the recordings it was made
-/// from; that motions held out leave its sets is part of what the demo shows.
+/// Runs the demo. The outcome is the model's verdict on the recordings that it was made from;
+/// motions that were held out may leave its sets, which the demo shows.
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::lwa4p();
     let folder = args.out.join("recordings");
@@ -49,12 +49,12 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let recorded = record(&robot, &options, &folder)?;
     drop(bar);
     output::note(&format!(
-        "recorded {} runs of a virtual {} in {}",
+        "recorded {} runs of a simulated {} in {}",
         recorded.runs,
         robot.name(),
         folder.display()
     ));
-    let model = identify(&robot, &folder, &recorded)?;
+    let model = fit(&robot, &folder, &recorded)?;
     let path = args.out.join("model.json");
     write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
     output::note(&format!("wrote {}", path.display()));
@@ -63,18 +63,19 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&json!({ "model": model, "held_out": held_out }))?;
     } else {
-        let words = format!(
+        let text = format!(
             "{}\n{}\n{}",
             conform::summary(&model),
-            held_out_words(&recorded),
+            held_out_heading(&recorded),
             check::summary(&held_out)
         );
-        output::print(&words)?;
+        output::print(&text)?;
     }
     Ok(Outcome::of(model.verified))
 }
 
-fn identify(robot: &Robot, folder: &Path, recorded: &RecordedDemo) -> Result<Model> {
+/// Finds the smallest uncertainty sets for the training suites.
+fn fit(robot: &Robot, folder: &Path, recorded: &RecordedDemo) -> Result<Model> {
     let settings = Settings::new(Torque::Compensated, robot.joint_count());
     let data = DataSet::open(folder)?;
     let bar = Progress::new();
@@ -84,7 +85,7 @@ fn identify(robot: &Robot, folder: &Path, recorded: &RecordedDemo) -> Result<Mod
     Ok(Model::new(robot, &data, &settings, &found))
 }
 
-/// Checks the model on some suites and writes the page about them.
+/// Checks the model on some suites and writes a report page about them.
 fn page(
     model: &Model,
     robot: &Robot,
@@ -105,9 +106,10 @@ fn page(
     opened.check()
 }
 
-fn held_out_words(recorded: &RecordedDemo) -> String {
+fn held_out_heading(recorded: &RecordedDemo) -> String {
     format!(
-        "Suites {} were held out. Sets that just enclose the recordings they were made from need not enclose the next motion:",
+        "Suites {} were held out. The smallest sets that enclose some recordings need not enclose \
+         the next motion:",
         recorded.check.join(", ")
     )
 }

@@ -81,10 +81,11 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
     output::note(&format!("wrote {}", args.out.display()));
     if json {
-        let (now, before) = (found.quality.condition, found.before.condition);
-        output::print_json(
-            &json!({ "condition": now, "condition_before": before, "period": args.period }),
-        )?;
+        output::print_json(&json!({
+            "condition": found.quality.condition,
+            "condition_before": found.before.condition,
+            "period": args.period,
+        }))?;
     } else {
         output::print(&summary(&found, &robot))?;
     }
@@ -93,7 +94,8 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 fn summary(found: &Excitation, robot: &Robot) -> String {
     let mut text = format!(
-        "condition of the base regressor {} (a random motion: {}), ln det of its information {} ({})\n",
+        "condition number of the base regressor {} (random motion: {}); log determinant of its \
+         information matrix {} (random motion: {})\n",
         number(found.quality.condition),
         number(found.before.condition),
         number(found.quality.log_determinant),
@@ -106,12 +108,13 @@ fn summary(found: &Excitation, robot: &Robot) -> String {
             writeln!(text, "  {}: {low:.3} to {high:.3} rad, at most {speed:.3} rad/s", joint.name);
     }
     text.push_str(
-        "only joint limits were looked at: check that the arm hits neither itself nor what is around it\n",
+        "The motion keeps within the joint limits only. Check that the arm hits neither itself \
+         nor its\nsurroundings before you run it.\n",
     );
     text
 }
 
-/// t, q1..qn, qd1..qdn, qdd1..qddn of one period.
+/// Returns one period as CSV with the columns t, q1..qn, qd1..qdn, qdd1..qddn.
 fn csv(found: &Excitation, joints: usize, rate: f64) -> String {
     let names = |prefix: &str| (1..=joints).map(|i| format!(",{prefix}{i}")).collect::<String>();
     let mut text = format!("t{}{}{}\n", names("q"), names("qd"), names("qdd"));

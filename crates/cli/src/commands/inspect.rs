@@ -45,30 +45,34 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The result of `inspect`.
+/// Returns the result of `inspect`, with one table per suite.
 fn summary(inspection: &Inspection) -> String {
-    let (runs, joints) = (inspection.runs, inspection.joints);
-    let (recordings, of) = (plural(runs, "recording"), plural(joints, "joint"));
-    let mut text = format!("{}: {runs} {recordings} of {joints} {of}\n", inspection.folder);
+    let Inspection { folder, runs, joints, .. } = inspection;
+    let mut text = format!(
+        "{folder}: {runs} {} of {joints} {}\n",
+        plural(*runs, "recording"),
+        plural(*joints, "joint")
+    );
     for group in &inspection.groups {
-        text.push('\n');
-        text.push_str(&group_words(group));
+        text.push_str(&format!("\n{}\n{}", heading(group), joint_table(group)));
     }
     text.push_str(LEGEND);
     text
 }
 
 const LEGEND: &str = "
-start, end: spread of the first and of the last positions over the runs, rad
-drift: correlation of the last position with the order of the runs, near +1 or -1 where the robot changes, as it does warming up
-sticks: samples slower than 0.01 rad/s
-q - int qd: largest difference of q and the integral of qd, rad
+start, end: spread of the first and of the last positions over the runs [rad]
+drift: correlation of the last position with the order of the runs; near +1 or -1 where the robot
+  changes from run to run, as it does while it warms up
+sticks: share of the samples slower than 0.01 rad/s
+q - int qd: largest difference between q and the integral of qd [rad]
 ";
 
-fn group_words(group: &Group) -> String {
+/// Describes the runs of a group in one line.
+fn heading(group: &Group) -> String {
     let [fewest, most] = group.samples;
     let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
-    let rate = match group.step {
+    let step = match group.step {
         _ if most == 1 => String::new(),
         Some(step) => format!(" every {step} s"),
         None => format!(" every {} to {} s", number(group.steps[0]), number(group.steps[1])),
@@ -78,31 +82,20 @@ fn group_words(group: &Group) -> String {
         group.motion.as_ref().map_or_else(String::new, |motion| format!(" (motion {motion})"));
     let torque = match group.same_torque {
         _ if group.runs == 1 => "",
-        true => ", the same torques in all",
-        false => ", torques or times differ",
+        true => ", same torques in every run",
+        false => ", torques or sample times differ between runs",
     };
-    let mut text = format!(
-        "{kind} {}{motion}: {} {} of {samples} {}{rate}, {:.3} s{torque}\n",
+    format!(
+        "{kind} {}{motion}: {} {} of {samples} {}{step}, {:.3} s{torque}",
         group.name,
         group.runs,
         plural(group.runs, "run"),
         plural(most, "sample"),
         group.duration
-    );
-    let row = |(index, joint): (usize, &JointSummary)| {
-        vec![
-            (index + 1).to_string(),
-            format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1]),
-            format!("{:.3}", joint.speed),
-            format!("{:.2}", joint.torque),
-            number(joint.start_spread),
-            joint.end_spread.map_or_else(|| "-".into(), number),
-            joint.drift.map_or_else(|| "-".into(), |drift| format!("{drift:+.2}")),
-            format!("{:.0} %", 100.0 * joint.sticking),
-            format!("{:.1e}", joint.integral_gap),
-        ]
-    };
-    let rows: Vec<_> = group.joints.iter().enumerate().map(row).collect();
+    )
+}
+
+fn joint_table(group: &Group) -> String {
     let header = [
         "joint",
         "q [rad]",
@@ -114,6 +107,20 @@ fn group_words(group: &Group) -> String {
         "sticks",
         "q - int qd",
     ];
-    text.push_str(&table(&header, &rows));
-    text
+    let rows = group.joints.iter().enumerate().map(|(index, joint)| joint_row(index + 1, joint));
+    table(&header, &rows.collect::<Vec<_>>())
+}
+
+fn joint_row(number_of_joint: usize, joint: &JointSummary) -> Vec<String> {
+    vec![
+        number_of_joint.to_string(),
+        format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1]),
+        format!("{:.3}", joint.speed),
+        format!("{:.2}", joint.torque),
+        number(joint.start_spread),
+        joint.end_spread.map_or_else(|| "-".into(), number),
+        joint.drift.map_or_else(|| "-".into(), |drift| format!("{drift:+.2}")),
+        format!("{:.0} %", 100.0 * joint.sticking),
+        format!("{:.1e}", joint.integral_gap),
+    ]
 }

@@ -78,7 +78,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     cut.write(&args.out)?;
     output::notes(&[prepared.changes, cut.changes].concat());
     output::note(&format!(
-        "wrote {} recordings and runs.csv into {}",
+        "wrote {} recordings and runs.csv to {}",
         cut.windows.len(),
         args.out.display()
     ));

@@ -39,7 +39,7 @@ pub struct Arguments {
     pub out: PathBuf,
 }
 
-/// The reachable set of a suite or run, and where it was written.
+/// The reachable set of a suite or run, and the files that hold it.
 struct Written<'a> {
     reach: &'a SuiteReach,
     samples: PathBuf,
@@ -67,9 +67,9 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print_json(&json!({ "reach": rows }))?;
     } else {
         let header = ["suite", "run", "samples", "widest q [rad]", "widest qd [rad/s]", "file"];
-        let rows: Vec<_> = written.iter().map(Written::words).collect();
+        let rows: Vec<_> = written.iter().map(Written::row).collect();
         output::print(&format!(
-            "reachable sets; widths at the last sample\n{}",
+            "reachable sets, with their widest interval at the last sample\n{}",
             table(&header, &rows)
         ))?;
     }
@@ -80,7 +80,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 }
 
 impl Written<'_> {
-    /// Widths of the set at the last sample, 2n.
+    /// Returns the widths of the set at the last sample, 2n, in rad and rad/s.
     fn final_width(&self) -> Vec<f64> {
         let SuiteReach { lower, upper, dimension, .. } = self.reach;
         (upper.len() - dimension..upper.len()).map(|at| upper[at] - lower[at]).collect()
@@ -99,7 +99,7 @@ impl Written<'_> {
         })
     }
 
-    fn words(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let widths = self.final_width();
         let (positions, velocities) = widths.split_at(widths.len() / 2);
         let widest = |widths: &[f64]| number(widths.iter().copied().fold(0.0, f64::max));

@@ -63,7 +63,7 @@ pub struct Table1Arguments {
     pub out: Option<PathBuf>,
 }
 
-/// Table I of the paper.
+/// Runs `reproduce table1`.
 pub fn table1(args: &Table1Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     robot.check_physical()?;
@@ -92,47 +92,50 @@ pub fn table1(args: &Table1Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The result of `reproduce table1`, in the paper's layout.
+/// Returns Table I in the paper's layout.
 fn summary(table1: &Table1) -> String {
     let (options, [slow, fast]) = (&table1.options, table1.durations);
     let mut text = format!(
-        "Table I for {}: mean |velocity error| over time and joints [rad/s], against articulated bodies\n\
-         mean ± standard deviation over {} random point-to-point motions (seed {}) within {} rad of 0, {slow:.2} s (slow) and {fast:.2} s (fast) long, inputs held over 4 ms\n\n",
+        "Table I for {}: mean |velocity error| over time and joints [rad/s], against the \
+         articulated-body algorithm\n\
+         mean ± standard deviation over {} random point-to-point motions (seed {}) within {} rad \
+         of 0; duration {slow:.2} s (slow) and {fast:.2} s (fast); inputs held over 4 ms\n\n",
         table1.robot,
         options.motions,
         options.seed,
         number(options.range)
     );
-    let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];
-    let rows: Vec<Vec<String>> = options
+    let rows: Vec<_> = options
         .orders
         .iter()
-        .flat_map(|order| Speed::ALL.map(|speed| (*order, speed)))
-        .map(|(order, speed)| {
-            let cells = kinds.map(|kind| table1_cell(table1.cell(kind, order, speed)));
-            [order.to_string(), speed.name().into()]
-                .into_iter()
-                .chain(cells.into_iter().flatten())
-                .collect()
-        })
+        .flat_map(|order| Speed::ALL.map(|speed| row(table1, *order, speed)))
         .collect();
     let header = ["p", "speed", "model 1", "paper", "model 2", "paper", "model 3", "paper"];
     text.push_str(&table(&header, &rows));
     if options.orders.iter().any(|order| *order > options.model3_up_to) {
         let _ = writeln!(
             text,
-            "\n-: left out; model 3 is simulated up to order {} (--model3-up-to)",
+            "\n-: not simulated; --model3-up-to {} limits the order of model 3",
             options.model3_up_to
         );
     }
     text
 }
 
-/// Ours and the paper's number.
-fn table1_cell(cell: Option<&Cell>) -> [String; 2] {
+fn row(table1: &Table1, order: u32, speed: Speed) -> Vec<String> {
+    let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];
+    let cells = kinds.map(|kind| cell_pair(table1.cell(kind, order, speed)));
+    [order.to_string(), speed.name().into()]
+        .into_iter()
+        .chain(cells.into_iter().flatten())
+        .collect()
+}
+
+/// Returns the simulated error and the paper's error.
+fn cell_pair(cell: Option<&Cell>) -> [String; 2] {
     let Some(cell) = cell else { return ["-".into(), String::new()] };
     let spread = cell.spread.map(|spread| format!(" ± {}", number(spread))).unwrap_or_default();
-    let ours = match (cell.mean, cell.diverged) {
+    let simulated = match (cell.mean, cell.diverged) {
         (None, diverged) => format!("∞ ({diverged} diverged)"),
         (Some(mean), 0) => format!("{}{spread}", number(mean)),
         (Some(mean), diverged) => format!("{}{spread} ({diverged} diverged)", number(mean)),
@@ -142,5 +145,5 @@ fn table1_cell(cell: Option<&Cell>) -> [String; 2] {
         Some(Paper::Diverged) => "∞".into(),
         None => String::new(),
     };
-    [ours, paper]
+    [simulated, paper]
 }

@@ -1,4 +1,4 @@
-//! The settings of `conform`, from its arguments.
+//! The settings of `conform` from its arguments.
 
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube::conform::{Dynamics, Noise, Settings, Tolerance, Weights};
@@ -8,7 +8,8 @@ use super::arguments::Arguments;
 use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
 
-/// The robot, and what else decides the result; from a model's file where one is given.
+/// Returns the robot and the settings, from the model file that `--abstraction` names if there is
+/// one.
 pub fn robot_and_settings(args: &Arguments) -> Result<(Robot, Settings)> {
     let Some(path) = &args.abstraction else {
         let robot = Robot::load(args.robot.as_deref().unwrap_or_default())?;
@@ -20,8 +21,9 @@ pub fn robot_and_settings(args: &Arguments) -> Result<(Robot, Settings)> {
     Ok((Robot::from_description(model.robot())?, settings))
 }
 
-/// Explanations cost little beside the search for the sets of a model that is not linear, and its
-/// verdict needs them more.
+/// Returns the tolerance of `--explain`. Its default searches for explanations only for nonlinear
+/// models: the verdict on an outer enclosure needs them more, and their cost is small beside the
+/// search for the sets.
 pub fn explain(args: &Arguments, robot: &Robot, settings: &Settings) -> Result<Option<Tolerance>> {
     match args.explain.as_deref() {
         Some("none") => Ok(None),
@@ -65,8 +67,8 @@ fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
     Ok(settings)
 }
 
-/// 2n numbers, or 2: one for all positions and one for all velocities. `words` are what else the
-/// option takes.
+/// Parses one number per state: 2n numbers, or 2 that stand for all positions and all velocities.
+/// `words` names the other values of the option, for the error.
 fn numbers(
     option: &'static str,
     words: &'static str,

@@ -33,12 +33,12 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     } else {
         output::print(&summary(&found))?;
     }
-    found.warnings.iter().for_each(|warning| output::note(&format!("warning: {warning}")));
+    found.warnings.iter().for_each(|warning| output::warn(warning));
     Ok(Outcome::Done)
 }
 
-/// Whether a URDF can be written: from one that was read, and with its companion beside it in place
-/// of no other output.
+/// Checks that a URDF can be written: the robot was read from one, and the companion file beside the
+/// new URDF replaces no other output.
 fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
     let Some(urdf) = &args.urdf else { return Ok(()) };
     if Path::new(robot).extension().is_none_or(|extension| extension != "urdf") {
@@ -51,6 +51,7 @@ fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
     Ok(())
 }
 
+/// Writes the robot file, the report page and the URDF that the arguments ask for.
 fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
     let save = |path: &Path, text: String| {
         write::atomically(path, |out| out.write_all(text.as_bytes()))?;
@@ -70,14 +71,14 @@ fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Resul
     if let (Some(path), Some(urdf)) = (&args.urdf, urdf) {
         let robot = Robot::from_description(&found.description)?;
         save(path, urdf.updated(&robot)?)?;
-        // Motors and what URDF has no words for stand beside it.
+        // URDF has no elements for motors and load-dependent friction.
         save(&path.with_extension("toml"), urdf.companion(&robot))?;
     }
     Ok(())
 }
 
-/// The settings of the file and the command line, and the folder that paths are relative to: that
-/// of the settings file, or the present one.
+/// Returns the settings of the file and the command line, and the folder that paths are relative
+/// to: the settings file's, or the working directory.
 fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     let mut settings = match &args.settings {
         Some(path) => IdentifySettings::load(path)?,
@@ -94,7 +95,7 @@ fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     ];
     for (entries, paths) in given {
         if !paths.is_empty() {
-            // Paths on the command line are relative to where it is typed.
+            // Paths on the command line are relative to the working directory.
             *entries = paths.iter().map(|path| LogEntry::Path(here.join(path))).collect();
         }
     }
@@ -107,8 +108,8 @@ fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     Ok((settings, folder))
 }
 
-/// A robot of the settings file lies beside it; one of the command line, and an embedded one, is
-/// what it is.
+/// Returns the robot's path: a robot that the settings file names lies beside that file, unless it
+/// is an embedded one.
 fn from_folder(name: &str, args: &Arguments, folder: &Path) -> String {
     let beside = folder.join(name);
     if args.robot.is_none() && beside.exists() { beside.display().to_string() } else { name.into() }
