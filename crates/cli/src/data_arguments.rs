@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use reachtube::recordings::{GapLimit, Torque};
 
-use crate::option_values::{choice, seconds, trimmed};
+use crate::option_values::{Choices, choice, seconds, trimmed};
 
 // A comment, not a doc comment: clap would show it as the description of the command.
 // Options that name recordings and the meaning of their torques.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Data")]
 pub struct DataArguments {
     /// Folder with runs.csv and the recordings
     #[arg(long, value_name = "FOLDER")]
@@ -18,11 +19,7 @@ pub struct DataArguments {
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
     /// Meaning of the recorded torques, columns tau1 to taun in N m
-    #[arg(long, value_parser = choice::<Torque>(&[
-        ("compensated", "the model's input u: gravity and Coulomb friction are already subtracted"),
-        ("motor", "motor torque at the output side of the gear"),
-        ("link", "link-side torque, from a joint torque sensor"),
-    ]))]
+    #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Torque,
     /// Use only samples up to this time after the first sample, above 0 s [default: all]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
@@ -32,6 +29,12 @@ pub struct DataArguments {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub max_gap: Option<f64>,
 }
+
+const TORQUES: Choices = &[
+    ("compensated", "the model's input u: gravity and Coulomb friction are already subtracted"),
+    ("motor", "motor torque at the output side of the gear"),
+    ("link", "link-side torque, from a joint torque sensor"),
+];
 
 // Options that name a model and the recordings to compare it with.
 #[derive(Debug, Args)]

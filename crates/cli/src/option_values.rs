@@ -3,8 +3,11 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;
 
+/// The values of an option, each with its explanation.
+pub type Choices = &'static [(&'static str, &'static str)];
+
 /// The models of the paper (Sec. IV-B), as `--model` names them.
-pub const MODELS: &[(&str, &str)] = &[
+pub const MODELS: Choices = &[
     ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),
     ("2", "also Coriolis terms, polynomial in sin q and cos q, eqs. (14), (15)"),
     ("3", "Taylor polynomial of the whole forward dynamics, eq. (16)"),
@@ -30,7 +33,7 @@ fn positive(text: &str) -> Option<f64> {
 }
 
 /// Parses a setting by its name in model files; each name comes with its explanation.
-pub fn choice<T>(names: &[(&'static str, &'static str)]) -> impl TypedValueParser<Value = T>
+pub fn choice<T>(names: Choices) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,
 {
@@ -38,16 +41,14 @@ where
 }
 
 /// Parses a setting that is one of a few numbers; each number comes with its explanation.
-pub fn numbered_choice<T>(
-    numbers: &[(&'static str, &'static str)],
-) -> impl TypedValueParser<Value = T>
+pub fn numbered_choice<T>(numbers: Choices) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,
 {
     explained(numbers).try_map(|number| serde_json::from_str::<T>(&number))
 }
 
-fn explained(values: &[(&'static str, &'static str)]) -> PossibleValuesParser {
+fn explained(values: Choices) -> PossibleValuesParser {
     let value = |&(name, help): &(_, _)| PossibleValue::new(name).help(help);
     PossibleValuesParser::new(values.iter().map(value).collect::<Vec<_>>())
 }

@@ -37,7 +37,7 @@ pub struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
-    /// Model of the paper
+    /// Model of the forward dynamics, numbered as in the paper
     #[arg(long, default_value = "1", value_parser = numbered_choice::<ModelKind>(MODELS))]
     pub model: ModelKind,
     /// Order of the Taylor polynomials, 1 or more

@@ -18,8 +18,9 @@ const HELP: &str = "\
 Example:
   reachtube check --model model.json --data recordings --suites C,F --torque compensated
 
-Exit codes: 0 every recording lies in the reachable set, at samples; 1 some value lies outside,
-and the result names a witness (suite, run, time, joint, excess); 2 error.";
+Exit codes: 0 every recorded value lies in the interval hull of the reachable set, at samples;
+1 some value lies outside, and the result names a witness (suite, run, time, joint, excess);
+2 error.";
 
 /// Check whether a model encloses other recordings
 #[derive(Debug, Args)]

@@ -49,7 +49,8 @@ pub struct Arguments {
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
     #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub gains: Vec<f64>,
-    /// Names of the robot's joints in the order of the recorded columns [default: the robot's order]
+    /// Names of the robot's joints in the order of the recorded columns [default: the robot's
+    /// order]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
     /// Longest time between two samples, above 0 s [default: 10 times the usual sample time]

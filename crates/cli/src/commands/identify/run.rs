@@ -37,8 +37,8 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Checks that a URDF can be written: the robot was read from one, and the companion file beside the
-/// new URDF replaces no other output.
+/// Checks that a URDF can be written: the robot was read from one, and the companion file beside
+/// the new URDF replaces no other output.
 fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
     let Some(urdf) = &args.urdf else { return Ok(()) };
     if Path::new(robot).extension().is_none_or(|extension| extension != "urdf") {
