@@ -1,29 +1,38 @@
-//! The command `reachtube`: arguments in, library calls, words out.
+//! The command `reachtube`: reads its arguments, calls the library and prints the result.
 
-mod args;
+mod cli;
 mod commands;
-mod identified;
+mod data_arguments;
+mod error;
+mod file_names;
 mod numbers;
+mod opened;
+mod option_values;
+mod outcome;
 mod output;
 mod progress;
-mod words;
+mod report_files;
+mod table;
+mod verdict;
 
 use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 
-/// Exit code for a result that is not conformant.
+use crate::outcome::Outcome;
+
+/// Exit code of a result that is not conformant.
 const NOT_CONFORMANT: u8 = 1;
 
-/// Exit code for an error.
+/// Exit code of an error.
 const ERROR: u8 = 2;
 
 fn main() -> ExitCode {
-    let arguments = args::Cli::parse();
-    match commands::run(&arguments) {
-        Ok(commands::Outcome::Done) => ExitCode::SUCCESS,
-        Ok(commands::Outcome::NotConformant) => ExitCode::from(NOT_CONFORMANT),
+    let arguments = cli::Cli::parse();
+    match cli::run(&arguments) {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::NotConformant) => ExitCode::from(NOT_CONFORMANT),
         Err(error) => {
             for line in error.to_string().lines() {
                 let _ = writeln!(std::io::stderr(), "error: {line}");

@@ -1,15 +1,15 @@
-//! Numbers as a reader wants them: few digits, but never so few that nothing is left.
+//! Numbers as text: few digits, but never so few that a small number becomes 0.
 
-/// Below this, four decimals would hide what a number is.
+/// Below this magnitude, four decimals would hide most digits.
 const SMALL: f64 = 1e-3;
 
-/// Below this, six decimals would.
+/// Below this magnitude, six decimals would hide most digits.
 const TINY: f64 = 1e-5;
 
-/// From this on, decimals say nothing.
+/// From this magnitude on, decimals add nothing.
 const LARGE: f64 = 1e5;
 
-/// A number with four decimals, or in powers of ten where it is very small or large.
+/// Returns a number with four decimals, or in scientific notation where it is very small or large.
 pub fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -18,7 +18,7 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// A number as somebody wrote it, or with six digits where it has more.
+/// Returns a number with up to six significant digits, without trailing zeros.
 pub fn digits(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse::<f64>().unwrap_or(value);
     if rounded != 0.0 && rounded.abs() < SMALL {
@@ -28,14 +28,14 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// An interval by its ends, or by centre and radius where its ends would look the same.
+/// Returns an interval by its ends, or by centre and radius where the ends would look the same.
 pub fn interval((low, high): (f64, f64)) -> String {
     let (size, radius) = (low.abs().max(high.abs()), 0.5 * (high - low));
-    let center = 0.5 * (low + high);
+    let centre = 0.5 * (low + high);
     if radius == 0.0 {
-        number(center)
+        number(centre)
     } else if radius < SMALL * size {
-        format!("{} ± {radius:.1e}", number(center))
+        format!("{} ± {radius:.1e}", number(centre))
     } else if (TINY..LARGE).contains(&size) {
         let digits = (1.0 - radius.log10().floor()).clamp(4.0, 6.0) as usize;
         format!("[{}, {}]", fixed(low, digits), fixed(high, digits))
@@ -44,7 +44,7 @@ pub fn interval((low, high): (f64, f64)) -> String {
     }
 }
 
-/// So many decimals, without the sign of a zero.
+/// Returns a number with a fixed count of decimals; a zero has no sign.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     text.strip_prefix('-')

@@ -1,14 +1,15 @@
-//! Results on standard output, diagnostics on standard error.
+//! Results on standard output, notes on standard error.
 
 use std::io::{ErrorKind, Write};
 
-use reachtube::{Error, Result};
 use serde::Serialize;
 
-/// Notes that are printed.
+use crate::error::{Error, Result};
+
+/// Largest number of notes that one command prints.
 const MOST_NOTES: usize = 20;
 
-/// Prints a result; a reader that has seen enough and closed the pipe is no error.
+/// Prints a result. A reader that closes the pipe early is not an error.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -23,15 +24,21 @@ pub fn print_json(value: &impl Serialize) -> Result<()> {
     print(&(text + "\n"))
 }
 
-/// Prints a note for the user; with standard error closed there is nobody to tell.
+/// Prints a note on standard error. A closed standard error is ignored: nobody reads it.
 pub fn note(text: &str) {
     let _ = writeln!(std::io::stderr(), "note: {text}");
 }
 
-/// Prints notes for the user; of very many of them the first and a count.
+/// Prints a warning on standard error.
+pub fn warn(text: &str) {
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
+/// Prints the first notes of a list, and the number of the others.
 pub fn notes(notes: &[String]) {
     notes.iter().take(MOST_NOTES).for_each(|text| note(text));
     if notes.len() > MOST_NOTES {
-        note(&format!("and {} more notes; inspect --json lists all", notes.len() - MOST_NOTES));
+        let more = notes.len() - MOST_NOTES;
+        note(&format!("{more} more notes; reachtube inspect --json lists all"));
     }
 }

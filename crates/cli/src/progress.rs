@@ -1,110 +1,72 @@
-//! A progress bar on a terminal, for jobs of over a second.
+//! A progress bar on a terminal, for jobs that take longer than a second.
 
-use std::io::IsTerminal;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
+use std::fmt::Write;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
 use crate::output;
 
-/// A job that takes less shows no bar.
+/// Jobs shorter than this show no bar.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Time between two pictures of the bar.
+/// Time between two drawings of the bar.
 const REFRESH: Duration = Duration::from_millis(100);
 
-/// What is done so far, and how much there is.
-struct Count {
-    doing: &'static str,
-    done: AtomicUsize,
-    total: AtomicUsize,
-    /// Lines that wait to be written above the bar.
-    told: Mutex<Vec<String>>,
-}
+/// Length of the bar in characters.
+const BAR: u64 = 32;
 
-/// Progress of one job; nothing is shown unless standard error is a terminal. The bar has a thread
-/// of its own, so that it moves on while recordings have been read and the sets are computed.
-pub struct Progress {
-    count: Arc<Count>,
-    watcher: Option<(Sender<()>, JoinHandle<()>)>,
-}
+/// Progress of one job. Nothing is drawn unless standard error is a terminal.
+pub struct Progress(ProgressBar);
 
 impl Progress {
-    /// Of recordings that are read.
+    /// Shows progress in reading recordings.
     pub fn new() -> Self {
         Self::of("reading recordings")
     }
 
+    /// Shows progress in the job that `doing` names.
     pub fn of(doing: &'static str) -> Self {
-        let (done, total, told) = Default::default();
-        let count = Arc::new(Count { doing, done, total, told });
-        let watcher = std::io::stderr().is_terminal().then(|| {
-            let (stop, stopped) = channel();
-            let watched = Arc::clone(&count);
-            (stop, std::thread::spawn(move || watch(&watched, &stopped)))
-        });
-        Self { count, watcher }
-    }
-
-    pub fn show(&self, done: usize, total: usize) {
-        self.count.total.store(total, Relaxed);
-        self.count.done.fetch_max(done, Relaxed);
-    }
-
-    /// What was finished, a line on standard error, above the bar where there is one.
-    pub fn tell(&self, words: &str) {
-        match &self.watcher {
-            Some(_) => self.count.told().push(words.into()),
-            None => output::note(words),
+        let line = move |state: &ProgressState, out: &mut dyn Write| draw(doing, state, out);
+        let style = ProgressStyle::default_bar().template("{line}").expect("one placeholder");
+        let bar = ProgressBar::no_length().with_style(style.with_key("line", line));
+        if !bar.is_hidden() {
+            bar.enable_steady_tick(REFRESH);
         }
+        Self(bar)
     }
-}
 
-impl Count {
-    fn told(&self) -> MutexGuard<'_, Vec<String>> {
-        self.told.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Reports that `done` of `total` parts are finished; parallel parts may report out of order.
+    pub fn show(&self, done: usize, total: usize) {
+        self.0.update(|state| {
+            state.set_len(total as u64);
+            state.set_pos(state.pos().max(done as u64));
+        });
+    }
+
+    /// Prints a note above the bar.
+    pub fn note(&self, text: &str) {
+        self.0.suspend(|| output::note(text));
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some((stop, thread)) = self.watcher.take() {
-            drop(stop);
-            let _ = thread.join();
-        }
-        self.count.told().drain(..).for_each(|words| output::note(&words));
+        self.0.finish_and_clear();
     }
 }
 
-/// Draws until the other end of `stopped` is dropped.
-fn watch(count: &Count, stopped: &Receiver<()>) {
-    if stopped.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+/// Writes the bar's line: the parts finished, or the time where the parts are not counted.
+fn draw(doing: &str, state: &ProgressState, out: &mut dyn Write) {
+    if state.elapsed() < PATIENCE {
         return;
     }
-    let bar = ProgressBar::no_length();
-    loop {
-        let (done, total) = (count.done.load(Relaxed), count.total.load(Relaxed));
-        if done < total {
-            bar.set_style(style(&format!("{} [{{bar:32}}] {{pos}}/{{len}}", count.doing)));
-            bar.set_length(total as u64);
-            bar.set_position(done as u64);
-        } else {
-            bar.set_style(style("{spinner} computing, {elapsed}"));
+    // A closed terminal is no reason to stop the job.
+    let _ = match (state.pos(), state.len()) {
+        (done, Some(total)) if done < total => {
+            let filled = "=".repeat((BAR * done / total) as usize) + ">";
+            write!(out, "{doing} [{filled:<width$}] {done}/{total}", width = BAR as usize)
         }
-        count.told().drain(..).for_each(|words| bar.println(format!("note: {words}")));
-        bar.tick();
-        if stopped.recv_timeout(REFRESH) != Err(RecvTimeoutError::Timeout) {
-            return bar.finish_and_clear();
-        }
-    }
-}
-
-fn style(template: &str) -> ProgressStyle {
-    let style =
-        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    style.progress_chars("=> ")
+        _ => write!(out, "computing for {}", HumanDuration(state.elapsed())),
+    };
 }

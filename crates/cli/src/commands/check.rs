@@ -1,16 +1,92 @@
-use reachtube::Result;
+//! `reachtube check`: does a model enclose recordings?
 
-use super::{Opened, Outcome};
-use crate::args::ModelArgs;
-use crate::{output, words};
+use std::fmt::Write;
 
-pub fn run(args: &ModelArgs, json: bool) -> Result<Outcome> {
-    let check = Opened::new(args)?.check()?;
+use clap::Args;
+use reachtube::conform::{Check, Place, SuiteCheck};
+
+use crate::data_arguments::ModelArguments;
+use crate::error::Result;
+use crate::numbers::number;
+use crate::opened::Opened;
+use crate::outcome::Outcome;
+use crate::output;
+use crate::table::{plural, table};
+use crate::verdict::{lost, trust};
+
+const HELP: &str = "\
+Example:
+  reachtube check --model model.json --data recordings --suites C,F --torque compensated
+
+Exit codes: 0 every recorded value lies in the interval hull of the reachable set, at samples;
+1 some value lies outside, and the result names a witness (suite, run, time, joint, excess);
+2 error.";
+
+/// Check whether a model encloses other recordings
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+}
+
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    let check = Opened::new(&args.model)?.check()?;
     output::notes(&check.notes);
     if json {
         output::print_json(&check)?;
     } else {
-        output::print(&words::check(&check))?;
+        output::print(&summary(&check))?;
     }
     Ok(Outcome::of(check.conformant))
+}
+
+/// Returns the result of `check`, with one line per suite.
+pub fn summary(check: &Check) -> String {
+    let verdict = if check.conformant { "conformant" } else { "not conformant" };
+    let mut text = format!(
+        "{verdict}: {} {}; {} of {} values (suite, sample, state) outside the reachable set, at \
+         samples\n\n",
+        check.runs,
+        plural(check.runs, "recording"),
+        check.violations.count,
+        check.rows
+    );
+    let rows: Vec<_> = check.suites.iter().map(suite_row).collect();
+    text.push_str(&table(&["suite", "runs", "values", "outside", "furthest outside"], &rows));
+    for set in &check.lost {
+        let _ = writeln!(text, "{}", lost(set));
+    }
+    let next_motion = match &check.trust {
+        Some(held_out) => trust(held_out, "leave the set"),
+        None => {
+            "no bound for the next motion: the model was fitted to some of these recordings".into()
+        }
+    };
+    let _ = writeln!(text, "\n{next_motion}");
+    text
+}
+
+fn suite_row(suite: &SuiteCheck) -> Vec<String> {
+    vec![
+        suite.suite.clone(),
+        suite.runs.to_string(),
+        suite.rows.to_string(),
+        suite.violations.count.to_string(),
+        suite.violations.worst.as_ref().map_or_else(|| "-".into(), witness),
+    ]
+}
+
+/// Describes a value outside the reachable set in one line.
+fn witness(place: &Place) -> String {
+    let unit = if place.state.starts_with("qd") { "rad/s" } else { "rad" };
+    format!(
+        "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
+        place.run,
+        place.time,
+        place.joint,
+        place.state,
+        number(place.excess),
+        format!("{:?}", place.side).to_lowercase()
+    )
 }

@@ -1,15 +1,64 @@
-use std::fmt::Write;
+//! `reachtube excite`: an exciting motion within the joint limits.
 
-use reachtube::{Result, write};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use reachtube::write;
 use reachtube_robot::{Column, ColumnKind, Criterion, Excitation, ExcitationSettings, Robot};
 use serde_json::json;
 
-use super::Outcome;
-use crate::args::ExciteArgs;
+use crate::error::Result;
 use crate::numbers::number;
+use crate::option_values::{hertz, seconds};
+use crate::outcome::Outcome;
 use crate::output;
 
-pub fn run(args: &ExciteArgs, json: bool) -> Result<Outcome> {
+const HELP: &str = "\
+Example:
+  reachtube excite --robot arm.urdf --period 20 --acceleration 4 --out excitation.csv
+
+The motion keeps within the joint limits only. Check that the arm hits neither itself nor its
+surroundings before you run it.";
+
+/// Design a motion that excites a robot's parameters, within its joint limits
+///
+/// Each joint follows a Fourier series that starts and ends at rest.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
+    #[arg(long)]
+    pub robot: String,
+    /// Period of the motion, above 0 s
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
+    pub period: f64,
+    /// Number of harmonics of each joint
+    #[arg(long, default_value_t = 5, value_name = "COUNT")]
+    pub harmonics: usize,
+    /// Largest acceleration in rad/s^2: one number for all joints, or one per joint [default: no
+    /// limit]
+    #[arg(long, value_delimiter = ',', value_name = "A,..")]
+    pub acceleration: Vec<f64>,
+    /// Largest speed of joints without a speed limit, rad/s
+    #[arg(long, default_value_t = 1.0, value_name = "SPEED")]
+    pub speed: f64,
+    /// Minimise the condition number of the base regressor, instead of maximising the determinant
+    /// of its information matrix
+    #[arg(long)]
+    pub condition: bool,
+    /// Sample rate of the CSV file, above 0 Hz
+    #[arg(long, value_name = "HZ", value_parser = hertz, default_value = "100")]
+    pub rate: f64,
+    /// Seed of the search; the same seed gives the same motion
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// CSV file for one period of the motion: columns t, q, qd, qdd in s and rad
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+}
+
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     write::try_at(&args.out)?;
     let settings = ExcitationSettings {
@@ -32,19 +81,21 @@ pub fn run(args: &ExciteArgs, json: bool) -> Result<Outcome> {
     write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
     output::note(&format!("wrote {}", args.out.display()));
     if json {
-        let (now, before) = (found.quality.condition, found.before.condition);
-        output::print_json(
-            &json!({ "condition": now, "condition_before": before, "period": args.period }),
-        )?;
+        output::print_json(&json!({
+            "condition": found.quality.condition,
+            "condition_before": found.before.condition,
+            "period": args.period,
+        }))?;
     } else {
-        output::print(&words(&found, &robot))?;
+        output::print(&summary(&found, &robot))?;
     }
     Ok(Outcome::Done)
 }
 
-fn words(found: &Excitation, robot: &Robot) -> String {
+fn summary(found: &Excitation, robot: &Robot) -> String {
     let mut text = format!(
-        "condition of the base regressor {} (a random motion: {}), ln det of its information {} ({})\n",
+        "condition number of the base regressor {} (random motion: {}); log determinant of its \
+         information matrix {} (random motion: {})\n",
         number(found.quality.condition),
         number(found.before.condition),
         number(found.quality.log_determinant),
@@ -57,12 +108,13 @@ fn words(found: &Excitation, robot: &Robot) -> String {
             writeln!(text, "  {}: {low:.3} to {high:.3} rad, at most {speed:.3} rad/s", joint.name);
     }
     text.push_str(
-        "only joint limits were looked at: check that the arm hits neither itself nor what is around it\n",
+        "The motion keeps within the joint limits only. Check that the arm hits neither itself \
+         nor its\nsurroundings before you run it.\n",
     );
     text
 }
 
-/// t, q1..qn, qd1..qdn, qdd1..qddn of one period.
+/// Returns one period as CSV with the columns t, q1..qn, qd1..qdn, qdd1..qddn.
 fn csv(found: &Excitation, joints: usize, rate: f64) -> String {
     let names = |prefix: &str| (1..=joints).map(|i| format!(",{prefix}{i}")).collect::<String>();
     let mut text = format!("t{}{}{}\n", names("q"), names("qd"), names("qdd"));

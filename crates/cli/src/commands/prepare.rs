@@ -1,15 +1,67 @@
+//! `reachtube prepare`: recordings filtered, cut into windows and written as test suites.
+
+use std::path::PathBuf;
+
+use clap::Args;
 use reachtube::identify::prepare::{
     LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, windows,
 };
-use reachtube::{Result, write};
+use reachtube::write;
 use reachtube_robot::Robot;
 use serde_json::json;
 
-use super::Outcome;
-use crate::args::PrepareArgs;
+use crate::error::Result;
+use crate::option_values::{hertz, seconds};
+use crate::outcome::Outcome;
 use crate::output;
 
-pub fn run(args: &PrepareArgs, json: bool) -> Result<Outcome> {
+const HELP: &str = "\
+Example:
+  reachtube prepare --robot arm.toml --logs repeated --repeats --window 1 --cut-off 6 \\
+      --out windows
+
+Then: reachtube inspect --data windows";
+
+/// Filter recordings, cut them into windows, and write them as test suites
+///
+/// Sample times are made even, and positions, velocities and torques are filtered forward and
+/// backward, without delay.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
+    #[arg(long)]
+    pub robot: String,
+    /// Recordings: CSV files or folders
+    #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
+    pub logs: Vec<PathBuf>,
+    /// Treat logs whose names differ only after the last _ as repeats of one motion: align them in
+    /// time, and make one suite from each window of all of them
+    #[arg(long)]
+    pub repeats: bool,
+    /// Length of the windows, above 0 s [default: whole recordings]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub window: Option<f64>,
+    /// Cut-off frequency of the low-pass filter, above 0 and below half the sample rate, Hz
+    /// [default: chosen from the recordings]
+    #[arg(long, value_name = "HZ", value_parser = hertz)]
+    pub cut_off: Option<f64>,
+    /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
+    #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
+    pub gains: Vec<f64>,
+    /// Names of the robot's joints in the order of the recorded columns [default: the robot's
+    /// order]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    pub joints: Vec<String>,
+    /// Longest time between two samples, above 0 s [default: 10 times the usual sample time]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub max_gap: Option<f64>,
+    /// Folder for the recordings and runs.csv
+    #[arg(long, value_name = "FOLDER")]
+    pub out: PathBuf,
+}
+
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     let settings = PrepareSettings {
         gains: args.gains.clone(),
@@ -27,7 +79,7 @@ pub fn run(args: &PrepareArgs, json: bool) -> Result<Outcome> {
     cut.write(&args.out)?;
     output::notes(&[prepared.changes, cut.changes].concat());
     output::note(&format!(
-        "wrote {} recordings and runs.csv into {}",
+        "wrote {} recordings and runs.csv to {}",
         cut.windows.len(),
         args.out.display()
     ));

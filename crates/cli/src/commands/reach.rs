@@ -1,23 +1,52 @@
+//! `reachtube reach`: a model's reachable sets along recorded suites.
+
 use std::path::PathBuf;
 
+use clap::Args;
 use reachtube::conform::SuiteReach;
 use reachtube::report::page;
-use reachtube::{Result, write};
+use reachtube::write;
 use serde_json::json;
 
-use super::{Opened, Outcome, files, report};
-use crate::args::ReachArgs;
+use crate::data_arguments::ModelArguments;
+use crate::error::Result;
+use crate::file_names;
 use crate::numbers::number;
-use crate::{output, words};
+use crate::opened::Opened;
+use crate::outcome::Outcome;
+use crate::output;
+use crate::report_files;
+use crate::table::table;
+use crate::verdict::lost;
 
-/// The reachable set of a suite or run, and where it was written.
+const HELP: &str = "\
+Example:
+  reachtube reach --model model.json --data recordings --suites A --torque compensated --out reach
+
+Writes A.csv (reachable set at samples), A_tube.csv (over each step, an outer enclosure) and the
+figures A_*.svg to the folder.
+
+Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
+
+/// Compute a model's reachable sets along recorded test suites, at samples and between them
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Folder for the CSV files and figures
+    #[arg(long, value_name = "FOLDER", default_value = "reach")]
+    pub out: PathBuf,
+}
+
+/// The reachable set of a suite or run, and the files that hold it.
 struct Written<'a> {
     reach: &'a SuiteReach,
     samples: PathBuf,
     tube: PathBuf,
 }
 
-pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model)?;
     write::try_at(&args.out.join("A.csv"))?;
     let recordings = opened.recordings()?;
@@ -25,33 +54,33 @@ pub fn run(args: &ReachArgs, json: bool) -> Result<Outcome> {
     let reach = opened.reach(&recordings)?;
     let check = opened.check()?;
     let mut written = Vec::new();
-    for (reach, name) in reach.iter().zip(files::of_reach(&reach)) {
+    for (reach, name) in reach.iter().zip(file_names::of_reach(&reach)) {
         let samples = args.out.join(format!("{name}.csv"));
         write::atomically(&samples, |out| reach.write_samples(out))?;
         let tube = args.out.join(format!("{name}_tube.csv"));
         write::atomically(&tube, |out| reach.write_tube(out))?;
         written.push(Written { reach, samples, tube });
     }
-    report::write_figures(&page(&opened.sources(&recordings, &reach, &check))?, &args.out)?;
+    report_files::write_figures(&page(&opened.sources(&recordings, &reach, &check))?, &args.out)?;
     if json {
         let rows: Vec<_> = written.iter().map(Written::json).collect();
         output::print_json(&json!({ "reach": rows }))?;
     } else {
         let header = ["suite", "run", "samples", "widest q [rad]", "widest qd [rad/s]", "file"];
-        let rows: Vec<_> = written.iter().map(Written::words).collect();
+        let rows: Vec<_> = written.iter().map(Written::row).collect();
         output::print(&format!(
-            "reachable sets; widths at the last sample\n{}",
-            words::table(&header, &rows)
+            "reachable sets, with their widest interval at the last sample\n{}",
+            table(&header, &rows)
         ))?;
     }
     for lost in reach.iter().filter_map(|reach| reach.lost.as_ref()) {
-        output::note(&words::lost(lost));
+        output::note(&self::lost(lost));
     }
     Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
 }
 
 impl Written<'_> {
-    /// Widths of the set at the last sample, 2n.
+    /// Returns the widths of the set at the last sample, 2n, in rad and rad/s.
     fn final_width(&self) -> Vec<f64> {
         let SuiteReach { lower, upper, dimension, .. } = self.reach;
         (upper.len() - dimension..upper.len()).map(|at| upper[at] - lower[at]).collect()
@@ -70,7 +99,7 @@ impl Written<'_> {
         })
     }
 
-    fn words(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let widths = self.final_width();
         let (positions, velocities) = widths.split_at(widths.len() / 2);
         let widest = |widths: &[f64]| number(widths.iter().copied().fold(0.0, f64::max));

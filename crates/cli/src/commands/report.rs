@@ -1,16 +1,36 @@
-use std::path::{Path, PathBuf};
+//! `reachtube report`: the HTML page and figures about a model and recordings.
 
-use reachtube::report::{Page, page, suite_svg, write_html};
-use reachtube::{Result, write};
+use std::path::PathBuf;
+
+use clap::Args;
 use serde_json::json;
 
-use super::{Opened, Outcome, files};
-use crate::args::ReportArgs;
-use crate::output;
+use crate::data_arguments::ModelArguments;
+use crate::error::Result;
+use crate::opened::Opened;
+use crate::outcome::Outcome;
+use crate::{output, report_files};
 
-pub fn run(args: &ReportArgs, json: bool) -> Result<Outcome> {
+const HELP: &str = "\
+Example:
+  reachtube report --model model.json --data recordings --torque compensated --out report
+
+Writes report.html, which works offline, and one SVG file per figure to the folder.";
+
+/// Write an HTML page and figures that compare a model with recordings
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    #[command(flatten)]
+    pub model: ModelArguments,
+    /// Folder for the page and figures
+    #[arg(long, value_name = "FOLDER", default_value = "report")]
+    pub out: PathBuf,
+}
+
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model)?;
-    let (page, notes) = write(&opened, &args.out)?;
+    let (page, notes) = report_files::write(&opened, &args.out)?;
     output::notes(&notes);
     if json {
         output::print_json(&json!({ "report": page }))?;
@@ -18,33 +38,4 @@ pub fn run(args: &ReportArgs, json: bool) -> Result<Outcome> {
         output::print(&format!("wrote {}\n", page.display()))?;
     }
     Ok(Outcome::Done)
-}
-
-/// Writes the page and its figures into `folder`; returns the page's path, and notes on the
-/// recordings.
-pub fn write(opened: &Opened, folder: &Path) -> Result<(PathBuf, Vec<String>)> {
-    let path = folder.join("report.html");
-    write::try_at(&path)?;
-    let check = opened.check()?;
-    let recordings = opened.recordings()?;
-    let reach = opened.reach(&recordings)?;
-    let page = page(&opened.sources(&recordings, &reach, &check))?;
-    let mut html = Vec::new();
-    write_html(&page, &mut html)?;
-    write_figures(&page, folder)?;
-    write::atomically(&path, |out| out.write_all(&html))?;
-    let notes = recordings.notes;
-    Ok((path, notes))
-}
-
-/// Writes each view of each suite as SVG: A_motion.svg, A_deviation.svg.
-pub fn write_figures(page: &Page, folder: &Path) -> Result<()> {
-    for (figure, name) in page.suites.iter().zip(files::of_figures(&page.suites)) {
-        for &view in figure.views() {
-            let svg = suite_svg(figure, view)?;
-            let path = folder.join(format!("{name}_{}.svg", format!("{view:?}").to_lowercase()));
-            write::atomically(&path, |out| out.write_all(svg.as_bytes()))?;
-        }
-    }
-    Ok(())
 }

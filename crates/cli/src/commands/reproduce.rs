@@ -1,14 +1,70 @@
-use reachtube::reproduce::{Table1Options, table1 as make_table1};
-use reachtube::{Result, write};
+//! `reachtube reproduce`: tables of the paper.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use reachtube::abstraction::ModelKind;
+use reachtube::reproduce::{Cell, Paper, Speed, Table1, Table1Options, table1 as make_table1};
+use reachtube::write;
 use reachtube_robot::Robot;
 
-use super::Outcome;
-use crate::args::Table1Args;
+use crate::error::Result;
+use crate::numbers::number;
+use crate::outcome::Outcome;
+use crate::output;
 use crate::progress::Progress;
-use crate::{output, words};
+use crate::table::table;
 
-/// Table I of the paper.
-pub fn table1(args: &Table1Args, json: bool) -> Result<Outcome> {
+/// Reproduce a table of the paper
+#[derive(Debug, Subcommand)]
+pub enum ReproduceCommand {
+    Table1(Table1Arguments),
+}
+
+const TABLE1_HELP: &str = "\
+Example:
+  reachtube reproduce table1 --motions 50 --seed 1 --out table1.csv
+
+The paper's trajectories are unpublished, so only the sizes and the order of the errors can agree.";
+
+/// Table I: velocity errors of models 1, 2 and 3 in simulation
+///
+/// The reference is the robot's forward dynamics by Featherstone's articulated-body algorithm,
+/// under the same inputs.
+#[derive(Debug, Args)]
+#[command(after_help = TABLE1_HELP)]
+pub struct Table1Arguments {
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
+    #[arg(long, default_value = "lwa4p")]
+    pub robot: String,
+    /// Number of random point-to-point motions, 1 or more; each is simulated slowly and fast
+    #[arg(long, default_value_t = 50, value_name = "COUNT")]
+    pub motions: usize,
+    /// Seed of the motions; the same seed gives the same motions
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Orders p of the models, separated by commas, each 1 or more
+    #[arg(long, value_delimiter = ',', default_value = "1,3,5,7", value_name = "P,..")]
+    pub orders: Vec<u32>,
+    /// Highest order at which model 3 is simulated
+    #[arg(long, default_value_t = 5, value_name = "P")]
+    pub model3_up_to: u32,
+    /// Largest distance of a joint from the expansion point q = 0, rad
+    #[arg(
+        long,
+        default_value_t = std::f64::consts::FRAC_PI_2,
+        value_name = "RAD",
+        allow_negative_numbers = true
+    )]
+    pub range: f64,
+    /// Write the error of each motion to this CSV file
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
+/// Runs `reproduce table1`.
+pub fn table1(args: &Table1Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     robot.check_physical()?;
     if let Some(path) = &args.out {
@@ -31,7 +87,63 @@ pub fn table1(args: &Table1Args, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&table)?;
     } else {
-        output::print(&words::table1(&table))?;
+        output::print(&summary(&table))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Returns Table I in the paper's layout.
+fn summary(table1: &Table1) -> String {
+    let (options, [slow, fast]) = (&table1.options, table1.durations);
+    let mut text = format!(
+        "Table I for {}: mean |velocity error| over time and joints [rad/s], against the \
+         articulated-body algorithm\n\
+         mean ± standard deviation over {} random point-to-point motions (seed {}) within {} rad \
+         of 0; duration {slow:.2} s (slow) and {fast:.2} s (fast); inputs held over 4 ms\n\n",
+        table1.robot,
+        options.motions,
+        options.seed,
+        number(options.range)
+    );
+    let rows: Vec<_> = options
+        .orders
+        .iter()
+        .flat_map(|order| Speed::ALL.map(|speed| row(table1, *order, speed)))
+        .collect();
+    let header = ["p", "speed", "model 1", "paper", "model 2", "paper", "model 3", "paper"];
+    text.push_str(&table(&header, &rows));
+    if options.orders.iter().any(|order| *order > options.model3_up_to) {
+        let _ = writeln!(
+            text,
+            "\n-: not simulated; --model3-up-to {} limits the order of model 3",
+            options.model3_up_to
+        );
+    }
+    text
+}
+
+fn row(table1: &Table1, order: u32, speed: Speed) -> Vec<String> {
+    let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];
+    let cells = kinds.map(|kind| cell_pair(table1.cell(kind, order, speed)));
+    [order.to_string(), speed.name().into()]
+        .into_iter()
+        .chain(cells.into_iter().flatten())
+        .collect()
+}
+
+/// Returns the simulated error and the paper's error.
+fn cell_pair(cell: Option<&Cell>) -> [String; 2] {
+    let Some(cell) = cell else { return ["-".into(), String::new()] };
+    let spread = cell.spread.map(|spread| format!(" ± {}", number(spread))).unwrap_or_default();
+    let simulated = match (cell.mean, cell.diverged) {
+        (None, diverged) => format!("∞ ({diverged} diverged)"),
+        (Some(mean), 0) => format!("{}{spread}", number(mean)),
+        (Some(mean), diverged) => format!("{}{spread} ({diverged} diverged)", number(mean)),
+    };
+    let paper = match cell.paper {
+        Some(Paper::Error(error)) => format!("{error:.4}"),
+        Some(Paper::Diverged) => "∞".into(),
+        None => String::new(),
+    };
+    [simulated, paper]
 }

@@ -11,8 +11,8 @@ fn schema() -> jsonschema::Validator {
     jsonschema::draft202012::new(&schema).unwrap()
 }
 
-/// (degree, terms of all joints) by hand: model 1 of the LWA 4P has six q̇, six q̇², six q̇³ and
-/// six u a joint.
+/// The degrees and the counts of terms are computed by hand: model 1 of the LWA 4P has six terms in
+/// each of q̇, q̇², q̇³ and u per joint.
 #[test]
 fn models_are_made_and_described() {
     let lab = Lab::new();
@@ -35,7 +35,7 @@ fn models_are_made_and_described() {
     }
 }
 
-/// Of the arm with m = 1 and 0.5, v = 2 and 1.
+/// The arm has the inertias 1 and 0.5 kg m² and the viscous friction 2 and 1 N m s/rad.
 #[test]
 fn polynomials_are_printed() {
     let printed = Lab::new().run("abstract --robot arm.toml --print").exits(0).stdout;
@@ -69,9 +69,9 @@ fn files_fit_the_schema_and_conform_takes_them() {
     lab.check("").exits(0);
 }
 
-/// The arm's links weigh nothing, so that model 1 leaves nothing out.
+/// The arm's links weigh nothing, so model 1 is exact.
 #[test]
-fn nothing_is_left_out_of_an_arm_that_is_linear() {
+fn the_model_error_of_a_linear_arm_is_rounding() {
     let lab = Lab::new();
     let made = lab.run("abstract --robot arm.toml --box 1,1,1 --json").exits(0).json();
     for bound in made["remainder"]["bounds"].as_array().unwrap() {

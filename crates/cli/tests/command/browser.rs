@@ -1,5 +1,4 @@
-//! The page of `report` in a headless browser: its script runs to the end, and nothing is
-//! complained about.
+//! The report page in a headless browser: its script runs to the end without an error.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -50,7 +49,7 @@ fn browser() -> Option<PathBuf> {
     all.into_iter().find(|path| path.is_file())
 }
 
-/// The document that the page's script leaves.
+/// Opens the page and returns the document after its script has run.
 fn open(browser: &Path, page: &Path, folder: &Path) -> String {
     std::fs::create_dir(folder).unwrap();
     let at = |name: &str| folder.join(name);

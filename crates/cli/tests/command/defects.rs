@@ -1,8 +1,9 @@
-//! Each defect of a recording is found, with file, line, joint and remedy.
+//! Each defect of a recording is reported with file, line, joint and remedy.
 
 use crate::fixture::{Lab, cell, set_cell};
 
-/// Changes the lines of A_2.csv; `conform` and `inspect` must refuse it with each of `parts`.
+/// Changes the lines of A_2.csv, and asserts that `conform` and `inspect` refuse it with each of
+/// `parts`.
 #[track_caller]
 fn refused(change: impl FnOnce(&mut Vec<String>), parts: &[&str]) {
     let lab = Lab::new();
@@ -12,7 +13,7 @@ fn refused(change: impl FnOnce(&mut Vec<String>), parts: &[&str]) {
     lab.run("inspect --data data").fails_with(parts);
 }
 
-/// The same for the bytes of the file.
+/// Changes the bytes of A_2.csv, and asserts that `conform` refuses it with each of `parts`.
 #[track_caller]
 fn refused_bytes(change: impl FnOnce(String) -> Vec<u8>, parts: &[&str]) {
     let lab = Lab::new();
@@ -21,7 +22,7 @@ fn refused_bytes(change: impl FnOnce(String) -> Vec<u8>, parts: &[&str]) {
     lab.conform("--json").fails_with(parts);
 }
 
-/// What is written otherwise but says the same gives the same model.
+/// Asserts that another way to write the same recording gives the same model.
 #[track_caller]
 fn accepted(change: impl FnOnce(String) -> String) {
     let lab = Lab::new();
@@ -199,7 +200,8 @@ fn positions_far_beyond_the_limits() {
     ]);
 }
 
-/// Units are compared with those of a robot, which `inspect` does not know.
+/// Asserts that `conform` refuses a recording; `inspect` cannot check units, because it has no
+/// robot.
 #[track_caller]
 fn refused_by_conform(change: impl FnOnce(&mut Vec<String>), parts: &[&str]) {
     let lab = Lab::new();
@@ -250,7 +252,7 @@ fn times_since_1970_lose_nothing() {
 }
 
 #[test]
-fn a_run_that_ends_early_is_used_and_said() {
+fn a_run_that_ends_early_is_used_and_noted() {
     let lab = Lab::new();
     lab.edit("data/A_2.csv", |lines| lines.truncate(31));
     lab.conform("--out model.json").exits(0).notes("suite A: its runs have 30 to 51 samples");

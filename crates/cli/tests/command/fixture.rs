@@ -24,12 +24,12 @@ pub const START: f64 = 0.002;
 /// Radius of the disturbance torque, N m.
 pub const TORQUE: f64 = 0.1;
 
-/// The robot that moves like the recordings.
+/// Returns the description of the robot that generated the recordings.
 pub fn robot_toml() -> String {
     let joint = |j: usize| {
         format!(
-            "[[joint]]\nname = \"axis{}\"\nplacement = {{ translation = [0.0, 0.0, 0.5] }}\narmature = {}\nvelocity_limit = 3.0\n\
-             friction = {{ viscous = [{}, 0.0, 0.0] }}\n",
+            "[[joint]]\nname = \"axis{}\"\nplacement = {{ translation = [0.0, 0.0, 0.5] }}\n\
+             armature = {}\nvelocity_limit = 3.0\nfriction = {{ viscous = [{}, 0.0, 0.0] }}\n",
             j + 1,
             INERTIA[j],
             DAMPING[j]
@@ -42,8 +42,8 @@ pub fn robot_toml() -> String {
     )
 }
 
-/// A folder with `arm.toml`, and in `data` the suites A and B of three runs, each a motion of its
-/// own.
+/// A folder with `arm.toml`, and with the suites A and B of three runs each in `data`. Each suite
+/// is a motion of its own.
 pub struct Lab {
     folder: TempDir,
 }
@@ -79,14 +79,14 @@ impl Lab {
         std::fs::write(self.path(name), text).unwrap();
     }
 
-    /// Rewrites the lines of a file.
+    /// Changes the lines of a file.
     pub fn edit(&self, name: &str, change: impl FnOnce(&mut Vec<String>)) {
         let mut lines: Vec<String> = self.read(name).lines().map(String::from).collect();
         change(&mut lines);
         self.write(name, lines.join("\n") + "\n");
     }
 
-    /// Names in a folder, sorted.
+    /// Returns the names in a folder, sorted.
     pub fn names(&self, folder: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.path(folder)).unwrap();
         let mut names: Vec<_> =
@@ -103,25 +103,25 @@ impl Lab {
         Run::of(self.command(arguments).output().unwrap())
     }
 
-    /// `conform` with the usual options and some more.
+    /// Runs `conform` with the required options and `more`.
     pub fn conform(&self, more: &str) -> Run {
         self.run(&format!("conform --robot arm.toml --data data --torque compensated {more}"))
     }
 
-    /// `check` of model.json.
+    /// Runs `check` of model.json.
     pub fn check(&self, more: &str) -> Run {
         self.run(&format!("check --model model.json --data data --torque compensated {more}"))
     }
 }
 
-/// The binary in a folder, with arguments separated by spaces.
+/// Returns the command in a folder, with arguments separated by spaces.
 pub fn command_in(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_reachtube"));
     command.current_dir(folder).args(arguments.split_whitespace());
     command
 }
 
-/// What a run of the command came to.
+/// The result of a run of the command.
 #[derive(Debug)]
 pub struct Run {
     pub code: i32,
@@ -157,7 +157,7 @@ impl Run {
         self
     }
 
-    /// As [`fails_with`](Self::fails_with), where notes came before the error.
+    /// Asserts an error as [`fails_with`](Self::fails_with) does, after notes.
     #[track_caller]
     pub fn fails_with_last(mut self, parts: &[&str]) -> Self {
         self.stderr = self
@@ -169,7 +169,7 @@ impl Run {
         self.fails_with(parts)
     }
 
-    /// Asserts that `part` is said on standard error.
+    /// Asserts that a note on standard error contains `part`.
     #[track_caller]
     pub fn notes(self, part: &str) -> Self {
         assert!(
@@ -187,7 +187,7 @@ impl Run {
     }
 }
 
-/// A run whose start and input are off by `deviation` (-1, 0, 1) radii.
+/// Returns a recording whose start and input deviate by `deviation` (-1, 0, 1) radii.
 fn recording(frequency: f64, deviation: f64) -> String {
     let mut text = String::from("t,q1,q2,qd1,qd2,tau1,tau2\n");
     let (mut q, mut qd) = ([0.1, -0.2].map(|q| q + deviation * START), [0.0; 2]);
@@ -205,7 +205,7 @@ fn recording(frequency: f64, deviation: f64) -> String {
     text
 }
 
-/// The state after a step under the torque `u`.
+/// Returns the state after one step under the torque `u`, in closed form.
 fn step(j: usize, q: f64, qd: f64, u: f64) -> (f64, f64) {
     let (steady, rate) = (u / DAMPING[j], DAMPING[j] / INERTIA[j]);
     let left = (-rate * STEP).exp();
@@ -219,7 +219,7 @@ pub fn set_cell(line: &mut String, column: usize, value: &str) {
     *line = cells.join(",");
 }
 
-/// A cell of a CSV line as a number.
+/// Returns a cell of a CSV line as a number.
 pub fn cell(line: &str, column: usize) -> f64 {
     line.split(',').nth(column).unwrap().parse().unwrap()
 }

@@ -6,8 +6,17 @@ use std::fmt::Write;
 use crate::fixture::Lab;
 
 /// A pendulum about a horizontal axis: (m l² + J) q̈ + v q̇ + f sign(q̇) + m g l sin q.
-const PENDULUM: &str = "schema_version = 1\nname = \"pendulum\"\n\n[[joint]]\nname = \"hinge\"\nplacement = { translation = [0.0, 0.0, 1.0] }\n\
-                        axis = [0.0, 1.0, 0.0]\nmass = 1.0\ncom = [0.0, 0.0, -0.3]\ninertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
+const PENDULUM: &str = r#"schema_version = 1
+name = "pendulum"
+
+[[joint]]
+name = "hinge"
+placement = { translation = [0.0, 0.0, 1.0] }
+axis = [0.0, 1.0, 0.0]
+mass = 1.0
+com = [0.0, 0.0, -0.3]
+inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]
+"#;
 
 fn motion(t: f64, seed: f64) -> [f64; 3] {
     let waves = [(0.6, 1.1 + seed, 0.0), (0.3, 2.3, seed), (0.1, 4.1 - seed, 1.0)];
@@ -24,7 +33,7 @@ fn recording(seed: f64) -> String {
     for k in 0..4000 {
         let t = 0.005 * k as f64;
         let [q, qd, qdd] = motion(t, seed);
-        // 2 kg at 0.4 m, 0.5 kg m² in all, friction 1 N m and 0.8 N m s/rad.
+        // 2 kg at 0.4 m, total inertia 0.5 kg m², friction 1 N m and 0.8 N m s/rad.
         let tau = 0.5 * qdd + 0.8 * qd + qd.signum() + 2.0 * 9.81 * 0.4 * q.sin();
         writeln!(text, "{t:.3},{q:.9},{qd:.9},{tau:.9}").unwrap();
     }
@@ -44,14 +53,17 @@ fn lab() -> Lab {
 fn a_pendulum_is_found_and_its_file_is_a_robot() {
     let lab = lab();
     let run = lab
-        .run("identify --robot pendulum.toml --dynamic a.csv b.csv --validate c.csv --cut-off 15 --out found.toml --report report --json")
+        .run(
+            "identify --robot pendulum.toml --dynamic a.csv b.csv --validate c.csv --cut-off 15 \
+             --out found.toml --report report --json",
+        )
         .exits(0)
         .notes("wrote found.toml")
         .notes("were filtered forward and backward");
     let found = run.json();
     assert_eq!(found["kept_back"], true);
-    // What the low-pass takes off the steps of Coulomb friction where the joint turns: 1 % of the
-    // torque.
+    // The low-pass filter smooths the steps of Coulomb friction where the joint reverses: 1 % of
+    // the torque.
     assert!(found["validation"][0]["joints"][0]["relative"].as_f64().unwrap() < 0.02, "{found}");
     let viscous = found["robot"]["joint"][0]["friction"]["viscous"][0].as_f64().unwrap();
     assert!((viscous - 0.8).abs() < 1e-3, "{viscous}");
@@ -63,7 +75,7 @@ fn a_pendulum_is_found_and_its_file_is_a_robot() {
     lab.run("robot show found.toml").exits(0);
 }
 
-/// The same pendulum as URDF, with a picture that identification has no business with.
+/// The same pendulum as URDF, with a mesh that identification must leave unchanged.
 const URDF: &str = r#"<robot name="pendulum">
   <link name="base"/>
   <joint name="hinge" type="revolute">
@@ -85,7 +97,7 @@ const URDF: &str = r#"<robot name="pendulum">
 "#;
 
 #[test]
-fn a_urdf_gets_the_values_found_and_keeps_the_rest() {
+fn a_urdf_gets_the_identified_values_and_keeps_the_rest() {
     let lab = lab();
     lab.write("arm.urdf", URDF);
     let job = "identify --robot arm.urdf --dynamic a.csv b.csv --cut-off 15";
@@ -105,21 +117,26 @@ fn a_urdf_gets_the_values_found_and_keeps_the_rest() {
     }
     let gravity = new["gravity_torque"][0].as_f64().unwrap();
     assert!((gravity - 2.0 * 9.81 * 0.4 * 0.5f64.sin()).abs() < 0.01, "{gravity}");
-    // The companion of new.urdf, with motor and friction, would take the place of the robot file.
+    // The companion of new.urdf, with motor and friction, would overwrite the robot file.
     lab.run(&format!("{job} --out new.toml --urdf new.urdf"))
         .fails_with(&["--out new.toml", "another name"]);
     lab.run("identify --robot pendulum.toml --dynamic a.csv --urdf new.urdf")
-        .fails_with(&["pendulum.toml is none"]);
+        .fails_with(&["pendulum.toml is not a URDF file"]);
 }
 
 #[test]
-fn settings_hold_all_of_it_and_mistakes_are_told() {
+fn a_settings_file_holds_every_option_and_its_mistakes_are_reported() {
     let lab = lab();
-    let settings = "robot = \"pendulum.toml\"\ndynamic = [\"a.csv\", { path = \"b.csv\", from = 2.0 }]\nvalidate = [\"c.csv\"]\n[prepare]\ncut_off = 8.0\n";
+    let settings = r#"robot = "pendulum.toml"
+dynamic = ["a.csv", { path = "b.csv", from = 2.0 }]
+validate = ["c.csv"]
+[prepare]
+cut_off = 8.0
+"#;
     lab.write("job.toml", settings);
     let words = lab.run("identify --settings job.toml").exits(0).stdout;
     for part in
-        ["3. inertial parameters", "combinations shown", "recordings kept back", "simulated"]
+        ["3. inertial parameters", "combinations determined", "recordings held out", "simulated"]
     {
         assert!(words.contains(part), "{part} is not in\n{words}");
     }
@@ -138,7 +155,7 @@ fn windows_of_recordings_are_suites_and_motions_are_designed() {
     let lab = lab();
     lab.run("prepare --robot pendulum.toml --logs a.csv b.csv --window 2 --out windows")
         .exits(0)
-        .notes("into windows");
+        .notes("to windows");
     let inspected = lab.run("inspect --data windows").exits(0).stdout;
     assert!(inspected.contains("a_w01"), "{inspected}");
     lab.run("excite --robot pendulum.toml --period 4 --harmonics 2 --out motion.csv")

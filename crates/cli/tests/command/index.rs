@@ -1,4 +1,4 @@
-//! Defects of the index, and what is said about odd data sets.
+//! Defects of the index, and notes about unusual data sets.
 
 use crate::fixture::Lab;
 
@@ -69,7 +69,7 @@ fn suites_that_are_not_there() {
 }
 
 #[test]
-fn nothing_is_left_out_without_a_word() {
+fn every_unused_file_is_noted() {
     let lab = Lab::new();
     std::fs::copy(lab.path("data/A_1.csv"), lab.path("data/A_4.csv")).unwrap();
     lab.conform("--suites A").exits(0).notes("A_4.csv is not in runs.csv and is not used").notes(
@@ -80,7 +80,7 @@ fn nothing_is_left_out_without_a_word() {
 }
 
 #[test]
-fn a_changed_file_is_told() {
+fn a_changed_file_is_noted() {
     let lab = Lab::new();
     lab.edit("data/runs.csv", |lines| {
         lines[0] += ",sha256";
@@ -92,7 +92,7 @@ fn a_changed_file_is_told() {
 }
 
 #[test]
-fn velocities_that_do_not_fit_are_told() {
+fn inconsistent_velocities_are_noted() {
     let lab = Lab::new();
     lab.edit("data/A_2.csv", |lines| {
         for line in &mut lines[1..] {

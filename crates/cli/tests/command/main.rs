@@ -1,5 +1,4 @@
-//! The command as a user meets it: the real binary, its exit codes, what it prints and what it
-//! writes.
+//! Tests of the binary: its exit codes, its output and the files it writes.
 
 mod abstraction;
 mod browser;

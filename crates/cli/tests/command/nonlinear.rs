@@ -1,10 +1,10 @@
-//! Models that are not linear: `conform`, `check`, `reach` and `report` on them.
+//! Nonlinear models: `conform`, `check`, `reach` and `report` on them.
 
 use serde_json::{Value, json};
 
 use crate::fixture::{Lab, Run, SAMPLES, cell, robot_toml};
 
-/// The arm of the recordings, but for friction that bends.
+/// The arm of the recordings, but with cubic viscous friction.
 fn bent() -> Lab {
     let lab = Lab::new();
     let (straight, bent) = ("viscous = [2, 0.0, 0.0]", "viscous = [2, 0.5, -0.1]");
@@ -34,16 +34,18 @@ fn fits(schema: &jsonschema::Validator, model: &Value) {
 }
 
 #[test]
-fn a_model_that_is_not_linear_goes_through_every_command() {
+fn a_nonlinear_model_goes_through_every_command() {
     let lab = bent();
     let run = conform(&lab, "--out model.json --report report")
         .exits(0)
         .notes("round 1: the linearised sets cost");
     for part in [
-        "conformant: 6 recordings in 2 suites; 816 of 816 bounds (suite, sample, state, side) in the computed reachable set, an outer enclosure",
-        "of the linearised set",
+        "conformant: 6 recordings in 2 suites; 816 of 816 bounds (suite, sample, state, side) lie \
+         in the computed reachable set, an outer enclosure",
+        "for the linearised sets",
         "decide X0 and U",
-        "a motion of the model itself (start in X0, input in U, held over each sample) was found within 0.001 rad and 0.01 rad/s of",
+        "a motion of the model itself (start in X0, input in U, held over each sample) was found \
+         within 0.001 rad and 0.01 rad/s of",
     ] {
         assert!(run.stdout.contains(part), "{part:?} is not in\n{}", run.stdout);
     }
@@ -101,7 +103,7 @@ fn bisection_is_a_baseline_that_costs_more() {
     );
     let sets = |model: &Value| model["search"]["reachable_sets"].as_u64().unwrap();
     assert!(sets(&bisection) > 20 && sets(&program) < 5);
-    // The linear model has a baseline too.
+    // Bisection works on the linear model too.
     let linear = lab.conform("--json --method bisection").exits(0).json();
     assert!(cost(&linear) > 0.999 * cost(&lab.conform("--json").exits(0).json()));
 }
@@ -163,7 +165,7 @@ fn a_changed_model_is_refused() {
     }
 }
 
-/// Friction that peaks at 0.24 N m: under 3 N m the joint runs away.
+/// The friction torque peaks at 0.24 N m, so a joint driven by 3 N m diverges.
 #[test]
 fn a_model_that_runs_away_is_refused_and_a_lost_set_is_an_answer() {
     let lab = bent();
@@ -180,11 +182,11 @@ fn a_model_that_runs_away_is_refused_and_a_lost_set_is_an_answer() {
     lab.write("model.json", model.to_string());
     let check = lab.check("").exits(1);
     assert!(
-        check.stdout.contains("the reachable set could not be followed beyond"),
+        check.stdout.contains("the reachable set could not be computed beyond"),
         "{}",
         check.stdout
     );
     lab.run("reach --model model.json --data data --torque compensated --out reach")
         .exits(1)
-        .notes("the reachable set could not be followed beyond");
+        .notes("the reachable set could not be computed beyond");
 }

@@ -1,4 +1,4 @@
-//! Options and what is wrong with them.
+//! Options, their help and their errors.
 
 use crate::fixture::{Lab, SAMPLES};
 
@@ -10,6 +10,10 @@ fn help_has_examples_and_exit_codes() {
         "demo",
         "robot show",
         "inspect",
+        "abstract",
+        "excite",
+        "identify",
+        "prepare",
         "conform",
         "check",
         "reach",
@@ -21,6 +25,7 @@ fn help_has_examples_and_exit_codes() {
             help.contains("Example") && help.contains(&format!("reachtube {command}")),
             "{command}: {help}"
         );
+        assert!(help.lines().all(|line| line.chars().count() <= 100), "{command}: {help}");
     }
     assert!(
         lab.run("--help")
@@ -52,12 +57,12 @@ fn numbers_that_do_not_fit() {
     let lab = Lab::new();
     lab.conform("--weights 0,1").fails_with(&["weight 1 is 0", "between 1e-9 and 1e9"]);
     lab.conform("--weights 1,2,3").fails_with(&[
-        "--weights: 3 given",
+        "--weights: 3 values given",
         "unit, spread, 2 numbers",
         "or 4",
     ]);
     lab.conform("--weights Spread")
-        .fails_with(&["--weights: \"Spread\" is no number", "unit, spread"]);
+        .fails_with(&["--weights: \"Spread\" is not a number", "unit, spread"]);
     lab.conform("--noise -1,0").fails_with(&["noise radius 1 is -1", "between 0 and 1e9"]);
     lab.conform("--noise NaN,0").fails_with(&["noise radius 1 is NaN"]);
     lab.conform("--expansion 1,2,3").fails_with(&[
@@ -84,10 +89,8 @@ fn until_uses_the_beginning() {
     let check =
         lab.check("--json").exits(0).notes("samples later than 0.1 s after the first are not used");
     assert_eq!(check.json()["rows"], 2 * 11 * 4);
-    assert_eq!(
-        lab.conform("--until 1e-6 --json").exits(0).json()["data"]["suites"][0]["runs"][0]["samples"],
-        1
-    );
+    let model = lab.conform("--until 1e-6 --json").exits(0).json();
+    assert_eq!(model["data"]["suites"][0]["runs"][0]["samples"], 1);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Output is written whole or not at all, and standard output holds results only.
+//! Output files are written whole or not at all, and standard output holds results only.
 
 use std::process::Stdio;
 
@@ -31,7 +31,7 @@ fn an_error_leaves_the_old_model() {
     assert_eq!(lab.read("model.json"), "old");
 }
 
-/// A device that is always full, where the system has one.
+/// Opens a device that is always full.
 #[cfg(target_os = "linux")]
 fn full() -> std::fs::File {
     std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap()
@@ -72,7 +72,7 @@ fn a_full_disk_is_an_error() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_is_no_error() {
+fn a_reader_that_closes_the_pipe_is_not_an_error() {
     let lab = Lab::new();
     for arguments in [
         "robot show lwa4p --json",

@@ -1,4 +1,4 @@
-//! Robots that are none.
+//! Descriptions of robots, and those that are refused.
 
 use crate::fixture::{Lab, robot_toml};
 
@@ -12,7 +12,7 @@ fn refused(from: &str, to: &str, parts: &[&str]) {
 }
 
 #[test]
-fn what_was_understood_is_shown() {
+fn a_robot_is_shown() {
     let lab = Lab::new();
     let text = lab.run("robot show arm.toml --at 0.1,-0.2").exits(0).stdout;
     for part in
@@ -20,7 +20,8 @@ fn what_was_understood_is_shown() {
     {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
-    lab.run("robot show arm.toml --at 1,2,3").fails_with(&["--at: 3 given", "2 positions in rad"]);
+    lab.run("robot show arm.toml --at 1,2,3")
+        .fails_with(&["--at has 3 values", "give 2, one position per joint in rad"]);
     lab.run("robot show lwa4p").exits(0);
 }
 

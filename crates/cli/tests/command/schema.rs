@@ -72,7 +72,7 @@ fn the_schema_refuses_what_the_program_refuses() {
 }
 
 #[test]
-fn a_part_that_was_changed_is_noticed() {
+fn a_changed_part_is_refused() {
     let lab = Lab::new();
     let model = lab.conform("--json").exits(0).json();
     for (path, value, words) in [
@@ -104,7 +104,7 @@ fn a_smaller_set_is_no_longer_conformant() {
 }
 
 #[test]
-fn what_is_no_model_file() {
+fn other_files_are_refused() {
     let lab = Lab::new();
     lab.check("")
         .fails_with(&["model.json: cannot read", "give a file that `conform --out` wrote"]);

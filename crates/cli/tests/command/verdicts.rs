@@ -9,15 +9,15 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 #[test]
-fn the_sets_are_those_that_made_the_recordings() {
+fn the_sets_are_those_that_generated_the_recordings() {
     let lab = Lab::new();
     let model = lab.conform("--json").exits(0).json();
     assert_eq!(model["verified"], true);
     assert!(model["cost"].as_f64().unwrap() > 0.0);
     let (start, input) =
         (numbers(&model["initial_set"]["radius"]), numbers(&model["input_set"]["radius"]));
-    // The recordings hold numbers to the last digit, so only rounding separates the sets from what
-    // made them.
+    // The recordings hold every digit, so the sets differ from the sets that generated them by
+    // rounding only.
     let near = |found: &[f64], expected: &[f64]| {
         found
             .iter()
@@ -42,7 +42,7 @@ fn a_model_file_is_what_json_prints() {
 }
 
 #[test]
-fn a_table_tells_the_sets() {
+fn a_table_shows_the_sets() {
     let text = Lab::new().conform("").exits(0).stdout;
     assert!(text.starts_with("conformant: 6 recordings in 2 suites; 816 of 816 bounds"), "{text}");
     for part in ["axis1", "axis2", "[-0.0020, 0.0020]", "[-0.1000, 0.1000]", "U [N m]"] {
@@ -75,7 +75,7 @@ fn one_value_outside_is_found_with_its_place() {
     assert_eq!(check["suites"][0]["violations"]["count"], 0);
     let text = lab.check("").exits(1).stdout;
     assert!(text.starts_with("not conformant: 6 recordings; 1 of 408 values"), "{text}");
-    assert!(text.contains("B_2.csv at 0.200 s: joint 1, q1 0.4"), "{text}");
+    assert!(text.contains("B_2.csv at 0.200 s: joint 1, q1 is 0.4"), "{text}");
 }
 
 #[test]
@@ -111,7 +111,8 @@ fn recordings_are_inspected() {
     let text = lab.run("inspect --data data").exits(0).stdout;
     assert!(
         text.contains(
-            "suite A (motion motion A): 3 runs of 51 samples every 0.01 s, 0.500 s, the same torques in all"
+            "suite A (motion motion A): 3 runs of 51 samples every 0.01 s, 0.500 s, same torques in \
+             every run"
         ),
         "{text}"
     );

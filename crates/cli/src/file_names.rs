@@ -5,18 +5,18 @@ use std::collections::HashSet;
 use reachtube::conform::SuiteReach;
 use reachtube::report::SuiteFigure;
 
-/// A name for the files of each of `reach`: the suite, and the run where it has its own nominal
-/// solution. All are different, and none leaves its folder.
+/// Returns one file name for each reachable set: the suite's name, with the run's where runs have
+/// nominal solutions of their own. The names are distinct and contain no path separators.
 pub fn of_reach(reach: &[SuiteReach]) -> Vec<String> {
     distinct(reach.iter().map(SuiteReach::name), &["", "_tube"])
 }
 
-/// A name for the figures of each suite.
+/// Returns one file name for the figures of each suite.
 pub fn of_figures(figures: &[SuiteFigure]) -> Vec<String> {
     distinct(figures.iter().map(|figure| figure.suite.clone()), &["_motion", "_deviation"])
 }
 
-/// Names that differ, whatever the case, with each of the endings too.
+/// Makes names distinct, ignoring case, with each of the endings appended too.
 fn distinct(names: impl Iterator<Item = String>, endings: &[&str]) -> Vec<String> {
     let mut taken = HashSet::new();
     let mut choose = |name: String| {

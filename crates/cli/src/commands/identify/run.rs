@@ -3,19 +3,19 @@ use std::path::{Path, PathBuf};
 use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
 use reachtube::report::write_identified_html;
-use reachtube::{Error, Result, write};
+use reachtube::write;
 use reachtube_robot::{Robot, Urdf, UrdfEnds};
 
-use super::Outcome;
-use crate::args::IdentifyArgs;
+use super::arguments::Arguments;
+use super::summary::summary;
+use crate::error::{Error, Result};
+use crate::outcome::Outcome;
+use crate::output;
 use crate::progress::Progress;
-use crate::{identified, output};
 
-pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (settings, folder) = settings(args)?;
-    let name = settings.robot.clone().ok_or_else(|| {
-        Error::Setting("no robot: name one with --robot or robot = \"..\" in the settings".into())
-    })?;
+    let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);
     let robot = Robot::load(&name)?;
     check_urdf(args, &name)?;
@@ -31,32 +31,28 @@ pub fn run(args: &IdentifyArgs, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&found.summary())?;
     } else {
-        output::print(&identified::words(&found))?;
+        output::print(&summary(&found))?;
     }
-    found.warnings.iter().for_each(|warning| output::note(&format!("warning: {warning}")));
+    found.warnings.iter().for_each(|warning| output::warn(warning));
     Ok(Outcome::Done)
 }
 
-/// Whether a URDF can be written: from one that was read, and with its companion beside it in place
-/// of no other output.
-fn check_urdf(args: &IdentifyArgs, robot: &str) -> Result<()> {
+/// Checks that a URDF can be written: the robot was read from one, and the companion file beside
+/// the new URDF replaces no other output.
+fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
     let Some(urdf) = &args.urdf else { return Ok(()) };
     if Path::new(robot).extension().is_none_or(|extension| extension != "urdf") {
-        return Err(Error::Setting(format!(
-            "--urdf writes new values into the robot's URDF, and {robot} is none; give a robot from URDF, or leave --urdf out"
-        )));
+        return Err(Error::NotUrdf { robot: robot.into() });
     }
     let companion = urdf.with_extension("toml");
     if args.out.as_ref() == Some(&companion) {
-        return Err(Error::Setting(format!(
-            "--out {} is where --urdf puts motors and friction; choose another name for one of them",
-            companion.display()
-        )));
+        return Err(Error::CompanionTaken { path: companion });
     }
     Ok(())
 }
 
-fn files(args: &IdentifyArgs, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
+/// Writes the robot file, the report page and the URDF that the arguments ask for.
+fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
     let save = |path: &Path, text: String| {
         write::atomically(path, |out| out.write_all(text.as_bytes()))?;
         output::note(&format!("wrote {}", path.display()));
@@ -75,15 +71,15 @@ fn files(args: &IdentifyArgs, found: &Identification, urdf: Option<&Urdf>) -> Re
     if let (Some(path), Some(urdf)) = (&args.urdf, urdf) {
         let robot = Robot::from_description(&found.description)?;
         save(path, urdf.updated(&robot)?)?;
-        // Motors and what URDF has no words for stand beside it.
+        // URDF has no elements for motors and load-dependent friction.
         save(&path.with_extension("toml"), urdf.companion(&robot))?;
     }
     Ok(())
 }
 
-/// The settings of the file and the command line, and the folder that paths are relative to: that
-/// of the settings file, or the present one.
-fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
+/// Returns the settings of the file and the command line, and the folder that paths are relative
+/// to: the settings file's, or the working directory.
+fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     let mut settings = match &args.settings {
         Some(path) => IdentifySettings::load(path)?,
         None => IdentifySettings::default(),
@@ -99,7 +95,7 @@ fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
     ];
     for (entries, paths) in given {
         if !paths.is_empty() {
-            // Paths on the command line are relative to where it is typed.
+            // Paths on the command line are relative to the working directory.
             *entries = paths.iter().map(|path| LogEntry::Path(here.join(path))).collect();
         }
     }
@@ -112,9 +108,9 @@ fn settings(args: &IdentifyArgs) -> Result<(IdentifySettings, PathBuf)> {
     Ok((settings, folder))
 }
 
-/// A robot of the settings file lies beside it; one of the command line, and an embedded one, is
-/// what it is.
-fn from_folder(name: &str, args: &IdentifyArgs, folder: &Path) -> String {
+/// Returns the robot's path: a robot that the settings file names lies beside that file, unless it
+/// is an embedded one.
+fn from_folder(name: &str, args: &Arguments, folder: &Path) -> String {
     let beside = folder.join(name);
     if args.robot.is_none() && beside.exists() { beside.display().to_string() } else { name.into() }
 }

@@ -1,0 +1,85 @@
+//! The command line: its commands and the global options.
+
+use clap::{Parser, Subcommand};
+
+use crate::commands::reproduce::{self, ReproduceCommand};
+use crate::commands::robot::{self, RobotCommand};
+use crate::commands::{
+    r#abstract, check, conform, demo, excite, identify, inspect, prepare, reach, report,
+};
+use crate::error::Result;
+use crate::outcome::Outcome;
+
+/// Robot models that provably cover your recordings
+///
+/// From recordings of an arm, reachtube finds a simple model and the smallest uncertainty sets for
+/// which every recorded sample lies in the interval hull of the model's reachable set. It checks
+/// this with directed rounding.
+#[derive(Debug, Parser)]
+#[command(name = "reachtube", version, after_help = HELP)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+    /// Print the result as JSON on standard output
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+const HELP: &str = "\
+Examples:
+  reachtube demo --out demo
+      run every step on a simulated arm
+  reachtube inspect --data recordings
+      summarise a data set
+  reachtube identify --robot arm.urdf --dynamic a.csv b.csv --validate c.csv --out arm.toml
+      identify gravity, friction and inertia
+  reachtube abstract --robot lwa4p --model 2 --order 5
+      make a polynomial model of the forward dynamics
+  reachtube conform --robot lwa4p --data recordings --suites A,B --torque compensated \\
+      --out model.json
+      find the smallest uncertainty sets
+  reachtube check --model model.json --data recordings --suites C --torque compensated
+      check other recordings against the model
+  reachtube report --model model.json --data recordings --torque compensated --out report
+      write an HTML page with figures
+  reachtube reproduce table1
+      repeat the paper's simulations
+
+Exit codes: 0 conformant (or done), 1 not conformant, 2 error.
+Results go to standard output; notes, warnings and errors go to standard error.";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    Demo(demo::Arguments),
+    #[command(subcommand)]
+    Robot(RobotCommand),
+    Inspect(inspect::Arguments),
+    Abstract(r#abstract::Arguments),
+    Excite(excite::Arguments),
+    Identify(identify::Arguments),
+    Prepare(prepare::Arguments),
+    Conform(conform::Arguments),
+    Check(check::Arguments),
+    Reach(reach::Arguments),
+    Report(report::Arguments),
+    #[command(subcommand)]
+    Reproduce(ReproduceCommand),
+}
+
+/// Runs the command that the arguments name.
+pub fn run(cli: &Cli) -> Result<Outcome> {
+    match &cli.command {
+        Command::Demo(args) => demo::run(args, cli.json),
+        Command::Robot(RobotCommand::Show(args)) => robot::show(args, cli.json),
+        Command::Identify(args) => identify::run(args, cli.json),
+        Command::Inspect(args) => inspect::run(args, cli.json),
+        Command::Abstract(args) => r#abstract::run(args, cli.json),
+        Command::Excite(args) => excite::run(args, cli.json),
+        Command::Prepare(args) => prepare::run(args, cli.json),
+        Command::Conform(args) => conform::run(args, cli.json),
+        Command::Check(args) => check::run(args, cli.json),
+        Command::Reach(args) => reach::run(args, cli.json),
+        Command::Report(args) => report::run(args, cli.json),
+        Command::Reproduce(ReproduceCommand::Table1(args)) => reproduce::table1(args, cli.json),
+    }
+}

@@ -1,0 +1,165 @@
+use std::path::PathBuf;
+
+use clap::Args;
+use reachtube::abstraction::ModelKind;
+use reachtube::conform::{Centre, Method, NominalStart, States};
+use reachtube_reach::Disturbance;
+
+use crate::data_arguments::DataArguments;
+use crate::option_values::{Choices, MODELS, choice, numbered_choice};
+
+const HELP: &str = "\
+Examples:
+  reachtube conform --robot lwa4p --data recordings --suites A,B,D,E --torque compensated \\
+      --out model.json
+  reachtube conform --robot arm.toml --data recordings --torque motor \\
+      --disturbance measurable --report report
+  reachtube conform --robot lwa4p --data recordings --torque compensated \\
+      --centre origin --disturbance constant
+      with the settings of Liu and Althoff (2018)
+  reachtube conform --robot lwa4p --model 2 --order 5 --data recordings --torque compensated \\
+      --resume search.json
+
+Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
+
+/// Find the smallest uncertainty sets for which a model encloses every recording, and prove it
+///
+/// The sets are the initial set X0, the input set U and, with --noise, the measurement noise V.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
+    #[arg(long, help_heading = "Model", required_unless_present = "abstraction")]
+    pub robot: Option<String>,
+    /// Model of the forward dynamics, numbered as in the paper
+    #[arg(
+        long,
+        help_heading = "Model",
+        default_value = "1",
+        value_parser = numbered_choice::<ModelKind>(MODELS)
+    )]
+    pub model: ModelKind,
+    /// Order of the model's Taylor polynomials, 1 or more
+    #[arg(long, help_heading = "Model", default_value_t = 1, value_name = "P")]
+    pub order: u32,
+    /// Expansion point, separated by commas: n positions in rad, or also n velocities in rad/s
+    /// [default: 0]
+    #[arg(
+        long,
+        help_heading = "Model",
+        value_name = "Q,..",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    pub expansion: Vec<f64>,
+    /// Model file that `abstract --out` wrote, instead of a robot
+    #[arg(
+        long,
+        help_heading = "Model",
+        value_name = "FILE",
+        conflicts_with_all = ["robot", "expansion", "model", "order"]
+    )]
+    pub abstraction: Option<PathBuf>,
+    #[command(flatten)]
+    pub data: DataArguments,
+    /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable
+    /// disturbances in any case
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "sample",
+        value_parser = choice::<Disturbance>(DISTURBANCES)
+    )]
+    pub disturbance: Disturbance,
+    /// Centres of the sets X0 and U
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "free",
+        value_parser = choice::<Centre>(CENTRES)
+    )]
+    pub centre: Centre,
+    /// States that the reachable set must enclose
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "all",
+        value_parser = choice::<States>(STATES)
+    )]
+    pub states: States,
+    /// Weights of the states in the cost: unit (1 for each state); spread (1 over the state's
+    /// largest deviation in the recordings); or 2 or 2n numbers between 1e-9 and 1e9, positions
+    /// first
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "unit",
+        value_name = "unit|spread|W,W,..",
+        allow_hyphen_values = true
+    )]
+    pub weights: String,
+    /// Measurement noise: none; free (its radii are found with the sets); or its radii, 2 or 2n
+    /// numbers between 0 and 1e9: positions in rad, then velocities in rad/s
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "none",
+        value_name = "none|free|R,R,..",
+        allow_hyphen_values = true
+    )]
+    pub noise: String,
+    /// First state of the nominal solutions
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "mean",
+        value_parser = choice::<NominalStart>(NOMINAL_STARTS)
+    )]
+    pub nominal: NominalStart,
+    /// Method that finds the sets
+    #[arg(
+        long,
+        help_heading = "Method",
+        default_value = "program",
+        value_parser = choice::<Method>(METHODS)
+    )]
+    pub method: Method,
+    /// Search for a motion of the model itself near each recording, within these tolerances in rad
+    /// and rad/s: 2 numbers, 0 or more, or none [default: none for a linear model, otherwise
+    /// 0.001,0.01]
+    #[arg(long, help_heading = "Method", value_name = "none|Q,QD")]
+    pub explain: Option<String>,
+    /// Save the progress of a long search to this file, and continue from it if it exists
+    #[arg(long, help_heading = "Method", value_name = "FILE")]
+    pub resume: Option<PathBuf>,
+    /// Write the model to this JSON file
+    #[arg(long, help_heading = "Output", value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Write an HTML page and its figures to this folder
+    #[arg(long, help_heading = "Output", value_name = "FOLDER")]
+    pub report: Option<PathBuf>,
+}
+
+const DISTURBANCES: Choices = &[
+    ("constant", "constant over the whole recording, as in the paper"),
+    ("sample", "constant over each sample"),
+    ("measurable", "any measurable function of time"),
+];
+
+const CENTRES: Choices = &[
+    ("free", "any centre"),
+    ("origin", "any centre for which the set contains 0, as in the paper"),
+    ("zero", "the centre is 0"),
+];
+
+const STATES: Choices = &[("all", "positions and velocities"), ("positions", "positions only")];
+
+const NOMINAL_STARTS: Choices = &[
+    ("mean", "the mean of the first states of the suite's runs"),
+    ("own", "each run's own first state"),
+];
+
+const METHODS: Choices = &[
+    ("program", "linear programs: one for a linear model, a sequence of them otherwise"),
+    ("bisection", "bisection of one radius after the other, the paper's baseline"),
+];

@@ -1,0 +1,10 @@
+//! `reachtube conform`: the smallest sets for which a model encloses every recording.
+
+mod arguments;
+mod run;
+mod settings;
+mod summary;
+
+pub use arguments::Arguments;
+pub use run::run;
+pub use summary::summary;

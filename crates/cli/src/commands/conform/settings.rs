@@ -1,0 +1,89 @@
+//! The settings of `conform` from its arguments.
+
+use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
+use reachtube::conform::{Dynamics, Noise, Settings, Tolerance, Weights};
+use reachtube_robot::Robot;
+
+use super::arguments::Arguments;
+use crate::data_arguments::gap_limit;
+use crate::error::{Error, Result};
+
+/// Returns the robot and the settings, from the model file that `--abstraction` names if there is
+/// one.
+pub fn robot_and_settings(args: &Arguments) -> Result<(Robot, Settings)> {
+    let Some(path) = &args.abstraction else {
+        let robot = Robot::load(args.robot.as_deref().unwrap_or_default())?;
+        let settings = settings(args, robot.joint_count())?;
+        return Ok((robot, settings));
+    };
+    let model = PolynomialModel::load(path)?;
+    let settings = settings(args, model.joints())?.with_abstraction(&model)?;
+    Ok((Robot::from_description(model.robot())?, settings))
+}
+
+/// Returns the tolerance of `--explain`. Its default searches for explanations only for nonlinear
+/// models: the verdict on an outer enclosure needs them more, and their cost is small beside the
+/// search for the sets.
+pub fn explain(args: &Arguments, robot: &Robot, settings: &Settings) -> Result<Option<Tolerance>> {
+    match args.explain.as_deref() {
+        Some("none") => Ok(None),
+        Some(list) => {
+            let wrong = || Error::ExplainTolerance { given: list.into() };
+            let (position, velocity) = list.split_once(',').ok_or_else(wrong)?;
+            let parse = |text: &str| text.trim().parse().map_err(|_| wrong());
+            Ok(Some(Tolerance { position: parse(position)?, velocity: parse(velocity)? }))
+        }
+        None => match Dynamics::new(robot, settings)? {
+            Dynamics::Linear(_) => Ok(None),
+            Dynamics::Polynomial(_) => Ok(Some(Tolerance::default())),
+        },
+    }
+}
+
+fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
+    let settings = Settings {
+        abstraction: Abstraction { model: args.model, order: args.order },
+        expansion_point: ExpansionPoint::from_values(&args.expansion, joints)?,
+        method: args.method,
+        disturbance: args.disturbance,
+        centre: args.centre,
+        states: args.states,
+        weights: match args.weights.as_str() {
+            "unit" => Weights::Unit,
+            "spread" => Weights::Spread,
+            list => Weights::Given(numbers("--weights", "unit, spread", list, joints)?),
+        },
+        noise: match args.noise.as_str() {
+            "none" => Noise::None,
+            "free" => Noise::Free,
+            list => Noise::Fixed(numbers("--noise", "none, free", list, joints)?),
+        },
+        nominal: args.nominal,
+        until: args.data.until,
+        gap_limit: gap_limit(args.data.max_gap),
+        ..Settings::new(args.data.torque, joints)
+    };
+    settings.validate(joints)?;
+    Ok(settings)
+}
+
+/// Parses one number per state: 2n numbers, or 2 that stand for all positions and all velocities.
+/// `words` names the other values of the option, for the error.
+fn numbers(
+    option: &'static str,
+    words: &'static str,
+    list: &str,
+    joints: usize,
+) -> Result<Vec<f64>> {
+    let states = 2 * joints;
+    let wrong = |problem: String| Error::StateValues { option, problem, words, states };
+    let parse = |text: &str| {
+        text.trim().parse::<f64>().map_err(|_| wrong(format!("\"{text}\" is not a number")))
+    };
+    let values = list.split(',').map(parse).collect::<Result<Vec<_>>>()?;
+    match values[..] {
+        [position, velocity] => Ok([vec![position; joints], vec![velocity; joints]].concat()),
+        _ if values.len() == states => Ok(values),
+        _ => Err(wrong(format!("{} values given", values.len()))),
+    }
+}

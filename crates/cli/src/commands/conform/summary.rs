@@ -1,0 +1,144 @@
+//! The text that `conform` prints.
+
+use std::fmt::Write;
+
+use reachtube::Model;
+use reachtube::conform::{Enclosure, MOST_TIGHT, Place};
+
+use crate::numbers::{interval, number};
+use crate::table::{plural, table};
+use crate::verdict::{lost, trust};
+
+/// Largest number of touching values in the table.
+const MOST_PLACES: usize = 6;
+
+/// Returns the result of `conform`, with a table like Table II of the paper.
+pub fn summary(model: &Model) -> String {
+    let mut text = verdict(model);
+    let _ = writeln!(text, "{}\n", cost(model));
+    text.push_str(&sets(model));
+    text.push_str(&touching(model));
+    if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
+        let _ = writeln!(text, "\n{}", explained.words(tolerance));
+    }
+    let _ = writeln!(text, "\n{}", trust(&model.trust, "touch the set"));
+    text
+}
+
+/// Returns the verdict, and the sets and motions that speak against it.
+fn verdict(model: &Model) -> String {
+    let (suites, proof) = (model.data.suites.len(), &model.proof);
+    let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
+    let how = match proof.enclosure {
+        Enclosure::Inner => "proved with directed rounding",
+        Enclosure::Outer => {
+            "lie in the computed reachable set, an outer enclosure with directed rounding"
+        }
+    };
+    let mut text = format!(
+        "{}: {runs} {} in {suites} {}; {} of {} bounds (suite, sample, state, side) {how}, at \
+         samples\n",
+        if model.verified { "conformant" } else { "NOT PROVED conformant" },
+        plural(runs, "recording"),
+        plural(suites, "suite"),
+        proof.proved,
+        proof.rows
+    );
+    for set in &proof.lost {
+        let _ = writeln!(text, "{}", lost(set));
+    }
+    if let Some((case, time)) = model.search.as_ref().and_then(|search| search.runs_away.as_ref()) {
+        let _ = writeln!(
+            text,
+            "{case}: a simulated motion under nearly these sets diverged before {time:.3} s; the \
+             model is unstable there"
+        );
+    }
+    text
+}
+
+/// Returns the cost of the sets and its distance from the optimum, where that is known.
+fn cost(model: &Model) -> String {
+    let Some(cost) = model.cost else {
+        return "no cost: a reachable set could not be computed to the end".into();
+    };
+    let quality = match (model.cost_lower_bound, &model.search) {
+        (Some(bound), _) => {
+            let optimal = match (cost - bound).max(0.0) / cost {
+                gap if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
+                _ => "optimal".into(),
+            };
+            format!(" ({optimal}; lower bound {})", number(bound))
+        }
+        (None, Some(search)) => format!(
+            " ({}{} {}, the reachable sets of all suites computed {} {})",
+            search
+                .linearised_cost
+                .map(|cost| format!("{} for the linearised sets; ", number(cost)))
+                .unwrap_or_default(),
+            search.rounds,
+            plural(search.rounds, "round"),
+            search.reachable_sets,
+            plural(search.reachable_sets, "time")
+        ),
+        (None, None) => String::new(),
+    };
+    format!(
+        "cost {}{quality}: weighted widths of the reachable sets, summed over states and samples",
+        number(cost)
+    )
+}
+
+/// Returns the sets joint by joint, as in Table II of the paper.
+fn sets(model: &Model) -> String {
+    let n = model.joints();
+    let mut header = vec!["joint", "X0 q [rad]", "X0 qd [rad/s]", "U [N m]"];
+    if model.noise_set.is_some() {
+        header.extend(["V q [rad]", "V qd [rad/s]"]);
+    }
+    let row = |joint: usize| {
+        let mut row = vec![
+            model.robot.joints[joint].name.clone(),
+            interval(model.initial_set.bounds(joint)),
+            interval(model.initial_set.bounds(n + joint)),
+            interval(model.input_set.bounds(joint)),
+        ];
+        if let Some(noise) = &model.noise_set {
+            row.extend([interval(noise.bounds(joint)), interval(noise.bounds(n + joint))]);
+        }
+        row
+    };
+    table(&header, &(0..n).map(row).collect::<Vec<_>>())
+}
+
+/// Returns the recorded values that touch the reachable sets.
+fn touching(model: &Model) -> String {
+    let set = match model.proof.enclosure {
+        Enclosure::Inner => "the reachable set",
+        Enclosure::Outer => "the linearised set",
+    };
+    let count = match model.tight.len() {
+        1 => "1 recorded value touches".into(),
+        MOST_TIGHT => format!("{MOST_TIGHT} or more recorded values touch"),
+        count => format!("{count} recorded values touch"),
+    };
+    format!("\n{count} {set} and decide X0 and U:\n{}", places(&model.tight))
+}
+
+fn places(places: &[Place]) -> String {
+    let row = |place: &Place| {
+        vec![
+            place.run.clone(),
+            format!("{:.3} s", place.time),
+            place.state.clone(),
+            format!("{:?}", place.side).to_lowercase(),
+            format!("{:.1e}", 0.0 - place.excess),
+        ]
+    };
+    let rows: Vec<_> = places.iter().take(MOST_PLACES).map(row).collect();
+    let mut text = table(&["run", "time", "state", "side", "margin [rad, rad/s]"], &rows);
+    if places.len() > MOST_PLACES {
+        let _ = writeln!(text, "  and {} more; --json lists all", places.len() - MOST_PLACES);
+    }
+    text
+}

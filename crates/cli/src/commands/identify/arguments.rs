@@ -1,0 +1,61 @@
+use std::path::PathBuf;
+
+use clap::Args;
+
+const HELP: &str = "\
+Examples:
+  reachtube identify --robot arm.urdf --static poses --friction slow --dynamic a.csv b.csv \\
+      --validate c.csv --out arm.toml
+  reachtube identify --settings arm-identify.toml --report report
+  reachtube identify --robot panda.toml --dynamic excitation --link-torque --cut-off 6
+
+A settings file holds all of these options and more, see docs/identify.md. Options on the command
+line override it.";
+
+/// Identify a robot's gravity, friction and inertia from its recordings
+///
+/// Recordings are CSV files with the columns t, q1..qn, qd1..qdn, tau1..taun. A folder stands for
+/// the CSV files in it.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Robot: the embedded lwa4p, or a TOML or URDF file; required here or in the settings file
+    #[arg(long)]
+    pub robot: Option<String>,
+    /// TOML file with the settings; its paths are relative to its folder
+    #[arg(long, value_name = "FILE")]
+    pub settings: Option<PathBuf>,
+    /// Recordings of poses at rest, for gravity
+    #[arg(long = "static", value_name = "PATH", num_args = 1..)]
+    pub rest: Vec<PathBuf>,
+    /// Recordings in which one joint at a time moves slowly, for friction
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub friction: Vec<PathBuf>,
+    /// Recordings of exciting motions, for the inertial parameters; required here or in the
+    /// settings file
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub dynamic: Vec<PathBuf>,
+    /// Recordings held out of every fit, for validation [default: the exciting motions]
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub validate: Vec<PathBuf>,
+    /// Cut-off frequency of the low-pass filter, above 0 and below half the sample rate, Hz
+    /// [default: chosen from the recordings]
+    #[arg(long, value_name = "HZ")]
+    pub cut_off: Option<f64>,
+    /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
+    #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
+    pub gains: Vec<f64>,
+    /// The torque was measured at the link side of the gear and does not drive the motor's inertia
+    #[arg(long)]
+    pub link_torque: bool,
+    /// Write the identified robot to this TOML file
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Write the robot's URDF with the identified values to this file, with a TOML file beside it
+    /// for motors and friction
+    #[arg(long, value_name = "FILE")]
+    pub urdf: Option<PathBuf>,
+    /// Write an HTML page with figures to this folder
+    #[arg(long, value_name = "FOLDER")]
+    pub report: Option<PathBuf>,
+}

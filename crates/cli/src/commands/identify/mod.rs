@@ -1,0 +1,8 @@
+//! `reachtube identify`: a robot's gravity, friction and inertia from its recordings.
+
+mod arguments;
+mod run;
+mod summary;
+
+pub use arguments::Arguments;
+pub use run::run;

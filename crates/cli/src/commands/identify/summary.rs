@@ -1,0 +1,248 @@
+//! The text that `identify` prints.
+
+use reachtube::identify::{
+    BaseParameter, Identification, InertiaFit, JointError, JointFit, JointFriction, LogValidation,
+    PhysicalFit, WindowErrors,
+};
+
+use crate::numbers::number;
+use crate::table::table;
+
+/// Returns the result of `identify`, with one section per step.
+pub fn summary(found: &Identification) -> String {
+    [
+        format!("{}: identified\n", found.description.name),
+        gravity(found),
+        friction(found),
+        inertia(found),
+        gains(found),
+        validation(found),
+        windows(found),
+    ]
+    .concat()
+}
+
+fn names(found: &Identification) -> Vec<&str> {
+    found.description.joints.iter().map(|joint| joint.name.as_str()).collect()
+}
+
+/// Returns a header with a column for each joint.
+fn joint_header<'a>(first: &'a str, found: &'a Identification) -> Vec<&'a str> {
+    std::iter::once(first).chain(names(found)).collect()
+}
+
+fn percent(part: f64) -> String {
+    format!("{:.1} %", 100.0 * part)
+}
+
+fn gravity(found: &Identification) -> String {
+    let Some(gravity) = &found.gravity else {
+        return "\n1. gravity: no poses at rest or slow motions are given; step 3 identifies it\n"
+            .into();
+    };
+    let row = |(joint, name): (usize, &str)| {
+        [
+            vec![name.into()],
+            gravity_cells(gravity.at_rest.get(joint)),
+            gravity_cells(gravity.in_motion.get(joint)),
+        ]
+        .concat()
+    };
+    let rows: Vec<_> = names(found).into_iter().enumerate().map(row).collect();
+    let header = [
+        "joint",
+        "at rest: tau rms [N m]",
+        "residual",
+        "relative",
+        "moving: tau rms",
+        "residual",
+        "relative",
+    ];
+    format!(
+        "\n1. gravity: {} poses at rest, {} samples of slow motions\n{}",
+        gravity.rests,
+        gravity.slow_samples,
+        table(&header, &rows)
+    )
+}
+
+fn gravity_cells(fit: Option<&JointFit>) -> Vec<String> {
+    match fit {
+        Some(fit) => vec![number(fit.torque), number(fit.residual), percent(fit.relative())],
+        None => vec!["-".into(); 3],
+    }
+}
+
+fn friction(found: &Identification) -> String {
+    if found.friction.is_empty() {
+        return "\n2. friction: no slow motions of single joints are given; step 3 identifies it\n"
+            .into();
+    }
+    let rows: Vec<_> = found.friction.iter().map(|fit| friction_row(&fit.joint)).collect();
+    let header = [
+        "joint",
+        "R2",
+        "R2 without gravity",
+        "residual [N m]",
+        "samples (independent)",
+        "Coulomb a1..a8",
+        "viscous v1..v3",
+    ];
+    format!("\n2. friction, with the gravity torque as load\n{}", table(&header, &rows))
+}
+
+fn friction_row(joint: &JointFriction) -> Vec<String> {
+    let list =
+        |values: &[f64]| values.iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
+    vec![
+        joint.joint.clone(),
+        format!("{:.5}", joint.r2),
+        format!("{:.4}", joint.r2_without_gravity),
+        number(joint.residual),
+        format!("{} ({:.0})", joint.samples.0, joint.samples.1),
+        list(&joint.coefficients.coulomb),
+        list(&joint.coefficients.viscous),
+    ]
+}
+
+fn inertia(found: &Identification) -> String {
+    let fit = &found.inertia;
+    let determined =
+        fit.parameters.iter().filter(|parameter| parameter.standard_error.is_finite()).count();
+    let rows: Vec<_> =
+        names(found).into_iter().enumerate().map(|(j, name)| inertia_row(fit, j, name)).collect();
+    let header = [
+        "joint",
+        "samples (independent)",
+        "tau rms [N m]",
+        "residual",
+        "relative",
+        "residual, physical",
+        "outliers",
+    ];
+    format!(
+        "\n3. inertial parameters: {determined} of {} combinations determined, condition number \
+         {} (relative singular values beside the rank cut: {:.0e} | {:.0e})\n{}{}{}",
+        fit.parameters.len(),
+        number(fit.condition),
+        fit.gap[0],
+        fit.gap[1],
+        table(&header, &rows),
+        parameters(fit),
+        fit.physical.as_ref().map(physical).unwrap_or_default()
+    )
+}
+
+fn inertia_row(fit: &InertiaFit, j: usize, name: &str) -> Vec<String> {
+    let joint = &fit.joints[j];
+    let physical = fit.physical.as_ref().map(|physical| number(physical.residuals[j][1]));
+    vec![
+        name.into(),
+        format!("{} ({:.0})", joint.rows, joint.independent),
+        number(joint.torque),
+        number(joint.residual),
+        percent(joint.relative()),
+        physical.unwrap_or_else(|| "-".into()),
+        percent(joint.outliers),
+    ]
+}
+
+fn parameters(fit: &InertiaFit) -> String {
+    let row = |parameter: &BaseParameter| {
+        let relative = parameter.standard_error / parameter.least_squares.abs();
+        vec![
+            number(parameter.value),
+            number(parameter.least_squares),
+            number(parameter.standard_error),
+            if relative < 10.0 { percent(relative) } else { "-".into() },
+            number(parameter.described),
+            parameter.name.clone(),
+        ]
+    };
+    let rows: Vec<_> = fit.parameters.iter().map(row).collect();
+    let header = [
+        "value",
+        "least squares",
+        "standard error",
+        "relative",
+        "in the description",
+        "combination (SI units)",
+    ];
+    table(&header, &rows)
+}
+
+/// Reports what it costs that every link is a physical body.
+fn physical(physical: &PhysicalFit) -> String {
+    let plain = match &physical.plain_impossible {
+        Some(why) => format!("plain least squares gives a robot that cannot exist: {why}"),
+        None => "the mass matrix of plain least squares is positive definite".into(),
+    };
+    format!(
+        "{plain}\nphysical links raise the sum of squared residuals by {} standard deviations \
+         squared (objective within {} of its minimum)\n",
+        number(physical.cost),
+        number(physical.gap)
+    )
+}
+
+fn gains(found: &Identification) -> String {
+    let gains: Vec<String> = found
+        .gains
+        .iter()
+        .map(|gain| format!("{:.3} ± {:.3}", gain.gain, gain.standard_error))
+        .collect();
+    format!(
+        "torque gains for which the joints agree best (± standard error): {}\n",
+        gains.join(", ")
+    )
+}
+
+fn validation(found: &Identification) -> String {
+    let recordings = if found.kept_back {
+        "recordings held out"
+    } else {
+        "the recordings of the fit, since none were held out"
+    };
+    let cell = |joint: &JointError| {
+        format!(
+            "{} ({}; {}) {:.4}",
+            percent(joint.relative),
+            percent(joint.relative_plain),
+            percent(joint.relative_all),
+            joint.r2
+        )
+    };
+    let row = |log: &LogValidation| {
+        std::iter::once(log.log.clone()).chain(log.joints.iter().map(cell)).collect()
+    };
+    let rows: Vec<Vec<String>> = found.validation.iter().map(row).collect();
+    format!(
+        "\n4. torque predicted on {recordings}: relative error while the joint moves (of plain \
+         least squares; with standstill), R2\n{}",
+        table(&joint_header("log", found), &rows)
+    )
+}
+
+fn windows(found: &Identification) -> String {
+    let row = |windows: &WindowErrors| {
+        let cell = |j: usize| {
+            format!(
+                "{} ({}; {})",
+                number(windows.q[j]),
+                number(windows.motion[j]),
+                number(windows.qd[j])
+            )
+        };
+        let head = format!(
+            "{} s, {} windows, {} diverged",
+            windows.duration, windows.windows, windows.diverged
+        );
+        std::iter::once(head).chain((0..windows.q.len()).map(cell)).collect()
+    };
+    let rows: Vec<Vec<String>> = found.windows.iter().map(row).collect();
+    format!(
+        "\n5. motion simulated from the recorded torque: rms position error [rad] at the end of \
+         each window (rms motion [rad]; rms velocity error [rad/s])\n{}",
+        table(&joint_header("window", found), &rows)
+    )
+}

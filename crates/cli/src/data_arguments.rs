@@ -1,0 +1,52 @@
+//! Options that name recordings and a model.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use reachtube::recordings::{GapLimit, Torque};
+
+use crate::option_values::{Choices, choice, seconds, trimmed};
+
+// A comment, not a doc comment: clap would show it as the description of the command.
+// Options that name recordings and the meaning of their torques.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Data")]
+pub struct DataArguments {
+    /// Folder with runs.csv and the recordings
+    #[arg(long, value_name = "FOLDER")]
+    pub data: PathBuf,
+    /// Names of the test suites to use, separated by commas [default: all]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
+    pub suites: Vec<String>,
+    /// Meaning of the recorded torques, columns tau1 to taun in N m
+    #[arg(long, value_parser = choice::<Torque>(TORQUES))]
+    pub torque: Torque,
+    /// Use only samples up to this time after the first sample, above 0 s [default: all]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    pub until: Option<f64>,
+    /// Longest time between two samples, above 0 s; the input is held over it [default: 1.9 times
+    /// the usual sample time, 10 times where sample times jitter]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    pub max_gap: Option<f64>,
+}
+
+const TORQUES: Choices = &[
+    ("compensated", "the model's input u: gravity and Coulomb friction are already subtracted"),
+    ("motor", "motor torque at the output side of the gear"),
+    ("link", "link-side torque, from a joint torque sensor"),
+];
+
+// Options that name a model and the recordings to compare it with.
+#[derive(Debug, Args)]
+pub struct ModelArguments {
+    /// Model file that `conform --out` wrote
+    #[arg(long, value_name = "FILE")]
+    pub model: PathBuf,
+    #[command(flatten)]
+    pub data: DataArguments,
+}
+
+/// Returns the limit that `--max-gap` sets.
+pub fn gap_limit(max_gap: Option<f64>) -> GapLimit {
+    max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+}

@@ -1,0 +1,54 @@
+//! Parsers for the values of options.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde::de::DeserializeOwned;
+
+/// The values of an option, each with its explanation.
+pub type Choices = &'static [(&'static str, &'static str)];
+
+/// The models of the paper (Sec. IV-B), as `--model` names them.
+pub const MODELS: Choices = &[
+    ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),
+    ("2", "also Coriolis terms, polynomial in sin q and cos q, eqs. (14), (15)"),
+    ("3", "Taylor polynomial of the whole forward dynamics, eq. (16)"),
+];
+
+/// Parses a name and removes the space around it.
+pub fn trimmed(text: &str) -> Result<String, std::convert::Infallible> {
+    Ok(text.trim().into())
+}
+
+/// Parses a duration above 0 \[s\].
+pub fn seconds(text: &str) -> Result<f64, String> {
+    positive(text).ok_or_else(|| "give a number of seconds above 0".into())
+}
+
+/// Parses a frequency above 0 \[Hz\].
+pub fn hertz(text: &str) -> Result<f64, String> {
+    positive(text).ok_or_else(|| "give a frequency above 0 in Hz".into())
+}
+
+fn positive(text: &str) -> Option<f64> {
+    text.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite())
+}
+
+/// Parses a setting by its name in model files; each name comes with its explanation.
+pub fn choice<T>(names: Choices) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    explained(names).try_map(|name| serde_json::from_value::<T>(name.into()))
+}
+
+/// Parses a setting that is one of a few numbers; each number comes with its explanation.
+pub fn numbered_choice<T>(numbers: Choices) -> impl TypedValueParser<Value = T>
+where
+    T: DeserializeOwned + Clone + Send + Sync + 'static,
+{
+    explained(numbers).try_map(|number| serde_json::from_str::<T>(&number))
+}
+
+fn explained(values: Choices) -> PossibleValuesParser {
+    let value = |&(name, help): &(_, _)| PossibleValue::new(name).help(help);
+    PossibleValuesParser::new(values.iter().map(value).collect::<Vec<_>>())
+}
