@@ -1,6 +1,6 @@
-//! Models of the LWA 4P: how long they take to make, their evaluation beside the dynamics that they
-//! stand for, sine and cosine given, and their reachable sets.
-//! `cargo bench -p reachtube --bench abstraction`.
+//! Benchmarks of models of the LWA 4P: their construction, their evaluation compared with that of
+//! the full dynamics (sines and cosines given), and their reachable sets. Run with
+//! `cargo bench -p reachtube-abstraction --bench abstraction`.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -18,20 +18,23 @@ fn model(kind: u32, order: u32) -> PolynomialModel {
     PolynomialModel::new(&Robot::lwa4p(), kind, order, &ExpansionPoint::zero(6)).unwrap()
 }
 
-/// M_m and c as exact polynomials in (q̇, sin q, cos q).
+/// Builds M_m and c as exact polynomials in (q̇, sin q, cos q).
 #[divan::bench(sample_count = 20)]
-fn make_mass_matrix_and_coriolis_terms() -> usize {
+fn build_mass_matrix_and_coriolis_terms() -> usize {
     let dynamics = Robot::lwa4p().polynomial_dynamics::<f64>().unwrap();
     dynamics.christoffel().iter().flatten().map(|c| c.term_count()).sum()
 }
 
 #[divan::bench(args = [(1, 3), (2, 5), (2, 12), (3, 3), (3, 5)], sample_count = 10)]
-fn make((kind, order): (u32, u32)) -> PolynomialModel {
+fn build((kind, order): (u32, u32)) -> PolynomialModel {
     model(kind, order)
 }
 
-/// Items are non-constant terms, in each lane.
-#[divan::bench(types = [f64, Lanes<8>], args = [(1, 1), (1, 3), (2, 3), (2, 5), (2, 7), (2, 12), (3, 3), (3, 5)])]
+/// Evaluates models; items are terms, counted once per lane.
+#[divan::bench(
+    types = [f64, Lanes<8>],
+    args = [(1, 1), (1, 3), (2, 3), (2, 5), (2, 7), (2, 12), (3, 3), (3, 5)],
+)]
 fn evaluate<S: Lanewise + Powers>(bencher: Bencher, (kind, order): (u32, u32)) {
     let model = model(kind, order);
     let x: Vec<S> = model.state(&[0.3; 6], &[0.5; 6]).into_iter().map(S::from).collect();
@@ -43,10 +46,10 @@ fn evaluate<S: Lanewise + Powers>(bencher: Bencher, (kind, order): (u32, u32)) {
     });
 }
 
-/// A state of the robot at which its forward dynamics is evaluated.
+/// A robot and a state at which its forward dynamics is evaluated.
 struct Truth<S> {
     robot: Robot,
-    /// sin q, cos q, q̇, torque.
+    /// sin q, cos q, q̇ (rad/s) and torque (N m), 6 each.
     state: [Vec<S>; 4],
     ws: Workspace<S>,
     qdd: Vec<S>,
@@ -60,7 +63,7 @@ impl<S: Lanewise> Truth<S> {
     }
 }
 
-/// Composite bodies, Newton-Euler and the factorisation.
+/// Evaluates the forward dynamics by composite bodies, Newton-Euler and a factorisation.
 #[divan::bench(types = [f64, Lanes<8>])]
 fn forward_dynamics<S: Lanewise>(bencher: Bencher) {
     let mut t = Truth::<S>::new();
@@ -71,7 +74,7 @@ fn forward_dynamics<S: Lanewise>(bencher: Bencher) {
     });
 }
 
-/// Articulated bodies.
+/// Evaluates the forward dynamics by articulated bodies.
 #[divan::bench(types = [f64, Lanes<8>])]
 fn aba<S: Lanewise>(bencher: Bencher) {
     let mut t = Truth::<S>::new();
@@ -82,14 +85,17 @@ fn aba<S: Lanewise>(bencher: Bencher) {
     });
 }
 
-/// Radii of U, N m: about those that the linear model needs for the recordings of the paper, and of
-/// the states, in rad and rad/s.
+/// Radii of U, N m: about those that the linear model needs for the recordings of the paper.
 const INPUT: [f64; 6] = [1.2, 2.2, 2.5, 0.7, 0.16, 0.5];
+/// Radii of the initial set, rad and rad/s.
 const STATE: [f64; 2] = [0.005, 0.03];
 
-/// Samples at 250 Hz that a model at rest is followed for, with all generators; each item is one
-/// that was reached.
-#[divan::bench(args = [(1, 3, 1251), (2, 5, 1251), (2, 5, 251), (2, 12, 251), (3, 3, 251)], sample_count = 10)]
+/// Computes the flowpipe of a model from rest at samples of 250 Hz, with all generators; items are
+/// the samples that it reached.
+#[divan::bench(
+    args = [(1, 3, 1251), (2, 5, 1251), (2, 5, 251), (2, 12, 251), (3, 3, 251)],
+    sample_count = 10,
+)]
 fn flowpipe(bencher: Bencher, (kind, order, samples): (u32, u32, usize)) {
     let system = model(kind, order).polynomial_system().unwrap();
     let radius = [[STATE[0]; 6], [STATE[1]; 6]].concat();

@@ -1,4 +1,4 @@
-//! Construction of models 1, 2 and 3.
+//! Construction of models 1, 2 and 3 from a robot.
 
 use std::sync::Arc;
 
@@ -6,28 +6,31 @@ use nalgebra::DMatrix;
 use reachtube_robot::{PolynomialDynamics, Robot, ltdl};
 use reachtube_scalar::{TaylorPolynomial, TaylorSpace};
 
-use super::layout::Layout;
-use super::{ExpansionPoint, ModelKind, PolynomialModel};
 use crate::error::{Error, Result};
+use crate::expansion_point::ExpansionPoint;
+use crate::layout::Layout;
+use crate::model_kind::ModelKind;
+use crate::polynomial_model::PolynomialModel;
 
 impl PolynomialModel {
-    /// Model `kind` of order p ≥ 1 about `point`: (13), (14) or (16), in double precision, whose
-    /// rounding is part of what the model is.
+    /// Builds model `kind` of order p ≥ 1 about `point`: (13), (14) or (16). Its coefficients are
+    /// computed in double precision; their rounding is part of the model.
     ///
-    /// Model 1 is M_m⁻¹(q_a)(u - T^p τ_v(q̇)). Model 2 takes off the Coriolis terms (15), q̇ᵀ
-    /// T^{p-2} C_i(s, c) q̇, which is exact where p - 2 is their degree or more; it then is kept in
-    /// powers of s and c themselves. Model 3 is the Taylor polynomial of M_m⁻¹(s, c)(u - c(q̇, s,
-    /// c) - τ_v(q̇)) in all of (q̇, s, c, u), with M_m and c in the extension of
-    /// [`PolynomialDynamics`]; only M_m⁻¹ is a series, in the angles that M_m depends on, and what
-    /// multiplies it is an exact polynomial.
+    /// - Model 1 is M_m⁻¹(q_a)(u - T^p τ_v(q̇)).
+    /// - Model 2 also subtracts the Coriolis terms (15), q̇ᵀ T^{p-2} C_i(s, c) q̇, from u. They are
+    ///   exact where p - 2 is at least their degree, and then stay in powers of s and c.
+    /// - Model 3 is the Taylor polynomial of M_m⁻¹(s, c)(u - c(q̇, s, c) - τ_v(q̇)) in
+    ///   (q̇, s, c, u). M_m and c are the polynomials of [`PolynomialDynamics`]. Only M_m⁻¹ is a
+    ///   series, in the sines and cosines that M_m depends on; its factor is an exact polynomial.
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`] for order 0 and where M_m(q_a) is not positive definite, [`Error::Space`]
-    /// where polynomials of that order do not fit.
+    /// - [`Error::OrderZero`] for order 0.
+    /// - [`Error::SingularMassMatrix`] where M_m(q_a) is not positive definite.
+    /// - [`Error::TooManyTerms`] and [`Error::Space`] where polynomials of this order do not fit.
     pub fn new(robot: &Robot, kind: ModelKind, order: u32, point: &ExpansionPoint) -> Result<Self> {
         if order == 0 {
-            return Err(Error::Setting("order 0: a model has order 1 at least".into()));
+            return Err(Error::OrderZero);
         }
         let inverse = inverse_mass_matrix(robot, point)?;
         let layout = Layout::new(kind, robot.joint_count());
@@ -44,33 +47,29 @@ impl PolynomialModel {
     }
 }
 
-/// M_m⁻¹(q_a).
+/// Returns M_m⁻¹(q_a), n x n, in double precision.
 fn inverse_mass_matrix(robot: &Robot, point: &ExpansionPoint) -> Result<DMatrix<f64>> {
     let n = robot.joint_count();
     let mut factors = robot.mass_matrix(&point.q).as_slice().to_vec();
     ltdl::factor(&mut factors, n);
     if (0..n).any(|i| !(factors[i * n + i] > 0.0 && factors[i * n + i].is_finite())) {
-        return Err(Error::Setting(format!(
-            "the mass matrix of {} is not positive definite at the expansion point q = {:?} rad; it is no physical robot there, choose another point",
-            robot.name(),
-            point.q
-        )));
+        return Err(Error::SingularMassMatrix { robot: robot.name().into(), q: point.q.clone() });
     }
     let mut inverse = DMatrix::identity(n, n);
     inverse.column_iter_mut().for_each(|mut column| ltdl::solve(&factors, column.as_mut_slice()));
     Ok(inverse)
 }
 
-/// Memory that the terms of a model may take, in bytes.
-const MOST_BYTES: f64 = 2e9;
-/// A term with its copies while products are formed.
-const BYTES_OF_TERM: f64 = 128.0;
+/// Memory that the terms of a model may take, bytes.
+const MAX_BYTES: f64 = 2e9;
+/// Memory of one term with its copies while products are formed, bytes.
+const BYTES_PER_TERM: f64 = 128.0;
 
-/// More terms than model 3 has: it is affine in u and cubic in q̇, each such factor times a series
-/// of `angles` variables.
-fn most_terms(joints: usize, angles: usize, order: u32) -> f64 {
+/// Returns an upper bound of the number of terms of model 3. The model is affine in u and cubic in
+/// q̇, and each such factor multiplies a series of `angles` variables.
+fn max_terms(joints: usize, angles: usize, order: u32) -> f64 {
     let n = joints as f64;
-    // Monomials of degree up to d.
+    // The number of monomials of degree up to d.
     let series = |d: i64| {
         (1..=d.max(-1)).fold(f64::from(d >= 0), |c, i| c * (angles as f64 + i as f64) / i as f64)
     };
@@ -83,7 +82,7 @@ fn most_terms(joints: usize, angles: usize, order: u32) -> f64 {
 
 type Polynomials = Vec<TaylorPolynomial>;
 
-/// A matrix of numbers times a vector of polynomials.
+/// Returns a matrix of numbers times a vector of polynomials.
 fn times(matrix: &DMatrix<f64>, vector: &[TaylorPolynomial]) -> Polynomials {
     let row = |i: usize| {
         let terms = vector.iter().enumerate().map(|(j, x)| x.scaled(&matrix[(i, j)]));
@@ -92,6 +91,7 @@ fn times(matrix: &DMatrix<f64>, vector: &[TaylorPolynomial]) -> Polynomials {
     (0..matrix.nrows()).map(row).collect()
 }
 
+/// The data from which a model is built.
 struct Builder<'a> {
     robot: &'a Robot,
     order: u32,
@@ -101,32 +101,32 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn variable(&self, place: usize) -> TaylorPolynomial {
-        TaylorPolynomial::variable(&self.space, place)
+    fn variable(&self, index: usize) -> TaylorPolynomial {
+        TaylorPolynomial::variable(&self.space, index)
     }
 
-    /// u - T^p τ_v(q̇), in q̇ and u themselves.
+    /// Returns u - T^p τ_v(q̇), n, in powers of q̇ and u.
     fn viscous_load(&self) -> Polynomials {
         let joints = self.robot.joints().iter().enumerate();
         joints.map(|(i, _)| self.variable(self.layout.input(i)) - self.viscous(i)).collect()
     }
 
-    /// T^p of τ_v of joint i about q̇_a, in powers of q̇.
+    /// Returns T^p τ_v of joint i about q̇_a, in powers of q̇.
     fn viscous(&self, i: usize) -> TaylorPolynomial {
         let line = TaylorSpace::new(1, self.order)
-            .expect("one variable to an order that more variables have");
+            .expect("the order fits, because it fits more variables");
         let velocity = TaylorPolynomial::variable_at(&line, 0, self.point.qd[i]);
         let torque = self.robot.joints()[i].friction.viscous.torque(&velocity);
         torque.shifted(&[-self.point.qd[i]]).embedded(&self.space, &[self.layout.velocity(i)])
     }
 
-    /// Where sin q and cos q are in the model's variables.
-    fn trigonometric_places(&self) -> Vec<usize> {
+    /// Returns the indices of sin q and cos q among the model's variables, 2n.
+    fn trigonometric_indices(&self) -> Vec<usize> {
         let n = self.layout.joints;
         (0..n).map(|i| self.layout.sine(i)).chain((0..n).map(|i| self.layout.cosine(i))).collect()
     }
 
-    /// (sin q_a, cos q_a), exact at multiples of pi/2.
+    /// Returns (sin q_a, cos q_a), 2n, exact at multiples of π/2.
     fn trigonometric_point(&self) -> Vec<f64> {
         let (sin, cos): (Vec<_>, Vec<_>) =
             self.point.q.iter().map(|q| reachtube_robot::snapped_sin_cos(*q)).unzip();
@@ -137,6 +137,7 @@ impl Builder<'_> {
         Ok(self.robot.polynomial_dynamics()?)
     }
 
+    /// Returns the accelerations of model 2 and the origin of its variables.
     fn model2(&self, inverse: &DMatrix<f64>) -> Result<(Polynomials, Vec<f64>)> {
         let mut origin = vec![0.0; self.layout.variables()];
         let mut load = self.viscous_load();
@@ -144,14 +145,15 @@ impl Builder<'_> {
             let mut christoffel = self.dynamics()?.christoffel();
             let degree =
                 christoffel.iter().flatten().map(TaylorPolynomial::degree).max().unwrap_or(0);
+            // Truncated Coriolis terms are in offsets of s and c from the expansion point.
             if self.order - 2 < degree {
                 let at = self.trigonometric_point();
                 christoffel
                     .iter_mut()
                     .flatten()
                     .for_each(|c| *c = c.shifted(&at).truncated(self.order - 2));
-                for (place, at) in self.trigonometric_places().into_iter().zip(at) {
-                    origin[place] = at;
+                for (index, at) in self.trigonometric_indices().into_iter().zip(at) {
+                    origin[index] = at;
                 }
             }
             let velocity: Vec<_> =
@@ -163,30 +165,33 @@ impl Builder<'_> {
         Ok((times(inverse, &load), origin))
     }
 
-    /// q̇ᵀ C q̇ for a matrix of polynomials in (s, c).
+    /// Returns q̇ᵀ C q̇ for `matrix` C, row-major n x n, of polynomials in (s, c).
     fn coriolis(
         &self,
         matrix: &[TaylorPolynomial],
         velocity: &[TaylorPolynomial],
     ) -> TaylorPolynomial {
         let n = self.layout.joints;
-        let places = self.trigonometric_places();
+        let indices = self.trigonometric_indices();
         let mut sum = TaylorPolynomial::from(0.0);
         for j in 0..n {
             for k in 0..=j {
                 let own = &matrix[j * n + k];
                 let both = if j == k { own.clone() } else { own + &matrix[k * n + j] };
-                sum += &both.embedded(&self.space, &places) * &(&velocity[j] * &velocity[k]);
+                sum += &both.embedded(&self.space, &indices) * &(&velocity[j] * &velocity[k]);
             }
         }
         sum
     }
 
+    /// Returns the accelerations of model 3 and the origin of its variables.
     fn model3(&self) -> Result<(Polynomials, Vec<f64>)> {
+        // The series of M_m⁻¹ about (s_a, c_a).
         let n = self.layout.joints;
         let dynamics = self.dynamics()?;
         let at = self.trigonometric_point();
         let inverse = self.inverse_series(&dynamics, &at)?;
+        // The load u - c - τ_v, an exact polynomial.
         let christoffel = dynamics.christoffel();
         let about = |c: &TaylorPolynomial| c.shifted(&at).truncated(self.order);
         let velocity: Vec<_> = (0..n)
@@ -206,6 +211,7 @@ impl Builder<'_> {
             input - self.coriolis(&matrix, &velocity) - friction
         };
         let load: Polynomials = (0..n).map(load).collect();
+        // Their product, truncated to the order.
         let row = |i: usize| {
             let terms = (0..n).map(|j| &inverse[i * n + j] * &load[j]);
             terms.fold(TaylorPolynomial::from(0.0), |sum, term| sum + term)
@@ -219,26 +225,20 @@ impl Builder<'_> {
         Ok(((0..n).map(row).collect(), origin))
     }
 
-    /// Refuses an order whose terms would not fit in memory; M_m depends on `angles` sines and
-    /// cosines.
+    /// Checks that the terms of model 3 fit in memory; M_m depends on `angles` sines and cosines.
     fn check_size(&self, angles: usize) -> Result<()> {
-        let bytes = |order: u32| most_terms(self.layout.joints, angles, order) * BYTES_OF_TERM;
-        let needed = bytes(self.order);
-        if needed <= MOST_BYTES {
+        let (order, joints) = (self.order, self.layout.joints);
+        let bytes = |order: u32| max_terms(joints, angles, order) * BYTES_PER_TERM;
+        let needed = bytes(order);
+        if needed <= MAX_BYTES {
             return Ok(());
         }
-        let fits = (1..self.order).rev().find(|order| bytes(*order) <= MOST_BYTES).unwrap_or(1);
-        Err(Error::Setting(format!(
-            "model 3 of order {} for {} joints would need about {:.0} GB for its terms, more than the {:.0} GB allowed; order {fits} fits",
-            self.order,
-            self.layout.joints,
-            needed / 1e9,
-            MOST_BYTES / 1e9
-        )))
+        let fitting_order = (1..order).rev().find(|p| bytes(*p) <= MAX_BYTES).unwrap_or(1);
+        Err(Error::TooManyTerms { order, joints, needed, limit: MAX_BYTES, fitting_order })
     }
 
-    /// The series of M_m⁻¹ about (s_a, c_a), n x n, made in the space of the variables that M_m
-    /// depends on.
+    /// Returns the series of M_m⁻¹ about (s_a, c_a), row-major n x n. It is computed in the space
+    /// of only the variables that M_m depends on, which is much smaller.
     fn inverse_series(&self, dynamics: &PolynomialDynamics, at: &[f64]) -> Result<Polynomials> {
         let n = self.layout.joints;
         let used: Vec<usize> =
@@ -246,12 +246,12 @@ impl Builder<'_> {
         self.check_size(used.len())?;
         let space = TaylorSpace::new(used.len().max(1), self.order)?;
         space.check_dense()?;
-        let place = |i: usize| used.iter().position(|u| *u == i).unwrap_or(0);
-        let places: Vec<usize> = (0..2 * n).map(place).collect();
+        let index = |i: usize| used.iter().position(|u| *u == i).unwrap_or(0);
+        let indices: Vec<usize> = (0..2 * n).map(index).collect();
         let mut factors: Polynomials =
-            dynamics.mass_matrix.iter().map(|m| m.shifted(at).embedded(&space, &places)).collect();
+            dynamics.mass_matrix.iter().map(|m| m.shifted(at).embedded(&space, &indices)).collect();
         ltdl::factor(&mut factors, n);
-        let trigonometric = self.trigonometric_places();
+        let trigonometric = self.trigonometric_indices();
         let back: Vec<usize> = used.iter().map(|i| trigonometric[*i]).collect();
         let column = |j: usize| {
             let mut column: Polynomials =

@@ -1,12 +1,10 @@
-//! A polynomial model as a differential equation.
-
 use reachtube_ode::VectorField;
 use reachtube_scalar::Powers;
 
-use super::{ModelWorkspace, PolynomialModel};
+use crate::polynomial_model::{ModelWorkspace, PolynomialModel};
 
-/// ẋ = f_p(x, u) for the integrators of `reachtube-ode`; over lanes each lane is a run of its own.
-/// It does not allocate.
+/// A polynomial model as the differential equation ẋ = f_p(x, u), for the integrators of
+/// `reachtube-ode`. Over SIMD lanes each lane is a run of its own. Evaluations do not allocate.
 ///
 /// # Examples
 ///
@@ -15,11 +13,13 @@ use super::{ModelWorkspace, PolynomialModel};
 /// use reachtube_ode::{DormandPrince, Run, Tolerance};
 /// use reachtube_robot::Robot;
 ///
-/// let model = PolynomialModel::new(&Robot::lwa4p(), ModelKind::Two, 12, &ExpansionPoint::zero(6))?;
+/// let point = ExpansionPoint::zero(6);
+/// let model = PolynomialModel::new(&Robot::lwa4p(), ModelKind::Two, 12, &point)?;
 /// let start = model.state(&[0.3; 6], &[0.0; 6]);
 /// let run = Run { start: &start, inputs: &[1.0; 2 * 6] };
 /// let mut solver = DormandPrince::new(model.states(), Tolerance::default());
-/// let outcome = solver.simulate(&mut ModelField::new(&model), &[0.0, 0.004, 0.008], run, |_sample, x| {
+/// let mut field = ModelField::new(&model);
+/// let outcome = solver.follow(&mut field, &[0.0, 0.004, 0.008], run, |_sample, x| {
 ///     assert!((x[12] - x[0].sin()).abs() < 1e-8);
 /// });
 /// assert!(outcome.is_reached());
@@ -32,7 +32,8 @@ pub struct ModelField<'a, S> {
 }
 
 impl<'a, S: Powers> ModelField<'a, S> {
-    /// The motion of a model.
+    /// Returns the vector field of `model`, with scratch memory of its own.
+    #[must_use]
     pub fn new(model: &'a PolynomialModel) -> Self {
         Self { model, ws: model.workspace() }
     }

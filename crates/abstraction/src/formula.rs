@@ -1,11 +1,11 @@
-//! A model as a formula.
-
 use std::fmt::{Display, Formatter, Result};
 
-use super::PolynomialModel;
+use crate::polynomial_model::PolynomialModel;
 
-/// One line a joint: qdd1 = 0.5762 u1 - 6.638 qd1 + ..., the terms by degree, each coefficient with
-/// all its digits. Where a variable is an offset, it is written so: (c2 - 1).
+/// Writes the accelerations as formulas, one line per joint: qdd1 = 0.5762 u1 - 6.638 qd1 + ...
+///
+/// Terms are ordered by degree, and each coefficient has all its digits. An offset of a variable is
+/// written as a difference: (c2 - 1).
 impl Display for PolynomialModel {
     fn fmt(&self, out: &mut Formatter<'_>) -> Result {
         let offset = |(name, origin): (String, &f64)| match *origin {
@@ -21,8 +21,8 @@ impl Display for PolynomialModel {
             if terms.is_empty() {
                 write!(out, " 0")?;
             }
-            for (place, term) in terms.iter().enumerate() {
-                let sign = match (term.coefficient < 0.0, place) {
+            for (index, term) in terms.iter().enumerate() {
+                let sign = match (term.coefficient < 0.0, index) {
                     (true, _) => " -",
                     (false, 0) => "",
                     (false, _) => " +",
@@ -46,12 +46,23 @@ impl Display for PolynomialModel {
 mod tests {
     use reachtube_robot::Robot;
 
-    use crate::{ExpansionPoint, ModelKind, PolynomialModel};
+    use crate::expansion_point::ExpansionPoint;
+    use crate::model_kind::ModelKind;
+    use crate::polynomial_model::PolynomialModel;
+
+    const PENDULUM: &str = r#"
+        schema_version = 1
+        name = "p"
+        [[joint]]
+        name = "p"
+        placement = {}
+        armature = 0.5
+        friction = { viscous = [1.0, 0.0, -0.25] }
+    "#;
 
     #[test]
-    fn a_pendulum_reads_as_its_equation() {
-        let text = "schema_version = 1\nname = \"p\"\n[[joint]]\nname = \"p\"\nplacement = {}\narmature = 0.5\nfriction = { viscous = [1.0, 0.0, -0.25] }\n";
-        let robot = Robot::from_toml(text, "p").unwrap();
+    fn a_pendulum_prints_its_equation() {
+        let robot = Robot::from_toml(PENDULUM, "p").unwrap();
         let point = ExpansionPoint::zero(1);
         let formula = |kind| PolynomialModel::new(&robot, kind, 3, &point).unwrap().to_string();
         assert_eq!(formula(ModelKind::One), "qdd1 = - 2 qd1 + 2 u1 + 0.5 qd1^3\n");

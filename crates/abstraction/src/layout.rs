@@ -1,53 +1,61 @@
-//! Which variables a model's polynomials have, and in which order.
+//! The variables of a model's polynomials and their order.
 
-use super::ModelKind;
+use crate::model_kind::ModelKind;
 
-/// Variables of a model: q̇, then sin q and cos q where the model has them, then u; n of each.
+/// The variables of a model: q̇, then sin q and cos q where the model has them, then u; n of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
-    /// Joints n.
+    /// Number of joints n.
     pub joints: usize,
     /// Whether sin q and cos q are variables (Property A).
     pub trigonometric: bool,
 }
 
 impl Layout {
-    /// The variables of a model.
+    /// Returns the layout of a model of `joints` joints.
+    #[must_use]
     pub fn new(kind: ModelKind, joints: usize) -> Self {
         Self { joints, trigonometric: kind != ModelKind::One }
     }
 
-    /// Number of variables k: 2n or 4n.
+    /// Returns the number of variables: 2n or 4n.
+    #[must_use]
     pub fn variables(self) -> usize {
         if self.trigonometric { 4 * self.joints } else { 2 * self.joints }
     }
 
-    /// Number of states: 2n, (q, q̇), or 4n, (q, q̇, sin q, cos q).
+    /// Returns the number of states: 2n for (q, q̇), or 4n for (q, q̇, sin q, cos q).
+    #[must_use]
     pub fn states(self) -> usize {
         if self.trigonometric { 4 * self.joints } else { 2 * self.joints }
     }
 
-    /// Place of q̇ of joint i.
+    /// Returns the index of q̇ of joint `i` (from 0) among the variables.
+    #[must_use]
     pub fn velocity(self, i: usize) -> usize {
         i
     }
 
-    /// Place of sin q of joint i; only for trigonometric models.
+    /// Returns the index of sin q of joint `i` (from 0), for trigonometric models.
+    #[must_use]
     pub fn sine(self, i: usize) -> usize {
         self.joints + i
     }
 
-    /// Place of cos q of joint i; only for trigonometric models.
+    /// Returns the index of cos q of joint `i` (from 0), for trigonometric models.
+    #[must_use]
     pub fn cosine(self, i: usize) -> usize {
         2 * self.joints + i
     }
 
-    /// Place of u of joint i.
+    /// Returns the index of u of joint `i` (from 0) among the variables.
+    #[must_use]
     pub fn input(self, i: usize) -> usize {
         self.variables() - self.joints + i
     }
 
-    /// Names of the variables: qd1, s1, c1, u1, ...
+    /// Returns the names of the variables: qd1, .., s1, .., c1, .., u1, ..
+    #[must_use]
     pub fn names(self) -> Vec<String> {
         let groups: &[&str] =
             if self.trigonometric { &["qd", "s", "c", "u"] } else { &["qd", "u"] };

@@ -1,6 +1,40 @@
-//! The three models of the forward dynamics (Sec. IV-B of the paper): ẋ = f_p(x, u), linear or
-//! polynomial.
+//! Simple models of a robot's forward dynamics, with a proved bound of their truncation error.
+//!
+//! A reachable-set computation needs a model ẋ = f_p(x, u) that is linear or polynomial. This crate
+//! builds the three models of Liu and Althoff (IROS 2018, Sec. IV-B) from a
+//! [`Robot`](reachtube_robot::Robot), at any order p and about any [`ExpansionPoint`].
+//!
+//! - [`PolynomialModel`] is the primary type: it evaluates f_p over numbers, SIMD lanes, intervals
+//!   and Taylor models, and reads and writes its file. [`ModelKind`] chooses the model.
+//! - [`linear_model`] returns model 1 of order 1 as a linear system.
+//! - [`PolynomialModel::bound_remainder`] encloses the truncation error, forward dynamics minus
+//!   model, over an [`OperatingBox`] and returns it as a [`Remainder`].
+//! - [`ModelField`] simulates a model, and [`Linearisation`] differentiates it along a motion.
+//!   [`PolynomialModel::polynomial_system`] hands it to a flowpipe.
+//!
+//! # Examples
+//!
+//! ```
+//! use reachtube_abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+//! use reachtube_robot::Robot;
+//!
+//! let point = ExpansionPoint::zero(6);
+//! let model = PolynomialModel::new(&Robot::lwa4p(), ModelKind::Two, 3, &point)?;
+//!
+//! // Accelerations of the joints (rad/s²) under 1 N m each, from rest at q = 0.1 rad.
+//! let rate = model.rate(&model.state(&[0.1; 6], &[0.0; 6]), &[1.0; 6]);
+//! assert!(rate[6..12].iter().all(|acceleration| acceleration.is_finite()));
+//!
+//! // A bound of the truncation error within 0.1 rad, 0.1 rad/s and 1 N m of the point.
+//! let operating_box = OperatingBox::about(&point, &[0.1, 0.1, 1.0])?;
+//! let remainder = model.bound_remainder(&operating_box, 16)?;
+//! let [low, high] = remainder.bounds[0].expect("the box is small enough for a bound");
+//! assert!(low <= 0.0 && 0.0 <= high);
+//! # Ok::<(), reachtube_abstraction::Error>(())
+//! ```
 
+mod abstraction;
+mod bound;
 mod build;
 mod error;
 mod expansion_point;
@@ -8,45 +42,26 @@ mod field;
 mod file;
 mod formula;
 mod layout;
+mod linear_model;
 mod linearisation;
+mod model_kind;
 mod operating_box;
 mod polynomial_model;
+mod preconditioned;
+mod records;
 mod remainder;
-mod seen_error;
+mod sampled_error;
+mod systems;
 
-pub use error::{Error, Result};
+pub use abstraction::Abstraction;
+pub use error::{Error, RecordsError, Result};
 pub use expansion_point::ExpansionPoint;
 pub use field::ModelField;
-pub use file::{Records, TermRecord};
 pub use layout::Layout;
+pub use linear_model::linear_model;
 pub use linearisation::Linearisation;
+pub use model_kind::ModelKind;
 pub use operating_box::OperatingBox;
-pub use polynomial_model::{Abstraction, ModelKind, ModelWorkspace, PolynomialModel};
-use reachtube_reach::LinearSystem;
-use reachtube_robot::Robot;
+pub use polynomial_model::{ModelWorkspace, PolynomialModel};
+pub use records::{Records, TermRecord};
 pub use remainder::Remainder;
-
-/// Model 1 (13) at order p = 1: ẋ = A x + B u + d with x = (q, q̇), A = [0 I; 0 -M⁻¹
-/// diag(τ_v'(q̇_a))], B = [0; M⁻¹], d = [0; -M⁻¹ (τ_v(q̇_a) - τ_v'(q̇_a) q̇_a)], M = M_m(q_a).
-///
-/// The double-precision result is the model; what it leaves out is for the uncertainty sets to
-/// cover.
-///
-/// # Errors
-///
-/// [`Error::Setting`](crate::Error::Setting) when M_m(q_a) is not positive definite.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_abstraction::{ExpansionPoint, linear_model};
-/// use reachtube_robot::Robot;
-///
-/// let model = linear_model(&Robot::lwa4p(), &ExpansionPoint::zero(6))?;
-/// assert_eq!((model.states(), model.inputs()), (12, 6));
-/// assert_eq!(model.a()[(0, 6)], 1.0);
-/// # Ok::<(), reachtube_abstraction::Error>(())
-/// ```
-pub fn linear_model(robot: &Robot, point: &ExpansionPoint) -> Result<LinearSystem> {
-    PolynomialModel::new(robot, ModelKind::One, 1, point)?.linear_system()
-}

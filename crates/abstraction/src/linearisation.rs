@@ -3,15 +3,20 @@
 use nalgebra::DMatrix;
 use reachtube_scalar::{MapWorkspace, PolynomialMap};
 
-use super::{Layout, PolynomialModel};
+use crate::layout::Layout;
+use crate::polynomial_model::PolynomialModel;
 
-/// A = ∂ẋ/∂x and B = ∂ẋ/∂u of a model with x = (q, q̇), at one state after another; sin q and cos q
-/// are differentiated as what they are. Unrounded.
+/// The derivatives A = ∂ẋ/∂x and B = ∂ẋ/∂u of a model with x = (q, q̇), at one state after another.
+///
+/// sin q and cos q count as functions of q, so their derivatives are part of A. The results are in
+/// double precision, without directed rounding.
 ///
 /// # Examples
 ///
 /// ```
-/// use reachtube_abstraction::{ExpansionPoint, Linearisation, ModelKind, PolynomialModel, linear_model};
+/// use reachtube_abstraction::{
+///     ExpansionPoint, Linearisation, ModelKind, PolynomialModel, linear_model,
+/// };
 /// use reachtube_robot::Robot;
 ///
 /// let (robot, rest) = (Robot::lwa4p(), ExpansionPoint::zero(6));
@@ -29,14 +34,15 @@ pub struct Linearisation {
     map: PolynomialMap,
     workspace: MapWorkspace<f64>,
     offsets: Vec<f64>,
-    /// ∂q̈/∂z, joints x variables.
+    /// Derivatives ∂q̈/∂z, row-major joints x variables.
     slopes: Vec<f64>,
     a: DMatrix<f64>,
     b: DMatrix<f64>,
 }
 
 impl Linearisation {
-    /// Of `model`.
+    /// Prepares the derivatives of `model`.
+    #[must_use]
     pub fn new(model: &PolynomialModel) -> Self {
         let (layout, n) = (model.layout(), model.joints());
         let map = PolynomialMap::new(layout.variables(), &model.derivatives().concat());
@@ -54,7 +60,8 @@ impl Linearisation {
         }
     }
 
-    /// (A, B), 2n x 2n and 2n x n, at the state `x` = (q, q̇), 2n, under the input `u`, n.
+    /// Returns A (2n x 2n) and B (2n x n) at the state `x` = (q, q̇) (2n, rad and rad/s) under the
+    /// input `u` (n, N m).
     pub fn at(&mut self, x: &[f64], u: &[f64]) -> (&DMatrix<f64>, &DMatrix<f64>) {
         let (layout, n) = (self.layout, self.layout.joints);
         for i in 0..n {

@@ -1,103 +1,109 @@
-//! Where a robot is operated.
-
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use serde::{Deserialize, Serialize};
 
-use super::ExpansionPoint;
 use crate::error::{Error, Result};
+use crate::expansion_point::ExpansionPoint;
 
-/// Positions, velocities and inputs that a bound holds for, each \[low, high\], one entry a joint.
+/// The positions, velocities and inputs over which a bound holds: one interval \[low, high\] per
+/// joint for each.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OperatingBox {
-    /// q, rad.
+    /// Positions q, n, rad.
     pub q: Vec<[f64; 2]>,
-    /// q̇, rad/s.
+    /// Velocities q̇, n, rad/s.
     pub qd: Vec<[f64; 2]>,
-    /// u, N m.
+    /// Inputs u, n, N m.
     pub u: Vec<[f64; 2]>,
 }
 
 impl OperatingBox {
-    /// The box about an expansion point with the given radii: 3 (for all positions in rad,
-    /// velocities in rad/s and inputs in N m) or 3n.
+    /// Returns the box about an expansion point with the given radii: 3 (one for all positions in
+    /// rad, one for all velocities in rad/s, one for all inputs in N m) or 3n (one per joint for
+    /// each).
     ///
     /// # Errors
     ///
-    /// [`Error::Setting`] for another number of radii, or one that is negative or not finite.
+    /// [`Error::Radius`] for a radius that is negative or not finite, and [`Error::RadiusCount`]
+    /// for another number of radii.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_abstraction::{ExpansionPoint, OperatingBox};
+    ///
+    /// let operating_box = OperatingBox::about(&ExpansionPoint::zero(2), &[0.5, 1.0, 20.0])?;
+    /// assert_eq!(operating_box.q, [[-0.5, 0.5]; 2]);
+    /// # Ok::<(), reachtube_abstraction::Error>(())
+    /// ```
     pub fn about(point: &ExpansionPoint, radii: &[f64]) -> Result<Self> {
         let n = point.q.len();
-        if let Some(radius) = radii.iter().find(|radius| !(radius.is_finite() && **radius >= 0.0)) {
-            return Err(Error::Setting(format!(
-                "a radius of the box is {radius}; give finite numbers, 0 or more"
-            )));
+        if let Some(index) = radii.iter().position(|r| !(r.is_finite() && *r >= 0.0)) {
+            return Err(Error::Radius { number: index + 1, value: radii[index] });
         }
         let radius = |group: usize, i: usize| match radii.len() {
             3 => Some(radii[group]),
             given if given == 3 * n => Some(radii[group * n + i]),
             _ => None,
         };
-        let sides = |group: usize, center: &[f64]| -> Option<Vec<[f64; 2]>> {
+        let sides = |group: usize, centre: &[f64]| -> Option<Vec<[f64; 2]>> {
             let side = |(i, c): (usize, &f64)| radius(group, i).map(|r| [c - r, c + r]);
-            center.iter().enumerate().map(side).collect()
+            centre.iter().enumerate().map(side).collect()
         };
         match (sides(0, &point.q), sides(1, &point.qd), sides(2, &point.input())) {
             (Some(q), Some(qd), Some(u)) => Ok(Self { q, qd, u }),
-            _ => Err(Error::Setting(format!(
-                "{} radii of the box; give 3 (positions in rad, velocities in rad/s, inputs in N m) or {}",
-                radii.len(),
-                3 * n
-            ))),
+            _ => Err(Error::RadiusCount { radii: radii.len(), joints: n }),
         }
     }
 
-    /// (q, q̇, u) as intervals.
+    /// Returns (q, q̇, u) as 3n intervals.
+    ///
+    /// # Guarantee
+    ///
+    /// Exact: the ends are those of the box.
+    #[must_use]
     pub fn sides(&self) -> Vec<Interval> {
         let all = self.q.iter().chain(&self.qd).chain(&self.u);
         all.map(|[low, high]| Interval::point(*low).hull(Interval::point(*high))).collect()
     }
 
-    /// Returns whether the box is one of `n` joints, with finite ends in order.
+    /// Returns whether the box has `n` intervals for each of q, q̇ and u, with finite ends in
+    /// order.
     #[must_use]
-    pub fn is_of(&self, n: usize) -> bool {
-        let is = |sides: &[[f64; 2]]| {
+    pub fn is_valid_for(&self, n: usize) -> bool {
+        let valid = |sides: &[[f64; 2]]| {
             sides.len() == n
                 && sides
                     .iter()
                     .all(|[low, high]| low <= high && low.is_finite() && high.is_finite())
         };
-        is(&self.q) && is(&self.qd) && is(&self.u)
+        valid(&self.q) && valid(&self.qd) && valid(&self.u)
     }
 
-    /// Whether it is a box of this robot, within its limits.
-    pub(super) fn check(&self, robot: &Robot) -> Result<()> {
+    /// Checks that the box fits this robot and lies within its limits.
+    pub(crate) fn check(&self, robot: &Robot) -> Result<()> {
         let n = robot.joint_count();
-        if !self.is_of(n) {
-            return Err(Error::Setting(format!(
-                "the operating box has not one finite interval a joint for each of q, qd and u; there are {n} joints"
-            )));
+        if !self.is_valid_for(n) {
+            return Err(Error::BoxSize { joints: n });
         }
         for (i, joint) in robot.joints().iter().enumerate() {
-            let outside = |what: &str, side: [f64; 2], limits: [f64; 2], unit: &str| {
-                Err(Error::Setting(format!(
-                    "joint `{}`: the box has {what} in [{}, {}] {unit}, beyond the limits [{}, {}] of the robot; choose a smaller box",
-                    joint.name, side[0], side[1], limits[0], limits[1]
-                )))
+            let inside = |quantity, unit, side, limits| {
+                let joint = joint.name.clone();
+                let beyond = Error::BeyondLimits { joint, quantity, unit, side, limits };
+                is_within(side, limits).then_some(()).ok_or(beyond)
             };
-            let within = |side: [f64; 2], limits: [f64; 2]| {
-                let slack = 1e-9 * (limits[1] - limits[0]).abs();
-                side[0] >= limits[0] - slack && side[1] <= limits[1] + slack
-            };
-            if !within(self.q[i], joint.position_limits) {
-                return outside("positions", self.q[i], joint.position_limits, "rad");
-            }
-            if let Some(limit) =
-                joint.velocity_limit.filter(|limit| !within(self.qd[i], [-limit, *limit]))
-            {
-                return outside("velocities", self.qd[i], [-limit, limit], "rad/s");
+            inside("positions", "rad", self.q[i], joint.position_limits)?;
+            if let Some(limit) = joint.velocity_limit {
+                inside("velocities", "rad/s", self.qd[i], [-limit, limit])?;
             }
         }
         Ok(())
     }
+}
+
+/// Returns whether a side lies within limits, up to the rounding of its ends.
+fn is_within(side: [f64; 2], limits: [f64; 2]) -> bool {
+    let slack = 1e-9 * (limits[1] - limits[0]).abs();
+    side[0] >= limits[0] - slack && side[1] <= limits[1] + slack
 }

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-/// Why a file could not be read or written.
+/// Why a file cannot be read or written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -16,10 +16,11 @@ pub enum Error {
         /// What to do.
         remedy: &'static str,
     },
-    /// A file could not be written; nothing was left behind.
+    /// A file could not be written. No part of it remains, and an older file of its name is as it
+    /// was.
     #[error(
-        "{}: cannot write: {source}; nothing was written, and a file of that name is as it was; \
-         choose a place with room and permission",
+        "{}: cannot write: {source}; a file of this name, if any, is as it was; choose a place \
+         with room and permission",
         path.display()
     )]
     Write {

@@ -1,13 +1,25 @@
-//! JSON files: versions, and a layout that people can read.
+//! JSON files that carry their format and version, in a layout that people can read.
 
 use serde::Serialize;
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 
-/// Parses a file that `command --out` wrote and checks what it says it is.
+/// Parses `text`, the content of a file that `command --out` wrote, and checks its format and
+/// version.
 ///
 /// # Errors
 ///
-/// What is wrong and what to do, in words.
+/// A message with the problem and the remedy, without the file's name.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_files::json;
+///
+/// let text = r#"{"format": "reachtube-model", "version": 1}"#;
+/// assert!(json::versioned(text, "reachtube-model", 1, "conform").is_ok());
+/// let error = json::versioned(text, "reachtube-model", 2, "conform").unwrap_err();
+/// assert!(error.contains("run conform again"));
+/// ```
 pub fn versioned(
     text: &str,
     format: &str,
@@ -16,20 +28,26 @@ pub fn versioned(
 ) -> Result<serde_json::Value, String> {
     let remedy = format!("give a file that `{command} --out` wrote");
     let value: serde_json::Value =
-        serde_json::from_str(text).map_err(|error| format!("not JSON: {error}; {remedy}"))?;
+        serde_json::from_str(text).map_err(|error| format!("it is not JSON: {error}; {remedy}"))?;
     if value["format"] != format {
         return Err(format!("its format is not \"{format}\"; {remedy}"));
     }
     if value["version"] != version {
         let found = &value["version"];
         return Err(format!(
-            "version {found} of the format, this program reads {version}; run {command} again"
+            "it has version {found} of the format, but this program reads version {version}; run \
+             {command} again"
         ));
     }
     Ok(value)
 }
 
-/// JSON with what is nested more than [`DEPTH`] deep on one line, ending with a newline.
+/// Returns `value` as JSON that ends with a newline. Values nested more than three deep are on one
+/// line.
+///
+/// # Panics
+///
+/// Panics where `value` cannot be JSON, for example because the keys of a map are not strings.
 #[must_use]
 pub fn to_lines(value: &impl Serialize) -> String {
     let mut out = Vec::new();
@@ -39,9 +57,10 @@ pub fn to_lines(value: &impl Serialize) -> String {
     String::from_utf8(out).expect("JSON is UTF-8")
 }
 
+/// Depth of nesting up to which each value has lines of its own.
 const DEPTH: usize = 3;
 
-/// Pretty outside, compact inside.
+/// A formatter that is pretty up to [`DEPTH`] and compact inside.
 #[derive(Default)]
 struct Lines {
     depth: usize,
@@ -49,11 +68,13 @@ struct Lines {
 }
 
 impl Lines {
+    /// Enters an array or object and returns whether it has lines of its own.
     fn opened(&mut self) -> bool {
         self.depth += 1;
         self.depth <= DEPTH
     }
 
+    /// Leaves an array or object and returns whether it had lines of its own.
     fn closed(&mut self) -> bool {
         self.depth -= 1;
         self.depth < DEPTH
@@ -66,7 +87,7 @@ impl Lines {
 
 type Io = std::io::Result<()>;
 
-/// The formatter that is in charge: the pretty one outside, the plain one inside.
+/// Implements methods by the pretty formatter where a condition holds, else by the compact one.
 macro_rules! delegate {
     ($($method:ident($($first:ident)?) if $pretty:expr;)*) => {$(
         fn $method<W: ?Sized + std::io::Write>(&mut self, writer: &mut W $(, $first: bool)?) -> Io {

@@ -1,8 +1,22 @@
 //! Files that are written whole or not at all, and JSON that carries its format and version.
 //!
-//! [`write::atomically`] writes through a temporary file beside the target, [`write::try_at`]
-//! checks before a long job whether its result can be written, and [`json`] reads and writes
-//! versioned files.
+//! - [`write::atomically`] writes through a temporary file beside the target.
+//! - [`write::try_at`] checks, before a long job, whether its result can be written.
+//! - [`json`] reads and writes versioned files.
+//! - [`read`] and [`read_text`] read a file with an error that names it.
+//!
+//! # Examples
+//!
+//! ```
+//! use reachtube_files::{json, read_text, write};
+//!
+//! let folder = tempfile::tempdir().unwrap();
+//! let path = folder.path().join("counts.json");
+//! let text = json::to_lines(&[1, 2, 3]);
+//! write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
+//! assert_eq!(read_text(&path, "write the counts first")?, text);
+//! # Ok::<(), reachtube_files::Error>(())
+//! ```
 
 mod digest;
 mod error;
@@ -14,5 +28,5 @@ pub use digest::hex;
 pub use error::{Error, Result};
 pub use read::{read, read_text};
 
-/// Name and version of the program, as every file that it writes records them.
+/// Name and version of the program, which every file that it writes records.
 pub const TOOL: &str = concat!("reachtube ", env!("CARGO_PKG_VERSION"));

@@ -1,17 +1,18 @@
-//! Output is written whole or not at all.
+//! Files that are written whole or not at all.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::error::{Error, Result};
 
-/// Writes a file through a temporary one beside it that takes its name only when everything is on
-/// disk. The folder is made if it is missing. A device or a pipe (/dev/stdout) is written to as it
-/// is.
+/// Writes a file through a temporary one beside it, which takes the file's name only when all its
+/// bytes are on disk. The folder is created if it is missing. A device or a pipe (/dev/stdout) is
+/// written to directly.
 ///
 /// # Errors
 ///
-/// [`Error::Write`]; a file that had the name before is as it was, and nothing else is left behind.
+/// [`Error::Write`] where the file cannot be written. An older file of this name is then as it was,
+/// and no other file remains.
 ///
 /// # Examples
 ///
@@ -30,7 +31,7 @@ pub fn atomically(
         if is_special(path) {
             return write(&mut std::fs::OpenOptions::new().write(true).open(path)?);
         }
-        // What a link leads to is replaced, not the link.
+        // The target of a link is replaced, not the link.
         let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         let folder = folder_of(&path);
         std::fs::create_dir_all(folder)?;
@@ -44,13 +45,13 @@ pub fn atomically(
     attempt().map_err(|source| Error::Write { path: path.to_path_buf(), source })
 }
 
-/// Tries, before a long job, whether a file can be written at `path` when it is done. Nothing is
-/// left behind.
+/// Checks, before a long job, that a file can be written at `path` when it is done. No file
+/// remains.
 ///
 /// # Errors
 ///
-/// [`Error::Write`] when `path` is a folder, or no file can be made in its folder or, where that is
-/// missing, in the nearest one above.
+/// [`Error::Write`] when `path` is a folder, or when no file can be created in its folder. Where
+/// that folder is missing, the nearest existing one above it is checked.
 pub fn try_at(path: &Path) -> Result<()> {
     let attempt = || {
         if path.is_dir() {
@@ -66,7 +67,7 @@ pub fn try_at(path: &Path) -> Result<()> {
     attempt().map_err(|source| Error::Write { path: path.to_path_buf(), source })
 }
 
-/// A device or a pipe: it is written to, where a file is replaced.
+/// Returns whether `path` is a device or a pipe, which is written to directly.
 fn is_special(path: &Path) -> bool {
     path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir())
 }
@@ -78,7 +79,7 @@ fn folder_of(path: &Path) -> &Path {
 #[cfg(unix)]
 fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     use std::os::unix::fs::PermissionsExt;
-    // As any new file: the umask decides, not the privacy of a temporary file.
+    // The umask decides who may read the file, as for any new file.
     tempfile::Builder::new()
         .permissions(std::fs::Permissions::from_mode(0o666))
         .tempfile_in(folder)
@@ -90,7 +91,7 @@ fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     tempfile::NamedTempFile::new_in(folder).map_err(unnamed)
 }
 
-/// The error without the name of the temporary file, which would only puzzle.
+/// Returns the error without the name of the temporary file, which users do not know.
 fn unnamed(error: std::io::Error) -> std::io::Error {
     error.kind().into()
 }
@@ -100,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_is_tried_without_a_trace() {
+    fn a_check_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
         try_at(&folder.path().join("new/deep/model.json")).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
@@ -112,7 +113,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_stays_and_what_it_leads_to_is_replaced() {
+    fn a_link_stays_and_its_target_is_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let (link, file) = (folder.path().join("link"), folder.path().join("file"));
         std::fs::write(&file, "old").unwrap();

@@ -11,12 +11,12 @@ use crate::source::{ReadOptions, RunSource};
 /// The file in a folder of recordings that lists them.
 const INDEX: &str = "runs.csv";
 
-/// A folder of recordings: what its index `runs.csv` says.
+/// A folder of recordings with its index `runs.csv`.
 #[derive(Debug, Clone)]
 pub struct DataSet {
     root: PathBuf,
     runs: Vec<RunEntry>,
-    /// CSV files in the folder that the index does not name.
+    /// CSV files in the folder that the index does not list.
     unlisted: Vec<PathBuf>,
 }
 
@@ -26,12 +26,13 @@ impl DataSet {
     ///
     /// # Errors
     ///
-    /// [`Error::File`] when there is no index, [`Error::Defects`] for a missing column, a file that
-    /// is named twice or not there.
+    /// [`Error::File`] when the index cannot be read, and [`Error::Defects`] for a missing column
+    /// and for a file that is listed twice or does not exist.
     pub fn open(root: impl Into<PathBuf>) -> Result<Self, Error> {
         let root = root.into();
         let index = root.join(INDEX);
-        let remedy = "give the folder that holds the recordings and their index runs.csv, a line a recording with its file and suite";
+        let remedy = "give the folder that holds the recordings and their index runs.csv, which \
+                      has one line per recording with its file and suite";
         let bytes = reachtube_files::read(&index, remedy)?;
         let runs = read_index(&root, &index, &bytes).map_err(Error::Defects)?;
         let listed: BTreeSet<PathBuf> = runs.iter().map(|run| root.join(&run.file)).collect();
@@ -42,12 +43,14 @@ impl DataSet {
         Ok(Self { root, runs, unlisted })
     }
 
-    /// The folder.
+    /// Returns the folder.
+    #[must_use]
     pub fn root(&self) -> &Path {
         &self.root
     }
 
-    /// Returns the CSV files in the folder that the index does not name.
+    /// Returns the CSV files in the folder that the index does not list.
+    #[must_use]
     pub fn unlisted(&self) -> &[PathBuf] {
         &self.unlisted
     }
@@ -73,15 +76,16 @@ impl RunSource for DataSet {
     fn unlisted_note(&self) -> Option<String> {
         let (first, root) = (self.unlisted.first()?.display(), self.root.display());
         Some(match self.unlisted.len() {
-            1 => format!("{first} is not in runs.csv and is not used"),
+            1 => format!("{first} is not in runs.csv and is not used; list it to use it"),
             count => format!(
-                "{count} CSV files in {root} are not in runs.csv and are not used, {first} the \
-                 first"
+                "{count} CSV files in {root} are not in runs.csv and are not used, for example \
+                 {first}; list them to use them"
             ),
         })
     }
 }
 
+/// Returns the CSV files in a folder and the folders in it, in the order of their paths.
 fn csv_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut files: Vec<PathBuf> = entries

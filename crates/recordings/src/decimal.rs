@@ -1,9 +1,9 @@
-/// A decimal number of seconds as picoseconds, rounded to the nearest: the digits are taken as they
-/// are written, so that the difference of two times since 1970 is that of the numbers in the file,
-/// where double precision keeps a tenth of a microsecond only.
+/// Returns a decimal number of seconds in picoseconds, rounded to nearest; `None` for text that is
+/// not a finite decimal number or has too many digits.
 ///
-/// None for what is no finite decimal number, or has more digits than fit.
-pub(super) fn picoseconds(text: &str) -> Option<i128> {
+/// The digits are read as written, so that differences of times since 1970 are exact. In double
+/// precision, such times are only known to about 0.2 µs.
+pub(crate) fn picoseconds(text: &str) -> Option<i128> {
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
         None => (text, 0),
@@ -28,7 +28,7 @@ mod tests {
     use super::picoseconds;
 
     #[test]
-    fn numbers_are_taken_as_written() {
+    fn numbers_are_read_as_written() {
         let cases = [
             ("0", 0),
             ("-0.0", 0),
@@ -47,7 +47,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_or_does_not_fit_is_none() {
+    fn text_that_is_not_a_number_or_does_not_fit_gives_none() {
         for text in ["", ".", "-", "1,5", "nan", "inf", "--1", "1e", "1e99", "1.-5"] {
             assert_eq!(picoseconds(text), None, "{text}");
         }

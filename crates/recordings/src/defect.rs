@@ -1,17 +1,17 @@
 use std::fmt;
 use std::path::PathBuf;
 
-/// Defects of one file that are listed in full; the rest are counted.
+/// Number of defects of one file that are listed in full; the rest are counted.
 const LISTED_PER_FILE: usize = 20;
 
-/// One thing wrong with a recording: where, what, and what to do.
+/// A defect of a recording: where it is, what is wrong, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Defect {
     /// The file.
     pub file: PathBuf,
-    /// Line in the file, from 1.
+    /// Line in the file, from 1; `None` for a defect of the whole file.
     pub line: Option<u64>,
-    /// The joint, from 1.
+    /// The joint, from 1; `None` for a defect of no single joint.
     pub joint: Option<usize>,
     /// What is wrong, with the value and the limit.
     pub problem: String,
@@ -20,7 +20,8 @@ pub struct Defect {
 }
 
 impl Defect {
-    /// A defect of a whole file.
+    /// Returns a defect of a file, or of one `line` of it (from 1).
+    #[must_use]
     pub fn new(
         file: impl Into<PathBuf>,
         line: Option<u64>,
@@ -36,7 +37,8 @@ impl Defect {
         }
     }
 
-    /// The same defect, of one joint (from 1).
+    /// Returns the same defect with its joint (from 1).
+    #[must_use]
     pub fn of_joint(mut self, joint: Option<usize>) -> Self {
         self.joint = joint;
         self
@@ -56,14 +58,18 @@ impl fmt::Display for Defect {
     }
 }
 
-/// The defects, a line each, in the order found; a file with very many is cut short with a count.
+/// Returns the defects in the order found, one per line. The list of a file with very many ends
+/// with a count of the rest.
 pub(crate) fn list_defects(defects: &[Defect]) -> String {
     let mut lines = Vec::new();
     for group in defects.chunk_by(|a, b| a.file == b.file) {
         lines.extend(group.iter().take(LISTED_PER_FILE).map(Defect::to_string));
         if group.len() > LISTED_PER_FILE {
             let more = group.len() - LISTED_PER_FILE;
-            lines.push(format!("{}: and {more} more defects like these", group[0].file.display()));
+            lines.push(format!(
+                "{}: there are {more} more defects; correct these first",
+                group[0].file.display()
+            ));
         }
     }
     lines.join("\n")

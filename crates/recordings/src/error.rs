@@ -4,34 +4,34 @@ use thiserror::Error;
 
 use crate::defect::{Defect, list_defects};
 
-/// Why recordings could not be used.
+/// Why recordings cannot be used.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A file could not be read.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
-    /// The recordings have defects.
+    /// The recordings have defects, all of which are listed.
     #[error("{}", list_defects(.0))]
     Defects(Vec<Defect>),
-    /// The data set has no suite of a name that was asked for.
+    /// The source has no suite of this name, or none at all.
     #[error("{}: {}", index.display(), match &available[..] {
-        [] => "no run has a suite; put the runs that start from one state under one input into a \
+        [] => "no run has a suite; assign the runs that start from one state under one input to a \
                suite, by the column suite".into(),
         some => format!(
             "there is no suite \"{name}\"; the data set has {}", some.join(", ")
         ),
     })]
     UnknownSuite {
-        /// The index file.
+        /// Name of the source's index.
         index: PathBuf,
         /// The name asked for.
         name: String,
-        /// The names that the index has.
+        /// Names of the suites that exist.
         available: Vec<String>,
     },
-    /// A suite was asked for twice.
-    #[error("a suite is named twice in {}; name each once", names.join(","))]
+    /// A suite was asked for more than once.
+    #[error("a suite is named twice in {}; name each suite once", names.join(","))]
     RepeatedSuite {
         /// The names asked for.
         names: Vec<String>,

@@ -1,11 +1,49 @@
+/// A longer step than this multiple of the usual one is a gap at a fixed rate. A missing sample
+/// makes the step twice as long, a late one less.
+const FIXED_RATE_GAP: f64 = 1.9;
+
+/// The same multiple where the times jitter.
+const JITTER_GAP: f64 = 10.0;
+
+/// Share of the steps that must equal the usual one for the rate to be fixed.
+const FIXED_RATE_SHARE: f64 = 0.9;
+
 /// How long the time between two samples may be.
 ///
-/// The input is taken as held until the next sample, so a gap is a guess about the input.
+/// The input is held from each sample to the next, so within a gap it is only a guess.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum GapLimit {
-    /// 1.9 times the usual time between samples at a fixed rate, 10 times where the times jitter.
+    /// 1.9 times the usual (median) time between samples at a fixed rate, and 10 times where the
+    /// times jitter.
     #[default]
     Usual,
-    /// As many seconds as given.
+    /// This many seconds.
     Seconds(f64),
+}
+
+impl GapLimit {
+    /// Returns the longest step allowed, s, in a run with these steps, s, in any order.
+    pub(crate) fn longest_step(self, mut steps: Vec<f64>) -> f64 {
+        if let Self::Seconds(seconds) = self {
+            return seconds * (1.0 + 1e-9);
+        }
+        steps.sort_by(f64::total_cmp);
+        let Some(&usual) = steps.get(steps.len() / 2) else { return f64::INFINITY };
+        let same = steps.iter().filter(|&&step| (step - usual).abs() <= 1e-3 * usual).count();
+        let fixed_rate = same as f64 >= FIXED_RATE_SHARE * steps.len() as f64;
+        usual * if fixed_rate { FIXED_RATE_GAP } else { JITTER_GAP }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::GapLimit;
+
+    #[test]
+    fn jitter_allows_longer_steps_than_a_fixed_rate() {
+        assert_eq!(GapLimit::Usual.longest_step(vec![0.5; 10]), 0.95);
+        assert_eq!(GapLimit::Usual.longest_step(vec![0.5, 0.25, 1.0, 0.75, 0.5]), 5.0);
+        assert_eq!(GapLimit::Usual.longest_step(vec![]), f64::INFINITY);
+        assert!(GapLimit::Seconds(0.5).longest_step(vec![0.1; 10]) >= 0.5);
+    }
 }

@@ -8,24 +8,25 @@ use serde::Deserialize;
 use crate::defect::Defect;
 use crate::text::{line_of, quoted};
 
-const REMEDY: &str = "runs.csv has a header with at least file and suite, then one line a run";
+const REMEDY: &str =
+    "runs.csv needs a header with at least the columns file and suite, then one line per run";
 
-/// One line of `runs.csv`.
+/// An entry of the index: one run, and one line of `runs.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunEntry {
-    /// Path in the folder, as written.
+    /// Path in the folder as written, or the name of a run in memory.
     pub file: String,
-    /// The test suite, if it belongs to one.
+    /// The test suite, where the run belongs to one.
     pub suite: Option<String>,
     /// The motion that the suite is part of; suites of one motion are not independent.
     pub motion: Option<String>,
-    /// What kind of recording it is, as written.
+    /// Kind of the recording, as written.
     pub kind: Option<String>,
     /// Temperature in °C, where recorded.
     pub temperature: Option<f64>,
-    /// SHA-256 the file should have.
+    /// SHA-256 that the file should have, in hexadecimal.
     pub sha256: Option<String>,
-    /// Line in `runs.csv`, from 1.
+    /// Line in `runs.csv`, or number of a run in memory, from 1.
     pub line: u64,
 }
 
@@ -54,8 +55,12 @@ impl IndexRow {
     }
 }
 
-/// The runs listed in `bytes`, the content of `index`, the index of the folder `root`.
-pub(super) fn read_index(
+/// Reads the runs listed in `bytes`, the content of the file `index` in the folder `root`.
+///
+/// # Errors
+///
+/// Every defect of the index, with its line.
+pub(crate) fn read_index(
     root: &Path,
     index: &Path,
     bytes: &[u8],
@@ -66,6 +71,7 @@ pub(super) fn read_index(
     if defects.is_empty() { Ok(runs) } else { Err(defects) }
 }
 
+/// Returns the runs and the defects of the lines.
 fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut reader =
@@ -73,7 +79,7 @@ fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
     let defect = |line, problem: String| Defect::new(index, line, problem, REMEDY);
     let header = match reader.headers() {
         Ok(header) => header.clone(),
-        Err(_) => return (vec![], vec![defect(Some(1), "the header is no UTF-8 text".into())]),
+        Err(_) => return (vec![], vec![defect(Some(1), "the header is not UTF-8 text".into())]),
     };
     let absent = |column: &&str| !header.iter().any(|name| name == *column);
     let mut defects: Vec<Defect> = ["file", "suite"]
@@ -81,7 +87,8 @@ fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
         .filter(absent)
         .map(|column| {
             let found = header.iter().collect::<Vec<_>>().join(",");
-            defect(Some(1), format!("no column \"{column}\" in the header {}", quoted(&found)))
+            let found = quoted(&found);
+            defect(Some(1), format!("there is no column \"{column}\" in the header {found}"))
         })
         .collect();
     if !defects.is_empty() {
@@ -96,18 +103,17 @@ fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
         match read {
             Ok(false) => break,
             Ok(true) if record.len() != header.len() => {
-                defects.push(defect(
-                    line,
-                    format!("{} fields, the header has {}", record.len(), header.len()),
-                ));
+                let (found, expected) = (record.len(), header.len());
+                let problem = format!("the line has {found} fields, but the header has {expected}");
+                defects.push(defect(line, problem));
             }
             Ok(true) => match record.deserialize::<IndexRow>(Some(&header)) {
                 Ok(row) => runs.push(row.entry(at)),
-                Err(error) => defects.push(defect(line, what_is_wrong(&error, &header))),
+                Err(error) => defects.push(defect(line, line_problem(&error, &header))),
             },
             Err(error) => {
                 let line = Some(line_of(bytes, error.position()));
-                defects.push(defect(line, what_is_wrong(&error, &header)));
+                defects.push(defect(line, line_problem(&error, &header)));
             }
         }
     }
@@ -117,9 +123,10 @@ fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
     (runs, defects)
 }
 
-fn what_is_wrong(error: &csv::Error, header: &csv::StringRecord) -> String {
+/// Returns the problem of a line that cannot be read.
+fn line_problem(error: &csv::Error, header: &csv::StringRecord) -> String {
     match error.kind() {
-        csv::ErrorKind::Utf8 { .. } => "the line is no UTF-8 text".into(),
+        csv::ErrorKind::Utf8 { .. } => "the line is not UTF-8 text".into(),
         csv::ErrorKind::Deserialize { err, .. } => {
             let column =
                 err.field().and_then(|field| header.get(field as usize)).unwrap_or("a field");
@@ -129,6 +136,7 @@ fn what_is_wrong(error: &csv::Error, header: &csv::StringRecord) -> String {
     }
 }
 
+/// Returns a defect for each run whose file does not exist or is listed before.
 fn missing_or_repeated(root: &Path, index: &Path, runs: &[RunEntry]) -> Vec<Defect> {
     let mut first: BTreeMap<PathBuf, u64> = BTreeMap::new();
     let mut defects = Vec::new();
@@ -136,7 +144,7 @@ fn missing_or_repeated(root: &Path, index: &Path, runs: &[RunEntry]) -> Vec<Defe
         let path = root.join(&run.file);
         if !path.is_file() {
             let problem = format!("\"{}\" is not a file in {}", run.file, root.display());
-            let remedy = "add the recording or take the line out";
+            let remedy = "add the recording, or take the line out";
             defects.push(Defect::new(index, Some(run.line), problem, remedy));
         } else if let Some(line) = first.insert(path, run.line) {
             let problem = format!("\"{}\" is listed on line {line} already", run.file);
@@ -146,6 +154,7 @@ fn missing_or_repeated(root: &Path, index: &Path, runs: &[RunEntry]) -> Vec<Defe
     defects
 }
 
+/// Returns a defect for each run whose suite has another motion before.
 fn two_motions(index: &Path, runs: &[RunEntry]) -> Vec<Defect> {
     let mut first: BTreeMap<&str, (&str, u64)> = BTreeMap::new();
     let mut defects = Vec::new();

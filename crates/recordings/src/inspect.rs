@@ -1,4 +1,4 @@
-//! What is in a data set, before anything is made of it.
+//! A summary of a data set, for a look at it before it is used.
 
 use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
@@ -13,76 +13,77 @@ use crate::run::Run;
 use crate::source::{ReadOptions, RunSource};
 use crate::units::integral_gap;
 
-/// A joint slower than this sticks, rad/s.
+/// Speed below which a joint sticks, rad/s.
 const STICKING: f64 = 0.01;
 
-/// What is in a data set.
+/// A summary of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Inspection {
-    /// The folder.
+    /// Path of the folder.
     pub folder: String,
     /// Number of joints.
     pub joints: usize,
-    /// Recordings in the index.
+    /// Number of recordings in the index.
     pub runs: usize,
-    /// Test suites, and last the recordings that belong to none, a group for each kind.
+    /// Test suites, then one group for each kind of the recordings without a suite.
     pub groups: Vec<Group>,
-    /// What a user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
-/// Recordings that belong together.
+/// A group of recordings: a test suite, or the recordings of one kind that have no suite.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Group {
-    /// The suite, or the kind of the recordings without one.
+    /// Name of the suite or of the kind.
     pub name: String,
     /// Whether it is a test suite.
     pub suite: bool,
-    /// The motion it is part of.
+    /// The motion that the suite is part of.
     pub motion: Option<String>,
-    /// Recordings.
+    /// Number of recordings.
     pub runs: usize,
-    /// Fewest and most samples of a recording.
+    /// Smallest and largest number of samples of a recording.
     pub samples: [usize; 2],
-    /// Longest recording, s.
+    /// Duration of the longest recording, s.
     pub duration: f64,
-    /// The rate, s, where all recordings share one; otherwise none.
+    /// Time between samples, s, where it is fixed and the same in all recordings.
     pub step: Option<f64>,
     /// Shortest and longest time between two samples, s.
     pub steps: [f64; 2],
     /// Whether all recordings have the same torques at the same times (Definition 2).
     pub same_torque: bool,
-    /// Each joint.
+    /// Summary of each joint, n.
     pub joints: Vec<JointSummary>,
 }
 
-/// One joint over a group.
+/// A summary of one joint over a group.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointSummary {
     /// Lowest and highest position, rad.
     pub position: [f64; 2],
     /// Highest speed, rad/s.
     pub speed: f64,
-    /// Highest |torque|, N m.
+    /// Largest magnitude of the torque, N m.
     pub torque: f64,
-    /// Spread of the first positions, rad.
+    /// Range of the first positions, rad.
     pub start_spread: f64,
-    /// Spread of the last positions, rad, of the runs of full length, where there are two or more.
+    /// Range of the last positions of the longest runs, rad, where there are two or more.
     pub end_spread: Option<f64>,
-    /// Correlation of the last position with the order of the recordings: near ±1 where the robot
-    /// drifts, as joints do that warm up.
+    /// Correlation of the last position with the order of the recordings, from -1 to 1. It is near
+    /// ±1 where the robot drifts, for example while its joints warm up.
     pub drift: Option<f64>,
-    /// Part of the samples in which the joint sticks (below 0.01 rad/s).
+    /// Fraction of the samples in which the joint sticks (below 0.01 rad/s).
     pub sticking: f64,
-    /// Largest difference of q and the integral of qd over a recording, rad.
+    /// Largest difference between q and the integral of qd over a recording, rad.
     pub integral_gap: f64,
 }
 
-/// Reads every recording of the index and sums it up.
+/// Reads every recording of the index and summarises the data set.
 ///
 /// # Errors
 ///
-/// Every defect of every recording.
+/// [`Error::Defects`] with every defect of every recording, or with each recording whose number of
+/// joints differs from that of the first.
 pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Result<Inspection> {
     let options = ReadOptions { gap_limit, ..ReadOptions::default() };
     let read = |index: usize| data.read(index, &options);
@@ -117,9 +118,13 @@ pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Result<Inspection> {
     })
 }
 
+/// Returns a defect for each run whose number of joints differs from that of the first.
 fn other_joint_count(data: &DataSet, runs: &[Run]) -> Vec<Defect> {
     let odd = |(index, run): (usize, &Run)| {
-        let problem = format!("{} joints, the first recording has {}", run.joints, runs[0].joints);
+        let problem = format!(
+            "the recording has {} joints, but the first has {}",
+            run.joints, runs[0].joints
+        );
         let defect = Defect::new(
             data.run_name(index),
             Some(1),
@@ -131,8 +136,8 @@ fn other_joint_count(data: &DataSet, runs: &[Run]) -> Vec<Defect> {
     runs.iter().enumerate().filter_map(odd).collect()
 }
 
-/// Suites, then a group for each kind of the runs without one: name, whether it is a suite,
-/// members.
+/// Returns the suites, then one group for each kind of the runs without one: name, whether it is a
+/// suite, and indices of its runs.
 fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
     let mut groups: Vec<_> =
         data.suites().into_iter().map(|suite| (suite.name, true, suite.runs)).collect();
@@ -178,6 +183,8 @@ impl Group {
     }
 }
 
+/// Returns whether two runs have equal torques at equal times, up to the end of the shorter one.
+/// The torque of the last sample acts on nothing and is not compared.
 fn same_torque(a: &Run, b: &Run) -> bool {
     let count = a.len().min(b.len());
     let since_start = |run: &Run, k: usize| run.times[k] - run.times[0];
@@ -214,18 +221,19 @@ impl JointSummary {
     }
 }
 
+/// Returns the difference of the largest and the smallest value.
 fn spread(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
     (highest - lowest).max(0.0)
 }
 
-/// Pearson's correlation of values with their places, for three values or more that are not all the
-/// same.
+/// Returns Pearson's correlation of values with their indices; `None` for fewer than three values
+/// or equal ones.
 fn order_correlation(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
-    let (mean, center) = (values.iter().sum::<f64>() / n, (n - 1.0) / 2.0);
-    let sums = values.iter().enumerate().map(|(k, v)| (v - mean, k as f64 - center));
+    let (mean, centre) = (values.iter().sum::<f64>() / n, (n - 1.0) / 2.0);
+    let sums = values.iter().enumerate().map(|(k, v)| (v - mean, k as f64 - centre));
     let (vv, kk, vk) =
         sums.fold((0.0, 0.0, 0.0), |(vv, kk, vk), (v, k)| (vv + v * v, kk + k * k, vk + v * k));
     (values.len() >= 3 && vv > 0.0).then(|| vk / (vv * kk).sqrt())

@@ -1,8 +1,35 @@
 //! Recordings of a robot and their test suites, read and checked.
 //!
-//! A data set is a folder of CSV runs with the header `t,q1..qn,qd1..qdn,tau1..taun` and an index
-//! `runs.csv` that puts runs into test suites (Definition 2 of the paper: runs from one initial
-//! state under one input).
+//! A recording, or [`Run`], holds the positions, velocities and torques of all joints at its
+//! samples. Runs that start from one state under one input form a test suite (Definition 2 of the
+//! paper).
+//!
+//! - [`RunSource`] is the primary trait: it lists runs and suites, and reads runs one by one.
+//!   [`DataSet`] is a folder of CSV files with the header `t,q1..qn,qd1..qdn,tau1..taun` and an
+//!   index `runs.csv`; [`MemoryRuns`] holds runs in memory.
+//! - Reading refuses a recording with a [`Defect`], and reports every one with line, joint and
+//!   remedy. [`check_limits`] finds wrong units; [`run_notes`] and [`copies_note`] return notes.
+//! - [`Torque`] states what the recorded torques mean and returns the input u of the model.
+//! - [`inspect()`] summarises a data set.
+//!
+//! `docs/recordings.md` describes the format.
+//!
+//! # Examples
+//!
+//! ```
+//! use reachtube_recordings::{DataSet, ReadOptions, RunSource};
+//!
+//! let folder = tempfile::tempdir()?;
+//! std::fs::write(folder.path().join("runs.csv"), "file,suite\nfirst.csv,A\n")?;
+//! let samples = "t,q1,qd1,tau1\n0.0,0.1,0.0,2.0\n0.1,0.1,0.0,2.0\n";
+//! std::fs::write(folder.path().join("first.csv"), samples)?;
+//!
+//! let data = DataSet::open(folder.path())?;
+//! let run = data.read(0, &ReadOptions::default()).expect("the recording has no defect");
+//! assert_eq!((run.joints, run.len(), run.q(1)[0]), (1, 2, 0.1));
+//! assert_eq!(data.suites()[0].name, "A");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod data_set;
 mod decimal;

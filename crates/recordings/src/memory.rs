@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use sha2::{Digest, Sha256};
 
 use crate::defect::Defect;
+use crate::gap_limit::GapLimit;
 use crate::index::RunEntry;
 use crate::run::Run;
 use crate::source::{ReadOptions, RunSource};
@@ -62,13 +63,34 @@ impl RunSource for MemoryRuns {
         let mut run = self.runs[index].clone();
         let expected = options.joints.unwrap_or(run.joints);
         if run.joints != expected {
-            let problem = format!("the run has {} joints, the robot has {expected}", run.joints);
+            let problem =
+                format!("the run has {} joints, but the robot has {expected}", run.joints);
             let remedy = "give the robot of the recordings";
             return Err(vec![Defect::new(self.run_name(index), None, problem, remedy)]);
+        }
+        let gaps = gaps(self.run_name(index), &run, options.gap_limit);
+        if !gaps.is_empty() {
+            return Err(gaps);
         }
         run.truncate(options.until);
         Ok(run)
     }
+}
+
+/// Returns a defect for each step of `run` that is longer than `limit` allows.
+fn gaps(name: PathBuf, run: &Run, limit: GapLimit) -> Vec<Defect> {
+    let steps: Vec<f64> = run.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let longest = limit.longest_step(steps.clone());
+    let defect = |(k, step): (usize, &f64)| {
+        let problem = format!(
+            "there is a gap of {step:.6} s before sample {}, but the limit is {longest:.6} s",
+            k + 1
+        );
+        let remedy = "samples are missing and the input there is unknown: record again, cut the \
+                      run, or raise the gap limit";
+        Defect::new(&name, None, problem, remedy)
+    };
+    steps.iter().enumerate().filter(|(_, step)| **step > longest).map(defect).collect()
 }
 
 /// Returns the SHA-256 of a run's numbers, in lower-case hexadecimal.
@@ -78,4 +100,59 @@ fn digest(run: &Run) -> String {
         digest.update(value.to_le_bytes());
     }
     reachtube_files::hex(&digest.finalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runs(times: &[f64]) -> MemoryRuns {
+        let run = Run::new(1, times.to_vec(), vec![0.5; 2 * times.len()], vec![0.0; times.len()]);
+        let mut runs = MemoryRuns::default();
+        runs.push("run", Some("A"), Some("circle"), run.unwrap());
+        runs
+    }
+
+    fn problem(runs: &MemoryRuns, options: &ReadOptions) -> String {
+        let defects = runs.read(0, options).unwrap_err();
+        assert_eq!(defects.len(), 1);
+        defects[0].to_string()
+    }
+
+    #[test]
+    fn runs_are_read_as_they_were_pushed() {
+        let runs = runs(&[2.0, 2.1, 2.2]);
+        let run = runs.read(0, &ReadOptions::default()).unwrap();
+        assert_eq!((run.len(), run.start, run.sha256.len()), (3, 2.0, 64));
+        assert_eq!((runs.index_name(), runs.run_name(0)), ("runs in memory".into(), "run".into()));
+        let suite = &runs.suites()[0];
+        assert_eq!((suite.name.as_str(), suite.motion.as_deref()), ("A", Some("circle")));
+        let until = ReadOptions { until: Some(0.1), ..ReadOptions::default() };
+        assert_eq!(runs.read(0, &until).unwrap().torques.len(), 2);
+    }
+
+    #[test]
+    fn equal_numbers_have_equal_digests() {
+        let sha256 = |times: &[f64]| runs(times).runs[0].sha256.clone();
+        assert_eq!(sha256(&[0.0, 0.5]), sha256(&[1.0, 1.5]));
+        assert_ne!(sha256(&[0.0, 0.5]), sha256(&[0.0, 0.25]));
+    }
+
+    #[test]
+    fn another_number_of_joints_is_a_defect() {
+        let options = ReadOptions { joints: Some(6), ..ReadOptions::default() };
+        let problem = problem(&runs(&[0.0]), &options);
+        assert!(problem.contains("run: the run has 1 joints, but the robot has 6"), "{problem}");
+    }
+
+    #[test]
+    fn a_missing_sample_is_a_defect() {
+        let mut times: Vec<f64> = (0..20).map(|k| 0.25 * f64::from(k)).collect();
+        times.remove(7);
+        let runs = runs(&times);
+        let problem = problem(&runs, &ReadOptions::default());
+        assert!(problem.contains("a gap of 0.500000 s before sample 7"), "{problem}");
+        let gap_limit = GapLimit::Seconds(0.5);
+        assert!(runs.read(0, &ReadOptions { gap_limit, ..ReadOptions::default() }).is_ok());
+    }
 }

@@ -1,4 +1,4 @@
-//! What is no defect, but what a user should know about a data set.
+//! Notes for the user about recordings that have no defect.
 
 use std::collections::BTreeMap;
 
@@ -7,20 +7,31 @@ use crate::run::Run;
 use crate::source::RunSource;
 use crate::units::velocity_mismatch;
 
-/// What is odd about the run `index`, which was read as `run`.
+/// Returns the notes about run `index` of `source`, which was read as `run`: a file that has
+/// changed since it was listed, and joints whose velocities do not integrate to their positions.
+///
+/// # Panics
+///
+/// Panics where the source has no run `index`.
+#[must_use]
 pub fn run_notes(source: &dyn RunSource, index: usize, run: &Run) -> Vec<String> {
     let entry = &source.runs()[index];
-    let slow = velocity_mismatch(run).into_iter().map(|(joint, slope)| {
+    let mismatches = velocity_mismatch(run).into_iter().map(|(joint, slope)| {
         format!(
-            "{}: joint {}: q moves {slope:.3} times as far as qd integrates to",
+            "{}: joint {}: q moves {slope:.3} times as far as the integral of qd; check both units",
             entry.file,
             joint + 1
         )
     });
-    entry.changed_note(&run.sha256).into_iter().chain(slow).collect()
+    changed_note(entry, &run.sha256).into_iter().chain(mismatches).collect()
 }
 
-/// Recordings that are the same to the last byte, given the index and the SHA-256 of each.
+/// Returns a note about recordings that are equal to the last byte. `read` gives the index and the
+/// SHA-256 of each recording that was read, in any order.
+///
+/// # Panics
+///
+/// Panics where the source has no run of an index.
 pub fn copies_note<'a>(
     source: &dyn RunSource,
     read: impl Iterator<Item = (usize, &'a str)>,
@@ -34,19 +45,65 @@ pub fn copies_note<'a>(
     let &(copy, original) = copies.first()?;
     let (copy, original) = (&source.runs()[copy].file, &source.runs()[original].file);
     Some(match copies.len() {
-        1 => format!("{copy} is a copy of {original}: one recording counts twice"),
+        1 => format!(
+            "{copy} is a copy of {original}, so one recording counts twice; list each recording \
+             once"
+        ),
         many => format!(
-            "{many} recordings are copies of others and count again; {copy} is a copy of {original}"
+            "{many} recordings are copies of others and count twice; for example, {copy} is a \
+             copy of {original}; list each recording once"
         ),
     })
 }
 
-impl RunEntry {
-    fn changed_note(&self, sha256: &str) -> Option<String> {
-        let listed = self.sha256.as_ref()?;
-        (!listed.eq_ignore_ascii_case(sha256)).then(|| {
-            let (file, line) = (&self.file, self.line);
-            format!("{file}: its SHA-256 is not the one in runs.csv (line {line}): it was changed after it was listed")
-        })
+/// Returns a note where the SHA-256 of a file is not the one in the index.
+fn changed_note(entry: &RunEntry, sha256: &str) -> Option<String> {
+    let listed = entry.sha256.as_ref()?;
+    (!listed.eq_ignore_ascii_case(sha256)).then(|| {
+        let (file, line) = (&entry.file, entry.line);
+        format!(
+            "{file}: its SHA-256 is not the one in runs.csv (line {line}): the file has changed \
+             since it was listed; restore it or update the index"
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{copies_note, run_notes};
+    use crate::memory::MemoryRuns;
+    use crate::run::Run;
+    use crate::source::{ReadOptions, RunSource};
+
+    /// Returns a run of one joint that moves at `speed`, recorded as 1 rad/s.
+    fn run(speed: f64) -> Run {
+        let times = vec![0.0, 0.5, 1.0];
+        let states = times.iter().flat_map(|t| [speed * t, 1.0]).collect();
+        Run::new(1, times, states, vec![0.0; 3]).unwrap()
+    }
+
+    #[test]
+    fn copies_are_counted_and_named() {
+        let mut runs = MemoryRuns::default();
+        for (name, speed) in [("a", 1.0), ("b", 1.5), ("c", 1.0), ("d", 1.0)] {
+            runs.push(name, None, None, run(speed));
+        }
+        let read = |index| runs.read(index, &ReadOptions::default()).unwrap().sha256;
+        let digests: Vec<String> = (0..4).map(read).collect();
+        let note =
+            |count| copies_note(&runs, digests.iter().map(String::as_str).enumerate().take(count));
+        assert_eq!(note(2), None);
+        assert!(note(3).unwrap().starts_with("c is a copy of a, so one recording counts twice"));
+        assert!(note(4).unwrap().starts_with("2 recordings are copies"));
+    }
+
+    #[test]
+    fn velocities_that_do_not_integrate_to_the_positions_are_noted() {
+        let mut runs = MemoryRuns::default();
+        runs.push("fast", None, None, run(3.0));
+        assert_eq!(run_notes(&runs, 0, &run(1.0)), [""; 0]);
+        let notes = run_notes(&runs, 0, &run(3.0));
+        assert_eq!(notes.len(), 1);
+        assert!(notes[0].starts_with("fast: joint 1: q moves 3.000 times as far"), "{notes:?}");
     }
 }

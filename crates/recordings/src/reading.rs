@@ -1,4 +1,4 @@
-//! The file of one recording, read line by line; what is wrong with it is found in one go.
+//! Reading of a recording's file, which finds all of its defects at once.
 
 use std::path::Path;
 
@@ -12,23 +12,13 @@ use crate::run::{Run, column_names};
 use crate::source::ReadOptions;
 use crate::text::{line_of, quoted};
 
-/// A longer time between two samples than this many usual ones is a gap, where the rate is fixed: a
-/// missing sample makes it 2, a late one less.
-const FIXED_RATE_GAP: f64 = 1.9;
-
-/// The same where the times jitter.
-const JITTER_GAP: f64 = 10.0;
-
-/// Part of the samples that must follow at the usual time for the rate to be called fixed.
-const FIXED_RATE_SHARE: f64 = 0.9;
-
-const HEADER: &str = "the header is t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m";
+const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m";
 
 /// Reads the recording in the CSV file `path`.
 ///
 /// # Errors
 ///
-/// Every defect of the file, with line and joint.
+/// Every defect of the file, with its line and joint.
 pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> {
     let bytes = std::fs::read(path).map_err(|source| {
         let problem = format!("cannot read: {source}");
@@ -40,8 +30,8 @@ pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> 
     Ok(run)
 }
 
-/// The samples in `bytes`, the content of the file `path`; a run of other than `joints` joints is a
-/// defect. The SHA-256 is left empty.
+/// Reads the samples in `bytes`, the content of the file `path`. Another number of joints than
+/// `joints` is a defect. The SHA-256 of the result is empty.
 fn read_samples(
     path: &Path,
     bytes: &[u8],
@@ -55,13 +45,15 @@ fn read_samples(
     if reading.defects.is_empty() { Ok(reading.run) } else { Err(reading.defects) }
 }
 
-/// A line of samples: where it is, and its time where that is a number.
+/// A line with a sample.
 struct Row {
+    /// Line in the file, from 1.
     line: u64,
+    /// Time in picoseconds, where it is a number.
     time: Option<i128>,
 }
 
-/// A file while it is read.
+/// The state of reading a file.
 struct Reading<'a> {
     path: &'a Path,
     run: Run,
@@ -108,17 +100,17 @@ impl Reading<'_> {
                 Ok(false) => break,
                 Err(error) => {
                     let line = line_of(bytes, error.position());
-                    return self.defect(Some(line), None, error.to_string(), "mend the line");
+                    return self.defect(Some(line), None, error.to_string(), "correct the line");
                 }
             }
         }
         if self.rows.is_empty() {
-            let remedy = "record at least one, or leave the run out of runs.csv";
-            self.defect(None, None, "no sample after the header".into(), remedy);
+            let remedy = "record at least one sample, or leave the run out of runs.csv";
+            self.defect(None, None, "there is no sample after the header".into(), remedy);
         }
     }
 
-    /// Whether the header is `t,q1..qn,qd1..qdn,tau1..taun`, possibly with more columns after that.
+    /// Returns whether the header is `t,q1..qn,qd1..qdn,tau1..taun`, with any columns after these.
     fn header(&mut self, header: &[String], joints: Option<usize>) -> bool {
         let n = header.iter().skip(1).take_while(|name| is_numbered(name, "q")).count();
         let expected: Vec<String> =
@@ -131,12 +123,12 @@ impl Reading<'_> {
             return false;
         }
         if let Some(robot) = joints.filter(|robot| *robot != n) {
-            let problem = format!("the recording has {n} joints, the robot {robot}");
+            let problem = format!("the recording has {n} joints, but the robot has {robot}");
             self.defect(
                 Some(1),
                 None,
                 problem,
-                "name the robot that was recorded, or the right data set",
+                "give the robot that was recorded, or the right data set",
             );
             return false;
         }
@@ -144,12 +136,14 @@ impl Reading<'_> {
         true
     }
 
+    /// Reads one line, and keeps its sample where it has no defect.
     fn row(&mut self, line: u64, record: &csv::ByteRecord, fields: usize, values: &mut [f64]) {
         if record.len() != fields {
             self.rows.push(Row { line, time: None });
-            let problem = format!("{} fields, the header has {fields}", record.len());
+            let problem =
+                format!("the line has {} fields, but the header has {fields}", record.len());
             let remedy =
-                "the line is cut short or has a stray comma or quote: mend it or record again";
+                "the line is cut short or has a stray comma or quote: correct it or record again";
             return self.defect(Some(line), None, problem, remedy);
         }
         let mut sound = true;
@@ -180,11 +174,12 @@ impl Reading<'_> {
             "" => format!("{name} is empty"),
             _ => format!("{name} is {}, not a finite number", quoted(text)),
         };
-        let remedy = "no value may be missing: cut the run before it, or record again";
+        let remedy = "every value must be a number: cut the run before this line, or record again";
         self.defect(Some(line), joint, problem, remedy);
     }
 
-    /// The time of a line, where it is a number and later than that of the line above.
+    /// Returns the time of a line in picoseconds, where it is a number and later than that of the
+    /// line above.
     fn time(&mut self, line: u64, value: f64, text: &str) -> Option<i128> {
         let time = value.is_finite().then(|| picoseconds(text).unwrap_or((value * 1e12) as i128));
         let above = self.rows.last().and_then(|row| row.time);
@@ -196,12 +191,13 @@ impl Reading<'_> {
             } else {
                 "earlier than the line above"
             };
-            let remedy = "times must increase strictly: sort the samples, drop duplicates";
+            let remedy = "times must increase strictly: sort the samples and drop duplicates";
             self.defect(Some(line), None, format!("t = {text} s is {what}"), remedy);
         }
         time.filter(|_| follows)
     }
 
+    /// Adds a sample to the run.
     fn sample(&mut self, time: i128, values: &[f64]) {
         let n = self.run.joints;
         let first = self.rows.iter().find_map(|row| row.time).unwrap_or(time);
@@ -213,22 +209,20 @@ impl Reading<'_> {
         self.run.torques.extend_from_slice(&values[1 + 2 * n..]);
     }
 
-    /// Too long a time from one line to the next; beside a line whose time is unknown nothing can
-    /// be said.
+    /// Finds steps that are too long. Steps to and from a line whose time is unknown are not known.
     fn gaps(&mut self, limit: GapLimit) {
         let step = |pair: &[Row]| {
             let step = seconds(pair[1].time?.saturating_sub(pair[0].time?));
             (step > 0.0).then_some((pair[1].line, step))
         };
         let steps: Vec<(u64, f64)> = self.rows.windows(2).filter_map(step).collect();
-        let longest = match limit {
-            GapLimit::Seconds(seconds) => seconds * (1.0 + 1e-9),
-            GapLimit::Usual => usual_limit(steps.iter().map(|(_, step)| *step).collect()),
-        };
+        let longest = limit.longest_step(steps.iter().map(|(_, step)| *step).collect());
         for (line, step) in steps.into_iter().filter(|(_, step)| *step > longest) {
-            let problem =
-                format!("a gap of {step:.6} s before this sample, the limit is {longest:.6} s");
-            let remedy = "samples are missing and the input there is unknown: record again, cut the run, or accept it with --max-gap SECONDS";
+            let problem = format!(
+                "there is a gap of {step:.6} s before this sample, but the limit is {longest:.6} s"
+            );
+            let remedy = "samples are missing and the input there is unknown: record again, cut \
+                          the run, or accept it with --max-gap SECONDS";
             self.defect(Some(line), None, problem, remedy);
         }
     }
@@ -238,15 +232,7 @@ fn seconds(picoseconds: i128) -> f64 {
     picoseconds as f64 / 1e12
 }
 
-fn usual_limit(mut steps: Vec<f64>) -> f64 {
-    steps.sort_by(f64::total_cmp);
-    let Some(&usual) = steps.get(steps.len() / 2) else { return f64::INFINITY };
-    let same = steps.iter().filter(|&&step| (step - usual).abs() <= 1e-3 * usual).count();
-    let fixed_rate = same as f64 >= FIXED_RATE_SHARE * steps.len() as f64;
-    usual * if fixed_rate { FIXED_RATE_GAP } else { JITTER_GAP }
-}
-
-/// What is wrong, and what to do, with a file that is no comma-separated text with a header.
+/// Returns problem and remedy of a file that is not comma-separated text with a header.
 fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
     if bytes.is_empty() {
         return Some((
@@ -258,7 +244,7 @@ fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
         return Some(("the file is UTF-16 text".into(), "save it as CSV in UTF-8"));
     }
     if bytes.contains(&0) {
-        return Some(("the file is no text".into(), "write the recording as CSV in UTF-8"));
+        return Some(("the file is not text".into(), "write the recording as CSV in UTF-8"));
     }
     let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or(bytes);
     let first = String::from_utf8_lossy(first);

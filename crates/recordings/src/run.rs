@@ -1,36 +1,39 @@
-/// One recording: K samples of n joints.
+/// A recording: K samples of n joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// Number of joints n.
     pub joints: usize,
     /// Time of the first sample as recorded, s.
     pub start: f64,
-    /// Times since the first sample, s, strictly increasing from 0, K. The difference is taken of
-    /// the numbers as written, to the picosecond, so that times since 1970 lose nothing.
+    /// Times since the first sample, K, s, strictly increasing from 0. For a file, differences are
+    /// those of the decimal numbers as written, to the picosecond.
     pub times: Vec<f64>,
     /// States x = (q, q̇), rad and rad/s, row-major K x 2n.
     pub states: Vec<f64>,
     /// Recorded torques, N m, row-major K x n.
     pub torques: Vec<f64>,
-    /// SHA-256 of the file, lower-case hexadecimal.
+    /// SHA-256 of the file, or of the numbers of a run in memory, in lower-case hexadecimal.
     pub sha256: String,
 }
 
 impl Run {
-    /// Makes a run of `joints` joints from numbers in memory: `times` (s, strictly increasing, K),
-    /// `states` (q then q̇, rad and rad/s, row-major K x 2n) and `torques` (N m, row-major K x n).
-    /// Times are counted from the first.
+    /// Returns a run of `joints` joints from numbers in memory: `times` (K, s, strictly
+    /// increasing), `states` (q then q̇, row-major K x 2n, rad and rad/s) and `torques` (row-major
+    /// K x n, N m). The first time becomes 0.
     ///
     /// # Errors
     ///
-    /// A sentence that names the array and the sample when lengths do not fit, a number is not
-    /// finite, or times do not increase.
+    /// A message that names the array and the sample (from 0) when there is no joint or no sample,
+    /// lengths do not fit, a number is not finite, or times do not increase.
     pub fn new(
         joints: usize,
         times: Vec<f64>,
         states: Vec<f64>,
         torques: Vec<f64>,
     ) -> Result<Self, String> {
+        if joints == 0 {
+            return Err("a run needs one joint at least".into());
+        }
         let samples = times.len();
         for (name, values, width) in
             [("times", &times, 1), ("states", &states, 2 * joints), ("torques", &torques, joints)]
@@ -39,7 +42,8 @@ impl Run {
                 let needed = samples * width;
                 let length = values.len();
                 return Err(format!(
-                    "{name} has {length} numbers; {samples} samples of {joints} joints need {needed}"
+                    "{name} has {length} numbers, but {samples} samples of {joints} joints need \
+                     {needed}"
                 ));
             }
             if let Some(at) = values.iter().position(|value| !value.is_finite()) {
@@ -49,8 +53,9 @@ impl Run {
         }
         if let Some(k) = (1..samples).find(|&k| times[k] <= times[k - 1]) {
             return Err(format!(
-                "the time of sample {k} is not later than that of the sample before; sort the \
-                 samples and drop duplicates"
+                "the time of sample {k}, {} s, is not later than that of the sample before; sort \
+                 the samples and drop duplicates",
+                times[k]
             ));
         }
         let start = times.first().copied().ok_or("a run needs one sample at least")?;
@@ -58,7 +63,7 @@ impl Run {
         Ok(Self { joints, start, times, states, torques, sha256: String::new() })
     }
 
-    /// No sample of `joints` joints.
+    /// Returns a run of `joints` joints without samples.
     pub(crate) fn empty(joints: usize) -> Self {
         Self {
             joints,
@@ -70,37 +75,44 @@ impl Run {
         }
     }
 
-    /// Number of samples K.
+    /// Returns the number of samples K.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// Whether there is no sample.
+    /// Returns whether there is no sample.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()
     }
 
-    /// Time from the first to the last sample, s.
+    /// Returns the time from the first to the last sample, s.
+    #[must_use]
     pub fn duration(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// The state (q, q̇) at sample k, 2n entries.
+    /// Returns the state (q, q̇) at sample `k` (from 0), 2n, rad and rad/s.
+    #[must_use]
     pub fn state(&self, k: usize) -> &[f64] {
         &self.states[k * 2 * self.joints..(k + 1) * 2 * self.joints]
     }
 
-    /// Joint positions at sample k, rad.
+    /// Returns the joint positions at sample `k` (from 0), n, rad.
+    #[must_use]
     pub fn q(&self, k: usize) -> &[f64] {
         &self.state(k)[..self.joints]
     }
 
-    /// Joint velocities at sample k, rad/s.
+    /// Returns the joint velocities at sample `k` (from 0), n, rad/s.
+    #[must_use]
     pub fn qd(&self, k: usize) -> &[f64] {
         &self.state(k)[self.joints..]
     }
 
-    /// Recorded torques at sample k, N m.
+    /// Returns the recorded torques at sample `k` (from 0), n, N m.
+    #[must_use]
     pub fn torque(&self, k: usize) -> &[f64] {
         &self.torques[k * self.joints..(k + 1) * self.joints]
     }
@@ -108,6 +120,7 @@ impl Run {
     /// Drops the samples later than `until` seconds after the first.
     pub(crate) fn truncate(&mut self, until: Option<f64>) {
         let Some(until) = until else { return };
+        // A sample at `until` itself is kept, whatever the rounding of its time.
         let end = until * (1.0 + 1e-12);
         let count = self.times.partition_point(|&t| t <= end);
         self.times.truncate(count);
@@ -116,9 +129,52 @@ impl Run {
     }
 }
 
-/// q1..qn, qd1..qdn, tau1..taun.
+/// Returns the names of the columns of a recording after the time: q1..qn, qd1..qdn, tau1..taun.
 pub fn column_names(n: usize) -> impl Iterator<Item = String> {
     ["q", "qd", "tau"]
         .into_iter()
         .flat_map(move |prefix| (1..=n).map(move |i| format!("{prefix}{i}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Run;
+
+    #[test]
+    fn times_count_from_the_first() {
+        let run = Run::new(1, vec![5.0, 5.5], vec![1.0, 2.0, 3.0, 4.0], vec![5.0, 6.0]).unwrap();
+        assert_eq!((run.start, &run.times[..], run.duration()), (5.0, &[0.0, 0.5][..], 0.5));
+        assert_eq!((run.state(1), run.q(1), run.qd(1)), (&[3.0, 4.0][..], &[3.0][..], &[4.0][..]));
+        assert_eq!((run.torque(0), run.len(), run.is_empty()), (&[5.0][..], 2, false));
+    }
+
+    #[test]
+    fn numbers_that_do_not_fit_are_refused() {
+        let refused = |joints, times: &[f64], states: &[f64], torques: &[f64]| {
+            Run::new(joints, times.to_vec(), states.to_vec(), torques.to_vec()).unwrap_err()
+        };
+        assert_eq!(refused(0, &[0.0], &[], &[]), "a run needs one joint at least");
+        assert_eq!(refused(1, &[], &[], &[]), "a run needs one sample at least");
+        assert_eq!(
+            refused(2, &[0.0, 1.0], &[0.0; 6], &[0.0; 4]),
+            "states has 6 numbers, but 2 samples of 2 joints need 8"
+        );
+        assert_eq!(
+            refused(2, &[0.0, 1.0], &[0.0; 8], &[0.0; 2]),
+            "torques has 2 numbers, but 2 samples of 2 joints need 4"
+        );
+        let states = [0.0, 0.0, 0.0, f64::NAN];
+        assert_eq!(
+            refused(1, &[0.0, 1.0], &states, &[0.0; 2]),
+            "states holds NaN at sample 1; drop that sample"
+        );
+        assert_eq!(
+            refused(1, &[f64::INFINITY, 1.0], &[0.0; 4], &[0.0; 2]),
+            "times holds inf at sample 0; drop that sample"
+        );
+        for times in [[1.0, 1.0], [1.0, 0.5]] {
+            let error = refused(1, &times, &[0.0; 4], &[0.0; 2]);
+            assert!(error.starts_with("the time of sample 1, "), "{error}");
+        }
+    }
 }

@@ -19,29 +19,48 @@ pub struct SuiteEntry {
     pub runs: Vec<usize>,
 }
 
-/// How a recording is read.
+/// Options for reading a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReadOptions {
     /// Number of joints that the recording must have; any number where it is `None`.
     pub joints: Option<usize>,
-    /// How long the time between two samples may be.
+    /// Longest time between two samples that is accepted.
     pub gap_limit: GapLimit,
-    /// Samples later than this many seconds after the first are not used.
+    /// Time after the first sample, s, beyond which samples are not used.
     pub until: Option<f64>,
 }
 
 /// A source of recordings: a folder with an index ([`DataSet`](crate::DataSet)), or runs in memory
 /// ([`MemoryRuns`](crate::MemoryRuns)).
 ///
-/// A source lists its runs at once and reads their samples one by one, when they are asked for.
+/// A source lists its runs at once and reads the samples of a run when they are asked for.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_recordings::{MemoryRuns, Run, RunSource};
+///
+/// let mut source = MemoryRuns::default();
+/// for (name, suite) in [("first", "A"), ("second", "B"), ("third", "A")] {
+///     let run = Run::new(1, vec![0.0], vec![0.0; 2], vec![0.0])?;
+///     source.push(name, Some(suite), None, run);
+/// }
+/// let chosen = source.select(&["A".into()]).unwrap();
+/// assert_eq!(chosen[0].runs, [0, 2]);
+/// # Ok::<(), String>(())
+/// ```
 pub trait RunSource: fmt::Debug + Send + Sync {
-    /// Returns the name under which messages speak of the source's list of runs.
+    /// Returns the name of the list of runs for messages, such as the path of an index.
     fn index_name(&self) -> PathBuf;
 
     /// Returns all runs, in the order in which they were recorded.
     fn runs(&self) -> &[RunEntry];
 
-    /// Returns the name under which messages speak of run `index`.
+    /// Returns the name of run `index` for messages, such as the path of its file.
+    ///
+    /// # Panics
+    ///
+    /// Panics where there is no run `index`.
     fn run_name(&self, index: usize) -> PathBuf;
 
     /// Reads run `index`.
@@ -49,9 +68,13 @@ pub trait RunSource: fmt::Debug + Send + Sync {
     /// # Errors
     ///
     /// Every defect of the recording, with line and joint.
+    ///
+    /// # Panics
+    ///
+    /// Panics where there is no run `index`.
     fn read(&self, index: usize, options: &ReadOptions) -> Result<Run, Vec<Defect>>;
 
-    /// Returns a sentence about recordings that lie beside the listed ones and are not used.
+    /// Returns a note about recordings that are stored with the listed ones but are not used.
     fn unlisted_note(&self) -> Option<String> {
         None
     }
@@ -76,12 +99,12 @@ pub trait RunSource: fmt::Debug + Send + Sync {
         suites
     }
 
-    /// Returns the suites named, in that order; all of them when none is named.
+    /// Returns the named suites in the order of `names`, and all suites when `names` is empty.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownSuite`] when there is no such suite, or none at all, and
-    /// [`Error::RepeatedSuite`] when a name is given twice.
+    /// [`Error::UnknownSuite`] when a named suite does not exist or there is no suite at all, and
+    /// [`Error::RepeatedSuite`] when a name is given more than once.
     fn select(&self, names: &[String]) -> Result<Vec<SuiteEntry>> {
         let suites = self.suites();
         let unknown = |name: &str| Error::UnknownSuite {
@@ -100,5 +123,61 @@ pub trait RunSource: fmt::Debug + Send + Sync {
             suites.iter().find(|suite| suite.name == *name).cloned().ok_or_else(|| unknown(name))
         };
         names.iter().map(find).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Error, RunSource};
+    use crate::memory::MemoryRuns;
+    use crate::run::Run;
+
+    /// Returns runs with these suites and motions.
+    fn source(suites: &[(Option<&str>, Option<&str>)]) -> MemoryRuns {
+        let mut source = MemoryRuns::default();
+        for (suite, motion) in suites {
+            let run = Run::new(1, vec![0.0], vec![0.0; 2], vec![0.0]).unwrap();
+            source.push("run", *suite, *motion, run);
+        }
+        source
+    }
+
+    fn names(list: &[&str]) -> Vec<String> {
+        list.iter().map(|name| (*name).into()).collect()
+    }
+
+    const THREE: [(Option<&str>, Option<&str>); 4] =
+        [(Some("B"), None), (Some("A"), Some("m")), (None, None), (Some("B"), Some("m"))];
+
+    #[test]
+    fn suites_come_in_the_order_of_their_first_runs() {
+        let suites = source(&THREE).suites();
+        let found: Vec<_> = suites.iter().map(|s| (s.name.as_str(), &s.runs[..])).collect();
+        assert_eq!(found, [("B", &[0, 3][..]), ("A", &[1][..])]);
+        assert!(suites.iter().all(|suite| suite.motion.as_deref() == Some("m")));
+    }
+
+    #[test]
+    fn suites_are_selected_in_the_order_asked_for() {
+        let source = source(&THREE);
+        let selected = |list: &[&str]| {
+            let suites = source.select(&names(list)).unwrap();
+            suites.into_iter().map(|suite| suite.name).collect::<Vec<_>>()
+        };
+        assert_eq!(selected(&[]), ["B", "A"]);
+        assert_eq!(selected(&["A", "B"]), ["A", "B"]);
+        assert_eq!(selected(&["A"]), ["A"]);
+    }
+
+    #[test]
+    fn unknown_repeated_and_missing_suites_are_errors() {
+        let error = |suites: &[_], list: &[&str]| source(suites).select(&names(list)).unwrap_err();
+        let unknown = error(&THREE, &["A", "C"]);
+        assert!(matches!(&unknown, Error::UnknownSuite { name, .. } if name == "C"));
+        let text = unknown.to_string();
+        assert_eq!(text, "runs in memory: there is no suite \"C\"; the data set has B, A");
+        assert!(matches!(error(&THREE, &["A", "A"]), Error::RepeatedSuite { .. }));
+        let none = error(&THREE[2..3], &[]).to_string();
+        assert!(none.contains("no run has a suite"), "{none}");
     }
 }

@@ -3,7 +3,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Which quantity of a joint a state is.
+/// The quantity of a joint that a state is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StateKind {
     /// The position q.
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_state_has_one_name_and_one_index() {
+    fn states_names_and_indices_correspond() {
         for index in 0..14 {
             let state = State::from_index(index, 7);
             assert_eq!(state.index(7), index);

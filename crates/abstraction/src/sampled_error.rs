@@ -1,22 +1,25 @@
-//! The error of a model at sampled states.
+//! The truncation error of a model at sampled states.
 
 use rand::RngExt;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::SeedableRng;
 use reachtube_robot::{Robot, Workspace};
 
-use super::{OperatingBox, PolynomialModel};
+use crate::operating_box::OperatingBox;
+use crate::polynomial_model::{ModelWorkspace, PolynomialModel};
 
-/// States that are sampled.
+/// Number of sampled states.
 const SAMPLES: usize = 20_000;
 
-/// The largest |f - f_p| of each joint that is found in a box, rad/s²: at [`SAMPLES`] states, half
-/// of their values at the box's ends, and by climbing from the best of them.
+/// Searches the largest truncation error |f - f_p| of each joint in a box, n, rad/s².
+///
+/// The search evaluates [`SAMPLES`] random states, half of whose values are at an end of the box,
+/// and climbs from the best of them.
 ///
 /// # Guarantee
 ///
-/// Inner, up to rounding: the largest error is no less.
-pub(super) fn seen_error(
+/// Inner, up to rounding: the largest error is at least the result.
+pub(crate) fn sampled_error(
     model: &PolynomialModel,
     robot: &Robot,
     operating_box: &OperatingBox,
@@ -49,8 +52,8 @@ pub(super) fn seen_error(
         .collect()
 }
 
-/// Moves one coordinate after the other as long as the error of a joint grows, by ever smaller
-/// steps.
+/// Moves one coordinate after the other as long as the error of `joint` grows, by ever smaller
+/// steps, and returns the largest error found.
 fn climb(
     errors: &mut Errors,
     sides: &[[f64; 2]],
@@ -76,12 +79,12 @@ fn climb(
     largest
 }
 
-/// Forward dynamics minus model, over and over.
+/// Forward dynamics minus model, with scratch memory for many evaluations.
 struct Errors<'a> {
     model: &'a PolynomialModel,
     robot: &'a Robot,
-    scratch: Workspace<f64>,
-    model_scratch: super::ModelWorkspace<f64>,
+    robot_scratch: Workspace<f64>,
+    model_scratch: ModelWorkspace<f64>,
     rate: Vec<f64>,
     torque: Vec<f64>,
     error: Vec<f64>,
@@ -93,7 +96,7 @@ impl<'a> Errors<'a> {
         Self {
             model,
             robot,
-            scratch: Workspace::new(robot),
+            robot_scratch: Workspace::new(robot),
             model_scratch: model.workspace(),
             rate: vec![0.0; model.states()],
             torque: vec![0.0; n],
@@ -101,24 +104,19 @@ impl<'a> Errors<'a> {
         }
     }
 
-    /// f - f_p of each joint at z = (q, q̇, u), rad/s².
+    /// Returns f - f_p of each joint at z = (q, q̇, u), n, rad/s².
     fn at(&mut self, z: &[f64]) -> &[f64] {
         let n = self.error.len();
         let (q, rest) = z.split_at(n);
         let (qd, u) = rest.split_at(n);
         let (sin, cos) = self.robot.sin_cos(q);
-        self.robot.gravity(&sin, &cos, &mut self.scratch, &mut self.torque);
+        // The forward dynamics subtracts gravity, which u does not contain.
+        self.robot.gravity(&sin, &cos, &mut self.robot_scratch, &mut self.torque);
         for (i, joint) in self.robot.joints().iter().enumerate() {
             self.torque[i] += u[i] - joint.friction.viscous.torque(&qd[i]);
         }
-        self.robot.forward_dynamics(
-            &sin,
-            &cos,
-            qd,
-            &self.torque,
-            &mut self.scratch,
-            &mut self.error,
-        );
+        let Self { robot_scratch, torque, error, .. } = self;
+        self.robot.forward_dynamics(&sin, &cos, qd, torque, robot_scratch, error);
         self.model.rate_into(&self.model.state(q, qd), u, &mut self.model_scratch, &mut self.rate);
         self.error.iter_mut().zip(&self.rate[n..]).for_each(|(e, f)| *e -= f);
         &self.error

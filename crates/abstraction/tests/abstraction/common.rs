@@ -1,0 +1,57 @@
+use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
+use reachtube_ode::{Ensemble, Run};
+use reachtube_robot::{Robot, Workspace};
+use reachtube_scalar::{Lanewise, Powers};
+
+pub const KINDS: [ModelKind; 3] = [ModelKind::One, ModelKind::Two, ModelKind::Three];
+
+/// Returns a reproducible number in [-1, 1].
+pub fn number(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+pub fn numbers(seed: &mut u64, count: usize, scale: f64) -> Vec<f64> {
+    (0..count).map(|_| scale * number(seed)).collect()
+}
+
+/// Returns q̈ of (10), n, rad/s², by the articulated-body algorithm. The motor torque minus gravity
+/// and Coulomb friction is u.
+pub fn truth(robot: &Robot, q: &[f64], qd: &[f64], u: &[f64]) -> Vec<f64> {
+    let n = robot.joint_count();
+    let (sin, cos) = robot.sin_cos(q);
+    let mut ws = Workspace::new(robot);
+    let mut torque = vec![0.0; n];
+    robot.gravity(&sin, &cos, &mut ws, &mut torque);
+    for i in 0..n {
+        torque[i] += u[i] - robot.joints()[i].friction.viscous.torque(&qd[i]);
+    }
+    let mut qdd = vec![0.0; n];
+    robot.aba(&sin, &cos, qd, &torque, &mut ws, &mut qdd);
+    qdd
+}
+
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().map(f64::abs).fold(0.0, f64::max)
+}
+
+pub fn model(robot: &Robot, kind: ModelKind, order: u32) -> PolynomialModel {
+    PolynomialModel::new(robot, kind, order, &ExpansionPoint::zero(robot.joint_count())).unwrap()
+}
+
+/// Returns the states at the samples of all runs, one run after the other.
+pub fn simulated<S: Lanewise + Powers>(
+    model: &PolynomialModel,
+    times: &[f64],
+    runs: &[Run<'_>],
+) -> Vec<f64> {
+    let mut states = vec![0.0; runs.len() * times.len() * model.states()];
+    let place = |run: usize, sample: usize| (run * times.len() + sample) * model.states();
+    let mut field = ModelField::<S>::new(model);
+    let outcomes =
+        Ensemble::new(model.states()).integrate(&mut field, times, 4, runs, |run, sample, x| {
+            states[place(run, sample)..][..x.len()].copy_from_slice(x);
+        });
+    assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
+    states
+}

@@ -1,0 +1,11 @@
+//! The three models against the dynamics that they approximate.
+
+mod bound;
+mod common;
+mod derivatives;
+mod errors;
+mod files;
+mod flowpipes;
+mod motion;
+mod orders;
+mod seven_joints;
