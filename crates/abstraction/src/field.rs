@@ -19,7 +19,7 @@ use crate::polynomial_model::{ModelWorkspace, PolynomialModel};
 /// let run = Run { start: &start, inputs: &[1.0; 2 * 6] };
 /// let mut solver = DormandPrince::new(model.states(), Tolerance::default());
 /// let mut field = ModelField::new(&model);
-/// let outcome = solver.follow(&mut field, &[0.0, 0.004, 0.008], run, |_sample, x| {
+/// let outcome = solver.simulate(&mut field, &[0.0, 0.004, 0.008], run, |_sample, x| {
 ///     assert!((x[12] - x[0].sin()).abs() < 1e-8);
 /// });
 /// assert!(outcome.is_reached());

@@ -83,7 +83,7 @@ impl Preconditioned {
         }
         let rest = self.magnitude_times(&radius);
         let bounds: Vec<Interval> =
-            ranges.iter().zip(&rest).map(|(load, r)| *load + Interval::centered(0.0, *r)).collect();
+            ranges.iter().zip(&rest).map(|(load, r)| *load + Interval::centred(0.0, *r)).collect();
         let finite = bounds.iter().all(|b| b.mag().is_finite());
         finite.then_some((bounds, load))
     }

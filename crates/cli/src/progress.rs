@@ -50,6 +50,16 @@ impl Progress {
     }
 }
 
+impl reachtube::conform::Progress for Progress {
+    fn recordings_read(&self, done: usize, total: usize) {
+        self.show(done, total);
+    }
+
+    fn finished(&self, what: &str) {
+        self.note(what);
+    }
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
         self.0.finish_and_clear();

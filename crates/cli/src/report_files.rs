@@ -2,28 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use reachtube::report::{Page, page, suite_svg, write_html};
+use reachtube::report::{Page, Sources, page, suite_svg, write_html};
 use reachtube::write;
 
 use crate::error::Result;
 use crate::file_names;
-use crate::opened::Opened;
 
-/// Writes the page and its figures to `folder`. Returns the page's path and notes on the
-/// recordings.
-pub fn write(opened: &Opened, folder: &Path) -> Result<(PathBuf, Vec<String>)> {
-    let path = folder.join("report.html");
+/// Returns where the page is written in `folder`.
+pub fn page_in(folder: &Path) -> PathBuf {
+    folder.join("report.html")
+}
+
+/// Writes the page and its figures to `folder` and returns the page's path.
+pub fn write(sources: &Sources, folder: &Path) -> Result<PathBuf> {
+    let path = page_in(folder);
     write::try_at(&path)?;
-    let check = opened.check()?;
-    let recordings = opened.recordings()?;
-    let reach = opened.reach(&recordings)?;
-    let page = page(&opened.sources(&recordings, &reach, &check))?;
+    let page = page(sources)?;
     let mut html = Vec::new();
     write_html(&page, &mut html)?;
     write_figures(&page, folder)?;
     write::atomically(&path, |out| out.write_all(&html))?;
-    let notes = recordings.notes;
-    Ok((path, notes))
+    Ok(path)
 }
 
 /// Writes one SVG file per suite and view: A_motion.svg, A_deviation.svg.

@@ -3,7 +3,7 @@ use crate::prepare::rest::rest_intervals;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reachtube_robot::{Column, ColumnKind, Regressor, Robot};
+use reachtube_robot::{Parameter, ParameterKind, Regressor, Robot};
 use std::ops::Range;
 
 /// Shortest rest that counts as a pose \[s\].
@@ -15,7 +15,7 @@ pub struct Samples {
     /// Number of joints n.
     pub joints: usize,
     /// The columns of Y.
-    pub columns: Vec<Column>,
+    pub columns: Vec<Parameter>,
     /// Y, row-major rows x columns.
     regressor: Vec<f64>,
     /// Torque of each row minus the known torque \[N m\].
@@ -44,7 +44,7 @@ impl Samples {
     /// Takes samples from logs of motions and subtracts the known torque.
     pub fn in_motion(
         robot: &Robot,
-        columns: &[Column],
+        columns: &[Parameter],
         logs: &[Log],
         sampling: &Sampling,
         known: &KnownTorque,
@@ -55,7 +55,7 @@ impl Samples {
 
     fn from_log(
         robot: &Robot,
-        columns: &[Column],
+        columns: &[Parameter],
         log: &Log,
         sampling: &Sampling,
         known: &KnownTorque,
@@ -75,7 +75,7 @@ impl Samples {
     /// joint moves faster than `speed` \[rad/s\].
     ///
     /// Columns of friction are 0.
-    pub fn at_rest(robot: &Robot, columns: &[Column], logs: &[Log], speed: f64) -> Self {
+    pub fn at_rest(robot: &Robot, columns: &[Parameter], logs: &[Log], speed: f64) -> Self {
         let n = robot.joint_count();
         let mut all = Self::empty(n, columns);
         let mut regressor = Regressor::new(robot, columns);
@@ -100,13 +100,13 @@ impl Samples {
         }
         // The offset of friction is the only friction column that is not 0 at zero velocity.
         let width = columns.len();
-        let offsets = (0..width).filter(|c| columns[*c].kind == ColumnKind::Offset);
+        let offsets = (0..width).filter(|c| columns[*c].kind == ParameterKind::Offset);
         offsets
             .for_each(|c| all.regressor.iter_mut().skip(c).step_by(width).for_each(|y| *y = 0.0));
         all
     }
 
-    fn empty(joints: usize, columns: &[Column]) -> Self {
+    fn empty(joints: usize, columns: &[Parameter]) -> Self {
         let columns = columns.to_vec();
         Self {
             joints,
@@ -138,7 +138,7 @@ impl Samples {
         );
     }
 
-    fn joined(joints: usize, columns: &[Column], parts: Vec<Self>) -> Self {
+    fn joined(joints: usize, columns: &[Parameter], parts: Vec<Self>) -> Self {
         let mut all = Self::empty(joints, columns);
         for mut part in parts {
             let first = all.torque.len();

@@ -4,7 +4,7 @@ use crate::bodies::pseudo_inertia::PER_LINK;
 use crate::error::Result;
 use nalgebra::DVector;
 use reachtube_robot::{
-    Column, FrictionDescription, GravityMoments, Parameters, Robot, RobotDescription,
+    FrictionDescription, GravityMoments, Parameter, ParameterSet, Robot, RobotDescription,
 };
 
 /// Returns the robot with the gravity of its links.
@@ -31,8 +31,12 @@ pub fn with_friction(robot: &Robot, friction: &[FrictionDescription]) -> Result<
 }
 
 /// Returns the robot with other inertial parameters, which need not be physically consistent.
-pub fn with_parameters(robot: &Robot, columns: &[Column], values: &DVector<f64>) -> Result<Robot> {
-    let base = RobotDescription { parameters: Parameters::Base, ..robot.description().clone() };
+pub fn with_parameters(
+    robot: &Robot,
+    columns: &[Parameter],
+    values: &DVector<f64>,
+) -> Result<Robot> {
+    let base = RobotDescription { parameters: ParameterSet::Base, ..robot.description().clone() };
     Ok(Robot::from_description(&base.with_values(columns, values.as_slice())?)?)
 }
 

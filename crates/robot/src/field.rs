@@ -38,7 +38,7 @@ pub enum DrivenBy {
 /// let times = [0.0, 0.004, 0.009]; // s, as recorded
 /// let run = Run { start: &[0.0; 12], inputs: &[10.0; 12] };
 /// let mut solver = DormandPrince::new(12, Tolerance::default());
-/// let outcome = solver.follow(&mut field, &times, run, |sample, x| {
+/// let outcome = solver.simulate(&mut field, &times, run, |sample, x| {
 ///     assert_eq!(x[0] > 0.0, sample > 0);
 /// });
 /// assert!(outcome.is_reached());

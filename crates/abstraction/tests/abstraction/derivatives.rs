@@ -22,7 +22,7 @@ fn intervals_enclose_numbers_and_derivatives_are_slopes() {
             );
             let x = model.state(&q, &qd);
             let wide = |values: &[f64]| -> Vec<Interval> {
-                values.iter().map(|v| Interval::centered(*v, 0.01)).collect()
+                values.iter().map(|v| Interval::centred(*v, 0.01)).collect()
             };
             let (rate, boxed) = (model.rate(&x, &u), model.rate(&wide(&x), &wide(&u)));
             assert!(rate.iter().zip(&boxed).all(|(r, b)| b.contains(*r)));

@@ -21,10 +21,11 @@ fn integrators_and_lanes_agree_on_the_motion_of_a_model() {
         let states = model.states();
         let fine = Tolerance { relative: 1e-10, absolute: 1e-10 };
         let mut solver = DormandPrince::new(states, fine);
-        let outcome = solver.follow(&mut ModelField::new(&model), &times, runs[0], |sample, x| {
-            let error = largest(x.iter().zip(&alone[sample * states..]).map(|(a, b)| a - b));
-            assert!(error < 1e-7, "{kind:?}: {error} at sample {sample}");
-        });
+        let outcome =
+            solver.simulate(&mut ModelField::new(&model), &times, runs[0], |sample, x| {
+                let error = largest(x.iter().zip(&alone[sample * states..]).map(|(a, b)| a - b));
+                assert!(error < 1e-7, "{kind:?}: {error} at sample {sample}");
+            });
         assert!(outcome.is_reached());
     }
 }
@@ -42,10 +43,10 @@ fn a_simulated_model_3_moves_as_the_robot() {
     let mut solver = DormandPrince::new(12, Tolerance::default());
     let run = Run { start: &body, inputs: &inputs };
     let mut field = RobotField::new(&robot, DrivenBy::Input);
-    assert!(solver.follow(&mut field, &times, run, |_, x| motion.push(x.to_vec())).is_reached());
+    assert!(solver.simulate(&mut field, &times, run, |_, x| motion.push(x.to_vec())).is_reached());
     let mut solver = DormandPrince::new(24, Tolerance::default());
     let run = Run { start: &start, inputs: &inputs };
-    let outcome = solver.follow(&mut ModelField::new(&model), &times, run, |sample, x| {
+    let outcome = solver.simulate(&mut ModelField::new(&model), &times, run, |sample, x| {
         let error = largest(x.iter().zip(&motion[sample]).map(|(a, b)| a - b));
         assert!(error < 1e-4, "{error} at sample {sample}");
     });

@@ -76,7 +76,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if !args.operating_box.is_empty() {
         let _bar = Progress::new();
         let operating_box = OperatingBox::about(&point, &args.operating_box)?;
-        let most = args.most_boxes.unwrap_or_else(|| model.usual_boxes());
+        let most = args.most_boxes.unwrap_or_else(|| model.default_max_boxes());
         model.set_remainder(model.bound_remainder(&operating_box, most)?);
     }
     if let Some(path) = &args.out {
@@ -156,7 +156,7 @@ fn joint_row(model: &PolynomialModel, joint: usize) -> Vec<String> {
     if let Some(remainder) = model.remainder() {
         let bound = remainder.bounds[joint].map(|[low, high]| interval((low, high)));
         row.push(bound.unwrap_or_else(|| "no bound found".into()));
-        row.push(number(remainder.seen[joint]));
+        row.push(number(remainder.sampled_error[joint]));
     }
     row
 }

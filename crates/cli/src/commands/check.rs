@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use clap::Args;
-use reachtube::conform::{Check, Place, SuiteCheck};
+use reachtube::conform::{Check, Keep, SuiteVerdict, Witness};
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
@@ -31,30 +31,31 @@ pub struct Arguments {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let check = Opened::new(&args.model)?.check()?;
+    let check = Opened::new(&args.model, Keep::Needed)?.check()?;
     output::notes(&check.notes);
     if json {
         output::print_json(&check)?;
     } else {
         output::print(&summary(&check))?;
     }
-    Ok(Outcome::of(check.conformant))
+    Ok(Outcome::of(check.verdict.conformant))
 }
 
 /// Returns the result of `check`, with one line per suite.
 pub fn summary(check: &Check) -> String {
-    let verdict = if check.conformant { "conformant" } else { "not conformant" };
+    let verdict = &check.verdict;
+    let outcome = if verdict.conformant { "conformant" } else { "not conformant" };
     let mut text = format!(
-        "{verdict}: {} {}; {} of {} values (suite, sample, state) outside the reachable set, at \
+        "{outcome}: {} {}; {} of {} values (suite, sample, state) outside the reachable set, at \
          samples\n\n",
-        check.runs,
-        plural(check.runs, "recording"),
-        check.violations.count,
-        check.rows
+        verdict.runs,
+        plural(verdict.runs, "recording"),
+        verdict.violations.count,
+        verdict.rows
     );
-    let rows: Vec<_> = check.suites.iter().map(suite_row).collect();
+    let rows: Vec<_> = verdict.suites.iter().map(suite_row).collect();
     text.push_str(&table(&["suite", "runs", "values", "outside", "furthest outside"], &rows));
-    for set in &check.lost {
+    for set in &verdict.lost {
         let _ = writeln!(text, "{}", lost(set));
     }
     let next_motion = match &check.trust {
@@ -67,7 +68,7 @@ pub fn summary(check: &Check) -> String {
     text
 }
 
-fn suite_row(suite: &SuiteCheck) -> Vec<String> {
+fn suite_row(suite: &SuiteVerdict) -> Vec<String> {
     vec![
         suite.suite.clone(),
         suite.runs.to_string(),
@@ -78,8 +79,8 @@ fn suite_row(suite: &SuiteCheck) -> Vec<String> {
 }
 
 /// Describes a value outside the reachable set in one line.
-fn witness(place: &Place) -> String {
-    let unit = if place.state.starts_with("qd") { "rad/s" } else { "rad" };
+fn witness(place: &Witness) -> String {
+    let unit = place.state.kind.unit();
     format!(
         "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
         place.run,

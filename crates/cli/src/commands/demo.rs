@@ -3,14 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::conform::{Check, Settings, Watch, conform};
+use reachtube::conform::{Check, Keep, Problem, Settings, Setup, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::recordings::{DataSet, Torque};
+use reachtube::report::Sources;
 use reachtube::{Model, write};
 use reachtube_robot::Robot;
 use serde_json::json;
 
-use super::{check, conform};
+use super::check;
+use super::conform as conform_command;
 use crate::data_arguments::DataArguments;
 use crate::error::Result;
 use crate::opened::Opened;
@@ -54,18 +56,27 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         robot.name(),
         folder.display()
     ));
-    let model = fit(&robot, &folder, &recorded)?;
+    // Find the sets of the training motions.
+    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
+    let bar = Progress::new();
+    let source = Box::new(DataSet::open(&folder)?);
+    let problem = Problem::read(setup.clone(), source, &recorded.training, Keep::All, &bar)?;
+    let found = conform(&problem, &bar, None)?;
+    drop(bar);
+    let model = Model::new(&problem, &found);
     let path = args.out.join("model.json");
     write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
     output::note(&format!("wrote {}", path.display()));
-    page(&model, &robot, &folder, &recorded.training, &args.out.join("report"))?;
-    let held_out = page(&model, &robot, &folder, &recorded.check, &args.out.join("held-out"))?;
+    let page = conform_command::report(&problem, &model, &found, &args.out.join("report"))?;
+    output::note(&format!("wrote {}", page.display()));
+    // Try them on the motions held out.
+    let (model, held_out) = check_held_out(model, setup, &folder, &recorded.check, &args.out)?;
     if json {
         output::print_json(&json!({ "model": model, "held_out": held_out }))?;
     } else {
         let text = format!(
             "{}\n{}\n{}",
-            conform::summary(&model),
+            conform_command::summary(&model),
             held_out_heading(&recorded),
             check::summary(&held_out)
         );
@@ -74,25 +85,14 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::of(model.verified))
 }
 
-/// Finds the smallest uncertainty sets for the training suites.
-fn fit(robot: &Robot, folder: &Path, recorded: &RecordedDemo) -> Result<Model> {
-    let settings = Settings::new(Torque::Compensated, robot.joint_count());
-    let data = DataSet::open(folder)?;
-    let bar = Progress::new();
-    let show = |done: usize, total: usize| bar.show(done, total);
-    let watch = Watch { reading: &show, ..Watch::SILENT };
-    let found = conform(robot, &data, &recorded.training, &settings, &watch)?;
-    Ok(Model::new(robot, &data, &settings, &found))
-}
-
-/// Checks the model on some suites and writes a report page about them.
-fn page(
-    model: &Model,
-    robot: &Robot,
+/// Checks the model on the suites held out and writes a report page about them.
+fn check_held_out(
+    model: Model,
+    setup: Setup,
     folder: &Path,
     suites: &[String],
-    to: &Path,
-) -> Result<Check> {
+    out: &Path,
+) -> Result<(Model, Check)> {
     let args = DataArguments {
         data: folder.to_path_buf(),
         suites: suites.to_vec(),
@@ -100,10 +100,13 @@ fn page(
         until: None,
         max_gap: None,
     };
-    let opened = Opened::with(model.clone(), robot.clone(), &args)?;
-    let (page, _) = report_files::write(&opened, to)?;
+    let opened = Opened::with(model, setup, &args, Keep::All)?;
+    let (check, reach) = (opened.check()?, opened.reach()?);
+    let Opened { model, problem, .. } = &opened;
+    let sources = Sources { model, problem, reach: &reach, check: &check };
+    let page = report_files::write(&sources, &out.join("held-out"))?;
     output::note(&format!("wrote {}", page.display()));
-    opened.check()
+    Ok((opened.model, check))
 }
 
 fn held_out_heading(recorded: &RecordedDemo) -> String {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::write;
-use reachtube_robot::{Column, ColumnKind, Criterion, Excitation, ExcitationSettings, Robot};
+use reachtube_robot::{Criterion, Excitation, ExcitationSettings, Parameter, ParameterKind, Robot};
 use serde_json::json;
 
 use crate::error::Result;
@@ -71,11 +71,17 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         ..ExcitationSettings::default()
     };
     let n = robot.joint_count();
-    let motor_and_friction =
-        [ColumnKind::MotorInertia, ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1];
-    let columns =
-        [Column::of_joints(n, &ColumnKind::INERTIAL), Column::of_joints(n, &motor_and_friction)]
-            .concat();
+    let motor_and_friction = [
+        ParameterKind::MotorInertia,
+        ParameterKind::Coulomb,
+        ParameterKind::Offset,
+        ParameterKind::Viscous1,
+    ];
+    let columns = [
+        Parameter::of_joints(n, &ParameterKind::INERTIAL),
+        Parameter::of_joints(n, &motor_and_friction),
+    ]
+    .concat();
     let found = robot.excitation(&columns, &settings)?;
     let text = csv(&found, n, args.rate);
     write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
@@ -83,7 +89,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&json!({
             "condition": found.quality.condition,
-            "condition_before": found.before.condition,
+            "condition_before": found.initial_quality.condition,
             "period": args.period,
         }))?;
     } else {
@@ -97,9 +103,9 @@ fn summary(found: &Excitation, robot: &Robot) -> String {
         "condition number of the base regressor {} (random motion: {}); log determinant of its \
          information matrix {} (random motion: {})\n",
         number(found.quality.condition),
-        number(found.before.condition),
+        number(found.initial_quality.condition),
         number(found.quality.log_determinant),
-        number(found.before.log_determinant)
+        number(found.initial_quality.log_determinant)
     );
     for (j, joint) in robot.joints().iter().enumerate() {
         let [low, high] = found.trajectory.position_range(j);

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::conform::SuiteReach;
-use reachtube::report::page;
+use reachtube::conform::{Keep, SuiteReach};
+use reachtube::report::{Sources, page};
 use reachtube::write;
 use serde_json::json;
 
@@ -47,12 +47,11 @@ struct Written<'a> {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let opened = Opened::new(&args.model)?;
     write::try_at(&args.out.join("A.csv"))?;
-    let recordings = opened.recordings()?;
-    output::notes(&recordings.notes);
-    let reach = opened.reach(&recordings)?;
-    let check = opened.check()?;
+    let opened = Opened::new(&args.model, Keep::All)?;
+    let Opened { model, problem, .. } = &opened;
+    output::notes(&problem.recordings().notes);
+    let (reach, check) = (opened.reach()?, opened.check()?);
     let mut written = Vec::new();
     for (reach, name) in reach.iter().zip(file_names::of_reach(&reach)) {
         let samples = args.out.join(format!("{name}.csv"));
@@ -61,7 +60,8 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         write::atomically(&tube, |out| reach.write_tube(out))?;
         written.push(Written { reach, samples, tube });
     }
-    report_files::write_figures(&page(&opened.sources(&recordings, &reach, &check))?, &args.out)?;
+    let sources = Sources { model, problem, reach: &reach, check: &check };
+    report_files::write_figures(&page(&sources)?, &args.out)?;
     if json {
         let rows: Vec<_> = written.iter().map(Written::json).collect();
         output::print_json(&json!({ "reach": rows }))?;

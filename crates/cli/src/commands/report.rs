@@ -3,6 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use reachtube::conform::Keep;
+use reachtube::report::Sources;
+use reachtube::write;
 use serde_json::json;
 
 use crate::data_arguments::ModelArguments;
@@ -29,9 +32,13 @@ pub struct Arguments {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let opened = Opened::new(&args.model)?;
-    let (page, notes) = report_files::write(&opened, &args.out)?;
-    output::notes(&notes);
+    write::try_at(&report_files::page_in(&args.out))?;
+    let opened = Opened::new(&args.model, Keep::All)?;
+    let (check, reach) = (opened.check()?, opened.reach()?);
+    let Opened { model, problem, .. } = &opened;
+    let page =
+        report_files::write(&Sources { model, problem, reach: &reach, check: &check }, &args.out)?;
+    output::notes(&problem.recordings().notes);
     if json {
         output::print_json(&json!({ "report": page }))?;
     } else {

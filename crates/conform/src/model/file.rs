@@ -234,7 +234,8 @@ impl Model {
             && set(&self.input_set, n)
             && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
         let point = &self.settings.expansion_point;
-        let fits_box = self.settings.operating_box.as_ref().is_none_or(|sides| sides.is_of(n));
+        let fits_box =
+            self.settings.operating_box.as_ref().is_none_or(|sides| sides.is_valid_for(n));
         let problem = if is_linear && costs.contains(&None) {
             "it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model does"
                 .into()
@@ -286,8 +287,8 @@ impl Model {
                 origin: self.origin.clone(),
                 acceleration: self.acceleration.clone(),
             };
-            let model = PolynomialModel::of_records(robot, *abstraction, expansion_point, records)
-                .map_err(reachtube_abstraction::Error::Setting)?;
+            let model =
+                PolynomialModel::from_records(robot, *abstraction, expansion_point, records)?;
             let dynamics = Dynamics::of(model, *method);
             return Ok(dynamics.linear_system().is_none().then_some(dynamics));
         }

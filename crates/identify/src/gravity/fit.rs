@@ -4,19 +4,19 @@ use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use crate::settings::ModelSettings;
 use crate::variant::with_parameters;
-use reachtube_robot::{BaseParameters, Column, ColumnKind, Robot};
+use reachtube_robot::{BaseParameters, Parameter, ParameterKind, Robot};
 use serde::Serialize;
 
 /// Poses per combination of gravity parameters that make slow motions unnecessary for gravity.
 const POSES_PER_PARAMETER: usize = 2;
 
 /// Columns that are fitted together with gravity to slow motions.
-const MOTION_COLUMNS: [ColumnKind; 5] = [
-    ColumnKind::MotorInertia,
-    ColumnKind::Coulomb,
-    ColumnKind::Offset,
-    ColumnKind::Viscous1,
-    ColumnKind::Viscous3,
+const MOTION_COLUMNS: [ParameterKind; 5] = [
+    ParameterKind::MotorInertia,
+    ParameterKind::Coulomb,
+    ParameterKind::Offset,
+    ParameterKind::Viscous1,
+    ParameterKind::Viscous3,
 ];
 
 /// Gravity as fitted to poses at rest and to slow motions.
@@ -48,12 +48,12 @@ pub(super) fn fit_gravity(
     known: &KnownTorque,
 ) -> Result<GravityFit> {
     let n = robot.joint_count();
-    let inertial = Column::of_joints(n, &ColumnKind::INERTIAL);
+    let inertial = Parameter::of_joints(n, &ParameterKind::INERTIAL);
     // Without slow motions nothing determines friction or inertia.
     let columns = if slow.is_empty() {
         inertial.clone()
     } else {
-        [inertial.clone(), Column::of_joints(n, &MOTION_COLUMNS)].concat()
+        [inertial.clone(), Parameter::of_joints(n, &MOTION_COLUMNS)].concat()
     };
     let at_rest = Samples::at_rest(robot, &columns, rests, model.rest_speed);
     let poses = at_rest.len() / n;

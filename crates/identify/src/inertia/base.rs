@@ -33,7 +33,7 @@ pub fn base_parameters(
     physical: bool,
 ) -> Result<(Vec<BaseParameter>, f64)> {
     // Least squares in the independent columns alone.
-    let independent = DMatrix::from_fn(base.columns().len(), base.count(), |i, j| {
+    let independent = DMatrix::from_fn(base.parameters().len(), base.count(), |i, j| {
         f64::from(u8::from(base.independent()[j] == i))
     });
     let solution =
@@ -48,7 +48,7 @@ pub fn base_parameters(
     }
     // Values of the identified and of the given robot.
     let (found, described) =
-        (base.reduce(values.as_slice()), base.reduce(&robot.column_values(base.columns())));
+        (base.reduce(values.as_slice()), base.reduce(&robot.parameter_values(base.parameters())));
     let errors = solution.standard_errors();
     let parameter = |(k, name)| BaseParameter {
         name,

@@ -1,6 +1,6 @@
 use crate::settings::ModelSettings;
 use nalgebra::DVector;
-use reachtube_robot::{Column, ColumnKind};
+use reachtube_robot::{Parameter, ParameterKind};
 
 /// Columns of friction that are fitted together with the inertial parameters.
 #[derive(Debug, Clone, Copy)]
@@ -16,26 +16,33 @@ pub fn fitted_columns(
     joints: usize,
     model: &ModelSettings,
     friction: FrictionColumns,
-) -> Vec<Column> {
-    let mut columns = Column::of_joints(joints, &ColumnKind::INERTIAL);
+) -> Vec<Parameter> {
+    let mut columns = Parameter::of_joints(joints, &ParameterKind::INERTIAL);
     if model.motor_inertia {
-        columns.extend(Column::of_joints(joints, &[ColumnKind::MotorInertia]));
+        columns.extend(Parameter::of_joints(joints, &[ParameterKind::MotorInertia]));
     }
     if friction.fitted {
-        let kinds =
-            [ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1, ColumnKind::Viscous3];
-        columns.extend(Column::of_joints(joints, &kinds[..if friction.cubic { 4 } else { 3 }]));
+        let kinds = [
+            ParameterKind::Coulomb,
+            ParameterKind::Offset,
+            ParameterKind::Viscous1,
+            ParameterKind::Viscous3,
+        ];
+        columns.extend(Parameter::of_joints(joints, &kinds[..if friction.cubic { 4 } else { 3 }]));
     }
     columns
 }
 
-fn is_inertia(column: &Column) -> bool {
-    column.kind.is_inertial() || column.kind == ColumnKind::MotorInertia
+fn is_inertia(column: &Parameter) -> bool {
+    column.kind.is_inertial() || column.kind == ParameterKind::MotorInertia
 }
 
 /// Returns the columns of links and motors with their values, without those of friction.
-pub fn inertia_part(columns: &[Column], values: &DVector<f64>) -> (Vec<Column>, DVector<f64>) {
-    let (columns, values): (Vec<Column>, Vec<f64>) =
+pub fn inertia_part(
+    columns: &[Parameter],
+    values: &DVector<f64>,
+) -> (Vec<Parameter>, DVector<f64>) {
+    let (columns, values): (Vec<Parameter>, Vec<f64>) =
         columns.iter().zip(values.iter()).filter(|(column, _)| is_inertia(column)).unzip();
     (columns, DVector::from_vec(values))
 }

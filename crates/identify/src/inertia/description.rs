@@ -3,7 +3,7 @@ use crate::inertia::columns::inertia_part;
 use crate::inertia::fit::InertiaFit;
 use crate::variant::with_parameters;
 use reachtube_robot::{
-    Column, ColumnKind, FrictionDescription, Parameters, Robot, RobotDescription,
+    FrictionDescription, Parameter, ParameterKind, ParameterSet, Robot, RobotDescription,
 };
 
 /// Returns the description of the identified robot.
@@ -21,7 +21,8 @@ pub fn description(
 ) -> Result<RobotDescription> {
     let (columns, values) = inertia_part(&found.columns, &found.values);
     let mut out = with_parameters(robot, &columns, &values)?.description().clone();
-    out.parameters = if found.physical.is_some() { Parameters::Physical } else { Parameters::Base };
+    out.parameters =
+        if found.physical.is_some() { ParameterSet::Physical } else { ParameterSet::Base };
     for (joint, friction) in out.joints.iter_mut().zip(friction) {
         joint.friction = *friction;
     }
@@ -32,15 +33,15 @@ pub fn description(
 }
 
 /// Adds the value of a friction column; other columns change nothing.
-fn add_friction(friction: &mut FrictionDescription, column: &Column, value: f64) {
+fn add_friction(friction: &mut FrictionDescription, column: &Parameter, value: f64) {
     let FrictionDescription { coulomb, viscous } = friction;
     // Offsets of driving forward, driving backward, braking backward, braking forward.
     let mut add = |signs: [f64; 4]| (0..4).for_each(|q| coulomb[2 * q] += signs[q] * value);
     match column.kind {
-        ColumnKind::Coulomb => add([1.0, -1.0, -1.0, 1.0]),
-        ColumnKind::Offset => add([1.0; 4]),
-        ColumnKind::Viscous1 => viscous[0] += value,
-        ColumnKind::Viscous3 => viscous[2] += value,
+        ParameterKind::Coulomb => add([1.0, -1.0, -1.0, 1.0]),
+        ParameterKind::Offset => add([1.0; 4]),
+        ParameterKind::Viscous1 => viscous[0] += value,
+        ParameterKind::Viscous3 => viscous[2] += value,
         _ => {}
     }
 }

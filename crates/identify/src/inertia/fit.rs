@@ -7,13 +7,13 @@ use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use crate::settings::ModelSettings;
 use nalgebra::DVector;
-use reachtube_robot::{BaseParameters, Column, Robot};
+use reachtube_robot::{BaseParameters, Parameter, Robot};
 
 /// The fit of the inertial parameters to exciting motions.
 #[derive(Debug, Clone)]
 pub struct InertiaFit {
     /// The columns of the regression.
-    pub columns: Vec<Column>,
+    pub columns: Vec<Parameter>,
     /// The robust or plain least-squares fit.
     pub fit: Fit,
     /// The values that are used, one per column: those of the nearest physically consistent links,

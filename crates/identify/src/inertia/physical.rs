@@ -8,7 +8,7 @@ use crate::samples::Samples;
 use crate::settings::{ModelSettings, Prior};
 use crate::variant::with_parameters;
 use nalgebra::{Cholesky, DVector, Matrix4, Vector4};
-use reachtube_robot::{Column, ColumnKind, FrictionDescription, Robot, RobotError};
+use reachtube_robot::{FrictionDescription, Parameter, ParameterKind, Robot, RobotError};
 use serde::Serialize;
 
 /// Radius of the solid balls that are the prior of unknown links \[m\].
@@ -44,7 +44,7 @@ pub struct PhysicalFit {
 /// [`Error::NoPhysicalLinks`] if the program has no solution.
 pub fn nearest_bodies(
     [robot, known]: [&Robot; 2],
-    columns: &[Column],
+    columns: &[Parameter],
     fit: &Fit,
     moving: &Samples,
     model: &ModelSettings,
@@ -73,12 +73,12 @@ pub fn nearest_bodies(
 /// this fit determines, because it must dissipate.
 ///
 /// A correction of known friction may have either sign.
-fn positive_columns(known: &Robot, columns: &[Column]) -> Vec<usize> {
+fn positive_columns(known: &Robot, columns: &[Parameter]) -> Vec<usize> {
     let frictionless =
         |joint: usize| known.description().joints[joint].friction == FrictionDescription::default();
-    let positive = |column: &Column| match column.kind {
-        ColumnKind::MotorInertia => true,
-        ColumnKind::Coulomb | ColumnKind::Viscous1 => frictionless(column.joint),
+    let positive = |column: &Parameter| match column.kind {
+        ParameterKind::MotorInertia => true,
+        ParameterKind::Coulomb | ParameterKind::Viscous1 => frictionless(column.joint),
         _ => false,
     };
     (0..columns.len()).filter(|c| positive(&columns[*c])).collect()

@@ -2,7 +2,7 @@ use crate::fit::Fit;
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use rayon::prelude::*;
-use reachtube_robot::{Column, Robot};
+use reachtube_robot::{Parameter, Robot};
 
 /// An inverted sign must reduce the sum of squares below this share.
 const INVERTED_SHARE: f64 = 0.5;
@@ -40,7 +40,7 @@ pub(super) fn inverted_columns(
 }
 
 /// Returns the share of the squared torque that no parameters explain, summed over the joints.
-fn unexplained(robot: &Robot, columns: &[Column], logs: &[Log], sampling: &Sampling) -> f64 {
+fn unexplained(robot: &Robot, columns: &[Parameter], logs: &[Log], sampling: &Sampling) -> f64 {
     let samples = Samples::in_motion(robot, columns, logs, sampling, &KnownTorque::None);
     let fit = Fit::of_groups(&[&samples], true);
     fit.joints[0].iter().map(|joint| joint.relative().powi(2)).sum()

@@ -4,7 +4,7 @@ use crate::plausibility::sign::inverted_columns;
 use crate::prepare::log::Log;
 use crate::samples::{Samples, Sampling};
 use crate::validate::torque::LogValidation;
-use reachtube_robot::{ColumnKind, FrictionDescription, Robot};
+use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
 const SIGNIFICANT: f64 = 4.0;
@@ -118,8 +118,8 @@ fn least_squares_friction(
         column.map_or(0.0, |k| fit.fit.solution.x[k])
     };
     (
-        0.25 * (a1 + a7 - a3 - a5) + fitted(ColumnKind::Coulomb),
-        known.viscous[0] + fitted(ColumnKind::Viscous1),
+        0.25 * (a1 + a7 - a3 - a5) + fitted(ParameterKind::Coulomb),
+        known.viscous[0] + fitted(ParameterKind::Viscous1),
     )
 }
 

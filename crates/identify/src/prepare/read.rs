@@ -2,7 +2,7 @@ use crate::error::{Error, Result};
 use crate::prepare::entry::{LogEntry, csv_files};
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
-use reachtube_recordings::{GapLimit, Run, check_limits};
+use reachtube_recordings::{GapLimit, ReadOptions, Run, check_limits, read_csv};
 use reachtube_robot::Robot;
 use std::path::Path;
 
@@ -26,9 +26,9 @@ pub fn read(
     for entry in entries {
         let (path, from, until) = entry.parts();
         for file in csv_files(&folder.join(path))? {
-            let limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
-            let run = Run::read(&file, Some(robot.joint_count()), limit, until)
-                .map_err(reachtube_recordings::Error::Defects)?;
+            let gap_limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
+            let options = ReadOptions { joints: Some(robot.joint_count()), gap_limit, until };
+            let run = read_csv(&file, &options).map_err(reachtube_recordings::Error::Defects)?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let run = reordered(starting_at(run, from), &order);
             match check_limits(&file, &run, robot) {

@@ -118,6 +118,8 @@ fn csv(log: &Log) -> String {
 
 #[cfg(test)]
 mod tests {
+    use reachtube_recordings::{ReadOptions, RunSource};
+
     use super::*;
 
     fn bump(name: &str, centre: f64) -> Log {
@@ -146,7 +148,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         windows(&[bump("a", 1.0)], None, false).write(folder.path()).unwrap();
         let data = reachtube_recordings::DataSet::open(folder.path()).unwrap();
-        let run = data.read(0, Some(1), reachtube_recordings::GapLimit::Usual, None).unwrap();
+        let run = data.read(0, &ReadOptions::default()).unwrap();
         assert_eq!((run.len(), data.suites()[0].name.as_str()), (400, "a"));
     }
 }

@@ -71,7 +71,7 @@ impl Lab {
 /// Parts of the base parameters within one and three standard errors of the truth.
 fn rates(found: &Identification, truth: &Robot) -> [f64; 2] {
     let base = BaseParameters::of_robot(truth, &found.inertia.columns);
-    let values = base.reduce(&truth.column_values(&found.inertia.columns));
+    let values = base.reduce(&truth.parameter_values(&found.inertia.columns));
     let off: Vec<f64> = found
         .inertia
         .parameters

@@ -70,7 +70,7 @@ fn vertices_give_smaller_sets_and_keep_some_that_fail_without() {
     for k in 0..201 {
         let sides = without.sample(k).iter().zip(with.sample(k));
         sides.for_each(|(outer, inner)| {
-            assert!((*outer + Interval::centered(0.0, 1e-12)).encloses(inner), "{k}")
+            assert!((*outer + Interval::centred(0.0, 1e-12)).encloses(inner), "{k}")
         });
     }
     assert!(with.sample(200)[0].width() < 0.9 * without.sample(200)[0].width());

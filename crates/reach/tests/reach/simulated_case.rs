@@ -93,7 +93,7 @@ impl Case {
             let (k, part) = (sample / self.parts, sample % self.parts);
             let sides = if part == 0 { self.flowpipe.sample(k) } else { self.flowpipe.step(k) };
             for (i, (side, x)) in sides.iter().zip(x).enumerate() {
-                let near = *side + Interval::centered(0.0, SLACK * (1.0 + x.abs()));
+                let near = *side + Interval::centred(0.0, SLACK * (1.0 + x.abs()));
                 assert!(
                     near.contains(*x),
                     "{x} is not in {side:?}: state {i} at sample {k}, part {part}"

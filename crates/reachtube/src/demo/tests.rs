@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::hidden::{ENCODER_STEP, SCATTER_Q, SCATTER_QD};
 use super::*;
 use reachtube_conform::{Settings, Watch, conform};
-use reachtube_recordings::{DataSet, GapLimit, Run, Torque};
+use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 
 fn small(seed: u64) -> DemoOptions {
     DemoOptions { seed, motions: 2, held_out_motions: 1, start_points: 2, runs: 5, duration: 2.0 }
@@ -39,7 +39,7 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 
 fn suites(folder: &Path) -> Vec<Vec<Run>> {
     let data = DataSet::open(folder).unwrap();
-    let read = |index: &usize| data.read(*index, Some(6), GapLimit::Usual, None).unwrap();
+    let read = |index: &usize| data.read(*index, &ReadOptions::default()).unwrap();
     data.suites().iter().map(|suite| suite.runs.iter().map(read).collect()).collect()
 }
 
@@ -67,7 +67,7 @@ fn the_folder_is_a_data_set() {
     let data = DataSet::open(folder.path()).unwrap();
     assert!(data.unlisted().is_empty());
     for (index, entry) in data.runs().iter().enumerate() {
-        let run = data.read(index, Some(6), GapLimit::Usual, None).unwrap();
+        let run = data.read(index, &ReadOptions::default()).unwrap();
         assert_eq!(entry.sha256.as_ref(), Some(&run.sha256));
         assert!(entry.suite.as_ref().unwrap().starts_with(entry.motion.as_ref().unwrap()));
     }

@@ -1,54 +1,45 @@
 //! From a model and recordings to the page.
 
-use super::{
-    Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict,
+use reachtube_conform::{
+    Check, Enclosure, Lost, Model, Problem, States, Suite, SuiteReach, Witness,
 };
-use crate::error::{Error, Result};
-use reachtube_conform::Model;
-use reachtube_conform::SuiteReach;
-use reachtube_conform::{self as conform, Check, Enclosure, Lost, Recordings, Settings, States};
 use reachtube_reach::Hyperrectangle;
-use reachtube_recordings::DataSet;
 
-/// What a page is made of.
+use crate::error::Result;
+use crate::report::error::ReportError;
+use crate::report::page::{JointSets, Page, SetsTable, Verdict};
+use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
+
+/// The sources of a page.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// The model.
     pub model: &'a Model,
-    /// The settings with which the recordings were read.
-    pub settings: &'a Settings,
-    /// The data set that is drawn.
-    pub data: &'a DataSet,
-    /// Its suites as read.
-    pub recordings: &'a Recordings,
-    /// Reachable sets over them.
+    /// The recordings that are drawn.
+    pub problem: &'a Problem,
+    /// The reachable sets over them.
     pub reach: &'a [SuiteReach],
-    /// Whether they lie in the sets.
+    /// Whether the recordings lie in the sets.
     pub check: &'a Check,
 }
 
-/// The page of a model over recordings: those that it was made from, or others.
+/// Makes the page of a model over recordings: those that it was made from, or others.
 ///
 /// # Errors
 ///
-/// Defects of a run that has changed since it was read.
+/// As [`Problem::run`]; [`ReportError::NoReachableSet`] for a suite without one.
 pub fn page(sources: &Sources) -> Result<Page> {
-    let Sources { model, check, .. } = *sources;
-    let figures = sources
-        .recordings
-        .suites
-        .iter()
-        .filter(|suite| suite.envelope.len() > 1)
-        .map(|suite| figure(sources, suite))
-        .collect::<Result<Vec<_>>>()?;
+    let Sources { model, problem, check, .. } = *sources;
+    let drawn = problem.recordings().suites.iter().filter(|suite| suite.envelope.len() > 1);
+    let figures = drawn.map(|suite| figure(sources, suite)).collect::<Result<Vec<_>>>()?;
     Ok(Page {
         title: format!("{}: reachset conformance", model.robot.name),
         subtitle: format!(
             "Model {} of order {}, {} recordings in {} test suites",
             u32::from(model.settings.abstraction.model),
             model.settings.abstraction.order,
-            check.runs,
-            check.suites.len()
+            check.verdict.runs,
+            check.verdict.suites.len()
         ),
         verdict: verdict(model, check),
         suites: figures,
@@ -61,59 +52,74 @@ pub fn page(sources: &Sources) -> Result<Page> {
 }
 
 fn verdict(model: &Model, check: &Check) -> Verdict {
-    let outer = model.proof.enclosure == Enclosure::Outer;
+    let answer = &check.verdict;
+    let outer = answer.enclosure == Enclosure::Outer;
     let set = if outer { "computed reachable set" } else { "reachable set" };
-    let words = match &check.violations.worst {
-        _ if check.conformant => {
-            format!(
-                "All {} recordings lie in the interval hull of the {set} at every sample.",
-                check.runs
-            )
-        }
-        None => {
-            format!("{} of {} rows have no {set} to lie in.", check.violations.count, check.rows)
-        }
+    let (outside, rows) = (answer.violations.count, answer.rows);
+    let words = match &answer.violations.worst {
+        _ if answer.conformant => format!(
+            "All {} recordings lie in the interval hull of the {set} at every sample.",
+            answer.runs
+        ),
+        None => format!("{outside} of {rows} rows have no {set} to lie in."),
         Some(worst) => format!(
-            "{} of {} rows leave the {set}, furthest {} at {:.3} s, {} by {:.3e}.",
-            check.violations.count, check.rows, worst.run, worst.time, worst.state, worst.excess
+            "{outside} of {rows} rows leave the {set}, furthest {} at {:.3} s, {} by {:.3e}.",
+            worst.run, worst.time, worst.state, worst.excess
         ),
     };
     let states = match model.settings.states {
         States::All => "position and velocity",
         States::Positions => "position",
     };
+    let band = "The grey band is an outer bound of the reachable set at the samples";
     let proved = vec![
         format!(
-            "{} of {} rows (suite, time, state) hold, checked with directed rounding: the recorded {states} lies in the interval hull of the {set}.",
-            check.rows - check.violations.count,
-            check.rows,
+            "{} of {rows} rows (suite, time, state) hold, checked with directed rounding: the \
+             recorded {states} lies in the interval hull of the {set}.",
+            rows - outside,
         ),
         match model.noise_set {
-            None => "The grey band is an outer bound of the reachable set at the samples.".into(),
-            Some(_) => "The grey band is an outer bound of the reachable set at the samples, without the measurement noise V: recordings may leave it by V.".into(),
+            None => format!("{band}."),
+            Some(_) => {
+                format!("{band}, without the measurement noise V: recordings may leave it by V.")
+            }
         },
     ];
-    let mut not_proved = vec![
-        "The recordings are compared with the set at samples; between samples only the model's own states are enclosed (the tube that the command reach writes).".into(),
-        "The notion is the hull: each state for itself. Points inside the hull need not be reachable together.".into(),
-    ];
-    if outer {
-        not_proved.push("The model is not linear: its reachable set was computed as an outer enclosure, which is what a formal analysis uses. A recording in it need not be a behaviour of the model itself. The recordings that decide the sets touch the linearised set, not the wider band.".into());
-    }
-    if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
-        not_proved.push(format!(
-            "Explanations were searched for, not proved: {}.",
-            explained.words(tolerance)
-        ));
-    }
     let end = |lost: &Lost| {
         format!(
             "{}: the reachable set could not be followed beyond {:.3} s ({}).",
             lost.case, lost.time, lost.state
         )
     };
-    not_proved.extend(check.lost.iter().map(end));
-    Verdict { ok: check.conformant, words, proved, not_proved }
+    let mut not_proved = not_proved(model, outer);
+    not_proved.extend(answer.lost.iter().map(end));
+    Verdict { ok: answer.conformant, words, proved, not_proved }
+}
+
+/// Returns what a reader must not take for proved.
+fn not_proved(model: &Model, outer: bool) -> Vec<String> {
+    let mut words = vec![
+        "The recordings are compared with the set at samples. Between samples only the model's own \
+         states are enclosed, by the tube that the command reach writes."
+            .into(),
+        "The notion is the interval hull: each state alone. Points inside the hull need not be \
+         reachable together."
+            .into(),
+    ];
+    if outer {
+        words.push(
+            "The model is not linear: its reachable set was computed as an outer enclosure, which \
+             is what a formal analysis uses. A recording in it need not be a behaviour of the \
+             model itself. The recordings that decide the sets touch the linearised set, not the \
+             wider band."
+                .into(),
+        );
+    }
+    if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
+        let found = explained.words(tolerance);
+        words.push(format!("Explanations were searched for, not proved: {found}."));
+    }
+    words
 }
 
 fn sets_table(model: &Model) -> SetsTable {
@@ -164,7 +170,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("The paper's sum (21)", number(model.cost_paper)),
         ("Volume of the hull, eq. (2)", volume),
         ("Sets found by", word(settings.method)),
-        ("Notion of conformance", word(settings.notion)),
+        ("Notion of conformance", "hull".into()),
         ("Disturbance", word(settings.disturbance)),
         ("Centres of the sets", word(settings.centre)),
         ("States enclosed", word(settings.states)),
@@ -214,57 +220,40 @@ fn caution(model: &Model) -> Vec<String> {
     words
 }
 
-fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
-    let Sources { model, data, check, reach, .. } = *sources;
-    let joints = model.joints();
-    let own: Vec<&SuiteReach> =
-        reach.iter().filter(|reach| reach.suite == suite.entry.name).collect();
+/// Makes the figure of one suite.
+fn figure(sources: &Sources, suite: &Suite) -> Result<SuiteFigure> {
+    let Sources { model, problem, check, reach } = *sources;
+    let (joints, name) = (model.joints(), &suite.entry.name);
+    let own: Vec<&SuiteReach> = reach.iter().filter(|reach| reach.suite == *name).collect();
     let longest = own.iter().max_by_key(|reach| reach.times.len()).copied();
-    let Some(longest) = longest else {
-        return Err(Error::Setting(format!(
-            "no reachable set was computed for suite {}",
-            suite.entry.name
-        )));
-    };
+    let longest = longest.ok_or_else(|| ReportError::NoReachableSet { suite: name.clone() })?;
     let shared = longest.run.is_none();
+    // Each run as a line, relative to its own nominal solution where it has one.
     let mut runs = Vec::new();
     for (order, summary) in suite.runs.iter().enumerate() {
-        let entry = &data.runs()[summary.index];
-        let of_run =
-            own.iter().find(|reach| reach.run.as_deref().is_none_or(|run| run == entry.file));
-        runs.push(trace(sources, summary.index, order, of_run.filter(|_| !shared).copied())?);
+        let file = &problem.entry(summary.index).file;
+        let of_run = own.iter().find(|reach| reach.run.as_ref() == Some(file));
+        runs.push(trace(problem, summary.index, order, of_run.copied())?);
     }
-    let nominal = columns(&longest.nominal, 2 * joints);
-    // Runs with nominals of their own share the hull of their deviations.
-    let relative = |of: fn(&SuiteReach) -> &[f64], further: fn(f64, f64) -> f64| {
-        let deviation = |reach: &&SuiteReach, at: usize| {
-            of(reach).get(at).map(|x| if shared { *x } else { x - reach.nominal[at] })
-        };
-        let hull = |at: usize| own.iter().filter_map(|reach| deviation(reach, at)).reduce(further);
-        let values: Vec<f64> = (0..longest.nominal.len()).filter_map(hull).collect();
-        columns(&values, 2 * joints)
-    };
-    let name =
-        |file: &String| suite.runs.iter().position(|run| data.runs()[run.index].file == *file);
-    let tight = model.tight.iter().filter(|place| place.suite == suite.entry.name);
-    let violated = check.suites.iter().filter(|own| own.suite == suite.entry.name);
-    let worst = violated.filter_map(|own| own.violations.worst.as_ref());
+    // The samples that decide the sets, and the worst one outside.
+    let place =
+        |file: &String| suite.runs.iter().position(|run| problem.entry(run.index).file == *file);
+    let tight = model.tight.iter().filter(|witness| witness.suite == *name);
+    let verdicts = check.verdict.suites.iter().filter(|verdict| verdict.suite == *name);
+    let worst = verdicts.filter_map(|verdict| verdict.violations.worst.as_ref());
     let spots: Vec<TightSpot> = tight
         .chain(worst)
-        .filter_map(|place| Some(spot(place, name(&place.run)?, joints)))
+        .filter_map(|witness| Some(spot(witness, place(&witness.run)?, joints)))
         .collect();
     for spot in &spots {
         runs[spot.run].touches += 1;
     }
+    let nominal = columns(&longest.nominal, 2 * joints);
     Ok(SuiteFigure {
-        suite: suite.entry.name.clone(),
+        suite: name.clone(),
         joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
         times: longest.times.clone(),
-        band: Band {
-            label: "reachable set".into(),
-            lower: relative(|reach| &reach.lower, f64::min),
-            upper: relative(|reach| &reach.upper, f64::max),
-        },
+        band: band(&own, longest, joints),
         inner: None,
         nominal: if shared { Nominal::Shared(nominal) } else { Nominal::PerRun },
         runs,
@@ -272,37 +261,49 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
     })
 }
 
-fn spot(place: &conform::Place, run: usize, joints: usize) -> TightSpot {
-    let state =
-        if place.state.starts_with("qd") { joints + place.joint - 1 } else { place.joint - 1 };
-    let side = match place.side {
-        conform::Side::Upper => Side::Upper,
-        conform::Side::Lower => Side::Lower,
+/// Returns the band of a suite. Runs with nominal solutions of their own share the hull of their
+/// deviations.
+fn band(own: &[&SuiteReach], longest: &SuiteReach, joints: usize) -> Band {
+    let shared = longest.run.is_none();
+    let edge = |of: fn(&SuiteReach) -> &[f64], further: fn(f64, f64) -> f64| {
+        let deviation = |reach: &&SuiteReach, at: usize| {
+            of(reach).get(at).map(|x| if shared { *x } else { x - reach.nominal[at] })
+        };
+        let hull = |at: usize| own.iter().filter_map(|reach| deviation(reach, at)).reduce(further);
+        let values: Vec<f64> = (0..longest.nominal.len()).filter_map(hull).collect();
+        columns(&values, 2 * joints)
     };
-    TightSpot { run, time_s: place.time, state, side, margin: -place.excess }
+    Band {
+        label: "reachable set".into(),
+        lower: edge(|reach| &reach.lower, f64::min),
+        upper: edge(|reach| &reach.upper, f64::max),
+    }
 }
 
-/// A run as a line; relative to its own nominal solution where it has one.
+fn spot(witness: &Witness, run: usize, joints: usize) -> TightSpot {
+    let Witness { time, state, side, excess, .. } = *witness;
+    TightSpot { run, time_s: time, state: state.index(joints), side, margin: -excess }
+}
+
+/// Returns a run as a line, relative to its own nominal solution where it has one.
 fn trace(
-    sources: &Sources,
+    problem: &Problem,
     index: usize,
     order: usize,
     own: Option<&SuiteReach>,
 ) -> Result<RunTrace> {
-    let Sources { model, settings, data, .. } = *sources;
-    let run = data
-        .read(index, Some(model.joints()), settings.gap_limit, settings.until)
-        .map_err(reachtube_recordings::Error::Defects)?;
+    let run = problem.run(index)?;
     let mut states = run.states.clone();
     if let Some(own) = own {
         states.iter_mut().zip(&own.nominal).for_each(|(x, nominal)| *x -= nominal);
     }
+    let entry = problem.entry(index);
     Ok(RunTrace {
-        name: data.runs()[index].file.clone(),
+        name: entry.file.clone(),
         order,
-        temperature: data.runs()[index].temperature,
-        times: run.times.iter().map(|t| t - run.times[0]).collect(),
-        states: columns(&states, 2 * model.joints()),
+        temperature: entry.temperature,
+        times: run.times.clone(),
+        states: columns(&states, 2 * run.joints),
         touches: 0,
     })
 }

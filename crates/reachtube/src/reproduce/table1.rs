@@ -12,7 +12,6 @@ use super::trajectories::{BLOCK, Trajectories, random_motion};
 use crate::error::{Error, Result};
 use crate::random::{SeedableRng, SplitMix64};
 use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
-use reachtube_conform::Progress;
 
 /// What is simulated.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -156,7 +155,11 @@ pub struct Table1 {
 /// assert!(table.cells.iter().all(|cell| cell.diverged == 0 && cell.mean.unwrap() < 0.1));
 /// # Ok::<(), reachtube::Error>(())
 /// ```
-pub fn table1(robot: &Robot, options: &Table1Options, progress: Progress<'_>) -> Result<Table1> {
+pub fn table1(
+    robot: &Robot,
+    options: &Table1Options,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Table1> {
     if options.motions == 0 || options.orders.is_empty() {
         return Err(Error::Setting("Table I of no motions or no orders; give 1 at least".into()));
     }

@@ -105,7 +105,7 @@ proptest! {
     ) {
         let n = q.len();
         let wide = |x: &[f64]| {
-            x.iter().map(|x| Interval::centered(*x, radius)).collect::<Vec<_>>()
+            x.iter().map(|x| Interval::centred(*x, radius)).collect::<Vec<_>>()
         };
         let (sin, cos) = robot.sin_cos(&q);
         // Sine and cosine are independent: s² + c² = 1 is not required.

@@ -313,7 +313,7 @@ fn interval_series_enclose_the_series_of_numbers() {
             let enclosure = interval.coefficient(&term.exponents);
             let tolerance = 1e-12 * (1.0 + term.coefficient.abs());
             assert!(
-                Interval::centered(enclosure.mid(), enclosure.rad() + tolerance)
+                Interval::centred(enclosure.mid(), enclosure.rad() + tolerance)
                     .contains(term.coefficient)
             );
             assert!(enclosure.rad() < 1e-9 * (1.0 + term.coefficient.abs()));

@@ -62,7 +62,7 @@ proptest! {
     ) {
         let n = q.len();
         let (sin, cos) = robot.sin_cos(&q);
-        let wide = |x: &f64| Interval::centered(*x, radius);
+        let wide = |x: &f64| Interval::centred(*x, radius);
         let inside = |x: &f64| x + 0.99 * pick * radius;
         let boxes = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(wide).collect::<Vec<_>>());
         let at = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(inside).collect::<Vec<_>>());

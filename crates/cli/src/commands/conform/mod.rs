@@ -6,5 +6,5 @@ mod settings;
 mod summary;
 
 pub use arguments::Arguments;
-pub use run::run;
+pub use run::{report, run};
 pub use summary::summary;

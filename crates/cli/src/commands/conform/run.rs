@@ -1,38 +1,36 @@
-use reachtube::conform::{Watch, conform};
+use std::path::{Path, PathBuf};
+
+use reachtube::conform::{Check, Conformance, Keep, Problem, conform, reach};
 use reachtube::recordings::DataSet;
+use reachtube::report::Sources;
 use reachtube::{Model, write};
 
 use super::arguments::Arguments;
-use super::settings::{explain, robot_and_settings};
+use super::settings::setup;
 use super::summary::summary;
 use crate::error::Result;
-use crate::opened::Opened;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::report_files;
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let (robot, mut settings) = robot_and_settings(args)?;
-    robot.check_physical()?;
-    settings.explain = explain(args, &robot, &settings)?;
-    settings.validate(robot.joint_count())?;
-    let data = DataSet::open(&args.data.data)?;
+    let setup = setup(args)?;
+    setup.robot.check_physical()?;
+    let source = Box::new(DataSet::open(&args.data.data)?);
     if let Some(path) = &args.out {
         write::try_at(path)?;
     }
     if let Some(folder) = &args.report {
-        write::try_at(&folder.join("report.html"))?;
+        write::try_at(&report_files::page_in(folder))?;
     }
+    let keep = if args.report.is_some() { Keep::All } else { Keep::Needed };
     let bar = Progress::new();
-    let show = |done: usize, total: usize| bar.show(done, total);
-    let tell = |text: &str| bar.note(text);
-    let watch = Watch { reading: &show, finished: &tell, resume: args.resume.as_deref() };
-    let found = conform(&robot, &data, &args.data.suites, &settings, &watch)?;
+    let problem = Problem::read(setup, source, &args.data.suites, keep, &bar)?;
+    let found = conform(&problem, &bar, args.resume.as_deref())?;
     drop(bar);
-    output::notes(&found.recordings.notes);
-    let model = Model::new(&robot, &data, &settings, &found);
-    drop(found);
+    output::notes(&problem.recordings().notes);
+    let model = Model::new(&problem, &found);
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
         output::note(&format!("wrote {}", path.display()));
@@ -42,10 +40,21 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     } else {
         output::print(&summary(&model))?;
     }
-    let verified = model.verified;
     if let Some(folder) = &args.report {
-        let (page, _) = report_files::write(&Opened::with(model, robot, &args.data)?, folder)?;
+        let page = report(&problem, &model, &found, folder)?;
         output::note(&format!("wrote {}", page.display()));
     }
-    Ok(Outcome::of(verified))
+    Ok(Outcome::of(model.verified))
+}
+
+/// Writes the page about the recordings that the sets were found for, from what is in memory.
+pub fn report(
+    problem: &Problem,
+    model: &Model,
+    found: &Conformance,
+    folder: &Path,
+) -> Result<PathBuf> {
+    let check = Check::new(model, problem, found.verdict.clone());
+    let reach = reach(problem, &found.hulls)?;
+    report_files::write(&Sources { model, problem, reach: &reach, check: &check }, folder)
 }

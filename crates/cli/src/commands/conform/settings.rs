@@ -1,30 +1,36 @@
 //! The settings of `conform` from its arguments.
 
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
-use reachtube::conform::{Dynamics, Noise, Settings, Tolerance, Weights};
+use reachtube::conform::{Noise, Settings, Setup, Tolerance, Weights};
 use reachtube_robot::Robot;
 
 use super::arguments::Arguments;
 use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
 
-/// Returns the robot and the settings, from the model file that `--abstraction` names if there is
-/// one.
-pub fn robot_and_settings(args: &Arguments) -> Result<(Robot, Settings)> {
-    let Some(path) = &args.abstraction else {
-        let robot = Robot::load(args.robot.as_deref().unwrap_or_default())?;
-        let settings = settings(args, robot.joint_count())?;
-        return Ok((robot, settings));
+/// Returns the robot, its model and the settings; from the model file that `--abstraction` names if
+/// there is one.
+pub fn setup(args: &Arguments) -> Result<Setup> {
+    let mut setup = match &args.abstraction {
+        None => {
+            let robot = Robot::load(args.robot.as_deref().unwrap_or_default())?;
+            let settings = settings(args, robot.joint_count())?;
+            Setup::new(robot, settings)?
+        }
+        Some(path) => {
+            let model = PolynomialModel::load(path)?;
+            let settings = settings(args, model.joints())?;
+            Setup::with_abstraction(model, settings)?
+        }
     };
-    let model = PolynomialModel::load(path)?;
-    let settings = settings(args, model.joints())?.with_abstraction(&model)?;
-    Ok((Robot::from_description(model.robot())?, settings))
+    setup.settings.explain = explain(args, &setup)?;
+    Ok(setup)
 }
 
 /// Returns the tolerance of `--explain`. Its default searches for explanations only for nonlinear
 /// models: the verdict on an outer enclosure needs them more, and their cost is small beside the
 /// search for the sets.
-pub fn explain(args: &Arguments, robot: &Robot, settings: &Settings) -> Result<Option<Tolerance>> {
+fn explain(args: &Arguments, setup: &Setup) -> Result<Option<Tolerance>> {
     match args.explain.as_deref() {
         Some("none") => Ok(None),
         Some(list) => {
@@ -33,10 +39,7 @@ pub fn explain(args: &Arguments, robot: &Robot, settings: &Settings) -> Result<O
             let parse = |text: &str| text.trim().parse().map_err(|_| wrong());
             Ok(Some(Tolerance { position: parse(position)?, velocity: parse(velocity)? }))
         }
-        None => match Dynamics::new(robot, settings)? {
-            Dynamics::Linear(_) => Ok(None),
-            Dynamics::Polynomial(_) => Ok(Some(Tolerance::default())),
-        },
+        None => Ok(setup.dynamics.linear_system().is_none().then(Tolerance::default)),
     }
 }
 

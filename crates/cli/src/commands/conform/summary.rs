@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::Model;
-use reachtube::conform::{Enclosure, MOST_TIGHT, Place};
+use reachtube::conform::{Enclosure, MOST_TIGHT, Witness};
 
 use crate::numbers::{interval, number};
 use crate::table::{plural, table};
@@ -36,12 +36,12 @@ fn verdict(model: &Model) -> String {
         }
     };
     let mut text = format!(
-        "{}: {runs} {} in {suites} {}; {} of {} bounds (suite, sample, state, side) {how}, at \
+        "{}: {runs} {} in {suites} {}; {} of {} values (suite, sample, state) {how}, at \
          samples\n",
         if model.verified { "conformant" } else { "NOT PROVED conformant" },
         plural(runs, "recording"),
         plural(suites, "suite"),
-        proof.proved,
+        proof.rows - proof.violations.count,
         proof.rows
     );
     for set in &proof.lost {
@@ -125,12 +125,12 @@ fn touching(model: &Model) -> String {
     format!("\n{count} {set} and decide X0 and U:\n{}", places(&model.tight))
 }
 
-fn places(places: &[Place]) -> String {
-    let row = |place: &Place| {
+fn places(places: &[Witness]) -> String {
+    let row = |place: &Witness| {
         vec![
             place.run.clone(),
             format!("{:.3} s", place.time),
-            place.state.clone(),
+            place.state.to_string(),
             format!("{:?}", place.side).to_lowercase(),
             format!("{:.1e}", 0.0 - place.excess),
         ]
