@@ -1,7 +1,8 @@
 use crate::side::Side;
 
-/// The highest and lowest value over many runs, for each sample and state, and which run has it. It
-/// streams, and two envelopes merge into the envelope of the whole; its size is that of one run.
+/// An envelope: the highest and lowest value over many runs, for each sample and state, and the run
+/// that has it. It takes runs one by one, two envelopes merge into the envelope of the whole, and its
+/// size is that of one run.
 ///
 /// # Examples
 ///
@@ -24,27 +25,27 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// The envelope of no run, for states of `dimension` entries.
+    /// Returns the envelope of no run, for states of `dimension` entries.
     pub fn new(dimension: usize) -> Self {
         Self { dimension, ..Self::default() }
     }
 
-    /// Number of samples K of the longest run so far.
+    /// Returns the number of samples K of the longest run so far.
     pub fn len(&self) -> usize {
         self.upper.len() / self.dimension.max(1)
     }
 
-    /// Whether there is no sample.
+    /// Returns whether there is no sample.
     pub fn is_empty(&self) -> bool {
         self.upper.is_empty()
     }
 
-    /// Number of states.
+    /// Returns the number of states.
     pub fn dimension(&self) -> usize {
         self.dimension
     }
 
-    /// Takes in run number `run` with the values `states`, row-major, samples x dimension.
+    /// Includes run number `run` with the values `states`, row-major, samples x dimension.
     pub fn include(&mut self, run: u32, states: &[f64]) {
         self.include_bounds(run, states, states);
     }
@@ -57,8 +58,8 @@ impl Envelope {
     /// Outer: exact comparisons, no rounding.
     pub fn include_bounds(&mut self, run: u32, lower: &[f64], upper: &[f64]) {
         self.extend(upper.len());
-        raise(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new > old);
-        raise(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new < old);
+        extend_bounds(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new > old);
+        extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new < old);
     }
 
     /// Takes in another envelope of the same states. Ties keep the run of the smaller number,
@@ -77,27 +78,27 @@ impl Envelope {
         }
     }
 
-    /// The highest value at sample k in state i.
+    /// Returns the highest value at sample k in state i.
     pub fn upper(&self, k: usize, i: usize) -> f64 {
         self.upper[k * self.dimension + i]
     }
 
-    /// The lowest value at sample k in state i.
+    /// Returns the lowest value at sample k in state i.
     pub fn lower(&self, k: usize, i: usize) -> f64 {
         self.lower[k * self.dimension + i]
     }
 
-    /// The run that has the highest value.
+    /// Returns the run that has the highest value.
     pub fn upper_run(&self, k: usize, i: usize) -> u32 {
         self.upper_run[k * self.dimension + i]
     }
 
-    /// The run that has the lowest value.
+    /// Returns the run that has the lowest value.
     pub fn lower_run(&self, k: usize, i: usize) -> u32 {
         self.lower_run[k * self.dimension + i]
     }
 
-    /// The same envelope, each bound shifted by a function of (k, i, bound).
+    /// Returns the envelope with each bound replaced by a function of (k, i, bound).
     pub(crate) fn map(
         &self,
         upper: impl Fn(usize, usize, f64) -> f64,
@@ -133,8 +134,9 @@ impl Envelope {
     }
 }
 
-/// One pass over memory; written without a branch so that the compiler can use vector registers.
-fn raise(
+/// Moves bounds outward where `values` lie beyond them. The pass has no branch, so that the compiler
+/// can use vector registers.
+fn extend_bounds(
     bounds: &mut [f64],
     runs: &mut [u32],
     values: &[f64],

@@ -15,7 +15,8 @@ pub struct UncertaintySets {
 }
 
 impl UncertaintySets {
-    /// The radius of V in state `i`, 0 without V.
+    /// Returns the radius of V in state `i`, 0 without V.
+    #[must_use]
     pub fn noise_radius(&self, i: usize) -> f64 {
         self.noise_set.as_ref().map_or(0.0, |set| set.radius[i])
     }

@@ -10,11 +10,20 @@ pub mod report;
 pub mod reproduce;
 
 pub use error::{Error, Result};
-pub use reachtube_abstraction as abstraction;
-pub use reachtube_conform as conform;
-pub use reachtube_conform::Model;
+pub use reachtube_abstraction::{
+    self as abstraction, Abstraction, ExpansionPoint, ModelKind, OperatingBox, PolynomialModel,
+};
+pub use reachtube_conform::{
+    self as conform, Check, Conformance, Dynamics, Enclosure, Hulls, Keep, Model, Problem, Progress,
+    Settings, Setup, Silent, SuiteReach, UncertaintySets, Verdict, Witness, check, conform, explain,
+    reach,
+};
 pub use reachtube_files::{TOOL, write};
-pub use reachtube_identify as identify;
-pub use reachtube_reach as reach;
-pub use reachtube_recordings as recordings;
-pub use reachtube_robot as robot;
+pub use reachtube_identify::{self as identify, Identification, IdentifySettings, identify};
+pub use reachtube_reach::{
+    self as reach, Disturbance, Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem,
+    TimeGrid, UncertainInput,
+};
+pub use reachtube_recordings::{self as recordings, DataSet, MemoryRuns, Run, RunSource, Torque};
+pub use reachtube_robot::{self as robot, Robot};
+pub use reachtube_scalar as scalar;

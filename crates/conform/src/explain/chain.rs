@@ -1,14 +1,15 @@
-//! States that follow from one another and from moves, and what moves cost least.
+//! A chain of states, each determined by the one before and by moves, and the moves of least
+//! quadratic cost.
 
 use std::ops::Range;
 
-/// x_k = G_k y_k + Φ_k x_{k-1} + d_k with x_{-1} = 0: states x_k of one dimension, moves y_k of
-/// any.
+/// A chain x_k = G_k y_k + Φ_k x_{k-1} + d_k with x_{-1} = 0. All states x_k have one dimension; the
+/// moves y_k may have any.
 #[derive(Debug)]
 pub(super) struct Chain {
     states: usize,
     links: Vec<Link>,
-    /// d, one entry a state of each link.
+    /// d, one entry per state of each link.
     pub drift: Vec<f64>,
     moves: usize,
 }
@@ -17,17 +18,17 @@ pub(super) struct Chain {
 struct Link {
     /// (G, Φ), row-major.
     rows: Vec<f64>,
-    /// Its own moves among all.
+    /// The link's own moves among all.
     moves: Range<usize>,
 }
 
 impl Chain {
-    /// No link yet; states of dimension `states`.
+    /// Returns a chain without links for states of dimension `states`.
     pub fn new(states: usize) -> Self {
         Self { states, links: Vec::new(), drift: Vec::new(), moves: 0 }
     }
 
-    /// One more link: a row (G, Φ) and a drift for each state.
+    /// Appends a link: a row (G, Φ) and a drift for each state.
     pub fn push(&mut self, rows: Vec<f64>, drift: impl IntoIterator<Item = f64>) {
         let moves = self.moves..self.moves + rows.len() / self.states - self.states;
         self.moves = moves.end;
@@ -35,12 +36,12 @@ impl Chain {
         self.drift.extend(drift);
     }
 
-    /// Number of all moves.
+    /// Returns the number of all moves.
     pub fn moves(&self) -> usize {
         self.moves
     }
 
-    /// The states without moves.
+    /// Returns the states without moves.
     pub fn rest(&self) -> Vec<f64> {
         let mut x = self.drift.clone();
         for (k, link) in self.links.iter().enumerate().skip(1) {
@@ -65,21 +66,21 @@ impl Chain {
 #[derive(Debug)]
 pub(super) struct Riccati<'a> {
     chain: &'a Chain,
-    /// For each link the upper rows of the Cholesky factor of what (y_k, x_{k-1}) cost, as many as
-    /// it has moves, row-major.
+    /// For each link the upper rows of the Cholesky factor of the cost of (y_k, x_{k-1}), one per move,
+    /// row-major.
     eliminated: Vec<Vec<f64>>,
-    /// P_k, of which x_k cost ½ xᵀ P x.
+    /// P_k of the cost ½ x_kᵀ P x_k.
     cost: Vec<f64>,
     /// P (G, Φ), then (G, Φ)ᵀ P (G, Φ).
     carried: Vec<f64>,
     square: Vec<f64>,
-    /// (y_k, x_{k-1}), and what multiplies x_k.
+    /// (y_k, x_{k-1}), and the factor of x_k.
     both: Vec<f64>,
     slope: Vec<f64>,
 }
 
 impl<'a> Riccati<'a> {
-    /// Room for `chain`.
+    /// Allocates the recursion for `chain`.
     pub fn new(chain: &'a Chain) -> Self {
         let (states, widest) = (chain.states, chain.widest());
         let rows = |link: &Link| vec![0.0; link.moves.len() * (link.moves.len() + states)];
@@ -94,7 +95,8 @@ impl<'a> Riccati<'a> {
         }
     }
 
-    /// Takes new Q, one entry a state, and R, one a move; whether the recursion came through.
+    /// Factors the recursion for new Q, one entry per state, and R, one per move; returns whether every
+    /// step was positive definite.
     pub fn factor(&mut self, q: &[f64], r: &[f64]) -> bool {
         let states = self.chain.states;
         self.cost.fill(0.0);
@@ -121,7 +123,7 @@ impl<'a> Riccati<'a> {
         true
     }
 
-    /// The upper triangle of what (y_k, x_{k-1}) cost through x_k.
+    /// Computes the upper triangle of the cost of (y_k, x_{k-1}) through x_k.
     fn carry(&mut self, link: &Link) {
         let (states, all) = (self.chain.states, link.moves.len() + self.chain.states);
         self.carried.fill(0.0);
@@ -138,8 +140,8 @@ impl<'a> Riccati<'a> {
         }
     }
 
-    /// States `x` and moves `y` of the chain without drift that make the quadratic cost + q·x + r·y
-    /// least.
+    /// Finds the states `x` and moves `y` of the chain without drift that minimise the quadratic
+    /// cost + q·x + r·y.
     pub fn solve(&mut self, q: &[f64], r: &[f64], x: &mut [f64], y: &mut [f64]) {
         self.backward(q, r, y);
         let states = self.chain.states;
@@ -162,7 +164,7 @@ impl<'a> Riccati<'a> {
         }
     }
 
-    /// Into `y` what is left of r once the moves before are eliminated.
+    /// Writes into `y` the rest of r after the elimination of later moves.
     fn backward(&mut self, q: &[f64], r: &[f64], y: &mut [f64]) {
         let states = self.chain.states;
         self.slope.fill(0.0);
@@ -188,8 +190,8 @@ impl<'a> Riccati<'a> {
     }
 }
 
-/// The first `count` steps of Cholesky's factorisation of a symmetric matrix, in its upper
-/// triangle; false where it is not positive definite.
+/// Performs the first `count` steps of Cholesky's factorisation of a symmetric matrix in its upper
+/// triangle; returns false where it is not positive definite.
 fn eliminate(matrix: &mut [f64], size: usize, count: usize) -> bool {
     for j in 0..count {
         let (done, left) = matrix[j * size..].split_at_mut(size);

@@ -1,6 +1,10 @@
-//! The moves within bounds that keep a chain closest to zero.
+//! The moves within bounds that keep a chain of states closest to zero.
+//!
+//! The program is a linear one with as many unknowns as a run has inputs and states (18,000 for 4 s
+//! of a six-joint arm). Its structure, a chain, makes each Newton step one Riccati recursion, whose
+//! time is linear in the samples. That is why it is not handed to the conic solver of the sets.
 
-use super::chain::{Chain, Riccati, dot};
+use crate::explain::chain::{Chain, Riccati, dot};
 
 /// Moves in [-1, 1], and the largest |x| of the states that follow.
 #[derive(Debug)]
@@ -9,17 +13,17 @@ pub(super) struct Regulated {
     pub largest: f64,
 }
 
-/// How far above the least the largest |x| may be, in parts of itself.
+/// Relative distance of the largest |x| from the least that is accepted.
 const ACCURACY: f64 = 0.02;
 
-/// Beyond this many iterations nothing is gained.
+/// Iterations at most; more gain nothing.
 const ITERATIONS: usize = 60;
 
-/// How far towards a bound a step goes.
+/// Part of the way to a bound that a step goes at most.
 const CAUTION: f64 = 0.99;
 
-/// min t over |x| <= t, |y| <= 1 for states x and moves y of `chain`, as far as `enough`: a linear
-/// program, solved by the primal-dual interior-point method of Mehrotra (SIAM J. Optim. 2, 1992),
+/// Minimises t over |x| <= t, |y| <= 1 for the states x and moves y of `chain`, until t falls below
+/// `enough`. The linear program is solved by the primal-dual interior-point method of Mehrotra (SIAM J. Optim. 2, 1992),
 /// each of whose steps is one Riccati recursion (Rao, Wright, Rawlings, J. Optim. Theory Appl. 99,
 /// 1998).
 pub(super) fn regulate(chain: &Chain, enough: f64) -> Regulated {
@@ -46,19 +50,20 @@ pub(super) fn regulate(chain: &Chain, enough: f64) -> Regulated {
     }
 }
 
-/// No moves, with multipliers as on the central path.
+/// Returns the start: no moves, with multipliers on the central path.
 fn start(chain: &Chain) -> (Band, Band) {
     let rest = chain.rest();
     let largest: f64 = rest.iter().fold(0.0, |max, x| max.max(x.abs()));
     let mut states = Band::new(1.1 * largest, rest);
     let mut moves = Band::new(1.0, vec![0.0; chain.moves()]);
     let inverse: f64 = states.slacks().map(|[above, below]| 1.0 / above + 1.0 / below).sum();
-    states.centre(1.0 / inverse);
-    moves.centre(1.0 / inverse);
+    states.set_multipliers(1.0 / inverse);
+    moves.set_multipliers(1.0 / inverse);
     (states, moves)
 }
 
-/// Values that stay within ± a bound, with a multiplier for each side; or how all that changes.
+/// Values that stay within ± a bound, with a multiplier for each side; or the change of all that in
+/// one step.
 #[derive(Debug, Clone)]
 struct Band {
     bound: f64,
@@ -71,17 +76,17 @@ impl Band {
         Self { bound, multipliers: vec![[0.0; 2]; values.len()], values }
     }
 
-    /// What is left above and below each value.
+    /// Returns the slack above and below each value.
     fn slacks(&self) -> impl Iterator<Item = [f64; 2]> {
         self.values.iter().map(|value| [self.bound - value, self.bound + value])
     }
 
-    /// Slacks and multipliers.
+    /// Returns slacks and multipliers.
     fn pairs(&self) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
         self.slacks().zip(self.multipliers.iter().copied())
     }
 
-    fn centre(&mut self, product: f64) {
+    fn set_multipliers(&mut self, product: f64) {
         for (multipliers, value) in self.multipliers.iter_mut().zip(&self.values) {
             *multipliers = [product / (self.bound - value), product / (self.bound + value)];
         }
@@ -93,7 +98,7 @@ impl Band {
             .sum()
     }
 
-    /// That after a step.
+    /// Returns the gap after a step.
     fn gap_after(&self, change: &Self, primal: f64, dual: f64) -> f64 {
         let pairs = self.pairs().zip(change.pairs());
         pairs
@@ -103,13 +108,13 @@ impl Band {
             .sum()
     }
 
-    /// How far `change` may be followed until a slack is used up.
+    /// Returns how far `change` may be followed until a slack is used up.
     fn room(&self, change: &Self) -> f64 {
         let rooms = self.slacks().zip(change.slacks()).flat_map(|(slack, more)| room(slack, more));
         rooms.fold(f64::INFINITY, f64::min)
     }
 
-    /// How far `change` may be followed until a multiplier is used up.
+    /// Returns how far `change` may be followed until a multiplier is used up.
     fn dual_room(&self, change: &Self) -> f64 {
         let rooms = self
             .multipliers
@@ -136,14 +141,14 @@ fn room(own: [f64; 2], change: [f64; 2]) -> [f64; 2] {
     [side(0), side(1)]
 }
 
-/// The Newton step. With s and λ the slacks and multipliers above (+) and below (-) a value z, h =
-/// λ / s, and a = (μ - Δs Δλ) / s what the product of the two aims at, the changes make ½ (h⁺ + h⁻)
-/// Δz² + (a⁺ - a⁻) Δz - (h⁺ - h⁻) Δz Δt least.
+/// The Newton step. With s and λ the slacks and multipliers above (+) and below (-) a value z,
+/// h = λ / s and a = (μ - Δs Δλ) / s the target of their product, the changes minimise
+/// ½ (h⁺ + h⁻) Δz² + (a⁺ - a⁻) Δz - (h⁺ - h⁻) Δz Δt.
 struct Step<'a> {
     riccati: Riccati<'a>,
     states: Band,
     moves: Band,
-    /// What x and y become for each unit of t.
+    /// The changes of x and y for each unit of t.
     per_bound: [Vec<f64>; 2],
     scratch: [Vec<f64>; 2],
 }
@@ -161,7 +166,7 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// Predictor and corrector; whether there is a step.
+    /// Computes predictor and corrector; returns whether there is a step.
     fn find(&mut self, states: &Band, moves: &Band, gap: f64) -> bool {
         fill(&mut self.scratch[0], states.pairs().map(|(s, m)| m[0] / s[0] + m[1] / s[1]));
         fill(&mut self.scratch[1], moves.pairs().map(|(s, m)| m[0] / s[0] + m[1] / s[1]));
@@ -184,7 +189,7 @@ impl<'a> Step<'a> {
         self.states.bound.is_finite() && curvature > 0.0
     }
 
-    /// Towards products of zero.
+    /// Steps towards products of zero.
     fn predict(&mut self, states: &Band, moves: &Band, curvature: f64) {
         for change in [&mut self.states, &mut self.moves] {
             change.multipliers.fill([0.0; 2]);
@@ -193,7 +198,7 @@ impl<'a> Step<'a> {
         self.follow(states, moves, -1.0 / curvature);
     }
 
-    /// Towards products of `mu`, counting what the predictor's own product would add.
+    /// Steps towards products of `mu`, including the second-order term of the predictor.
     fn correct(&mut self, states: &Band, moves: &Band, curvature: f64, mu: f64) {
         self.states.aim(states, mu);
         self.moves.aim(moves, mu);
@@ -210,7 +215,7 @@ impl<'a> Step<'a> {
         self.follow(states, moves, (tilt + leaning) / curvature);
     }
 
-    /// Adds what a change of t brings about, and turns what multipliers aim at into their changes.
+    /// Adds the effect of a change of t, and turns the targets of the multipliers into their changes.
     fn follow(&mut self, states: &Band, moves: &Band, change: f64) {
         (self.states.bound, self.moves.bound) = (change, 0.0);
         let all = [(&mut self.states, states), (&mut self.moves, moves)];

@@ -1,0 +1,35 @@
+//! A virtual arm is recorded, its smallest sets are found on some motions and tried on others.
+
+use reachtube::demo::{DemoOptions, record};
+use reachtube::{
+    DataSet, Hulls, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, check, conform,
+};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let robot = Robot::lwa4p();
+    let recorded = record(&robot, &DemoOptions::default(), folder.path())?;
+    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
+    let open = || DataSet::open(folder.path()).map(Box::new);
+
+    let training = Problem::read(setup.clone(), open()?, &recorded.training, Keep::Needed, &Silent)?;
+    let found = conform(&training, &Silent, None)?;
+    let model = Model::new(&training, &found);
+    println!("training: {} of {} rows hold", found.verdict.rows, found.verdict.rows);
+
+    let held_out = Problem::read(setup, open()?, &recorded.check, Keep::Needed, &Silent)?;
+    let answer = check(&model, &held_out, &Hulls::new(&held_out, model.sets())?)?;
+    let verdict = &answer.verdict;
+    println!("held out: {} of {} rows outside", verdict.violations.count, verdict.rows);
+    if let Some(witness) = &verdict.violations.worst {
+        println!(
+            "furthest: {} at {:.3} s, {} by {:.2e} {}",
+            witness.run,
+            witness.time,
+            witness.state,
+            witness.excess,
+            witness.state.kind.unit()
+        );
+    }
+    Ok(())
+}

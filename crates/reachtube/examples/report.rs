@@ -1,0 +1,29 @@
+//! The report page of a virtual arm, written to the folder `reachtube-report`.
+
+use reachtube::demo::{DemoOptions, record};
+use reachtube::report::{Sources, page, write_html};
+use reachtube::{
+    Check, DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, conform, reach,
+    write,
+};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let folder = tempfile::tempdir()?;
+    let robot = Robot::lwa4p();
+    let recorded = record(&robot, &DemoOptions::default(), folder.path())?;
+    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
+    let source = Box::new(DataSet::open(folder.path())?);
+    let problem = Problem::read(setup, source, &recorded.training, Keep::All, &Silent)?;
+    let found = conform(&problem, &Silent, None)?;
+    let model = Model::new(&problem, &found);
+
+    let check = Check::new(&model, &problem, found.verdict.clone());
+    let reach = reach(&problem, &found.hulls)?;
+    let sources = Sources { model: &model, problem: &problem, reach: &reach, check: &check };
+    let mut html = Vec::new();
+    write_html(&page(&sources)?, &mut html)?;
+    let path = std::path::Path::new("reachtube-report/report.html");
+    write::atomically(path, |out| out.write_all(&html))?;
+    println!("wrote {}", path.display());
+    Ok(())
+}
