@@ -81,8 +81,8 @@ impl Robot {
 
 /// Returns the moments of a link and all later ones about the parent's origin.
 ///
-/// With h = E h_link, origin p and mass m they are h + m p and
-/// E Σ Eᵀ + p (h + m p / 2)ᵀ + (h + m p / 2) pᵀ.
+/// Let h = E h_link, p the link's origin and m the mass. The first moment is h + m p, and the
+/// second moments are E Σ Eᵀ + p (h + m p / 2)ᵀ + (h + m p / 2) pᵀ.
 #[inline(always)]
 fn composite_to_parent<S: Scalar>(
     pose: &Pose<S>,

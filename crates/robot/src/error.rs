@@ -39,7 +39,7 @@ pub enum RobotError {
         place: String,
         /// The value and the limit that it violates.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
     /// The mass matrix is not positive definite: torque on a joint would accelerate it backward.
@@ -53,7 +53,7 @@ pub enum RobotError {
         robot: String,
         /// The joint nearest the tip whose pivot is not positive.
         joint: String,
-        /// That pivot \[kg m²\].
+        /// The pivot of this joint \[kg m²\].
         pivot: f64,
         /// The position \[rad\].
         q: Vec<f64>,

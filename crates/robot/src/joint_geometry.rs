@@ -40,8 +40,8 @@ impl JointGeometry {
         Self { before, axis: Vector3::z(), after }
     }
 
-    /// Makes a joint from the placement of its frame in the original frame of the previous link and
-    /// a unit axis; the link's frame is the joint frame rotated by q.
+    /// Makes a joint from the placement of its frame in the original frame of the previous link,
+    /// and from a unit axis. The link's frame is the joint frame rotated by q.
     pub fn explicit(placement: Placement, axis: Vector3<f64>) -> Self {
         Self { before: placement, axis, after: Placement::identity() }
     }

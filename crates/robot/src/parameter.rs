@@ -105,7 +105,7 @@ impl ParameterKind {
         (self as usize) < INERTIAL
     }
 
-    /// Returns the regressor's only entry for a drive parameter, which stands in the joint's own
+    /// Returns the only entry of a drive parameter in the regressor, which is in the joint's own
     /// row; 0 for an inertial parameter.
     pub(crate) fn drive_entry(self, qd: f64, qdd: f64) -> f64 {
         match self {

@@ -23,9 +23,9 @@ const TOLERANCE: f64 = 1e-9;
 ///
 /// Columns are scaled to unit length and processed in their given order. A column that is
 /// independent of the earlier ones is a column of Y_b; any other column is a combination of those.
-/// With the order of [`Parameter::of_joints`], joint by joint from the base, parameters of a link
-/// that are identifiable only together with earlier links are grouped with those, as is common in
-/// the literature.
+/// [`Parameter::of_joints`] has the order that is common in the literature, joint by joint from the
+/// base. Parameters that are identifiable only together with those of earlier links are then
+/// grouped with these.
 ///
 /// # Examples
 ///
@@ -51,8 +51,8 @@ pub struct BaseParameters {
 impl BaseParameters {
     /// Computes the base parameters of a robot in motion.
     ///
-    /// The regressor has 200 reproducible random states within the limits, with accelerations up to
-    /// 5 rad/s² and speeds up to the limit, or up to 2 rad/s for joints without one. For a robot
+    /// The regressor has 200 reproducible random states within the limits. Accelerations are up to
+    /// 5 rad/s², and speeds up to the limit, which is 2 rad/s for joints without one. For a robot
     /// without gravity or on a tilted base, pass the robot from [`Robot::with_gravity`].
     pub fn of_robot(robot: &Robot, parameters: &[Parameter]) -> Self {
         Self::over(robot, parameters, &random_states(robot, STATES, &mut Random::new(1)))

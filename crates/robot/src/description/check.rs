@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-9;
 pub(crate) struct InvalidValue {
     /// Index of the joint, or `None` for the robot as a whole.
     pub joint: Option<usize>,
-    /// Key that the value stands under.
+    /// Key of the value in the description.
     pub key: &'static str,
     pub problem: String,
     pub remedy: &'static str,

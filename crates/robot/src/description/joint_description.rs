@@ -137,7 +137,7 @@ pub struct JointDescription {
     /// Lowest and highest position \[rad\]; the default is ±pi.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position_limits: Option<[f64; 2]>,
-    /// Highest speed \[rad/s\]; the default is unknown.
+    /// Highest speed \[rad/s\]; unknown by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_limit: Option<f64>,
     /// Friction; the default is none.

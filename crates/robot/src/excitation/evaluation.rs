@@ -9,7 +9,8 @@ use crate::robot::Robot;
 use crate::singular_values::singular_values;
 use nalgebra::DMatrix;
 
-/// How well a motion identifies base parameters, computed from 20 samples per harmonic.
+/// The quality of a motion for the identification of base parameters, computed from 20 samples per
+/// harmonic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     /// ln det of the information matrix Y_bᵀ W Y_b / samples in SI units, with the inverse

@@ -5,8 +5,7 @@ use core::f64::consts::{PI, TAU};
 /// Number of grid points per harmonic at which a series is evaluated for its bounds.
 pub(super) const GRID: usize = 20;
 
-/// A periodic motion with q_i(t) = c_i + Σ_l (a_il sin(l ω t) - b_il cos(l ω t)) / (l ω) for joint
-/// i.
+/// A periodic motion: q_i(t) = c_i + Σ_l (a_il sin(l ω t) - b_il cos(l ω t)) / (l ω) for joint i.
 ///
 /// The velocity is Σ_l a_il cos(l ω t) + b_il sin(l ω t) (Swevers et al., IEEE Trans. Robotics and
 /// Automation 13(5), 1997).
@@ -76,9 +75,9 @@ impl FourierTrajectory {
     ///
     /// # Guarantee
     ///
-    /// Up to rounding, the bounds are outer bounds of the series. Between M equidistant samples of
-    /// a period, a trigonometric polynomial of degree N exceeds its largest sample by a factor of
-    /// at most 1/cos(π N / M) (Ehlich & Zeller 1964), which is 1.013 here.
+    /// Up to rounding, the bounds are outer bounds of the series. They come from M equidistant
+    /// samples of a period. A trigonometric polynomial of degree N exceeds its largest sample by a
+    /// factor of at most 1/cos(π N / M) (Ehlich & Zeller 1964), which is 1.013 here.
     pub fn position_range(&self, joint: usize) -> [f64; 2] {
         let (low, high) = self.extremes(joint, 0);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * grid_excess());

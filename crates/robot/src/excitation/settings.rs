@@ -99,8 +99,8 @@ impl ExcitationSettings {
             (
                 !fits(&self.acceleration, true) || !self.acceleration.iter().all(|a| positive(*a)),
                 format!(
-                    "acceleration = {:?} rad/s² does not fit; give no limit, one for all joints, or \
-                     {joints}, all positive",
+                    "acceleration = {:?} rad/s² does not fit; give no limit, one for all joints, \
+                     or {joints}, all positive",
                     self.acceleration
                 ),
             ),

@@ -15,7 +15,7 @@ pub enum Physicality {
         positions: usize,
         /// Index of the joint with the smallest pivot.
         joint: usize,
-        /// That pivot \[kg m²\].
+        /// The smallest pivot \[kg m²\].
         pivot: f64,
         /// The position with that pivot \[rad\].
         q: Vec<f64>,

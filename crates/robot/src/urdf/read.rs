@@ -67,9 +67,9 @@ impl Urdf {
     ///
     /// # Errors
     ///
-    /// Returns a [`RobotError`] with file, line, element, joint or link, and remedy: for XML that
-    /// is not well-formed, for missing links or numbers, and for prismatic, planar, floating and
-    /// mimic joints or branches in the chain.
+    /// Returns a [`RobotError`] with file, line, element, joint or link, and remedy. The causes are
+    /// XML that is not well-formed, missing links or numbers, branches, and prismatic, planar,
+    /// floating and mimic joints in the chain.
     pub fn load(path: impl AsRef<Path>, ends: &UrdfEnds) -> Result<Self, RobotError> {
         let path = path.as_ref();
         let read = |path: &Path| {
