@@ -15,8 +15,8 @@ pub fn clopper_pearson(trials: usize, hits: usize, beta: f64) -> f64 {
     bisect(|p| -> f64 { tail(p) }, beta, 0.0, 1.0)
 }
 
-/// Returns the wait-and-judge scenario bound ε(k) of Campi and Garatti (Mathematical Programming 2018,
-/// Theorem 1): with confidence 1 - β, a convex program with `scenarios` scenarios of which
+/// Returns the wait-and-judge scenario bound ε(k) of Campi and Garatti (Mathematical Programming
+/// 2018, Theorem 1): with confidence 1 - β, a convex program with `scenarios` scenarios of which
 /// `support` are of support is violated by the next one with probability at most ε.
 ///
 /// 1 - ε is the root in (0, 1) of β/(N+1) Σ_{m=k}^{N} C(m,k) t^{m-k} = C(N,k) t^{N-k}.

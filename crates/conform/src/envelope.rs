@@ -1,8 +1,8 @@
 use crate::side::Side;
 
 /// An envelope: the highest and lowest value over many runs, for each sample and state, and the run
-/// that has it. It takes runs one by one, two envelopes merge into the envelope of the whole, and its
-/// size is that of one run.
+/// that has it. It takes runs one by one, two envelopes merge into the envelope of the whole, and
+/// its size is that of one run.
 ///
 /// # Examples
 ///
@@ -50,7 +50,7 @@ impl Envelope {
         self.include_bounds(run, states, states);
     }
 
-    /// Takes in a run whose values are known to lie between `lower` and `upper`, so that the
+    /// Includes a run whose values are known to lie between `lower` and `upper`, so that the
     /// envelope bounds the exact one from outside.
     ///
     /// # Guarantee
@@ -62,7 +62,7 @@ impl Envelope {
         extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new < old);
     }
 
-    /// Takes in another envelope of the same states. Ties keep the run of the smaller number,
+    /// Merges another envelope of the same states. Ties keep the run of the smaller number,
     /// whatever the order of merging.
     pub fn merge(&mut self, other: &Self) {
         self.extend(other.upper.len());
@@ -134,8 +134,8 @@ impl Envelope {
     }
 }
 
-/// Moves bounds outward where `values` lie beyond them. The pass has no branch, so that the compiler
-/// can use vector registers.
+/// Moves bounds outward where `values` lie beyond them. The pass has no branch, so that the
+/// compiler can use vector registers.
 fn extend_bounds(
     bounds: &mut [f64],
     runs: &mut [u32],
@@ -170,7 +170,10 @@ mod tests {
             let runs: Vec<(u32, Vec<f64>)> = values
                 .iter()
                 .enumerate()
-                .map(|(run, v)| (run as u32, v.iter().map(|&x| f64::from(x)).take(v.len() / 2 * 2).collect()))
+                .map(|(run, v)| {
+                    let even = v.len() / 2 * 2;
+                    (run as u32, v.iter().map(|&x| f64::from(x)).take(even).collect())
+                })
                 .collect();
             let (first, second) = runs.split_at(cut.min(runs.len()));
             let (mut a, mut b) = (envelope_of(first), envelope_of(second));

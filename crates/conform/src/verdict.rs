@@ -12,7 +12,8 @@ use crate::settings::States;
 use crate::side::Side;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
-/// the recordings of one suite at one time in one state (of one run, where it has a set of its own).
+/// the recordings of one suite at one time in one state (of one run, where it has a set of its
+/// own).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Verdict {

@@ -22,8 +22,11 @@ use reachtube_robot::Robot;
 fn bent() -> Robot {
     let joint = |name: &str, mass: f64, viscous: &str| {
         format!(
-            "[[joint]]\nname = \"{name}\"\ndh = {{ a = 0.3, alpha = 0.0, theta = 0.0, d = 0.0 }}\nmass = {mass}\ncom = [-0.15, 0.0, 0.0]\n\
-             inertia = [0.01, 0.0, 0.0, 0.02, 0.0, 0.02]\narmature = 0.3\nfriction = {{ viscous = {viscous} }}\n"
+            "[[joint]]\nname = \"{name}\"\n\
+             dh = {{ a = 0.3, alpha = 0.0, theta = 0.0, d = 0.0 }}\n\
+             mass = {mass}\ncom = [-0.15, 0.0, 0.0]\n\
+             inertia = [0.01, 0.0, 0.0, 0.02, 0.0, 0.02]\narmature = 0.3\n\
+             friction = {{ viscous = {viscous} }}\n"
         )
     };
     let text = format!(

@@ -12,7 +12,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
     let open = || DataSet::open(folder.path()).map(Box::new);
 
-    let training = Problem::read(setup.clone(), open()?, &recorded.training, Keep::Needed, &Silent)?;
+    let training =
+        Problem::read(setup.clone(), open()?, &recorded.training, Keep::Needed, &Silent)?;
     let found = conform(&training, &Silent, None)?;
     let model = Model::new(&training, &found);
     println!("training: {} of {} rows hold", found.verdict.rows, found.verdict.rows);

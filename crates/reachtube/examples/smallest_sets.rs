@@ -1,8 +1,6 @@
 //! The smallest uncertainty sets of a linear model for runs in memory.
 
-use reachtube::{
-    Keep, MemoryRuns, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform,
-};
+use reachtube::{Keep, MemoryRuns, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Five runs of one suite: the arm drifts from rest, a little differently each time.

@@ -14,9 +14,9 @@ pub use reachtube_abstraction::{
     self as abstraction, Abstraction, ExpansionPoint, ModelKind, OperatingBox, PolynomialModel,
 };
 pub use reachtube_conform::{
-    self as conform, Check, Conformance, Dynamics, Enclosure, Hulls, Keep, Model, Problem, Progress,
-    Settings, Setup, Silent, SuiteReach, UncertaintySets, Verdict, Witness, check, conform, explain,
-    reach,
+    self as conform, Check, Conformance, Dynamics, Enclosure, Hulls, Keep, Model, Problem,
+    Progress, Settings, Setup, Silent, SuiteReach, UncertaintySets, Verdict, Witness, check,
+    conform, explain, reach,
 };
 pub use reachtube_files::{TOOL, write};
 pub use reachtube_identify::{self as identify, Identification, IdentifySettings, identify};

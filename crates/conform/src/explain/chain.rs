@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-/// A chain x_k = G_k y_k + Φ_k x_{k-1} + d_k with x_{-1} = 0. All states x_k have one dimension; the
-/// moves y_k may have any.
+/// A chain x_k = G_k y_k + Φ_k x_{k-1} + d_k with x_{-1} = 0. All states x_k have one dimension;
+/// the moves y_k may have any.
 #[derive(Debug)]
 pub(super) struct Chain {
     states: usize,
@@ -66,8 +66,8 @@ impl Chain {
 #[derive(Debug)]
 pub(super) struct Riccati<'a> {
     chain: &'a Chain,
-    /// For each link the upper rows of the Cholesky factor of the cost of (y_k, x_{k-1}), one per move,
-    /// row-major.
+    /// For each link the upper rows of the Cholesky factor of the cost of (y_k, x_{k-1}), one per
+    /// move, row-major.
     eliminated: Vec<Vec<f64>>,
     /// P_k of the cost ½ x_kᵀ P x_k.
     cost: Vec<f64>,
@@ -95,8 +95,8 @@ impl<'a> Riccati<'a> {
         }
     }
 
-    /// Factors the recursion for new Q, one entry per state, and R, one per move; returns whether every
-    /// step was positive definite.
+    /// Factors the recursion for new Q, one entry per state, and R, one per move; returns whether
+    /// every step was positive definite.
     pub fn factor(&mut self, q: &[f64], r: &[f64]) -> bool {
         let states = self.chain.states;
         self.cost.fill(0.0);

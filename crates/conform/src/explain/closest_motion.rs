@@ -110,8 +110,8 @@ impl<'a> ClosestMotion<'a> {
         (self.behaviour(&start, inputs), found.largest)
     }
 
-    /// Returns the distance of the linearised model from the recorded motion in units, as a chain in
-    /// the start and inputs, which move through their boxes, [-1, 1] each.
+    /// Returns the distance of the linearised model from the recorded motion in units, as a chain
+    /// in the start and inputs, which move through their boxes, [-1, 1] each.
     fn chain(&self, states: &[f64], inputs: &[f64]) -> Chain {
         let n = self.recorded.joints;
         let mut chain = Chain::new(2 * n);
@@ -132,8 +132,8 @@ impl<'a> ClosestMotion<'a> {
         chain
     }
 
-    /// Appends the step to sample k, made from the state `before` under the input `held`, as a link from
-    /// the recorded state and the middle of the allowed inputs.
+    /// Appends the step to sample k, made from the state `before` under the input `held`, as a link
+    /// from the recorded state and the middle of the allowed inputs.
     fn link(&self, k: usize, step: Step, before: &[f64], held: &[f64], chain: &mut Chain) {
         let n = held.len();
         let allowed = &self.inputs[(k - 1) * n..k * n];

@@ -8,7 +8,8 @@ use crate::sets::UncertaintySets;
 
 /// How close a model comes to a recorded run: the largest |recorded - simulated| over all samples
 /// and joints of the closest motion found, whose start lies in start + X0 and whose input lies in
-/// u_m + U and is held from each sample to the next. The residuals are infinite where the simulation ran away.
+/// u_m + U and is held from each sample to the next. The residuals are infinite where the
+/// simulation ran away.
 ///
 /// That motion is a witness: the run is explained within these residuals. Nothing is claimed about
 /// closer motions.

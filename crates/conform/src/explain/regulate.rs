@@ -23,9 +23,9 @@ const ITERATIONS: usize = 60;
 const CAUTION: f64 = 0.99;
 
 /// Minimises t over |x| <= t, |y| <= 1 for the states x and moves y of `chain`, until t falls below
-/// `enough`. The linear program is solved by the primal-dual interior-point method of Mehrotra (SIAM J. Optim. 2, 1992),
-/// each of whose steps is one Riccati recursion (Rao, Wright, Rawlings, J. Optim. Theory Appl. 99,
-/// 1998).
+/// `enough`. The linear program is solved by the primal-dual interior-point method of Mehrotra
+/// (SIAM J. Optim. 2, 1992), each of whose steps is one Riccati recursion (Rao, Wright, Rawlings,
+/// J. Optim. Theory Appl. 99, 1998).
 pub(super) fn regulate(chain: &Chain, enough: f64) -> Regulated {
     let (mut states, mut moves) = start(chain);
     let mut step = Step::new(chain, &states, &moves);
@@ -215,7 +215,8 @@ impl<'a> Step<'a> {
         self.follow(states, moves, (tilt + leaning) / curvature);
     }
 
-    /// Adds the effect of a change of t, and turns the targets of the multipliers into their changes.
+    /// Adds the effect of a change of t, and turns the targets of the multipliers into their
+    /// changes.
     fn follow(&mut self, states: &Band, moves: &Band, change: f64) {
         (self.states.bound, self.moves.bound) = (change, 0.0);
         let all = [(&mut self.states, states), (&mut self.moves, moves)];

@@ -77,7 +77,8 @@ pub(crate) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -
             })
         }
         status => Err(Error::Program(format!(
-            "the solver stopped with {status:?}; check that the recordings and the robot belong together"
+            "the solver stopped with {status:?}; check that the recordings and the robot belong \
+             together"
         ))),
     }
 }

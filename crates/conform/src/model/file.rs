@@ -53,8 +53,8 @@ pub struct Model {
     /// Whether the sets were proved to enclose the recordings.
     pub verified: bool,
     /// The cost of the sets: Σ_k Σ_i s_i times the width of the reachable set and the noise, over
-    /// all states and distinct sample times; the mean where suites have different sets. `None` where
-    /// a reachable set was lost.
+    /// all states and distinct sample times; the mean where suites have different sets. `None`
+    /// where a reachable set was lost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
     /// The solver's dual objective for a linear model: sets that satisfy the program cost no less,
@@ -237,7 +237,8 @@ impl Model {
         let fits_box =
             self.settings.operating_box.as_ref().is_none_or(|sides| sides.is_valid_for(n));
         let problem = if is_linear && costs.contains(&None) {
-            "it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model does"
+            "it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model \
+             does"
                 .into()
         } else if !(if is_linear { linear } else { none }) {
             format!("a, b or drift has not the size for the {n} joints of its robot")

@@ -8,8 +8,8 @@ use crate::problem::problem::Problem;
 use crate::problem::suite::{RunSummary, Suite};
 use crate::settings::Tolerance;
 
-/// The recordings beside the closest motions of the model that were found: a start in X0 and an input
-/// in U, held over each sample.
+/// The recordings beside the closest motions of the model that were found: a start in X0 and an
+/// input in U, held over each sample.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Explained {
@@ -89,7 +89,8 @@ impl Explained {
         };
         format!(
             "a motion of the model itself (start in X0, input in U, held over each sample) was \
-             found within {} rad and {} rad/s of {} of the {} recordings; the closest motions found differ by {} rad and {} rad/s in the median, and by {} rad \
+             found within {} rad and {} rad/s of {} of the {} recordings; the closest motions found \
+             differ by {} rad and {} rad/s in the median, and by {} rad \
              and {} rad/s for {}",
             tolerance.position,
             tolerance.velocity,

@@ -24,7 +24,8 @@ const FACTORS: [f64; 6] = [1.0, 1.05, 1.1, 1.25, 1.5, 2.0];
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BisectionState {
-    /// The smallest sets so far that enclose every recording, or the candidate before one was found.
+    /// The smallest sets so far that enclose every recording, or the candidate before one was
+    /// found.
     sets: UncertaintySets,
     /// Index of the next of [`FACTORS`], while none has enclosed every recording.
     factor: usize,

@@ -1,4 +1,4 @@
-//! From a model and recordings to the page.
+//! Makes the page from a model and recordings.
 
 use reachtube_conform::{
     Check, Enclosure, Lost, Model, Problem, States, Suite, SuiteReach, Witness,
@@ -187,7 +187,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
     .collect()
 }
 
-/// A setting in the word that the model file has for it.
+/// Returns a setting in the word that the model file has for it.
 fn word(setting: impl serde::Serialize) -> String {
     let value = serde_json::to_value(setting).unwrap_or_default();
     value.as_str().map_or_else(|| value.to_string(), str::to_string)
@@ -199,7 +199,8 @@ fn trust(model: &Model, check: &Check) -> String {
         None => (&model.trust, "touch the reachable set"),
     };
     format!(
-        "The next motion leaves the reachable set with probability at most {:.3}, at confidence {:.0} %: {} independent motions, of which {} {role}; {}.",
+        "The next motion leaves the reachable set with probability at most {:.3}, at confidence \
+         {:.0} %: {} independent motions, of which {} {role}; {}.",
         trust.violation_probability,
         100.0 * trust.confidence,
         trust.motions,
@@ -210,11 +211,15 @@ fn trust(model: &Model, check: &Check) -> String {
 
 fn caution(model: &Model) -> Vec<String> {
     let mut words = vec![
-        "That these sets enclose these recordings is a fact about the recordings. It says nothing certain about motions, payloads or temperatures that were not recorded.".to_string(),
+        "That these sets enclose these recordings is a fact about the recordings. It says nothing \
+         certain about motions, payloads or temperatures that were not recorded."
+            .to_string(),
     ];
     if model.trust.violation_probability > 0.5 {
         words.push(
-            "There are too few independent motions for a useful bound on the next one; record more motions rather than more runs of the same.".into(),
+            "There are too few independent motions for a useful bound on the next one; record more \
+             motions rather than more runs of the same."
+                .into(),
         );
     }
     words
@@ -308,7 +313,7 @@ fn trace(
     })
 }
 
-/// Row-major samples x states, turned into one list a state.
+/// Turns row-major samples x states into one list per state.
 fn columns(values: &[f64], states: usize) -> Vec<Vec<f64>> {
     (0..states).map(|i| values.iter().skip(i).step_by(states).copied().collect()).collect()
 }
