@@ -1,11 +1,13 @@
-//! The paper's size: 152 suites x 15 runs x 5 s at 250 Hz of a 6-joint arm.
-//! `cargo bench -p reachtube`.
+//! Conformance at the paper's size: 152 suites x 15 runs x 5 s at 250 Hz of a 6-joint arm.
 
 use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
-use reachtube_conform::{Block, Deviation, Envelope, Grid, Program, Settings, Watch, conform};
+use reachtube_conform::{
+    Block, Check, Deviation, Envelope, Grid, Hulls, Keep, Model, Problem, Program, Settings, Setup,
+    Silent, check, conform, reach,
+};
 use reachtube_reach::{Disturbance, Propagation, TimeGrid};
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
@@ -46,8 +48,8 @@ fn recordings() -> Vec<Vec<f64>> {
 fn grid(disturbance: Disturbance) -> Grid {
     let system = linear_model(&Robot::lwa4p(), &ExpansionPoint::zero(6)).unwrap();
     let propagation = Propagation::new(&system, &TimeGrid::uniform(0.004, SAMPLES)).unwrap();
-    let gains = disturbance.gains(&propagation);
-    Grid { propagation, gains }
+    let input_gains = disturbance.input_gains(&propagation);
+    Grid { propagation, input_gains }
 }
 
 #[divan::bench(sample_count = 10)]
@@ -106,7 +108,7 @@ fn program_of_152_suites(bencher: Bencher, disturbance: Disturbance) {
     let grids = [grid(disturbance)];
     let mut envelope = Envelope::new(STATES);
     (0..RUNS).for_each(|run| envelope.include(run as u32, &deviations(run)));
-    let deviations = [Deviation { grid: 0, envelope }];
+    let deviations = [Deviation { suite: 0, grid: 0, envelope }];
     let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
     bencher.bench(|| {
         let program = Program::new(
@@ -123,15 +125,55 @@ fn matrices_of_5_s(bencher: Bencher) {
     bencher.bench(|| grid(Disturbance::Sample));
 }
 
-/// The whole of `conform` on the recordings of the paper's arm, where they are beside the
-/// repository.
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/schunk_lwa4p");
+
+/// Reads all suites of the paper's arm, where its recordings are beside the repository.
+fn schunk(keep: Keep) -> Option<Problem> {
+    let source = Box::new(DataSet::open(FOLDER).ok()?);
+    let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6)).unwrap();
+    Some(Problem::read(setup, source, &[], keep, &Silent).unwrap())
+}
+
+/// Reading and the sets.
 #[divan::bench(sample_count = 10)]
 fn conform_schunk(bencher: Bencher) {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/schunk_lwa4p");
-    let Ok(data) = DataSet::open(folder) else {
-        eprintln!("skipped: shared/data/schunk_lwa4p is not beside the repository");
+    if schunk(Keep::Needed).is_none() {
+        println!("skipped: {FOLDER} does not exist");
         return;
-    };
-    let (robot, settings) = (Robot::lwa4p(), Settings::new(Torque::Compensated, 6));
-    bencher.bench(|| conform(&robot, &data, &[], &settings, &Watch::SILENT).unwrap());
+    }
+    bencher.bench(|| conform(&schunk(Keep::Needed).unwrap(), &Silent, None).unwrap());
+}
+
+/// What `conform --report` computes for its page: everything from one problem.
+#[divan::bench(sample_count = 10)]
+fn conform_and_page_from_one_problem(bencher: Bencher) {
+    if schunk(Keep::All).is_none() {
+        return;
+    }
+    bencher.bench(|| {
+        let problem = schunk(Keep::All).unwrap();
+        let found = conform(&problem, &Silent, None).unwrap();
+        let model = Model::new(&problem, &found);
+        let answer = Check::new(&model, &problem, found.verdict.clone());
+        (answer, reach(&problem, &found.hulls).unwrap())
+    });
+}
+
+/// The same with a problem for each step, as it was when steps took a folder and settings.
+#[divan::bench(sample_count = 10)]
+fn conform_and_page_from_three_problems(bencher: Bencher) {
+    if schunk(Keep::All).is_none() {
+        return;
+    }
+    bencher.bench(|| {
+        let problem = schunk(Keep::Needed).unwrap();
+        let found = conform(&problem, &Silent, None).unwrap();
+        let model = Model::new(&problem, &found);
+        let problem = schunk(Keep::Needed).unwrap();
+        let hulls = Hulls::new(&problem, model.sets()).unwrap();
+        let answer = check(&model, &problem, &hulls).unwrap();
+        let problem = schunk(Keep::All).unwrap();
+        let hulls = Hulls::new(&problem, model.sets()).unwrap();
+        (answer, reach(&problem, &hulls).unwrap())
+    });
 }

@@ -1,11 +1,11 @@
-//! Conformance of models that are not linear, on the paper's recordings
-//! (../shared/data/schunk_lwa4p; without them there is nothing to measure).
+//! Conformance of models that are not linear, on the paper's recordings in
+//! ../shared/data/schunk_lwa4p. Without them there is nothing to measure.
 
 use std::path::Path;
 
 use divan::Bencher;
 use reachtube_abstraction::{Abstraction, ModelKind};
-use reachtube_conform::{Method, Settings, Tolerance, Watch, conform};
+use reachtube_conform::{Keep, Method, Problem, Settings, Setup, Silent, Tolerance, conform};
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
 
@@ -15,16 +15,20 @@ fn main() {
     divan::main();
 }
 
-/// Suites A, B, D and E: 73 recordings of up to 4.35 s at 250 Hz.
+/// Reads suites A, B, D and E, 73 recordings of up to 4.35 s at 250 Hz, and finds their sets.
 fn run(bencher: Bencher, adjust: impl Fn(Settings) -> Settings) {
     if !Path::new(FOLDER).exists() {
-        println!("{FOLDER} is lacking");
+        println!("skipped: {FOLDER} does not exist");
         return;
     }
-    let (robot, data) = (Robot::lwa4p(), DataSet::open(FOLDER).unwrap());
-    let names: Vec<String> = ["A", "B", "D", "E"].map(String::from).to_vec();
+    let names = ["A", "B", "D", "E"].map(String::from);
     let settings = adjust(Settings::new(Torque::Compensated, 6));
-    bencher.bench(|| conform(&robot, &data, &names, &settings, &Watch::SILENT).unwrap());
+    bencher.bench(|| {
+        let setup = Setup::new(Robot::lwa4p(), settings.clone()).unwrap();
+        let source = Box::new(DataSet::open(FOLDER).unwrap());
+        let problem = Problem::read(setup, source, &names, Keep::Needed, &Silent).unwrap();
+        conform(&problem, &Silent, None).unwrap()
+    });
 }
 
 /// Model and order.
