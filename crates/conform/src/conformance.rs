@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use crate::error::Result;
-use crate::explain::{Explanation, explain};
+use crate::explain::explanation::{Explanation, explain};
 use crate::found::{Found, SearchSummary};
 use crate::hulls::Hulls;
-use crate::linear;
+use crate::linear::smallest_sets as linear;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
-use crate::search;
+use crate::search::smallest_sets as search;
 use crate::sets::UncertaintySets;
 use crate::trust::Trust;
 use crate::verdict::{Verdict, Witness};

@@ -4,7 +4,5 @@ pub(crate) mod block;
 pub(crate) mod costs;
 mod layout;
 pub(crate) mod program;
-pub(crate) mod repair;
+pub(crate) mod smallest_sets;
 pub(crate) mod solver;
-
-pub(crate) use repair::smallest_sets;

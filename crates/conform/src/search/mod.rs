@@ -4,8 +4,6 @@
 mod bisection;
 mod journal;
 pub(crate) mod sensitivity;
-mod smallest_sets;
+pub(crate) mod smallest_sets;
 mod successive;
 mod worst_case;
-
-pub(crate) use smallest_sets::smallest_sets;
