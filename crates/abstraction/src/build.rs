@@ -191,7 +191,7 @@ impl Builder<'_> {
         let dynamics = self.dynamics()?;
         let at = self.trigonometric_point();
         let inverse = self.inverse_series(&dynamics, &at)?;
-        // The load u - c - τ_v, an exact polynomial.
+        // The load u - c - τ_v, a polynomial about the expansion point.
         let christoffel = dynamics.christoffel();
         let about = |c: &TaylorPolynomial| c.shifted(&at).truncated(self.order);
         let velocity: Vec<_> = (0..n)

@@ -19,7 +19,7 @@ const LIMIT_FACTOR: f64 = 5.0;
 const PLAUSIBLE_RATIO: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
 /// Returns each joint (from 0) whose q does not follow ∫q̇ dt, with the slope of q over ∫q̇ dt
-/// where this is implausible. Joints that hardly move are left out.
+/// where this is implausible. Joints that hardly move are skipped.
 pub(crate) fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
     (0..run.joints)
         .filter_map(|joint| {
