@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 use super::hidden::{ENCODER_STEP, SCATTER_Q, SCATTER_QD};
 use super::*;
-use reachtube_conform::{Settings, Watch, conform};
+use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
 use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 
 fn small(seed: u64) -> DemoOptions {
@@ -76,14 +76,14 @@ fn the_folder_is_a_data_set() {
 #[test]
 fn conformance_of_a_small_demo_is_verified() {
     let (folder, demo) = recorded(&small(1));
-    let data = DataSet::open(folder.path()).unwrap();
-    let settings = Settings::new(Torque::Compensated, 6);
-    let result =
-        conform(&Robot::lwa4p(), &data, &demo.training, &settings, &Watch::SILENT).unwrap();
-    assert!(result.proof.verified);
-    assert_eq!(result.proof.runs, 10);
-    assert!(result.recordings.suites.iter().all(|suite| suite.shared.is_some()));
-    assert!(result.recordings.notes.iter().all(|note| !note.contains("SHA-256")));
+    let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6)).unwrap();
+    let source = Box::new(DataSet::open(folder.path()).unwrap());
+    let problem = Problem::read(setup, source, &demo.training, Keep::Needed, &Silent).unwrap();
+    let result = conform(&problem, &Silent, None).unwrap();
+    assert!(result.verdict.conformant);
+    assert_eq!(result.verdict.runs, 10);
+    assert!(problem.recordings().suites.iter().all(|suite| suite.shared.is_some()));
+    assert!(problem.recordings().notes.iter().all(|note| !note.contains("SHA-256")));
     let input_radius = result.sets.input_set.radius;
     assert!(input_radius.iter().all(|r| (0.01..8.0).contains(r)), "{input_radius:?} N m");
 }
