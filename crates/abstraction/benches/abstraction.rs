@@ -99,8 +99,8 @@ const STATE: [f64; 2] = [0.005, 0.03];
 fn flowpipe(bencher: Bencher, (kind, order, samples): (u32, u32, usize)) {
     let system = model(kind, order).polynomial_system().unwrap();
     let radius = [[STATE[0]; 6], [STATE[1]; 6]].concat();
-    let initial = Hyperrectangle { center: vec![0.0; 12], radius };
-    let set = Hyperrectangle { center: vec![0.0; 6], radius: INPUT.to_vec() };
+    let initial = Hyperrectangle { centre: vec![0.0; 12], radius };
+    let set = Hyperrectangle { centre: vec![0.0; 6], radius: INPUT.to_vec() };
     let (grid, held) = (TimeGrid::uniform(0.004, samples), vec![0.0; 6 * samples]);
     let input = UncertainInput { measured: &held, set: &set };
     let follow = || {

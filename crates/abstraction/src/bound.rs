@@ -52,7 +52,7 @@ impl PolynomialModel {
         let robot = Robot::from_description(self.robot())?;
         operating_box.check(&robot)?;
         let sampled_error = sampled_error(self, &robot, operating_box);
-        let mut search = Search::new(self, &robot, &sampled_error)?;
+        let mut search = BranchAndBound::new(self, &robot, &sampled_error)?;
         search.refine(operating_box.sides(), max_boxes);
         let bound = |i: usize| {
             let hull = search.cells.iter().map(|cell| cell.bounds[i]).reduce(Interval::hull)?;
@@ -87,7 +87,7 @@ struct Cell {
 }
 
 /// A search by branch and bound.
-struct Search<'a> {
+struct BranchAndBound<'a> {
     model: &'a PolynomialModel,
     robot: &'a Robot,
     sampled_error: &'a [f64],
@@ -101,7 +101,7 @@ struct Scratch {
     model: ModelWorkspace<TaylorModel>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> BranchAndBound<'a> {
     fn new(model: &'a PolynomialModel, robot: &'a Robot, sampled_error: &'a [f64]) -> Result<Self> {
         let order = match model.kind() {
             ModelKind::Three => (model.order() + 1).clamp(LOW_ORDER, HIGH_ORDER),

@@ -21,10 +21,10 @@ fn flowpipes_of_the_models_enclose_their_runs() {
             &system,
             &TimeGrid::uniform(0.004, 26),
             &[q.clone(), qd.clone()].concat(),
-            &Hyperrectangle { center: vec![0.0; 12], radius: vec![initial; 12] },
+            &Hyperrectangle { centre: vec![0.0; 12], radius: vec![initial; 12] },
             &UncertainInput {
                 measured: &nominal,
-                set: &Hyperrectangle { center: vec![0.0; 6], radius: vec![disturbance; 6] },
+                set: &Hyperrectangle { centre: vec![0.0; 6], radius: vec![disturbance; 6] },
             },
             &FlowpipeSettings::default(),
         )

@@ -26,8 +26,8 @@ fn the_sets_are_those_that_generated_the_recordings() {
     };
     near(&start, &[START, START, 0.0, 0.0]);
     near(&input, &[TORQUE; 2]);
-    near(&numbers(&model["initial_set"]["center"]), &[0.0; 4]);
-    near(&numbers(&model["input_set"]["center"]), &[0.0; 2]);
+    near(&numbers(&model["initial_set"]["centre"]), &[0.0; 4]);
+    near(&numbers(&model["input_set"]["centre"]), &[0.0; 2]);
     assert_eq!(model["proof"]["proved"], 2 * 2 * 4 * SAMPLES);
 }
 

@@ -1,8 +1,8 @@
 //! Conversion of a text or a description to a robot, and of a description to text.
 
-use super::check::InvalidValue;
 use super::joint_description::JointDescription;
 use super::robot_description::RobotDescription;
+use super::validity::InvalidValue;
 use crate::error::RobotError;
 use crate::robot::Robot;
 

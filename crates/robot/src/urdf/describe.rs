@@ -2,11 +2,11 @@
 
 use super::chain::Chain;
 use super::document::{Tree, TreeJoint, element};
-use crate::description::check::InvalidValue;
 use crate::description::joint_description::{
     Convention, FrictionDescription, InertiaPoint, JointDescription, PlacementDescription,
 };
 use crate::description::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
+use crate::description::validity::InvalidValue;
 use crate::error::RobotError;
 use crate::inertia::LinkInertia;
 use crate::placement::Placement;
