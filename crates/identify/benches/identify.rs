@@ -1,5 +1,7 @@
-//! Identification from recordings: all of the UR10e's (../shared/data/ur10e; without it there is
-//! nothing to measure).
+//! Time of the identification of a UR10e from recordings.
+//!
+//! The recordings are expected in `../shared/data/ur10e` beside the repository. Without them
+//! nothing is measured.
 
 use divan::Bencher;
 use reachtube_identify::{IdentifySettings, identify};
@@ -20,12 +22,13 @@ fn main() {
     divan::main();
 }
 
-/// 29 recordings, 15 minutes: reading, preparing, three fits, bodies, prediction and simulation.
+/// Measures the whole job for 29 recordings of 15 minutes in total: reading, preparation, three
+/// fits, physically consistent links, prediction and simulation.
 #[divan::bench(sample_count = 5, sample_size = 1)]
 fn all_ur10e_logs(bencher: Bencher) {
     let folder = Path::new(FOLDER);
     if !folder.exists() {
-        println!("{FOLDER} is lacking");
+        println!("skipped: {FOLDER} does not exist");
         return;
     }
     let robot = Robot::load(&folder.join("ur10e.urdf").display().to_string()).unwrap();

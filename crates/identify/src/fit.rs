@@ -6,8 +6,8 @@ use crate::regression::triangular_factor::TriangularFactor;
 use crate::samples::Samples;
 use serde::Serialize;
 
-/// Condition beyond which a combination of parameters counts as undetermined: a rigid robot's torque
-/// is not known to one part in ten thousand of a column.
+/// Condition beyond which a combination of parameters counts as undetermined: a rigid robot's
+/// torque is not known to one part in ten thousand of a column.
 pub const CONDITION_LIMIT: f64 = 1e4;
 
 /// Rounds of reweighting; the weights change by less than 1 % after three.
@@ -56,8 +56,8 @@ impl JointFit {
 impl Fit {
     /// Fits θ to groups with the same columns by iteratively reweighted least squares.
     ///
-    /// Each group and joint has its own standard deviation. Outliers lose weight by Huber's function
-    /// unless `plain` is set. The final weights count independent samples only.
+    /// Each group and joint has its own standard deviation. Outliers lose weight by Huber's
+    /// function unless `plain` is set. The final weights count independent samples only.
     pub fn of_groups(groups: &[&Samples], plain: bool) -> Self {
         // First weights: the reciprocal size of each joint's torque.
         let first = |samples: &&Samples| {

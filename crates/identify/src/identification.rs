@@ -11,7 +11,7 @@ use crate::plausibility::gain::{Gain, GainLikelihood, gains};
 use crate::plausibility::warnings::{Checked, poor_prediction};
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples};
-use crate::settings::IdentifySettings;
+use crate::settings::{IdentifySettings, ModelSettings};
 use crate::validate::simulation::{WindowErrors, simulate};
 use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
 use crate::variant::{set_gravity_moments, with_friction, with_gravity_of_links};
@@ -61,8 +61,8 @@ pub struct Identification {
 ///
 /// - [`Error::Recordings`](crate::Error::Recordings) and [`Error::File`](crate::Error::File) report
 ///   recordings with defects and files that cannot be read.
-/// - The other variants of [`Error`](crate::Error) report settings that do not suit the robot or the
-///   recordings, and fits that are not possible.
+/// - The other variants of [`Error`](crate::Error) report settings that do not suit the robot or
+///   the recordings, and fits that are not possible.
 pub fn identify(
     robot: &Robot,
     settings: &IdentifySettings,
@@ -86,13 +86,7 @@ pub fn identify(
     let friction = coefficients(&first.friction, robot);
     let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
     let known = with_friction(load, &friction)?;
-    let friction_columns = FrictionColumns {
-        fitted: model.refit_friction || first.friction.len() < robot.joint_count(),
-        cubic: model.cubic.unwrap_or(!first.friction.is_empty()),
-    };
-    let rest: &[Log] = if model.separate_gravity { &[] } else { rest };
-    let logs = [&inputs.dynamic[..], rest];
-    let inertia = fit_inertia(robot, &known, logs, sampling, model, friction_columns)?;
+    let inertia = fit_links([robot, &known], &inputs, model, first.friction.len())?;
     let mut description = description(robot, &inertia, &friction)?;
     if let Some(gravity) = first.gravity.as_ref().filter(|_| model.separate_gravity) {
         set_gravity_moments(&mut description, &gravity.robot);
@@ -126,6 +120,24 @@ pub fn identify(
         traces,
         warnings,
     })
+}
+
+/// Fits the inertial parameters; `friction_fits` is the number of joints with a friction fit.
+///
+/// The poses at rest take part unless gravity keeps its own mass moments.
+fn fit_links(
+    [robot, known]: [&Robot; 2],
+    inputs: &Inputs,
+    model: &ModelSettings,
+    friction_fits: usize,
+) -> Result<InertiaFit> {
+    let friction = FrictionColumns {
+        fitted: model.refit_friction || friction_fits < robot.joint_count(),
+        cubic: model.cubic.unwrap_or(friction_fits > 0),
+    };
+    let rest: &[Log] = if model.separate_gravity { &[] } else { &inputs.rest };
+    let logs = [&inputs.dynamic[..], rest];
+    fit_inertia(robot, known, logs, &inputs.sampling, model, friction)
 }
 
 /// Returns the gains of the joints and warnings about implausible results.

@@ -14,7 +14,8 @@ use std::path::Path;
 /// the low-pass lets pass.
 const SAMPLES_PER_CUT_OFF: f64 = 6.0;
 
-/// Margin around slow samples, in periods of the cut-off: the low-pass spreads the step of friction.
+/// Margin around slow samples, in periods of the cut-off: the low-pass spreads the step of
+/// friction.
 const MARGIN_PERIODS: f64 = 0.5;
 
 /// Speed limit of slow samples, relative to a joint's high speed.
@@ -71,8 +72,8 @@ impl Inputs {
         Ok(Self { rest, friction, dynamic, validate, sampling, changes })
     }
 
-    /// Returns whether there are validation recordings, and the recordings for the validation: these
-    /// or else the exciting motions.
+    /// Returns whether there are validation recordings, and the recordings for the validation:
+    /// these or else the exciting motions.
     pub fn validation(&self) -> (bool, &[Log]) {
         let kept_back = !self.validate.is_empty();
         (kept_back, if kept_back { &self.validate } else { &self.dynamic })
@@ -91,8 +92,8 @@ fn described(sampling: &Sampling) -> String {
     )
 }
 
-/// Returns the speed limit of slow samples \[rad/s\] for each joint: the one given, or else 2 % of the
-/// 99th percentile of the joint's speed.
+/// Returns the speed limit of slow samples \[rad/s\] for each joint: the one given, or else 2 % of
+/// the 99th percentile of the joint's speed.
 fn slow_speeds(moving: &[&Log], joints: usize, given: Option<f64>) -> Vec<f64> {
     let of_joint = |joint: usize| {
         let in_log = |log: &&Log| {

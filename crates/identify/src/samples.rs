@@ -71,8 +71,8 @@ impl Samples {
         samples
     }
 
-    /// Takes one sample per rest: the means of q and τ over an interval of at least 0.5 s in which no
-    /// joint moves faster than `speed` \[rad/s\].
+    /// Takes one sample per rest: the means of q and τ over an interval of at least 0.5 s in which
+    /// no joint moves faster than `speed` \[rad/s\].
     ///
     /// Columns of friction are 0.
     pub fn at_rest(robot: &Robot, columns: &[Parameter], logs: &[Log], speed: f64) -> Self {

@@ -63,8 +63,8 @@ pub struct ModelSettings {
     ///
     /// By default it has one if friction recordings gave a fit.
     pub cubic: Option<bool>,
-    /// Speed below which a joint's torque is not used \[rad/s\], because friction has no unique value
-    /// at rest.
+    /// Speed below which a joint's torque is not used \[rad/s\], because friction has no unique
+    /// value at rest.
     ///
     /// By default it is 2 % of the 99th percentile of each joint's speed.
     pub slow: Option<f64>,

@@ -28,11 +28,11 @@ const CONVERGED: f64 = 1e-8;
 /// It minimises ½ ‖R x - z‖² + s Σ_i [tr(P0_i⁻¹ P_i(x)) - log det P_i(x)] over all x for which each
 /// P_i(x) is positive definite and the listed parameters are positive.
 ///
-/// P_i is the pseudo-inertia [[Σ, h], [hᵀ, m]] of link i and linear in x. It is positive definite if
-/// and only if some distribution of positive mass has the link's ten parameters (Wensing, Kim and
-/// Slotine, RA-L 2018). The second term is the divergence of Lee and Park (RA-L 2018) from a prior
-/// P0. It is convex, does not depend on the frame, and decides the directions that the data do not
-/// determine.
+/// P_i is the pseudo-inertia [[Σ, h], [hᵀ, m]] of link i and linear in x. It is positive definite
+/// if and only if some distribution of positive mass has the link's ten parameters (Wensing, Kim
+/// and Slotine, RA-L 2018). The second term is the divergence of Lee and Park (RA-L 2018) from a
+/// prior P0. It is convex, does not depend on the frame, and decides the directions that the data
+/// do not determine.
 ///
 /// A barrier method solves the program. The cone solver of this workspace supports semidefinite
 /// constraints only with BLAS and LAPACK, which would need a Fortran or C build on every user's
@@ -46,7 +46,8 @@ pub struct BodyProgram<'a> {
     pub data: &'a TriangularFactor,
     /// Pseudo-inertias P0 of the prior, positive definite, one per link.
     pub prior: &'a [Matrix4<f64>],
-    /// Weight s of the prior, above 0; a weight of 1 counts about as much as one independent sample.
+    /// Weight s of the prior, above 0; a weight of 1 counts about as much as one independent
+    /// sample.
     pub strength: f64,
     /// Indices of columns whose parameters must be positive, such as motor inertias.
     pub positive: &'a [usize],
@@ -264,8 +265,8 @@ mod tests {
             let root = Matrix4::from_row_slice(&other);
             let body = DVector::from_row_slice(&link_parameters(&(root * root.transpose())));
             let to_target = DVector::from_row_slice(&target) - &point.x;
-            // In units of the objective (weights 100²). At the last barrier's minimum the product is
-            // barrier · (tr(P⁻¹ B) - 4).
+            // In units of the objective (weights 100²). At the last barrier's minimum the product
+            // is barrier · (tr(P⁻¹ B) - 4).
             let angle = 1e4 * to_target.dot(&(body - &point.x));
             prop_assert!(angle < 4.0 * point.gap, "{angle}");
         }

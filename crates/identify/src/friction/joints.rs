@@ -7,7 +7,8 @@ use reachtube_robot::{FrictionDescription, Robot};
 
 /// Fits the friction of each joint to the samples in which it alone moves.
 ///
-/// Returns the fits and a warning for each joint that has too few samples or an ill-conditioned fit.
+/// Returns the fits and a warning for each joint that has too few samples or an ill-conditioned
+/// fit.
 pub(crate) fn fit_joints(
     robot: &Robot,
     slow: &[Log],

@@ -10,7 +10,8 @@ use reachtube_robot::{FrictionDescription, Robot};
 
 /// Rounds of gravity and friction.
 ///
-/// Each uses the result of the other. The second round corrects the load for the slopes of friction.
+/// Each uses the result of the other. The second round corrects the load for the slopes of
+/// friction.
 const ROUNDS: usize = 3;
 
 /// Gravity, and friction with the gravity torque as its load.

@@ -107,7 +107,8 @@ fn why_impossible(robot: Result<Robot>) -> Result<Option<String>> {
 
 /// Returns the pseudo-inertia of each link's prior, and the names of the links that have a ball.
 ///
-/// The prior is the link of the description, or a solid ball with the mean mass of the usable links.
+/// The prior is the link of the description, or a solid ball with the mean mass of the usable
+/// links.
 fn prior(robot: &Robot, prior: Prior) -> (Vec<Matrix4<f64>>, Vec<String>) {
     let parameters = robot.inertial_parameters();
     let links: Vec<Matrix4<f64>> = parameters.chunks_exact(PER_LINK).map(pseudo_inertia).collect();

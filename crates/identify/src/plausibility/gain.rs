@@ -8,8 +8,8 @@ use serde::Serialize;
 /// Deviation of a gain from 1 beyond which it is implausible.
 pub(super) const IMPLAUSIBLE_GAIN: f64 = 0.1;
 
-/// An inverted sign must reduce the contradiction of the torques below this share.
-const INVERTED_SHARE: f64 = 0.9;
+/// An inverted sign must reduce the misfit of the torques below this share.
+const INVERTED_MISFIT: f64 = 0.9;
 
 /// Rounds in which implausible gains are applied and the errors of the joints are estimated again.
 const GAIN_ROUNDS: usize = 4;
@@ -126,7 +126,7 @@ impl GainLikelihood {
         let here = squares(None);
         let best =
             (0..n).map(|j| (j, squares(Some(j)) / here)).min_by(|a, b| a.1.total_cmp(&b.1))?;
-        (best.1 < INVERTED_SHARE).then_some(best)
+        (best.1 < INVERTED_MISFIT).then_some(best)
     }
 }
 
@@ -156,10 +156,10 @@ fn most_likely(
     reference: usize,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = counts.len();
-    let mut log = DVector::zeros(n);
+    let mut log_gains = DVector::zeros(n);
     let mut factor = None;
     for _ in 0..MAX_STEPS {
-        let g = log.map(f64::exp);
+        let g = log_gains.map(f64::exp);
         let pull = misfit * &g;
         let gradient = DVector::from_fn(n, |j, _| g[j] * pull[j] - counts[j]);
         let mut hessian = DMatrix::from_fn(n, n, |i, j| g[i] * misfit[(i, j)] * g[j]);
@@ -168,7 +168,7 @@ fn most_likely(
         (0..n).for_each(|j| hessian[(j, j)] += counts[j]);
         let decomposed = hessian.cholesky()?;
         let step: DVector<f64> = decomposed.solve(&gradient);
-        log -= &step * (0.5 / step.amax().max(0.5));
+        log_gains -= &step * (0.5 / step.amax().max(0.5));
         factor = Some(decomposed);
         if step.amax() < 1e-9 {
             break;
@@ -179,7 +179,7 @@ fn most_likely(
         covariance[(j, j)] + covariance[(reference, reference)] - 2.0 * covariance[(j, reference)]
     };
     Some((
-        log.iter().map(|log| log.exp()).collect(),
+        log_gains.iter().map(|log_gain| log_gain.exp()).collect(),
         (0..n).map(|j| variance(j).max(0.0).sqrt()).collect(),
     ))
 }

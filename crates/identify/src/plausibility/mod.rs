@@ -1,4 +1,5 @@
-//! Plausibility of an identification: wrong signs and gains, found from what rigid bodies cannot do.
+//! Plausibility of an identification: wrong signs and gains contradict the dynamics of rigid
+//! bodies.
 
 pub(crate) mod gain;
 mod sign;

@@ -74,8 +74,8 @@ impl Log {
     /// Returns whether each joint moves at each sample, row-major K x n.
     ///
     /// A joint moves if it is at least as fast as its entry of `slow` \[rad/s\] throughout `margin`
-    /// \[s\] before and after the sample. The margin is needed because a low-pass spreads the step of
-    /// Coulomb friction at a reversal over about half a period of its cut-off.
+    /// \[s\] before and after the sample. The margin is needed because a low-pass spreads the step
+    /// of Coulomb friction at a reversal over about half a period of its cut-off.
     #[must_use]
     pub fn moving_mask(&self, slow: &[f64], margin: f64) -> Vec<bool> {
         let reach = (margin / self.step).round() as usize;

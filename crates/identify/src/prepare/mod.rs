@@ -1,7 +1,7 @@
 //! Preparation of recordings for regression.
 //!
 //! [`read`](fn@read) reads recordings, [`cut_off`](fn@cut_off) chooses the cut-off frequency of the
-//! low-pass, and [`prepare`] samples evenly, filters without delay and differentiates.
+//! low-pass, and [`prepare`] samples evenly, filters without phase shift and differentiates.
 //! [`windows`](fn@windows) cuts prepared recordings into test suites. Every change is reported as a
 //! sentence.
 

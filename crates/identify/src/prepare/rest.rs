@@ -2,8 +2,8 @@ use std::ops::Range;
 
 /// Returns the intervals of samples in which no joint moves faster than `speed` \[rad/s\].
 ///
-/// `qd` holds velocities \[rad/s\], row-major samples x `joints`. Intervals of fewer than `shortest`
-/// samples are omitted.
+/// `qd` holds velocities \[rad/s\], row-major samples x `joints`. Intervals of fewer than
+/// `shortest` samples are omitted.
 ///
 /// # Examples
 ///

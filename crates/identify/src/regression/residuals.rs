@@ -35,9 +35,9 @@ pub fn huber_row_factor(residual: f64, deviation: f64) -> f64 {
 
 /// Returns the integrated autocorrelation time of residuals, in samples and at least 1.
 ///
-/// So many consecutive samples carry as much information as one independent sample. The value is
-/// 1 + 2 Σ ρ_k over the autocorrelations ρ_k. The sum stops at the first pair of consecutive
-/// lags whose sum is not positive (initial positive sequence, Geyer 1992).
+/// This number of consecutive samples carries as much information as one independent sample. The
+/// value is 1 + 2 Σ ρ_k over the autocorrelations ρ_k. The sum stops at the first pair of
+/// consecutive lags whose sum is not positive (initial positive sequence, Geyer 1992).
 ///
 /// Each entry of `series` is a stretch of consecutive residuals.
 ///

@@ -25,14 +25,15 @@ pub struct WindowErrors {
     pub diverged: usize,
     /// Root mean square of the position error at the end of a window \[rad\], one entry per joint.
     pub q: Vec<f64>,
-    /// Root mean square of the velocity error at the end of a window \[rad/s\], one entry per joint.
+    /// Root mean square of the velocity error at the end of a window \[rad/s\], one entry per
+    /// joint.
     pub qd: Vec<f64>,
     /// Root mean square of the recorded motion from start to end \[rad\], one entry per joint.
     pub motion: Vec<f64>,
 }
 
-/// Simulates the robot under the recorded torque over windows of each duration \[s\], and compares the
-/// final states with the recorded ones.
+/// Simulates the robot under the recorded torque over windows of each duration \[s\], and compares
+/// the final states with the recorded ones.
 pub fn simulate(robot: &Robot, logs: &[Log], durations: &[f64]) -> Vec<WindowErrors> {
     durations.iter().map(|duration| simulate_windows(robot, logs, *duration)).collect()
 }

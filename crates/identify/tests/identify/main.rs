@@ -1,4 +1,4 @@
-//! Identification from virtual recordings, whose robot is known, and from recorded ones.
+//! Identification from simulated recordings of known robots, and from real recordings.
 
 mod recorded;
 mod recovery;

@@ -1,4 +1,7 @@
-//! Robots that were recorded: what the torque of recordings kept back comes to.
+//! Identification of real robots: errors of the predicted torque in validation recordings.
+//!
+//! The recordings are expected in `../shared/data` beside the repository. Without them a test
+//! prints a line and passes.
 
 use reachtube_identify::{Identification, IdentifySettings, identify};
 use reachtube_robot::Robot;
@@ -9,7 +12,7 @@ const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
 fn identified(folder: &str, settings: &str) -> Option<Identification> {
     let folder = Path::new(DATA).join(folder);
     if !folder.exists() {
-        println!("skipped: {} is lacking", folder.display());
+        println!("skipped: {} does not exist", folder.display());
         return None;
     }
     let settings = IdentifySettings::from_toml(settings, "settings").unwrap();
@@ -19,13 +22,17 @@ fn identified(folder: &str, settings: &str) -> Option<Identification> {
 }
 
 #[test]
-fn the_ur10e_predicts_recordings_kept_back() {
+fn the_ur10e_predicts_validation_recordings() {
     let settings = r#"
         robot = "ur10e.urdf"
         static = ["static"]
         friction = ["friction"]
         dynamic = ["excitation/20_02_12-50sec_12harm.csv", "excitation/20_02_10-30sec_12harm.csv"]
-        validate = ["excitation/20_02_12-40sec_12harm.csv", "excitation/20_02_19_14harm50sec.csv", "excitation/20_02_10-20sec_7harm.csv"]
+        validate = [
+            "excitation/20_02_12-40sec_12harm.csv",
+            "excitation/20_02_19_14harm50sec.csv",
+            "excitation/20_02_10-20sec_7harm.csv",
+        ]
         prepare.cut_off = 6.0
     "#;
     let Some(found) = identified("ur10e", settings) else { return };
@@ -41,8 +48,8 @@ fn the_ur10e_predicts_recordings_kept_back() {
     }
     let robot = Robot::from_description(&found.description).unwrap();
     assert!(matches!(robot.check_physical(), Ok(reachtube_robot::Physicality::Links { .. })));
-    // 58 combinations of inertia, motors, viscous and Coulomb friction and offset, as counted for
-    // this arm elsewhere, and six cubic terms.
+    // The literature counts 58 combinations of inertia, motors, viscous and Coulomb friction and
+    // offset for this arm; six cubic terms are added.
     assert_eq!(found.inertia.parameters.len(), 58 + 6);
     let half_second = &found.windows[0];
     assert!(
@@ -51,7 +58,7 @@ fn the_ur10e_predicts_recordings_kept_back() {
     );
 }
 
-/// Modified Denavit-Hartenberg parameters of the Panda, with links of which nothing is known.
+/// Modified Denavit-Hartenberg parameters a \[m\], alpha \[π/2\] and d \[m\] of the Panda's joints.
 const PANDA: [[f64; 3]; 7] = [
     [0.0, 0.0, 0.333],
     [0.0, -1.0, 0.0],
@@ -63,32 +70,35 @@ const PANDA: [[f64; 3]; 7] = [
 ];
 
 #[test]
-fn half_of_the_pandas_motion_predicts_the_other_and_its_links_can_exist() {
+fn half_of_the_pandas_motion_predicts_the_other_half() {
     let file = "panda/excitation/traj1_000_015s.csv";
     if !Path::new(DATA).join(file).exists() {
-        println!("skipped: {DATA}/{file} is lacking");
+        println!("skipped: {DATA}/{file} does not exist");
         return;
     }
-    let joint = |(k, [a, turn, d]): (usize, &[f64; 3])| {
-        let alpha = turn * std::f64::consts::FRAC_PI_2;
+    let joint = |(k, [a, quarter_turns, d]): (usize, &[f64; 3])| {
+        let alpha = quarter_turns * std::f64::consts::FRAC_PI_2;
         format!(
-            "[[joint]]\nname = \"joint{}\"\ndh = {{ a = {a:?}, alpha = {alpha:?}, theta = 0.0, d = {d:?} }}\n",
+            "[[joint]]\nname = \"joint{}\"\n\
+             dh = {{ a = {a:?}, alpha = {alpha:?}, theta = 0.0, d = {d:?} }}\n",
             k + 1
         )
     };
     let text = format!(
-        "schema_version = 1\nname = \"panda\"\nparameters = \"base\"\nconvention = \"modified\"\n{}",
+        "schema_version = 1\nname = \"panda\"\nparameters = \"base\"\n\
+         convention = \"modified\"\n{}",
         PANDA.iter().enumerate().map(joint).collect::<String>()
     );
     let settings = format!(
-        "dynamic = [{{ path = \"{file}\", until = 7.5 }}]\nvalidate = [{{ path = \"{file}\", from = 7.5 }}]\n\
+        "dynamic = [{{ path = \"{file}\", until = 7.5 }}]\n\
+         validate = [{{ path = \"{file}\", from = 7.5 }}]\n\
          prepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.windows = []"
     );
     let settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
     let robot = Robot::from_toml(&text, "panda.toml").unwrap();
     let found = identify(&robot, &settings, &PathBuf::from(DATA), &|_, _| {}).unwrap();
     let physical = found.inertia.physical.as_ref().unwrap();
-    assert!(physical.plain_impossible.is_some(), "plain least squares gives no robot");
+    assert!(physical.plain_impossible.is_some(), "least squares must give no physical robot");
     for joint in Robot::from_description(&found.description).unwrap().description().joints.iter() {
         assert!(joint.mass > 0.0);
     }
@@ -101,7 +111,7 @@ fn half_of_the_pandas_motion_predicts_the_other_and_its_links_can_exist() {
 }
 
 #[test]
-fn the_double_pendulum_is_found_as_far_as_its_friction_lets() {
+fn the_double_pendulum_is_identified_up_to_its_friction() {
     let settings = r#"
         robot = "acrobot.urdf"
         dynamic = ["openloop", "swing"]
@@ -116,7 +126,7 @@ fn the_double_pendulum_is_found_as_far_as_its_friction_lets() {
         "{:?}",
         found.warnings
     );
-    // The authors' second moments about the joints, 0.03 to 0.05 kg m².
+    // The authors of the data give second moments about the joints of 0.03 to 0.05 kg m².
     let inertia = found.inertia.parameters.iter().find(|p| p.name == "Ixx2").unwrap();
     assert!((0.03..0.06).contains(&inertia.value), "{inertia:?}");
 }

@@ -1,20 +1,19 @@
-//! What was put into virtual recordings is found in them, with the errors that theory says.
+//! Identification recovers the robot of simulated recordings, with the errors that theory predicts.
 
-use crate::virtual_robot::rand_like::Random;
-use crate::virtual_robot::{Recorder, excitation, rest, slow};
+use crate::virtual_robot::{Random, Recorder, excitation, rest, slow};
 use reachtube_identify::friction::CoulombForm;
 use reachtube_identify::{Identification, IdentifySettings, identify};
 use reachtube_robot::{BaseParameters, Robot, RobotDescription};
 use std::path::{Path, PathBuf};
 
-/// The LWA 4P with one set of parameters for inertia and gravity.
+/// Returns the LWA 4P with the same parameters for inertia and gravity.
 fn lwa4p() -> Robot {
     let mut description = Robot::lwa4p().description().clone();
     description.joints.iter_mut().for_each(|joint| joint.gravity_moments = None);
     Robot::from_description(&description).unwrap()
 }
 
-/// The same geometry; nothing of the links, motors and friction.
+/// Returns the geometry of a robot, without masses, motors and friction.
 fn geometry(robot: &Robot) -> Robot {
     let mut description: RobotDescription = robot.description().clone();
     for joint in &mut description.joints {
@@ -34,9 +33,9 @@ impl Lab {
         Self { folder: tempfile::tempdir().unwrap() }
     }
 
-    /// Recordings of exciting motions, with gains.
+    /// Records three exciting motions and a validation motion.
     fn excite(&self, robot: &Robot, noise: f64, gains: &[f64]) {
-        let mut recorder = Recorder { robot, noise, gains: gains.to_vec(), random: Random(5) };
+        let mut recorder = Recorder { robot, noise, gains: gains.to_vec(), random: Random::new(5) };
         for seed in 1..=3 {
             let path = self.folder.path().join(format!("dynamic_{seed}.csv"));
             recorder.record(&path, 24.0, excitation(robot.joint_count(), seed));
@@ -68,7 +67,7 @@ impl Lab {
     }
 }
 
-/// Parts of the base parameters within one and three standard errors of the truth.
+/// Returns the shares of the base parameters within one and three standard errors of the truth.
 fn rates(found: &Identification, truth: &Robot) -> [f64; 2] {
     let base = BaseParameters::of_robot(truth, &found.inertia.columns);
     let values = base.reduce(&truth.parameter_values(&found.inertia.columns));
@@ -82,7 +81,8 @@ fn rates(found: &Identification, truth: &Robot) -> [f64; 2] {
     [1.0, 3.0].map(|limit| off.iter().filter(|off| **off < limit).count() as f64 / off.len() as f64)
 }
 
-/// Constant and linear friction, as the regression with the inertial parameters has.
+/// Returns a robot with constant and linear friction, which the fit of the inertial parameters
+/// contains.
 fn simple_friction(robot: &Robot) -> Robot {
     let mut description = robot.description().clone();
     for (j, joint) in description.joints.iter_mut().enumerate() {
@@ -102,7 +102,7 @@ fn base_parameters_of_the_lwa_4p_lie_within_their_errors() {
     settings.model.physical = false;
     let found = lab.identify(&geometry(&truth), &settings);
     let [one, three] = rates(&found, &truth);
-    // 68.3 % and 99.7 % of normal errors; with 59 parameters a share of 68 % has a standard
+    // Normal errors give 68.3 % and 99.7 %. With 59 parameters the share of 68 % has a standard
     // deviation of 6 %.
     assert!(three > 0.96 && (0.5..0.87).contains(&one), "{one} within one, {three} within three");
     assert!(found.inertia.condition < 1e3, "{}", found.inertia.condition);
@@ -113,10 +113,10 @@ fn base_parameters_of_the_lwa_4p_lie_within_their_errors() {
 }
 
 #[test]
-fn the_ur5_is_found_again_as_bodies() {
+fn the_ur5_is_recovered_with_physically_consistent_links() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/oracle/ur5.urdf");
     if !Path::new(path).exists() {
-        println!("skipped: ../shared/oracle is lacking");
+        println!("skipped: {path} does not exist");
         return;
     }
     let truth = simple_friction(&Robot::load(path).unwrap());
@@ -126,8 +126,8 @@ fn the_ur5_is_found_again_as_bodies() {
     let [one, three] = rates(&found, &truth);
     assert!(three > 0.96 && (0.5..0.87).contains(&one), "{one} within one, {three} within three");
     let physical = found.inertia.physical.as_ref().unwrap();
-    // The truth is possible, so that the nearest bodies cost no more than it does: about the number
-    // of parameters.
+    // The true links are physically consistent, so that the nearest links cost no more than they
+    // do: about the number of parameters.
     assert!(physical.cost < 120.0 && physical.balls.len() == 6, "{physical:?}");
     let robot = Robot::from_description(&found.description).unwrap();
     assert!(matches!(robot.check_physical(), Ok(reachtube_robot::Physicality::Links { .. })));
@@ -146,13 +146,13 @@ fn the_ur5_is_found_again_as_bodies() {
 }
 
 #[test]
-fn gravity_and_friction_quadrants_are_found_in_the_papers_order() {
+fn gravity_and_friction_quadrants_are_recovered() {
     let truth = lwa4p();
     let lab = Lab::new();
     lab.excite(&truth, 0.1, &[1.0; 6]);
     let mut recorder =
-        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(3) };
-    let mut random = Random(11);
+        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random::new(3) };
+    let mut random = Random::new(11);
     for k in 0..20 {
         let q = (0..6).map(|_| 2.0 * random.uniform() - 1.0).collect();
         recorder.record(&lab.path().join(format!("rest_{k}.csv")), 3.0, rest(q));
@@ -194,13 +194,13 @@ fn gravity_and_friction_quadrants_are_found_in_the_papers_order() {
 }
 
 #[test]
-fn a_turned_sign_and_a_wrong_gain_are_said() {
+fn a_wrong_sign_and_a_wrong_gain_give_warnings() {
     let truth = simple_friction(&lwa4p());
     let lab = Lab::new();
     lab.excite(&truth, 0.3, &[1.0, 1.0, -1.0, 1.0, 1.0, 1.0]);
     let found = lab.identify(&geometry(&truth), &lab.settings());
-    let said = |words: &String| words.contains("joint3") && words.contains("sign of its torque");
-    assert!(found.warnings.iter().any(said), "{:?}", found.warnings);
+    let wrong_sign = |w: &String| w.contains("joint3") && w.contains("sign of its torque");
+    assert!(found.warnings.iter().any(wrong_sign), "{:?}", found.warnings);
     let lab = Lab::new();
     lab.excite(&truth, 0.3, &[1.0, 1.0, 1.6, 1.0, 1.0, 1.0]);
     let mut settings = lab.settings();
@@ -216,11 +216,11 @@ fn a_turned_sign_and_a_wrong_gain_are_said() {
 }
 
 #[test]
-fn what_is_not_excited_is_named() {
+fn undetermined_parameters_are_named() {
     let truth = simple_friction(&lwa4p());
     let lab = Lab::new();
     let mut recorder =
-        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random(5) };
+        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random::new(5) };
     recorder.record(&lab.path().join("one.csv"), 20.0, slow(6, 1, 0.3));
     let mut settings = IdentifySettings {
         dynamic: vec![PathBuf::from("one.csv").into()],
@@ -230,7 +230,7 @@ fn what_is_not_excited_is_named() {
     let error =
         identify(&geometry(&truth), &settings, lab.path(), &|_, _| {}).unwrap_err().to_string();
     assert!(
-        error.contains("the recordings do not show")
+        error.contains("the recordings do not determine")
             && error.contains("J6")
             && error.contains("move all joints"),
         "{error}"

@@ -1,6 +1,8 @@
-//! Recordings of a robot that is known: torque of an exact model plus white noise.
+//! Simulated recordings of a known robot: torque of an exact model plus white noise.
 
-use rand_like::Random;
+use rand::RngExt;
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::SeedableRng;
 use reachtube_robot::Robot;
 use std::fmt::Write;
 use std::path::Path;
@@ -8,32 +10,33 @@ use std::path::Path;
 /// Time between samples \[s\].
 pub const STEP: f64 = 0.004;
 
-/// A generator of normal numbers that is the same everywhere.
-pub mod rand_like {
-    /// A linear congruential generator.
-    pub struct Random(pub u64);
+/// A generator of random numbers that gives the same numbers on every machine.
+pub struct Random(SplitMix64);
 
-    impl Random {
-        /// Uniform in 0..1.
-        pub fn uniform(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
+impl Random {
+    /// Returns a generator with a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(SplitMix64::seed_from_u64(seed))
+    }
 
-        /// Standard normal (Box and Muller).
-        pub fn normal(&mut self) -> f64 {
-            let (u, v) = (1.0 - self.uniform(), self.uniform());
-            (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
-        }
+    /// Returns a uniform number in 0..1.
+    pub fn uniform(&mut self) -> f64 {
+        self.0.random()
+    }
+
+    /// Returns a standard normal number (Box and Muller).
+    pub fn normal(&mut self) -> f64 {
+        let (u, v) = (1.0 - self.uniform(), self.uniform());
+        (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
     }
 }
 
-/// One sample of a motion: q, q̇, q̈.
+/// One sample of a motion: q \[rad\], q̇ \[rad/s\] and q̈ \[rad/s²\], n entries each.
 type State = [Vec<f64>; 3];
 
-/// A sum of sines a joint: all joints move, each with three frequencies of its own.
+/// Returns a motion of all joints, each a sum of three sines with frequencies of its own.
 pub fn excitation(joints: usize, seed: u64) -> impl Fn(f64) -> State {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let waves: Vec<Vec<[f64; 3]>> = (0..joints)
         .map(|_| {
             (1..=3)
@@ -62,7 +65,7 @@ pub fn excitation(joints: usize, seed: u64) -> impl Fn(f64) -> State {
     }
 }
 
-/// One joint on a slow wide sine, the others at rest in a pose.
+/// Returns a slow sine of one joint, with the other joints at rest at `pose` \[rad\].
 pub fn slow(joints: usize, moving: usize, pose: f64) -> impl Fn(f64) -> State {
     move |t| {
         let (a, w) = (1.4, 0.55);
@@ -74,25 +77,25 @@ pub fn slow(joints: usize, moving: usize, pose: f64) -> impl Fn(f64) -> State {
     }
 }
 
-/// A pose at rest.
+/// Returns a rest in a pose \[rad\].
 pub fn rest(q: Vec<f64>) -> impl Fn(f64) -> State {
     move |_| [q.clone(), vec![0.0; q.len()], vec![0.0; q.len()]]
 }
 
-/// How a recording differs from the robot.
+/// A recorder of simulated motions.
 pub struct Recorder<'a> {
     /// The robot.
     pub robot: &'a Robot,
-    /// Standard deviation of the torque's noise \[N m\].
+    /// Standard deviation of the torque noise \[N m\].
     pub noise: f64,
-    /// What each recorded torque is multiplied with.
+    /// Factors that multiply the recorded torques, one per joint.
     pub gains: Vec<f64>,
-    /// Its random numbers.
+    /// Random numbers of the noise.
     pub random: Random,
 }
 
 impl Recorder<'_> {
-    /// Records a motion as CSV.
+    /// Records a motion of a duration \[s\] as a CSV file.
     pub fn record(&mut self, path: &Path, duration: f64, motion: impl Fn(f64) -> State) {
         let n = self.robot.joint_count();
         let columns =
