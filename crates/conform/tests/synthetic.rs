@@ -8,12 +8,15 @@ use common::{
     Disturbed, Random, Recorded, check_against, conform_all, grid, read, two_joints, write_data_set,
 };
 use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome};
+use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::{
     Centre, Conformance, Model, Noise, NominalStart, Problem, Settings, UncertaintySets, Weights,
     explain,
 };
-use reachtube_reach::{Disturbance, Hyperrectangle, Propagation, TimeGrid};
+use reachtube_reach::{
+    Disturbance, Hyperrectangle, IntervalMatrix, LinearSystem, Propagation, TimeGrid,
+};
 use reachtube_recordings::{DataSet, ReadOptions, RunSource, Torque};
 use reachtube_robot::Robot;
 
@@ -158,72 +161,85 @@ fn row_generation_finds_the_optimum_of_the_whole_program() {
     }
 }
 
-/// The optimal cost of the program as `method` states it, by microlp.
-fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
-    let system = linear_model(robot, &ExpansionPoint::zero(2)).unwrap();
-    let propagation = Propagation::new(&system, &TimeGrid::uniform(0.02, 40)).unwrap();
-    let gains = settings.disturbance.input_gains(&propagation);
-    let Weights::Given(weights) = &settings.weights else { unreachable!() };
-    let coefficient = |k: usize, i: usize, j: usize| {
+/// The entries of E_k and R_k of two joints, 4 x 6 each, at 40 samples of 0.02 s.
+struct Coefficients {
+    propagation: Propagation,
+    input_gains: Vec<IntervalMatrix>,
+}
+
+impl Coefficients {
+    fn new(system: &LinearSystem, settings: &Settings) -> Self {
+        let propagation = Propagation::new(system, &TimeGrid::uniform(0.02, 40)).unwrap();
+        let input_gains = settings.disturbance.input_gains(&propagation);
+        Self { propagation, input_gains }
+    }
+
+    fn centre(&self, k: usize, i: usize, j: usize) -> f64 {
+        let Self { propagation, .. } = self;
         if j < 4 {
             propagation.exponential(k)[(i, j)].mid()
         } else {
             propagation.integral(k)[(i, j - 4)].mid()
         }
-    };
-    let gain = |k: usize, i: usize, j: usize| {
-        if j < 4 { coefficient(k, i, j).abs() } else { gains[k][(i, j - 4)].mid() }
-    };
-    let cost = |j: usize| {
-        (0..40)
-            .flat_map(|k| (0..4).map(move |i| (k, i)))
-            .map(|(k, i)| 2.0 * weights[i] * gain(k, i, j))
-            .sum()
-    };
+    }
+
+    fn radius(&self, k: usize, i: usize, j: usize) -> f64 {
+        if j < 4 { self.centre(k, i, j).abs() } else { self.input_gains[k][(i, j - 4)].mid() }
+    }
+
+    fn cost(&self, weights: &[f64], j: usize) -> f64 {
+        let all = (0..40).flat_map(|k| (0..4).map(move |i| (k, i)));
+        all.map(|(k, i)| 2.0 * weights[i] * self.radius(k, i, j)).sum()
+    }
+}
+
+/// For each suite and sample, the largest deviation of a run upward and downward, 4 each.
+fn deviations(system: &LinearSystem, data: &DataSet) -> Vec<(usize, [[f64; 4]; 2])> {
+    let mut all = Vec::new();
+    for suite in data.suites() {
+        let read = |run: &usize| data.read(*run, &ReadOptions::default()).unwrap();
+        let runs: Vec<_> = suite.runs.iter().map(read).collect();
+        let starts = runs.iter().map(|run| DVector::from_column_slice(run.state(0)));
+        let mut x = starts.sum::<DVector<f64>>() / runs.len() as f64;
+        for k in 0..runs[0].len() {
+            let furthest = |sign: f64, i: usize| {
+                let deviations = runs.iter().map(|run| sign * (run.state(k)[i] - x[i]));
+                deviations.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let sides = [1.0, -1.0].map(|sign| [0, 1, 2, 3].map(|i| furthest(sign, i)));
+            all.push((k, sides));
+            x = common::step(system, 0.02, &x, &DVector::from_column_slice(runs[0].torque(k)));
+        }
+    }
+    all
+}
+
+/// The optimal cost of the program as docs/method.md states it, by microlp.
+fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
+    let system = linear_model(robot, &ExpansionPoint::zero(2)).unwrap();
+    let coefficients = Coefficients::new(&system, settings);
+    let Weights::Given(weights) = &settings.weights else { unreachable!() };
     let mut problem = microlp::Problem::new(OptimizationDirection::Minimize);
     let limit = if settings.centre == Centre::Zero { 0.0 } else { f64::INFINITY };
     let centres: Vec<_> = (0..6).map(|_| problem.add_var(0.0, (-limit, limit))).collect();
-    let radii: Vec<_> = (0..6).map(|j| problem.add_var(cost(j), (0.0, f64::INFINITY))).collect();
-    let noise: Vec<_> = (0..4)
-        .map(|i| {
-            let bounds = match &settings.noise {
-                Noise::None => (0.0, 0.0),
-                Noise::Free => (0.0, f64::INFINITY),
-                Noise::Fixed(radii) => (radii[i], radii[i]),
-            };
-            problem.add_var(2.0 * 40.0 * weights[i], bounds)
-        })
+    let radii: Vec<_> = (0..6)
+        .map(|j| problem.add_var(coefficients.cost(weights, j), (0.0, f64::INFINITY)))
         .collect();
-    for suite in data.suites() {
-        let runs: Vec<_> = suite
-            .runs
-            .iter()
-            .map(|&run| data.read(run, &ReadOptions::default()).unwrap())
-            .collect();
-        let mut x = runs
-            .iter()
-            .map(|run| nalgebra::DVector::from_column_slice(run.state(0)))
-            .sum::<nalgebra::DVector<f64>>()
-            / runs.len() as f64;
-        for k in 0..runs[0].len() {
-            for i in 0..4 {
-                for sign in [1.0, -1.0] {
-                    let bound = runs
-                        .iter()
-                        .map(|run| sign * (run.state(k)[i] - x[i]))
-                        .fold(f64::NEG_INFINITY, f64::max);
-                    let mut row = vec![(noise[i], 1.0)];
-                    row.extend((0..6).map(|j| (centres[j], sign * coefficient(k, i, j))));
-                    row.extend((0..6).map(|j| (radii[j], gain(k, i, j))));
-                    problem.add_constraint(row, ComparisonOp::Ge, bound);
-                }
+    let noise = |i: usize| match &settings.noise {
+        Noise::None => (0.0, 0.0),
+        Noise::Free => (0.0, f64::INFINITY),
+        Noise::Fixed(radii) => (radii[i], radii[i]),
+    };
+    let noise: Vec<_> =
+        (0..4).map(|i| problem.add_var(2.0 * 40.0 * weights[i], noise(i))).collect();
+    for (k, sides) in deviations(&system, data) {
+        for (sign, bounds) in [1.0, -1.0].into_iter().zip(sides) {
+            for (i, bound) in bounds.into_iter().enumerate() {
+                let mut row = vec![(noise[i], 1.0)];
+                row.extend((0..6).map(|j| (centres[j], sign * coefficients.centre(k, i, j))));
+                row.extend((0..6).map(|j| (radii[j], coefficients.radius(k, i, j))));
+                problem.add_constraint(row, ComparisonOp::Ge, bound);
             }
-            x = common::step(
-                &system,
-                0.02,
-                &x,
-                &nalgebra::DVector::from_column_slice(runs[0].torque(k)),
-            );
         }
     }
     if settings.centre == Centre::Origin {

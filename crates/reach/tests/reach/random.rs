@@ -1,7 +1,7 @@
 //! Deterministic random numbers, so that a failure repeats.
 
 use rand_xoshiro::SplitMix64;
-use rand_xoshiro::rand_core::{RngCore, SeedableRng};
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 pub struct Random(SplitMix64);
 
