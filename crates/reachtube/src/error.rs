@@ -32,6 +32,12 @@ pub enum Error {
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+    /// A demo could not be recorded.
+    #[error(transparent)]
+    Demo(#[from] crate::demo::error::DemoError),
+    /// A table of the paper could not be reproduced.
+    #[error(transparent)]
+    Reproduce(#[from] crate::reproduce::error::ReproduceError),
     /// A figure or page could not be made.
     #[cfg(feature = "report")]
     #[error(transparent)]

@@ -126,7 +126,8 @@ mod tests {
 
     /// Returns the elements with a tag name.
     fn elements<'a>(svg: &'a Document, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
-        svg.descendants().filter(move |node| node.has_tag_name(("http://www.w3.org/2000/svg", name)))
+        svg.descendants()
+            .filter(move |node| node.has_tag_name(("http://www.w3.org/2000/svg", name)))
     }
 
     #[test]

@@ -74,8 +74,7 @@ impl Content {
 
 /// Returns the mark of a tight spot on the line of its run; none where the line is empty.
 fn mark(spot: &TightSpot, line: &[Point]) -> Option<(Point, bool)> {
-    (!line.is_empty())
-        .then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
+    (!line.is_empty()).then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
 }
 
 /// Returns a line, minus the nominal solution where there is one. With a nominal solution, the line
