@@ -140,7 +140,7 @@ impl RobotMotions {
         let trajectories = Trajectories::new(robot, motions, speed.slowness());
         let blocks = motions.len().div_ceil(BLOCK);
         let velocities =
-            (0..blocks).into_par_iter().map(|block| trajectories.of_robot(robot, block)).collect();
+            (0..blocks).into_par_iter().map(|block| trajectories.robot_velocities(robot, block)).collect();
         Self { trajectories, velocities }
     }
 }

@@ -23,7 +23,7 @@ pub(super) const BLOCK: usize = <Number as Lanewise>::LANES;
 /// Motions of one duration, with the inputs along them.
 pub(super) struct Trajectories {
     /// Sample times \[s\].
-    pub times: Vec<f64>,
+    times: Vec<f64>,
     /// Positions at the start of each motion \[rad\], n each.
     starts: Vec<Vec<f64>>,
     /// Inputs of each motion \[N m\], row-major samples x n.
@@ -50,13 +50,13 @@ impl Trajectories {
     }
 
     /// Returns the indices of the motions of a block.
-    pub fn block(&self, number: usize) -> std::ops::Range<usize> {
+    fn block(&self, number: usize) -> std::ops::Range<usize> {
         number * BLOCK..((number + 1) * BLOCK).min(self.starts.len())
     }
 
     /// Simulates the robot over a block by Featherstone's articulated bodies, and returns the
     /// velocities of each motion.
-    pub fn of_robot(&self, robot: &Robot, block: usize) -> Vec<Velocities> {
+    pub fn robot_velocities(&self, robot: &Robot, block: usize) -> Vec<Velocities> {
         let n = robot.joint_count();
         let start = |q: &Vec<f64>| [&q[..], &vec![0.0; n]].concat();
         let mut field = RobotField::<Number>::new(robot, DrivenBy::Input).by_articulated_bodies();
@@ -72,16 +72,16 @@ impl Trajectories {
     pub fn errors(
         &self,
         model: &PolynomialModel,
-        robot: &[Velocities],
+        velocities: &[Velocities],
         block: usize,
     ) -> Vec<Option<f64>> {
         let n = model.joints();
         let start = |q: &Vec<f64>| model.state(q, &vec![0.0; n]);
         let mut sums = vec![0.0; self.block(block).len()];
         let add = |run: usize, sample: usize, x: &[f64]| {
-            let velocities = &robot[run][sample * n..];
+            let exact = &velocities[run][sample * n..];
             sums[run] +=
-                x[n..2 * n].iter().zip(velocities).map(|(a, b)| (a - b).abs()).sum::<f64>();
+                x[n..2 * n].iter().zip(exact).map(|(a, b)| (a - b).abs()).sum::<f64>();
         };
         let outcomes = self.run(block, &start, &mut ModelField::<Number>::new(model), add);
         let count = (n * self.times.len()) as f64;
@@ -145,7 +145,7 @@ mod tests {
         let motions = Trajectories::new(&robot, &[motion], 1.0);
         let body = [&motions.starts[0][..], &[0.0; 6]].concat();
         let exact = adaptive(&mut RobotField::new(&robot, DrivenBy::Input), &body, &motions);
-        let fixed = motions.of_robot(&robot, 0);
+        let fixed = motions.robot_velocities(&robot, 0);
         assert!(fixed[0].iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-7));
         for (kind, order) in [(ModelKind::One, 3), (ModelKind::Two, 12)] {
             let model =
