@@ -1,4 +1,4 @@
-//! From a model and recordings to the page.
+//! Assembly of a page from a model and recordings.
 
 use super::{
     Band, JointSets, Nominal, Page, RunTrace, SetsTable, Side, SuiteFigure, TightSpot, Verdict,
@@ -10,28 +10,29 @@ use reachtube_conform::{self as conform, Check, Enclosure, Lost, Recordings, Set
 use reachtube_reach::Hyperrectangle;
 use reachtube_recordings::DataSet;
 
-/// What a page is made of.
+/// The sources of a page.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a> {
     /// The model.
     pub model: &'a Model,
-    /// The settings with which the recordings were read.
+    /// The settings for reading the recordings.
     pub settings: &'a Settings,
-    /// The data set that is drawn.
+    /// The data set to draw.
     pub data: &'a DataSet,
-    /// Its suites as read.
+    /// The suites of the data set, as read.
     pub recordings: &'a Recordings,
-    /// Reachable sets over them.
+    /// The reachable sets of the suites.
     pub reach: &'a [SuiteReach],
-    /// Whether they lie in the sets.
+    /// The check whether the recordings lie in the reachable sets.
     pub check: &'a Check,
 }
 
-/// The page of a model over recordings: those that it was made from, or others.
+/// Returns the page of a model over recordings: those that it was made from, or others.
 ///
 /// # Errors
 ///
-/// Defects of a run that has changed since it was read.
+/// Fails for a suite without a reachable set, and for defects of a run that has changed since it
+/// was read.
 pub fn page(sources: &Sources) -> Result<Page> {
     let Sources { model, check, .. } = *sources;
     let figures = sources
@@ -71,10 +72,10 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
             )
         }
         None => {
-            format!("{} of {} rows have no {set} to lie in.", check.violations.count, check.rows)
+            format!("{} of {} rows have no {set}.", check.violations.count, check.rows)
         }
         Some(worst) => format!(
-            "{} of {} rows leave the {set}, furthest {} at {:.3} s, {} by {:.3e}.",
+            "{} of {} rows leave the {set}; the furthest is {} at {:.3} s, {} by {:.3e}.",
             check.violations.count, check.rows, worst.run, worst.time, worst.state, worst.excess
         ),
     };
@@ -84,21 +85,34 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     };
     let proved = vec![
         format!(
-            "{} of {} rows (suite, time, state) hold, checked with directed rounding: the recorded {states} lies in the interval hull of the {set}.",
+            "{} of {} rows (suite, time, state) hold, checked with directed rounding: the recorded \
+             {states} lies in the interval hull of the {set}.",
             check.rows - check.violations.count,
             check.rows,
         ),
         match model.noise_set {
             None => "The grey band is an outer bound of the reachable set at the samples.".into(),
-            Some(_) => "The grey band is an outer bound of the reachable set at the samples, without the measurement noise V: recordings may leave it by V.".into(),
+            Some(_) => "The grey band is an outer bound of the reachable set at the samples, \
+                        without the measurement noise V: recordings may leave the band by V."
+                .into(),
         },
     ];
     let mut not_proved = vec![
-        "The recordings are compared with the set at samples; between samples only the model's own states are enclosed (the tube that the command reach writes).".into(),
-        "The notion is the hull: each state for itself. Points inside the hull need not be reachable together.".into(),
+        "The recordings are compared with the set at samples. Between samples only the model's \
+         own states are enclosed, in the tube that the command reachtube reach writes."
+            .into(),
+        "The notion is the hull, which bounds each state separately. A point inside the hull need \
+         not be reachable."
+            .into(),
     ];
     if outer {
-        not_proved.push("The model is not linear: its reachable set was computed as an outer enclosure, which is what a formal analysis uses. A recording in it need not be a behaviour of the model itself. The recordings that decide the sets touch the linearised set, not the wider band.".into());
+        not_proved.push(
+            "The model is not linear: its reachable set was computed as an outer enclosure, as in \
+             a formal analysis. A recording inside the enclosure need not be a behaviour of the \
+             model itself. The recordings that decide the sets touch the linearised set, not the \
+             wider band."
+                .into(),
+        );
     }
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         not_proved.push(format!(
@@ -108,7 +122,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     }
     let end = |lost: &Lost| {
         format!(
-            "{}: the reachable set could not be followed beyond {:.3} s ({}).",
+            "{}: the reachable set could not be computed beyond {:.3} s ({}).",
             lost.case, lost.time, lost.state
         )
     };
@@ -181,7 +195,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
     .collect()
 }
 
-/// A setting in the word that the model file has for it.
+/// Returns a setting as the model file writes it.
 fn word(setting: impl serde::Serialize) -> String {
     let value = serde_json::to_value(setting).unwrap_or_default();
     value.as_str().map_or_else(|| value.to_string(), str::to_string)
@@ -193,7 +207,8 @@ fn trust(model: &Model, check: &Check) -> String {
         None => (&model.trust, "touch the reachable set"),
     };
     format!(
-        "The next motion leaves the reachable set with probability at most {:.3}, at confidence {:.0} %: {} independent motions, of which {} {role}; {}.",
+        "The next motion leaves the reachable set with probability at most {:.3}, at confidence \
+         {:.0} %: {} independent motions, of which {} {role}; {}.",
         trust.violation_probability,
         100.0 * trust.confidence,
         trust.motions,
@@ -204,11 +219,15 @@ fn trust(model: &Model, check: &Check) -> String {
 
 fn caution(model: &Model) -> Vec<String> {
     let mut words = vec![
-        "That these sets enclose these recordings is a fact about the recordings. It says nothing certain about motions, payloads or temperatures that were not recorded.".to_string(),
+        "It is a fact about these recordings that the sets enclose them. It implies nothing \
+         certain about motions, payloads or temperatures that were not recorded."
+            .to_string(),
     ];
     if model.trust.violation_probability > 0.5 {
         words.push(
-            "There are too few independent motions for a useful bound on the next one; record more motions rather than more runs of the same.".into(),
+            "There are too few independent motions for a useful bound on the next motion. Record \
+             more motions rather than more runs of the same motions."
+                .into(),
         );
     }
     words
@@ -235,7 +254,7 @@ fn figure(sources: &Sources, suite: &conform::Suite) -> Result<SuiteFigure> {
         runs.push(trace(sources, summary.index, order, of_run.filter(|_| !shared).copied())?);
     }
     let nominal = columns(&longest.nominal, 2 * joints);
-    // Runs with nominals of their own share the hull of their deviations.
+    // Runs with their own nominal solutions share the hull of their deviations.
     let relative = |of: fn(&SuiteReach) -> &[f64], further: fn(f64, f64) -> f64| {
         let deviation = |reach: &&SuiteReach, at: usize| {
             of(reach).get(at).map(|x| if shared { *x } else { x - reach.nominal[at] })
@@ -282,7 +301,7 @@ fn spot(place: &conform::Place, run: usize, joints: usize) -> TightSpot {
     TightSpot { run, time_s: place.time, state, side, margin: -place.excess }
 }
 
-/// A run as a line; relative to its own nominal solution where it has one.
+/// Returns a run as a line, relative to its own nominal solution where it has one.
 fn trace(
     sources: &Sources,
     index: usize,
@@ -307,7 +326,7 @@ fn trace(
     })
 }
 
-/// Row-major samples x states, turned into one list a state.
+/// Turns values, row-major samples x states, into one list per state.
 fn columns(values: &[f64], states: usize) -> Vec<Vec<f64>> {
     (0..states).map(|i| values.iter().skip(i).step_by(states).copied().collect()).collect()
 }
