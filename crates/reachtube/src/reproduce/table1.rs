@@ -139,8 +139,10 @@ impl RobotMotions {
     fn new(robot: &Robot, motions: &[Motion], speed: Speed) -> Self {
         let trajectories = Trajectories::new(robot, motions, speed.slowness());
         let blocks = motions.len().div_ceil(BLOCK);
-        let velocities =
-            (0..blocks).into_par_iter().map(|block| trajectories.robot_velocities(robot, block)).collect();
+        let velocities = (0..blocks)
+            .into_par_iter()
+            .map(|block| trajectories.robot_velocities(robot, block))
+            .collect();
         Self { trajectories, velocities }
     }
 }

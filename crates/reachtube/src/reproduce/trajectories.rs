@@ -80,8 +80,7 @@ impl Trajectories {
         let mut sums = vec![0.0; self.block(block).len()];
         let add = |run: usize, sample: usize, x: &[f64]| {
             let exact = &velocities[run][sample * n..];
-            sums[run] +=
-                x[n..2 * n].iter().zip(exact).map(|(a, b)| (a - b).abs()).sum::<f64>();
+            sums[run] += x[n..2 * n].iter().zip(exact).map(|(a, b)| (a - b).abs()).sum::<f64>();
         };
         let outcomes = self.run(block, &start, &mut ModelField::<Number>::new(model), add);
         let count = (n * self.times.len()) as f64;
