@@ -87,8 +87,10 @@ pub fn identify(
     let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
     let known = with_friction(load, &friction)?;
     let inertia = fit_links([robot, &known], &inputs, model, first.friction.len())?;
-    let own_gravity = first.gravity.as_ref().filter(|_| model.separate_gravity);
-    let description = identified_description(robot, &inertia, &friction, own_gravity)?;
+    let mut description = description(robot, &inertia, &friction)?;
+    if let Some(gravity) = first.gravity.as_ref().filter(|_| model.separate_gravity) {
+        set_gravity_moments(&mut description, &gravity.robot);
+    }
     let found = Robot::from_description(&description)?;
     progress(3, STEPS);
 
@@ -136,20 +138,6 @@ fn fit_links(
     let rest: &[Log] = if model.separate_gravity { &[] } else { &inputs.rest };
     let logs = [&inputs.dynamic[..], rest];
     fit_inertia(robot, known, logs, &inputs.sampling, model, friction)
-}
-
-/// Returns the description of the robot, with the moments of `own_gravity` where it has them.
-fn identified_description(
-    robot: &Robot,
-    inertia: &InertiaFit,
-    friction: &[FrictionDescription],
-    own_gravity: Option<&GravityFit>,
-) -> Result<RobotDescription> {
-    let mut description = description(robot, inertia, friction)?;
-    if let Some(gravity) = own_gravity {
-        set_gravity_moments(&mut description, &gravity.robot);
-    }
-    Ok(description)
 }
 
 /// Returns the gains of the joints and warnings about implausible results.

@@ -5,15 +5,6 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A result could not be printed.
-    #[error(
-        "standard output: cannot write: {0}; make room or print elsewhere, and run the command \
-         again"
-    )]
-    Output(std::io::Error),
-    /// A setting does not fit.
-    #[error("{0}")]
-    Setting(String),
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
@@ -32,6 +23,12 @@ pub enum Error {
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+    /// A demo could not be recorded.
+    #[error(transparent)]
+    Demo(#[from] crate::demo::error::DemoError),
+    /// A table of the paper could not be reproduced.
+    #[error(transparent)]
+    Reproduce(#[from] crate::reproduce::error::ReproduceError),
     /// A figure or page could not be made.
     #[cfg(feature = "report")]
     #[error(transparent)]

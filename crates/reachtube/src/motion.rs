@@ -5,28 +5,34 @@ use reachtube_robot::Robot;
 /// Peak of the derivative of the quintic from 0 to 1 in unit time.
 pub(crate) const QUINTIC_PEAK: f64 = 1.875;
 
-/// A point-to-point motion of all joints at once, at rest at both ends.
+/// Time between samples, over which an input is held \[s\]: 250 Hz, as for the paper's robot.
+pub(crate) const SAMPLE_TIME: f64 = 0.004;
+
+/// A point-to-point motion of all n joints at once, at rest at both ends.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Motion {
-    /// Positions at the start, rad.
+    /// Positions at the start \[rad\], n.
     pub start: Vec<f64>,
-    /// From start to end, rad.
+    /// Positions at the end minus those at the start \[rad\], n.
     pub travel: Vec<f64>,
-    /// s.
+    /// Duration \[s\].
     pub duration: f64,
 }
 
-/// A state and its rate of change: q rad, q̇ rad/s, q̈ rad/s².
+/// A state and its rate of change, n each.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Planned {
+    /// Positions \[rad\].
     pub q: Vec<f64>,
+    /// Velocities \[rad/s\].
     pub qd: Vec<f64>,
+    /// Accelerations \[rad/s²\].
     pub qdd: Vec<f64>,
 }
 
 impl Motion {
-    /// The plan at time `t` s: q = start + s(t / T) travel with s = 10 x³ - 15 x⁴ + 6 x⁵; at rest
-    /// outside [0, T].
+    /// Returns the plan at time `t` \[s\]: q = start + s(t / T) travel with
+    /// s(x) = 10 x³ - 15 x⁴ + 6 x⁵; at rest outside \[0, T\].
     pub fn at(&self, t: f64) -> Planned {
         let x = (t / self.duration).clamp(0.0, 1.0);
         let rest = 1.0 - x;
@@ -45,12 +51,18 @@ impl Motion {
         }
     }
 
-    /// The input (11) that moves the nominal robot along the plan at time `t` s: u = M_m q̈ + c +
-    /// τ_v, N m.
+    /// Returns the input (11) that moves the nominal robot along the plan at time `t` \[s\]:
+    /// u = M_m q̈ + c + τ_v \[N m\], n.
     pub fn input(&self, robot: &Robot, t: f64) -> Vec<f64> {
         let Planned { q, qd, qdd } = self.at(t);
         let link = robot.inverse_dynamics(&q, &qd, &qdd);
         robot.input_from_link_torque(&q, &qd, link.as_slice()).data.into()
+    }
+
+    /// Returns the input to hold over sample `k` \[N m\], n: the input in the middle of the sample,
+    /// which follows the plan better than the one at its start.
+    pub fn held_input(&self, robot: &Robot, k: usize) -> Vec<f64> {
+        self.input(robot, (k as f64 + 0.5) * SAMPLE_TIME)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Numbers that look random and depend on a seed alone, on every platform.
+//! Pseudo-random numbers that depend on a seed alone, on every platform.
 
 pub(crate) use rand_xoshiro::SplitMix64;
 pub(crate) use rand_xoshiro::rand_core::SeedableRng;
@@ -19,10 +19,10 @@ pub(crate) fn sign(random: &mut SplitMix64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The first numbers of seed 1234567 as Rosetta Code gives them (Pseudo-random
-    /// numbers/Splitmix64): recorded results depend on this stream.
+    /// The oracle is Rosetta Code (Pseudo-random numbers/Splitmix64), seed 1234567. Recorded
+    /// results depend on this stream.
     #[test]
-    fn the_stream_is_that_of_splitmix64() {
+    fn the_stream_is_splitmix64() {
         let mut random = SplitMix64::seed_from_u64(1_234_567);
         let published =
             [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];

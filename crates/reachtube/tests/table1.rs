@@ -1,4 +1,4 @@
-//! What Table I of the paper says of the models, on random motions.
+//! Tests of the models on random motions against Table I of the paper.
 
 use reachtube::abstraction::ModelKind::{One, Three, Two};
 use reachtube::reproduce::{Paper, Speed, Table1, Table1Options, table1};
@@ -29,8 +29,8 @@ fn at_order_one_the_models_have_one_error() {
     }
 }
 
-/// The range that another simulation gave over three random motions within the joints' limits
-/// (lwa4p/README.md of the shared data), at p = 1 and 3.
+/// The oracle is the range that another simulation gave over three random motions within the
+/// joints' limits (lwa4p/README.md of the shared data), at p = 1 and 3.
 #[test]
 fn the_error_of_model_1_has_its_known_size() {
     let table = table_within(4.0, &[1, 3], 16);
@@ -61,7 +61,7 @@ fn the_models_are_in_the_papers_order() {
     assert!(table.cell(Three, 7, Speed::Fast).is_none());
 }
 
-/// A motion is the same whatever else is simulated, and the file has every error.
+/// A motion does not depend on the other motions and orders, and the file has every error.
 #[test]
 fn errors_depend_on_seed_and_motion_alone() {
     let (few, many) = (table(&[3], 3), table(&[1, 3], 9));
@@ -79,6 +79,6 @@ fn errors_depend_on_seed_and_motion_alone() {
         table1(&Robot::lwa4p(), &nothing, &|_, _| ())
             .unwrap_err()
             .to_string()
-            .contains("give 1 at least")
+            .contains("give at least 1")
     );
 }

@@ -11,16 +11,6 @@ pub struct FrictionColumns {
     pub cubic: bool,
 }
 
-impl FrictionColumns {
-    /// Returns the columns for a robot of `joints` joints, `known` of which have known friction.
-    pub fn new(model: &ModelSettings, known: usize, joints: usize) -> Self {
-        Self {
-            fitted: model.refit_friction || known < joints,
-            cubic: model.cubic.unwrap_or(known > 0),
-        }
-    }
-}
-
 /// Returns the columns that are fitted to exciting motions.
 pub fn fitted_columns(
     joints: usize,

@@ -1,4 +1,4 @@
-//! Makes the page from a model and recordings.
+//! Assembly of a page from a model and recordings.
 
 use reachtube_conform::{
     Check, Enclosure, Lost, Model, Problem, States, Suite, SuiteReach, Witness,
@@ -61,9 +61,9 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
             "All {} recordings lie in the interval hull of the {set} at every sample.",
             answer.runs
         ),
-        None => format!("{outside} of {rows} rows have no {set} to lie in."),
+        None => format!("{outside} of {rows} rows have no {set}."),
         Some(worst) => format!(
-            "{outside} of {rows} rows leave the {set}, furthest {} at {:.3} s, {} by {:.3e}.",
+            "{outside} of {rows} rows leave the {set}; the furthest is {} at {:.3} s, {} by {:.3e}.",
             worst.run, worst.time, worst.state, worst.excess
         ),
     };
@@ -87,7 +87,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     ];
     let end = |lost: &Lost| {
         format!(
-            "{}: the reachable set could not be followed beyond {:.3} s ({}).",
+            "{}: the reachable set could not be computed beyond {:.3} s ({}).",
             lost.case, lost.time, lost.state
         )
     };
@@ -100,10 +100,10 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
 fn not_proved(model: &Model, outer: bool) -> Vec<String> {
     let mut words = vec![
         "The recordings are compared with the set at samples. Between samples only the model's own \
-         states are enclosed, by the tube that the command reach writes."
+         states are enclosed, in the tube that the command reachtube reach writes."
             .into(),
-        "The notion is the interval hull: each state alone. Points inside the hull need not be \
-         reachable together."
+        "The notion is the hull, which bounds each state separately. A point inside the hull need \
+         not be reachable."
             .into(),
     ];
     if outer {
@@ -211,14 +211,14 @@ fn trust(model: &Model, check: &Check) -> String {
 
 fn caution(model: &Model) -> Vec<String> {
     let mut words = vec![
-        "That these sets enclose these recordings is a fact about the recordings. It says nothing \
+        "It is a fact about these recordings that the sets enclose them. It implies nothing \
          certain about motions, payloads or temperatures that were not recorded."
             .to_string(),
     ];
     if model.trust.violation_probability > 0.5 {
         words.push(
-            "There are too few independent motions for a useful bound on the next one; record more \
-             motions rather than more runs of the same."
+            "There are too few independent motions for a useful bound on the next motion. Record \
+             more motions rather than more runs of the same motions."
                 .into(),
         );
     }

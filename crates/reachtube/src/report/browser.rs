@@ -1,4 +1,5 @@
-//! Tests of the page in a headless browser: its script runs to the end, and the console stays empty.
+//! Tests of the page in a headless browser: its script runs to the end, and the console stays
+//! empty.
 //!
 //! The tests need Chromium or Chrome on the PATH; without one they print that they are skipped.
 

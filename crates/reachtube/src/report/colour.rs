@@ -1,5 +1,5 @@
-//! The colours of the runs, as in Fig. 4: from blue for the first or coldest run to red for the last
-//! or hottest.
+//! The colours of the runs, as in Fig. 4: from blue for the first or coldest run to red for the
+//! last or hottest.
 
 use super::suite_figure::RunTrace;
 use plotters::style::RGBColor;

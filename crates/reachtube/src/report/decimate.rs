@@ -131,7 +131,8 @@ mod tests {
 
         #[test]
         fn the_size_is_bounded_by_the_columns(points in walk(), column in 1e-2..1.0_f64) {
-            let columns = ((points[points.len() - 1].0 - points[0].0) / column).floor() as usize + 1;
+            let span = points[points.len() - 1].0 - points[0].0;
+            let columns = (span / column).floor() as usize + 1;
             prop_assert!(decimate(&points, column, 0.0).len() <= 2 * columns + 2);
         }
     }

@@ -51,8 +51,8 @@ pub(super) fn load_chart(fit: &FrictionFit) -> Chart {
     friction_chart(fit, "Coulomb", "load torque [N m]", fitted)
 }
 
-/// Returns viscous friction over the velocity, as in the lower plot of Fig. 5: recorded torque minus
-/// Coulomb friction and inertia, and the fit.
+/// Returns viscous friction over the velocity, as in the lower plot of Fig. 5: recorded torque
+/// minus Coulomb friction and inertia, and the fit.
 pub(super) fn viscous_chart(fit: &FrictionFit) -> Chart {
     let [v1, v2, v3] = fit.joint.coefficients.viscous;
     let viscous = Viscous { v1, v2, v3 };

@@ -15,7 +15,7 @@ const RUN_WIDTH: u32 = 7;
 const EDGE_WIDTH: u32 = 7;
 /// Width of a panel per time label \[px\].
 const TIME_LABEL: f64 = 28.0;
-/// How far a thinned line may pass from a sample \[px\].
+/// Largest distance of a thinned line from a sample \[px\].
 const TOLERANCE: f64 = 0.1;
 
 /// The lines of one state, ready to draw.

@@ -34,9 +34,9 @@ pub(super) fn starting(font: FontDesc<'static>) -> TextStyle<'static> {
     TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Left, VPos::Center))
 }
 
-/// Returns the style of the labels at ticks.
-pub(super) fn tick_style() -> TextStyle<'static> {
-    TextStyle::from(font(10.5, FontStyle::Normal)).color(&INK)
+/// Returns font, size and colour of the labels at ticks.
+pub(super) fn tick_style() -> (&'static str, f64, &'static RGBColor) {
+    ("sans-serif", f64::from(units(10.5)) * FONT_SCALE, &INK)
 }
 
 /// Returns the mark of a tight spot; it is larger and red where the sample lies outside.

@@ -70,8 +70,8 @@ fn unit(unit: &str) -> Markup {
     html! { span.unit { "[" (unit) "]" } }
 }
 
-/// Returns the cells of a column: each interval in digits, and as a bar on the scale of the column's
-/// largest bound.
+/// Returns the cells of a column: each interval in digits, and as a bar on the scale of the
+/// column's largest bound.
 fn interval_cells(column: &[Bounds]) -> Vec<Markup> {
     let decimals = column_decimals(column);
     let largest =

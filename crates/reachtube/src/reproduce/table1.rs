@@ -5,118 +5,65 @@ use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use rayon::prelude::*;
+use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
 use reachtube_robot::Robot;
 use serde::Serialize;
 
-use super::trajectories::{BLOCK, Trajectories, random_motion};
-use crate::error::{Error, Result};
+use super::error::ReproduceError;
+use super::full_speed_motion::full_speed_motion;
+use super::paper::Paper;
+use super::speed::Speed;
+use super::trajectories::{BLOCK, Trajectories};
+use crate::error::Result;
+use crate::motion::Motion;
 use crate::random::{SeedableRng, SplitMix64};
-use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
 
-/// What is simulated.
+/// The simulations of Table I.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table1Options {
-    /// Random motions.
+    /// Number of random motions.
     pub motions: usize,
-    /// Decides the motions.
+    /// Seed of the motions.
     pub seed: u64,
     /// Orders p of the models.
     pub orders: Vec<u32>,
-    /// The highest order of model 3 that is simulated. At order 7 it has half a million terms for
-    /// the LWA 4P, and the paper has no number.
+    /// Highest order of model 3. At order 7 the model has half a million terms for the LWA 4P, and
+    /// the paper has no number.
     pub model3_up_to: u32,
-    /// Motions stay this close to the expansion point q = 0, rad, and within the joints' limits.
+    /// Largest distance of a joint from the expansion point q = 0 \[rad\]; motions also stay within
+    /// the joints' limits.
     pub range: f64,
 }
 
 impl Default for Table1Options {
-    /// 50 motions within π/2, where the paper's recorded motions are; the paper's orders, model 3
-    /// up to order 5.
+    /// Returns 50 motions within π/2 rad, where the paper's recorded motions are, and the paper's
+    /// orders, with model 3 up to order 5.
     fn default() -> Self {
         Self { motions: 50, seed: 1, orders: vec![1, 3, 5, 7], model3_up_to: 5, range: FRAC_PI_2 }
-    }
-}
-
-/// How fast the robot moves along its paths.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Speed {
-    /// With a peak of a third of each joint's speed limit: 0.4 rad/s.
-    Slow,
-    /// With a peak of each joint's speed limit: 1.2 rad/s.
-    Fast,
-}
-
-impl Speed {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Slow, Self::Fast];
-
-    /// The duration over that at full speed.
-    fn slowness(self) -> f64 {
-        match self {
-            Self::Slow => 3.0,
-            Self::Fast => 1.0,
-        }
-    }
-
-    /// slow or fast.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Slow => "slow",
-            Self::Fast => "fast",
-        }
-    }
-}
-
-/// What the paper has.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Paper {
-    /// Mean velocity error, rad/s.
-    Error(f64),
-    /// ∞.
-    Diverged,
-}
-
-impl Paper {
-    /// Table I of the paper, where it has a number.
-    fn of(model: ModelKind, order: u32, speed: Speed) -> Option<Self> {
-        let [slow, fast] = match (model, order) {
-            (_, 1) => [0.0040, 0.0408],
-            (ModelKind::One, 3) => [0.0034, 0.0243],
-            (ModelKind::Two, 3) => [0.0042, 0.0294],
-            (ModelKind::Two, 5) => [0.0026, 0.0161],
-            (ModelKind::Two, 7) => [0.0025, 0.0162],
-            (ModelKind::Three, 3) => [f64::INFINITY; 2],
-            (ModelKind::Three, 5) => [0.0031, f64::INFINITY],
-            _ => return None,
-        };
-        let error = if speed == Speed::Slow { slow } else { fast };
-        Some(if error.is_finite() { Self::Error(error) } else { Self::Diverged })
     }
 }
 
 /// A model of one order at one speed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cell {
-    /// Which model.
+    /// The model.
     pub model: ModelKind,
     /// The order p.
     pub order: u32,
-    /// How fast the robot moves.
+    /// The speed of the robot.
     pub speed: Speed,
-    /// Terms of the model.
+    /// Number of terms of the model.
     pub terms: usize,
-    /// Mean |velocity error| over time and joints of each motion, rad/s; none where the model
+    /// Mean |velocity error| over time and joints of each motion \[rad/s\]; none where the model
     /// diverged.
     pub errors: Vec<Option<f64>>,
-    /// Mean over the motions that did not diverge, rad/s.
+    /// Mean of the errors over the motions that did not diverge \[rad/s\].
     pub mean: Option<f64>,
-    /// Standard deviation over them, rad/s.
+    /// Standard deviation of the errors over the motions that did not diverge \[rad/s\].
     pub spread: Option<f64>,
-    /// Motions that diverged.
+    /// Number of motions in which the model diverged.
     pub diverged: usize,
-    /// The paper's number, where there is one and the robot is the paper's.
+    /// The paper's entry, where there is one and the robot is the paper's.
     pub paper: Option<Paper>,
 }
 
@@ -125,24 +72,24 @@ pub struct Cell {
 pub struct Table1 {
     /// Name of the robot.
     pub robot: String,
-    /// What was simulated.
+    /// The options of the simulations.
     pub options: Table1Options,
-    /// Duration of the motions, slow and fast, s.
+    /// Durations of the slow and the fast motions \[s\].
     pub durations: [f64; 2],
-    /// Order by order, of each order model by model, of each model slow and fast.
+    /// The cells: for each order each model, for each model slow and fast.
     pub cells: Vec<Cell>,
 }
 
-/// Simulates `robot` by Featherstone's articulated bodies and its models about q = 0 under the same
-/// inputs, and compares velocities.
+/// Simulates `robot` and its models about q = 0 under the same inputs, and compares velocities.
 ///
-/// The motions are point to point along quintics, with a random direction of each joint from a
-/// random place; slow and fast motions have the same paths. The input is u = M_m q̈ + c + τ_v along
-/// the motion, held over 4 ms.
+/// The robot is simulated by Featherstone's articulated bodies. The motions are point to point
+/// along quintics, with a random direction of each joint from a random position; slow and fast
+/// motions have the same paths. The input is u = M_m q̈ + c + τ_v along the motion, held over 4 ms.
 ///
 /// # Errors
 ///
-/// [`Error::Setting`] for no motions or orders and what [`PolynomialModel::new`] refuses.
+/// Fails with [`ReproduceError`] where there are no motions or no orders, or a joint cannot move
+/// within the range. Fails also for orders that [`PolynomialModel::new`] refuses.
 ///
 /// # Examples
 ///
@@ -161,33 +108,17 @@ pub fn table1(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Table1> {
     if options.motions == 0 || options.orders.is_empty() {
-        return Err(Error::Setting("Table I of no motions or no orders; give 1 at least".into()));
+        return Err(ReproduceError::NothingToSimulate.into());
     }
+    // Random motions.
     let mut random = SplitMix64::seed_from_u64(options.seed);
-    let motion = |_| random_motion(robot, options.range, &mut random);
-    let motions = (0..options.motions).map(motion).collect::<Result<Vec<_>>>()?;
-    let blocks = options.motions.div_ceil(BLOCK);
-    let speeds = Speed::ALL.map(|speed| {
-        let trajectories = Trajectories::new(robot, &motions, speed.slowness());
-        let velocities: Vec<_> =
-            (0..blocks).into_par_iter().map(|block| trajectories.of_robot(robot, block)).collect();
-        (trajectories, velocities)
-    });
+    let motion = |_| full_speed_motion(robot, options.range, &mut random);
+    let motions = (0..options.motions).map(motion).collect::<Result<Vec<_>, _>>()?;
+    // Simulation of the robot, and of the models under the same inputs.
+    let speeds = Speed::ALL.map(|speed| RobotMotions::new(robot, &motions, speed));
     let models = models(robot, options)?;
-    let parts: Vec<_> = (0..models.len() * speeds.len() * blocks).collect();
-    let done = AtomicUsize::new(0);
-    let errors: Vec<_> = parts
-        .into_par_iter()
-        .with_max_len(1)
-        .flat_map_iter(|part| {
-            let (cell, block) = (part / blocks, part % blocks);
-            let (trajectories, velocities) = &speeds[cell % speeds.len()];
-            let errors =
-                trajectories.errors(&models[cell / speeds.len()], &velocities[block], block);
-            progress(done.fetch_add(1, Relaxed) + 1, models.len() * speeds.len() * blocks);
-            errors
-        })
-        .collect();
+    let errors = errors(&models, &speeds, progress);
+    // One cell per model and speed.
     let is_papers = *robot == Robot::lwa4p();
     let cells = errors.chunks(options.motions).enumerate().map(|(cell, errors)| {
         Cell::new(&models[cell / speeds.len()], Speed::ALL[cell % speeds.len()], errors, is_papers)
@@ -200,7 +131,49 @@ pub fn table1(
     })
 }
 
-/// All that are simulated, about q = 0.
+/// The robot's motions at one speed.
+struct RobotMotions {
+    trajectories: Trajectories,
+    /// Velocities \[rad/s\] block by block, motion by motion, row-major samples x n.
+    velocities: Vec<Vec<Vec<f64>>>,
+}
+
+impl RobotMotions {
+    fn new(robot: &Robot, motions: &[Motion], speed: Speed) -> Self {
+        let trajectories = Trajectories::new(robot, motions, speed.slowness());
+        let blocks = motions.len().div_ceil(BLOCK);
+        let velocities = (0..blocks)
+            .into_par_iter()
+            .map(|block| trajectories.robot_velocities(robot, block))
+            .collect();
+        Self { trajectories, velocities }
+    }
+}
+
+/// Returns the error of each motion \[rad/s\], model by model, at each speed in turn.
+fn errors(
+    models: &[PolynomialModel],
+    speeds: &[RobotMotions; 2],
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> Vec<Option<f64>> {
+    let blocks = speeds[0].velocities.len();
+    let parts: Vec<_> = (0..models.len() * speeds.len() * blocks).collect();
+    let done = AtomicUsize::new(0);
+    parts
+        .into_par_iter()
+        .with_max_len(1)
+        .flat_map_iter(|part| {
+            let (cell, block) = (part / blocks, part % blocks);
+            let RobotMotions { trajectories, velocities } = &speeds[cell % speeds.len()];
+            let errors =
+                trajectories.errors(&models[cell / speeds.len()], &velocities[block], block);
+            progress(done.fetch_add(1, Relaxed) + 1, models.len() * speeds.len() * blocks);
+            errors
+        })
+        .collect()
+}
+
+/// Returns all models to simulate, about q = 0, order by order.
 fn models(robot: &Robot, options: &Table1Options) -> Result<Vec<PolynomialModel>> {
     let zero = ExpansionPoint::zero(robot.joint_count());
     let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];
@@ -227,23 +200,24 @@ impl Cell {
             errors: errors.to_vec(),
             mean,
             spread,
-            paper: Paper::of(model.kind(), model.order(), speed).filter(|_| is_papers),
+            paper: Paper::entry(model.kind(), model.order(), speed).filter(|_| is_papers),
         }
     }
 }
 
 impl Table1 {
-    /// The cell of a model, an order and a speed.
+    /// Returns the cell of a model, an order and a speed.
+    #[must_use]
     pub fn cell(&self, model: ModelKind, order: u32, speed: Speed) -> Option<&Cell> {
         self.cells.iter().find(|cell| (cell.model, cell.order, cell.speed) == (model, order, speed))
     }
 
-    /// Writes the error of each motion \[rad/s\] as CSV, `inf` where the model diverged: order,
-    /// model, speed, motion, velocity_error.
+    /// Writes the error of each motion \[rad/s\] as CSV with the columns order, model, speed,
+    /// motion and velocity_error; the error is `inf` where the model diverged.
     ///
     /// # Errors
     ///
-    /// What the writer fails with.
+    /// Fails where `out` fails.
     pub fn write_csv(&self, out: &mut dyn Write) -> std::io::Result<()> {
         writeln!(out, "order,model,speed,motion,velocity_error")?;
         for cell in &self.cells {

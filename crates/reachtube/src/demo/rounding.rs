@@ -1,10 +1,10 @@
-//! Numbers as they are recorded.
+//! Rounding of recorded numbers.
 
-/// Decimals kept: μrad, μrad/s, μN m. It hides differences in the last bits between mathematics
-/// libraries.
+/// Steps per unit: numbers are recorded in μrad, μrad/s and μN m. The last bits differ between
+/// mathematics libraries, and rounding hides this.
 const SCALE: f64 = 1e6;
 
-/// The number that is printed; never -0.
+/// Rounds a number to six decimals; the result is never -0.
 pub(super) fn rounded(x: f64) -> f64 {
     (x * SCALE).round() / SCALE + 0.0
 }
