@@ -57,7 +57,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let model = fit(&robot, &folder, &recorded)?;
     let path = args.out.join("model.json");
     write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
-    output::note(&format!("wrote {}", path.display()));
+    output::wrote(&path);
     page(&model, &robot, &folder, &recorded.training, &args.out.join("report"))?;
     let held_out = page(&model, &robot, &folder, &recorded.check, &args.out.join("held-out"))?;
     if json {
@@ -102,7 +102,7 @@ fn page(
     };
     let opened = Opened::with(model.clone(), robot.clone(), &args)?;
     let (page, _) = report_files::write(&opened, to)?;
-    output::note(&format!("wrote {}", page.display()));
+    output::wrote(&page);
     opened.check()
 }
 

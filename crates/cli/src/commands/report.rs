@@ -32,10 +32,6 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model)?;
     let (page, notes) = report_files::write(&opened, &args.out)?;
     output::notes(&notes);
-    if json {
-        output::print_json(&json!({ "report": page }))?;
-    } else {
-        output::print(&format!("wrote {}\n", page.display()))?;
-    }
+    output::show(json, &json!({ "report": page }), || format!("wrote {}\n", page.display()))?;
     Ok(Outcome::Done)
 }
