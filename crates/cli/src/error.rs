@@ -15,7 +15,7 @@ pub enum Error {
     )]
     Output(#[source] std::io::Error),
     /// `--at` has the wrong number of positions.
-    #[error("--at has {given} values; give {joints}, one position per joint in rad")]
+    #[error("--at lists {given}; give {joints} positions in rad, one per joint")]
     PositionCount {
         /// Number of values given.
         given: usize,

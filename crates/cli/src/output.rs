@@ -1,6 +1,7 @@
 //! Results on standard output, notes on standard error.
 
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 use serde::Serialize;
 
@@ -22,6 +23,16 @@ pub fn print(text: &str) -> Result<()> {
 pub fn print_json(value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).expect("results have string keys");
     print(&(text + "\n"))
+}
+
+/// Prints a result as JSON or as text.
+pub fn show(json: bool, value: &impl Serialize, text: impl FnOnce() -> String) -> Result<()> {
+    if json { print_json(value) } else { print(&text()) }
+}
+
+/// Reports a file that was written.
+pub fn wrote(path: &Path) {
+    note(&format!("wrote {}", path.display()));
 }
 
 /// Prints a note on standard error. A closed standard error is ignored: nobody reads it.

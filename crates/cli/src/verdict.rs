@@ -13,16 +13,16 @@ pub fn lost(lost: &Lost) -> String {
     )
 }
 
-/// Reports the bound for the next motion; `role` says what the deciding motions do.
+/// Reports the bound for the next motion; `role` says what the deciding motions did.
 pub fn trust(trust: &Trust, role: &str) -> String {
     format!(
         "the next motion leaves the reachable set with probability at most {:.3} \
-         (confidence {:.0} %): {} {}, {} of them {role}\nbasis: {}",
+         (confidence {:.0} %): {} of {} {} {role}\nbasis: {}",
         trust.violation_probability,
         100.0 * trust.confidence,
+        trust.deciding,
         trust.motions,
         plural(trust.motions, "motion"),
-        trust.deciding,
         trust.basis
     )
 }

@@ -81,14 +81,12 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     }
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
-        output::note(&format!("wrote {}", path.display()));
+        output::wrote(path);
     }
     if args.print {
         output::print(&model.to_string())?;
-    } else if json {
-        output::print_json(&json_summary(&model, seconds))?;
     } else {
-        output::print(&summary(&model, seconds))?;
+        output::show(json, &json_summary(&model, seconds), || summary(&model, seconds))?;
     }
     Ok(Outcome::Done)
 }

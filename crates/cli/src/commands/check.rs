@@ -33,11 +33,7 @@ pub struct Arguments {
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let check = Opened::new(&args.model, Keep::Needed)?.check()?;
     output::notes(&check.notes);
-    if json {
-        output::print_json(&check)?;
-    } else {
-        output::print(&summary(&check))?;
-    }
+    output::show(json, &check, || summary(&check))?;
     Ok(Outcome::of(check.verdict.conformant))
 }
 
@@ -59,7 +55,7 @@ pub fn summary(check: &Check) -> String {
         let _ = writeln!(text, "{}", lost(set));
     }
     let next_motion = match &check.trust {
-        Some(held_out) => trust(held_out, "leave the set"),
+        Some(held_out) => trust(held_out, "left the set"),
         None => {
             "no bound for the next motion: the model was fitted to some of these recordings".into()
         }

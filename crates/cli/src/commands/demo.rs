@@ -66,9 +66,9 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let model = Model::new(&problem, &found);
     let path = args.out.join("model.json");
     write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
-    output::note(&format!("wrote {}", path.display()));
+    output::wrote(&path);
     let page = conform_command::report(&problem, &model, &found, &args.out.join("report"))?;
-    output::note(&format!("wrote {}", page.display()));
+    output::wrote(&page);
     // Try them on the motions held out.
     let (model, held_out) = check_held_out(model, setup, &folder, &recorded.check, &args.out)?;
     if json {
@@ -105,7 +105,7 @@ fn check_held_out(
     let Opened { model, problem, .. } = &opened;
     let sources = Sources { model, problem, reach: &reach, check: &check };
     let page = report_files::write(&sources, &out.join("held-out"))?;
-    output::note(&format!("wrote {}", page.display()));
+    output::wrote(&page);
     Ok((opened.model, check))
 }
 

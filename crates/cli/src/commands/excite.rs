@@ -61,7 +61,22 @@ pub struct Arguments {
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     write::try_at(&args.out)?;
-    let settings = ExcitationSettings {
+    let n = robot.joint_count();
+    let found = robot.excitation(&columns(n), &settings(args))?;
+    let text = csv(&found, n, args.rate);
+    write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
+    output::wrote(&args.out);
+    let values = json!({
+        "condition": found.quality.condition,
+        "condition_before": found.before.condition,
+        "period": args.period,
+    });
+    output::show(json, &values, || summary(&found, &robot))?;
+    Ok(Outcome::Done)
+}
+
+fn settings(args: &Arguments) -> ExcitationSettings {
+    ExcitationSettings {
         period: args.period,
         harmonics: args.harmonics,
         criterion: if args.condition { Criterion::Condition } else { Criterion::LogDeterminant },
@@ -69,33 +84,18 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         speed: args.speed,
         seed: args.seed,
         ..ExcitationSettings::default()
-    };
-    let n = robot.joint_count();
-    let motor_and_friction = [
-        ParameterKind::MotorInertia,
-        ParameterKind::Coulomb,
-        ParameterKind::Offset,
-        ParameterKind::Viscous1,
-    ];
-    let columns = [
-        Parameter::of_joints(n, &ParameterKind::INERTIAL),
-        Parameter::of_joints(n, &motor_and_friction),
-    ]
-    .concat();
-    let found = robot.excitation(&columns, &settings)?;
-    let text = csv(&found, n, args.rate);
-    write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
-    output::note(&format!("wrote {}", args.out.display()));
-    if json {
-        output::print_json(&json!({
-            "condition": found.quality.condition,
-            "condition_before": found.initial_quality.condition,
-            "period": args.period,
-        }))?;
-    } else {
-        output::print(&summary(&found, &robot))?;
     }
-    Ok(Outcome::Done)
+}
+
+/// Returns the parameters to excite: inertia of links and motors, and friction.
+fn columns(joints: usize) -> Vec<Column> {
+    let motor_and_friction =
+        [ColumnKind::MotorInertia, ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1];
+    [
+        Column::of_joints(joints, &ColumnKind::INERTIAL),
+        Column::of_joints(joints, &motor_and_friction),
+    ]
+    .concat()
 }
 
 fn summary(found: &Excitation, robot: &Robot) -> String {

@@ -37,11 +37,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap))?;
     drop(bar);
     output::notes(&inspection.notes);
-    if json {
-        output::print_json(&inspection)?;
-    } else {
-        output::print(&summary(&inspection))?;
-    }
+    output::show(json, &inspection, || summary(&inspection))?;
     Ok(Outcome::Done)
 }
 
@@ -70,13 +66,6 @@ q - int qd: largest difference between q and the integral of qd [rad]
 
 /// Describes the runs of a group in one line.
 fn heading(group: &Group) -> String {
-    let [fewest, most] = group.samples;
-    let samples = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
-    let step = match group.step {
-        _ if most == 1 => String::new(),
-        Some(step) => format!(" every {step} s"),
-        None => format!(" every {} to {} s", number(group.steps[0]), number(group.steps[1])),
-    };
     let kind = if group.suite { "suite" } else { "no suite:" };
     let motion =
         group.motion.as_ref().map_or_else(String::new, |motion| format!(" (motion {motion})"));
@@ -86,13 +75,25 @@ fn heading(group: &Group) -> String {
         false => ", torques or sample times differ between runs",
     };
     format!(
-        "{kind} {}{motion}: {} {} of {samples} {}{step}, {:.3} s{torque}",
+        "{kind} {}{motion}: {} {} of {}, {:.3} s{torque}",
         group.name,
         group.runs,
         plural(group.runs, "run"),
-        plural(most, "sample"),
+        samples(group),
         group.duration
     )
+}
+
+/// Describes the number of samples per run and the time between them.
+fn samples(group: &Group) -> String {
+    let [fewest, most] = group.samples;
+    let count = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
+    let step = match group.step {
+        _ if most == 1 => String::new(),
+        Some(step) => format!(" every {step} s"),
+        None => format!(" every {} to {} s", number(group.steps[0]), number(group.steps[1])),
+    };
+    format!("{count} {}{step}", plural(most, "sample"))
 }
 
 fn joint_table(group: &Group) -> String {

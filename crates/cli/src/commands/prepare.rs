@@ -63,13 +63,7 @@ pub struct Arguments {
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
-    let settings = PrepareSettings {
-        gains: args.gains.clone(),
-        joints: args.joints.clone(),
-        cut_off: args.cut_off,
-        max_gap: args.max_gap,
-        ..PrepareSettings::default()
-    };
+    let settings = settings(args);
     write::try_at(&args.out.join("runs.csv"))?;
     let entries: Vec<LogEntry> = args.logs.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, std::path::Path::new(""), &robot, &settings)?;
@@ -87,4 +81,14 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print_json(&json!({ "cut_off": cut_off, "recordings": cut.windows.len() }))?;
     }
     Ok(Outcome::Done)
+}
+
+fn settings(args: &Arguments) -> PrepareSettings {
+    PrepareSettings {
+        gains: args.gains.clone(),
+        joints: args.joints.clone(),
+        cut_off: args.cut_off,
+        max_gap: args.max_gap,
+        ..PrepareSettings::default()
+    }
 }

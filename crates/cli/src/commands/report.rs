@@ -39,10 +39,6 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let page =
         report_files::write(&Sources { model, problem, reach: &reach, check: &check }, &args.out)?;
     output::notes(&problem.recordings().notes);
-    if json {
-        output::print_json(&json!({ "report": page }))?;
-    } else {
-        output::print(&format!("wrote {}\n", page.display()))?;
-    }
+    output::show(json, &json!({ "report": page }), || format!("wrote {}\n", page.display()))?;
     Ok(Outcome::Done)
 }

@@ -70,26 +70,25 @@ pub fn table1(args: &Table1Arguments, json: bool) -> Result<Outcome> {
     if let Some(path) = &args.out {
         write::try_at(path)?;
     }
-    let options = Table1Options {
+    let bar = Progress::of("simulating");
+    let table = make_table1(&robot, &options(args), &|done, total| bar.show(done, total))?;
+    drop(bar);
+    if let Some(path) = &args.out {
+        write::atomically(path, |out| table.write_csv(out))?;
+        output::wrote(path);
+    }
+    output::show(json, &table, || summary(&table))?;
+    Ok(Outcome::Done)
+}
+
+fn options(args: &Table1Arguments) -> Table1Options {
+    Table1Options {
         motions: args.motions,
         seed: args.seed,
         orders: args.orders.clone(),
         model3_up_to: args.model3_up_to,
         range: args.range,
-    };
-    let bar = Progress::of("simulating");
-    let table = make_table1(&robot, &options, &|done, total| bar.show(done, total))?;
-    drop(bar);
-    if let Some(path) = &args.out {
-        write::atomically(path, |out| table.write_csv(out))?;
-        output::note(&format!("wrote {}", path.display()));
     }
-    if json {
-        output::print_json(&table)?;
-    } else {
-        output::print(&summary(&table))?;
-    }
-    Ok(Outcome::Done)
 }
 
 /// Returns Table I in the paper's layout.

@@ -47,21 +47,18 @@ pub fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let at = ExpansionPoint::from_values(&args.at, joints)?;
     let physicality = robot.check_physical()?;
     let mass = robot.mass_matrix(&at.q);
-    if json {
-        let rows: Vec<Vec<f64>> =
-            mass.row_iter().map(|row| row.iter().copied().collect()).collect();
-        output::print_json(&json!({
-            "description": robot.description(),
-            "physical": physicality_sentence(&physicality, &robot),
-            "q": at.q,
-            "mass_matrix": rows,
-            "gravity_torque": robot.gravity_torque(&at.q).as_slice(),
-        }))?;
-    } else {
-        let physical = physicality_sentence(&physicality, &robot);
-        let parts = [description(&robot), dynamics(&robot, &at.q, &mass)];
-        output::print(&format!("{}\n{physical}\n", parts.concat()))?;
-    }
+    let physical = physicality_sentence(&physicality, &robot);
+    let rows: Vec<Vec<f64>> = mass.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let values = json!({
+        "description": robot.description(),
+        "physical": physical,
+        "q": at.q,
+        "mass_matrix": rows,
+        "gravity_torque": robot.gravity_torque(&at.q).as_slice(),
+    });
+    output::show(json, &values, || {
+        format!("{}{}\n{physical}\n", description(&robot), dynamics(&robot, &at.q, &mass))
+    })?;
     Ok(Outcome::Done)
 }
 

@@ -21,7 +21,7 @@ fn a_robot_is_shown() {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     lab.run("robot show arm.toml --at 1,2,3")
-        .fails_with(&["--at has 3 values", "give 2, one position per joint in rad"]);
+        .fails_with(&["--at lists 3", "give 2 positions in rad"]);
     lab.run("robot show lwa4p").exits(0);
 }
 

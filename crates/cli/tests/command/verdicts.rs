@@ -111,8 +111,8 @@ fn recordings_are_inspected() {
     let text = lab.run("inspect --data data").exits(0).stdout;
     assert!(
         text.contains(
-            "suite A (motion motion A): 3 runs of 51 samples every 0.01 s, 0.500 s, same torques in \
-             every run"
+            "suite A (motion motion A): 3 runs of 51 samples every 0.01 s, 0.500 s, same torques \
+             in every run"
         ),
         "{text}"
     );

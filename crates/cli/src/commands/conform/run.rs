@@ -33,7 +33,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let model = Model::new(&problem, &found);
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
-        output::note(&format!("wrote {}", path.display()));
+        output::wrote(path);
     }
     if json {
         output::print(&model.to_json())?;
@@ -42,7 +42,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     }
     if let Some(folder) = &args.report {
         let page = report(&problem, &model, &found, folder)?;
-        output::note(&format!("wrote {}", page.display()));
+        output::wrote(&page);
     }
     Ok(Outcome::of(model.verified))
 }

@@ -21,7 +21,7 @@ pub fn summary(model: &Model) -> String {
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         let _ = writeln!(text, "\n{}", explained.words(tolerance));
     }
-    let _ = writeln!(text, "\n{}", trust(&model.trust, "touch the set"));
+    let _ = writeln!(text, "\n{}", trust(&model.trust, "touched the set"));
     text
 }
 

@@ -28,11 +28,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     drop(bar);
     output::notes(&found.changes);
     files(args, &found, urdf.as_ref())?;
-    if json {
-        output::print_json(&found.summary())?;
-    } else {
-        output::print(&summary(&found))?;
-    }
+    output::show(json, &found.summary(), || summary(&found))?;
     found.warnings.iter().for_each(|warning| output::warn(warning));
     Ok(Outcome::Done)
 }
@@ -53,27 +49,26 @@ fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
 
 /// Writes the robot file, the report page and the URDF that the arguments ask for.
 fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
-    let save = |path: &Path, text: String| {
-        write::atomically(path, |out| out.write_all(text.as_bytes()))?;
-        output::note(&format!("wrote {}", path.display()));
-        Ok::<(), Error>(())
-    };
     if let Some(path) = &args.out {
-        save(path, found.robot_toml())?;
+        save(path, found.robot_toml().as_bytes())?;
     }
     if let Some(folder) = &args.report {
-        let path = folder.join("identify.html");
         let mut page = Vec::new();
         write_identified_html(found, &mut page)?;
-        write::atomically(&path, |out| out.write_all(&page))?;
-        output::note(&format!("wrote {}", path.display()));
+        save(&folder.join("identify.html"), &page)?;
     }
     if let (Some(path), Some(urdf)) = (&args.urdf, urdf) {
         let robot = Robot::from_description(&found.description)?;
-        save(path, urdf.updated(&robot)?)?;
+        save(path, urdf.updated(&robot)?.as_bytes())?;
         // URDF has no elements for motors and load-dependent friction.
-        save(&path.with_extension("toml"), urdf.companion(&robot))?;
+        save(&path.with_extension("toml"), urdf.companion(&robot).as_bytes())?;
     }
+    Ok(())
+}
+
+fn save(path: &Path, content: &[u8]) -> Result<()> {
+    write::atomically(path, |out| out.write_all(content))?;
+    output::wrote(path);
     Ok(())
 }
 
