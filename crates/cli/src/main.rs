@@ -5,7 +5,6 @@ mod commands;
 mod data_arguments;
 mod error;
 mod file_names;
-mod numbers;
 mod opened;
 mod option_values;
 mod outcome;

@@ -11,12 +11,12 @@ use reachtube_robot::Robot;
 use serde_json::json;
 
 use crate::error::Result;
-use crate::numbers::{interval, number};
 use crate::option_values::{MODELS, numbered_choice};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::table::table;
+use reachtube::number::{four_decimals, interval};
 
 const HELP: &str = "\
 Examples:
@@ -154,7 +154,7 @@ fn joint_row(model: &PolynomialModel, joint: usize) -> Vec<String> {
     if let Some(remainder) = model.remainder() {
         let bound = remainder.bounds[joint].map(|[low, high]| interval((low, high)));
         row.push(bound.unwrap_or_else(|| "no bound found".into()));
-        row.push(number(remainder.sampled_error[joint]));
+        row.push(four_decimals(remainder.sampled_error[joint]));
     }
     row
 }

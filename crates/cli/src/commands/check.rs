@@ -7,12 +7,12 @@ use reachtube::conform::{Check, Keep, SuiteVerdict, Witness};
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
-use crate::numbers::number;
 use crate::opened::Opened;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::{plural, table};
 use crate::verdict::{lost, trust};
+use reachtube::number::four_decimals;
 
 const HELP: &str = "\
 Example:
@@ -83,7 +83,7 @@ fn witness(place: &Witness) -> String {
         place.time,
         place.joint,
         place.state,
-        number(place.excess),
+        four_decimals(place.excess),
         format!("{:?}", place.side).to_lowercase()
     )
 }

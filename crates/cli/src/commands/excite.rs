@@ -9,10 +9,10 @@ use reachtube_robot::{Criterion, Excitation, ExcitationSettings, Parameter, Para
 use serde_json::json;
 
 use crate::error::Result;
-use crate::numbers::number;
 use crate::option_values::{hertz, seconds};
 use crate::outcome::Outcome;
 use crate::output;
+use reachtube::number::four_decimals;
 
 const HELP: &str = "\
 Example:
@@ -62,13 +62,13 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::load(&args.robot)?;
     write::try_at(&args.out)?;
     let n = robot.joint_count();
-    let found = robot.excitation(&columns(n), &settings(args))?;
+    let found = robot.excitation(&parameters(n), &settings(args))?;
     let text = csv(&found, n, args.rate);
     write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
     output::wrote(&args.out);
     let values = json!({
         "condition": found.quality.condition,
-        "condition_before": found.before.condition,
+        "condition_before": found.initial_quality.condition,
         "period": args.period,
     });
     output::show(json, &values, || summary(&found, &robot))?;
@@ -88,12 +88,16 @@ fn settings(args: &Arguments) -> ExcitationSettings {
 }
 
 /// Returns the parameters to excite: inertia of links and motors, and friction.
-fn columns(joints: usize) -> Vec<Column> {
-    let motor_and_friction =
-        [ColumnKind::MotorInertia, ColumnKind::Coulomb, ColumnKind::Offset, ColumnKind::Viscous1];
+fn parameters(joints: usize) -> Vec<Parameter> {
+    let motor_and_friction = [
+        ParameterKind::MotorInertia,
+        ParameterKind::Coulomb,
+        ParameterKind::Offset,
+        ParameterKind::Viscous1,
+    ];
     [
-        Column::of_joints(joints, &ColumnKind::INERTIAL),
-        Column::of_joints(joints, &motor_and_friction),
+        Parameter::of_joints(joints, &ParameterKind::INERTIAL),
+        Parameter::of_joints(joints, &motor_and_friction),
     ]
     .concat()
 }
@@ -102,10 +106,10 @@ fn summary(found: &Excitation, robot: &Robot) -> String {
     let mut text = format!(
         "condition number of the base regressor {} (random motion: {}); log determinant of its \
          information matrix {} (random motion: {})\n",
-        number(found.quality.condition),
-        number(found.initial_quality.condition),
-        number(found.quality.log_determinant),
-        number(found.initial_quality.log_determinant)
+        four_decimals(found.quality.condition),
+        four_decimals(found.initial_quality.condition),
+        four_decimals(found.quality.log_determinant),
+        four_decimals(found.initial_quality.log_determinant)
     );
     for (j, joint) in robot.joints().iter().enumerate() {
         let [low, high] = found.trajectory.position_range(j);

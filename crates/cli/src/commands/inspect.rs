@@ -7,12 +7,12 @@ use reachtube::recordings::{DataSet, Group, Inspection, JointSummary, inspect};
 
 use crate::data_arguments::gap_limit;
 use crate::error::Result;
-use crate::numbers::number;
 use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::table::{plural, table};
+use reachtube::number::four_decimals;
 
 const HELP: &str = "\
 Example:
@@ -91,7 +91,11 @@ fn samples(group: &Group) -> String {
     let step = match group.step {
         _ if most == 1 => String::new(),
         Some(step) => format!(" every {step} s"),
-        None => format!(" every {} to {} s", number(group.steps[0]), number(group.steps[1])),
+        None => format!(
+            " every {} to {} s",
+            four_decimals(group.steps[0]),
+            four_decimals(group.steps[1])
+        ),
     };
     format!("{count} {}{step}", plural(most, "sample"))
 }
@@ -118,8 +122,8 @@ fn joint_row(number_of_joint: usize, joint: &JointSummary) -> Vec<String> {
         format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1]),
         format!("{:.3}", joint.speed),
         format!("{:.2}", joint.torque),
-        number(joint.start_spread),
-        joint.end_spread.map_or_else(|| "-".into(), number),
+        four_decimals(joint.start_spread),
+        joint.end_spread.map_or_else(|| "-".into(), four_decimals),
         joint.drift.map_or_else(|| "-".into(), |drift| format!("{drift:+.2}")),
         format!("{:.0} %", 100.0 * joint.sticking),
         format!("{:.1e}", joint.integral_gap),

@@ -11,13 +11,13 @@ use serde_json::json;
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
 use crate::file_names;
-use crate::numbers::number;
 use crate::opened::Opened;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::report_files;
 use crate::table::table;
 use crate::verdict::lost;
+use reachtube::number::four_decimals;
 
 const HELP: &str = "\
 Example:
@@ -102,7 +102,7 @@ impl Written<'_> {
     fn row(&self) -> Vec<String> {
         let widths = self.final_width();
         let (positions, velocities) = widths.split_at(widths.len() / 2);
-        let widest = |widths: &[f64]| number(widths.iter().copied().fold(0.0, f64::max));
+        let widest = |widths: &[f64]| four_decimals(widths.iter().copied().fold(0.0, f64::max));
         vec![
             self.reach.suite.clone(),
             self.reach.run.clone().unwrap_or_else(|| "all".into()),

@@ -10,11 +10,11 @@ use reachtube::write;
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::numbers::number;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::table::table;
+use reachtube::number::four_decimals;
 
 /// Reproduce a table of the paper
 #[derive(Debug, Subcommand)]
@@ -102,7 +102,7 @@ fn summary(table1: &Table1) -> String {
         table1.robot,
         options.motions,
         options.seed,
-        number(options.range)
+        four_decimals(options.range)
     );
     let rows: Vec<_> = options
         .orders
@@ -133,11 +133,12 @@ fn row(table1: &Table1, order: u32, speed: Speed) -> Vec<String> {
 /// Returns the simulated error and the paper's error.
 fn cell_pair(cell: Option<&Cell>) -> [String; 2] {
     let Some(cell) = cell else { return ["-".into(), String::new()] };
-    let spread = cell.spread.map(|spread| format!(" ± {}", number(spread))).unwrap_or_default();
+    let spread =
+        cell.spread.map(|spread| format!(" ± {}", four_decimals(spread))).unwrap_or_default();
     let simulated = match (cell.mean, cell.diverged) {
         (None, diverged) => format!("∞ ({diverged} diverged)"),
-        (Some(mean), 0) => format!("{}{spread}", number(mean)),
-        (Some(mean), diverged) => format!("{}{spread} ({diverged} diverged)", number(mean)),
+        (Some(mean), 0) => format!("{}{spread}", four_decimals(mean)),
+        (Some(mean), diverged) => format!("{}{spread} ({diverged} diverged)", four_decimals(mean)),
     };
     let paper = match cell.paper {
         Some(Paper::Error(error)) => format!("{error:.4}"),

@@ -7,10 +7,10 @@ use reachtube_robot::{Joint, JointDescription, Physicality, Robot};
 use serde_json::json;
 
 use crate::error::{Error, Result};
-use crate::numbers::{digits, fixed};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::table;
+use reachtube::number::{fixed, six_digits};
 
 /// Show how reachtube understands a robot's description
 #[derive(Debug, Subcommand)]
@@ -115,7 +115,7 @@ fn joint_row(joint: &Joint) -> Vec<String> {
         maybe(joint.velocity_limit),
         maybe(joint.gear_ratio),
         format!("{:.5}", joint.armature),
-        [viscous.v1, viscous.v2, viscous.v3].map(digits).join(", "),
+        [viscous.v1, viscous.v2, viscous.v3].map(six_digits).join(", "),
     ]
 }
 
@@ -130,7 +130,7 @@ fn link_row(joint: &JointDescription) -> Vec<String> {
     vec![
         joint.name.clone(),
         geometry(joint),
-        digits(joint.mass),
+        six_digits(joint.mass),
         list(&moment),
         list(&joint.inertia),
         coulomb,
@@ -152,7 +152,7 @@ fn geometry(joint: &JointDescription) -> String {
 }
 
 fn list(values: &[f64]) -> String {
-    values.iter().map(|value| digits(*value)).collect::<Vec<_>>().join(" ")
+    values.iter().map(|value| six_digits(*value)).collect::<Vec<_>>().join(" ")
 }
 
 /// Reports why the robot counts as physical; `--json` prints the same sentence.

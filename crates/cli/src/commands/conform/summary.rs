@@ -5,9 +5,9 @@ use std::fmt::Write;
 use reachtube::Model;
 use reachtube::conform::{Enclosure, MOST_TIGHT, Witness};
 
-use crate::numbers::{interval, number};
 use crate::table::{plural, table};
 use crate::verdict::{lost, trust};
+use reachtube::number::{four_decimals, interval};
 
 /// Largest number of touching values in the table.
 const MOST_PLACES: usize = 6;
@@ -68,13 +68,13 @@ fn cost(model: &Model) -> String {
                 gap if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
                 _ => "optimal".into(),
             };
-            format!(" ({optimal}; lower bound {})", number(bound))
+            format!(" ({optimal}; lower bound {})", four_decimals(bound))
         }
         (None, Some(search)) => format!(
             " ({}{} {}, the reachable sets of all suites computed {} {})",
             search
                 .linearised_cost
-                .map(|cost| format!("{} for the linearised sets; ", number(cost)))
+                .map(|cost| format!("{} for the linearised sets; ", four_decimals(cost)))
                 .unwrap_or_default(),
             search.rounds,
             plural(search.rounds, "round"),
@@ -85,7 +85,7 @@ fn cost(model: &Model) -> String {
     };
     format!(
         "cost {}{quality}: weighted widths of the reachable sets, summed over states and samples",
-        number(cost)
+        four_decimals(cost)
     )
 }
 

@@ -5,8 +5,8 @@ use reachtube::identify::{
     PhysicalFit, WindowErrors,
 };
 
-use crate::numbers::number;
 use crate::table::table;
+use reachtube::number::four_decimals;
 
 /// Returns the result of `identify`, with one section per step.
 pub fn summary(found: &Identification) -> String {
@@ -68,7 +68,9 @@ fn gravity(found: &Identification) -> String {
 
 fn gravity_cells(fit: Option<&JointFit>) -> Vec<String> {
     match fit {
-        Some(fit) => vec![number(fit.torque), number(fit.residual), percent(fit.relative())],
+        Some(fit) => {
+            vec![four_decimals(fit.torque), four_decimals(fit.residual), percent(fit.relative())]
+        }
         None => vec!["-".into(); 3],
     }
 }
@@ -98,7 +100,7 @@ fn friction_row(joint: &JointFriction) -> Vec<String> {
         joint.joint.clone(),
         format!("{:.5}", joint.r2),
         format!("{:.4}", joint.r2_without_gravity),
-        number(joint.residual),
+        four_decimals(joint.residual),
         format!("{} ({:.0})", joint.samples.0, joint.samples.1),
         list(&joint.coefficients.coulomb),
         list(&joint.coefficients.viscous),
@@ -124,7 +126,7 @@ fn inertia(found: &Identification) -> String {
         "\n3. inertial parameters: {determined} of {} combinations determined, condition number \
          {} (relative singular values beside the rank cut: {:.0e} | {:.0e})\n{}{}{}",
         fit.parameters.len(),
-        number(fit.condition),
+        four_decimals(fit.condition),
         fit.gap[0],
         fit.gap[1],
         table(&header, &rows),
@@ -135,12 +137,12 @@ fn inertia(found: &Identification) -> String {
 
 fn inertia_row(fit: &InertiaFit, j: usize, name: &str) -> Vec<String> {
     let joint = &fit.joints[j];
-    let physical = fit.physical.as_ref().map(|physical| number(physical.residuals[j][1]));
+    let physical = fit.physical.as_ref().map(|physical| four_decimals(physical.residuals[j][1]));
     vec![
         name.into(),
         format!("{} ({:.0})", joint.rows, joint.independent),
-        number(joint.torque),
-        number(joint.residual),
+        four_decimals(joint.torque),
+        four_decimals(joint.residual),
         percent(joint.relative()),
         physical.unwrap_or_else(|| "-".into()),
         percent(joint.outliers),
@@ -151,11 +153,11 @@ fn parameters(fit: &InertiaFit) -> String {
     let row = |parameter: &BaseParameter| {
         let relative = parameter.standard_error / parameter.least_squares.abs();
         vec![
-            number(parameter.value),
-            number(parameter.least_squares),
-            number(parameter.standard_error),
+            four_decimals(parameter.value),
+            four_decimals(parameter.least_squares),
+            four_decimals(parameter.standard_error),
             if relative < 10.0 { percent(relative) } else { "-".into() },
-            number(parameter.described),
+            four_decimals(parameter.described),
             parameter.name.clone(),
         ]
     };
@@ -180,8 +182,8 @@ fn physical(physical: &PhysicalFit) -> String {
     format!(
         "{plain}\nphysical links raise the sum of squared residuals by {} standard deviations \
          squared (objective within {} of its minimum)\n",
-        number(physical.cost),
-        number(physical.gap)
+        four_decimals(physical.cost),
+        four_decimals(physical.gap)
     )
 }
 
@@ -228,9 +230,9 @@ fn windows(found: &Identification) -> String {
         let cell = |j: usize| {
             format!(
                 "{} ({}; {})",
-                number(windows.q[j]),
-                number(windows.motion[j]),
-                number(windows.qd[j])
+                four_decimals(windows.q[j]),
+                four_decimals(windows.motion[j]),
+                four_decimals(windows.qd[j])
             )
         };
         let head = format!(
