@@ -89,8 +89,8 @@ impl Explained {
         };
         format!(
             "a motion of the model itself (start in X0, input in U, held over each sample) was \
-             found within {} rad and {} rad/s of {} of the {} recordings; the closest motions found \
-             differ by {} rad and {} rad/s in the median, and by {} rad \
+             found within {} rad and {} rad/s of {} of the {} recordings; the closest motions \
+             found differ by {} rad and {} rad/s in the median, and by {} rad \
              and {} rad/s for {}",
             tolerance.position,
             tolerance.velocity,

@@ -63,7 +63,8 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
         ),
         None => format!("{outside} of {rows} rows have no {set}."),
         Some(worst) => format!(
-            "{outside} of {rows} rows leave the {set}; the furthest is {} at {:.3} s, {} by {:.3e}.",
+            "{outside} of {rows} rows leave the {set}; the furthest is {} at {:.3} s, {} by \
+             {:.3e}.",
             worst.run, worst.time, worst.state, worst.excess
         ),
     };

@@ -127,8 +127,9 @@ impl Elementary for TaylorModel {
 
     /// Returns the angle φ + atan z.
     ///
-    /// φ is within a right angle of all angles of the range, and z is the slope of the point rotated
-    /// back by φ. The sum is the angle itself: both differ by a multiple of 2π, and by less than π.
+    /// φ is within a right angle of all angles of the range, and z is the slope of the point
+    /// rotated back by φ. The sum is the angle itself: both differ by a multiple of 2π, and by less
+    /// than π.
     fn atan2(&self, x: &Self) -> Self {
         let values = self.range().atan2(x.range());
         let number = self.polynomial.space().is_none() && x.polynomial.space().is_none();
