@@ -108,7 +108,16 @@ pub enum Error {
 }
 
 fn range(low: f64, high: f64) -> String {
-    if high == f64::MAX { format!("{low} or more") } else { format!("between {low} and {high}") }
+    // Powers of ten as a person writes them.
+    let number = |x: f64| match x.abs() {
+        size if size == 0.0 || (1e-3..1e6).contains(&size) => format!("{x}"),
+        _ => format!("{x:e}"),
+    };
+    if high == f64::MAX {
+        format!("{} or more", number(low))
+    } else {
+        format!("between {} and {}", number(low), number(high))
+    }
 }
 
 /// A result of this crate.

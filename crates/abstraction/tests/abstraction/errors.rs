@@ -11,7 +11,7 @@ fn orders_that_do_not_fit_are_refused_with_a_remedy() {
     let large = refusal(ModelKind::Three, 20);
     assert!(large.contains("GB for its terms") && large.contains("order 10 fits"), "{large}");
     assert!(
-        refusal(ModelKind::Two, 40).contains("order 31 at most"),
+        refusal(ModelKind::Two, 40).contains("up to order 31"),
         "{}",
         refusal(ModelKind::Two, 40)
     );

@@ -91,7 +91,7 @@ fn what_cannot_be_made_is_refused() {
     assert!(unknown.contains("invalid value '4'") && unknown.contains("1, 2, 3"), "{unknown}");
     refused("abstract --robot lwa4p --order 0", &["order 1 at least"]);
     refused("abstract --robot lwa4p --model 3 --order 20", &["GB for its terms", "fits"]);
-    refused("abstract --robot lwa4p --model 2 --order 40", &["order 31 at most"]);
+    refused("abstract --robot lwa4p --model 2 --order 40", &["up to order 31"]);
     refused("abstract --robot lwa4p --at 1,2", &["expansion point has 2 values", "6 positions"]);
     refused(
         "abstract --robot lwa4p --box 0.1,1.3,1",

@@ -83,7 +83,7 @@ fn every_defect_is_listed_in_the_order_of_the_lines() {
 #[test]
 fn a_line_cut_short() {
     let cut = |text: String| text.as_bytes()[..text.len() - 50].to_vec();
-    refused_bytes(cut, &["data/A_2.csv:52:", "fields, the header has 7", "cut short"]);
+    refused_bytes(cut, &["data/A_2.csv:52:", "fields, but the header has 7", "cut short"]);
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn other_separators_and_encodings() {
         |text| [vec![0xff, 0xfe], utf16(text)].concat(),
         &["data/A_2.csv:1: the file is UTF-16", "UTF-8"],
     );
-    refused_bytes(utf16, &["data/A_2.csv:1: the file is no text"]);
+    refused_bytes(utf16, &["data/A_2.csv:1: the file is not text"]);
     let latin1 =
         |text: String| text.replacen("0.010", "0.01\u{b0}", 1).chars().map(|c| c as u8).collect();
     refused_bytes(latin1, &["data/A_2.csv:3: t is", "not a finite number"]);
@@ -120,7 +120,7 @@ fn other_separators_and_encodings() {
 #[test]
 fn nothing_recorded() {
     refused_bytes(|_| vec![], &["data/A_2.csv:1: the file is empty"]);
-    refused(|lines| lines.truncate(1), &["data/A_2.csv: no sample", "leave the run out"]);
+    refused(|lines| lines.truncate(1), &["data/A_2.csv: there is no sample", "leave the run out"]);
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn a_missing_sample() {
     let lab = Lab::new();
     lab.edit("data/A_2.csv", |lines| drop(lines.remove(10)));
     run(&lab, "").fails_with(&[
-        "data/A_2.csv:11: a gap of 0.02",
+        "data/A_2.csv:11: there is a gap of 0.02",
         "the limit is 0.019",
         "--max-gap",
     ]);
@@ -212,8 +212,10 @@ fn refused_by_conform(change: impl FnOnce(&mut Vec<String>), parts: &[&str]) {
 #[test]
 fn a_recording_of_another_robot() {
     let lab = Lab::new();
-    lab.run("conform --robot lwa4p --data data --torque motor")
-        .fails_with(&["data/A_1.csv:1: the recording has 2 joints, the robot 6", "data/B_3.csv:1"]);
+    lab.run("conform --robot lwa4p --data data --torque motor").fails_with(&[
+        "data/A_1.csv:1: the recording has 2 joints, but the robot has 6",
+        "data/B_3.csv:1",
+    ]);
 }
 
 #[test]

@@ -22,10 +22,10 @@ fn a_missing_folder_or_index() {
 #[test]
 fn columns_that_are_not_there() {
     let header = |text: &'static str| move |lines: &mut Vec<String>| lines[0] = text.into();
-    refused(header("path,suite,motion"), &["data/runs.csv:1: no column \"file\""]);
+    refused(header("path,suite,motion"), &["data/runs.csv:1: there is no column \"file\""]);
     refused(
         header("file;suite;motion"),
-        &["data/runs.csv:1: no column \"suite\"", "file;suite;motion"],
+        &["data/runs.csv:1: there is no column \"suite\"", "file;suite;motion"],
     );
     refused(|lines| lines.truncate(1), &["data/runs.csv: no run is listed"]);
 }
@@ -46,7 +46,7 @@ fn lines_that_are_wrong() {
     );
     refused(
         |lines| lines.insert(1, "\nA_9.csv".into()),
-        &["data/runs.csv:3: 1 fields, the header has 3"],
+        &["data/runs.csv:3: the line has 1 fields, but the header has 3"],
     );
     refused(
         |lines| lines[2] = "A_2.csv,A,motion B".into(),

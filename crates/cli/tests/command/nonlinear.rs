@@ -40,8 +40,8 @@ fn a_nonlinear_model_goes_through_every_command() {
         .exits(0)
         .notes("round 1: the linearised sets cost");
     for part in [
-        "conformant: 6 recordings in 2 suites; 816 of 816 bounds (suite, sample, state, side) lie \
-         in the computed reachable set, an outer enclosure",
+        "conformant: 6 recordings in 2 suites; 408 of 408 values (suite, sample, state) lie in \
+         the computed reachable set, an outer enclosure",
         "for the linearised sets",
         "decide X0 and U",
         "a motion of the model itself (start in X0, input in U, held over each sample) was found \
@@ -140,7 +140,7 @@ fn what_does_not_fit_is_refused() {
     lab.run("abstract --robot bent.toml --order 3 --box 0.3,0.1,1 --out slow.json").exits(0);
     lab.run("conform --abstraction slow.json --data data --torque compensated")
         .exits(0)
-        .notes("suite A: qd2 leaves the box at sample 3;");
+        .notes("suite A: qd2 leaves the operating box at sample 3.");
     let mut unbounded: Value = serde_json::from_str(&lab.read("slow.json")).unwrap();
     unbounded["remainder"]["bounds"][1] = Value::Null;
     lab.write("unbounded.json", unbounded.to_string());
@@ -156,7 +156,7 @@ fn a_changed_model_is_refused() {
         ("/acceleration/0/0/1", json!(-2.5), "changed after it was written"),
         ("/variables/0", json!("q1"), "its variables are not"),
         ("/settings/method", json!("guess"), "unknown variant `guess`"),
-        ("/settings/abstraction/order", json!(1), "there are 4 variables and order 1"),
+        ("/settings/abstraction/order", json!(1), "but the model has 4 variables and order 1"),
     ] {
         let mut changed = model.clone();
         *changed.pointer_mut(path).unwrap() = value;

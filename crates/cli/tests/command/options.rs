@@ -140,6 +140,6 @@ fn suites_of_different_rates_go_together() {
         (&0.01.into(), &0.02.into())
     );
     let model = lab.conform("--json --out model.json").exits(0).json();
-    assert_eq!(model["proof"]["rows"], 2 * 4 * (SAMPLES + SAMPLES.div_ceil(2)));
+    assert_eq!(model["proof"]["rows"], 4 * (SAMPLES + SAMPLES.div_ceil(2)));
     lab.check("").exits(0);
 }

@@ -29,7 +29,7 @@ fn table_1_of_another_robot() {
         .exits(0)
         .json();
     assert!(table["cells"].as_array().unwrap().iter().all(|cell| cell["paper"].is_null()));
-    lab.run("reproduce table1 --motions 0").fails_with(&["no motions", "give 1 at least"]);
+    lab.run("reproduce table1 --motions 0").fails_with(&["no motions", "give at least 1"]);
     lab.run("reproduce table1 --range -1").fails_with(&["joint1", "choose a wider range"]);
     lab.run("reproduce table1 --orders 0").fails_with(&["order 1 at least"]);
 }

@@ -56,8 +56,8 @@ fn the_schema_refuses_what_the_program_refuses() {
     for (changed, words) in [
         (set("/format", json!("other")), "format is not"),
         (
-            set("/version", json!(2)),
-            "version 2 of the format, this program reads 1; run conform again",
+            set("/version", json!(1)),
+            "version 1 of the format, but this program reads version 2; run conform again",
         ),
         (set("/cost", json!(null)), "it has no cost"),
         (set("/input_set/radius/0", json!(-0.1)), "input_set or noise_set"),
@@ -84,7 +84,7 @@ fn a_changed_part_is_refused() {
         ("/settings/expansion_point/q", json!([0.0]), "expansion point"),
         ("/data/suites/0/runs/0/sha256", json!("0".repeat(64)), "data.sha256"),
         ("/verified", json!(false), "verified does not agree with proof"),
-        ("/proof/proved", json!(1), "verified does not agree with proof"),
+        ("/proof/violations/count", json!(1), "verified does not agree with proof"),
     ] {
         let mut changed = model.clone();
         *changed.pointer_mut(path).unwrap() = value;

@@ -1,5 +1,10 @@
 use std::sync::Arc;
+use std::time::Instant;
 
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{
+    DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT,
+};
 use nalgebra::DMatrix;
 use rand::RngExt;
 use rand_xoshiro::SplitMix64;
@@ -264,4 +269,85 @@ fn least(matrices: &[(DMatrix<f64>, DMatrix<f64>, DMatrix<f64>)]) -> f64 {
 /// Draws a number uniformly from [-bound, bound).
 fn uniform(random: &mut SplitMix64, bound: f64) -> f64 {
     -bound + 2.0 * bound * random.random::<f64>()
+}
+
+/// Solves the program of a chain as long as 4 s of six joints at 250 Hz both ways, and prints the
+/// times: the reason why explanations have a solver of their own. Run it with
+/// `cargo test --release -p reachtube-conform -- --ignored --nocapture long_chain`.
+#[test]
+#[ignore = "measures the own solver beside the conic one; takes a while"]
+fn a_long_chain_has_the_optimum_of_a_conic_program() {
+    let mut random = SplitMix64::seed_from_u64(3);
+    let (states, width, links) = (12, 6, 1000);
+    let (mut chain, mut matrices) = (Chain::new(states), Vec::new());
+    for k in 0..links {
+        let mut entries = |rows, columns, size: f64| {
+            DMatrix::from_fn(rows, columns, |_, _| uniform(&mut random, size))
+        };
+        let gain = entries(states, width, 0.05);
+        let near_identity =
+            DMatrix::identity(states, states) * 0.99 + entries(states, states, 0.002);
+        let transition = near_identity * f64::from(u8::from(k > 0));
+        let drift = entries(states, 1, 0.2);
+        let row = |i: usize| {
+            gain.row(i).iter().chain(transition.row(i).iter()).copied().collect::<Vec<_>>()
+        };
+        chain.push((0..states).flat_map(row).collect(), drift.iter().copied());
+        matrices.push((gain, transition, drift));
+    }
+    let start = Instant::now();
+    let found = regulate(&chain, 1e-9).largest;
+    let own = start.elapsed();
+    let start = Instant::now();
+    let least = conic(&matrices);
+    println!("own solver {own:.2?} to {found}, conic solver {:.2?} to {least}", start.elapsed());
+    assert!(found > least * (1.0 - 1e-6) && found < 1.03 * least, "{found} {least}");
+}
+
+/// Finds the least bound of the states by Clarabel, with states and moves as unknowns and the chain
+/// as equations.
+fn conic(matrices: &[(DMatrix<f64>, DMatrix<f64>, DMatrix<f64>)]) -> f64 {
+    let (n, width) = matrices[0].0.shape();
+    let (moves, bound) = (width * matrices.len(), (width + n) * matrices.len());
+    let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut right = Vec::new();
+    let mut add = |row: usize, column: usize, value: f64| {
+        rows.push(row);
+        columns.push(column);
+        values.push(value);
+    };
+    // x_k - Φ x_{k-1} - G y_k = d_k
+    for (k, (gain, transition, drift)) in matrices.iter().enumerate() {
+        for i in 0..n {
+            add(k * n + i, moves + k * n + i, 1.0);
+            (0..width).for_each(|j| add(k * n + i, k * width + j, -gain[(i, j)]));
+            if k > 0 {
+                let before = moves + (k - 1) * n;
+                (0..n).for_each(|j| add(k * n + i, before + j, -transition[(i, j)]));
+            }
+            right.push(drift[(i, 0)]);
+        }
+    }
+    // |y| <= 1 and |x| <= t
+    let equations = right.len();
+    for column in 0..bound {
+        for sign in [1.0, -1.0] {
+            add(right.len(), column, sign);
+            if column >= moves {
+                add(right.len(), bound, -1.0);
+            }
+            right.push(if column < moves { 1.0 } else { 0.0 });
+        }
+    }
+    let matrix = CscMatrix::new_from_triplets(right.len(), bound + 1, rows, columns, values);
+    let cones = [ZeroConeT(equations), NonnegativeConeT(right.len() - equations)];
+    let mut objective = vec![0.0; bound + 1];
+    objective[bound] = 1.0;
+    let zero = CscMatrix::zeros((bound + 1, bound + 1));
+    let settings = DefaultSettingsBuilder::default().verbose(false).build().unwrap();
+    let mut solver =
+        DefaultSolver::new(&zero, &objective, &matrix, &right, &cones, settings).unwrap();
+    solver.solve();
+    assert_eq!(solver.solution.status, SolverStatus::Solved);
+    solver.solution.obj_val
 }

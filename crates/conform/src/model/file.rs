@@ -260,9 +260,6 @@ impl Model {
     /// Checks that what is in the file twice is the same: where it is not, somebody has changed a
     /// part. Returns the robot, its model and the settings.
     fn check_parts(&self) -> Result<Setup, String> {
-        let changed = |what: &str| {
-            format!("{what}: the file was changed after it was written; run conform again")
-        };
         if self.data.sha256 != self.data.digest() {
             return Err(changed("data.sha256 is not that of the recordings it lists"));
         }
@@ -271,17 +268,15 @@ impl Model {
             return Err(changed("verified does not agree with proof"));
         }
         let robot = Robot::from_description(&self.robot).map_err(|error| error.to_string())?;
-        let dynamics = self.dynamics(&robot).map_err(|error| error.to_string())?;
-        let dynamics = dynamics.ok_or_else(|| {
-            changed("the matrices or polynomials are not those that its robot and settings ask for")
-        })?;
+        let dynamics = self.dynamics(&robot)?;
         Ok(Setup { robot, dynamics, settings: self.settings.clone() })
     }
 
-    /// Returns the model bit by bit as the file has it; nothing where its matrices are not those of
-    /// the robot at the expansion point, or a linear model has polynomials instead.
-    fn dynamics(&self, robot: &Robot) -> Result<Option<Dynamics>> {
+    /// Returns the model bit by bit as the file has it, or what speaks against it.
+    fn dynamics(&self, robot: &Robot) -> Result<Dynamics, String> {
         let Settings { abstraction, expansion_point, method, .. } = &self.settings;
+        let mismatch =
+            || changed("it has not the matrices or polynomials that its settings ask for");
         if !self.acceleration.is_empty() {
             let records = Records {
                 variables: self.variables.clone(),
@@ -289,19 +284,29 @@ impl Model {
                 acceleration: self.acceleration.clone(),
             };
             let model =
-                PolynomialModel::from_records(robot, *abstraction, expansion_point, records)?;
+                PolynomialModel::from_records(robot, *abstraction, expansion_point, records)
+                    .map_err(|error| error.to_string())?;
             let dynamics = Dynamics::of(model, *method);
-            return Ok(dynamics.linear_system().is_none().then_some(dynamics));
+            return match dynamics.linear_system() {
+                None => Ok(dynamics),
+                Some(_) => Err(mismatch()),
+            };
         }
-        let made = Dynamics::new(robot, &self.settings)?;
-        let own = LinearSystem::new(
-            matrix(&self.a),
-            matrix(&self.b),
-            DVector::from_vec(self.drift.clone()),
-        )?;
-        let same = made.linear_system().is_some_and(|made| is_near(made, &own));
-        Ok(same.then(|| made.with_linear(own)))
+        let made = Dynamics::new(robot, &self.settings).map_err(|error| error.to_string())?;
+        let expected = made.linear_system().ok_or_else(mismatch)?;
+        let drift = DVector::from_vec(self.drift.clone());
+        let own = LinearSystem::new(matrix(&self.a), matrix(&self.b), drift)
+            .map_err(|error| error.to_string())?;
+        if !is_near(expected, &own) {
+            return Err(changed("a, b or drift is not that of its robot at its expansion point"));
+        }
+        Ok(made.with_linear(own))
     }
+}
+
+/// Returns the message about a file whose parts contradict each other.
+fn changed(what: &str) -> String {
+    format!("{what}: the file was changed after it was written; run conform again")
 }
 
 fn is_near(made: &LinearSystem, own: &LinearSystem) -> bool {

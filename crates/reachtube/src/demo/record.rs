@@ -40,7 +40,7 @@ pub struct RecordedDemo {
 ///
 /// ```
 /// use reachtube::demo::{DemoOptions, record};
-/// use reachtube::recordings::DataSet;
+/// use reachtube::recordings::{DataSet, RunSource};
 /// use reachtube_robot::Robot;
 ///
 /// let folder = tempfile::tempdir().unwrap();

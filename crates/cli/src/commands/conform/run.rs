@@ -16,7 +16,6 @@ use crate::report_files;
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let setup = setup(args)?;
-    setup.robot.check_physical()?;
     let source = Box::new(DataSet::open(&args.data.data)?);
     if let Some(path) = &args.out {
         write::try_at(path)?;

@@ -14,13 +14,16 @@ pub fn setup(args: &Arguments) -> Result<Setup> {
     let mut setup = match &args.abstraction {
         None => {
             let robot = Robot::load(args.robot.as_deref().unwrap_or_default())?;
+            robot.check_physical()?;
             let settings = settings(args, robot.joint_count())?;
             Setup::new(robot, settings)?
         }
         Some(path) => {
             let model = PolynomialModel::load(path)?;
             let settings = settings(args, model.joints())?;
-            Setup::with_abstraction(model, settings)?
+            let setup = Setup::with_abstraction(model, settings)?;
+            setup.robot.check_physical()?;
+            setup
         }
     };
     setup.settings.explain = explain(args, &setup)?;
