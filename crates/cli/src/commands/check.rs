@@ -42,7 +42,7 @@ pub fn summary(check: &Check) -> String {
     let verdict = &check.verdict;
     let outcome = if verdict.conformant { "conformant" } else { "not conformant" };
     let mut text = format!(
-        "{outcome}: {} {}; {} of {} values (suite, sample, state) outside the reachable set, at \
+        "{outcome}: {} {}; {} of {} rows (suite, sample, state) outside the reachable set, at \
          samples\n\n",
         verdict.runs,
         plural(verdict.runs, "recording"),
@@ -50,7 +50,7 @@ pub fn summary(check: &Check) -> String {
         verdict.rows
     );
     let rows: Vec<_> = verdict.suites.iter().map(suite_row).collect();
-    text.push_str(&table(&["suite", "runs", "values", "outside", "furthest outside"], &rows));
+    text.push_str(&table(&["suite", "runs", "rows", "outside", "furthest outside"], &rows));
     for set in &verdict.lost {
         let _ = writeln!(text, "{}", lost(set));
     }

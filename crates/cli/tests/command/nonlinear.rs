@@ -40,7 +40,7 @@ fn a_nonlinear_model_goes_through_every_command() {
         .exits(0)
         .notes("round 1: the linearised sets cost");
     for part in [
-        "conformant: 6 recordings in 2 suites; 408 of 408 values (suite, sample, state) lie in \
+        "conformant: 6 recordings in 2 suites; 408 of 408 rows (suite, sample, state) lie in \
          the computed reachable set, an outer enclosure",
         "for the linearised sets",
         "decide X0 and U",

@@ -44,7 +44,7 @@ fn a_model_file_is_what_json_prints() {
 #[test]
 fn a_table_shows_the_sets() {
     let text = Lab::new().conform("").exits(0).stdout;
-    assert!(text.starts_with("conformant: 6 recordings in 2 suites; 408 of 408 values"), "{text}");
+    assert!(text.starts_with("conformant: 6 recordings in 2 suites; 408 of 408 rows"), "{text}");
     for part in ["axis1", "axis2", "[-0.0020, 0.0020]", "[-0.1000, 0.1000]", "U [N m]"] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }

@@ -75,7 +75,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     let band = "The grey band is an outer bound of the reachable set at the samples";
     let proved = vec![
         format!(
-            "{} of {rows} rows (suite, time, state) hold, checked with directed rounding: the \
+            "{} of {rows} rows (suite, sample, state) hold, checked with directed rounding: the \
              recorded {states} lies in the interval hull of the {set}.",
             rows - outside,
         ),

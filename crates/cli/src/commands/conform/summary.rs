@@ -36,7 +36,7 @@ fn verdict(model: &Model) -> String {
         }
     };
     let mut text = format!(
-        "{}: {runs} {} in {suites} {}; {} of {} values (suite, sample, state) {how}, at \
+        "{}: {runs} {} in {suites} {}; {} of {} rows (suite, sample, state) {how}, at \
          samples\n",
         if model.verified { "conformant" } else { "NOT PROVED conformant" },
         plural(runs, "recording"),
