@@ -74,7 +74,7 @@ fn one_value_outside_is_found_with_its_place() {
     assert!((0.4..=0.5 - START).contains(&excess), "{excess}");
     assert_eq!(check["suites"][0]["violations"]["count"], 0);
     let text = lab.check("").exits(1).stdout;
-    assert!(text.starts_with("not conformant: 6 recordings; 1 of 408 values"), "{text}");
+    assert!(text.starts_with("not conformant: 6 recordings; 1 of 408 rows"), "{text}");
     assert!(text.contains("B_2.csv at 0.200 s: joint 1, q1 is 0.4"), "{text}");
 }
 

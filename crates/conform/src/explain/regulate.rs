@@ -2,7 +2,8 @@
 //!
 //! The program is a linear one with as many unknowns as a run has inputs and states (18,000 for 4 s
 //! of a six-joint arm). Its structure, a chain, makes each Newton step one Riccati recursion, whose
-//! time is linear in the samples. That is why it is not handed to the conic solver of the sets.
+//! time is linear in the samples. The conic solver of the sets takes 12 times as long on a chain of
+//! 1,000 samples (1.58 s against 0.13 s; see the ignored test of the long chain).
 
 use crate::explain::chain::{Chain, Riccati, dot};
 

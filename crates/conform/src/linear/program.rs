@@ -297,8 +297,7 @@ impl<'a> Program<'a> {
         self.indices(1).map(ratio).fold(1.0, f64::max)
     }
 
-    /// Returns the rows that touch the hull of the sets' reach, within the part [`TIGHT`] of its
-    /// radius.
+    /// Returns the rows that touch the hull of the sets' reach, within 1e-6 of its radius.
     #[must_use]
     pub fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
         let unknowns = self.unknowns(sets);
