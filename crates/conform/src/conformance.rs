@@ -7,6 +7,7 @@ use crate::explain::explanation::{Explanation, explain};
 use crate::found::{Found, SearchSummary};
 use crate::hulls::Hulls;
 use crate::linear::smallest_sets as linear;
+use crate::optimality::LARGEST_GAP;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets as search;
@@ -26,6 +27,9 @@ pub struct Conformance {
     /// The dual objective of the program of a linear model: no sets cost less, to the solver's
     /// tolerance.
     pub lower_bound: Option<f64>,
+    /// How far the cost may be above the least, relative to the lower bound. Above [`LARGEST_GAP`]
+    /// the sets are conformant, but not minimal.
+    pub optimality_gap: Option<f64>,
     /// The paper's sum, eq. (21), which adds E where it should add |E|, for a linear model.
     pub paper_cost: Option<f64>,
     /// Σ_k Δt Π_i width_i(t_k), eq. (2).
@@ -69,7 +73,8 @@ pub fn conform(
         Some(_) => linear::smallest_sets(problem)?,
         None => search::smallest_sets(problem, progress, resume)?,
     };
-    let Found { hulls, cost, lower_bound, paper_cost, hull_volume, search, deciding } = found;
+    let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
+    let Found { paper_cost, hull_volume, search, deciding, .. } = found;
     let mut tight = Vec::new();
     let verdict = Verdict::new(problem, &hulls, |suite, case, row| {
         let decide = row.edges.iter().filter(|edge| deciding.contains(case, row, edge));
@@ -84,10 +89,14 @@ pub fn conform(
         sets: hulls.sets.clone(),
         cost,
         lower_bound,
+        optimality_gap,
         paper_cost,
         hull_volume,
         verdict,
-        trust: Trust::of_fit(problem.recordings(), &tight),
+        trust: match optimality_gap {
+            Some(gap) if gap > LARGEST_GAP => Trust::without_optimum(problem.recordings(), gap),
+            _ => Trust::of_fit(problem.recordings(), &tight),
+        },
         search,
         tight,
         explanations,

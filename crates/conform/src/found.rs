@@ -12,6 +12,8 @@ pub(crate) struct Found {
     pub cost: f64,
     /// No sets cost less, for a linear model.
     pub lower_bound: Option<f64>,
+    /// How far the cost may be above the least, relative to the bound, for a linear model.
+    pub optimality_gap: Option<f64>,
     /// The paper's sum (21), for a linear model.
     pub paper_cost: Option<f64>,
     /// Σ_k Δt Π_i width_i(t_k), eq. (2).

@@ -20,6 +20,7 @@ mod grids;
 mod hulls;
 mod linear;
 mod model;
+mod optimality;
 mod problem;
 mod progress;
 mod reach;
@@ -48,6 +49,7 @@ pub use linear::program::{Program, Solution};
 pub use model::{
     DataRecord, Explained, FORMAT, MOST_TIGHT, Model, Residual, RunRecord, SuiteRecord, VERSION,
 };
+pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use problem::{Case, Keep, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};

@@ -41,6 +41,20 @@ impl Trust {
         Self::new(&motions, deciding, bound, "scenario bound (Campi and Garatti 2018)")
     }
 
+    /// Returns the statement about sets that are not the smallest, `gap` above the program's bound:
+    /// there is none, because the scenario bound holds for an optimum only.
+    #[must_use]
+    pub fn without_optimum(recordings: &Recordings, gap: f64) -> Self {
+        let motions = Motions::of(recordings);
+        let basis = format!(
+            "no scenario bound: it holds for the smallest sets only, and the program was solved to \
+             a relative gap of {gap:.1e}"
+        );
+        let (motions, deciding) = (motions.all(), 0);
+        let (violation_probability, confidence) = (1.0, CONFIDENCE);
+        Self { motions, deciding, violation_probability, confidence, basis }
+    }
+
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
     #[must_use]
     pub fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {

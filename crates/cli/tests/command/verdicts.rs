@@ -52,6 +52,19 @@ fn a_table_shows_the_sets() {
 }
 
 #[test]
+fn the_page_says_that_sets_are_not_the_smallest() {
+    let lab = Lab::new();
+    lab.conform("--out model.json").exits(0);
+    let mut model: serde_json::Value = serde_json::from_str(&lab.read("model.json")).unwrap();
+    assert!(model["optimality_gap"].as_f64().unwrap() < 1e-6);
+    model["optimality_gap"] = serde_json::json!(29.0);
+    lab.write("model.json", model.to_string());
+    lab.run("report --model model.json --data data --torque compensated --out page").exits(0);
+    let page = lab.read("page/report.html");
+    assert!(page.contains("are not the smallest") && page.contains("not minimal, gap 2.9e1"));
+}
+
+#[test]
 fn one_value_outside_is_found_with_its_place() {
     let lab = Lab::new();
     lab.conform("--out model.json").exits(0);

@@ -101,6 +101,12 @@ impl<'a> Program<'a> {
         radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
     }
 
+    /// Returns the cost of widths of 1e-9 rad or rad/s throughout, which nobody can tell from none.
+    #[must_use]
+    pub fn negligible_cost(&self) -> f64 {
+        1e-9 * 0.5 * self.noise_cost.iter().sum::<f64>()
+    }
+
     /// Returns the number of rows of the whole program, each side counted.
     #[must_use]
     pub fn rows(&self) -> usize {

@@ -4,6 +4,7 @@ use crate::found::{Deciding, Found};
 use crate::hulls::Hulls;
 use crate::linear::block::Block;
 use crate::linear::program::{Program, TIGHT};
+use crate::optimality::optimality_gap;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::weights::state_weights;
@@ -27,9 +28,12 @@ pub(crate) fn smallest_sets(problem: &Problem) -> Result<Found> {
     let solution = program.solve()?;
     let hulls = repair(problem, &program, &solution.sets)?;
     let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
+    let (cost, lower_bound) = (program.cost(&hulls.sets), solution.lower_bound);
+    let gap = optimality_gap(cost, lower_bound, program.negligible_cost());
     Ok(Found {
-        cost: program.cost(&hulls.sets),
-        lower_bound: Some(solution.lower_bound),
+        cost,
+        lower_bound: Some(lower_bound),
+        optimality_gap: Some(gap),
         paper_cost: Some(paper_cost),
         hull_volume,
         search: None,

@@ -16,6 +16,7 @@ use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
 use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained};
+use crate::optimality::LARGEST_GAP;
 use crate::problem::problem::{Problem, Setup};
 use crate::problem::recordings::Recordings;
 use crate::sets::UncertaintySets;
@@ -61,6 +62,10 @@ pub struct Model {
     /// up to its tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost_lower_bound: Option<f64>,
+    /// How far the cost may be above the least, relative to the lower bound, for a linear model. Above
+    /// 1e-6 the sets enclose the recordings but are not the smallest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub optimality_gap: Option<f64>,
     /// The paper's sum (21) for a linear model, with E where |E| is meant, for comparison.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost_paper: Option<f64>,
@@ -136,6 +141,7 @@ impl Model {
             verified: found.verdict.conformant,
             cost: finite(found.cost),
             cost_lower_bound: found.lower_bound,
+            optimality_gap: found.optimality_gap,
             cost_paper: found.paper_cost,
             hull_volume: finite(found.hull_volume),
             search: found.search.clone(),
@@ -211,6 +217,12 @@ impl Model {
         let fitted: HashSet<&str> = suites.map(|run| run.sha256.as_str()).collect();
         let mut runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
         runs.any(|run| fitted.contains(run.sha256.as_str()))
+    }
+
+    /// Returns the optimality gap where it is so large that the sets must not be called the smallest.
+    #[must_use]
+    pub fn gap_of_not_minimal(&self) -> Option<f64> {
+        self.optimality_gap.filter(|gap| *gap > LARGEST_GAP)
     }
 
     /// Returns the number of joints n.

@@ -44,6 +44,7 @@ pub(crate) fn smallest_sets(
         hulls: Hulls { sets, kind: HullKind::Outer(flowpipes) },
         cost,
         lower_bound: None,
+        optimality_gap: None,
         paper_cost: None,
         hull_volume,
         search: Some(summary),

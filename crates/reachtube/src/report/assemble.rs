@@ -161,7 +161,11 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         model.cost_lower_bound,
         model.search.as_ref().and_then(|search| search.linearised_cost),
     ) {
-        (Some(bound), _) => format!("{} (lower bound {bound:.6})", number(model.cost)),
+        (Some(bound), _) => {
+            let gap = model.gap_of_not_minimal();
+            let not = gap.map_or_else(String::new, |gap| format!("; not minimal, gap {gap:.1e}"));
+            format!("{} (lower bound {bound:.6}{not})", number(model.cost))
+        }
         (None, Some(linearised)) => format!("{} (linearised {linearised:.6})", number(model.cost)),
         (None, None) => number(model.cost),
     };
@@ -216,6 +220,13 @@ fn caution(model: &Model) -> Vec<String> {
          certain about motions, payloads or temperatures that were not recorded."
             .to_string(),
     ];
+    if let Some(gap) = model.gap_of_not_minimal() {
+        words.push(format!(
+            "The sets enclose the recordings but are not the smallest: the solver of the linear \
+             program stopped at a cost that is {gap:.1e} of its lower bound above it. Smaller sets \
+             may do. Check that torques, units and robot belong together."
+        ));
+    }
     if model.trust.violation_probability > 0.5 {
         words.push(
             "There are too few independent motions for a useful bound on the next motion. Record \

@@ -38,7 +38,7 @@ fn verdict(model: &Model) -> String {
     let mut text = format!(
         "{}: {runs} {} in {suites} {}; {} of {} rows (suite, sample, state) {how}, at \
          samples\n",
-        if model.verified { "conformant" } else { "NOT PROVED conformant" },
+        outcome(model),
         plural(runs, "recording"),
         plural(suites, "suite"),
         proof.rows - proof.violations.count,
@@ -57,6 +57,14 @@ fn verdict(model: &Model) -> String {
     text
 }
 
+fn outcome(model: &Model) -> &'static str {
+    match (model.verified, model.gap_of_not_minimal()) {
+        (false, _) => "NOT PROVED conformant",
+        (true, Some(_)) => "conformant, not minimal",
+        (true, None) => "conformant",
+    }
+}
+
 /// Returns the cost of the sets and its distance from the optimum, where that is known.
 fn cost(model: &Model) -> String {
     let Some(cost) = model.cost else {
@@ -64,9 +72,13 @@ fn cost(model: &Model) -> String {
     };
     let quality = match (model.cost_lower_bound, &model.search) {
         (Some(bound), _) => {
-            let optimal = match (cost - bound).max(0.0) / cost {
-                gap if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
-                _ => "optimal".into(),
+            let optimal = match (model.gap_of_not_minimal(), model.optimality_gap) {
+                (Some(gap), _) => format!(
+                    "NOT the smallest: the solver stopped {gap:.1e} of the bound above it, so \
+                     smaller sets may enclose the recordings"
+                ),
+                (None, Some(gap)) if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
+                (None, _) => "optimal".into(),
             };
             format!(" ({optimal}; lower bound {})", four_decimals(bound))
         }
@@ -141,4 +153,41 @@ fn places(places: &[Witness]) -> String {
         let _ = writeln!(text, "  and {} more; --json lists all", places.len() - MOST_PLACES);
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use reachtube::conform::Trust;
+    use reachtube::{
+        Keep, MemoryRuns, Model, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform,
+    };
+
+    use super::summary;
+
+    /// Two runs of the arm at rest, a little apart.
+    fn problem() -> Problem {
+        let mut runs = MemoryRuns::default();
+        for offset in [0.0, 0.001] {
+            let states = [vec![offset; 6], vec![0.0; 6]].concat().repeat(3);
+            let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18]).unwrap();
+            runs.push(&format!("run{offset}"), Some("A"), None, run);
+        }
+        let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6)).unwrap();
+        Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap()
+    }
+
+    #[test]
+    fn an_unsolved_program_is_not_reported_as_solved() {
+        let problem = problem();
+        let mut model = Model::new(&problem, &conform(&problem, &Silent, None).unwrap());
+        let solved = summary(&model);
+        assert!(solved.starts_with("conformant: ") && solved.contains("(optimal"), "{solved}");
+        model.optimality_gap = Some(29.0);
+        model.trust = Trust::without_optimum(problem.recordings(), 29.0);
+        let unsolved = summary(&model);
+        for part in ["conformant, not minimal: ", "NOT the smallest", "2.9e1", "no scenario bound"]
+        {
+            assert!(unsolved.contains(part), "{part} is not in\n{unsolved}");
+        }
+    }
 }

@@ -1,0 +1,24 @@
+//! How far the cost of some sets may be above the least.
+
+/// Relative gap above which sets are not called the smallest.
+pub const LARGEST_GAP: f64 = 1e-6;
+
+/// Returns how far `cost` may be above the least cost, relative to the `lower_bound` of the program.
+/// Costs that differ by less than `negligible` are equal: sets of rounding only have no meaningful
+/// bound.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_conform::optimality_gap;
+///
+/// // The gap counts from the bound, so it has no upper limit.
+/// assert_eq!(optimality_gap(30.0, 1.0, 1e-9), 29.0);
+/// assert_eq!(optimality_gap(2.0, 2.0 + 1e-12, 1e-9), 0.0);
+/// assert!(optimality_gap(1e-12, -1e-13, 1e-9) < 1.0);
+/// ```
+#[must_use]
+pub fn optimality_gap(cost: f64, lower_bound: f64, negligible: f64) -> f64 {
+    let above = cost - lower_bound;
+    if above <= negligible { 0.0 } else { above / lower_bound.max(negligible) }
+}
