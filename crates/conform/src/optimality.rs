@@ -3,9 +3,9 @@
 /// Relative gap above which sets are not called the smallest.
 pub const LARGEST_GAP: f64 = 1e-6;
 
-/// Returns how far `cost` may be above the least cost, relative to the `lower_bound` of the program.
-/// Costs that differ by less than `negligible` are equal: sets of rounding only have no meaningful
-/// bound.
+/// Returns how far `cost` may be above the least cost, relative to the `lower_bound` of the
+/// program. Costs that differ by less than `negligible` are equal: sets of rounding only have no
+/// meaningful bound.
 ///
 /// # Examples
 ///

@@ -62,8 +62,8 @@ pub struct Model {
     /// up to its tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost_lower_bound: Option<f64>,
-    /// How far the cost may be above the least, relative to the lower bound, for a linear model. Above
-    /// 1e-6 the sets enclose the recordings but are not the smallest.
+    /// How far the cost may be above the least, relative to the lower bound, for a linear model.
+    /// Above 1e-6 the sets enclose the recordings but are not the smallest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optimality_gap: Option<f64>,
     /// The paper's sum (21) for a linear model, with E where |E| is meant, for comparison.
@@ -219,7 +219,8 @@ impl Model {
         runs.any(|run| fitted.contains(run.sha256.as_str()))
     }
 
-    /// Returns the optimality gap where it is so large that the sets must not be called the smallest.
+    /// Returns the optimality gap where it is so large that the sets must not be called the
+    /// smallest.
     #[must_use]
     pub fn gap_of_not_minimal(&self) -> Option<f64> {
         self.optimality_gap.filter(|gap| *gap > LARGEST_GAP)
