@@ -204,6 +204,7 @@ fn claim(runs: usize, states: States, enclosure: Enclosure) -> String {
     };
     format!(
         "for each of the {runs} recordings, at each of its samples, the recorded {states} of \
-         every joint lies in the interval hull of the model's {set}; {how}, at samples"
+         every joint lies in the interval hull of the model's {set}; {how}, at samples, \
+         whose times are the recorded ones to a picosecond"
     )
 }

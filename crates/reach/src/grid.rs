@@ -2,16 +2,17 @@ use reachtube_scalar::Interval;
 
 use crate::error::ReachError;
 
-/// Largest deviation from k h, in steps, of a uniform grid; it is far below any real jitter and far
-/// above the rounding of a printed decimal.
-const UNIFORM_TOLERANCE: f64 = 1e-6;
+/// Largest difference in s between a recorded time and the time k h that stands for it: the
+/// picosecond to which times are rounded.
+const PICOSECOND: f64 = 1e-12;
 
 /// Sample times t_0 = 0 < t_1 < ... in s, measured from the first sample and rounded to a
 /// picosecond.
 ///
-/// The grid is uniform where the recorded times fit a fixed rate. There t_k is *exactly* k h, with
-/// the step h rounded to 12 significant digits. The decimals 0.004, 0.008, 0.012 thus give the step
-/// 0.004 s.
+/// The grid is uniform where the recorded times fit a fixed rate to a picosecond. There t_k is
+/// *exactly* k h. The step h is a number of 12 significant digits or the reciprocal of a whole
+/// number of hertz. The decimals 0.004, 0.008, 0.012 thus give the step 0.004 s. Times that deviate
+/// by more from every such rate are kept as they were recorded.
 ///
 /// # Examples
 ///
@@ -141,14 +142,19 @@ impl TimeGrid {
     }
 }
 
-/// Returns the step that all times fit, rounded to 12 significant digits.
+/// Returns the step that all times fit: of 12 significant digits, or that of a rate in whole hertz.
 fn uniform_step(times: &[f64]) -> Option<f64> {
     let intervals = times.len().checked_sub(1).filter(|&n| n > 0)?;
     let mean = times[intervals] / intervals as f64;
-    let step: f64 = format!("{mean:.11e}").parse().ok()?;
-    let tolerance = UNIFORM_TOLERANCE * step;
-    let fits = |(k, &t): (usize, &f64)| (t - k as f64 * step).abs() <= tolerance;
-    times.iter().enumerate().all(fits).then_some(step)
+    let decimal: f64 = format!("{mean:.11e}").parse().ok()?;
+    let of_rate = mean.recip().round().recip();
+    let fits = |(k, &t): (usize, &f64), step: f64| {
+        (t - k as f64 * step).abs() <= PICOSECOND + 2.0 * f64::EPSILON * t
+    };
+    let is_step = |step: &f64| {
+        *step > 0.0 && step.is_finite() && times.iter().enumerate().all(|pair| fits(pair, *step))
+    };
+    [of_rate, decimal].into_iter().find(is_step)
 }
 
 #[cfg(test)]
@@ -162,6 +168,23 @@ mod tests {
                 (0..count).map(|k| format!("{:.3}", k as f64 * 0.004).parse().unwrap()).collect();
             assert_eq!(TimeGrid::from_times(&times).unwrap().step(), Some(0.004));
         }
+    }
+
+    #[test]
+    fn rates_in_whole_hertz_are_uniform_and_share_their_step() {
+        for count in [2, 3, 240, 24_001] {
+            let times: Vec<f64> = (0..count).map(|k| f64::from(k) / 240.0).collect();
+            assert_eq!(TimeGrid::from_times(&times).unwrap().step(), Some(1.0 / 240.0));
+        }
+    }
+
+    #[test]
+    fn times_that_are_off_by_more_than_a_picosecond_are_kept() {
+        let times: Vec<f64> =
+            (0..11).map(|k| 0.3 * f64::from(k) + if k == 7 { 225e-9 } else { 0.0 }).collect();
+        let grid = TimeGrid::from_times(&times).unwrap();
+        assert_eq!(grid.step(), None);
+        assert!((grid.times()[7] - times[7]).abs() <= 1e-12);
     }
 
     #[test]
