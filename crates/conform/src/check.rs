@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::hulls::Hulls;
 use crate::model::file::Model;
 use crate::problem::problem::Problem;
+use crate::problem::suite::{RunSummary, Suite};
 use crate::trust::Trust;
 use crate::verdict::Verdict;
 
@@ -40,6 +41,31 @@ impl Check {
         let recordings = problem.recordings();
         let is_held_out = !model.was_fitted_to(recordings);
         let trust = is_held_out.then(|| Trust::of_check(recordings, &verdict));
-        Self { verdict, trust, notes: recordings.notes.clone() }
+        let mut notes = recordings.notes.clone();
+        notes.extend(recordings.suites.iter().filter_map(|suite| other_start_note(model, suite)));
+        Self { verdict, trust, notes }
     }
+}
+
+/// Says where no recording of a suite starts near the nominal initial state that the model has for
+/// a suite of that name.
+fn other_start_note(model: &Model, suite: &Suite) -> Option<String> {
+    let name = &suite.entry.name;
+    model.data.suites.iter().find(|known| known.name == *name)?.nominal_start.as_ref()?;
+    let sets = model.sets();
+    let is_near = |run: &RunSummary| {
+        (0..run.start.len()).all(|i| {
+            let (low, high) = sets.initial_set.bounds(i);
+            let reach = (high - low) + sets.noise_radius(i);
+            let offset = run.start[i] - suite.nominal_start[i];
+            (low - reach..=high + reach).contains(&offset)
+        })
+    };
+    (!suite.runs.iter().any(is_near)).then(|| {
+        format!(
+            "suite {name}: none of its recordings starts near the nominal initial state that the \
+             model has for a suite of this name; if this is another motion, give the suite \
+             another name"
+        )
+    })
 }

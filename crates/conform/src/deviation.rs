@@ -37,7 +37,8 @@ impl Nominal {
     #[must_use]
     pub fn new(grids: &Grids, case: &Case) -> Self {
         let grid = grids.find(&case.grid);
-        let trajectory = grids.as_slice()[grid].propagation.solve(&case.start, &case.inputs);
+        let trajectory =
+            grids.as_slice()[grid].propagation.solve(&case.start_interval(), &case.inputs);
         Self { grid, trajectory }
     }
 }

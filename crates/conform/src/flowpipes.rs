@@ -35,7 +35,7 @@ pub fn flowpipe(
     effort: Effort,
 ) -> Result<Flowpipe> {
     let (start, input) =
-        (case.start_point(), UncertainInput { measured: &case.inputs, set: &sets.input_set });
+        (case.start.clone(), UncertainInput { measured: &case.inputs, set: &sets.input_set });
     let with = |vertex_variables: usize| {
         let settings = FlowpipeSettings { vertex_variables, ..FlowpipeSettings::default() };
         Flowpipe::new(system, &case.grid, &start, &sets.initial_set, &input, &settings)

@@ -103,7 +103,12 @@ fn assert_close(a: &UncertaintySets, b: &UncertaintySets, tolerance: f64) {
 /// The route of models that are not linear, on a linear one.
 fn the_long_way(robot: &Robot, folder: &Path, names: &[&str], settings: &Settings) -> Conformance {
     let dynamics = Dynamics::polynomial(model_of(robot, settings));
-    let setup = Setup { robot: robot.clone(), dynamics, settings: settings.clone() };
+    let setup = Setup {
+        robot: robot.clone(),
+        dynamics,
+        settings: settings.clone(),
+        nominal_starts: Default::default(),
+    };
     conform_all(&read_with(setup, folder, names))
 }
 

@@ -68,7 +68,7 @@ impl<'a> ClosestMotion<'a> {
         let acting = &case.inputs[..n * recorded.len().saturating_sub(1)];
         let inputs =
             (0..acting.len()).map(|at| bounds(acting[at], &sets.input_set, at % n)).collect();
-        let base = case.start_point();
+        let base = case.start.clone();
         let start = (0..2 * n).map(|i| bounds(base[i], &sets.initial_set, i)).collect();
         let mut linearisation = Linearisation::new(model);
         let norms = acting.chunks_exact(n).enumerate().map(|(k, u)| {

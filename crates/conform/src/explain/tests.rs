@@ -11,10 +11,9 @@ use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::SeedableRng;
 use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
 use reachtube_ode::{DormandPrince, Run as Motion, Tolerance};
-use reachtube_reach::{Hyperrectangle, IntervalVector, TimeGrid};
+use reachtube_reach::{Hyperrectangle, TimeGrid};
 use reachtube_recordings::Run;
 use reachtube_robot::Robot;
-use reachtube_scalar::Interval;
 
 use crate::envelope::Envelope;
 use crate::explain::chain::Chain;
@@ -55,7 +54,7 @@ fn case() -> Case {
         run: None,
         grid: Arc::new(TimeGrid::uniform(1.0 / 256.0, SAMPLES)),
         inputs: (0..SAMPLES * JOINTS).map(|at| dyadic(input(at))).collect(),
-        start: IntervalVector::from_fn(2 * JOINTS, |i, _| Interval::point(i as f64 / 16.0)),
+        start: (0..2 * JOINTS).map(|i| i as f64 / 16.0).collect(),
         measured: Arc::new(Envelope::new(2 * JOINTS)),
     }
 }
@@ -88,12 +87,8 @@ fn disturbed(model: &PolynomialModel, case: &Case, sets: &UncertaintySets, reach
     let mut within = |set: &Hyperrectangle, i: usize| {
         set.centre[i] + reach * uniform(&mut random, set.radius[i])
     };
-    let start: Vec<f64> = case
-        .start_point()
-        .iter()
-        .enumerate()
-        .map(|(i, x)| x + within(&sets.initial_set, i))
-        .collect();
+    let start: Vec<f64> =
+        case.start.iter().enumerate().map(|(i, x)| x + within(&sets.initial_set, i)).collect();
     let acting = case.inputs[..(SAMPLES - 1) * JOINTS].iter().enumerate();
     let inputs: Vec<f64> = acting.map(|(at, u)| u + within(&sets.input_set, at % JOINTS)).collect();
     record(model, case, &start, &inputs)
@@ -114,7 +109,7 @@ fn assert_is_witness(
     };
     assert!((0..2 * JOINTS).all(|i| is_in(
         found.states[i],
-        case.start_point()[i],
+        case.start.clone()[i],
         &sets.initial_set,
         i
     )));
@@ -155,7 +150,7 @@ fn runs_of_the_model_are_explained() {
 fn a_start_outside_cannot_be_explained() {
     let (case, sets) = (case(), sets());
     for model in models() {
-        let mut start = case.start_point();
+        let mut start = case.start.clone();
         start[0] += sets.initial_set.bounds(0).1 + 0.0625;
         let run = record(&model, &case, &start, &case.inputs[..(SAMPLES - 1) * JOINTS]);
         let found = ClosestMotion::new(&model, &case, &sets, &run).run();
@@ -196,7 +191,7 @@ fn sets_of_one_point_leave_the_nominal_motion() {
     let model = &models()[1];
     let run = disturbed(model, &case, &sets(), 1.0);
     let found = ClosestMotion::new(model, &case, &point, &run).run();
-    assert_eq!(found.states[..2 * JOINTS], case.start_point());
+    assert_eq!(found.states[..2 * JOINTS], case.start.clone());
     assert_eq!(found.inputs, case.inputs[..(SAMPLES - 1) * JOINTS]);
     assert_is_witness(model, &case, &point, &run, &found);
 }

@@ -10,12 +10,13 @@ use reachtube_files::json;
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_robot::{Robot, RobotDescription};
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use crate::conformance::Conformance;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
 use crate::found::SearchSummary;
-use crate::model::records::{DataRecord, Explained};
+use crate::model::records::{DataRecord, Explained, SuiteRecord};
 use crate::optimality::LARGEST_GAP;
 use crate::problem::problem::{Problem, Setup};
 use crate::problem::recordings::Recordings;
@@ -29,7 +30,7 @@ pub const FORMAT: &str = "reachtube-model";
 
 /// The version of the format that this library writes and reads; the schema is
 /// `docs/model.schema.json`.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Relative difference up to which numbers that were computed twice count as the same.
 const SAME: f64 = 1e-9;
@@ -117,6 +118,8 @@ pub struct Model {
     pub data: DataRecord,
     /// The robot.
     pub robot: RobotDescription,
+    /// SHA-256 of the rest of the file's content, so that a change is noticed.
+    pub sha256: String,
 }
 
 impl Model {
@@ -161,7 +164,9 @@ impl Model {
             acceleration: polynomial.acceleration,
             data: DataRecord::new(problem),
             robot: problem.robot().description().clone(),
+            sha256: String::new(),
         }
+        .sealed()
     }
 
     /// Reads a model file and checks that its parts fit together.
@@ -196,7 +201,19 @@ impl Model {
     /// Returns the file's text: JSON, ending with a newline.
     #[must_use]
     pub fn to_json(&self) -> String {
-        json::to_lines(self)
+        json::to_lines(&self.clone().sealed())
+    }
+
+    fn sealed(self) -> Self {
+        Self { sha256: self.digest(), ..self }
+    }
+
+    /// Returns the SHA-256 that the content must have: of its JSON without spaces and with an
+    /// empty `sha256`.
+    fn digest(&self) -> String {
+        let unsealed = Self { sha256: String::new(), ..self.clone() };
+        let text = serde_json::to_vec(&unsealed).expect("a model has string keys");
+        reachtube_files::hex(&Sha256::digest(text))
     }
 
     /// Returns X0, U and V.
@@ -262,6 +279,8 @@ impl Model {
             )
         } else if point.q.len() != n || point.qd.len() != n {
             format!("its expansion point is not one of {n} joints")
+        } else if self.data.suites.iter().any(|suite| !suite.fits(n)) {
+            format!("a nominal_start is not a state of {n} joints")
         } else if !fits_box {
             format!("its operating box is not one of {n} joints")
         } else {
@@ -282,7 +301,12 @@ impl Model {
         }
         let robot = Robot::from_description(&self.robot).map_err(|error| error.to_string())?;
         let dynamics = self.dynamics(&robot)?;
-        Ok(Setup { robot, dynamics, settings: self.settings.clone() })
+        if self.sha256 != self.digest() {
+            return Err(changed("sha256 is not that of the content"));
+        }
+        let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
+        let nominal_starts = self.data.suites.iter().filter_map(start).collect();
+        Ok(Setup { robot, dynamics, settings: self.settings.clone(), nominal_starts })
     }
 
     /// Returns the model bit by bit as the file has it, or what speaks against it.

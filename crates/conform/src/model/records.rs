@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use crate::explain::explanation::Explanation;
 use crate::problem::problem::Problem;
 use crate::problem::suite::{RunSummary, Suite};
-use crate::settings::Tolerance;
+use crate::settings::{NominalStart, Tolerance};
 
 /// The recordings beside the closest motions of the model that were found: a start in X0 and an
 /// input in U, held over each sample.
@@ -51,6 +51,10 @@ pub struct SuiteRecord {
     /// The motion it is part of, where the index says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
+    /// The initial state of its nominal solutions, 2n, rad and rad/s; nothing where each run
+    /// starts at its own first state.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nominal_start: Option<Vec<f64>>,
     /// Its runs.
     pub runs: Vec<RunRecord>,
 }
@@ -130,6 +134,16 @@ impl Residual {
     }
 }
 
+impl SuiteRecord {
+    /// Returns whether the nominal initial state is one of `joints` joints.
+    pub(super) fn fits(&self, joints: usize) -> bool {
+        let fits = |start: &Vec<f64>| {
+            start.len() == 2 * joints && start.iter().all(|value| value.is_finite())
+        };
+        self.nominal_start.as_ref().is_none_or(fits)
+    }
+}
+
 impl DataRecord {
     pub(super) fn new(problem: &Problem) -> Self {
         let run = |run: &RunSummary| RunRecord {
@@ -138,9 +152,11 @@ impl DataRecord {
             samples: run.samples,
             duration: run.duration,
         };
+        let has_start = problem.settings().nominal == NominalStart::Mean;
         let suite = |suite: &Suite| SuiteRecord {
             name: suite.entry.name.clone(),
             motion: suite.entry.motion.clone(),
+            nominal_start: has_start.then(|| suite.nominal_start.clone()),
             runs: suite.runs.iter().map(run).collect(),
         };
         let suites = problem.recordings().suites.iter().map(suite).collect();

@@ -18,12 +18,9 @@ pub struct Case {
     pub grid: Arc<TimeGrid>,
     /// The input u, row-major, samples x n, N m.
     pub inputs: Arc<[f64]>,
-    /// The nominal initial state, 2n: the mean of the suite's first states, or the run's own.
-    ///
-    /// # Guarantee
-    ///
-    /// Outer enclosure of the exact mean.
-    pub start: IntervalVector,
+    /// The nominal initial state, 2n: that of the suite, or the run's own first state. It defines
+    /// the nominal motion exactly as it is in double precision.
+    pub start: Vec<f64>,
     /// The measured states.
     pub measured: Arc<Envelope>,
 }
@@ -35,10 +32,9 @@ impl Case {
         self.start.len() / 2
     }
 
-    /// Returns the nominal initial state in double precision, 2n: the start that defines the
-    /// nominal motion of a model that is not linear.
+    /// Returns the nominal initial state as intervals without width, 2n. Exact.
     #[must_use]
-    pub fn start_point(&self) -> Vec<f64> {
-        self.start.iter().map(|x| x.mid()).collect()
+    pub fn start_interval(&self) -> IntervalVector {
+        IntervalVector::from_iterator(self.start.len(), self.start.iter().map(|&x| x.into()))
     }
 }

@@ -1,13 +1,11 @@
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 use reachtube_abstraction::{OperatingBox, PolynomialModel};
-use reachtube_reach::IntervalVector;
 use reachtube_recordings::{ReadOptions, Run, RunEntry, RunSource, State};
 use reachtube_robot::Robot;
-use reachtube_scalar::Interval;
 
 use crate::deviation::Deviation;
 use crate::dynamics::Dynamics;
@@ -34,6 +32,9 @@ pub struct Setup {
     pub dynamics: Dynamics,
     /// The settings.
     pub settings: Settings,
+    /// The nominal initial states of suites by their name, 2n each, where they are known. Any
+    /// other suite starts at the mean of the recordings at hand.
+    pub nominal_starts: BTreeMap<String, Vec<f64>>,
 }
 
 impl Setup {
@@ -45,7 +46,7 @@ impl Setup {
     pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
         settings.validate(robot.joint_count())?;
         let dynamics = Dynamics::new(&robot, &settings)?;
-        Ok(Self { robot, dynamics, settings })
+        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new() })
     }
 
     /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
@@ -60,7 +61,7 @@ impl Setup {
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
         let dynamics = Dynamics::of(model, settings.method);
-        Ok(Self { robot, dynamics, settings })
+        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new() })
     }
 }
 
@@ -133,6 +134,7 @@ impl Problem {
             robot,
             torque: settings.torque,
             nominal: settings.nominal,
+            nominal_starts: &setup.nominal_starts,
             kept: &kept,
             keep_all: keep == Keep::All || settings.explain.is_some(),
         };
@@ -277,7 +279,7 @@ impl Problem {
                 run: None,
                 grid: Arc::clone(&input.grid),
                 inputs: Arc::clone(&input.inputs),
-                start: suite.mean_start.clone(),
+                start: suite.nominal_start.clone(),
                 measured: Arc::clone(&suite.envelope),
             })?]),
             None => {
@@ -297,10 +299,8 @@ impl Problem {
         let mut measured = Envelope::new(2 * recorded.joints);
         measured.include(run as u32, &recorded.states);
         let start = match self.settings().nominal {
-            NominalStart::Mean => suite.mean_start.clone(),
-            NominalStart::Own => IntervalVector::from_fn(2 * recorded.joints, |i, _| {
-                Interval::point(recorded.state(0)[i])
-            }),
+            NominalStart::Mean => suite.nominal_start.clone(),
+            NominalStart::Own => recorded.state(0).to_vec(),
         };
         let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
         let measured = Arc::new(measured);

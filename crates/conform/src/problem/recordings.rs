@@ -34,7 +34,7 @@ impl Recordings {
             let counted = |within: usize| progress.recordings_read(done + within, total);
             match reader.read(&entry, &counted) {
                 Ok(suite) => {
-                    notes.extend(suite_notes(&suite, reader.nominal));
+                    notes.extend(suite_notes(&suite, reader));
                     suites.push(suite);
                 }
                 Err(found) => defects.extend(found),
@@ -74,7 +74,8 @@ fn index_notes(source: &dyn RunSource, chosen: &[SuiteEntry]) -> Vec<String> {
     notes
 }
 
-fn suite_notes(suite: &Suite, nominal: NominalStart) -> Vec<String> {
+fn suite_notes(suite: &Suite, reader: &SuiteReader) -> Vec<String> {
+    let SuiteReader { nominal, nominal_starts, .. } = reader;
     let mut notes: Vec<String> = suite.runs.iter().flat_map(|run| run.notes.clone()).collect();
     let lengths = suite.runs.iter().map(|run| run.samples);
     let (shortest, longest) = (lengths.clone().min().unwrap_or(0), lengths.max().unwrap_or(0));
@@ -85,10 +86,19 @@ fn suite_notes(suite: &Suite, nominal: NominalStart) -> Vec<String> {
              its own end"
         ));
     }
-    if suite.shared.is_none() && suite.runs.len() > 1 && nominal == NominalStart::Mean {
+    if suite.shared.is_none() && suite.runs.len() > 1 && *nominal == NominalStart::Mean {
         notes.push(format!(
             "suite {name}: its runs differ in input or sample times, so each run has its own \
              nominal solution"
+        ));
+    }
+    let is_known = nominal_starts.is_empty() || nominal_starts.contains_key(name);
+    if *nominal == NominalStart::Mean && !is_known {
+        notes.push(format!(
+            "suite {name}: the model has no nominal initial state for it, so its nominal solution \
+             starts at the mean of the first states of its {} recordings; the verdict on one of \
+             them depends on the others",
+            suite.runs.len()
         ));
     }
     notes

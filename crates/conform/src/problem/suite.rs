@@ -1,9 +1,9 @@
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use nalgebra::DVector;
 use rayon::prelude::*;
-use reachtube_reach::{IntervalVector, TimeGrid};
+use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque, run_notes};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
@@ -20,12 +20,9 @@ pub struct Suite {
     pub entry: SuiteEntry,
     /// What was read of each run, in the order of `entry.runs`.
     pub runs: Vec<RunSummary>,
-    /// The mean of the runs' first states, 2n.
-    ///
-    /// # Guarantee
-    ///
-    /// Outer enclosure of the exact mean.
-    pub mean_start: IntervalVector,
+    /// The nominal initial state, 2n: the one that was given for the suite's name, or the mean of
+    /// the runs' first states, rounded to nearest.
+    pub nominal_start: Vec<f64>,
     /// The one input of all runs (Definition 2), where they share it and their nominal start: that
     /// of the longest run, of which the others' are the beginning.
     pub shared: Option<RunInput>,
@@ -60,6 +57,7 @@ pub(super) struct SuiteReader<'a> {
     pub robot: &'a Robot,
     pub torque: Torque,
     pub nominal: NominalStart,
+    pub nominal_starts: &'a BTreeMap<String, Vec<f64>>,
     pub kept: &'a KeptRuns,
     /// Whether every run is kept, and not only those that later steps need one by one.
     pub keep_all: bool,
@@ -135,7 +133,10 @@ impl SuiteReader<'_> {
         let own_start = self.nominal == NominalStart::Own;
         Ok(Suite {
             entry: entry.clone(),
-            mean_start: mean_start(&runs, self.robot.joint_count()),
+            nominal_start: match self.nominal_starts.get(&entry.name) {
+                Some(given) => given.clone(),
+                None => mean_start(&runs, self.robot.joint_count()),
+            },
             runs,
             shared: whole.shared.filter(|_| !own_start),
             envelope: Arc::new(whole.envelope),
@@ -212,9 +213,10 @@ impl Part {
     }
 }
 
-fn mean_start(runs: &[RunSummary], joints: usize) -> IntervalVector {
+/// The mean of the first states, 2n, rounded to nearest.
+fn mean_start(runs: &[RunSummary], joints: usize) -> Vec<f64> {
     let count = Interval::point(runs.len() as f64);
-    DVector::from_fn(2 * joints, |i, _| {
-        runs.iter().fold(Interval::ZERO, |sum, run| sum + Interval::point(run.start[i])) / count
-    })
+    let sum =
+        |i: usize| runs.iter().fold(Interval::ZERO, |sum, run| sum + Interval::point(run.start[i]));
+    (0..2 * joints).map(|i| (sum(i) / count).mid()).collect()
 }

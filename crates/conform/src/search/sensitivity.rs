@@ -66,7 +66,7 @@ impl Sensitivity {
         let shifted = |values: &[f64], centre: &[f64]| -> Vec<f64> {
             values.iter().zip(centre.iter().cycle()).map(|(x, c)| x + c).collect()
         };
-        let start = shifted(&case.start_point(), &sets.initial_set.centre);
+        let start = shifted(&case.start, &sets.initial_set.centre);
         let inputs = shifted(&case.inputs, &sets.input_set.centre);
         let mut linearisation = Linearisation::new(model);
         let substeps = substeps(&mut linearisation, case, &start);
@@ -103,7 +103,7 @@ impl Sensitivity {
 ///
 /// [`Error::RunsAway`].
 pub(crate) fn nominal(model: &PolynomialModel, case: &Case) -> Result<Vec<f64>> {
-    let start = case.start_point();
+    let start = case.start.clone();
     let substeps = substeps(&mut Linearisation::new(model), case, &start);
     simulate(model, case.grid.times(), substeps, &start, &case.inputs)
         .map_err(|time| runs_away(case, time))

@@ -133,7 +133,7 @@ fn worst_case(
     side: Side,
 ) -> (Vec<f64>, Vec<f64>) {
     let (n, states) = (case.joints(), 2 * case.joints());
-    let base = case.start_point();
+    let base = case.start.clone();
     let vertex = |centre: f64, radius: f64, sign: f64| centre + side.sign() * sign * radius;
     let (x0, u) = (&sets.initial_set, &sets.input_set);
     let start: Vec<f64> = (0..states)
