@@ -22,6 +22,17 @@ pub enum Enclosure {
     Outer,
 }
 
+impl Enclosure {
+    /// Returns what people are told the recordings are compared with.
+    #[must_use]
+    pub fn set_name(self) -> &'static str {
+        match self {
+            Self::Inner => "reachable set",
+            Self::Outer => "computed outer set",
+        }
+    }
+}
+
 /// A reachable set that could not be followed to the end: the model may run away under its
 /// uncertainty, or the enclosure grew too wide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -195,12 +195,13 @@ fn claim(runs: usize, states: States, enclosure: Enclosure) -> String {
         States::All => "position and velocity",
         States::Positions => "position",
     };
-    let (set, how) = match enclosure {
-        Enclosure::Inner => ("reachable set", "checked with directed rounding"),
-        Enclosure::Outer => (
-            "computed reachable set",
-            "an outer enclosure with directed rounding, for every measurable disturbance in U",
-        ),
+    let set = enclosure.set_name();
+    let how = match enclosure {
+        Enclosure::Inner => "checked with directed rounding",
+        Enclosure::Outer => {
+            "an enclosure of the reachable set with directed rounding, for every measurable \
+             disturbance in U"
+        }
     };
     format!(
         "for each of the {runs} recordings, at each of its samples, the recorded {states} of \

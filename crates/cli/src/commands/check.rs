@@ -11,12 +11,14 @@ use crate::opened::Opened;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::{plural, table};
-use crate::verdict::{lost, trust};
+use crate::verdict::lost;
 use reachtube::number::four_decimals;
 
 const HELP: &str = "\
 Example:
   reachtube check --model model.json --data recordings --suites C,F --torque compensated
+
+A model that is not linear is compared by its computed outer set, an enclosure of the reachable set.
 
 Exit codes: 0 every recorded value lies in the interval hull of the reachable set, at samples;
 1 some value lies outside, and the result names a witness (suite, run, time, joint, excess);
@@ -40,10 +42,10 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 /// Returns the result of `check`, with one line per suite.
 pub fn summary(check: &Check) -> String {
     let verdict = &check.verdict;
+    let set = verdict.enclosure.set_name();
     let outcome = if verdict.conformant { "conformant" } else { "not conformant" };
     let mut text = format!(
-        "{outcome}: {} {}; {} of {} rows (suite, sample, state) outside the reachable set, at \
-         samples\n\n",
+        "{outcome}: {} {}; {} of {} rows (suite, sample, state) outside the {set}, at samples\n\n",
         verdict.runs,
         plural(verdict.runs, "recording"),
         verdict.violations.count,
@@ -55,7 +57,7 @@ pub fn summary(check: &Check) -> String {
         let _ = writeln!(text, "{}", lost(set));
     }
     let next_motion = match &check.trust {
-        Some(held_out) => trust(held_out, "left the set"),
+        Some(held_out) => held_out.words(set, "left it"),
         None => {
             "no bound for the next motion: the model was fitted to some of these recordings".into()
         }

@@ -53,6 +53,21 @@ impl Layout {
         row
     }
 
+    /// Returns the size of the unknown of column `j` in some sets: a radius, or the larger one of a
+    /// centre's distance from 0 and its radius.
+    pub fn value(&self, sets: &UncertaintySets, j: usize) -> f64 {
+        let (n, centres) = (self.joints, self.centres());
+        let of = |set: &Hyperrectangle, i: usize| {
+            let centre = if j < centres { set.centre[i].abs() } else { 0.0 };
+            centre.max(set.radius[i])
+        };
+        match if j < centres { j } else { j - centres } {
+            i if i < 2 * n => of(&sets.initial_set, i),
+            i if i < 3 * n => of(&sets.input_set, i - 2 * n),
+            i => sets.noise_radius(i - 3 * n),
+        }
+    }
+
     /// Adds r >= 0, and |c| <= r where the origin must lie in the sets.
     pub fn restrict(
         &self,

@@ -4,5 +4,6 @@ pub(crate) mod block;
 pub(crate) mod costs;
 mod layout;
 pub(crate) mod program;
+mod repair;
 pub(crate) mod smallest_sets;
 pub(crate) mod solver;

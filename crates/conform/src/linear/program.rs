@@ -19,6 +19,7 @@ use crate::linear::block::Block;
 use crate::linear::costs::{cost, shares};
 use crate::linear::layout::Layout;
 use crate::linear::solver::{Optimum, Triplets, solve_cone};
+use crate::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
 use crate::settings::{Noise, Settings};
 use crate::side::Side;
@@ -30,13 +31,22 @@ const TOLERANCE: f64 = 1e-10;
 pub const TIGHT: f64 = 1e-6;
 
 /// What is below this part of the largest deviation is rounding.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 
 /// Number of windows of the horizon; each adds its worst violated row to the next round.
 const WINDOWS: usize = 24;
 
 /// Rounds of row generation at most.
 const ROUNDS: usize = 200;
+
+/// The program is solved again with units of the solution's size while the gap is above this.
+const GAP: f64 = 1e-8;
+
+/// How often the program is solved with other units at most.
+const SCALINGS: usize = 4;
+
+/// An unknown that contributes less than this part to the cost gets the unit that would.
+const NEGLIGIBLE_PART: f64 = 1e-7;
 
 /// The program.
 pub struct Program<'a> {
@@ -48,11 +58,11 @@ pub struct Program<'a> {
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
     centre_bounds: Vec<[f64; 2]>,
     /// Cost of each radius (r_x, r_u).
-    cost: Vec<f64>,
+    pub(super) cost: Vec<f64>,
     /// Cost of each noise radius.
     noise_cost: Vec<f64>,
     /// Largest |d| in the checked states, at least the smallest normal number.
-    scale: f64,
+    pub(super) scale: f64,
 }
 
 /// What the solver found.
@@ -122,17 +132,35 @@ impl<'a> Program<'a> {
     /// [`Error::Program`] when the solver does not reach an optimum.
     pub fn solve(&self) -> Result<Solution> {
         let mut indices = self.first_rows();
+        let mut best: Option<(f64, Solution)> = None;
+        let mut scalings = 0;
         for round in 1..=ROUNDS {
-            let (candidates, lower_bound) = self.solve_rows(&indices)?;
+            let near = best.as_ref().map(|(_, solution)| &solution.sets);
+            let (candidates, lower_bound) = match self.solve_rows(&indices, near) {
+                Err(_) if best.is_some() => break,
+                answer => answer?,
+            };
             let added = self.violated(&candidates[0], &indices);
-            if added.is_empty() {
-                let [found, polished] = candidates;
-                let better = self.repaired_cost(&polished) < self.repaired_cost(&found);
-                let sets = if better { polished } else { found };
-                let (rows, generated) = (self.rows(), indices.len());
-                return Ok(Solution { sets, lower_bound, rows, generated, rounds: round });
+            if !added.is_empty() {
+                indices.extend(added);
+                continue;
             }
-            indices.extend(added);
+            let (rows, generated) = (self.rows(), indices.len());
+            for sets in candidates {
+                let gap =
+                    optimality_gap(self.repaired_cost(&sets), lower_bound, self.negligible_cost());
+                if best.as_ref().is_none_or(|(least, _)| gap < *least) {
+                    let solution = Solution { sets, lower_bound, rows, generated, rounds: round };
+                    best = Some((gap, solution));
+                }
+            }
+            scalings += 1;
+            if best.as_ref().is_some_and(|(gap, _)| *gap <= GAP) || scalings == SCALINGS {
+                break;
+            }
+        }
+        if let Some((_, solution)) = best {
+            return Ok(solution);
         }
         Err(Error::Program(format!(
             "{ROUNDS} rounds of row generation left violated rows; report this with the data"
@@ -144,7 +172,7 @@ impl<'a> Program<'a> {
     }
 
     /// The rows of every `stride`-th sample.
-    fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
+    pub(super) fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
         let states = self.settings.states.rows(self.joints);
         self.blocks.iter().enumerate().flat_map(move |(b, block)| {
             (0..block.envelope.len()).step_by(stride).flat_map(move |k| {
@@ -172,14 +200,14 @@ impl<'a> Program<'a> {
     }
 
     /// The entries of E_k and of R_k in row i.
-    fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+    pub(super) fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
         let width = 3 * self.joints;
         let start = (k * 2 * self.joints + i) * 2 * width;
         self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
     }
 
     /// Deviation minus reach of a row, unrounded.
-    fn excess(&self, index: RowIndex, unknowns: &Unknowns) -> f64 {
+    pub(super) fn excess(&self, index: RowIndex, unknowns: &Unknowns) -> f64 {
         let (b, k, i, side) = index;
         let (centre, radius) = self.row(b, k, i);
         let reach = side.sign() * dot(centre, &unknowns.centre) + dot(radius, &unknowns.radius);
@@ -209,7 +237,7 @@ impl<'a> Program<'a> {
         worst.into_values().map(|(_, index)| index).collect()
     }
 
-    fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
+    pub(super) fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
         let join = |pick: fn(&Hyperrectangle) -> &Vec<f64>| {
             pick(&sets.initial_set).iter().chain(pick(&sets.input_set)).copied().collect()
         };
@@ -222,14 +250,17 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Solves with the rows `indices` only; returns the sets as found and polished, and the dual
-    /// objective.
-    fn solve_rows(&self, indices: &[RowIndex]) -> Result<([UncertaintySets; 2], f64)> {
+    /// Solves with the rows `indices` only, with units for sets `near` the optimum where such are
+    /// known; returns the sets as found and polished, and the dual objective.
+    fn solve_rows(
+        &self,
+        indices: &[RowIndex],
+        near: Option<&UncertaintySets>,
+    ) -> Result<([UncertaintySets; 2], f64)> {
         let layout = Layout::new(self.settings, &self.cost, &self.noise_cost);
-        let largest_cost = layout.cost.iter().copied().fold(0.0, f64::max);
-        // Scale: each unknown so that its cost is the largest one, each row so that its largest
-        // entry is 1.
-        let unit: Vec<f64> = layout.cost.iter().map(|w| largest_cost / w).collect();
+        // Scale: each unknown as `units` says, each row so that its largest entry is 1.
+        let unit = self.units(&layout, near);
+        let largest_cost = layout.cost.iter().zip(&unit).map(|(w, u)| w * u).fold(0.0, f64::max);
         let (triplets, bounds) = self.constraints(indices, &layout, &unit);
         let weigh = |(j, w): (usize, &f64)| {
             if j < layout.centres() { 0.0 } else { w * unit[j] / largest_cost }
@@ -244,6 +275,19 @@ impl<'a> Program<'a> {
         };
         let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
         Ok(([sets(&found), sets(&polished)], lower_bound))
+    }
+
+    /// The unit of each unknown: such that all cost the same, or about its value in the sets
+    /// `near`, where an earlier solution is known. With units of the first kind the solver may miss
+    /// what small unknowns do to small rows; with the second, every row that decides has terms of
+    /// about its own size.
+    fn units(&self, layout: &Layout, near: Option<&UncertaintySets>) -> Vec<f64> {
+        let largest = layout.cost.iter().copied().fold(0.0, f64::max);
+        let Some(sets) = near else { return layout.cost.iter().map(|w| largest / w).collect() };
+        let cheapest = NEGLIGIBLE_PART * self.cost(sets).max(self.negligible_cost());
+        let value = |j: usize| layout.value(sets, j) / self.scale;
+        let unit = |(j, w): (usize, &f64)| value(j).max(cheapest / w / self.scale);
+        layout.cost.iter().enumerate().map(unit).collect()
     }
 
     /// The scaled rows `indices`, the signs of the radii, and the bounds of the centres.
@@ -273,34 +317,12 @@ impl<'a> Program<'a> {
         (triplets, bounds)
     }
 
-    /// The cost of the sets once they satisfy every row.
-    fn repaired_cost(&self, sets: &UncertaintySets) -> f64 {
-        self.cost(&sets.inflated(self.worst_ratio(sets), 0.0))
-    }
-
     /// What known noise adds to every cost.
     fn fixed_cost(&self) -> f64 {
         match &self.settings.noise {
             Noise::Fixed(radii) => dot(radii, &self.noise_cost),
             Noise::None | Noise::Free => 0.0,
         }
-    }
-
-    /// Returns the factor by which the radii must grow so that every row holds, at least 1: the
-    /// largest ratio of what a row needs to what the radii give it.
-    #[must_use]
-    pub fn worst_ratio(&self, sets: &UncertaintySets) -> f64 {
-        let unknowns = self.unknowns(sets);
-        let ratio = |index: RowIndex| {
-            let (b, k, i, _) = index;
-            let given = dot(self.row(b, k, i).1, &unknowns.radius);
-            if given > ROUNDING * self.scale {
-                1.0 + self.excess(index, &unknowns) / given
-            } else {
-                1.0
-            }
-        };
-        self.indices(1).map(ratio).fold(1.0, f64::max)
     }
 
     /// Returns the rows that touch the hull of the sets' reach, within 1e-6 of its radius.
@@ -343,12 +365,12 @@ impl<'a> Program<'a> {
 }
 
 /// The unknowns of the program, unscaled.
-struct Unknowns {
+pub(super) struct Unknowns {
     centre: Vec<f64>,
-    radius: Vec<f64>,
+    pub(super) radius: Vec<f64>,
     free_noise: Vec<f64>,
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

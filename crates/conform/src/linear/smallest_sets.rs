@@ -42,18 +42,18 @@ pub(crate) fn smallest_sets(problem: &Problem) -> Result<Found> {
     })
 }
 
-/// Makes the solver's answer true (docs/method.md, correction H): scales the radii by the worst
-/// ratio, checks with directed rounding, and inflates them by a growing last bit until the check
-/// passes.
+/// Makes the solver's answer true (docs/method.md, correction H): enlarges the radii until every
+/// row holds, checks with directed rounding, and inflates them by a growing last bit until the
+/// check passes.
 fn repair(problem: &Problem, program: &Program, found: &UncertaintySets) -> Result<Hulls> {
-    let scaled = found.inflated(program.worst_ratio(found), 0.0);
-    let mut hulls = Hulls::new(problem, scaled.clone())?;
+    let repaired = program.repaired(found);
+    let mut hulls = Hulls::new(problem, repaired.clone())?;
     for attempt in 0..REPAIRS {
         if encloses(problem, &hulls)? {
             break;
         }
         let bit = f64::EPSILON * 2f64.powi(attempt);
-        hulls = Hulls::new(problem, scaled.inflated(1.0 + bit, bit * program.scale()))?;
+        hulls = Hulls::new(problem, repaired.inflated(1.0 + bit, bit * program.scale()))?;
     }
     Ok(hulls)
 }

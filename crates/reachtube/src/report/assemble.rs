@@ -54,7 +54,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
 fn verdict(model: &Model, check: &Check) -> Verdict {
     let answer = &check.verdict;
     let outer = answer.enclosure == Enclosure::Outer;
-    let set = if outer { "computed reachable set" } else { "reachable set" };
+    let set = answer.enclosure.set_name();
     let (outside, rows) = (answer.violations.count, answer.rows);
     let words = match &answer.violations.worst {
         _ if answer.conformant => format!(
@@ -72,7 +72,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
         States::All => "position and velocity",
         States::Positions => "position",
     };
-    let band = "The grey band is an outer bound of the reachable set at the samples";
+    let band = "The grey band is an outer bound of the model's reachable set at the samples";
     let proved = vec![
         format!(
             "{} of {rows} rows (suite, sample, state) hold, checked with directed rounding: the \
@@ -88,7 +88,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     ];
     let end = |lost: &Lost| {
         format!(
-            "{}: the reachable set could not be computed beyond {:.3} s ({}).",
+            "{}: the {set} could not be computed beyond {:.3} s ({}).",
             lost.case, lost.time, lost.state
         )
     };
@@ -199,19 +199,18 @@ fn word(setting: impl serde::Serialize) -> String {
 }
 
 fn trust(model: &Model, check: &Check) -> String {
-    let (trust, role) = match &check.trust {
-        Some(held_out) => (held_out, "leave the reachable set"),
-        None => (&model.trust, "touch the reachable set"),
+    let set = check.verdict.enclosure.set_name();
+    let words = match &check.trust {
+        Some(held_out) => held_out.words(set, "left it"),
+        None => model.trust.words(set, "touched it"),
     };
-    format!(
-        "The next motion leaves the reachable set with probability at most {:.3}, at confidence \
-         {:.0} %: {} independent motions, of which {} {role}; {}.",
-        trust.violation_probability,
-        100.0 * trust.confidence,
-        trust.motions,
-        trust.deciding,
-        trust.basis
-    )
+    sentence(&words)
+}
+
+/// Returns words as a sentence.
+fn sentence(words: &str) -> String {
+    let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
+    format!("{}{rest}.", first.to_uppercase())
 }
 
 fn caution(model: &Model) -> Vec<String> {
@@ -270,7 +269,7 @@ fn figure(sources: &Sources, suite: &Suite) -> Result<SuiteFigure> {
         suite: name.clone(),
         joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
         times: longest.times.clone(),
-        band: band(&own, longest, joints),
+        band: band(&own, longest, joints, check.verdict.enclosure.set_name()),
         inner: None,
         nominal: if shared { Nominal::Shared(nominal) } else { Nominal::PerRun },
         runs,
@@ -280,7 +279,7 @@ fn figure(sources: &Sources, suite: &Suite) -> Result<SuiteFigure> {
 
 /// Returns the band of a suite. Runs with nominal solutions of their own share the hull of their
 /// deviations.
-fn band(own: &[&SuiteReach], longest: &SuiteReach, joints: usize) -> Band {
+fn band(own: &[&SuiteReach], longest: &SuiteReach, joints: usize, set: &str) -> Band {
     let shared = longest.run.is_none();
     let edge = |of: fn(&SuiteReach) -> &[f64], further: fn(f64, f64) -> f64| {
         let deviation = |reach: &&SuiteReach, at: usize| {
@@ -291,7 +290,7 @@ fn band(own: &[&SuiteReach], longest: &SuiteReach, joints: usize) -> Band {
         columns(&values, 2 * joints)
     };
     Band {
-        label: "reachable set".into(),
+        label: set.into(),
         lower: edge(|reach| &reach.lower, f64::min),
         upper: edge(|reach| &reach.upper, f64::max),
     }

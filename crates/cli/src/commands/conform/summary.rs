@@ -6,7 +6,7 @@ use reachtube::Model;
 use reachtube::conform::{Enclosure, MOST_TIGHT, Witness};
 
 use crate::table::{plural, table};
-use crate::verdict::{lost, trust};
+use crate::verdict::lost;
 use reachtube::number::{four_decimals, interval};
 
 /// Largest number of touching values in the table.
@@ -21,7 +21,11 @@ pub fn summary(model: &Model) -> String {
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         let _ = writeln!(text, "\n{}", explained.words(tolerance));
     }
-    let _ = writeln!(text, "\n{}", trust(&model.trust, "touched the set"));
+    let _ = writeln!(
+        text,
+        "\n{}",
+        model.trust.words(model.proof.enclosure.set_name(), "touched the set")
+    );
     text
 }
 
@@ -31,9 +35,7 @@ fn verdict(model: &Model) -> String {
     let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
     let how = match proof.enclosure {
         Enclosure::Inner => "proved with directed rounding",
-        Enclosure::Outer => {
-            "lie in the computed reachable set, an outer enclosure with directed rounding"
-        }
+        Enclosure::Outer => "lie in the computed outer set, an enclosure with directed rounding",
     };
     let mut text = format!(
         "{}: {runs} {} in {suites} {}; {} of {} rows (suite, sample, state) {how}, at \
