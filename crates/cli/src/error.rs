@@ -57,7 +57,7 @@ pub enum Error {
     },
     /// An option that takes one number per state has something else.
     #[error(
-        "{option}: {problem}; give {words}, 2 numbers (positions, velocities), or {states} (one \
+        "{option}: {problem}; give {words}2 numbers (positions, velocities), or {states} (one \
          per state)"
     )]
     StateValues {
@@ -65,7 +65,7 @@ pub enum Error {
         option: &'static str,
         /// What is wrong with its value.
         problem: String,
-        /// The words that the option takes besides numbers.
+        /// The words that the option takes besides numbers, each with a comma and a space.
         words: &'static str,
         /// Number of states 2n.
         states: usize,

@@ -8,6 +8,7 @@ use crate::found::{Found, SearchSummary};
 use crate::hulls::Hulls;
 use crate::linear::smallest_sets as linear;
 use crate::optimality::LARGEST_GAP;
+use crate::plausibility::{NominalFit, Warning, warnings};
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets as search;
@@ -45,6 +46,11 @@ pub struct Conformance {
     pub tight: Vec<Witness>,
     /// How close a motion of the model comes to each run, where the settings ask for it.
     pub explanations: Vec<Explanation>,
+    /// What can hardly be right about the answer, and the most likely cause.
+    pub warnings: Vec<Warning>,
+    /// The part of the variance of each state that the nominal motions explain, 2n; negative where
+    /// they are further away than the mean, nothing where the state hardly moves.
+    pub nominal_explains: Vec<Option<f64>>,
     /// The reachable sets.
     pub hulls: Hulls,
 }
@@ -75,8 +81,9 @@ pub fn conform(
     };
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, deciding, .. } = found;
-    let mut tight = Vec::new();
+    let (mut tight, mut radii) = (Vec::new(), vec![0.0f64; 2 * problem.joints()]);
     let verdict = Verdict::new(problem, &hulls, |suite, case, row| {
+        radii[row.state] = radii[row.state].max(row.radius);
         let decide = row.edges.iter().filter(|edge| deciding.contains(case, row, edge));
         tight.extend(decide.map(|edge| Witness::new(problem, suite, row, edge)));
     })?;
@@ -85,8 +92,12 @@ pub fn conform(
         Some(_) => explain(problem, &hulls.sets)?,
         None => Vec::new(),
     };
+    let fit = NominalFit::new(problem)?;
+    let warnings = warnings(problem, &hulls.sets, &radii, &fit)?;
     Ok(Conformance {
         sets: hulls.sets.clone(),
+        warnings,
+        nominal_explains: fit.explained,
         cost,
         lower_bound,
         optimality_gap,

@@ -21,11 +21,13 @@ mod hulls;
 mod linear;
 mod model;
 mod optimality;
+mod plausibility;
 mod problem;
 mod progress;
 mod reach;
 mod rows;
 mod search;
+mod sensor_noise;
 mod sets;
 mod settings;
 mod side;
@@ -50,10 +52,12 @@ pub use model::{
     DataRecord, Explained, FORMAT, MOST_TIGHT, Model, Residual, RunRecord, SuiteRecord, VERSION,
 };
 pub use optimality::{LARGEST_GAP, optimality_gap};
+pub use plausibility::{Warning, WarningKind};
 pub use problem::{Case, Keep, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use rows::{Edge, Hull, HullBounds, Row, rows};
+pub use sensor_noise::SensorNoise;
 pub use sets::UncertaintySets;
 pub use settings::{Centre, Method, Noise, NominalStart, Settings, States, Tolerance, Weights};
 pub use side::Side;

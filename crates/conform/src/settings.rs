@@ -63,7 +63,8 @@ pub enum NominalStart {
     /// At the mean of the first states of the suite's runs.
     #[default]
     Mean,
-    /// At the run's own first state; the initial set then covers only what the model misses.
+    /// At the run's own first state, which is known up to the noise of the sensors: X0 is at most
+    /// that large.
     Own,
 }
 
@@ -75,8 +76,9 @@ pub enum Noise {
     /// No noise: X0 and U explain every deviation.
     #[default]
     None,
-    /// The radii are unknowns of the program and count in its cost as every radius does.
-    Free,
+    /// The radii are unknowns of the program, count in its cost as every radius does, and are at
+    /// most those of the sensor noise.
+    Fitted,
     /// Known radii, 2n, rad and rad/s.
     Fixed(Vec<f64>),
 }
@@ -141,6 +143,11 @@ pub struct Settings {
     pub weights: Weights,
     /// The measurement noise.
     pub noise: Noise,
+    /// Radii of the sensors' noise, 2n, rad and rad/s; estimated from the recordings where they are
+    /// `None`. They limit V where it is [`Noise::Fitted`], and X0 where each run has its own
+    /// nominal start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor_noise: Option<Vec<f64>>,
     /// Where nominal solutions start.
     pub nominal: NominalStart,
     /// What counts as an explanation of a run; none is searched for where it is `None`.
@@ -168,6 +175,7 @@ impl Settings {
             states: States::default(),
             weights: Weights::default(),
             noise: Noise::default(),
+            sensor_noise: None,
             nominal: NominalStart::default(),
             explain: None,
             until: None,
@@ -205,6 +213,9 @@ impl Settings {
         }
         if let Noise::Fixed(radii) = &self.noise {
             check_list("noise radius", radii, joints, 0.0..=1e9)?;
+        }
+        if let Some(radii) = &self.sensor_noise {
+            check_list("sensor noise radius", radii, joints, 0.0..=1e9)?;
         }
         if let Some(Tolerance { position, velocity }) = self.explain {
             for (index, value) in [position, velocity].into_iter().enumerate() {

@@ -63,7 +63,8 @@ fn recorded(noise: f64) -> MemoryRuns {
 #[test]
 fn sets_of_an_arm_with_tiny_inertias_are_the_smallest() {
     for noise in [0.0, 1e-5] {
-        for (nominal, v) in [(NominalStart::Mean, Noise::None), (NominalStart::Own, Noise::Free)] {
+        for (nominal, v) in [(NominalStart::Mean, Noise::None), (NominalStart::Own, Noise::Fitted)]
+        {
             let settings = Settings { nominal, noise: v, ..Settings::new(Torque::Link, JOINTS) };
             let setup = Setup::new(seven_joints(), settings).unwrap();
             let source = Box::new(recorded(noise));

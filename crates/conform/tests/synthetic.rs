@@ -141,11 +141,13 @@ fn row_generation_finds_the_optimum_of_the_whole_program() {
     );
     for disturbance in [Disturbance::Constant, Disturbance::Sample, Disturbance::Measurable] {
         for centre in [Centre::Free, Centre::Origin, Centre::Zero] {
-            for noise in [Noise::None, Noise::Free, Noise::Fixed(vec![0.002, 0.002, 0.01, 0.01])] {
+            for noise in [Noise::None, Noise::Fitted, Noise::Fixed(vec![0.002, 0.002, 0.01, 0.01])]
+            {
                 let mut settings = Settings::new(Torque::Compensated, 2);
                 (settings.disturbance, settings.centre, settings.noise) =
                     (disturbance, centre, noise);
                 settings.weights = Weights::Given(vec![1.0, 2.0, 0.5, 0.25]);
+                settings.sensor_noise = Some(vec![0.004, 0.001, 0.02, 1.0]);
                 let (_, found) = run(&robot, folder.path(), &settings);
                 let data = DataSet::open(folder.path()).unwrap();
                 let simplex = whole_program(&robot, &data, &settings);
@@ -227,7 +229,7 @@ fn whole_program(robot: &Robot, data: &DataSet, settings: &Settings) -> f64 {
         .collect();
     let noise = |i: usize| match &settings.noise {
         Noise::None => (0.0, 0.0),
-        Noise::Free => (0.0, f64::INFINITY),
+        Noise::Fitted => (0.0, settings.sensor_noise.as_ref().unwrap()[i]),
         Noise::Fixed(radii) => (radii[i], radii[i]),
     };
     let noise: Vec<_> =

@@ -56,8 +56,12 @@ fn position_per_integral(run: &Run, joint: usize) -> Option<f64> {
     (largest > MIN_MOTION && square > 0.0).then(|| cross / square)
 }
 
-/// Returns the defects of a run whose values cannot be in rad and rad/s for this robot: q against
-/// ∫q̇ dt, then positions and velocities far beyond the joints' limits. `path` names the run.
+/// No joint of a robot has a torque beyond this, N m.
+const LARGEST_TORQUE: f64 = 1e6;
+
+/// Returns the defects of a run whose values cannot be in rad, rad/s and N m for this robot: q
+/// against ∫q̇ dt, positions and velocities far beyond the joints' limits, and torques beyond a
+/// million N m. `path` names the run.
 ///
 /// # Panics
 ///
@@ -67,7 +71,20 @@ pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
     let mut defects = degree_defects(path, run);
     defects.extend(position_defects(path, run, robot));
     defects.extend(velocity_defects(path, run, robot));
+    defects.extend(torque_defects(path, run));
     defects
+}
+
+/// Returns a defect for each joint with a torque that no joint has.
+fn torque_defects(path: &Path, run: &Run) -> Vec<Defect> {
+    let defect = |joint: usize| {
+        let sample = (0..run.len()).find(|&k| run.torque(k)[joint].abs() > LARGEST_TORQUE)?;
+        let (torque, time) = (run.torque(sample)[joint], run.times[sample]);
+        let problem =
+            format!("tau is {torque:e} N m at {time} s after the first sample, which no joint has");
+        Some(joint_defect(path, joint, problem, "give tau in N m, or leave out that sample"))
+    };
+    (0..run.joints).filter_map(defect).collect()
 }
 
 /// Returns a defect for each joint of which q or q̇, but not both, looks like degrees.
@@ -121,4 +138,29 @@ fn velocity_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
 
 fn joint_defect(path: &Path, joint: usize, problem: String, remedy: &str) -> Defect {
     Defect::new(path, None, problem, remedy).of_joint(Some(joint + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use reachtube_robot::Robot;
+
+    use super::check_limits;
+    use crate::run::Run;
+
+    #[test]
+    fn a_torque_that_no_joint_has_is_a_defect() {
+        let robot = Robot::lwa4p();
+        let mut torques = vec![1.0; 18];
+        let run = |torques: &[f64]| {
+            Run::new(6, vec![0.0, 0.1, 0.2], vec![0.0; 36], torques.to_vec()).unwrap()
+        };
+        assert_eq!(check_limits(Path::new("run.csv"), &run(&torques), &robot), []);
+        torques[8] = 1e300;
+        let defects = check_limits(Path::new("run.csv"), &run(&torques), &robot);
+        let words = defects.iter().map(ToString::to_string).collect::<String>();
+        assert!(defects.len() == 1, "{words}");
+        assert!(words.contains("joint 3") && words.contains("1e300 N m at 0.1 s"), "{words}");
+    }
 }

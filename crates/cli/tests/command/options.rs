@@ -104,7 +104,7 @@ fn every_setting_gives_a_model_that_its_own_check_accepts() {
         "--states positions",
         "--weights spread",
         "--weights 1,0.1",
-        "--noise free",
+        "--noise fitted",
         "--noise 0.001,0.01",
         "--noise 10,10",
         "--nominal own",

@@ -20,7 +20,7 @@ fn models_fit_the_schema() {
     let (schema, lab) = (schema(), Lab::new());
     for options in [
         "",
-        "--noise free --weights 1,0.5",
+        "--noise fitted --weights 1,0.5",
         "--noise 0.001,0.01 --until 0.2 --weights spread",
         "--states positions",
     ] {

@@ -5,6 +5,22 @@ use crate::sets::UncertaintySets;
 use crate::settings::{Centre, Noise, Settings};
 use crate::side::Side;
 
+/// The largest that V and X0 may be, 2n each, rad and rad/s, where that is limited.
+#[derive(Debug, Clone, Default)]
+pub struct Limits {
+    /// The largest radii of V.
+    pub noise: Option<Vec<f64>>,
+    /// The largest |x| of X0.
+    pub start: Option<Vec<f64>>,
+}
+
+impl Limits {
+    /// Returns whether anything is limited.
+    pub fn is_any(&self) -> bool {
+        self.noise.is_some() || self.start.is_some()
+    }
+}
+
 /// Which column of the solver's matrix each unknown is: the centres (c_x, c_u) where they are
 /// unknown, the radii (r_x, r_u), and the radii of the noise where they are unknown.
 pub(super) struct Layout {
@@ -21,7 +37,7 @@ impl Layout {
         let has_centres = settings.centre != Centre::Zero;
         let mut columns = if has_centres { cost.to_vec() } else { Vec::new() };
         columns.extend(cost);
-        if settings.noise == Noise::Free {
+        if settings.noise == Noise::Fitted {
             columns.extend(noise_cost);
         }
         // A radius without a cost is in no row (with one sample nothing depends on the input): any
@@ -68,7 +84,8 @@ impl Layout {
         }
     }
 
-    /// Adds r >= 0, and |c| <= r where the origin must lie in the sets.
+    /// Adds r >= 0, and |c| <= r where the origin must lie in the sets; `unit` is the unit of each
+    /// unknown.
     pub fn restrict(
         &self,
         kind: Centre,
@@ -91,6 +108,30 @@ impl Layout {
         }
     }
 
+    /// Adds what limits V and X0; `unit` is the unit of each unknown.
+    pub fn limit(
+        &self,
+        limits: &Limits,
+        triplets: &mut Triplets,
+        bounds: &mut Vec<f64>,
+        unit: &[f64],
+    ) {
+        let noise = self.centres() + 3 * self.joints;
+        for (column, limit) in (noise..self.cost.len()).zip(limits.noise.iter().flatten()) {
+            triplets.row([(column, 1.0)]);
+            bounds.push(limit / unit[column]);
+        }
+        for (i, limit) in limits.start.iter().flatten().enumerate() {
+            let radius = i + self.centres();
+            let signs: &[f64] = if self.has_centres { &[1.0, -1.0] } else { &[1.0] };
+            for sign in signs {
+                let centre = self.has_centres.then(|| (i, sign * unit[i] / unit[radius]));
+                triplets.row(centre.into_iter().chain([(radius, 1.0)]));
+                bounds.push(limit / unit[radius]);
+            }
+        }
+    }
+
     /// Returns the sets that values of the unknowns describe.
     pub fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
         let (n, centres) = (self.joints, self.centres());
@@ -108,7 +149,9 @@ impl Layout {
         let noise_set = match &settings.noise {
             Noise::None => None,
             Noise::Fixed(given) => noise(given.clone()),
-            Noise::Free => noise(unknowns[centres + 3 * n..].iter().map(|r| r.max(0.0)).collect()),
+            Noise::Fitted => {
+                noise(unknowns[centres + 3 * n..].iter().map(|r| r.max(0.0)).collect())
+            }
         };
         UncertaintySets { initial_set: set(0, 2 * n), input_set: set(2 * n, 3 * n), noise_set }
     }

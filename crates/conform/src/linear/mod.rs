@@ -2,7 +2,7 @@
 
 pub(crate) mod block;
 pub(crate) mod costs;
-mod layout;
+pub(crate) mod layout;
 pub(crate) mod program;
 mod repair;
 pub(crate) mod smallest_sets;

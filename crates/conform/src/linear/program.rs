@@ -17,7 +17,7 @@ use reachtube_reach::Hyperrectangle;
 use crate::error::{Error, Result};
 use crate::linear::block::Block;
 use crate::linear::costs::{cost, shares};
-use crate::linear::layout::Layout;
+use crate::linear::layout::{Layout, Limits};
 use crate::linear::solver::{Optimum, Triplets, solve_cone};
 use crate::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
@@ -57,6 +57,7 @@ pub struct Program<'a> {
     shares: Vec<Vec<f64>>,
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
     centre_bounds: Vec<[f64; 2]>,
+    limits: Limits,
     /// Cost of each radius (r_x, r_u).
     pub(super) cost: Vec<f64>,
     /// Cost of each noise radius.
@@ -90,9 +91,17 @@ impl<'a> Program<'a> {
         let joints = weights.len() / 2;
         let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
         let (cost, noise_cost) = cost(&blocks, &shares, weights);
-        let (centre_bounds, scale) = (Vec::new(), f64::MIN_POSITIVE);
-        let mut program =
-            Self { settings, joints, blocks, shares, centre_bounds, cost, noise_cost, scale };
+        let mut program = Self {
+            settings,
+            joints,
+            blocks,
+            shares,
+            centre_bounds: Vec::new(),
+            limits: Limits::default(),
+            cost,
+            noise_cost,
+            scale: f64::MIN_POSITIVE,
+        };
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
     }
@@ -101,6 +110,12 @@ impl<'a> Program<'a> {
     #[must_use]
     pub fn with_centre_bounds(self, centre_bounds: Vec<[f64; 2]>) -> Self {
         Self { centre_bounds, ..self }
+    }
+
+    /// Keeps V and X0 within `limits`.
+    #[must_use]
+    pub fn with_limits(self, limits: Limits) -> Self {
+        Self { limits, ..self }
     }
 
     /// Returns the cost of some sets.
@@ -191,7 +206,7 @@ impl<'a> Program<'a> {
         let envelope = &self.blocks[b].envelope;
         let known = match &self.settings.noise {
             Noise::Fixed(radii) => radii[i],
-            Noise::None | Noise::Free => 0.0,
+            Noise::None | Noise::Fitted => 0.0,
         };
         match side {
             Side::Upper => envelope.upper(k, i) - known,
@@ -241,7 +256,7 @@ impl<'a> Program<'a> {
         let join = |pick: fn(&Hyperrectangle) -> &Vec<f64>| {
             pick(&sets.initial_set).iter().chain(pick(&sets.input_set)).copied().collect()
         };
-        let free = self.settings.noise == Noise::Free;
+        let free = self.settings.noise == Noise::Fitted;
         let noise = |i: usize| if free { sets.noise_radius(i) } else { 0.0 };
         Unknowns {
             centre: join(|set| &set.centre),
@@ -308,6 +323,8 @@ impl<'a> Program<'a> {
             bounds.push(-self.bound(index) / (scale * self.scale));
         }
         layout.restrict(self.settings.centre, &mut triplets, &mut bounds, unit);
+        let absolute: Vec<f64> = unit.iter().map(|unit| unit * self.scale).collect();
+        layout.limit(&self.limits, &mut triplets, &mut bounds, &absolute);
         for (centre, [low, high]) in self.centre_bounds.iter().enumerate().take(layout.centres()) {
             for (sign, bound) in [(1.0, *high), (-1.0, -low)] {
                 triplets.row([(centre, sign)]);
@@ -321,7 +338,7 @@ impl<'a> Program<'a> {
     fn fixed_cost(&self) -> f64 {
         match &self.settings.noise {
             Noise::Fixed(radii) => dot(radii, &self.noise_cost),
-            Noise::None | Noise::Free => 0.0,
+            Noise::None | Noise::Fitted => 0.0,
         }
     }
 

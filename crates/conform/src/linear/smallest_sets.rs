@@ -24,7 +24,7 @@ pub(crate) fn smallest_sets(problem: &Problem) -> Result<Found> {
     let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
     let weights = state_weights(&settings.weights, &envelopes, joints);
     let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
-    let program = Program::new(settings, &weights, blocks);
+    let program = Program::new(settings, &weights, blocks).with_limits(problem.limits());
     let solution = program.solve()?;
     let hulls = repair(problem, &program, &solution.sets)?;
     let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);

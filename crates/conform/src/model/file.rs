@@ -18,8 +18,10 @@ use crate::error::{Error, Result};
 use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained, SuiteRecord};
 use crate::optimality::LARGEST_GAP;
+use crate::plausibility::Warning;
 use crate::problem::problem::{Problem, Setup};
 use crate::problem::recordings::Recordings;
+use crate::sensor_noise::SensorNoise;
 use crate::sets::UncertaintySets;
 use crate::settings::Settings;
 use crate::trust::Trust;
@@ -86,6 +88,15 @@ pub struct Model {
     /// V, the measurement noise, 2n, where it was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_set: Option<Hyperrectangle>,
+    /// The noise of the sensors, where it limits V or X0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor_noise: Option<SensorNoise>,
+    /// What can hardly be right about the answer, and the most likely cause.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
+    /// The part of the variance of each state that the nominal motions explain, 2n; nothing where
+    /// the state hardly moves.
+    pub nominal_explains: Vec<Option<f64>>,
     /// What was proved.
     pub proof: Verdict,
     /// What may be expected of the next motion.
@@ -152,6 +163,9 @@ impl Model {
             initial_set,
             input_set,
             noise_set,
+            sensor_noise: problem.limits().is_any().then(|| problem.sensor_noise().clone()),
+            warnings: found.warnings.clone(),
+            nominal_explains: found.nominal_explains.clone(),
             proof: found.verdict.clone(),
             trust: found.trust.clone(),
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),

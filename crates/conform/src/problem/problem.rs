@@ -12,13 +12,19 @@ use crate::dynamics::Dynamics;
 use crate::envelope::Envelope;
 use crate::error::{Error, Result};
 use crate::grids::Grids;
+use crate::linear::layout::Limits;
 use crate::problem::case::Case;
 use crate::problem::input::RunInput;
 use crate::problem::kept::KeptRuns;
 use crate::problem::recordings::Recordings;
 use crate::problem::suite::{RunSummary, Suite, SuiteReader};
 use crate::progress::Progress;
-use crate::settings::{NominalStart, Settings};
+use crate::sensor_noise::SensorNoise;
+use crate::settings::{Noise, NominalStart, Settings};
+
+/// The least limit of a set, rad or rad/s, which nobody can tell from 0. The program keeps room
+/// between its bounds.
+const LEAST_LIMIT: f64 = 1e-9;
 
 /// What decides a conformance besides the recordings: the robot, its model and the settings.
 ///
@@ -109,6 +115,7 @@ pub struct Problem {
     grids: OnceLock<Grids>,
     cases: OnceLock<Vec<Case>>,
     deviations: OnceLock<Vec<Deviation>>,
+    sensor_noise: SensorNoise,
 }
 
 impl Problem {
@@ -141,7 +148,12 @@ impl Problem {
         let recordings = Recordings::read(&reader, names, progress)?;
         let (grids, cases, deviations) = Default::default();
         let kept = kept.into_runs();
-        let mut problem = Self { setup, source, recordings, kept, grids, cases, deviations };
+        let sensor_noise = match &setup.settings.sensor_noise {
+            Some(radius) => SensorNoise::given(radius.clone()),
+            None => SensorNoise::estimate(&recordings, setup.robot.joint_count()),
+        };
+        let mut problem =
+            Self { setup, source, recordings, kept, grids, cases, deviations, sensor_noise };
         problem.check_starts()?;
         let leaving = problem.leaving_notes();
         problem.recordings.notes.extend(leaving);
@@ -170,6 +182,22 @@ impl Problem {
     #[must_use]
     pub fn recordings(&self) -> &Recordings {
         &self.recordings
+    }
+
+    /// Returns the noise of the sensors, as it was given or estimated.
+    #[must_use]
+    pub fn sensor_noise(&self) -> &SensorNoise {
+        &self.sensor_noise
+    }
+
+    /// Returns what the sensor noise limits: a V that is fitted, and X0 where each run starts at its
+    /// own measured state.
+    pub(crate) fn limits(&self) -> Limits {
+        let radii = || self.sensor_noise.radius.iter().map(|r| r.max(LEAST_LIMIT)).collect();
+        Limits {
+            noise: (self.settings().noise == Noise::Fitted).then(radii),
+            start: (self.settings().nominal == NominalStart::Own).then(radii),
+        }
     }
 
     /// Returns the number of joints n.

@@ -4,7 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
-use reachtube_recordings::{Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque, run_notes};
+use reachtube_recordings::{
+    Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque, noise_deviations, run_notes,
+};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 
@@ -46,6 +48,9 @@ pub struct RunSummary {
     pub start: Vec<f64>,
     /// SHA-256 of the recording.
     pub sha256: String,
+    /// The standard deviation of the noise in each state, 2n, as
+    /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it.
+    pub noise: Option<Vec<f64>>,
     /// What a user should know about the run.
     pub notes: Vec<String>,
 }
@@ -108,6 +113,7 @@ impl SuiteReader<'_> {
             grid: part.grid(&input.grid),
             start: run.state(0).to_vec(),
             sha256: run.sha256.clone(),
+            noise: noise_deviations(&run),
             notes: run_notes(self.source, index, &run),
         };
         part.runs.push((place, summary));

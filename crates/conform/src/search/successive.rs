@@ -256,7 +256,8 @@ impl SuccessiveLinearisation<'_> {
             envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
         }
         let program = Program::new(self.problem.settings(), &self.weights, blocks)
-            .with_centre_bounds(state.centre_bounds());
+            .with_centre_bounds(state.centre_bounds())
+            .with_limits(self.problem.limits());
         let solution = program.solve()?;
         Ok(Round { program, solution, runs_away })
     }

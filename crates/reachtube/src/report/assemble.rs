@@ -214,11 +214,13 @@ fn sentence(words: &str) -> String {
 }
 
 fn caution(model: &Model) -> Vec<String> {
-    let mut words = vec![
+    let mut words: Vec<String> =
+        model.warnings.iter().map(|warning| sentence(&warning.text)).collect();
+    words.push(
         "It is a fact about these recordings that the sets enclose them. It implies nothing \
          certain about motions, payloads or temperatures that were not recorded."
             .to_string(),
-    ];
+    );
     if let Some(gap) = model.gap_of_not_minimal() {
         words.push(format!(
             "The sets enclose the recordings but are not the smallest: the solver of the linear \

@@ -98,16 +98,22 @@ pub struct Arguments {
         allow_hyphen_values = true
     )]
     pub weights: String,
-    /// Measurement noise: none; free (its radii are found with the sets); or its radii, 2 or 2n
-    /// numbers between 0 and 1e9: positions in rad, then velocities in rad/s
+    /// Measurement noise V: none; fitted (its radii are found with the sets and are at most those
+    /// of the sensor noise); or its radii, 2 or 2n numbers between 0 and 1e9: positions in rad,
+    /// then velocities in rad/s
     #[arg(
         long,
         help_heading = "Sets",
         default_value = "none",
-        value_name = "none|free|R,R,..",
+        value_name = "none|fitted|R,R,..",
         allow_hyphen_values = true
     )]
     pub noise: String,
+    /// Radii of the sensors' noise, 2 or 2n numbers between 0 and 1e9: positions in rad, then
+    /// velocities in rad/s. They limit V of --noise fitted and X0 of --nominal own [default:
+    /// estimated from the recordings]
+    #[arg(long, help_heading = "Sets", value_name = "R,R,..", allow_hyphen_values = true)]
+    pub sensor_noise: Option<String>,
     /// First state of the nominal solutions
     #[arg(
         long,

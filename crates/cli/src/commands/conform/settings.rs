@@ -57,12 +57,16 @@ fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
         weights: match args.weights.as_str() {
             "unit" => Weights::Unit,
             "spread" => Weights::Spread,
-            list => Weights::Given(numbers("--weights", "unit, spread", list, joints)?),
+            list => Weights::Given(numbers("--weights", "unit, spread, ", list, joints)?),
         },
         noise: match args.noise.as_str() {
             "none" => Noise::None,
-            "free" => Noise::Free,
-            list => Noise::Fixed(numbers("--noise", "none, free", list, joints)?),
+            "fitted" => Noise::Fitted,
+            list => Noise::Fixed(numbers("--noise", "none, fitted, ", list, joints)?),
+        },
+        sensor_noise: match &args.sensor_noise {
+            Some(list) => Some(numbers("--sensor-noise", "", list, joints)?),
+            None => None,
         },
         nominal: args.nominal,
         until: args.data.until,

@@ -17,6 +17,11 @@ pub fn summary(model: &Model) -> String {
     let mut text = verdict(model);
     let _ = writeln!(text, "{}\n", cost(model));
     text.push_str(&sets(model));
+    text.push_str(&sensor_noise(model));
+    let _ = writeln!(text, "{}", explained(model));
+    for warning in &model.warnings {
+        let _ = writeln!(text, "warning: {}", warning.text);
+    }
     text.push_str(&touching(model));
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         let _ = writeln!(text, "\n{}", explained.words(tolerance));
@@ -123,6 +128,35 @@ fn sets(model: &Model) -> String {
         row
     };
     table(&header, &(0..n).map(row).collect::<Vec<_>>())
+}
+
+/// Returns the noise of the sensors, where it limits V or X0.
+fn sensor_noise(model: &Model) -> String {
+    let Some(noise) = &model.sensor_noise else { return String::new() };
+    let (q, qd) = noise.radius.split_at(model.joints());
+    let list = |radii: &[f64]| {
+        radii.iter().map(|radius| format!("{radius:.1e}")).collect::<Vec<_>>().join(" ")
+    };
+    let source = if noise.estimated {
+        "estimated from the recordings, 5 standard deviations"
+    } else {
+        "given"
+    };
+    format!("sensor noise ({source}): q {} rad; qd {} rad/s\n", list(q), list(qd))
+}
+
+/// Returns how much of the motion the nominal solutions explain, joint by joint.
+fn explained(model: &Model) -> String {
+    let (q, qd) = model.nominal_explains.split_at(model.joints());
+    let list = |parts: &[Option<f64>]| {
+        let percent = |part: &Option<f64>| match part {
+            Some(part) if *part > 0.0 => format!("{:.1}", 100.0 * part),
+            Some(_) => "0".into(),
+            None => "-".into(),
+        };
+        parts.iter().map(percent).collect::<Vec<_>>().join(" ")
+    };
+    format!("variance explained by the nominal motions: q {} %; qd {} %", list(q), list(qd))
 }
 
 /// Returns the recorded values that touch the reachable sets.

@@ -1,0 +1,107 @@
+use std::f64::consts::PI;
+
+use reachtube_recordings::Torque;
+
+use crate::error::Result;
+use crate::plausibility::evidence::{Evidence, Hypothesis};
+use crate::problem::problem::Problem;
+
+/// A hypothesis is named when it lessens the unexplained part of the input by this much ...
+const LEAST_GAIN: f64 = 0.1;
+
+/// ... and to this part at most of what it is as stated.
+const LARGEST_REST: f64 = 0.5;
+
+/// Lags that are tried, s.
+const LAGS: [f64; 8] = [0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2];
+
+/// Returns, in words, what most likely makes an answer implausible: the reading of the recordings
+/// under which the robot's dynamics agree best with them, where it is much better than the one
+/// that was stated.
+///
+/// # Errors
+///
+/// As [`Problem::run`].
+pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
+    let evidence = Evidence::new(problem)?;
+    let stated = stated(problem);
+    let rest = evidence.unexplained(&stated);
+    let tried = hypotheses(&stated);
+    let scored = tried.iter().map(|hypothesis| (evidence.unexplained(hypothesis), hypothesis));
+    let best = scored.min_by(|a, b| a.0.total_cmp(&b.0));
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part.min(1.0));
+    let likely =
+        best.filter(|(least, _)| rest - least > LEAST_GAIN && *least < LARGEST_REST * rest);
+    Ok(match likely {
+        Some((least, hypothesis)) => format!(
+            "the most likely cause: {}. So read, {} of the recorded input is not explained by the \
+             recorded motion, and {} as stated",
+            hypothesis.words,
+            percent(least),
+            percent(rest)
+        ),
+        None => format!(
+            "no other unit, sign, kind of torque, order of joints or lag explains the recordings \
+             better ({} of the recorded input is not explained by the recorded motion): check the \
+             robot's parameters, for example with `reachtube identify`",
+            percent(rest)
+        ),
+    })
+}
+
+/// Returns what was stated.
+fn stated(problem: &Problem) -> Hypothesis {
+    let n = problem.joints();
+    Hypothesis {
+        words: String::new(),
+        torque: problem.settings().torque,
+        time: 1.0,
+        angle: 1.0,
+        torque_factors: vec![1.0; n],
+        columns: (0..n).collect(),
+        lag: 0.0,
+    }
+}
+
+/// Returns what is tried instead.
+fn hypotheses(stated: &Hypothesis) -> Vec<Hypothesis> {
+    let mut all = Vec::new();
+    let mut add = |words: String, change: &dyn Fn(&mut Hypothesis)| {
+        let mut hypothesis = stated.clone();
+        hypothesis.words = words;
+        change(&mut hypothesis);
+        all.push(hypothesis);
+    };
+    for (words, factor) in [
+        ("the torques are in N mm, not in N m", 1e-3),
+        ("the torques are in kN m, not in N m", 1e3),
+        ("the torques have the opposite sign", -1.0),
+    ] {
+        add(words.into(), &|h| h.torque_factors.iter_mut().for_each(|f| *f = factor));
+    }
+    for kind in [Torque::Compensated, Torque::Motor, Torque::Link] {
+        if kind != stated.torque {
+            let word = format!("{kind:?}").to_lowercase();
+            add(format!("the torques are of the kind `{word}` (--torque {word})"), &|h| {
+                h.torque = kind;
+            });
+        }
+    }
+    add("the times are in ms, not in s".into(), &|h| h.time = 1e-3);
+    let degrees = "positions and velocities are in degrees, not in rad";
+    add(degrees.into(), &|h| h.angle = PI / 180.0);
+    for lag in LAGS {
+        let words = format!("the torques are about {lag} s later than the motion");
+        add(words, &|h| h.lag = lag);
+    }
+    let n = stated.columns.len();
+    for i in 0..n {
+        let words = format!("the torque of joint {} has the opposite sign", i + 1);
+        add(words, &|h| h.torque_factors[i] = -1.0);
+        for j in i + 1..n {
+            let words = format!("the torques of joints {} and {} are swapped", i + 1, j + 1);
+            add(words, &|h| h.columns.swap(i, j));
+        }
+    }
+    all
+}

@@ -1,0 +1,118 @@
+use reachtube_recordings::{Run, Torque};
+use reachtube_robot::Robot;
+
+use crate::error::Result;
+use crate::problem::problem::Problem;
+
+/// Number of runs that are looked at, at most.
+const RUNS: usize = 8;
+
+/// Number of samples of each that are looked at, at most.
+const SAMPLES: usize = 300;
+
+/// Half the time over which accelerations and torques are averaged, s.
+const HALF_WINDOW: f64 = 0.02;
+
+/// Some runs of a problem, on which hypotheses about their meaning are tried.
+pub(super) struct Evidence<'a> {
+    robot: &'a Robot,
+    runs: Vec<Run>,
+}
+
+/// What recordings may mean instead of what was stated: each number as it is read.
+#[derive(Debug, Clone)]
+pub(super) struct Hypothesis {
+    /// What is tried, in words.
+    pub words: String,
+    /// The recorded torques.
+    pub torque: Torque,
+    /// Factor of the times.
+    pub time: f64,
+    /// Factor of positions and velocities.
+    pub angle: f64,
+    /// Factor of each torque, n.
+    pub torque_factors: Vec<f64>,
+    /// The joint whose column holds each torque, n.
+    pub columns: Vec<usize>,
+    /// Time by which the torques are later than the motion, s.
+    pub lag: f64,
+}
+
+impl<'a> Evidence<'a> {
+    /// Takes the first run of some of the problem's suites.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn new(problem: &'a Problem) -> Result<Self> {
+        let suites = &problem.recordings().suites;
+        let stride = suites.len().div_ceil(RUNS).max(1);
+        let firsts = suites.iter().step_by(stride).filter_map(|suite| suite.runs.first());
+        let runs = firsts.map(|run| Ok(problem.run(run.index)?.into_owned()));
+        Ok(Self { robot: problem.robot(), runs: runs.collect::<Result<_>>()? })
+    }
+
+    /// Returns the part of the input that the motion does not explain under a hypothesis: the mean
+    /// over the joints of Σ (u - u_m)² by Σ (u² + u_m²), where u is the recorded input and u_m the
+    /// one that the robot needs for the recorded motion. It is 0 for equal inputs, about 1 for
+    /// unrelated ones and 2 for opposite ones.
+    pub fn unexplained(&self, hypothesis: &Hypothesis) -> f64 {
+        let n = self.robot.joint_count();
+        let mut sums = vec![[0.0; 2]; n];
+        for run in &self.runs {
+            let step = hypothesis.time * run.times.last().unwrap_or(&0.0) / run.len() as f64;
+            let half = ((HALF_WINDOW / step).round() as usize).clamp(1, run.len() / 8 + 1);
+            let lag = (hypothesis.lag / step).round() as usize;
+            let last = run.len().saturating_sub(half + lag);
+            let stride = (last.saturating_sub(half) / SAMPLES).max(1);
+            for k in (half..last).step_by(stride) {
+                let (needed, recorded) = self.inputs(run, hypothesis, k, half, lag);
+                for joint in 0..n {
+                    let (a, b) = (needed[joint], recorded[joint]);
+                    sums[joint][0] += (a - b) * (a - b);
+                    sums[joint][1] += a * a + b * b;
+                }
+            }
+        }
+        let moving = sums.iter().filter(|[_, size]| *size > 0.0);
+        let parts: Vec<f64> = moving.map(|[missed, size]| missed / size).collect();
+        parts.iter().sum::<f64>() / parts.len().max(1) as f64
+    }
+
+    /// Returns the input that the motion needs around sample `k`, and the recorded one, n each.
+    fn inputs(
+        &self,
+        run: &Run,
+        hypothesis: &Hypothesis,
+        k: usize,
+        half: usize,
+        lag: usize,
+    ) -> (Vec<f64>, Vec<f64>) {
+        let Hypothesis { torque, time, angle, torque_factors, columns, .. } = hypothesis;
+        let scaled = |values: &[f64]| values.iter().map(|x| angle * x).collect::<Vec<f64>>();
+        let (q, qd) = (scaled(run.q(k)), scaled(run.qd(k)));
+        let duration = time * (run.times[k + half] - run.times[k - half]);
+        let changes = run.qd(k + half).iter().zip(run.qd(k - half));
+        let acceleration: Vec<f64> =
+            changes.map(|(after, before)| angle * (after - before) / duration).collect();
+        let mean = |joint: usize| {
+            let window = k + lag - half..k + lag + half;
+            let sum: f64 = window.map(|at| run.torque(at)[columns[joint]]).sum();
+            torque_factors[joint] * sum / (2 * half) as f64
+        };
+        let torques: Vec<f64> = (0..q.len()).map(mean).collect();
+        let inertia =
+            self.robot.mass_matrix(&q) * nalgebra::DVector::from_column_slice(&acceleration);
+        let moving = inertia + self.robot.coriolis_torque(&q, &qd);
+        let viscous = self.robot.viscous_torque(&qd);
+        let input = torque.input(self.robot, &q, &qd, &torques);
+        // Friction that is added to both sides says nothing about either.
+        match torque {
+            Torque::Link => {
+                let recorded = input.iter().zip(&viscous).map(|(u, v)| u - v).collect();
+                (moving.data.into(), recorded)
+            }
+            Torque::Motor | Torque::Compensated => ((moving + viscous).data.into(), input),
+        }
+    }
+}

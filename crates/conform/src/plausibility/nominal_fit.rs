@@ -1,0 +1,111 @@
+use crate::deviation::Nominal;
+use crate::error::Result;
+use crate::problem::case::Case;
+use crate::problem::problem::Problem;
+use crate::search::sensitivity::nominal;
+
+/// How well the nominal solutions alone reproduce the recordings, and how far these move.
+#[derive(Debug, Clone)]
+pub(crate) struct NominalFit {
+    /// The part of each state's variance that the nominal solutions explain, 2n: 1 minus the
+    /// square of what they miss by the square of the motion about its mean. Below 0 where they are
+    /// further away than the mean. Nothing where the state hardly moves.
+    pub explained: Vec<Option<f64>>,
+    /// The recorded bounds of each state, 2n, rad and rad/s.
+    pub recorded: Vec<[f64; 2]>,
+    /// The largest |u| of each joint, n, N m.
+    pub largest_input: Vec<f64>,
+}
+
+/// Sums over the samples of one case or several.
+#[derive(Debug, Clone)]
+struct Sums {
+    /// Σ of the squared distance from the case's mean, 2n.
+    motion: Vec<f64>,
+    /// Σ of the squared distance from the nominal solution, 2n.
+    missed: Vec<f64>,
+    largest_input: Vec<f64>,
+}
+
+impl NominalFit {
+    /// Compares the nominal solution of each case with the middle between its highest and its
+    /// lowest recording.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`]; a nominal solution that runs away.
+    pub fn new(problem: &Problem) -> Result<Self> {
+        let n = problem.joints();
+        let mut all = Sums::zero(n);
+        for suite in 0..problem.recordings().suites.len() {
+            let parts = problem.cases_of(suite, |case| Sums::new(problem, &case))?;
+            parts.iter().for_each(|part| all.add(part));
+        }
+        let recorded: Vec<[f64; 2]> = (0..2 * n).map(|i| bounds(problem, i)).collect();
+        let explained = |i: usize| {
+            let [low, high] = recorded[i];
+            let moves = high - low > 2.0 * problem.sensor_noise().radius[i] && all.motion[i] > 0.0;
+            moves.then(|| 1.0 - all.missed[i] / all.motion[i])
+        };
+        let explained = (0..2 * n).map(explained).collect();
+        Ok(Self { explained, recorded, largest_input: all.largest_input })
+    }
+}
+
+impl Sums {
+    fn zero(joints: usize) -> Self {
+        Self {
+            motion: vec![0.0; 2 * joints],
+            missed: vec![0.0; 2 * joints],
+            largest_input: vec![0.0; joints],
+        }
+    }
+
+    fn new(problem: &Problem, case: &Case) -> Result<Self> {
+        let (n, measured) = (case.joints(), &case.measured);
+        let solution = nominal_states(problem, case)?;
+        let middle = |k: usize, i: usize| 0.5 * (measured.upper(k, i) + measured.lower(k, i));
+        let mut sums = Self::zero(n);
+        for i in 0..2 * n {
+            let mean =
+                (0..measured.len()).map(|k| middle(k, i)).sum::<f64>() / measured.len() as f64;
+            for k in 0..measured.len() {
+                sums.motion[i] += (middle(k, i) - mean).powi(2);
+                sums.missed[i] += (middle(k, i) - solution[k * 2 * n + i]).powi(2);
+            }
+        }
+        for inputs in case.inputs.chunks_exact(n) {
+            let pairs = sums.largest_input.iter_mut().zip(inputs);
+            pairs.for_each(|(largest, u)| *largest = largest.max(u.abs()));
+        }
+        Ok(sums)
+    }
+
+    fn add(&mut self, other: &Self) {
+        let add = |sum: &mut Vec<f64>, part: &Vec<f64>| {
+            sum.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+        };
+        add(&mut self.motion, &other.motion);
+        add(&mut self.missed, &other.missed);
+        let pairs = self.largest_input.iter_mut().zip(&other.largest_input);
+        pairs.for_each(|(largest, u)| *largest = largest.max(*u));
+    }
+}
+
+/// The nominal solution of a case, samples x 2n, to rounding.
+fn nominal_states(problem: &Problem, case: &Case) -> Result<Vec<f64>> {
+    if problem.dynamics().linear_system().is_none() {
+        return nominal(problem.dynamics().polynomials(), case);
+    }
+    let Nominal { trajectory, .. } = Nominal::new(problem.grids()?, case);
+    Ok((0..trajectory.len()).flat_map(|k| trajectory.state(k).iter().map(|x| x.mid())).collect())
+}
+
+/// The lowest and the highest recorded value of state `i`.
+fn bounds(problem: &Problem, i: usize) -> [f64; 2] {
+    let envelopes = problem.recordings().suites.iter().map(|suite| &suite.envelope);
+    let samples = envelopes.flat_map(|envelope| (0..envelope.len()).map(move |k| (envelope, k)));
+    samples.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (envelope, k)| {
+        [low.min(envelope.lower(k, i)), high.max(envelope.upper(k, i))]
+    })
+}

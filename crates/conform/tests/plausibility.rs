@@ -1,0 +1,141 @@
+//! Recordings that were read in a wrong way give an answer, and the answer says what is wrong.
+
+mod common;
+
+use common::{Random, grid};
+use reachtube_conform::{
+    Conformance, Keep, Model, Noise, NominalStart, Problem, Settings, Setup, Silent, Warning,
+    WarningKind, conform,
+};
+use reachtube_recordings::{MemoryRuns, Run, Torque};
+use reachtube_robot::Robot;
+
+const JOINTS: usize = 6;
+
+/// The embedded arm without limits, which would refuse some of the wrong readings.
+fn arm() -> Robot {
+    let mut description = Robot::lwa4p().description().clone();
+    for joint in &mut description.joints {
+        joint.position_limits = None;
+        joint.velocity_limit = None;
+    }
+    Robot::from_description(&description).unwrap()
+}
+
+/// Numbers as somebody may have written them.
+struct Written {
+    time: f64,
+    angle: f64,
+    torque: f64,
+    /// Samples by which the torques are late.
+    late: usize,
+    swapped: Option<(usize, usize)>,
+}
+
+const RIGHT: Written = Written { time: 1.0, angle: 1.0, torque: 1.0, late: 0, swapped: None };
+
+/// Motions of the arm with the motor torques that its dynamics need, written in some way.
+fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
+    let times = grid(0.004, 400);
+    let (mut runs, mut random) = (MemoryRuns::default(), Random(9));
+    for (suite, phase) in [("A", 0.0), ("B", 1.0)] {
+        for run in 0..2 {
+            let (mut states, mut torques) = (Vec::new(), Vec::new());
+            for &t in &times {
+                let wave = |j: usize| (3.0 + 0.5 * j as f64, 2.0 * j as f64 + phase);
+                let value = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
+                    (0..JOINTS).map(|j| wave(j)).map(|(w, p)| 0.25 * f(w, w * t + p)).collect()
+                };
+                let q = value(&|_, x| x.sin());
+                let qd = value(&|w, x| w * x.cos());
+                let qdd = value(&|w, x| -w * w * x.sin());
+                let inertia = robot.mass_matrix(&q) * nalgebra::DVector::from_vec(qdd);
+                let u = inertia + robot.coriolis_torque(&q, &qd) + robot.viscous_torque(&qd);
+                let motor = robot.motor_torque_from_input(&q, &qd, u.as_slice());
+                let noisy = |x: &f64| written.angle * (x + 1e-5 * random.signed());
+                states.extend(q.iter().chain(&qd).map(noisy).collect::<Vec<_>>());
+                torques.extend(motor.iter().map(|x| written.torque * x));
+            }
+            if let Some((i, j)) = written.swapped {
+                torques.chunks_exact_mut(JOINTS).for_each(|row| row.swap(i, j));
+            }
+            torques.rotate_right(JOINTS * written.late);
+            let times = times.iter().map(|t| t * written.time).collect();
+            let recording = Run::new(JOINTS, times, states, torques).unwrap();
+            runs.push(&format!("{suite}{run}"), Some(suite), None, recording);
+        }
+    }
+    runs
+}
+
+fn found(written: &Written, settings: Settings) -> (Problem, Conformance) {
+    let robot = arm();
+    let runs = recorded(&robot, written);
+    let setup = Setup::new(robot, settings).unwrap();
+    let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
+    let found = conform(&problem, &Silent, None).unwrap();
+    (problem, found)
+}
+
+fn cause(warnings: &[Warning]) -> Option<&str> {
+    let is_cause = |warning: &&Warning| warning.kind == WarningKind::Cause;
+    warnings.iter().find(is_cause).map(|warning| warning.text.as_str())
+}
+
+#[test]
+fn a_right_reading_has_no_warning_and_is_explained() {
+    let (problem, found) = found(&RIGHT, Settings::new(Torque::Motor, JOINTS));
+    assert_eq!(found.warnings, []);
+    let parts: Vec<f64> = found.nominal_explains.iter().flatten().copied().collect();
+    assert!(parts.len() == 2 * JOINTS && parts.iter().all(|part| *part > 0.7), "{parts:?}");
+    let noise = &problem.sensor_noise().radius;
+    // Uniform noise in ±1e-5 has the standard deviation 5.8e-6; the radius is five of them.
+    assert!(noise.iter().all(|radius| (1e-5..6e-5).contains(radius)), "{noise:?}");
+}
+
+#[test]
+fn the_cause_of_a_wrong_reading_is_named() {
+    let wrong = [
+        (Written { torque: 1e3, ..RIGHT }, Torque::Motor, "in N mm"),
+        (Written { torque: -1.0, ..RIGHT }, Torque::Motor, "the opposite sign"),
+        (RIGHT, Torque::Compensated, "--torque motor"),
+        (Written { time: 1e3, ..RIGHT }, Torque::Motor, "in ms"),
+        (Written { angle: 180.0 / std::f64::consts::PI, ..RIGHT }, Torque::Motor, "in degrees"),
+        (Written { late: 25, ..RIGHT }, Torque::Motor, "about 0.1 s later"),
+        (Written { swapped: Some((1, 2)), ..RIGHT }, Torque::Motor, "joints 2 and 3 are swapped"),
+    ];
+    for (written, torque, words) in wrong {
+        let (problem, found) = found(&written, Settings::new(torque, JOINTS));
+        assert!(found.verdict.conformant, "{words}: the sets enclose the recordings all the same");
+        let cause = cause(&found.warnings).unwrap_or_else(|| panic!("{words}: no warning"));
+        assert!(cause.contains(words), "{words} is not in {cause}; {:?}", found.warnings);
+        assert_eq!(Model::new(&problem, &found).warnings, found.warnings);
+    }
+}
+
+#[test]
+fn noise_and_own_starts_are_limited_by_the_sensors() {
+    for noise in [Noise::None, Noise::Fitted] {
+        let settings = Settings {
+            noise: noise.clone(),
+            nominal: NominalStart::Own,
+            ..Settings::new(Torque::Motor, JOINTS)
+        };
+        let (problem, found) = found(&RIGHT, settings);
+        assert!(found.verdict.conformant);
+        for (i, limit) in problem.sensor_noise().radius.iter().enumerate() {
+            let (low, high) = found.sets.initial_set.bounds(i);
+            assert!(high.max(-low) <= limit * (1.0 + 1e-6), "X0 {low} to {high} for {limit}");
+            assert!(found.sets.noise_radius(i) <= limit * (1.0 + 1e-6));
+        }
+    }
+}
+
+#[test]
+fn noise_as_wide_as_the_motion_is_remarked() {
+    let settings =
+        Settings { noise: Noise::Fixed(vec![1.0; 12]), ..Settings::new(Torque::Motor, JOINTS) };
+    let (_, found) = found(&RIGHT, settings);
+    let kinds: Vec<WarningKind> = found.warnings.iter().map(|warning| warning.kind).collect();
+    assert!(kinds.contains(&WarningKind::NoiseSetSize), "{kinds:?}");
+}
