@@ -65,7 +65,9 @@ impl Robot {
             *scratch = LinkScratch { pose, force, moment };
         }
         accumulate_to_parents(scratch);
-        g.iter_mut().zip(scratch).for_each(|(g, s)| *g = s.moment.z.clone());
+        for ((g, link), s) in g.iter_mut().zip(&self.links).zip(scratch) {
+            *g = link.axis_component(&s.force, &s.moment).clone();
+        }
     }
 
     /// Returns the gravity load of this robot.

@@ -97,7 +97,7 @@ fn json_summary(model: &PolynomialModel, seconds: f64) -> serde_json::Value {
         "model": model.kind(),
         "order": model.order(),
         "states": model.states(),
-        "variables": model.layout().names(),
+        "variables": model.variable_names(),
         "degree": model.degree(),
         "terms": terms,
         "remainder": model.remainder(),

@@ -4,7 +4,7 @@ use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
 use reachtube::report::write_identified_html;
 use reachtube::write;
-use reachtube_robot::{Robot, Urdf, UrdfEnds};
+use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use super::arguments::Arguments;
 use super::summary::summary;
@@ -19,7 +19,8 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let name = from_folder(&name, args, &folder);
     let robot = Robot::load(&name)?;
     check_urdf(args, &name)?;
-    let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &UrdfEnds::default())).transpose()?;
+    let urdf =
+        args.urdf.is_some().then(|| Urdf::load(&name, &UrdfOptions::default())).transpose()?;
     for path in [&args.out, &args.urdf].into_iter().flatten() {
         write::try_at(path)?;
     }
