@@ -71,6 +71,15 @@ impl JointKind {
         }
     }
 
+    /// Returns the unit of viscous friction.
+    #[must_use]
+    pub fn damping_unit(self) -> &'static str {
+        match self {
+            Self::Revolute => "N m s/rad",
+            Self::Prismatic => "N s/m",
+        }
+    }
+
     /// Returns the unit of an armature or of a pivot of the mass matrix.
     #[must_use]
     pub fn inertia_unit(self) -> &'static str {
@@ -99,6 +108,15 @@ impl JointKind {
             Some(first) if all.iter().all(|unit| unit == first) => (*first).into(),
             _ => format!("({})", all.join(", ")),
         }
+    }
+
+    /// Returns the unit of a value of any of these joints, such as `rad` or `rad or m`.
+    #[must_use]
+    pub fn any_unit(kinds: &[Self], unit: fn(Self) -> &'static str) -> String {
+        let has = |kind: &Self| kinds.contains(kind);
+        let units: Vec<_> =
+            [Self::Revolute, Self::Prismatic].into_iter().filter(has).map(unit).collect();
+        units.join(" or ")
     }
 
     /// Returns the motion of a joint by q along or about a unit axis.

@@ -1,6 +1,7 @@
 //! The description of a robot.
 
 use super::joint_description::{Convention, JointDescription};
+use crate::joint_kind::JointKind;
 use crate::lock::LockedJoint;
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +52,14 @@ pub struct RobotDescription {
     /// The joints from base to tip, each with the link it moves.
     #[serde(rename = "joint")]
     pub joints: Vec<JointDescription>,
+}
+
+impl RobotDescription {
+    /// Returns the kinds of the joints from base to tip.
+    #[must_use]
+    pub fn kinds(&self) -> Vec<JointKind> {
+        self.joints.iter().map(|joint| joint.kind).collect()
+    }
 }
 
 fn earth_gravity() -> [f64; 3] {

@@ -17,10 +17,10 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (settings, folder) = settings(args)?;
     let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);
-    let robot = Robot::load(&name)?;
+    let robot = args.lock.load(&name)?;
     check_urdf(args, &name)?;
-    let urdf =
-        args.urdf.is_some().then(|| Urdf::load(&name, &UrdfOptions::default())).transpose()?;
+    let options = UrdfOptions { locks: args.lock.lock.clone(), ..UrdfOptions::default() };
+    let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &options)).transpose()?;
     for path in [&args.out, &args.urdf].into_iter().flatten() {
         write::try_at(path)?;
     }
