@@ -49,7 +49,8 @@ impl PolynomialModel {
 
     /// Returns the model as a system whose reachable sets [`Flowpipe`](reachtube_reach::Flowpipe)
     /// encloses. Its states are (q, q̇), 2n, for every model; the accelerations of models 2 and 3
-    /// are polynomials in sines and cosines of q too, and in q of prismatic joints. It has n inputs.
+    /// are polynomials in sines and cosines of q too, and in q of prismatic joints. It has n
+    /// inputs.
     ///
     /// # Guarantee
     ///

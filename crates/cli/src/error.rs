@@ -26,8 +26,8 @@ pub enum Error {
     },
     /// A robot and the recordings differ in their number of joints.
     #[error(
-        "robot {robot} has {joints} joints, but the recordings have {recorded}; name the robot that \
-         was recorded"
+        "robot {robot} has {joints} joints, but the recordings have {recorded}; name the robot \
+         that was recorded"
     )]
     JointCount {
         /// Name or path of the robot.

@@ -13,7 +13,8 @@ impl Robot {
     /// Computes forward dynamics (4) by the articulated-body algorithm: q̈ \[rad/s²\], armature and
     /// gravity included.
     ///
-    /// All slices have one entry per joint: `sin`, `cos` of q, `qd` \[rad/s\], link-side torque
+    /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\],
+    /// link-side torque
     /// `tau` \[N m\]. The cost is linear in the number of joints (Featherstone, IJRR 1983). The
     /// result equals that of [`Robot::forward_dynamics`] on s² + c² = 1.
     ///

@@ -13,9 +13,10 @@ impl Robot {
     /// Computes the mass matrix M_m(q) = M(q) + diag(armature) of (3) \[kg m²\], n x n, row by row,
     /// both triangles.
     ///
-    /// `sin` and `cos` of q have one entry per joint; `m` has n² entries. Composite-rigid-body
-    /// algorithm (Walker & Orin 1982; Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6).
-    /// With independent sine and cosine the result is this algorithm's polynomial.
+    /// `sin` and `cos` of [`Robot::sin_cos`] have one entry per joint; `m` has n² entries.
+    /// Composite-rigid-body algorithm (Walker & Orin 1982; Featherstone, Rigid Body Dynamics
+    /// Algorithms, 2008, ch. 6). With independent sine and cosine the result is this algorithm's
+    /// polynomial.
     ///
     /// # Guarantee
     ///

@@ -48,7 +48,7 @@ pub enum RobotError {
         "robot `{robot}`: joint `{joint}` has the articulated inertia {pivot:.3e} {} at \
          q = {q:.4?} {}, but it must be positive; correct its inertial parameters or those of \
          later links, or add the motor's armature",
-        kind.inertia_unit(),
+        kind.inertia_unit().replace("^2", "²"),
         JointKind::units(kinds, JointKind::position_unit)
     )]
     NotPhysical {

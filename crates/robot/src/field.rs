@@ -19,8 +19,9 @@ pub enum DrivenBy {
 
 /// The equation of motion of a robot with friction, for the integrators of `reachtube-ode`.
 ///
-/// The state is x = (q, q̇) (2n; rad, rad/s) and the input is the torque (n; N m), with m, m/s and N
-/// for a prismatic joint. Over lanes, each lane is an independent run. A field that is reused does not allocate.
+/// The state is x = (q, q̇) (2n; rad, rad/s) and the input is the torque (n; N m), with m, m/s and
+/// N for a prismatic joint. Over lanes, each lane is an independent run. A field that is reused
+/// does not allocate.
 ///
 /// Coulomb friction jumps where a joint changes direction and is 0 at rest, so it has no stiction.
 /// A joint that would stick chatters about zero velocity, with an amplitude of Coulomb torque times
@@ -80,8 +81,9 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
         Self { articulated: true, ..self }
     }
 
-    /// Regularises Coulomb friction: below a speed \[rad/s; m/s\] it is proportional to |q̇|, and above
-    /// that speed it is unchanged. A joint that would stick creeps at no more than this speed.
+    /// Regularises Coulomb friction: below a speed \[rad/s; m/s\] it is proportional to |q̇|, and
+    /// above that speed it is unchanged. A joint that would stick creeps at no more than this
+    /// speed.
     ///
     /// Near rest it damps a joint at a rate of about Coulomb torque over inertia and speed \[1/s\].
     /// Fixed steps should stay below about 2.5 times the inverse of this rate.

@@ -32,7 +32,8 @@ impl<S: Scalar> GravityLoad<S> {
 impl Robot {
     /// Computes the gravity torque g(q) of (3) \[N m\] from the gravity parameters.
     ///
-    /// All slices have one entry per joint; `sin` and `cos` are those of q.
+    /// All slices have one entry per joint; `sin` and `cos` are those of
+    /// [`Robot::sin_cos`].
     ///
     /// # Guarantee
     ///

@@ -210,7 +210,7 @@ impl Robot {
     /// For each link, θ holds the ten inertial parameters m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy,
     /// Ixz, Iyz, Izz. The inertia is about the origin of the link's original frame, in its axes
     /// (see [`Robot::inertial_parameters`]). Y does not contain motor inertia. All slices have one
-    /// entry per joint: `sin`, `cos` of q, `qd` \[rad/s\], `qdd` \[rad/s²\].
+    /// entry per joint: `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\], `qdd` \[rad/s²\].
     ///
     /// In Y, gravity acts on the inertial parameters. For a robot with `gravity_moments`,
     /// [`Robot::rnea`] is the sum of two products: Y without gravity ([`Robot::with_gravity`])

@@ -10,8 +10,8 @@ use crate::parameter::{Parameter, ParameterKind};
 use nalgebra::{Matrix3, Vector3};
 use reachtube_scalar::Elementary;
 
-/// The constants of a serial robot with revolute and prismatic joints. Scratch memory is kept separately, in a
-/// [`Workspace`](crate::Workspace).
+/// The constants of a serial robot with revolute and prismatic joints. Scratch memory is kept
+/// separately, in a [`Workspace`](crate::Workspace).
 ///
 /// Every link gets a working frame whose +z is the joint's axis and from which the next axis
 /// differs by a twist about x. The algorithms use these frames; results in joint space do not

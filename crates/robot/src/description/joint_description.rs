@@ -140,7 +140,8 @@ pub struct JointDescription {
     /// `rotor_inertia`; the default is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub armature: Option<f64>,
-    /// Lowest and highest position \[rad; m\]; the default is ±pi. A prismatic joint has no default.
+    /// Lowest and highest position \[rad; m\]; the default is ±pi. A prismatic joint has no
+    /// default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position_limits: Option<[f64; 2]>,
     /// Highest speed \[rad/s; m/s\]; unknown by default.
@@ -236,8 +237,8 @@ impl JointDescription {
         }
     }
 
-    /// Sets the motor inertia on the link side \[kg m²; kg\]. A description by rotor inertia and gear
-    /// ratio keeps this form.
+    /// Sets the motor inertia on the link side \[kg m²; kg\]. A description by rotor inertia and
+    /// gear ratio keeps this form.
     pub(crate) fn set_armature(&mut self, armature: f64) {
         match (self.rotor_inertia, self.gear_ratio) {
             (Some(_), Some(ratio)) if ratio != 0.0 => {

@@ -7,8 +7,8 @@ use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Ends of the chain, locked joints, gravity, and motors and friction of joints. Each value overrides that of the
-/// URDF.
+/// Ends of the chain, locked joints, gravity, and motors and friction of joints. Each value
+/// overrides that of the URDF.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Companion {

@@ -230,8 +230,8 @@ fn both_dh_conventions_slide_along_z() {
 fn a_gantry_is_physical_and_has_only_masses_as_base_parameters() {
     let axis = |name: &str, axis: [f64; 3], mass: f64| {
         format!(
-            "[[joint]]\nname = \"{name}\"\ntype = \"prismatic\"\nplacement = {{}}\naxis = {axis:?}\n\
-             mass = {mass}\nposition_limits = [0.0, 2.0]\n"
+            "[[joint]]\nname = \"{name}\"\ntype = \"prismatic\"\nplacement = {{}}\n\
+             axis = {axis:?}\nmass = {mass}\nposition_limits = [0.0, 2.0]\n"
         )
     };
     let text = format!(
