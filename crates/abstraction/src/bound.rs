@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 use reachtube_robot::{Robot, Workspace};
-use reachtube_scalar::{Elementary, Interval, TaylorBox, TaylorModel, TaylorSpace};
+use reachtube_scalar::{Interval, TaylorBox, TaylorModel, TaylorSpace};
 
 use crate::error::Result;
 use crate::model_kind::ModelKind;
@@ -167,7 +167,7 @@ impl<'a> BranchAndBound<'a> {
         let variables = TaylorBox::new(&self.space, sides).variables();
         let (q, rest) = variables.split_at(n);
         let (qd, u) = rest.split_at(n);
-        let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(Elementary::sin_cos).unzip();
+        let (sin, cos) = self.robot.sin_cos(q);
         let mut state = [q, qd].concat();
         if self.model.layout().trigonometric {
             state.extend(sin.iter().chain(&cos).cloned());

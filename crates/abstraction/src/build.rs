@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
-use reachtube_robot::{PolynomialDynamics, Robot, ltdl};
+use reachtube_robot::{Joint, JointKind, PolynomialDynamics, Robot, ltdl, snapped_sin_cos};
 use reachtube_scalar::{TaylorPolynomial, TaylorSpace};
 
 use crate::error::{Error, Result};
@@ -53,7 +53,9 @@ fn inverse_mass_matrix(robot: &Robot, point: &ExpansionPoint) -> Result<DMatrix<
     let mut factors = robot.mass_matrix(&point.q).as_slice().to_vec();
     ltdl::factor(&mut factors, n);
     if (0..n).any(|i| !(factors[i * n + i] > 0.0 && factors[i * n + i].is_finite())) {
-        return Err(Error::SingularMassMatrix { robot: robot.name().into(), q: point.q.clone() });
+        let unit = JointKind::units(&robot.kinds(), JointKind::position_unit);
+        let (robot, q) = (robot.name().into(), point.q.clone());
+        return Err(Error::SingularMassMatrix { robot, q, unit });
     }
     let mut inverse = DMatrix::identity(n, n);
     inverse.column_iter_mut().for_each(|mut column| ltdl::solve(&factors, column.as_mut_slice()));
@@ -126,10 +128,14 @@ impl Builder<'_> {
         (0..n).map(|i| self.layout.sine(i)).chain((0..n).map(|i| self.layout.cosine(i))).collect()
     }
 
-    /// Returns (sin q_a, cos q_a), 2n, exact at multiples of π/2.
+    /// Returns (sin q_a, cos q_a), 2n, exact at multiples of π/2, or (q_a, 1) of a prismatic joint.
     fn trigonometric_point(&self) -> Vec<f64> {
+        let pair = |(joint, q): (&Joint, &f64)| match joint.kind {
+            JointKind::Revolute => snapped_sin_cos(*q),
+            JointKind::Prismatic => (*q, 1.0),
+        };
         let (sin, cos): (Vec<_>, Vec<_>) =
-            self.point.q.iter().map(|q| reachtube_robot::snapped_sin_cos(*q)).unzip();
+            self.robot.joints().iter().zip(&self.point.q).map(pair).unzip();
         [sin, cos].concat()
     }
 

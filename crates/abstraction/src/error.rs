@@ -38,13 +38,15 @@ pub enum Error {
     /// M_m(q_a) is not positive definite.
     #[error(
         "the mass matrix of {robot} is not positive definite at the expansion point \
-         q = {q:?} rad; correct the robot's inertias or choose another expansion point"
+         q = {q:?} {unit}; correct the robot's inertias or choose another expansion point"
     )]
     SingularMassMatrix {
         /// Name of the robot.
         robot: String,
-        /// Positions q_a, n, rad.
+        /// Positions q_a, n.
         q: Vec<f64>,
+        /// Unit of the positions, or their units.
+        unit: String,
     },
     /// A value of an expansion point is NaN or infinite.
     #[error("value {number} of the expansion point is {value}; give finite numbers")]
@@ -57,8 +59,8 @@ pub enum Error {
     /// An expansion point has another number of values than n, 2n or 3n.
     #[error(
         "the expansion point has {values} values, but the robot has {joints} joints; give \
-         {joints} positions in rad, or {} values (positions, then velocities in rad/s), or {} \
-         values (then also inputs in N m)",
+         {joints} positions (rad or m), or {} values (positions, then velocities per s), or {} \
+         values (then also inputs in N m or N)",
         2 * joints,
         3 * joints
     )]
@@ -78,8 +80,8 @@ pub enum Error {
     },
     /// An operating box has another number of radii than 3 or 3n.
     #[error(
-        "the box has {radii} radii; give 3 (positions in rad, velocities in rad/s, inputs in \
-         N m) or {}",
+        "the box has {radii} radii; give 3 (positions in rad or m, velocities per s, inputs in \
+         N m or N) or {}",
         3 * joints
     )]
     RadiusCount {

@@ -14,7 +14,7 @@ impl Display for PolynomialModel {
             origin => format!("({name} - {origin})"),
         };
         let names: Vec<String> =
-            self.layout().names().into_iter().zip(self.origin()).map(offset).collect();
+            self.variable_names().into_iter().zip(self.origin()).map(offset).collect();
         for (i, acceleration) in self.acceleration().iter().enumerate() {
             write!(out, "qdd{} =", i + 1)?;
             let terms = acceleration.terms();

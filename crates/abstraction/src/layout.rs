@@ -1,8 +1,12 @@
 //! The variables of a model's polynomials and their order.
 
+use reachtube_robot::JointKind;
+
 use crate::model_kind::ModelKind;
 
 /// The variables of a model: q̇, then sin q and cos q where the model has them, then u; n of each.
+///
+/// A prismatic joint has its position q and the constant 1 in place of sin q and cos q.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
     /// Number of joints n.
@@ -54,13 +58,17 @@ impl Layout {
         self.variables() - self.joints + i
     }
 
-    /// Returns the names of the variables: qd1, .., s1, .., c1, .., u1, ..
+    /// Returns the names of the variables for joints of these kinds: qd1, .., s1, .., c1, .., u1,
+    /// ..; a prismatic joint 1 has q1 and one1 in place of s1 and c1.
     #[must_use]
-    pub fn names(self) -> Vec<String> {
-        let groups: &[&str] =
-            if self.trigonometric { &["qd", "s", "c", "u"] } else { &["qd", "u"] };
-        let group =
-            |name: &&str| (1..=self.joints).map(|i| format!("{name}{i}")).collect::<Vec<_>>();
-        groups.iter().flat_map(group).collect()
+    pub fn names(self, kinds: &[JointKind]) -> Vec<String> {
+        let [qd, sine, cosine, u] = [["qd"; 2], ["s", "q"], ["c", "one"], ["u"; 2]];
+        let groups = if self.trigonometric { vec![qd, sine, cosine, u] } else { vec![qd, u] };
+        let name = |[revolute, prismatic]: [&str; 2], i: usize| match kinds[i] {
+            JointKind::Revolute => format!("{revolute}{}", i + 1),
+            JointKind::Prismatic => format!("{prismatic}{}", i + 1),
+        };
+        let group = |names: [&'static str; 2]| (0..self.joints).map(move |i| name(names, i));
+        groups.into_iter().flat_map(group).collect()
     }
 }

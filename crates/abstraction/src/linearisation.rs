@@ -1,6 +1,7 @@
 //! The derivatives of a polynomial model along its motion.
 
 use nalgebra::DMatrix;
+use reachtube_robot::JointKind;
 use reachtube_scalar::{MapWorkspace, PolynomialMap};
 
 use crate::layout::Layout;
@@ -30,6 +31,7 @@ use crate::polynomial_model::PolynomialModel;
 #[derive(Debug, Clone)]
 pub struct Linearisation {
     layout: Layout,
+    joint_kinds: Vec<JointKind>,
     origin: Vec<f64>,
     map: PolynomialMap,
     workspace: MapWorkspace<f64>,
@@ -50,6 +52,7 @@ impl Linearisation {
         a.view_mut((0, n), (n, n)).fill_with_identity();
         Self {
             layout,
+            joint_kinds: model.joint_kinds().to_vec(),
             origin: model.origin().to_vec(),
             workspace: map.workspace(),
             map,
@@ -60,15 +63,16 @@ impl Linearisation {
         }
     }
 
-    /// Returns A (2n x 2n) and B (2n x n) at the state `x` = (q, q̇) (2n, rad and rad/s) under the
-    /// input `u` (n, N m).
+    /// Returns A (2n x 2n) and B (2n x n) at the state `x` = (q, q̇) (2n, rad and rad/s, or m
+    /// and m/s) under the input `u` (n, N m or N).
     pub fn at(&mut self, x: &[f64], u: &[f64]) -> (&DMatrix<f64>, &DMatrix<f64>) {
         let (layout, n) = (self.layout, self.layout.joints);
         for i in 0..n {
             self.offsets[layout.velocity(i)] = x[n + i];
             self.offsets[layout.input(i)] = u[i];
             if layout.trigonometric {
-                (self.offsets[layout.sine(i)], self.offsets[layout.cosine(i)]) = x[i].sin_cos();
+                (self.offsets[layout.sine(i)], self.offsets[layout.cosine(i)]) =
+                    self.joint_kinds[i].sin_cos(&x[i]);
             }
         }
         self.offsets.iter_mut().zip(&self.origin).for_each(|(offset, origin)| *offset -= origin);
@@ -76,8 +80,12 @@ impl Linearisation {
         for (i, slopes) in self.slopes.chunks_exact(layout.variables()).enumerate() {
             for (j, q) in x[..n].iter().enumerate() {
                 if layout.trigonometric {
-                    self.a[(n + i, j)] =
-                        slopes[layout.sine(j)] * q.cos() - slopes[layout.cosine(j)] * q.sin();
+                    self.a[(n + i, j)] = match self.joint_kinds[j] {
+                        JointKind::Revolute => {
+                            slopes[layout.sine(j)] * q.cos() - slopes[layout.cosine(j)] * q.sin()
+                        }
+                        JointKind::Prismatic => slopes[layout.sine(j)],
+                    };
                 }
                 self.a[(n + i, n + j)] = slopes[layout.velocity(j)];
                 self.b[(n + i, j)] = slopes[layout.input(j)];

@@ -10,11 +10,11 @@ use crate::expansion_point::ExpansionPoint;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OperatingBox {
-    /// Positions q, n, rad.
+    /// Positions q, n, rad or m.
     pub q: Vec<[f64; 2]>,
-    /// Velocities q̇, n, rad/s.
+    /// Velocities q̇, n, rad/s or m/s.
     pub qd: Vec<[f64; 2]>,
-    /// Inputs u, n, N m.
+    /// Inputs u, n, N m or N.
     pub u: Vec<[f64; 2]>,
 }
 
@@ -93,9 +93,10 @@ impl OperatingBox {
                 let beyond = Error::BeyondLimits { joint, quantity, unit, side, limits };
                 is_within(side, limits).then_some(()).ok_or(beyond)
             };
-            inside("positions", "rad", self.q[i], joint.position_limits)?;
+            let kind = joint.kind;
+            inside("positions", kind.position_unit(), self.q[i], joint.position_limits)?;
             if let Some(limit) = joint.velocity_limit {
-                inside("velocities", "rad/s", self.qd[i], [-limit, limit])?;
+                inside("velocities", kind.velocity_unit(), self.qd[i], [-limit, limit])?;
             }
         }
         Ok(())

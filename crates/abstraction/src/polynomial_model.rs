@@ -1,6 +1,6 @@
 //! The polynomial models ẋ = f_p(x, u).
 
-use reachtube_robot::{Robot, RobotDescription};
+use reachtube_robot::{JointKind, Robot, RobotDescription};
 use reachtube_scalar::{MapWorkspace, PolynomialMap, Powers, TaylorPolynomial};
 
 use crate::expansion_point::ExpansionPoint;
@@ -9,11 +9,12 @@ use crate::model_kind::ModelKind;
 use crate::remainder::Remainder;
 
 /// An abstraction of the forward dynamics (10): ẋ = f_p(x, u), polynomial in x and u, in rad, s and
-/// N m.
+/// N m, or m, s and N for a prismatic joint.
 ///
 /// The states are (q, q̇) for model 1 and (q, q̇, sin q, cos q) for models 2 and 3, n of each, with
 /// d/dt sin q = q̇ cos q and d/dt cos q = -q̇ sin q. The accelerations are polynomials in (q̇, u)
-/// for model 1 and in (q̇, sin q, cos q, u) for models 2 and 3.
+/// for model 1 and in (q̇, sin q, cos q, u) for models 2 and 3. A prismatic joint has q and the
+/// constant 1 in place of sin q and cos q.
 ///
 /// # Examples
 ///
@@ -34,6 +35,7 @@ pub struct PolynomialModel {
     order: u32,
     point: ExpansionPoint,
     layout: Layout,
+    joint_kinds: Vec<JointKind>,
     /// The polynomials' variables are offsets from this point, one value per variable.
     origin: Vec<f64>,
     acceleration: Vec<TaylorPolynomial>,
@@ -61,8 +63,19 @@ impl PolynomialModel {
     ) -> Self {
         let layout = Layout::new(kind, robot.joint_count());
         let map = PolynomialMap::new(layout.variables(), &acceleration);
-        let robot = robot.description().clone();
-        Self { kind, order, point, layout, origin, acceleration, map, robot, remainder: None }
+        let (joint_kinds, robot) = (robot.kinds(), robot.description().clone());
+        Self {
+            kind,
+            order,
+            point,
+            layout,
+            joint_kinds,
+            origin,
+            acceleration,
+            map,
+            robot,
+            remainder: None,
+        }
     }
 
     /// Returns which of the paper's models it is.
@@ -101,6 +114,18 @@ impl PolynomialModel {
         self.layout
     }
 
+    /// Returns the kinds of the joints, n.
+    #[must_use]
+    pub fn joint_kinds(&self) -> &[JointKind] {
+        &self.joint_kinds
+    }
+
+    /// Returns the names of the variables, in the order of the [`layout`](Self::layout).
+    #[must_use]
+    pub fn variable_names(&self) -> Vec<String> {
+        self.layout.names(&self.joint_kinds)
+    }
+
     /// Returns the point from which the polynomials' variables count offsets, one value per
     /// variable: the expansion point where the polynomials are truncated, and 0 elsewhere.
     #[must_use]
@@ -108,8 +133,8 @@ impl PolynomialModel {
         &self.origin
     }
 
-    /// Returns the accelerations of the joints, n, rad/s²: polynomials in offsets of the variables
-    /// from [`origin`](Self::origin).
+    /// Returns the accelerations of the joints, n, rad/s² or m/s²: polynomials in offsets of the
+    /// variables from [`origin`](Self::origin).
     #[must_use]
     pub fn acceleration(&self) -> &[TaylorPolynomial] {
         &self.acceleration
@@ -144,13 +169,16 @@ impl PolynomialModel {
         self.remainder = Some(remainder);
     }
 
-    /// Returns the state of the model at positions `q` (n, rad) and velocities `qd` (n, rad/s).
+    /// Returns the state of the model at positions `q` (n, rad or m) and velocities `qd` (n, rad/s
+    /// or m/s).
     #[must_use]
     pub fn state(&self, q: &[f64], qd: &[f64]) -> Vec<f64> {
         let mut x = [q, qd].concat();
         if self.layout.trigonometric {
-            x.extend(q.iter().map(|q| q.sin()));
-            x.extend(q.iter().map(|q| q.cos()));
+            let pairs = self.joint_kinds.iter().zip(q).map(|(kind, q)| kind.sin_cos(q));
+            let (sin, cos): (Vec<f64>, Vec<f64>) = pairs.unzip();
+            x.extend(sin);
+            x.extend(cos);
         }
         x
     }
@@ -196,9 +224,14 @@ impl PolynomialModel {
         q.clone_from_slice(&x[n..2 * n]);
         self.map.evaluate_into(&ws.offsets, &mut ws.map, &mut rest[..n]);
         if self.layout.trigonometric {
-            for i in 0..n {
-                rest[n + i] = x[n + i].clone() * x[3 * n + i].clone();
-                rest[2 * n + i] = -x[n + i].clone() * x[2 * n + i].clone();
+            for (i, kind) in self.joint_kinds.iter().enumerate() {
+                let qd = x[n + i].clone();
+                (rest[n + i], rest[2 * n + i]) = match kind {
+                    JointKind::Revolute => {
+                        (qd.clone() * x[3 * n + i].clone(), -qd * x[2 * n + i].clone())
+                    }
+                    JointKind::Prismatic => (qd, T::zero()),
+                };
             }
         }
     }

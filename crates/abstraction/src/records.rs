@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use reachtube_robot::Robot;
+use reachtube_robot::{JointKind, Robot};
 use reachtube_scalar::{TaylorPolynomial, TaylorSpace, TaylorTerm};
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +36,7 @@ impl PolynomialModel {
             f.terms().into_iter().map(|t| TermRecord(t.exponents, t.coefficient)).collect()
         };
         Records {
-            variables: self.layout().names(),
+            variables: self.variable_names(),
             origin: self.origin().to_vec(),
             acceleration: self.acceleration().iter().map(terms).collect(),
         }
@@ -58,7 +58,7 @@ impl PolynomialModel {
         let Abstraction { model, order } = abstraction;
         let n = robot.joint_count();
         let layout = Layout::new(model, n);
-        records.check_sizes(layout)?;
+        records.check_sizes(layout, &robot.kinds())?;
         if point.q.len() != n || point.qd.len() != n || point.input().len() != n {
             return Err(RecordsError::ExpansionPoint { joints: n }.into());
         }
@@ -89,9 +89,10 @@ impl PolynomialModel {
 }
 
 impl Records {
-    fn check_sizes(&self, layout: Layout) -> Result<(), RecordsError> {
-        if self.variables != layout.names() {
-            return Err(RecordsError::Variables { expected: layout.names() });
+    fn check_sizes(&self, layout: Layout, kinds: &[JointKind]) -> Result<(), RecordsError> {
+        let expected = layout.names(kinds);
+        if self.variables != expected {
+            return Err(RecordsError::Variables { expected });
         }
         let (origin, accelerations) = (self.origin.len(), self.acceleration.len());
         let (variables, joints) = (layout.variables(), layout.joints);

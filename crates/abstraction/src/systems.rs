@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use reachtube_reach::{LinearSystem, PolynomialSystem};
+use reachtube_robot::JointKind::Revolute;
 use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
 
 use crate::error::{Error, Result};
@@ -48,7 +49,8 @@ impl PolynomialModel {
 
     /// Returns the model as a system whose reachable sets [`Flowpipe`](reachtube_reach::Flowpipe)
     /// encloses. Its states are (q, q̇), 2n, for every model; the accelerations of models 2 and 3
-    /// are polynomials in sines and cosines of q too. It has n inputs.
+    /// are polynomials in sines and cosines of q too, and in q of prismatic joints. It has n
+    /// inputs.
     ///
     /// # Guarantee
     ///
@@ -60,14 +62,22 @@ impl PolynomialModel {
     /// [`Error::Space`] where states, inputs and order together do not fit in a Taylor space.
     pub fn polynomial_system(&self) -> Result<PolynomialSystem> {
         let (n, layout) = (self.joints(), self.layout());
-        // The system's variables are q, q̇, u and then the sines and cosines.
+        // The system's variables are q, q̇, u and then the sines and cosines of the angles, which
+        // are the positions of revolute joints.
+        let is_angle = |i: &usize| layout.trigonometric && self.joint_kinds()[*i] == Revolute;
+        let angles: Vec<usize> = (0..n).filter(is_angle).collect();
+        let angle = |i: usize, group: usize| match angles.binary_search(&i) {
+            Ok(rank) => 3 * n + group * angles.len() + rank,
+            Err(_) => i,
+        };
         let index = |z: usize| match z {
             z if z < n => n + z,
             z if z >= layout.input(0) => 2 * n + z - layout.input(0),
-            z => 2 * n + z,
+            z if z < 2 * n => angle(z - n, 0),
+            z => angle(z - 2 * n, 1),
         };
         let indices: Vec<usize> = (0..layout.variables()).map(index).collect();
-        let space = TaylorSpace::new(n + layout.variables(), self.degree().max(1))?;
+        let space = TaylorSpace::new(3 * n + 2 * angles.len(), self.degree().max(1))?;
         let offset: Vec<Interval> =
             self.origin().iter().map(|origin| Interval::point(-origin)).collect();
         let about_zero =
@@ -76,13 +86,12 @@ impl PolynomialModel {
         let accelerations =
             self.acceleration().iter().map(|f| about_zero(f).embedded(&space, &indices));
         let components: Vec<_> = velocities.chain(accelerations).collect();
-        let angles: Vec<usize> = (0..if layout.trigonometric { n } else { 0 }).collect();
         Ok(PolynomialSystem::trigonometric(2 * n, n, &angles, &components)?)
     }
 
     /// Returns the error for a term of `joint` (from 0) with these variables.
     fn not_linear(&self, joint: usize, factors: &[usize]) -> Error {
-        let names = self.layout().names();
+        let names = self.variable_names();
         Error::NotLinear {
             model: self.kind().into(),
             order: self.order(),

@@ -15,12 +15,27 @@ pub enum Error {
     )]
     Output(#[source] std::io::Error),
     /// `--at` has the wrong number of positions.
-    #[error("--at lists {given}; give {joints} positions in rad, one per joint")]
+    #[error("--at lists {given}; give {joints} positions in {unit}, one per joint")]
     PositionCount {
         /// Number of values given.
         given: usize,
         /// Number of the robot's joints.
         joints: usize,
+        /// Unit of the positions, or their units.
+        unit: String,
+    },
+    /// A robot and the recordings differ in their number of joints.
+    #[error(
+        "robot {robot} has {joints} joints, but the recordings have {recorded}; name the robot \
+         that was recorded"
+    )]
+    JointCount {
+        /// Name or path of the robot.
+        robot: String,
+        /// Number of its joints.
+        joints: usize,
+        /// Number of recorded joints.
+        recorded: usize,
     },
     /// `identify` has no robot.
     #[error(

@@ -5,6 +5,7 @@ mod commands;
 mod data_arguments;
 mod error;
 mod file_names;
+mod lock_arguments;
 mod opened;
 mod option_values;
 mod outcome;

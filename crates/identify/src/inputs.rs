@@ -7,7 +7,7 @@ use crate::prepare::raw_log::RawLog;
 use crate::prepare::read::read;
 use crate::samples::Sampling;
 use crate::settings::IdentifySettings;
-use reachtube_robot::Robot;
+use reachtube_robot::{JointKind, Robot};
 use std::path::Path;
 
 /// Ratio of the sample rate of the regression to the cut-off: faster samples would only repeat what
@@ -68,7 +68,7 @@ impl Inputs {
             margin: MARGIN_PERIODS / cut_off,
         };
         let mut changes = prepared.changes;
-        changes.push(described(&sampling));
+        changes.push(described(&sampling, robot));
         Ok(Self { rest, friction, dynamic, validate, sampling, changes })
     }
 
@@ -81,14 +81,15 @@ impl Inputs {
 }
 
 /// Describes the sampling in a sentence.
-fn described(sampling: &Sampling) -> String {
+fn described(sampling: &Sampling, robot: &Robot) -> String {
     let slow: Vec<String> = sampling.slow.iter().map(|slow| format!("{slow:.3}")).collect();
     format!(
         "recordings were downsampled to {:.1} Hz; the torque of a joint is not used within {:.0} \
-         ms of a sample in which the joint is slower than {} rad/s (one limit per joint)",
+         ms of a sample in which the joint is slower than {} {} (one limit per joint)",
         sampling.rate,
         1e3 * sampling.margin,
-        slow.join(", ")
+        slow.join(", "),
+        JointKind::units(&robot.kinds(), JointKind::velocity_unit)
     )
 }
 

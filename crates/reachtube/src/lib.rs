@@ -8,6 +8,7 @@ mod random;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod reproduce;
+pub mod units;
 
 pub use error::{Error, Result};
 pub use reachtube_abstraction::{

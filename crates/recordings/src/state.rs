@@ -1,6 +1,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use reachtube_robot::JointKind;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The quantity of a joint that a state is.
@@ -13,12 +14,12 @@ pub enum StateKind {
 }
 
 impl StateKind {
-    /// Returns the unit in which states of this kind are recorded.
+    /// Returns the unit in which states of this kind are recorded for a joint.
     #[must_use]
-    pub fn unit(self) -> &'static str {
+    pub fn unit(self, joint: JointKind) -> &'static str {
         match self {
-            Self::Position => "rad",
-            Self::Velocity => "rad/s",
+            Self::Position => joint.position_unit(),
+            Self::Velocity => joint.velocity_unit(),
         }
     }
 

@@ -1,18 +1,18 @@
-//! Signs that a recording is not in rad and rad/s: wrong units are far more likely than a robot
-//! that is several times faster than its limits.
+//! Signs that a recording is not in rad and rad/s, or in m and m/s for a prismatic joint: wrong
+//! units are far more likely than a robot that is several times faster than its limits.
 
 use std::f64::consts::PI;
 use std::path::Path;
 
-use reachtube_robot::{JointDescription, Robot};
+use reachtube_robot::{JointDescription, JointKind, Robot};
 
 use crate::defect::Defect;
 use crate::run::Run;
 
-/// Motion of a joint below which q and the integral of q̇ are not compared, rad.
+/// Motion of a joint below which q and the integral of q̇ are not compared, rad or m.
 const MIN_MOTION: f64 = 0.05;
 
-/// A position or velocity beyond this multiple of the joint's limit is not in rad or rad/s.
+/// A position or velocity beyond this multiple of the joint's limit is in another unit.
 const LIMIT_FACTOR: f64 = 5.0;
 
 /// Ratios of motion to integrated velocity that are plausible.
@@ -30,7 +30,7 @@ pub(crate) fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
 }
 
 /// Returns the largest difference of q and ∫q̇ dt (trapezoidal rule) of `joint` (from 0) over a
-/// run, rad.
+/// run, rad or m.
 pub(crate) fn integral_gap(run: &Run, joint: usize) -> f64 {
     let (mut integral, mut largest) = (run.q(0)[joint], 0.0f64);
     for k in 1..run.len() {
@@ -56,50 +56,58 @@ fn position_per_integral(run: &Run, joint: usize) -> Option<f64> {
     (largest > MIN_MOTION && square > 0.0).then(|| cross / square)
 }
 
-/// No joint of a robot has a torque beyond this, N m.
+/// No joint of a robot has a torque or force beyond this, N m or N.
 const LARGEST_TORQUE: f64 = 1e6;
 
-/// Returns the defects of a run whose values cannot be in rad, rad/s and N m for this robot: q
-/// against ∫q̇ dt, positions and velocities far beyond the joints' limits, and torques beyond a
-/// million N m. `path` names the run.
+/// Returns the defects of a run whose values cannot be in the robot's units: q against ∫q̇ dt,
+/// positions and velocities far beyond the joints' limits, and torques beyond a million N m. `path`
+/// names the run.
 ///
 /// # Panics
 ///
 /// Panics where the robot and the run differ in their number of joints.
 #[must_use]
 pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
-    let mut defects = degree_defects(path, run);
+    let mut defects = ratio_defects(path, run, &robot.kinds());
     defects.extend(position_defects(path, run, robot));
     defects.extend(velocity_defects(path, run, robot));
-    defects.extend(torque_defects(path, run));
+    defects.extend(torque_defects(path, run, &robot.kinds()));
     defects
 }
 
 /// Returns a defect for each joint with a torque that no joint has.
-fn torque_defects(path: &Path, run: &Run) -> Vec<Defect> {
+fn torque_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
     let defect = |joint: usize| {
         let sample = (0..run.len()).find(|&k| run.torque(k)[joint].abs() > LARGEST_TORQUE)?;
         let (torque, time) = (run.torque(sample)[joint], run.times[sample]);
-        let problem =
-            format!("tau is {torque:e} N m at {time} s after the first sample, which no joint has");
-        Some(joint_defect(path, joint, problem, "give tau in N m, or leave out that sample"))
+        let unit = kinds[joint].force_unit();
+        let problem = format!(
+            "tau is {torque:e} {unit} at {time} s after the first sample, which no joint has"
+        );
+        let remedy = format!("give tau in {unit}, or leave out that sample");
+        Some(joint_defect(path, joint, problem, &remedy))
     };
     (0..run.joints).filter_map(defect).collect()
 }
 
-/// Returns a defect for each joint of which q or q̇, but not both, looks like degrees.
-fn degree_defects(path: &Path, run: &Run) -> Vec<Defect> {
-    let degrees = PI.recip() * 180.0;
+/// Returns a defect for each joint of which q or q̇, but not both, looks like degrees, or like mm
+/// for a prismatic joint.
+fn ratio_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
     let defect = |(joint, slope): (usize, f64)| {
-        let guess = if (slope / degrees - 1.0).abs() < 0.3 {
-            "q looks like degrees and qd like rad/s"
-        } else if (slope * degrees - 1.0).abs() < 0.3 {
-            "q looks like rad and qd like degrees/s"
+        let (ratio, other) = match kinds[joint] {
+            JointKind::Revolute => (PI.recip() * 180.0, "degrees"),
+            JointKind::Prismatic => (1000.0, "mm"),
+        };
+        let (unit, speed) = (kinds[joint].position_unit(), kinds[joint].velocity_unit());
+        let guess = if (slope / ratio - 1.0).abs() < 0.3 {
+            format!("q looks like {other} and qd like {speed}")
+        } else if (slope * ratio - 1.0).abs() < 0.3 {
+            format!("q looks like {unit} and qd like {other}/s")
         } else {
             return None;
         };
         let problem = format!("q moves {slope:.3} times as far as the integral of qd: {guess}");
-        Some(joint_defect(path, joint, problem, "give q in rad and qd in rad/s"))
+        Some(joint_defect(path, joint, problem, &format!("give q in {unit} and qd in {speed}")))
     };
     velocity_mismatch(run).into_iter().filter_map(defect).collect()
 }
@@ -111,11 +119,13 @@ fn position_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
         let [low, high] = description.position_limits?;
         let furthest = (0..run.len()).map(|k| run.q(k)[joint].abs()).fold(0.0, f64::max);
         (furthest > LIMIT_FACTOR * low.abs().max(high.abs())).then(|| {
+            let unit = description.kind.position_unit();
             let problem = format!(
-                "|q| reaches {furthest:.3}, but the joint's limits are {low} and {high} rad"
+                "|q| reaches {furthest:.3}, but the joint's limits are {low} and {high} {unit}"
             );
-            let remedy = "give q in rad, or correct the limits in the robot's description";
-            joint_defect(path, joint, problem, remedy)
+            let remedy =
+                format!("give q in {unit}, or correct the limits in the robot's description");
+            joint_defect(path, joint, problem, &remedy)
         })
     };
     joints.filter_map(defect).collect()
@@ -127,10 +137,12 @@ fn velocity_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
         let limit = robot.joints()[joint].velocity_limit?;
         let fastest = (0..run.len()).map(|k| run.qd(k)[joint].abs()).fold(0.0, f64::max);
         (fastest > LIMIT_FACTOR * limit).then(|| {
+            let unit = robot.joints()[joint].kind.velocity_unit();
             let problem =
-                format!("qd reaches {fastest:.3}, but the joint's limit is {limit} rad/s");
-            let remedy = "give qd in rad/s, or correct the limit in the robot's description";
-            joint_defect(path, joint, problem, remedy)
+                format!("qd reaches {fastest:.3}, but the joint's limit is {limit} {unit}");
+            let remedy =
+                format!("give qd in {unit}, or correct the limit in the robot's description");
+            joint_defect(path, joint, problem, &remedy)
         })
     };
     (0..run.joints).filter_map(defect).collect()

@@ -3,6 +3,7 @@
 use crate::algebra::Vec3;
 use crate::articulated_body::ArticulatedScratch;
 use crate::gravity::GravityLoad;
+use crate::joint_kind::JointKind;
 use crate::motion::Motion;
 use crate::robot::Robot;
 use crate::workspace::Workspace;
@@ -12,7 +13,8 @@ impl Robot {
     /// Computes forward dynamics (4) by the articulated-body algorithm: q̈ \[rad/s²\], armature and
     /// gravity included.
     ///
-    /// All slices have one entry per joint: `sin`, `cos` of q, `qd` \[rad/s\], link-side torque
+    /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\],
+    /// link-side torque
     /// `tau` \[N m\]. The cost is linear in the number of joints (Featherstone, IJRR 1983). The
     /// result equals that of [`Robot::forward_dynamics`] on s² + c² = 1.
     ///
@@ -78,20 +80,23 @@ impl Robot {
         // Pass 2, inward: articulated inertias and bias wrenches.
         for i in (0..n).rev() {
             let (before, after) = scratch.split_at_mut(i);
-            after[0].eliminate_joint(self.links[i].armature, &tau[i]);
+            after[0].eliminate_joint(&self.links[i], &tau[i]);
             if let Some(parent) = before.last_mut() {
                 after[0].accumulate_to_parent(&mut parent.body);
             }
         }
         // Pass 3, outward: accelerations.
         let (mut angular, mut linear) = (Vec3::zero(), base_acceleration);
-        for (state, qdd) in scratch.iter().zip(qdd) {
+        for ((state, link), qdd) in scratch.iter().zip(&self.links).zip(qdd) {
             let at_origin = angular.cross(&state.pose.origin).plus(&linear);
             angular = state.pose.to_link(&angular).plus(&state.bias_angular);
             linear = state.pose.to_link(&at_origin).plus(&state.bias_linear);
             let load = state.axis_moment.dot(&angular) + state.axis_force.dot(&linear);
             *qdd = (state.net_torque.clone() - load) * state.inverse_pivot.clone();
-            angular.z += qdd.clone();
+            match link.kind {
+                JointKind::Revolute => angular.z += qdd.clone(),
+                JointKind::Prismatic => linear.z += qdd.clone(),
+            }
         }
     }
 }

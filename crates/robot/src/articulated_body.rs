@@ -2,8 +2,9 @@
 //! Dynamics Algorithms, 2008, ch. 7.
 
 use crate::algebra::{Sym3, Vec3, mul};
+use crate::joint_kind::JointKind;
 use crate::link::Link;
-use crate::motion::{Motion, link_wrench};
+use crate::motion::{Motion, coriolis_of_slide, link_wrench};
 use crate::pose::Pose;
 use reachtube_scalar::Scalar;
 
@@ -76,11 +77,19 @@ impl<S: Scalar> ArticulatedScratch<S> {
         let centripetal =
             parent.angular_velocity.cross(&parent.angular_velocity.cross(&pose.origin));
         let mut angular_velocity = pose.to_link(&parent.angular_velocity);
-        self.bias_angular =
-            Vec3::new(mul(&angular_velocity.y, qd), -mul(&angular_velocity.x, qd), zero);
         self.bias_linear = pose.to_link(&centripetal);
+        match link.kind {
+            JointKind::Revolute => {
+                self.bias_angular =
+                    Vec3::new(mul(&angular_velocity.y, qd), -mul(&angular_velocity.x, qd), zero);
+                angular_velocity.z += qd.clone();
+            }
+            JointKind::Prismatic => {
+                self.bias_angular = Vec3::zero();
+                self.bias_linear.accumulate(&coriolis_of_slide(&angular_velocity, qd));
+            }
+        }
         self.pose = pose;
-        angular_velocity.z += qd.clone();
         let motion = Motion {
             angular_velocity,
             angular_acceleration: Vec3::zero(),
@@ -94,13 +103,12 @@ impl<S: Scalar> ArticulatedScratch<S> {
     /// Replaces the body by what its parent feels through the joint: I^a = I^A - U Uᵀ / D and the
     /// bias wrench p^a = p^A + I^a c + U u / D.
     #[inline(always)]
-    pub fn eliminate_joint(&mut self, armature: f64, tau: &S) {
+    pub fn eliminate_joint(&mut self, link: &Link, tau: &S) {
         let body = &mut self.body;
-        self.axis_moment =
-            Vec3::new(body.inertia.xz.clone(), body.inertia.yz.clone(), body.inertia.zz.clone());
-        self.axis_force = body.coupling[2].clone();
-        self.inverse_pivot = S::one() / (self.axis_moment.z.clone() + S::from(armature));
-        self.net_torque = tau.clone() - body.moment.z.clone();
+        (self.axis_moment, self.axis_force) = body.along_axis(link.kind);
+        let own = link.axis_component(&self.axis_force, &self.axis_moment).clone();
+        self.inverse_pivot = S::one() / (own + S::from(link.armature));
+        self.net_torque = tau.clone() - link.axis_component(&body.force, &body.moment).clone();
         let moment = self.axis_moment.scaled(&self.inverse_pivot);
         let force = self.axis_force.scaled(&self.inverse_pivot);
         body.inertia.subtract_product(&self.axis_moment, &moment);
@@ -144,6 +152,20 @@ impl<S: Scalar> ArticulatedBody<S> {
             mass: Sym3::constant([link.mass, 0.0, 0.0, link.mass, 0.0, link.mass]),
             moment,
             force,
+        }
+    }
+
+    /// Returns the articulated inertia times a unit acceleration about or along z, as (moment,
+    /// force).
+    #[inline(always)]
+    fn along_axis(&self, kind: JointKind) -> (Vec3<S>, Vec3<S>) {
+        let [x, y, z] = &self.coupling;
+        let column = |m: &Sym3<S>| Vec3::new(m.xz.clone(), m.yz.clone(), m.zz.clone());
+        match kind {
+            JointKind::Revolute => (column(&self.inertia), z.clone()),
+            JointKind::Prismatic => {
+                (Vec3::new(x.z.clone(), y.z.clone(), z.z.clone()), column(&self.mass))
+            }
         }
     }
 

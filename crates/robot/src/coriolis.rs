@@ -9,9 +9,9 @@ use reachtube_scalar::Scalar;
 impl Robot {
     /// Computes the Coriolis and centripetal torque c(q, q̇) of (3) \[N m\], without gravity.
     ///
-    /// All slices have one entry per joint: `sin`, `cos` of q and `qd` \[rad/s\]. The torque is
-    /// that of Newton-Euler at zero acceleration. With independent sine and cosine it is that
-    /// algorithm's polynomial, which has a higher degree than the Christoffel form (12); on
+    /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`] and `qd` \[rad/s\].
+    /// The torque is that of Newton-Euler at zero acceleration. With independent sine and cosine it
+    /// is that algorithm's polynomial, which has a higher degree than the Christoffel form (12); on
     /// s² + c² = 1 both are equal.
     ///
     /// # Guarantee
@@ -31,7 +31,7 @@ impl Robot {
 
     /// Computes the Coriolis and gravity torque c(q, q̇) + g(q) of (3) \[N m\].
     ///
-    /// All slices have one entry per joint: `sin`, `cos` of q and `qd` \[rad/s\].
+    /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`] and `qd` \[rad/s\].
     ///
     /// # Guarantee
     ///

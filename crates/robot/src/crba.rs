@@ -1,6 +1,7 @@
 //! Mass matrix by the composite-rigid-body algorithm.
 
 use crate::algebra::{Sym3, Vec3};
+use crate::joint_kind::JointKind;
 use crate::link::Link;
 use crate::pose::Pose;
 use crate::robot::Robot;
@@ -12,9 +13,10 @@ impl Robot {
     /// Computes the mass matrix M_m(q) = M(q) + diag(armature) of (3) \[kg m²\], n x n, row by row,
     /// both triangles.
     ///
-    /// `sin` and `cos` of q have one entry per joint; `m` has n² entries. Composite-rigid-body
-    /// algorithm (Walker & Orin 1982; Featherstone, Rigid Body Dynamics Algorithms, 2008, ch. 6).
-    /// With independent sine and cosine the result is this algorithm's polynomial.
+    /// `sin` and `cos` of [`Robot::sin_cos`] have one entry per joint; `m` has n² entries.
+    /// Composite-rigid-body algorithm (Walker & Orin 1982; Featherstone, Rigid Body Dynamics
+    /// Algorithms, 2008, ch. 6). With independent sine and cosine the result is this algorithm's
+    /// polynomial.
     ///
     /// # Guarantee
     ///
@@ -32,19 +34,17 @@ impl Robot {
         let Some(last) = self.links.last() else { return };
         let (mut first_moment, mut second_moments) = last.moments::<S>();
         for i in (0..n).rev() {
-            // A unit acceleration about z takes the force z × h and the moment I z.
-            let inertia = second_moments.xx.clone() + second_moments.yy.clone();
-            m[i * n + i] = inertia.clone() + S::from(self.links[i].armature);
-            let mut force = Vec3::new(-first_moment.y.clone(), first_moment.x.clone(), S::zero());
-            let mut moment =
-                Vec3::new(-second_moments.xz.clone(), -second_moments.yz.clone(), inertia);
+            let link = &self.links[i];
+            let (mut force, mut moment) = unit_wrench(link, &first_moment, &second_moments);
+            m[i * n + i] = link.axis_component(&force, &moment).clone() + S::from(link.armature);
             // Its axis components at the joints towards the base are row and column i of M.
             for j in (1..=i).rev() {
                 let pose = &scratch[j].pose;
                 force = pose.to_parent(&force);
                 moment = pose.to_parent(&moment).plus(&pose.origin.cross(&force));
-                m[i * n + j - 1] = moment.z.clone();
-                m[(j - 1) * n + i] = moment.z.clone();
+                let entry = self.links[j - 1].axis_component(&force, &moment);
+                m[i * n + j - 1] = entry.clone();
+                m[(j - 1) * n + i] = entry.clone();
             }
             // The composite body grows by the next link towards the base.
             if i > 0 {
@@ -79,6 +79,27 @@ impl Robot {
     }
 }
 
+/// Returns the force and the moment that give a link and all later ones, as one body with the first
+/// moment h and the second moments Σ, a unit acceleration of the link's joint.
+///
+/// A rotation about z takes the force z × h and the moment I z; a motion along z takes m z and
+/// h × z.
+#[inline(always)]
+fn unit_wrench<S: Scalar>(link: &Link, h: &Vec3<S>, m: &Sym3<S>) -> (Vec3<S>, Vec3<S>) {
+    let zero = S::zero();
+    match link.kind {
+        JointKind::Revolute => {
+            let inertia = m.xx.clone() + m.yy.clone();
+            let force = Vec3::new(-h.y.clone(), h.x.clone(), zero);
+            (force, Vec3::new(-m.xz.clone(), -m.yz.clone(), inertia))
+        }
+        JointKind::Prismatic => {
+            let force = Vec3::new(zero.clone(), zero.clone(), S::from(link.composite_mass));
+            (force, Vec3::new(h.y.clone(), -h.x.clone(), zero))
+        }
+    }
+}
+
 /// Returns the moments of a link and all later ones about the parent's origin.
 ///
 /// Let h = E h_link, p the link's origin and m the mass. The first moment is h + m p, and the
@@ -90,7 +111,10 @@ fn composite_to_parent<S: Scalar>(
     h: &Vec3<S>,
     m: &Sym3<S>,
 ) -> (Vec3<S>, Sym3<S>) {
-    let half_shift = Vec3::constant(link.half_shift);
+    let half_shift = match link.kind {
+        JointKind::Revolute => Vec3::constant(link.half_shift),
+        JointKind::Prismatic => pose.origin.scaled(&S::from(0.5 * link.composite_mass)),
+    };
     let middle = pose.to_parent(h).plus(&half_shift);
     let mut second_moments = pose.symmetric_to_parent(m);
     second_moments.add_symmetric_product(&pose.origin, &middle);

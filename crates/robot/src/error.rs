@@ -1,5 +1,6 @@
 //! The errors of this crate.
 
+use crate::joint_kind::JointKind;
 use std::path::PathBuf;
 
 /// The reason why a robot could not be made or a question about it has no answer.
@@ -44,19 +45,25 @@ pub enum RobotError {
     },
     /// The mass matrix is not positive definite: torque on a joint would accelerate it backward.
     #[error(
-        "robot `{robot}`: joint `{joint}` has the articulated inertia {pivot:.3e} kg m² at \
-         q = {q:.4?} rad, but it must be positive; correct its inertial parameters or those of \
-         later links, or add the motor's armature"
+        "robot `{robot}`: joint `{joint}` has the articulated inertia {pivot:.3e} {} at \
+         q = {q:.4?} {}, but it must be positive; correct its inertial parameters or those of \
+         later links, or add the motor's armature",
+        kind.inertia_unit().replace("^2", "²"),
+        JointKind::units(kinds, JointKind::position_unit)
     )]
     NotPhysical {
         /// The robot's name.
         robot: String,
         /// The joint nearest the tip whose pivot is not positive.
         joint: String,
-        /// The pivot of this joint \[kg m²\].
+        /// The kind of this joint.
+        kind: JointKind,
+        /// The pivot of this joint \[kg m²; kg for a prismatic joint\].
         pivot: f64,
-        /// The position \[rad\].
+        /// The position \[rad; m\].
         q: Vec<f64>,
+        /// The kinds of all joints.
+        kinds: Vec<JointKind>,
     },
     /// A setting is outside its range; the message names the setting, its value and a remedy.
     #[error("{0}")]

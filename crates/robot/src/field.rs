@@ -19,8 +19,9 @@ pub enum DrivenBy {
 
 /// The equation of motion of a robot with friction, for the integrators of `reachtube-ode`.
 ///
-/// The state is x = (q, q̇) (2n; rad, rad/s) and the input is the torque (n; N m). Over lanes, each
-/// lane is an independent run. A field that is reused does not allocate.
+/// The state is x = (q, q̇) (2n; rad, rad/s) and the input is the torque (n; N m), with m, m/s and
+/// N for a prismatic joint. Over lanes, each lane is an independent run. A field that is reused
+/// does not allocate.
 ///
 /// Coulomb friction jumps where a joint changes direction and is 0 at rest, so it has no stiction.
 /// A joint that would stick chatters about zero velocity, with an amplitude of Coulomb torque times
@@ -47,7 +48,7 @@ pub enum DrivenBy {
 pub struct RobotField<'a, S> {
     robot: &'a Robot,
     driven_by: DrivenBy,
-    /// Speed \[rad/s\] below which Coulomb friction is linear in q̇; 0 for none.
+    /// Speed \[rad/s; m/s\] below which Coulomb friction is linear in q̇; 0 for none.
     regularisation_speed: f64,
     articulated: bool,
     ws: Workspace<S>,
@@ -80,8 +81,9 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
         Self { articulated: true, ..self }
     }
 
-    /// Regularises Coulomb friction: below a speed \[rad/s\] it is proportional to |q̇|, and above
-    /// that speed it is unchanged. A joint that would stick creeps at no more than this speed.
+    /// Regularises Coulomb friction: below a speed \[rad/s; m/s\] it is proportional to |q̇|, and
+    /// above that speed it is unchanged. A joint that would stick creeps at no more than this
+    /// speed.
     ///
     /// Near rest it damps a joint at a rate of about Coulomb torque over inertia and speed \[1/s\].
     /// Fixed steps should stay below about 2.5 times the inverse of this rate.
@@ -116,8 +118,8 @@ impl<S: Lanewise> VectorField<S> for RobotField<'_, S> {
         let (q, qd) = x.split_at(n);
         let (velocity, acceleration) = dx.split_at_mut(n);
         velocity.copy_from_slice(qd);
-        for ((sin, cos), q) in self.sin.iter_mut().zip(&mut self.cos).zip(q) {
-            (*sin, *cos) = q.sin_cos();
+        for (i, (joint, q)) in self.robot.joints().iter().zip(q).enumerate() {
+            (self.sin[i], self.cos[i]) = joint.kind.sin_cos(q);
         }
         let gravity = match self.driven_by {
             DrivenBy::Motor => {

@@ -11,7 +11,8 @@ impl Robot {
     /// Computes forward dynamics (4): q̈ = M_m(q)⁻¹ (tau - c(q, q̇) - g(q)) \[rad/s²\] by
     /// [`Robot::crba`] and [`ltdl`].
     ///
-    /// All slices have one entry per joint: `sin`, `cos` of q, `qd` \[rad/s\], link-side torque
+    /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\],
+    /// link-side torque
     /// `tau` \[N m\]. It is faster than [`Robot::aba`] for up to about ten joints.
     ///
     /// # Guarantee

@@ -32,7 +32,8 @@ impl<S: Scalar> GravityLoad<S> {
 impl Robot {
     /// Computes the gravity torque g(q) of (3) \[N m\] from the gravity parameters.
     ///
-    /// All slices have one entry per joint; `sin` and `cos` are those of q.
+    /// All slices have one entry per joint; `sin` and `cos` are those of
+    /// [`Robot::sin_cos`].
     ///
     /// # Guarantee
     ///
@@ -65,7 +66,9 @@ impl Robot {
             *scratch = LinkScratch { pose, force, moment };
         }
         accumulate_to_parents(scratch);
-        g.iter_mut().zip(scratch).for_each(|(g, s)| *g = s.moment.z.clone());
+        for ((g, link), s) in g.iter_mut().zip(&self.links).zip(scratch) {
+            *g = link.axis_component(&s.force, &s.moment).clone();
+        }
     }
 
     /// Returns the gravity load of this robot.

@@ -97,6 +97,15 @@ impl LinkInertia {
         }
     }
 
+    /// Returns the two links as one; both are about the same frame.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            first_moment: self.first_moment + other.first_moment,
+            second_moments: self.second_moments + other.second_moments,
+        }
+    }
+
     /// Returns m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's origin.
     pub fn parameters(&self) -> [f64; INERTIAL] {
         let (h, i) = (&self.first_moment, self.tensor());

@@ -2,6 +2,7 @@
 
 use crate::algebra::{Vec3, mul, sum2};
 use crate::inertia::INERTIAL;
+use crate::joint_kind::JointKind;
 use crate::link::Link;
 use crate::motion::{AccelerationGradient, Motion};
 use crate::placement::{Placement, rotation_x, rotation_z};
@@ -22,14 +23,17 @@ pub struct RegressorWorkspace<S> {
 /// A link's original frame relative to the original frame of the previous link.
 #[derive(Clone, Debug)]
 struct LinkFrame {
+    kind: JointKind,
     /// Rotation E(q) from the link's frame to the previous one, row by row.
     rotation: [RotationEntry; 9],
-    /// A point of the joint's axis in the previous frame \[m\].
+    /// A point of the joint's axis in the previous frame \[m\]; the link slides away from it.
     axis_point: [f64; 3],
+    /// Unit vector of the joint's axis in the previous frame.
+    axis_in_previous: [f64; 3],
     /// Unit vector of the joint's axis in the link's frame.
     axis: [f64; 3],
-    /// Vector from the axis point to the frame's origin, in the link's frame \[m\]; `None` if they
-    /// coincide.
+    /// Vector from the axis point to the frame's origin at q = 0, in the link's frame \[m\]; `None`
+    /// if they coincide.
     offset: Option<[f64; 3]>,
 }
 
@@ -41,8 +45,8 @@ struct RotationEntry {
     cosine: f64,
 }
 
-/// The twist of a link while one joint moves at 1 rad/s: angular velocity, and velocity of the
-/// frame's origin.
+/// The twist of a link while one joint moves at 1 rad/s or 1 m/s: angular velocity, and velocity of
+/// the frame's origin.
 #[derive(Clone, Debug)]
 struct Twist<S> {
     angular: Vec3<S>,
@@ -77,17 +81,23 @@ impl LinkFrame {
             * rotation_z((link.sin_offset, link.cos_offset));
         let own = &link.original.rotation;
         let part = |m: Matrix3<f64>| lead * m * own;
-        let constant = part(Matrix3::from_diagonal(&Vector3::z()));
-        let sine = part(rotation_z((1.0, 0.0)) - Matrix3::from_diagonal(&Vector3::z()));
-        let cosine = part(Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, 0.0)));
+        let along = Matrix3::from_diagonal(&Vector3::z());
+        let [constant, sine, cosine] = match link.kind {
+            JointKind::Revolute => {
+                [along, rotation_z((1.0, 0.0)) - along, Matrix3::identity() - along].map(part)
+            }
+            JointKind::Prismatic => [part(Matrix3::identity()), Matrix3::zeros(), Matrix3::zeros()],
+        };
         let entry = |k: usize| {
             let at = (k / 3, k % 3);
             RotationEntry { constant: constant[at], sine: sine[at], cosine: cosine[at] }
         };
         let offset = own.transpose() * link.original.translation;
         Self {
+            kind: link.kind,
             rotation: core::array::from_fn(entry),
             axis_point: (to_previous * (Vector3::from(link.origin) - previous.translation)).into(),
+            axis_in_previous: (lead * Vector3::z()).into(),
             axis: (own.transpose() * Vector3::z()).into(),
             offset: (offset != Vector3::zeros()).then(|| offset.into()),
         }
@@ -98,8 +108,24 @@ impl LinkFrame {
     fn rotation_at<S: Scalar>(&self, sin: &S, cos: &S) -> Rotation<S> {
         Rotation(core::array::from_fn(|k| {
             let w = &self.rotation[k];
-            S::from(w.constant) + sum2(&S::from(w.sine), sin, &S::from(w.cosine), cos)
+            match self.kind {
+                JointKind::Revolute => {
+                    S::from(w.constant) + sum2(&S::from(w.sine), sin, &S::from(w.cosine), cos)
+                }
+                JointKind::Prismatic => S::from(w.constant),
+            }
         }))
+    }
+
+    /// Returns the point of the axis from which the link's frame has the constant offset, in the
+    /// previous frame; `sin` is q for a prismatic joint.
+    #[inline(always)]
+    fn axis_point_at<S: Scalar>(&self, sin: &S) -> Vec3<S> {
+        let point = Vec3::constant(self.axis_point);
+        match self.kind {
+            JointKind::Revolute => point,
+            JointKind::Prismatic => point.plus(&Vec3::constant(self.axis_in_previous).scaled(sin)),
+        }
     }
 
     /// Returns the motion of the link, with the acceleration of the axis point, from the motion of
@@ -109,30 +135,50 @@ impl LinkFrame {
         &self,
         previous: &Motion<S>,
         gradient: &AccelerationGradient<S>,
-        rotation: &Rotation<S>,
+        (rotation, axis_point): (&Rotation<S>, &Vec3<S>),
         qd: &S,
         qdd: &S,
     ) -> Motion<S> {
         let axis = Vec3::constant(self.axis);
         let carried = rotation.to_link(&previous.angular_velocity);
-        let spin = axis.scaled(qd);
-        let angular_acceleration = rotation
-            .to_link(&previous.angular_acceleration)
-            .plus(&carried.cross(&spin))
-            .plus(&axis.scaled(qdd));
-        let at_axis = gradient.times(&Vec3::constant(self.axis_point)).plus(&previous.acceleration);
-        Motion {
-            angular_velocity: carried.plus(&spin),
-            angular_acceleration,
-            acceleration: rotation.to_link(&at_axis),
+        let speed = axis.scaled(qd);
+        let angular_acceleration = rotation.to_link(&previous.angular_acceleration);
+        let at_axis = gradient.times(axis_point).plus(&previous.acceleration);
+        let acceleration = rotation.to_link(&at_axis);
+        let coriolis = carried.cross(&speed);
+        match self.kind {
+            JointKind::Revolute => Motion {
+                angular_velocity: carried.plus(&speed),
+                angular_acceleration: angular_acceleration.plus(&coriolis).plus(&axis.scaled(qdd)),
+                acceleration,
+            },
+            JointKind::Prismatic => Motion {
+                angular_velocity: carried,
+                angular_acceleration,
+                acceleration: acceleration.plus(&coriolis).plus(&coriolis).plus(&axis.scaled(qdd)),
+            },
+        }
+    }
+
+    /// Returns the twist that the link's own joint gives it.
+    #[inline(always)]
+    fn own_twist<S: Scalar>(&self) -> Twist<S> {
+        let axis = Vec3::constant(self.axis);
+        match self.kind {
+            JointKind::Revolute => self.at_origin(axis, Vec3::zero()),
+            JointKind::Prismatic => Twist { angular: Vec3::zero(), linear: axis },
         }
     }
 
     /// Returns the twist that an earlier joint gives this link from the one that it gives the
     /// previous link.
     #[inline(always)]
-    fn propagate_twist<S: Scalar>(&self, twist: &Twist<S>, rotation: &Rotation<S>) -> Twist<S> {
-        let at_axis = twist.angular.cross(&Vec3::constant(self.axis_point)).plus(&twist.linear);
+    fn propagate_twist<S: Scalar>(
+        &self,
+        twist: &Twist<S>,
+        (rotation, axis_point): (&Rotation<S>, &Vec3<S>),
+    ) -> Twist<S> {
+        let at_axis = twist.angular.cross(axis_point).plus(&twist.linear);
         self.at_origin(rotation.to_link(&twist.angular), rotation.to_link(&at_axis))
     }
 
@@ -164,7 +210,7 @@ impl Robot {
     /// For each link, θ holds the ten inertial parameters m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy,
     /// Ixz, Iyz, Izz. The inertia is about the origin of the link's original frame, in its axes
     /// (see [`Robot::inertial_parameters`]). Y does not contain motor inertia. All slices have one
-    /// entry per joint: `sin`, `cos` of q, `qd` \[rad/s\], `qdd` \[rad/s²\].
+    /// entry per joint: `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\], `qdd` \[rad/s²\].
     ///
     /// In Y, gravity acts on the inertial parameters. For a robot with `gravity_moments`,
     /// [`Robot::rnea`] is the sum of two products: Y without gravity ([`Robot::with_gravity`])
@@ -216,13 +262,13 @@ impl Robot {
         for i in 0..n {
             let frame = &frames[i];
             // Motion of link i at its origin, and the twist of its own joint.
-            let rotation = frame.rotation_at(&sin[i], &cos[i]);
-            motion = frame.propagate(&motion, &gradient, &rotation, &qd[i], &qdd[i]);
+            let pose = (&frame.rotation_at(&sin[i], &cos[i]), &frame.axis_point_at(&sin[i]));
+            motion = frame.propagate(&motion, &gradient, pose, &qd[i], &qdd[i]);
             gradient = motion.gradient();
             if let Some(offset) = frame.offset {
                 motion.acceleration.accumulate(&gradient.times(&Vec3::constant(offset)));
             }
-            twists[i] = frame.at_origin(Vec3::constant(frame.axis), Vec3::zero());
+            twists[i] = frame.own_twist();
             // Columns of link i: its wrench per parameter, on the twist of each joint j up to i.
             for (j, row) in y.chunks_exact_mut(INERTIAL * n).enumerate() {
                 let block = &mut row[INERTIAL * i..INERTIAL * (i + 1)];
@@ -231,7 +277,7 @@ impl Robot {
                     continue;
                 }
                 if j < i {
-                    twists[j] = frame.propagate_twist(&twists[j], &rotation);
+                    twists[j] = frame.propagate_twist(&twists[j], pose);
                 }
                 twists[j].powers(&motion, &gradient, block);
             }

@@ -4,7 +4,8 @@ use crate::placement::{Placement, rotation_x, rotation_z, snapped_sin_cos};
 use nalgebra::Vector3;
 
 /// The pose of a link relative to the previous link:
-/// x_previous = before · Rot(axis, q) · after · x_link.
+/// x_previous = before · Rot(axis, q) · after · x_link, with Trans(axis, q) in place of Rot for a
+/// prismatic joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointGeometry {
     /// Placement of the joint frame in the original frame of the previous link (for the first
@@ -20,7 +21,8 @@ impl JointGeometry {
     /// Makes a joint from standard Denavit-Hartenberg parameters:
     /// Rz(q + theta) Tz(d) Tx(a) Rx(alpha), with a and d in m and angles in rad.
     ///
-    /// Angles within 1e-12 rad of a multiple of pi/2 are taken as exactly that multiple.
+    /// For a prismatic joint, q adds to d in place of theta. Angles within 1e-12 rad of a multiple
+    /// of pi/2 are taken as exactly that multiple.
     pub fn standard_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
         let after = Placement::rotation(rotation_z(snapped_sin_cos(theta)))
             .then(&Placement::translation(a, 0.0, d))
@@ -31,7 +33,8 @@ impl JointGeometry {
     /// Makes a joint from modified (Craig) Denavit-Hartenberg parameters:
     /// Rx(alpha) Tx(a) Rz(q + theta) Tz(d), with a and d in m and angles in rad.
     ///
-    /// Angles within 1e-12 rad of a multiple of pi/2 are taken as exactly that multiple.
+    /// For a prismatic joint, q adds to d in place of theta. Angles within 1e-12 rad of a multiple
+    /// of pi/2 are taken as exactly that multiple.
     pub fn modified_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
         let before = Placement::rotation(rotation_x(snapped_sin_cos(alpha)))
             .then(&Placement::translation(a, 0.0, 0.0));
@@ -41,7 +44,7 @@ impl JointGeometry {
     }
 
     /// Makes a joint from the placement of its frame in the original frame of the previous link,
-    /// and from a unit axis. The link's frame is the joint frame rotated by q.
+    /// and from a unit axis. The link's frame is the joint frame moved by q.
     pub fn explicit(placement: Placement, axis: Vector3<f64>) -> Self {
         Self { before: placement, axis, after: Placement::identity() }
     }

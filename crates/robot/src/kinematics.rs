@@ -32,7 +32,8 @@ impl Robot {
                 let pose = link.pose(sin, cos);
                 let rotation =
                     rotation_x((link.sin_twist, link.cos_twist)) * rotation_z((pose.sin, pose.cos));
-                frame = frame.then(&Placement { rotation, translation: link.origin.into() });
+                let translation = Vector3::new(pose.origin.x, pose.origin.y, pose.origin.z);
+                frame = frame.then(&Placement { rotation, translation });
                 frame.clone()
             })
             .collect()

@@ -1,8 +1,10 @@
 //! Links in the working frames of the algorithms.
 
-use crate::algebra::{Sym3, Vec3};
+use crate::algebra::{Sym3, Vec3, mul};
 use crate::inertia::LinkInertia;
+use crate::joint::Joint;
 use crate::joint_geometry::JointGeometry;
+use crate::joint_kind::JointKind;
 use crate::placement::{Placement, rotation_from_z, rotation_z};
 use crate::pose::Pose;
 use nalgebra::Matrix3;
@@ -14,15 +16,17 @@ use reachtube_scalar::Scalar;
 /// chosen so that the next axis differs by a twist about x alone.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Link {
+    /// Kind of the joint that moves the link along or about z.
+    pub kind: JointKind,
     /// Sine of the twist about the parent's x axis.
     pub sin_twist: f64,
     /// Cosine of the twist about the parent's x axis.
     pub cos_twist: f64,
-    /// Sine of the angle that is added to q.
+    /// Sine of the angle about z that is added to q, or that a prismatic joint keeps.
     pub sin_offset: f64,
-    /// Cosine of the angle that is added to q.
+    /// Cosine of that angle.
     pub cos_offset: f64,
-    /// Origin in the parent's working frame \[m\].
+    /// Origin in the parent's working frame \[m\], at q = 0 for a prismatic joint.
     pub origin: [f64; 3],
     /// Mass \[kg\].
     pub mass: f64,
@@ -30,12 +34,14 @@ pub(crate) struct Link {
     pub first_moment: [f64; 3],
     /// Second moments Σ: xx, xy, xz, yy, yz, zz \[kg m²\].
     pub second_moments: [f64; 6],
-    /// Motor inertia on the link side \[kg m²\].
+    /// Motor inertia on the link side \[kg m²; kg for a prismatic joint\].
     pub armature: f64,
     /// Mass that gravity acts on \[kg\].
     pub gravity_mass: f64,
     /// First moment that gravity acts on \[kg m\].
     pub gravity_first_moment: [f64; 3],
+    /// Mass of this and all later links \[kg\].
+    pub composite_mass: f64,
     /// Half the first moment \[kg m\] that the mass of this and all later links would have at
     /// `origin`, in the parent's working frame.
     pub half_shift: [f64; 3],
@@ -44,16 +50,36 @@ pub(crate) struct Link {
 }
 
 impl Link {
-    /// Returns the pose in the parent for sin q and cos q.
+    /// Returns the pose in the parent for sin q and cos q, or for q of a prismatic joint.
     #[inline(always)]
     pub fn pose<S: Scalar>(&self, sin: &S, cos: &S) -> Pose<S> {
         let (s0, c0) = (S::from(self.sin_offset), S::from(self.cos_offset));
-        Pose {
-            sin: sin.clone() * c0.clone() + cos.clone() * s0.clone(),
-            cos: cos.clone() * c0 - sin.clone() * s0,
-            sin_twist: S::from(self.sin_twist),
-            cos_twist: S::from(self.cos_twist),
-            origin: Vec3::constant(self.origin),
+        let (sin_twist, cos_twist) = (S::from(self.sin_twist), S::from(self.cos_twist));
+        let mut origin = Vec3::constant(self.origin);
+        match self.kind {
+            JointKind::Revolute => Pose {
+                sin: sin.clone() * c0.clone() + cos.clone() * s0.clone(),
+                cos: cos.clone() * c0 - sin.clone() * s0,
+                sin_twist,
+                cos_twist,
+                origin,
+            },
+            JointKind::Prismatic => {
+                // The axis is (0, -sin twist, cos twist) in the parent.
+                origin.y -= mul(&sin_twist, sin);
+                origin.z += mul(&cos_twist, sin);
+                Pose { sin: s0, cos: c0, sin_twist, cos_twist, origin }
+            }
+        }
+    }
+
+    /// Returns the component of a wrench that acts on the joint: the moment about its axis, or the
+    /// force along it.
+    #[inline(always)]
+    pub fn axis_component<'a, S>(&self, force: &'a Vec3<S>, moment: &'a Vec3<S>) -> &'a S {
+        match self.kind {
+            JointKind::Revolute => &moment.z,
+            JointKind::Prismatic => &force.z,
         }
     }
 
@@ -90,10 +116,10 @@ fn sum_of_angles((sa, ca): (f64, f64), (sb, cb): (f64, f64)) -> (f64, f64) {
 /// Returns the links in their working frames, and the rotation R of the working base frame:
 /// x_base = R x_working.
 pub(crate) fn working_links(
+    drives: &[Joint],
     joints: &[JointGeometry],
     inertias: &[LinkInertia],
     gravity_inertias: &[LinkInertia],
-    armatures: &[f64],
 ) -> (Vec<Link>, Matrix3<f64>) {
     // Frames with +z along each axis, and the constant placements between them.
     let axes: Vec<_> =
@@ -106,7 +132,8 @@ pub(crate) fn working_links(
         before = Placement::rotation(axis.rotation.transpose()).then(&joint.after);
         originals.push(before.clone());
     }
-    // Each rotation about z belongs to the joint before or after it; what is left is a twist.
+    // Each rotation about z belongs to the joint before or after it, because it commutes with the
+    // motion of both kinds of joint; what is left is a twist.
     let angles: Vec<_> = constants.iter().map(|c| Zxz::of(&c.rotation)).collect();
     let links = (0..joints.len())
         .map(|i| {
@@ -116,10 +143,11 @@ pub(crate) fn working_links(
                 Placement::rotation(rotation_z(next_lead).transpose()).then(&originals[i]);
             let inertia = inertias[i].moved(&original);
             let gravity_inertia = gravity_inertias[i].moved(&original);
-            let later_mass: f64 = inertias[i..].iter().map(|l| l.mass).sum();
+            let composite_mass: f64 = inertias[i..].iter().map(|l| l.mass).sum();
             let origin = rotation_z(angles[i].lead).transpose() * constants[i].translation;
             let m = &inertia.second_moments;
             Link {
+                kind: drives[i].kind,
                 sin_twist: angles[i].twist.0,
                 cos_twist: angles[i].twist.1,
                 sin_offset: offset.0,
@@ -128,10 +156,11 @@ pub(crate) fn working_links(
                 mass: inertia.mass,
                 first_moment: inertia.first_moment.into(),
                 second_moments: [m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 1)], m[(1, 2)], m[(2, 2)]],
-                armature: armatures[i],
+                armature: drives[i].armature,
                 gravity_mass: gravity_inertia.mass,
                 gravity_first_moment: gravity_inertia.first_moment.into(),
-                half_shift: (0.5 * later_mass * origin).into(),
+                composite_mass,
+                half_shift: (0.5 * composite_mass * origin).into(),
                 original,
             }
         })

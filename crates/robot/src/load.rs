@@ -1,8 +1,9 @@
 //! Loading of robots by name or path.
 
 use crate::error::RobotError;
+use crate::lock::Lock;
 use crate::robot::Robot;
-use crate::urdf::read::{Urdf, UrdfEnds};
+use crate::urdf::read::{Urdf, UrdfOptions};
 use std::path::Path;
 
 const EMBEDDED: [(&str, &str); 1] = [("lwa4p", include_str!("../robots/lwa4p.toml"))];
@@ -10,20 +11,52 @@ const EMBEDDED: [(&str, &str); 1] = [("lwa4p", include_str!("../robots/lwa4p.tom
 impl Robot {
     /// Loads an embedded robot by name (`lwa4p`), or a robot from a TOML or URDF file by path.
     ///
-    /// Files that end in `.urdf` are read as by [`Urdf::load`] with default ends.
+    /// Files that end in `.urdf` are read as by [`Urdf::load`] with default options.
     ///
     /// # Errors
     ///
     /// Returns a [`RobotError`] with file, line, joint, value and remedy.
     pub fn load(name_or_path: &str) -> Result<Self, RobotError> {
+        Self::load_locked(name_or_path, &[])
+    }
+
+    /// Loads a robot as [`Robot::load`] does, with joints held at positions.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Robot::load`], of [`RobotDescription::with_locks`] for TOML, and of
+    /// [`Urdf::load`] for URDF.
+    ///
+    /// [`RobotDescription::with_locks`]: crate::RobotDescription::with_locks
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_robot::Robot;
+    ///
+    /// let planar = Robot::load_locked("lwa4p", &["joint1=0.5".parse()?, "joint6=0".parse()?])?;
+    /// assert_eq!((planar.joint_count(), planar.joints()[0].name.as_str()), (4, "joint2"));
+    /// # Ok::<(), reachtube_robot::RobotError>(())
+    /// ```
+    pub fn load_locked(name_or_path: &str, locks: &[Lock]) -> Result<Self, RobotError> {
+        let path = Path::new(name_or_path);
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) {
+            let options = UrdfOptions { locks: locks.to_vec(), ..Default::default() };
+            return Ok(Urdf::load(path, &options)?.into_robot());
+        }
+        let robot = Self::load_description(name_or_path)?;
+        if locks.is_empty() {
+            return Ok(robot);
+        }
+        Self::from_description(&robot.description().with_locks(locks)?)
+    }
+
+    /// Loads an embedded robot or a TOML file.
+    fn load_description(name_or_path: &str) -> Result<Self, RobotError> {
         if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == name_or_path) {
             return Self::from_toml(text, name);
         }
-        let path = Path::new(name_or_path);
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) {
-            return Ok(Urdf::load(path, &UrdfEnds::default())?.into_robot());
-        }
-        let text = std::fs::read_to_string(path)
+        let text = std::fs::read_to_string(name_or_path)
             .map_err(|source| RobotError::Read { path: name_or_path.into(), source })?;
         Self::from_toml(&text, name_or_path)
     }

@@ -1,6 +1,7 @@
 //! Velocity and acceleration of a link, and the wrench that moves it.
 
 use crate::algebra::{Sym3, Vec3, det2, mul, sum2};
+use crate::joint_kind::JointKind;
 use crate::link::Link;
 use crate::pose::Pose;
 use reachtube_scalar::Scalar;
@@ -25,11 +26,25 @@ impl<S: Scalar> Motion<S> {
 
     /// Returns the motion of the first link, whose parent does not rotate.
     #[inline(always)]
-    pub fn of_first_link(pose: &Pose<S>, base_acceleration: &Vec3<S>, qd: &S, qdd: &S) -> Self {
-        Self {
-            angular_velocity: Vec3::new(S::zero(), S::zero(), qd.clone()),
-            angular_acceleration: Vec3::new(S::zero(), S::zero(), qdd.clone()),
-            acceleration: pose.to_link(base_acceleration),
+    pub fn of_first_link(
+        kind: JointKind,
+        pose: &Pose<S>,
+        base_acceleration: &Vec3<S>,
+        qd: &S,
+        qdd: &S,
+    ) -> Self {
+        let along_z = |x: &S| Vec3::new(S::zero(), S::zero(), x.clone());
+        let mut acceleration = pose.to_link(base_acceleration);
+        match kind {
+            JointKind::Revolute => Self {
+                angular_velocity: along_z(qd),
+                angular_acceleration: along_z(qdd),
+                acceleration,
+            },
+            JointKind::Prismatic => {
+                acceleration.z += qdd.clone();
+                Self::at_rest(acceleration)
+            }
         }
     }
 
@@ -37,6 +52,7 @@ impl<S: Scalar> Motion<S> {
     #[inline(always)]
     pub fn of_child(
         &self,
+        kind: JointKind,
         gradient: &AccelerationGradient<S>,
         pose: &Pose<S>,
         qd: &S,
@@ -44,11 +60,19 @@ impl<S: Scalar> Motion<S> {
     ) -> Self {
         let mut w = pose.to_link(&self.angular_velocity);
         let mut dw = pose.to_link(&self.angular_acceleration);
-        dw.x += mul(&w.y, qd);
-        dw.y -= mul(&w.x, qd);
-        dw.z += qdd.clone();
-        w.z += qd.clone();
-        let acceleration = pose.to_link(&gradient.times(&pose.origin).plus(&self.acceleration));
+        let mut acceleration = pose.to_link(&gradient.times(&pose.origin).plus(&self.acceleration));
+        match kind {
+            JointKind::Revolute => {
+                dw.x += mul(&w.y, qd);
+                dw.y -= mul(&w.x, qd);
+                dw.z += qdd.clone();
+                w.z += qd.clone();
+            }
+            JointKind::Prismatic => {
+                acceleration.accumulate(&coriolis_of_slide(&w, qd));
+                acceleration.z += qdd.clone();
+            }
+        }
         Self { angular_velocity: w, angular_acceleration: dw, acceleration }
     }
 
@@ -70,6 +94,13 @@ impl<S: Scalar> Motion<S> {
             -(xx + yy),
         ])
     }
+}
+
+/// Returns 2 ω × z q̇, the Coriolis acceleration of a link that slides along z.
+#[inline(always)]
+pub(crate) fn coriolis_of_slide<S: Scalar>(w: &Vec3<S>, qd: &S) -> Vec3<S> {
+    let (x, y) = (mul(&w.y, qd), mul(&w.x, qd));
+    Vec3::new(x.clone() + x, -(y.clone() + y), S::zero())
 }
 
 impl<S: Scalar> AccelerationGradient<S> {

@@ -23,7 +23,8 @@ pub struct Parameter {
     pub kind: ParameterKind,
 }
 
-/// The kinds of parameter that a joint with its link has.
+/// The kinds of parameter that a joint with its link has. Motor inertia, friction and offset of a
+/// prismatic joint have kg, N, m and s in their units in place of kg m², N m, rad and s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ParameterKind {
     /// Mass m \[kg\].
@@ -47,7 +48,8 @@ pub enum ParameterKind {
     Iyz,
     /// Moment of inertia about the link's origin \[kg m²\].
     Izz,
-    /// Motor inertia on the link side J = k_r² I_m \[kg m²\]; its regressor entry is q̈.
+    /// Motor inertia on the link side J = k_r² I_m \[kg m²; kg for a prismatic joint\]; its
+    /// regressor entry is q̈.
     MotorInertia,
     /// Viscous friction v1 \[N m s/rad\]; its regressor entry is q̇.
     Viscous1,

@@ -65,8 +65,8 @@ impl<'a> Regressor<'a> {
     /// Panics if a slice is too short.
     pub fn fill(&mut self, q: &[f64], qd: &[f64], qdd: &[f64], y: &mut [f64]) {
         let n = self.robot.joint_count();
-        for (i, q) in q[..n].iter().enumerate() {
-            (self.sin[i], self.cos[i]) = q.sin_cos();
+        for (i, (joint, q)) in self.robot.joints().iter().zip(&q[..n]).enumerate() {
+            (self.sin[i], self.cos[i]) = joint.kind.sin_cos(q);
         }
         if self.parameters.iter().any(|p| p.kind.is_inertial()) {
             let Self { robot, ws, sin, cos, inertial, .. } = self;

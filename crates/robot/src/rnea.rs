@@ -13,9 +13,9 @@ impl Robot {
     /// gravity included.
     ///
     /// `tau` = (M(q) + diag(armature)) q̈ + c(q, q̇) + g(q). All slices have one entry per joint:
-    /// `sin`, `cos` of q, `qd` \[rad/s\], `qdd` \[rad/s²\]. Sine and cosine may be independent
-    /// variables: off the circle s² + c² = 1 the value is this algorithm's polynomial extension,
-    /// which differs from that of [`Robot::crba`].
+    /// `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\], `qdd` \[rad/s²\]. Sine and cosine may be
+    /// independent variables: off the circle s² + c² = 1 the value is this algorithm's polynomial
+    /// extension, which differs from that of [`Robot::crba`].
     ///
     /// Recursive Newton-Euler algorithm (Luh, Walker & Paul 1980) with the link's second moments in
     /// place of its inertia tensor.
@@ -58,8 +58,10 @@ impl Robot {
             let link = &self.links[i];
             let pose = link.pose(&sin[i], &cos[i]);
             state = match &gradient {
-                None => Motion::of_first_link(&pose, &state.acceleration, &qd[i], &qdd[i]),
-                Some(gradient) => state.of_child(gradient, &pose, &qd[i], &qdd[i]),
+                None => {
+                    Motion::of_first_link(link.kind, &pose, &state.acceleration, &qd[i], &qdd[i])
+                }
+                Some(gradient) => state.of_child(link.kind, gradient, &pose, &qd[i], &qdd[i]),
             };
             let link_gradient = gradient.insert(state.gradient());
             let (mut force, mut moment) = link_wrench(link, &state, link_gradient);
@@ -74,7 +76,9 @@ impl Robot {
         // Inward pass: wrenches add up towards the base, and their axis components are the torques.
         accumulate_to_parents(scratch);
         for i in 0..n {
-            tau[i] = scratch[i].moment.z.clone() + scale(self.links[i].armature, &qdd[i]);
+            let link = &self.links[i];
+            let torque = link.axis_component(&scratch[i].force, &scratch[i].moment);
+            tau[i] = torque.clone() + scale(link.armature, &qdd[i]);
         }
     }
 

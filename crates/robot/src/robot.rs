@@ -4,12 +4,14 @@ use crate::description::robot_description::RobotDescription;
 use crate::inertia::{INERTIAL, LinkInertia};
 use crate::joint::Joint;
 use crate::joint_geometry::JointGeometry;
+use crate::joint_kind::JointKind;
 use crate::link::{Link, working_links};
 use crate::parameter::{Parameter, ParameterKind};
 use nalgebra::{Matrix3, Vector3};
+use reachtube_scalar::Elementary;
 
-/// The constants of a serial robot with revolute joints. Scratch memory is kept separately, in a
-/// [`Workspace`](crate::Workspace).
+/// The constants of a serial robot with revolute and prismatic joints. Scratch memory is kept
+/// separately, in a [`Workspace`](crate::Workspace).
 ///
 /// Every link gets a working frame whose +z is the joint's axis and from which the next axis
 /// differs by a twist about x. The algorithms use these frames; results in joint space do not
@@ -49,8 +51,7 @@ impl Robot {
         inertias: &[LinkInertia],
         gravity_inertias: &[LinkInertia],
     ) -> Self {
-        let armatures: Vec<_> = joints.iter().map(|j| j.armature).collect();
-        let (links, base) = working_links(geometry, inertias, gravity_inertias, &armatures);
+        let (links, base) = working_links(&joints, geometry, inertias, gravity_inertias);
         let working_gravity = (base.transpose() * Vector3::from(description.gravity)).into();
         let separate_gravity = description.joints.iter().any(|j| j.gravity_moments.is_some());
         Self { description, joints, links, separate_gravity, working_gravity, base }
@@ -71,6 +72,11 @@ impl Robot {
         &self.joints
     }
 
+    /// Returns the kinds of the joints from base to tip.
+    pub fn kinds(&self) -> Vec<JointKind> {
+        self.joints.iter().map(|joint| joint.kind).collect()
+    }
+
     /// Returns the description that the robot was made from.
     pub fn description(&self) -> &RobotDescription {
         &self.description
@@ -81,14 +87,19 @@ impl Robot {
         self.description.gravity
     }
 
-    /// Returns (sin q, cos q), n values each, for q in rad.
+    /// Returns the two functions of position that the dynamics takes, n values each: sin q and
+    /// cos q, for q in rad. A prismatic joint has its position \[m\] and 1 in their places.
+    ///
+    /// # Guarantee
+    ///
+    /// Over `Interval`: outer enclosures.
     ///
     /// # Panics
     ///
     /// Panics if the length of `q` is not the number of joints.
-    pub fn sin_cos(&self, q: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    pub fn sin_cos<S: Elementary>(&self, q: &[S]) -> (Vec<S>, Vec<S>) {
         assert_eq!(q.len(), self.joint_count(), "`{}` takes one position per joint", self.name());
-        q.iter().map(|q| q.sin_cos()).unzip()
+        self.joints.iter().zip(q).map(|(joint, q)| joint.kind.sin_cos(q)).unzip()
     }
 
     /// Returns the same robot under another gravitational acceleration in the base frame \[m/s²\].

@@ -54,7 +54,7 @@ fn changed_records_are_refused() {
             other => panic!("{other}"),
         }
     };
-    let names = model.layout().names();
+    let names = model.variable_names();
     assert_eq!(
         refused(|records| records.variables.reverse()),
         RecordsError::Variables { expected: names }

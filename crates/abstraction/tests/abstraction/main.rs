@@ -8,4 +8,5 @@ mod files;
 mod flowpipes;
 mod motion;
 mod orders;
+mod prismatic;
 mod seven_joints;

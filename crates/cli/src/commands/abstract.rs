@@ -7,16 +7,18 @@ use std::time::Instant;
 use clap::Args;
 use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
 use reachtube::write;
-use reachtube_robot::Robot;
+use reachtube_robot::JointKind;
 use serde_json::json;
 
 use crate::error::Result;
+use crate::lock_arguments::LockArguments;
 use crate::option_values::{MODELS, numbered_choice};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::table::table;
 use reachtube::number::{four_decimals, interval};
+use reachtube::units::ColumnUnit;
 
 const HELP: &str = "\
 Examples:
@@ -37,6 +39,8 @@ pub struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
+    #[command(flatten)]
+    pub lock: LockArguments,
     /// Model of the forward dynamics, numbered as in the paper
     #[arg(long, default_value = "1", value_parser = numbered_choice::<ModelKind>(MODELS))]
     pub model: ModelKind,
@@ -64,7 +68,7 @@ pub struct Arguments {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let robot = Robot::load(&args.robot)?;
+    let robot = args.lock.load(&args.robot)?;
     robot.check_physical()?;
     let point = ExpansionPoint::from_values(&args.at, robot.joint_count())?;
     if let Some(path) = &args.out {
@@ -97,7 +101,7 @@ fn json_summary(model: &PolynomialModel, seconds: f64) -> serde_json::Value {
         "model": model.kind(),
         "order": model.order(),
         "states": model.states(),
-        "variables": model.layout().names(),
+        "variables": model.variable_names(),
         "degree": model.degree(),
         "terms": terms,
         "remainder": model.remainder(),
@@ -108,15 +112,19 @@ fn json_summary(model: &PolynomialModel, seconds: f64) -> serde_json::Value {
 /// Returns the result of `abstract`, with one line per joint.
 fn summary(model: &PolynomialModel, seconds: f64) -> String {
     let point = model.expansion_point();
+    let unit = |unit| JointKind::units(model.joint_kinds(), unit);
     let mut text = format!(
-        "model {} of order {} of {}, expanded about {} rad, {} rad/s, {} N m\n\
+        "model {} of order {} of {}, expanded about {} {}, {} {}, {} {}\n\
          {} states, degree {}, {} terms, computed in {}\n\n",
         u32::from(model.kind()),
         model.order(),
         model.robot().name,
         coordinates("q", &point.q),
+        unit(JointKind::position_unit),
         coordinates("qd", &point.qd),
+        unit(JointKind::velocity_unit),
         coordinates("u", &point.input()),
+        unit(JointKind::force_unit),
         model.states(),
         model.degree(),
         model.term_count(),
@@ -125,8 +133,11 @@ fn summary(model: &PolynomialModel, seconds: f64) -> String {
     let rows: Vec<_> = (0..model.joints()).map(|joint| joint_row(model, joint)).collect();
     match model.remainder() {
         Some(remainder) => {
-            let header = ["joint", "terms", "model error [rad/s^2], proved", "largest found"];
-            text.push_str(&table(&header, &rows));
+            let error = match error_unit(model).shared() {
+                Some(unit) => format!("model error [{unit}], proved"),
+                None => "model error, proved".into(),
+            };
+            text.push_str(&table(&["joint", "terms", &error, "largest found"], &rows));
             let _ = writeln!(
                 text,
                 "\nmodel error: forward dynamics minus model, at every point of the box \
@@ -146,6 +157,11 @@ fn coordinates(name: &str, values: &[f64]) -> String {
     }
 }
 
+/// Returns the unit of the model error.
+fn error_unit(model: &PolynomialModel) -> ColumnUnit {
+    ColumnUnit::new(model.joint_kinds(), JointKind::acceleration_unit)
+}
+
 fn joint_row(model: &PolynomialModel, joint: usize) -> Vec<String> {
     let mut row = vec![
         model.robot().joints[joint].name.clone(),
@@ -153,8 +169,9 @@ fn joint_row(model: &PolynomialModel, joint: usize) -> Vec<String> {
     ];
     if let Some(remainder) = model.remainder() {
         let bound = remainder.bounds[joint].map(|[low, high]| interval((low, high)));
-        row.push(bound.unwrap_or_else(|| "no bound found".into()));
-        row.push(four_decimals(remainder.sampled_error[joint]));
+        let unit = error_unit(model);
+        row.push(bound.map_or("no bound found".into(), |bound| unit.cell(joint, bound)));
+        row.push(unit.cell(joint, four_decimals(remainder.sampled_error[joint])));
     }
     row
 }

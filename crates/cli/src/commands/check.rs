@@ -13,6 +13,7 @@ use crate::output;
 use crate::table::{plural, table};
 use crate::verdict::lost;
 use reachtube::number::four_decimals;
+use reachtube_robot::JointKind;
 
 const HELP: &str = "\
 Example:
@@ -33,14 +34,15 @@ pub struct Arguments {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let check = Opened::new(&args.model, Keep::Needed)?.check()?;
+    let opened = Opened::new(&args.model, Keep::Needed)?;
+    let check = opened.check()?;
     output::notes(&check.notes);
-    output::show(json, &check, || summary(&check))?;
+    output::show(json, &check, || summary(&check, &opened.model.robot.kinds()))?;
     Ok(Outcome::of(check.verdict.conformant))
 }
 
-/// Returns the result of `check`, with one line per suite.
-pub fn summary(check: &Check) -> String {
+/// Returns the result of `check` of a model with joints of these kinds, with one line per suite.
+pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
     let verdict = &check.verdict;
     let set = verdict.enclosure.set_name();
     let outcome = if verdict.conformant { "conformant" } else { "not conformant" };
@@ -51,7 +53,7 @@ pub fn summary(check: &Check) -> String {
         verdict.violations.count,
         verdict.rows
     );
-    let rows: Vec<_> = verdict.suites.iter().map(suite_row).collect();
+    let rows: Vec<_> = verdict.suites.iter().map(|suite| suite_row(suite, kinds)).collect();
     text.push_str(&table(&["suite", "runs", "rows", "outside", "furthest outside"], &rows));
     for set in &verdict.lost {
         let _ = writeln!(text, "{}", lost(set));
@@ -66,19 +68,20 @@ pub fn summary(check: &Check) -> String {
     text
 }
 
-fn suite_row(suite: &SuiteVerdict) -> Vec<String> {
+fn suite_row(suite: &SuiteVerdict, kinds: &[JointKind]) -> Vec<String> {
+    let worst = suite.violations.worst.as_ref();
     vec![
         suite.suite.clone(),
         suite.runs.to_string(),
         suite.rows.to_string(),
         suite.violations.count.to_string(),
-        suite.violations.worst.as_ref().map_or_else(|| "-".into(), witness),
+        worst.map_or_else(|| "-".into(), |place| witness(place, kinds)),
     ]
 }
 
 /// Describes a value outside the reachable set in one line.
-fn witness(place: &Witness) -> String {
-    let unit = place.state.kind.unit();
+fn witness(place: &Witness, kinds: &[JointKind]) -> String {
+    let unit = place.state.kind.unit(kinds[place.state.joint]);
     format!(
         "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
         place.run,

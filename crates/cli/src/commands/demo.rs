@@ -78,7 +78,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
             "{}\n{}\n{}",
             conform_command::summary(&model),
             held_out_heading(&recorded),
-            check::summary(&held_out)
+            check::summary(&held_out, &model.robot.kinds())
         );
         output::print(&text)?;
     }

@@ -9,6 +9,7 @@ use reachtube_robot::{Criterion, Excitation, ExcitationSettings, Parameter, Para
 use serde_json::json;
 
 use crate::error::Result;
+use crate::lock_arguments::LockArguments;
 use crate::option_values::{hertz, seconds};
 use crate::outcome::Outcome;
 use crate::output;
@@ -30,6 +31,8 @@ pub struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
+    #[command(flatten)]
+    pub lock: LockArguments,
     /// Period of the motion, above 0 s
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     pub period: f64,
@@ -53,13 +56,14 @@ pub struct Arguments {
     /// Seed of the search; the same seed gives the same motion
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// CSV file for one period of the motion: columns t, q, qd, qdd in s and rad
+    /// CSV file for one period of the motion: columns t, q, qd, qdd in s and rad, or m for
+    /// prismatic joints
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let robot = Robot::load(&args.robot)?;
+    let robot = args.lock.load(&args.robot)?;
     write::try_at(&args.out)?;
     let n = robot.joint_count();
     let found = robot.excitation(&parameters(n), &settings(args))?;
@@ -114,8 +118,12 @@ fn summary(found: &Excitation, robot: &Robot) -> String {
     for (j, joint) in robot.joints().iter().enumerate() {
         let [low, high] = found.trajectory.position_range(j);
         let speed = found.trajectory.speed_bound(j);
-        let _ =
-            writeln!(text, "  {}: {low:.3} to {high:.3} rad, at most {speed:.3} rad/s", joint.name);
+        let (unit, speed_unit) = (joint.kind.position_unit(), joint.kind.velocity_unit());
+        let _ = writeln!(
+            text,
+            "  {}: {low:.3} to {high:.3} {unit}, at most {speed:.3} {speed_unit}",
+            joint.name
+        );
     }
     text.push_str(
         "The motion keeps within the joint limits only. Check that the arm hits neither itself \

@@ -6,13 +6,16 @@ use clap::Args;
 use reachtube::recordings::{DataSet, Group, Inspection, JointSummary, inspect};
 
 use crate::data_arguments::gap_limit;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::lock_arguments::LockArguments;
 use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::table::{plural, table};
 use reachtube::number::four_decimals;
+use reachtube::units::ColumnUnit;
+use reachtube_robot::JointKind;
 
 const HELP: &str = "\
 Example:
@@ -23,6 +26,11 @@ Example:
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
+    /// Robot that was recorded, for the units of its joints [default: revolute joints]
+    #[arg(long)]
+    pub robot: Option<String>,
+    #[command(flatten)]
+    pub lock: LockArguments,
     /// Folder with runs.csv and the recordings
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
@@ -36,13 +44,24 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let bar = Progress::new();
     let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap))?;
     drop(bar);
+    let kinds = kinds(args, inspection.joints)?;
     output::notes(&inspection.notes);
-    output::show(json, &inspection, || summary(&inspection))?;
+    output::show(json, &inspection, || summary(&inspection, &kinds))?;
     Ok(Outcome::Done)
 }
 
+/// Returns the kinds of the recorded joints.
+fn kinds(args: &Arguments, joints: usize) -> Result<Vec<JointKind>> {
+    let Some(name) = &args.robot else { return Ok(vec![JointKind::Revolute; joints]) };
+    let kinds = args.lock.load(name)?.kinds();
+    if kinds.len() == joints {
+        return Ok(kinds);
+    }
+    Err(Error::JointCount { robot: name.clone(), joints: kinds.len(), recorded: joints })
+}
+
 /// Returns the result of `inspect`, with one table per suite.
-fn summary(inspection: &Inspection) -> String {
+fn summary(inspection: &Inspection, kinds: &[JointKind]) -> String {
     let Inspection { folder, runs, joints, .. } = inspection;
     let mut text = format!(
         "{folder}: {runs} {} of {joints} {}\n",
@@ -50,18 +69,18 @@ fn summary(inspection: &Inspection) -> String {
         plural(*joints, "joint")
     );
     for group in &inspection.groups {
-        text.push_str(&format!("\n{}\n{}", heading(group), joint_table(group)));
+        text.push_str(&format!("\n{}\n{}", heading(group), joint_table(group, kinds)));
     }
     text.push_str(LEGEND);
     text
 }
 
 const LEGEND: &str = "
-start, end: spread of the first and of the last positions over the runs [rad]
+start, end: spread of the first and of the last positions over the runs [as q]
 drift: correlation of the last position with the order of the runs; near +1 or -1 where the robot
   changes from run to run, as it does while it warms up
-sticks: share of the samples slower than 0.01 rad/s
-q - int qd: largest difference between q and the integral of qd [rad]
+sticks: share of the samples slower than 0.01 rad/s or m/s
+q - int qd: largest difference between q and the integral of qd [as q]
 ";
 
 /// Describes the runs of a group in one line.
@@ -100,32 +119,37 @@ fn samples(group: &Group) -> String {
     format!("{count} {}{step}", plural(most, "sample"))
 }
 
-fn joint_table(group: &Group) -> String {
+fn joint_table(group: &Group, kinds: &[JointKind]) -> String {
+    let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
+    let units = units.map(|unit| ColumnUnit::new(kinds, unit));
     let header = [
         "joint",
-        "q [rad]",
-        "|qd| [rad/s]",
-        "|tau| [N m]",
+        &units[0].head("q"),
+        &units[1].head("|qd|"),
+        &units[2].head("|tau|"),
         "start",
         "end",
         "drift",
         "sticks",
         "q - int qd",
     ];
-    let rows = group.joints.iter().enumerate().map(|(index, joint)| joint_row(index + 1, joint));
+    let rows =
+        group.joints.iter().enumerate().map(|(index, joint)| joint_row(index, joint, &units));
     table(&header, &rows.collect::<Vec<_>>())
 }
 
-fn joint_row(number_of_joint: usize, joint: &JointSummary) -> Vec<String> {
+/// Returns a table row about a joint (from 0); the units are those of q, q̇ and τ.
+fn joint_row(index: usize, joint: &JointSummary, units: &[ColumnUnit; 3]) -> Vec<String> {
+    let [q, qd, tau] = units;
     vec![
-        number_of_joint.to_string(),
-        format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1]),
-        format!("{:.3}", joint.speed),
-        format!("{:.2}", joint.torque),
-        four_decimals(joint.start_spread),
-        joint.end_spread.map_or_else(|| "-".into(), four_decimals),
+        (index + 1).to_string(),
+        q.cell(index, format!("[{:.3}, {:.3}]", joint.position[0], joint.position[1])),
+        qd.cell(index, format!("{:.3}", joint.speed)),
+        tau.cell(index, format!("{:.2}", joint.torque)),
+        q.cell(index, four_decimals(joint.start_spread)),
+        joint.end_spread.map_or_else(|| "-".into(), |end| q.cell(index, four_decimals(end))),
         joint.drift.map_or_else(|| "-".into(), |drift| format!("{drift:+.2}")),
         format!("{:.0} %", 100.0 * joint.sticking),
-        format!("{:.1e}", joint.integral_gap),
+        q.cell(index, format!("{:.1e}", joint.integral_gap)),
     ]
 }

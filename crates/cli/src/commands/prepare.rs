@@ -7,10 +7,10 @@ use reachtube::identify::prepare::{
     LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, windows,
 };
 use reachtube::write;
-use reachtube_robot::Robot;
 use serde_json::json;
 
 use crate::error::Result;
+use crate::lock_arguments::LockArguments;
 use crate::option_values::{hertz, seconds};
 use crate::outcome::Outcome;
 use crate::output;
@@ -32,6 +32,8 @@ pub struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
+    #[command(flatten)]
+    pub lock: LockArguments,
     /// Recordings: CSV files or folders
     #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
     pub logs: Vec<PathBuf>,
@@ -62,7 +64,7 @@ pub struct Arguments {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let robot = Robot::load(&args.robot)?;
+    let robot = args.lock.load(&args.robot)?;
     let settings = settings(args);
     write::try_at(&args.out.join("runs.csv"))?;
     let entries: Vec<LogEntry> = args.logs.iter().cloned().map(LogEntry::from).collect();

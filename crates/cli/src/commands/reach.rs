@@ -18,6 +18,7 @@ use crate::report_files;
 use crate::table::table;
 use crate::verdict::lost;
 use reachtube::number::four_decimals;
+use reachtube_robot::JointKind;
 
 const HELP: &str = "\
 Example:
@@ -66,7 +67,11 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let rows: Vec<_> = written.iter().map(Written::json).collect();
         output::print_json(&json!({ "reach": rows }))?;
     } else {
-        let header = ["suite", "run", "samples", "widest q [rad]", "widest qd [rad/s]", "file"];
+        let kinds = model.robot.kinds();
+        let q = JointKind::any_unit(&kinds, JointKind::position_unit);
+        let qd = JointKind::any_unit(&kinds, JointKind::velocity_unit);
+        let [q, qd] = [format!("widest q [{q}]"), format!("widest qd [{qd}]")];
+        let header = ["suite", "run", "samples", &q, &qd, "file"];
         let rows: Vec<_> = written.iter().map(Written::row).collect();
         output::print(&format!(
             "reachable sets, with their widest interval at the last sample\n{}",

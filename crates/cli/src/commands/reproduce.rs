@@ -7,9 +7,9 @@ use clap::{Args, Subcommand};
 use reachtube::abstraction::ModelKind;
 use reachtube::reproduce::{Cell, Paper, Speed, Table1, Table1Options, table1 as make_table1};
 use reachtube::write;
-use reachtube_robot::Robot;
 
 use crate::error::Result;
+use crate::lock_arguments::LockArguments;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
@@ -38,6 +38,8 @@ pub struct Table1Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long, default_value = "lwa4p")]
     pub robot: String,
+    #[command(flatten)]
+    pub lock: LockArguments,
     /// Number of random point-to-point motions, 1 or more; each is simulated slowly and fast
     #[arg(long, default_value_t = 50, value_name = "COUNT")]
     pub motions: usize,
@@ -65,7 +67,7 @@ pub struct Table1Arguments {
 
 /// Runs `reproduce table1`.
 pub fn table1(args: &Table1Arguments, json: bool) -> Result<Outcome> {
-    let robot = Robot::load(&args.robot)?;
+    let robot = args.lock.load(&args.robot)?;
     robot.check_physical()?;
     if let Some(path) = &args.out {
         write::try_at(path)?;

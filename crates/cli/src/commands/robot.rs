@@ -3,14 +3,16 @@
 use clap::{Args, Subcommand};
 use nalgebra::DMatrix;
 use reachtube::abstraction::ExpansionPoint;
-use reachtube_robot::{Joint, JointDescription, Physicality, Robot};
+use reachtube_robot::{Joint, JointDescription, JointKind, LockedJoint, Physicality, Robot};
 use serde_json::json;
 
 use crate::error::{Error, Result};
+use crate::lock_arguments::LockArguments;
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::table;
+use crate::table::{plural, table};
 use reachtube::number::{fixed, six_digits};
+use reachtube::units::ColumnUnit;
 
 /// Show how reachtube understands a robot's description
 #[derive(Debug, Subcommand)]
@@ -21,7 +23,8 @@ pub enum RobotCommand {
 const SHOW_HELP: &str = "\
 Examples:
   reachtube robot show arm.toml
-  reachtube robot show lwa4p --at 0,0.5,0,0,0,0";
+  reachtube robot show lwa4p --at 0,0.5,0,0,0,0
+  reachtube robot show panda.urdf --lock panda_finger_joint1=0.02";
 
 /// Print a robot's geometry, inertia, friction and mass matrix
 ///
@@ -31,18 +34,21 @@ Examples:
 pub struct ShowArguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     pub robot: String,
-    /// Positions q_a of the mass matrix M(q_a), one per joint in rad, separated by commas
-    /// [default: 0]
+    #[command(flatten)]
+    pub lock: LockArguments,
+    /// Positions q_a of the mass matrix M(q_a), one per joint in rad, or in m for a prismatic
+    /// joint, separated by commas [default: 0]
     #[arg(long, value_name = "Q,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub at: Vec<f64>,
 }
 
 /// Runs `robot show`.
 pub fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
-    let robot = Robot::load(&args.robot)?;
+    let robot = args.lock.load(&args.robot)?;
     let joints = robot.joint_count();
     if !args.at.is_empty() && args.at.len() != joints {
-        return Err(Error::PositionCount { given: args.at.len(), joints });
+        let unit = JointKind::units(&robot.kinds(), JointKind::position_unit);
+        return Err(Error::PositionCount { given: args.at.len(), joints, unit });
     }
     let at = ExpansionPoint::from_values(&args.at, joints)?;
     let physicality = robot.check_physical()?;
@@ -65,15 +71,19 @@ pub fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
 /// Returns the tables of joints and links.
 fn description(robot: &Robot) -> String {
     let [gx, gy, gz] = robot.gravity_acceleration();
+    let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::inertia_unit];
+    let units = units.map(|unit| ColumnUnit::new(&robot.kinds(), unit));
+    let [limits, speed, inertia] = &units;
     let joint_header = [
         "joint",
-        "limits [rad]",
-        "speed [rad/s]",
+        &limits.head("limits"),
+        &speed.head("speed"),
         "gear ratio",
-        "motor inertia [kg m^2]",
+        &inertia.head("motor inertia"),
         "viscous v1, v2, v3",
     ];
-    let joints: Vec<_> = robot.joints().iter().map(joint_row).collect();
+    let row = |(i, joint): (usize, &Joint)| joint_row(joint, &units.each_ref().map(|u| (u, i)));
+    let joints: Vec<_> = robot.joints().iter().enumerate().map(row).collect();
     let link_header = [
         "joint",
         "geometry [m, rad]",
@@ -84,37 +94,62 @@ fn description(robot: &Robot) -> String {
     ];
     let links: Vec<_> = robot.description().joints.iter().map(link_row).collect();
     format!(
-        "{}: {} revolute joints, gravity [{gx}, {gy}, {gz}] m/s^2\n\n{}\nlinks and Coulomb \
-         friction\n{}",
+        "{}: {}, gravity [{gx}, {gy}, {gz}] m/s^2\n{}\n{}\nlinks and Coulomb friction\n{}",
         robot.name(),
-        robot.joint_count(),
+        joint_counts(robot),
+        locked(robot),
         table(&joint_header, &joints),
         table(&link_header, &links)
     )
 }
 
-/// Returns the mass matrix and the gravity torque at `q` (n, rad).
+/// Counts the joints of each kind.
+fn joint_counts(robot: &Robot) -> String {
+    let kinds = robot.kinds();
+    let count = |kind: JointKind| {
+        let count = kinds.iter().filter(|own| **own == kind).count();
+        (count > 0).then(|| format!("{count} {kind} {}", plural(count, "joint")))
+    };
+    let counts = [JointKind::Revolute, JointKind::Prismatic].into_iter().filter_map(count);
+    counts.collect::<Vec<_>>().join(" and ")
+}
+
+/// Names the joints that are held at a position.
+fn locked(robot: &Robot) -> String {
+    let held = |joint: &LockedJoint| {
+        format!("{} = {} {}", joint.name, six_digits(joint.position), joint.kind.position_unit())
+    };
+    let held: Vec<_> = robot.description().locked.iter().map(held).collect();
+    if held.is_empty() { String::new() } else { format!("locked: {}\n", held.join(", ")) }
+}
+
+/// Returns the mass matrix and the gravity torque at `q` (n, rad or m).
 fn dynamics(robot: &Robot, q: &[f64], mass: &DMatrix<f64>) -> String {
     let line = |values: &mut dyn Iterator<Item = &f64>| {
         let cells: Vec<String> = values.map(|value| format!("{:>9}", fixed(*value, 5))).collect();
         format!("  {}\n", cells.join(" "))
     };
+    let kinds = robot.kinds();
     let rows: String = mass.row_iter().map(|row| line(&mut row.iter())).collect();
     format!(
-        "\nM(q_a) with motors [kg m^2], q_a = {q:?} rad:\n{rows}g(q_a) [N m]:\n{}",
+        "\nM(q_a) with motors [{}], q_a = {q:?} {}:\n{rows}g(q_a) [{}]:\n{}",
+        ColumnUnit::new(&kinds, JointKind::inertia_unit).shared().unwrap_or("kg m^2, kg m, kg"),
+        JointKind::units(&kinds, JointKind::position_unit),
+        JointKind::units(&kinds, JointKind::force_unit).trim_matches(['(', ')']),
         line(&mut robot.gravity_torque(q).iter())
     )
 }
 
-fn joint_row(joint: &Joint) -> Vec<String> {
+/// Returns a table row about a joint; the units are those of limits, speed and motor inertia.
+fn joint_row(joint: &Joint, units: &[(&ColumnUnit, usize); 3]) -> Vec<String> {
+    let with_unit = |k: usize, text: String| units[k].0.cell(units[k].1, text);
     let viscous = &joint.friction.viscous;
-    let maybe = |value: Option<f64>| value.map_or_else(|| "-".into(), |value| format!("{value}"));
     vec![
         joint.name.clone(),
-        format!("[{:.3}, {:.3}]", joint.position_limits[0], joint.position_limits[1]),
-        maybe(joint.velocity_limit),
-        maybe(joint.gear_ratio),
-        format!("{:.5}", joint.armature),
+        with_unit(0, format!("[{:.3}, {:.3}]", joint.position_limits[0], joint.position_limits[1])),
+        joint.velocity_limit.map_or_else(|| "-".into(), |speed| with_unit(1, format!("{speed}"))),
+        joint.gear_ratio.map_or_else(|| "-".into(), |ratio| format!("{ratio}")),
+        with_unit(2, format!("{:.5}", joint.armature)),
         [viscous.v1, viscous.v2, viscous.v3].map(six_digits).join(", "),
     ]
 }
@@ -129,7 +164,10 @@ fn link_row(joint: &JointDescription) -> Vec<String> {
     let coulomb = if coulomb.iter().all(|a| *a == 0.0) { "0".into() } else { list(coulomb) };
     vec![
         joint.name.clone(),
-        geometry(joint),
+        match joint.kind {
+            JointKind::Revolute => geometry(joint),
+            JointKind::Prismatic => format!("prismatic, {}", geometry(joint)),
+        },
         six_digits(joint.mass),
         list(&moment),
         list(&joint.inertia),
@@ -160,11 +198,13 @@ fn physicality_sentence(physicality: &Physicality, robot: &Robot) -> String {
     match physicality {
         Physicality::Links { least_pivot } => format!(
             "physical: the mass matrix is positive definite everywhere, proved link by link; \
-             no joint has less than {least_pivot:.3e} kg m^2"
+             no joint has less than {least_pivot:.3e} {}",
+            JointKind::any_unit(&robot.kinds(), JointKind::inertia_unit)
         ),
         Physicality::Searched { positions, joint, pivot, q } => format!(
             "no sign of an unphysical robot: the mass matrix is positive definite at {positions} \
-             positions searched (no proof); least {pivot:.4} kg m^2 about {} at q = {q:.3?}",
+             positions searched (no proof); least {pivot:.4} {} about {} at q = {q:.3?}",
+            robot.joints()[*joint].kind.inertia_unit(),
             robot.joints()[*joint].name
         ),
     }

@@ -1,5 +1,6 @@
 //! What a model file says about its recordings.
 
+use reachtube_robot::JointKind;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -74,9 +75,10 @@ pub struct RunRecord {
 }
 
 impl Explained {
-    /// Sums the search up in one sentence, for people; `tolerance` is that of the settings.
+    /// Sums the search up in one sentence, for people; `tolerance` is that of the settings, and
+    /// `kinds` are the kinds of the joints.
     #[must_use]
-    pub fn words(&self, tolerance: Tolerance) -> String {
+    pub fn words(&self, tolerance: Tolerance, kinds: &[JointKind]) -> String {
         let worst = self
             .residuals
             .iter()
@@ -91,11 +93,13 @@ impl Explained {
         let of = |value: Option<f64>| {
             value.map_or_else(|| "infinitely far".into(), |value| format!("{value:.2e}"))
         };
+        let q = JointKind::any_unit(kinds, JointKind::position_unit);
+        let qd = JointKind::any_unit(kinds, JointKind::velocity_unit);
         format!(
             "a motion of the model itself (start in X0, input in U, held over each sample) was \
-             found within {} rad and {} rad/s of {} of the {} recordings; the closest motions \
-             found differ by {} rad and {} rad/s in the median, and by {} rad \
-             and {} rad/s for {}",
+             found within {} {q} and {} {qd} of {} of the {} recordings; the closest motions \
+             found differ by {} {q} and {} {qd} in the median, and by {} {q} \
+             and {} {qd} for {}",
             tolerance.position,
             tolerance.velocity,
             self.runs,

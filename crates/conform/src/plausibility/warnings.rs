@@ -107,7 +107,7 @@ pub(crate) fn warnings(
     let n = problem.joints();
     let mut remarks: Vec<Remark> =
         (0..2 * n).flat_map(|i| of_state(problem, sets, radii.get(i), fit, i)).collect();
-    remarks.extend((0..n).filter_map(|joint| of_input(sets, fit, joint)));
+    remarks.extend((0..n).filter_map(|joint| of_input(problem, sets, fit, joint)));
     let of_kind = |kind: WarningKind| {
         let of: Vec<&Remark> = remarks.iter().filter(|remark| remark.kind == kind).collect();
         let texts: Vec<&str> = of.iter().map(|remark| remark.text.as_str()).collect();
@@ -134,7 +134,7 @@ fn of_state(
     i: usize,
 ) -> Vec<Remark> {
     let state = State::from_index(i, problem.joints());
-    let unit = state.kind.unit();
+    let unit = state.kind.unit(problem.robot().kinds()[state.joint]);
     let [low, high] = fit.recorded[i];
     let (range, sensor) = (high - low, problem.sensor_noise().radius[i]);
     let (from, to) = sets.initial_set.bounds(i);
@@ -169,13 +169,24 @@ fn of_state(
 }
 
 /// Returns the remark that U reaches beyond the recorded input of `joint` (from 0).
-fn of_input(sets: &UncertaintySets, fit: &NominalFit, joint: usize) -> Option<Remark> {
+fn of_input(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    fit: &NominalFit,
+    joint: usize,
+) -> Option<Remark> {
     let (low, high) = sets.input_set.bounds(joint);
     let (reach, largest) = (high.max(-low), fit.largest_input[joint]);
     (reach > largest && reach > 1e-6).then(|| Remark {
         kind: WarningKind::InputSetSize,
         joint: joint + 1,
-        text: format!("joint {} {} N m, {}", joint + 1, short(reach), short(largest)),
+        text: format!(
+            "joint {} {} {}, {}",
+            joint + 1,
+            short(reach),
+            problem.robot().kinds()[joint].force_unit(),
+            short(largest)
+        ),
     })
 }
 

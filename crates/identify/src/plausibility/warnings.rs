@@ -73,9 +73,11 @@ impl Checked<'_> {
             (coulomb < 0.0 && viscous < 0.0).then(|| {
                 format!(
                     "friction of {} accelerates the joint by least squares (Coulomb {coulomb:.3} \
-                     N m, viscous {viscous:.3} N m s/rad): the sign of its torque or of its \
+                     {}, viscous {viscous:.3} {}): the sign of its torque or of its \
                      velocity is probably wrong; check both columns",
-                    self.name(j)
+                    self.name(j),
+                    self.robot.joints()[j].kind.force_unit(),
+                    self.robot.joints()[j].kind.damping_unit()
                 )
             })
         })

@@ -117,7 +117,7 @@ fn not_proved(model: &Model, outer: bool) -> Vec<String> {
         );
     }
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
-        let found = explained.words(tolerance);
+        let found = explained.words(tolerance, &model.robot.kinds());
         words.push(format!("Explanations were searched for, not proved: {found}."));
     }
     words
@@ -128,6 +128,7 @@ fn sets_table(model: &Model) -> SetsTable {
     let bounds = |set: &Hyperrectangle, i: usize| <[f64; 2]>::from(set.bounds(i));
     let row = |joint: usize| JointSets {
         joint: joint_name(model, joint),
+        kind: model.robot.joints[joint].kind,
         x0_q: bounds(&model.initial_set, joint),
         x0_qd: bounds(&model.initial_set, n + joint),
         u: bounds(&model.input_set, joint),
@@ -270,6 +271,7 @@ fn figure(sources: &Sources, suite: &Suite) -> Result<SuiteFigure> {
     Ok(SuiteFigure {
         suite: name.clone(),
         joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
+        kinds: model.robot.kinds(),
         times: longest.times.clone(),
         band: band(&own, longest, joints, check.verdict.enclosure.set_name()),
         inner: None,

@@ -93,15 +93,22 @@ fn labels(canvas: &Canvas, figure: &SuiteFigure, layout: &Layout, state: usize) 
     if state < n {
         let name = centred(font(12.5, FontStyle::Bold));
         let place = (middle, units(layout.block_top(state) + 10.0));
-        canvas.draw_text(&clean(&figure.joints[state]), &name, place)?;
+        let unit = figure.shared_unit(state).is_none().then(|| figure.state_unit(state));
+        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}, {unit}/s]"));
+        canvas.draw_text(&clean(&format!("{}{unit}", figure.joints[state])), &name, place)?;
     } else {
         let place = (middle, units(y + height - 8.0));
         canvas.draw_text("time [s]", &centred(label.clone()), place)?;
     }
     if layout.starts_row(state) {
-        let quantity = if state < n { "position [rad]" } else { "velocity [rad/s]" };
+        let quantity = if state < n { "position" } else { "velocity" };
+        let unit = figure.shared_unit(state).map_or_else(String::new, |unit| format!(" [{unit}]"));
         let turned = centred(label.transform(FontTransform::Rotate270));
-        canvas.draw_text(quantity, &turned, (units(x - 8.0), units(y + plot / 2.0)))?;
+        canvas.draw_text(
+            &format!("{quantity}{unit}"),
+            &turned,
+            (units(x - 8.0), units(y + plot / 2.0)),
+        )?;
     }
     Ok(())
 }

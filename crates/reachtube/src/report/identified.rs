@@ -8,12 +8,14 @@ use super::skeleton::{document, pair_of_lists, section, wide_table};
 use super::tables;
 use super::text::Text;
 use crate::number::significant;
+use crate::units::ColumnUnit;
 use maud::{Markup, PreEscaped, html};
 use reachtube_identify::friction::FrictionFit;
 use reachtube_identify::{
     BaseParameter, Gain, Identification, InertiaFit, JointError, JointFit, LogValidation,
     WindowErrors,
 };
+use reachtube_robot::JointKind;
 use std::io::Write;
 
 /// Largest number of logs whose torque is drawn.
@@ -28,15 +30,16 @@ pub fn write_identified_html(
     found: &Identification,
     out: &mut impl Write,
 ) -> Result<(), ReportError> {
+    let kinds = &found.description.kinds()[..];
     let joints: Vec<&str> =
         found.description.joints.iter().map(|joint| joint.name.as_str()).collect();
     let body = html! {
         (section("Predicted torque", &prediction(found, &joints)?))
-        (section("Simulated motion", &windows(&found.windows, &joints)))
+        (section("Simulated motion", &windows(&found.windows, &joints, kinds)))
         @if !found.friction.is_empty() {
-            (section("Friction", &friction(&found.friction)?))
+            (section("Friction", &friction(found)?))
         }
-        (section("Inertial parameters", &inertia(&found.inertia, &found.gains, &joints)))
+        (section("Inertial parameters", &inertia(found, &joints, kinds)))
         (section("Recordings", &pair_of_lists([
             ("Preprocessing", "yes", &found.changes),
             ("Warnings", "no", &found.warnings),
@@ -86,10 +89,13 @@ fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, ReportE
     };
     let caption = "Error of the predicted torque relative to the recorded torque where a joint \
                    moves (at standstill too), R², and root mean square error";
-    let rows: Vec<Vec<String>> = found.validation.iter().map(validation_row).collect();
+    let kinds = found.description.kinds();
+    let row = |log: &LogValidation| validation_row(log, &kinds);
+    let rows: Vec<Vec<String>> = found.validation.iter().map(row).collect();
     let mut logs = Vec::new();
     for trace in found.traces.iter().take(MOST_LOGS) {
-        let of_joint = |(joint, name): (usize, &&str)| torque_chart(trace, joint, name);
+        let of_joint =
+            |(joint, name): (usize, &&str)| torque_chart(trace, joint, name, kinds[joint]);
         let of_log: Vec<Chart> = joints.iter().enumerate().map(of_joint).collect();
         logs.push((&trace.log, charts(&of_log)?));
     }
@@ -107,46 +113,55 @@ fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, ReportE
     })
 }
 
-fn validation_row(log: &LogValidation) -> Vec<String> {
-    let cell = |error: &JointError| {
+fn validation_row(log: &LogValidation, kinds: &[JointKind]) -> Vec<String> {
+    let cell = |(error, kind): (&JointError, &JointKind)| {
         format!(
-            "{} ({}), R² {:.4}, {} N m",
+            "{} ({}), R² {:.4}, {} {}",
             percent(error.relative),
             percent(error.relative_all),
             error.r2,
-            significant(error.residual, 3)
+            significant(error.residual, 3),
+            kind.force_unit()
         )
     };
-    std::iter::once(log.log.clone()).chain(log.joints.iter().map(cell)).collect()
+    std::iter::once(log.log.clone()).chain(log.joints.iter().zip(kinds).map(cell)).collect()
 }
 
-fn windows(windows: &[WindowErrors], joints: &[&str]) -> Markup {
+fn windows(windows: &[WindowErrors], joints: &[&str], kinds: &[JointKind]) -> Markup {
     let caption = "Root mean squares over windows driven by the recorded torque: position error \
                    at the end, motion of the joint, and velocity error at the end";
-    let rows: Vec<Vec<String>> = windows.iter().map(window_row).collect();
+    let rows: Vec<Vec<String>> = windows.iter().map(|row| window_row(row, kinds)).collect();
     table_by_joint(caption, "Window", joints, &rows)
 }
 
-fn window_row(row: &WindowErrors) -> Vec<String> {
+fn window_row(row: &WindowErrors, kinds: &[JointKind]) -> Vec<String> {
     let cell = |joint: usize| {
         format!(
-            "{} rad of {}, {} rad/s",
+            "{} {} of {}, {} {}",
             significant(row.q[joint], 3),
+            kinds[joint].position_unit(),
             significant(row.motion[joint], 3),
-            significant(row.qd[joint], 3)
+            significant(row.qd[joint], 3),
+            kinds[joint].velocity_unit()
         )
     };
     let name = format!("{} s ({} windows, {} diverged)", row.duration, row.windows, row.diverged);
     std::iter::once(name).chain((0..row.q.len()).map(cell)).collect()
 }
 
-fn friction(fits: &[FrictionFit]) -> Result<Markup, ReportError> {
+fn friction(found: &Identification) -> Result<Markup, ReportError> {
     let caption = "Coefficients of Coulomb friction, eqs. (6) to (9), and of viscous friction, \
                    eq. (5), with standard errors";
-    let head = ["Joint", "R²", "Residual [N m]", "a1 to a8", "v1, v2, v3"];
-    let rows: Vec<Vec<String>> = fits.iter().map(friction_row).collect();
-    let all: Vec<Chart> =
-        fits.iter().flat_map(|fit| [load_chart(fit), viscous_chart(fit)]).collect();
+    let kinds: Vec<_> = found.friction.iter().map(|fit| kind_of(found, fit)).collect();
+    let fits = || found.friction.iter().zip(&kinds);
+    let force = ColumnUnit::new(&kinds, JointKind::force_unit);
+    let residual = force.head("Residual");
+    let head = ["Joint", "R²", &residual, "a1 to a8", "v1, v2, v3"];
+    let row = |(i, fit): (usize, &FrictionFit)| friction_row(fit, i, &force);
+    let rows: Vec<Vec<String>> = found.friction.iter().enumerate().map(row).collect();
+    let all: Vec<Chart> = fits()
+        .flat_map(|(fit, kind)| [load_chart(fit, *kind), viscous_chart(fit, *kind)])
+        .collect();
     Ok(html! {
         (table(caption, &head, &rows))
         p {
@@ -157,7 +172,13 @@ fn friction(fits: &[FrictionFit]) -> Result<Markup, ReportError> {
     })
 }
 
-fn friction_row(fit: &FrictionFit) -> Vec<String> {
+/// Returns the kind of the joint of a friction fit.
+fn kind_of(found: &Identification, fit: &FrictionFit) -> JointKind {
+    let own = found.description.joints.iter().find(|joint| joint.name == fit.joint.joint);
+    own.map_or_else(JointKind::default, |joint| joint.kind)
+}
+
+fn friction_row(fit: &FrictionFit, i: usize, force: &ColumnUnit) -> Vec<String> {
     let list = |values: &[f64], errors: &[f64]| {
         let pairs = values.iter().zip(errors);
         let words = pairs.map(|(v, e)| format!("{} ± {}", significant(*v, 3), significant(*e, 1)));
@@ -167,23 +188,26 @@ fn friction_row(fit: &FrictionFit) -> Vec<String> {
     vec![
         joint.joint.clone(),
         format!("{:.5}", joint.r2),
-        significant(joint.residual, 3),
+        force.cell(i, significant(joint.residual, 3)),
         list(&c.coulomb, &e.coulomb),
         list(&c.viscous, &e.viscous),
     ]
 }
 
-fn inertia(fit: &InertiaFit, gains: &[Gain], joints: &[&str]) -> Markup {
+fn inertia(found: &Identification, joints: &[&str], kinds: &[JointKind]) -> Markup {
+    let (fit, gains) = (&found.inertia, &found.gains);
+    let force = ColumnUnit::new(kinds, JointKind::force_unit);
+    let [torque, residual] = ["Torque, rms", "Residual, rms"].map(|name| force.head(name));
     let residual_head = [
         "Joint",
         "Samples (independent)",
-        "Torque, rms [N m]",
-        "Residual, rms [N m]",
+        &torque,
+        &residual,
         "Residual / torque",
         "Samples beyond three deviations",
     ];
-    let residuals: Vec<Vec<String>> =
-        joints.iter().zip(&fit.joints).map(|(name, joint)| residual_row(name, joint)).collect();
+    let row = |i: usize| residual_row(joints[i], &fit.joints[i], &|x| force.cell(i, x));
+    let residuals: Vec<Vec<String>> = (0..fit.joints.len()).map(row).collect();
     let parameter_head =
         ["Combination (SI units)", "Value", "Least squares", "Standard error", "Description"];
     let parameters: Vec<Vec<String>> = fit.parameters.iter().map(parameter_row).collect();
@@ -194,12 +218,12 @@ fn inertia(fit: &InertiaFit, gains: &[Gain], joints: &[&str]) -> Markup {
     }
 }
 
-fn residual_row(name: &str, joint: &JointFit) -> Vec<String> {
+fn residual_row(name: &str, joint: &JointFit, force: &dyn Fn(String) -> String) -> Vec<String> {
     vec![
         name.to_string(),
         format!("{} ({:.0})", joint.rows, joint.independent),
-        significant(joint.torque, 4),
-        significant(joint.residual, 3),
+        force(significant(joint.torque, 4)),
+        force(significant(joint.residual, 3)),
         percent(joint.relative()),
         percent(joint.outliers),
     ]

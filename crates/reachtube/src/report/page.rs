@@ -1,6 +1,7 @@
 //! The contents of a page: verdict, figures, uncertainty sets, settings, and what they mean.
 
 use super::suite_figure::SuiteFigure;
+use reachtube_robot::JointKind;
 
 /// A closed interval `[lower, upper]`, in the unit that the field holding it names.
 pub type Bounds = [f64; 2];
@@ -55,13 +56,14 @@ pub struct SetsTable {
 pub struct JointSets {
     /// The joint's name.
     pub joint: String,
-    /// Initial position set X0 \[rad\].
+    /// The joint's kind, from which the units follow.
+    pub kind: JointKind,
+    /// Initial position set X0 \[rad; m for a prismatic joint\].
     pub x0_q: Bounds,
-    /// Initial velocity set X0 \[rad/s\].
+    /// Initial velocity set X0 \[rad/s; m/s\].
     pub x0_qd: Bounds,
-    /// Input set U \[N m\].
+    /// Input set U \[N m; N\].
     pub u: Bounds,
-    /// Measurement noise V of position \[rad\] and velocity \[rad/s\]; `None` where no noise was
-    /// modelled.
+    /// Measurement noise V of position and velocity; `None` where no noise was modelled.
     pub noise: Option<[Bounds; 2]>,
 }

@@ -3,6 +3,7 @@
 use super::page::{JointSets, Page, SetsTable, Verdict};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 use reachtube_conform::Side;
+use reachtube_robot::JointKind;
 
 /// Returns a suite of sine motions with three runs, two bands, and two tight spots.
 pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
@@ -30,6 +31,7 @@ pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
     SuiteFigure {
         suite: name.into(),
         joints: (1..=joints).map(|joint| format!("joint {joint}")).collect(),
+        kinds: vec![JointKind::Revolute; joints],
         band: band("position and velocity conformant", 0.01, 0.05),
         inner: Some(band("position conformant", 0.005, 0.045)),
         runs: (1..=3).map(run).collect(),
@@ -56,6 +58,7 @@ fn wave(times: &[f64], state: usize) -> Vec<f64> {
 pub(super) fn sets(joints: usize) -> SetsTable {
     let row = |joint| JointSets {
         joint: format!("joint {joint}"),
+        kind: JointKind::Revolute,
         x0_q: [-0.0030, 0.0030],
         x0_qd: [-0.0317, 1.2140],
         u: [-2.7201, 3.6017],

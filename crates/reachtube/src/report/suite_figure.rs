@@ -1,17 +1,20 @@
 //! The contents of a figure: one test suite with its reachable set, its runs, and its tight spots.
 
 use reachtube_conform::Side;
+use reachtube_robot::JointKind;
 
 /// One test suite: the reachable set, its runs, and the samples that touch the set.
 ///
-/// States are ordered q1..qn \[rad\], then q̇1..q̇n \[rad/s\]; a table of states has the shape
-/// `[2n][times]`.
+/// States are ordered q1..qn \[rad; m for prismatic joints\], then q̇1..q̇n \[rad/s; m/s\]; a table
+/// of states has the shape `[2n][times]`.
 #[derive(Debug, Clone, Default)]
 pub struct SuiteFigure {
     /// The suite's name.
     pub suite: String,
     /// Names of the n joints.
     pub joints: Vec<String>,
+    /// Kinds of the joints; an empty list stands for revolute joints.
+    pub kinds: Vec<JointKind>,
     /// Times of the bands and of the nominal solution \[s\], strictly increasing, at least two.
     pub times: Vec<f64>,
     /// The reachable set, drawn light grey.
@@ -110,8 +113,17 @@ impl SuiteFigure {
         format!("{}, {quantity}", self.joints[state % n])
     }
 
+    /// Returns the unit that the positions or the velocities of all joints share, for the quantity
+    /// of a state.
+    pub(super) fn shared_unit(&self, state: usize) -> Option<&'static str> {
+        let shared = self.kinds.iter().all(|kind| *kind == self.kinds[0]);
+        shared.then(|| self.state_unit(state))
+    }
+
     /// Returns the unit of a state.
     pub(super) fn state_unit(&self, state: usize) -> &'static str {
-        if state < self.joints.len() { "rad" } else { "rad/s" }
+        let n = self.joints.len();
+        let kind = self.kinds.get(state % n).copied().unwrap_or_default();
+        if state < n { kind.position_unit() } else { kind.velocity_unit() }
     }
 }

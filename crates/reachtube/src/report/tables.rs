@@ -5,8 +5,10 @@ use super::skeleton::wide_table;
 use super::suite_figure::{SuiteFigure, TightSpot};
 use super::text::Text;
 use crate::number::{column_decimals, outward, significant};
+use crate::units::ColumnUnit;
 use maud::{Markup, PreEscaped, html};
 use reachtube_conform::Side;
+use reachtube_robot::JointKind;
 
 /// A column of a table of sets.
 struct Column {
@@ -14,7 +16,7 @@ struct Column {
     set: &'static str,
     /// The quantity.
     quantity: &'static str,
-    unit: &'static str,
+    unit: ColumnUnit,
     /// One interval per joint.
     intervals: Vec<Bounds>,
 }
@@ -22,8 +24,7 @@ struct Column {
 /// Returns the uncertainty sets per joint, as Table II.
 pub(super) fn sets(table: &SetsTable) -> Markup {
     let columns = columns(table);
-    let cells: Vec<Vec<Markup>> =
-        columns.iter().map(|column| interval_cells(&column.intervals)).collect();
+    let cells: Vec<Vec<Markup>> = columns.iter().map(interval_cells).collect();
     let head = html! {
         th scope="col" { "Joint" }
         @for column in &columns { (column_head(column)) }
@@ -40,20 +41,23 @@ pub(super) fn sets(table: &SetsTable) -> Markup {
 }
 
 fn columns(table: &SetsTable) -> Vec<Column> {
+    let kinds: Vec<_> = table.joints.iter().map(|joint| joint.kind).collect();
     let column = |set, quantity, unit, pick: fn(&JointSets) -> Bounds| Column {
         set,
         quantity,
-        unit,
+        unit: ColumnUnit::new(&kinds, unit),
         intervals: table.joints.iter().map(pick).collect(),
     };
     let mut columns = vec![
-        column("X<sub>0</sub>", ": q", "rad", |joint| joint.x0_q),
-        column("X<sub>0</sub>", ": q̇", "rad/s", |joint| joint.x0_qd),
-        column("U", "", "N m", |joint| joint.u),
+        column("X<sub>0</sub>", ": q", JointKind::position_unit, |joint| joint.x0_q),
+        column("X<sub>0</sub>", ": q̇", JointKind::velocity_unit, |joint| joint.x0_qd),
+        column("U", "", JointKind::force_unit, |joint| joint.u),
     ];
     if table.joints.iter().any(|joint| joint.noise.is_some()) {
-        columns.push(column("V", ": q", "rad", |joint| joint.noise.unwrap_or_default()[0]));
-        columns.push(column("V", ": q̇", "rad/s", |joint| joint.noise.unwrap_or_default()[1]));
+        let position = |joint: &JointSets| joint.noise.unwrap_or_default()[0];
+        let velocity = |joint: &JointSets| joint.noise.unwrap_or_default()[1];
+        columns.push(column("V", ": q", JointKind::position_unit, position));
+        columns.push(column("V", ": q̇", JointKind::velocity_unit, velocity));
     }
     columns
 }
@@ -61,7 +65,8 @@ fn columns(table: &SetsTable) -> Vec<Column> {
 fn column_head(column: &Column) -> Markup {
     html! {
         th scope="col" {
-            (PreEscaped(column.set)) (column.quantity) " " (unit(column.unit))
+            (PreEscaped(column.set)) (column.quantity)
+            @if let Some(shared) = column.unit.shared() { " " (unit(shared)) }
         }
     }
 }
@@ -72,19 +77,21 @@ fn unit(unit: &str) -> Markup {
 
 /// Returns the cells of a column: each interval in digits, and as a bar on the scale of the
 /// column's largest bound.
-fn interval_cells(column: &[Bounds]) -> Vec<Markup> {
-    let decimals = column_decimals(column);
+fn interval_cells(column: &Column) -> Vec<Markup> {
+    let intervals = &column.intervals;
+    let decimals = column_decimals(intervals);
     let largest =
-        column.iter().flatten().fold(f64::MIN_POSITIVE, |most, bound| most.max(bound.abs()));
-    let cell = |bounds: &Bounds| {
+        intervals.iter().flatten().fold(f64::MIN_POSITIVE, |most, bound| most.max(bound.abs()));
+    let cell = |(joint, bounds): (usize, &Bounds)| {
         let [lower, upper] = outward(*bounds, decimals);
+        let text = column.unit.cell(joint, format!("[{lower}, {upper}]"));
         let [from, to] = bounds.map(|bound| 50.0 + 50.0 * bound / largest);
         let bar = format!("left:{from:.1}%;width:{:.1}%", to - from);
         html! {
-            td { "[" (lower) ", " (upper) "]" span.bar { i style=(bar) {} } }
+            td { (text) span.bar { i style=(bar) {} } }
         }
     };
-    column.iter().map(cell).collect()
+    intervals.iter().enumerate().map(cell).collect()
 }
 
 /// Returns the tight spots of all suites, in the order given.
@@ -162,6 +169,17 @@ mod tests {
         assert_eq!(html.matches("<td>[-2.7201, 3.6017]").count(), 3);
         assert_eq!(html.matches("scope=\"row\"").count(), 3);
         assert!(html.contains("V: q ") && html.contains("[N m]"));
+    }
+
+    #[test]
+    fn sets_of_a_scara_print_the_unit_of_each_joint() {
+        let mut table = sample::sets(3);
+        table.joints[1].kind = JointKind::Prismatic;
+        let html = sets(&table).into_string();
+        for part in ["[-2.7201, 3.6017] N m<", "[-2.7201, 3.6017] N<", "] rad<", "] m<", "] m/s<"] {
+            assert!(html.contains(part), "{part} is not in {html}");
+        }
+        assert!(!html.contains("[N m]") && !html.contains("[rad]"));
     }
 
     #[test]

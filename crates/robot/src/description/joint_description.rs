@@ -6,6 +6,7 @@ use crate::friction::viscous::Viscous;
 use crate::inertia::LinkInertia;
 use crate::joint::Joint;
 use crate::joint_geometry::JointGeometry;
+use crate::joint_kind::JointKind;
 use crate::placement::Placement;
 use core::f64::consts::PI;
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -32,9 +33,9 @@ pub struct Dh {
     pub a: f64,
     /// Link twist \[rad\].
     pub alpha: f64,
-    /// Joint offset added to q \[rad\].
+    /// Joint offset added to q \[rad\]; the constant angle of a prismatic joint.
     pub theta: f64,
-    /// Link offset \[m\].
+    /// Link offset \[m\]; q of a prismatic joint is added to it.
     pub d: f64,
 }
 
@@ -81,23 +82,27 @@ pub struct GravityMoments {
 #[serde(deny_unknown_fields)]
 pub struct FrictionDescription {
     /// Coulomb coefficients a1 to a8: offset \[N m\] and slope of driving forward, driving
-    /// backward, braking backward, braking forward.
+    /// backward, braking backward, braking forward. Offsets of a prismatic joint are in N.
     #[serde(default)]
     pub coulomb: [f64; 8],
-    /// Viscous coefficients v1 \[N m s/rad\], v2 \[N m s²/rad²\], v3 \[N m s³/rad³\].
+    /// Viscous coefficients v1 \[N m s/rad\], v2 \[N m s²/rad²\], v3 \[N m s³/rad³\]; \[N s/m\],
+    /// \[N s²/m²\], \[N s³/m³\] for a prismatic joint.
     #[serde(default)]
     pub viscous: [f64; 3],
 }
 
 /// A joint and the link that it moves.
 ///
-/// The link's frame is the joint frame rotated by q (`placement`), or the Denavit-Hartenberg frame
+/// The link's frame is the joint frame moved by q (`placement`), or the Denavit-Hartenberg frame
 /// of the link (`dh`).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointDescription {
     /// The joint's name, unique in the robot.
     pub name: String,
+    /// Kind of the joint, `revolute` or `prismatic`; the default is `revolute`.
+    #[serde(default, rename = "type", skip_serializing_if = "JointKind::is_revolute")]
+    pub kind: JointKind,
     /// Geometry as Denavit-Hartenberg parameters, in place of `placement` and `axis`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dh: Option<Dh>,
@@ -125,19 +130,21 @@ pub struct JointDescription {
     /// Mass moments for gravity, in place of `mass` and `com`; either all joints have them or none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_moments: Option<GravityMoments>,
-    /// Gear ratio k_r (dimensionless).
+    /// Gear ratio k_r (dimensionless; rad/m for a prismatic joint).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gear_ratio: Option<f64>,
     /// Rotor inertia I_m on the motor side \[kg m²\]; the armature is k_r² I_m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotor_inertia: Option<f64>,
-    /// Motor inertia on the link side \[kg m²\], in place of `rotor_inertia`; the default is 0.
+    /// Motor inertia on the link side \[kg m²; kg for a prismatic joint\], in place of
+    /// `rotor_inertia`; the default is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub armature: Option<f64>,
-    /// Lowest and highest position \[rad\]; the default is ±pi.
+    /// Lowest and highest position \[rad; m\]; the default is ±pi. A prismatic joint has no
+    /// default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub position_limits: Option<[f64; 2]>,
-    /// Highest speed \[rad/s\]; unknown by default.
+    /// Highest speed \[rad/s; m/s\]; unknown by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub velocity_limit: Option<f64>,
     /// Friction; the default is none.
@@ -218,6 +225,7 @@ impl JointDescription {
         let geared = self.gear_ratio.unwrap_or(1.0).powi(2) * self.rotor_inertia.unwrap_or(0.0);
         Joint {
             name: self.name.clone(),
+            kind: self.kind,
             position_limits: self.position_limits.unwrap_or([-PI, PI]),
             velocity_limit: self.velocity_limit,
             gear_ratio: self.gear_ratio,
@@ -229,8 +237,8 @@ impl JointDescription {
         }
     }
 
-    /// Sets the motor inertia on the link side \[kg m²\]. A description by rotor inertia and gear
-    /// ratio keeps this form.
+    /// Sets the motor inertia on the link side \[kg m²; kg\]. A description by rotor inertia and
+    /// gear ratio keeps this form.
     pub(crate) fn set_armature(&mut self, armature: f64) {
         match (self.rotor_inertia, self.gear_ratio) {
             (Some(_), Some(ratio)) if ratio != 0.0 => {

@@ -1,12 +1,14 @@
 //! The description of a robot.
 
 use super::joint_description::{Convention, JointDescription};
+use crate::joint_kind::JointKind;
+use crate::lock::LockedJoint;
 use serde::{Deserialize, Serialize};
 
 /// The version of the format that this crate writes, and the only one that it reads.
 pub const SCHEMA_VERSION: u32 = 1;
 
-/// The description of a robot in SI units (m, rad, kg, s, N m), with the structure of the TOML
+/// The description of a robot in SI units (m, rad, kg, s, N, N m), with the structure of the TOML
 /// format.
 ///
 /// # Examples
@@ -44,9 +46,20 @@ pub struct RobotDescription {
     /// Gravitational acceleration in the base frame \[m/s²\]; the default is 9.81 m/s² along -z.
     #[serde(default = "earth_gravity")]
     pub gravity: [f64; 3],
+    /// Joints that are held at a position, whose links belong to the links that carry them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub locked: Vec<LockedJoint>,
     /// The joints from base to tip, each with the link it moves.
     #[serde(rename = "joint")]
     pub joints: Vec<JointDescription>,
+}
+
+impl RobotDescription {
+    /// Returns the kinds of the joints from base to tip.
+    #[must_use]
+    pub fn kinds(&self) -> Vec<JointKind> {
+        self.joints.iter().map(|joint| joint.kind).collect()
+    }
 }
 
 fn earth_gravity() -> [f64; 3] {

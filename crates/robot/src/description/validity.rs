@@ -3,6 +3,7 @@
 use super::joint_description::{InertiaPoint, JointDescription};
 use super::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
 use crate::inertia::LinkInertia;
+use crate::joint_kind::JointKind;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashSet;
 
@@ -168,7 +169,7 @@ fn check_drive(joint: &JointDescription) -> Checked {
         require(
             value >= 0.0 || key == "gear_ratio",
             key,
-            "give a motor inertia of at least 0 kg m²",
+            "give a motor inertia of at least 0",
             || format!("{key} = {value} is negative"),
         )?;
     }
@@ -177,17 +178,24 @@ fn check_drive(joint: &JointDescription) -> Checked {
 }
 
 fn check_limits(joint: &JointDescription) -> Checked {
+    let (unit, kind) = (joint.kind.position_unit(), joint.kind);
+    require(
+        joint.position_limits.is_some() || kind == JointKind::Revolute,
+        "name",
+        "give the lowest and the highest position in m",
+        || "the joint is prismatic and has no position limits".into(),
+    )?;
     let [low, high] = joint.position_limits.unwrap_or([0.0, 1.0]);
     finite("position_limits", &[low, high])?;
     require(low < high, "position_limits", "give the lower limit first", || {
         format!(
-            "position_limits [{low}, {high}] rad: the lower limit is not less than the upper one"
+            "position_limits [{low}, {high}] {unit}: the lower limit is not less than the upper one"
         )
     })?;
     let speed = joint.velocity_limit.unwrap_or(1.0);
     finite("velocity_limit", &[speed])?;
     require(speed > 0.0, "velocity_limit", "give a positive speed", || {
-        format!("velocity_limit = {speed} rad/s is not positive")
+        format!("velocity_limit = {speed} {} is not positive", kind.velocity_unit())
     })
 }
 

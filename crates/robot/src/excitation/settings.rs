@@ -26,12 +26,12 @@ pub struct ExcitationSettings {
     pub from_rest: bool,
     /// Fraction of the position and velocity limits that the motion may use, up to 1.
     pub margin: f64,
-    /// Highest speed \[rad/s\] of joints without a velocity limit.
+    /// Highest speed \[rad/s; m/s\] of joints without a velocity limit.
     pub speed: f64,
-    /// Highest acceleration \[rad/s²\]: one entry per joint, one for all joints, or empty for no
-    /// limit.
+    /// Highest acceleration \[rad/s²; m/s²\]: one entry per joint, one for all joints, or empty for
+    /// no limit.
     pub acceleration: Vec<f64>,
-    /// Standard deviation of the torque noise \[N m\]: one entry per joint, or empty for 1 N m.
+    /// Standard deviation of the torque noise \[N m; N\]: one entry per joint, or empty for 1.
     pub torque_noise: Vec<f64>,
     /// Number of searches, each of which starts at a random motion.
     pub starts: usize,
@@ -87,7 +87,7 @@ impl ExcitationSettings {
             ),
             (
                 !positive(self.speed),
-                format!("speed = {} rad/s is not positive; give a positive speed", self.speed),
+                format!("speed = {} is not positive; give a positive speed", self.speed),
             ),
             (
                 self.starts == 0 || self.trials == 0,
@@ -99,7 +99,7 @@ impl ExcitationSettings {
             (
                 !fits(&self.acceleration, true) || !self.acceleration.iter().all(|a| positive(*a)),
                 format!(
-                    "acceleration = {:?} rad/s² does not fit; give no limit, one for all joints, \
+                    "acceleration = {:?} does not fit; give no limit, one for all joints, \
                      or {joints}, all positive",
                     self.acceleration
                 ),
@@ -107,7 +107,7 @@ impl ExcitationSettings {
             (
                 !fits(&self.torque_noise, false) || !self.torque_noise.iter().all(|s| positive(*s)),
                 format!(
-                    "torque_noise = {:?} N m does not fit; give no standard deviation or {joints}, \
+                    "torque_noise = {:?} does not fit; give no standard deviation or {joints}, \
                      all positive",
                     self.torque_noise
                 ),

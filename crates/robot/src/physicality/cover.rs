@@ -1,16 +1,18 @@
 //! Proof that the mass matrix is positive definite over the position limits, by branch and bound.
 
+use crate::joint_kind::JointKind;
 use crate::ltdl;
 use crate::robot::Robot;
 use crate::workspace::Workspace;
 use reachtube_scalar::Interval;
 
-/// Width \[rad\] below which a joint's interval is not bisected further.
+/// Width \[rad; m\] below which a joint's interval is not bisected further.
 const LEAST_WIDTH: f64 = 1e-6;
 
 /// A box of positions with enclosures of their sines and cosines.
 #[derive(Clone)]
 struct PositionBox {
+    kinds: Vec<JointKind>,
     q: Vec<Interval>,
     sin: Vec<Interval>,
     cos: Vec<Interval>,
@@ -20,7 +22,7 @@ impl PositionBox {
     /// Sets the interval of one joint.
     fn set(&mut self, joint: usize, q: Interval) {
         self.q[joint] = q;
-        (self.sin[joint], self.cos[joint]) = q.sin_cos();
+        (self.sin[joint], self.cos[joint]) = self.kinds[joint].sin_cos(&q);
     }
 
     /// Returns the two halves along one joint.
@@ -87,8 +89,8 @@ impl Robot {
         let limits = self.joints.iter().map(|j| j.position_limits);
         let q: Vec<_> =
             limits.map(|[low, high]| Interval::point(low).hull(Interval::point(high))).collect();
-        let (sin, cos) = q.iter().map(|q| q.sin_cos()).unzip();
-        PositionBox { q, sin, cos }
+        let (sin, cos) = self.sin_cos(&q);
+        PositionBox { kinds: self.kinds(), q, sin, cos }
     }
 }
 
@@ -127,7 +129,8 @@ impl<'a> Cover<'a> {
     fn slack(&mut self, positions: &PositionBox) -> f64 {
         let n = positions.q.len();
         self.robot.crba(&positions.sin, &positions.cos, &mut self.ws, &mut self.m);
-        let (sin, cos): (Vec<_>, Vec<_>) = positions.q.iter().map(|q| q.mid().sin_cos()).unzip();
+        let middle: Vec<_> = positions.q.iter().map(|q| q.mid()).collect();
+        let (sin, cos) = self.robot.sin_cos(&middle);
         self.robot.crba(&sin, &cos, &mut self.centre_ws, &mut self.centre);
         ltdl::factor(&mut self.centre, n);
         if !whitening(&self.centre, &mut self.w, n) {

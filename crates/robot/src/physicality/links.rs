@@ -2,6 +2,7 @@
 
 use super::outcome::Physicality;
 use crate::error::RobotError;
+use crate::joint_kind::JointKind;
 use crate::link::Link;
 use crate::ltdl;
 use crate::robot::Robot;
@@ -47,7 +48,11 @@ impl Robot {
     fn least_pivot_of_links(&self) -> Option<f64> {
         let own_inertia = |link: &Link| {
             let [xx, _, _, yy, ..] = link.second_moments.map(Interval::point);
-            (xx + yy + Interval::point(link.armature)).lo()
+            let own = match link.kind {
+                JointKind::Revolute => xx + yy,
+                JointKind::Prismatic => Interval::point(link.mass),
+            };
+            (own + Interval::point(link.armature)).lo()
         };
         let bodies = self.links.iter().all(is_body);
         let least = self.links.iter().map(own_inertia).fold(f64::INFINITY, f64::min);

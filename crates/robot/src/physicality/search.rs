@@ -8,8 +8,8 @@ use crate::workspace::Workspace;
 
 /// Number of positions that the search samples before the descents.
 const SAMPLES: usize = 20_000;
-/// Number of sweeps over the joints in each descent. The step shrinks from 0.5 rad by a factor 0.7
-/// per sweep to about 1e-4 rad.
+/// Number of sweeps over the joints in each descent. The step shrinks from 0.5 rad (or m) by a
+/// factor 0.7 per sweep to about 1e-4 rad.
 const SWEEPS: usize = 24;
 
 impl Robot {
@@ -116,8 +116,10 @@ impl<'a> Probe<'a> {
             Some(joint) => Err(RobotError::NotPhysical {
                 robot: self.robot.name().into(),
                 joint: self.robot.joints[joint].name.clone(),
+                kind: self.robot.joints[joint].kind,
                 pivot: self.pivots[joint],
                 q: q.to_vec(),
+                kinds: self.robot.kinds(),
             }),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::document::{Tree, TreeJoint, element};
 use crate::error::RobotError;
+use std::collections::BTreeSet;
 
 /// The joints from base to tip.
 pub(super) struct Chain<'a> {
@@ -38,9 +39,10 @@ impl<'a> Tree<'a> {
         }
         if joints.iter().all(|k| self.joints[*k].is_fixed()) {
             let problem = format!("there is no moving joint between base `{base}` and tip `{tip}`");
-            return Err(
-                self.robot_error(problem, "name the two ends of a chain with revolute joints")
-            );
+            return Err(self.robot_error(
+                problem,
+                "name the two ends of a chain with revolute or prismatic joints",
+            ));
         }
         joints.iter().try_for_each(|k| self.check_joint(&self.joints[*k]))?;
         Ok(Chain { base, joints })
@@ -97,14 +99,67 @@ impl<'a> Tree<'a> {
         Err(match names.len() {
             0 => self.robot_error(
                 "the robot has no moving link".into(),
-                "give a robot with revolute joints",
+                "give a robot with a revolute or prismatic joint that is not locked",
             ),
             _ => self.robot_error(
-                format!("the tip is ambiguous: {} carry no other moving link", names.join(", ")),
-                "choose one as the tip, in the program or as `tip = \"...\"` in a TOML file beside \
-                 the URDF",
+                format!(
+                    "the robot branches, and the tip is ambiguous: {} carry no other moving link",
+                    names.join(", ")
+                ),
+                &format!(
+                    "lock the joints of all branches but one, for example {}; or choose the tip as \
+                     `tip = \"...\"` in a TOML file beside the URDF",
+                    self.lock_options(self.branch_joints(&candidates))
+                ),
             ),
         })
+    }
+
+    /// Returns independent joints that leave one branch when they are locked, for the candidates of
+    /// the tip.
+    ///
+    /// The branch with the most joints of its own is kept, if it has two or more. Otherwise, as for
+    /// the fingers of a gripper, only the joints that carry all branches are kept.
+    fn branch_joints(&self, candidates: &[&'a str]) -> BTreeSet<usize> {
+        let moving = |tip: &&'a str| -> BTreeSet<usize> {
+            self.above(tip).filter(|k| !self.joints[*k].is_fixed()).collect()
+        };
+        let paths: Vec<_> = candidates.iter().map(moving).collect();
+        let independent =
+            |path: &BTreeSet<usize>| path.iter().map(|k| self.independent(*k)).collect();
+        let leaders: Vec<BTreeSet<usize>> = paths.iter().map(independent).collect();
+        let own = |i: usize| {
+            let elsewhere =
+                |k: &&usize| (0..leaders.len()).any(|j| j != i && leaders[j].contains(k));
+            leaders[i].iter().filter(|k| !elsewhere(k)).count()
+        };
+        let longest = (0..leaders.len()).rev().max_by_key(|i| own(*i)).filter(|i| own(*i) >= 2);
+        let trunk = || paths.iter().skip(1).fold(paths[0].clone(), |all, path| &all & path);
+        let kept = longest.map_or_else(trunk, |i| leaders[i].clone());
+        leaders.iter().flatten().filter(|k| !kept.contains(k)).copied().collect()
+    }
+
+    /// Makes the error for a joint that branches off the chain at a moving link.
+    pub fn branch_error(&self, joint: &TreeJoint<'a>, link: &str, chain: &Chain) -> RobotError {
+        let is_branch = |k: &usize| {
+            !self.joints[*k].is_fixed()
+                && !chain.joints.contains(k)
+                && self.above(self.joints[*k].child).any(|j| chain.joints.contains(&j))
+        };
+        let branches = (0..self.joints.len()).filter(is_branch);
+        let all: BTreeSet<_> = branches.map(|k| self.independent(k)).collect();
+        let remedy = match joint.leader() {
+            Some(leader) if all.iter().any(|k| chain.joints.contains(k)) => format!(
+                "it mimics `{leader}` of the chain, but a robot here has independent joints; \
+                 lock `{leader}`, or make the joint fixed"
+            ),
+            _ => format!("lock the joints of the branches: {}", self.lock_options(all)),
+        };
+        let problem = format!(
+            "the chain branches: this {} joint is carried by the moving link `{link}`",
+            joint.kind
+        );
+        self.error(joint.node, problem, &remedy)
     }
 
     /// Makes an error for the robot as a whole.
@@ -127,14 +182,27 @@ impl<'a> Tree<'a> {
 
     /// Checks that the chain can contain a joint.
     fn check_joint(&self, joint: &TreeJoint<'a>) -> Result<(), RobotError> {
-        let remedy = "only revolute, continuous and fixed joints are supported; make the joint \
-                      fixed, or choose base and tip so that it is not between them";
-        if !matches!(joint.kind, "revolute" | "continuous" | "fixed") {
-            return Err(self.error(joint.node, format!("the joint is {}", joint.kind), remedy));
+        if joint.is_fixed() {
+            return Ok(());
+        }
+        if joint.motion().is_none() {
+            return Err(self.error(
+                joint.node,
+                format!("the joint is {}", joint.kind),
+                "only revolute, continuous, prismatic and fixed joints are supported; make the \
+                 joint fixed, or choose base and tip so that it is not between them",
+            ));
         }
         element(joint.node, "mimic").map_or(Ok(()), |mimic| {
-            let leader = mimic.attribute("joint").unwrap_or("another");
-            Err(self.error(mimic, format!("the joint mimics `{leader}`"), remedy))
+            let leader = joint.leader().unwrap_or_default();
+            Err(self.error(
+                mimic,
+                format!("the joint mimics `{leader}`, which moves"),
+                &format!(
+                    "the joints of a robot here are independent; lock `{leader}` with --lock, or \
+                     make this joint fixed"
+                ),
+            ))
         })
     }
 }

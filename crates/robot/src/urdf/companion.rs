@@ -3,10 +3,12 @@
 use crate::description::joint_description::{FrictionDescription, JointDescription};
 use crate::description::robot_description::{ParameterSet, RobotDescription};
 use crate::error::RobotError;
+use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
-/// Ends of the chain, gravity, and motors and friction of joints. Each value overrides that of the
-/// URDF.
+/// Ends of the chain, locked joints, gravity, and motors and friction of joints. Each value
+/// overrides that of the URDF.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Companion {
@@ -16,6 +18,9 @@ pub(super) struct Companion {
     pub base: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tip: Option<String>,
+    /// Positions of locked joints \[rad; m\] by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    lock: BTreeMap<String, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     gravity: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,6 +60,13 @@ impl Companion {
         Ok(Self { origin: origin.into(), ..companion })
     }
 
+    /// Returns the locks of the companion and `given`, which override them.
+    pub fn locks(&self, given: &[Lock]) -> Vec<Lock> {
+        let own = self.lock.iter().filter(|(name, _)| given.iter().all(|l| l.joint != **name));
+        let own = own.map(|(name, &position)| Lock { joint: name.clone(), position });
+        own.chain(given.iter().cloned()).collect()
+    }
+
     /// Writes the values into a description.
     pub fn apply(&self, description: &mut RobotDescription) -> Result<(), RobotError> {
         description.gravity = self.gravity.unwrap_or(description.gravity);
@@ -78,6 +90,7 @@ impl Companion {
         description: &RobotDescription,
         base: Option<String>,
         tip: Option<String>,
+        locks: &[Lock],
     ) -> Self {
         let drive = |j: &JointDescription| Drive {
             name: j.name.clone(),
@@ -90,6 +103,7 @@ impl Companion {
             origin: String::new(),
             base,
             tip,
+            lock: locks.iter().map(|lock| (lock.joint.clone(), lock.position)).collect(),
             gravity: Some(description.gravity),
             parameters: Some(description.parameters),
             joints: description.joints.iter().map(drive).collect(),

@@ -32,7 +32,7 @@ impl<'a> Tree<'a> {
         for &k in &chain.joints {
             let joint = &self.joints[k];
             if joint.is_fixed() {
-                let placement = self.placement_of(joint.node)?;
+                let placement = self.placement_when_held(joint)?;
                 fixed = Some(fixed.map_or_else(|| placement.clone(), |f| f.then(&placement)));
                 continue;
             }
@@ -47,18 +47,19 @@ impl<'a> Tree<'a> {
             parameters: ParameterSet::Physical,
             convention: Convention::Standard,
             gravity: self.gravity(chain.base)?,
+            locked: self.locked(),
             joints,
         };
         Ok((description, moved))
     }
 
     /// Returns Earth's gravity along -z of the root in the base frame, with the joints between root
-    /// and base at zero.
+    /// and base locked or at zero.
     fn gravity(&self, base: &'a str) -> Result<[f64; 3], RobotError> {
         let mut gravity = Vector3::new(0.0, 0.0, -9.81);
         let joints: Vec<_> = self.above(base).collect();
         for k in joints.into_iter().rev() {
-            gravity = self.placement_of(self.joints[k].node)?.rotation.transpose() * gravity;
+            gravity = self.placement_when_held(&self.joints[k])?.rotation.transpose() * gravity;
         }
         Ok(gravity.into())
     }
@@ -83,18 +84,9 @@ impl<'a> Tree<'a> {
             for k in self.below(name) {
                 let joint = &self.joints[k];
                 if joint.is_fixed() {
-                    open.push((joint.child, placement.then(&self.placement_of(joint.node)?)));
+                    open.push((joint.child, placement.then(&self.placement_when_held(joint)?)));
                 } else if !chain.joints.contains(&k) {
-                    return Err(self.error(
-                        joint.node,
-                        format!(
-                            "the chain branches: this {} joint is carried by the moving link \
-                             `{link}`",
-                            joint.kind
-                        ),
-                        "only serial chains are supported; make the joint fixed, or remove the \
-                         branch",
-                    ));
+                    return Err(self.branch_error(joint, link, chain));
                 }
             }
         }
@@ -145,15 +137,14 @@ impl<'a> Tree<'a> {
                 }
             }
         };
-        let axis =
-            element(joint.node, "axis").map(|node| self.triple(node, "xyz")).transpose()?.flatten();
         let (mass, com, inertia) = lump(bodies);
         let (position_limits, velocity_limit) = self.limits(joint)?;
         let (gear_ratio, rotor_inertia) = self.motor(joint)?;
         Ok(JointDescription {
             name: joint.name.into(),
+            kind: joint.motion().unwrap_or_default(),
             placement: Some(placement),
-            axis: Some(axis.unwrap_or([1.0, 0.0, 0.0])),
+            axis: Some(self.axis_of(joint)?),
             mass,
             com: Some(com),
             inertia,
@@ -169,12 +160,15 @@ impl<'a> Tree<'a> {
 
     /// Returns position and velocity limits. Zeros are fields that an exporter left empty, and mean
     /// no limit.
-    fn limits(&self, joint: &TreeJoint<'a>) -> Result<(Option<[f64; 2]>, Option<f64>), RobotError> {
+    pub fn limits(
+        &self,
+        joint: &TreeJoint<'a>,
+    ) -> Result<(Option<[f64; 2]>, Option<f64>), RobotError> {
         let Some(limit) = element(joint.node, "limit") else { return Ok((None, None)) };
         let [low, high] = [self.number(limit, "lower")?, self.number(limit, "upper")?]
             .map(Option::unwrap_or_default);
         let position =
-            (joint.kind == "revolute" && (low, high) != (0.0, 0.0)).then_some([low, high]);
+            (joint.kind != "continuous" && (low, high) != (0.0, 0.0)).then_some([low, high]);
         Ok((position, self.number(limit, "velocity")?.filter(|v| *v != 0.0)))
     }
 
@@ -245,14 +239,9 @@ fn lump(bodies: &[(Placement, Body)]) -> (f64, [f64; 3], [f64; 6]) {
             (body.mass, body.frame.translation.into(), body.inertia)
         }
         _ => {
-            let mut whole = LinkInertia::about_origin(0.0, Vector3::zeros(), &Matrix3::zeros());
-            for (placement, body) in bodies {
-                let part = body.in_link(placement);
-                whole.mass += part.mass;
-                whole.first_moment += part.first_moment;
-                whole.second_moments += part.second_moments;
-            }
-            whole.about_own_com()
+            let none = LinkInertia::about_origin(0.0, Vector3::zeros(), &Matrix3::zeros());
+            let parts = bodies.iter().map(|(placement, body)| body.in_link(placement));
+            parts.fold(none, |whole, part| whole.plus(&part)).about_own_com()
         }
     }
 }

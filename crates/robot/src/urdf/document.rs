@@ -25,11 +25,14 @@ pub(super) struct TreeJoint<'a> {
     pub kind: &'a str,
     pub parent: &'a str,
     pub child: &'a str,
+    /// Position at which the joint is locked \[rad; m\].
+    pub locked: Option<f64>,
 }
 
 impl TreeJoint<'_> {
+    /// Returns whether the joint does not move: it is fixed or locked.
     pub fn is_fixed(&self) -> bool {
-        self.kind == "fixed"
+        self.kind == "fixed" || self.locked.is_some()
     }
 }
 
@@ -98,8 +101,8 @@ impl<'a> Tree<'a> {
         for node in elements(root, "joint") {
             let link = |tag| self.attribute(self.child(node, tag)?, "link");
             let (name, kind) = (self.attribute(node, "name")?, self.attribute(node, "type")?);
-            let joint =
-                TreeJoint { node, name, kind, parent: link("parent")?, child: link("child")? };
+            let (parent, child) = (link("parent")?, link("child")?);
+            let joint = TreeJoint { node, name, kind, parent, child, locked: None };
             if joint.parent == "world" {
                 self.links.entry("world").or_insert(None);
             }

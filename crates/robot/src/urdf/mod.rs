@@ -1,10 +1,12 @@
-//! Robots as URDF: reading a serial chain of revolute joints, and writing identified values back.
+//! Robots as URDF: reading a serial chain of revolute and prismatic joints, and writing identified
+//! values back.
 
 mod chain;
 mod companion;
 mod describe;
 mod document;
 mod edit;
+mod hold;
 mod motor;
 pub(crate) mod read;
 mod write;

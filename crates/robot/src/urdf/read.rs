@@ -4,24 +4,28 @@ use super::companion::Companion;
 use super::describe::MovedLink;
 use super::document::{Tree, parse_document};
 use crate::error::RobotError;
+use crate::lock::Lock;
 use crate::robot::Robot;
 use std::path::Path;
 
-/// The ends of the chain that is read from a URDF.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct UrdfEnds {
+/// What is read from a URDF: the ends of the chain, and the joints that do not move.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UrdfOptions {
     /// Link that does not move; the default is the root.
     pub base: Option<String>,
     /// Link at the end of the chain; the default is the only link that moves and carries no other
     /// moving link.
     pub tip: Option<String>,
+    /// Joints that are held at a position. The links that they carry are lumped like links behind
+    /// fixed joints. A joint that mimics one of them is held as well.
+    pub locks: Vec<Lock>,
 }
 
 /// A URDF and the robot read from it. It keeps the text, so that identified values can be written
 /// back.
 ///
-/// - **Chain**: revolute and continuous joints. Links that are fixed to a moving link are lumped
-///   into it; links that do not move are ignored.
+/// - **Chain**: revolute, continuous and prismatic joints. Links that are fixed to a moving link,
+///   or held by a locked joint, are lumped into it; links that do not move are ignored.
 /// - **Gravity**: 9.81 m/s² along -z of the root.
 /// - **Friction**: `<dynamics>` gives viscous and Coulomb friction.
 /// - **Motors**: `mechanicalReduction` (or `gear_ratio`) and `rotor_inertia` of a `<transmission>`,
@@ -31,7 +35,7 @@ pub struct UrdfEnds {
 /// # Examples
 ///
 /// ```
-/// use reachtube_robot::{Urdf, UrdfEnds};
+/// use reachtube_robot::{Urdf, UrdfOptions};
 ///
 /// let text = r#"<robot name="pendulum">
 ///   <link name="base"/>
@@ -43,7 +47,7 @@ pub struct UrdfEnds {
 ///     <parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
 ///   </joint>
 /// </robot>"#;
-/// let urdf = Urdf::parse(text, "pendulum.urdf", &UrdfEnds::default()).unwrap();
+/// let urdf = Urdf::parse(text, "pendulum.urdf", &UrdfOptions::default()).unwrap();
 /// assert!((urdf.robot().mass_matrix(&[0.3])[(0, 0)] - 0.6).abs() < 1e-15);
 /// assert_eq!(urdf.updated(urdf.robot()).unwrap(), text);
 /// ```
@@ -55,6 +59,7 @@ pub struct Urdf {
     /// Base link of the chain.
     pub(super) base: String,
     pub(super) moved: Vec<MovedLink>,
+    pub(super) locks: Vec<Lock>,
     pub(super) robot: Robot,
 }
 
@@ -62,15 +67,15 @@ impl Urdf {
     /// Reads a URDF file and its companion, the TOML file of the same base name beside it.
     ///
     /// The companion is optional. A TOML file with a `schema_version` is a robot of its own and no
-    /// companion. Values of the companion override those of the URDF, and `ends` overrides the ends
-    /// in the companion.
+    /// companion. Values of the companion override those of the URDF, and `options` override those
+    /// of the companion.
     ///
     /// # Errors
     ///
     /// Returns a [`RobotError`] with file, line, element, joint or link, and remedy. The causes are
-    /// XML that is not well-formed, missing links or numbers, branches, and prismatic, planar,
-    /// floating and mimic joints in the chain.
-    pub fn load(path: impl AsRef<Path>, ends: &UrdfEnds) -> Result<Self, RobotError> {
+    /// XML that is not well-formed, missing links or numbers, branches whose joints are not locked,
+    /// and planar joints, floating joints and joints that mimic moving ones in the chain.
+    pub fn load(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Self, RobotError> {
         let path = path.as_ref();
         let read = |path: &Path| {
             std::fs::read_to_string(path)
@@ -83,7 +88,7 @@ impl Urdf {
         } else {
             Companion::default()
         };
-        Self::read(text, &path.display().to_string(), ends, companion)
+        Self::read(text, &path.display().to_string(), options, companion)
     }
 
     /// Reads URDF text; `origin` names it in errors.
@@ -91,8 +96,8 @@ impl Urdf {
     /// # Errors
     ///
     /// Returns the errors of [`Urdf::load`].
-    pub fn parse(text: &str, origin: &str, ends: &UrdfEnds) -> Result<Self, RobotError> {
-        Self::read(text.into(), origin, ends, Companion::default())
+    pub fn parse(text: &str, origin: &str, options: &UrdfOptions) -> Result<Self, RobotError> {
+        Self::read(text.into(), origin, options, Companion::default())
     }
 
     /// Reads URDF text with the TOML text of its companion.
@@ -104,29 +109,31 @@ impl Urdf {
         text: &str,
         origin: &str,
         companion: &str,
-        ends: &UrdfEnds,
+        options: &UrdfOptions,
     ) -> Result<Self, RobotError> {
         let companion = Companion::parse(companion, &format!("{origin} (companion)"))?;
-        Self::read(text.into(), origin, ends, companion)
+        Self::read(text.into(), origin, options, companion)
     }
 
     fn read(
         text: String,
         origin: &str,
-        ends: &UrdfEnds,
+        options: &UrdfOptions,
         companion: Companion,
     ) -> Result<Self, RobotError> {
         let document = parse_document(&text, origin)?;
-        let tree = Tree::new(&document, origin)?;
+        let mut tree = Tree::new(&document, origin)?;
+        let locks = companion.locks(&options.locks);
+        tree.lock(&locks)?;
         let chain = tree.chain(
-            ends.base.as_deref().or(companion.base.as_deref()),
-            ends.tip.as_deref().or(companion.tip.as_deref()),
+            options.base.as_deref().or(companion.base.as_deref()),
+            options.tip.as_deref().or(companion.tip.as_deref()),
         )?;
         let (mut description, moved) = tree.describe(&chain)?;
         companion.apply(&mut description)?;
         let robot = Robot::checked(&description, |value| tree.locate(&moved, value))?;
         let base = chain.base.to_string();
-        Ok(Self { origin: origin.into(), base, moved, robot, text })
+        Ok(Self { origin: origin.into(), base, moved, locks, robot, text })
     }
 
     /// Returns the robot as read.

@@ -49,8 +49,8 @@ impl Urdf {
     /// robot.
     pub fn companion(&self, robot: &Robot) -> String {
         let tip = self.moved.last().map(|m| m.link.clone());
-        let companion =
-            Companion::from_description(robot.description(), Some(self.base.clone()), tip);
+        let base = Some(self.base.clone());
+        let companion = Companion::from_description(robot.description(), base, tip, &self.locks);
         toml::to_string(&companion).expect("numbers and names are valid TOML")
     }
 

@@ -4,7 +4,7 @@ use crate::random::robots_and_states;
 use proptest::prelude::*;
 use reachtube_ode::{Ensemble, Run, VectorField};
 use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
-use reachtube_scalar::{Elementary, Lanes, Lanewise};
+use reachtube_scalar::{Lanes, Lanewise};
 
 /// Returns lanes that hold the numbers scaled and shifted by different amounts.
 fn spread<const N: usize>(x: &[f64]) -> Vec<Lanes<N>> {
@@ -40,7 +40,7 @@ fn same_in_every_lane<const N: usize>(
     state: [&[f64]; 3],
 ) -> Result<(), TestCaseError> {
     let [q, qd, load] = state.map(spread::<N>);
-    let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(|q| q.sin_cos()).unzip();
+    let (sin, cos) = robot.sin_cos(&q);
     let all = dynamics(robot, [&sin, &cos, &qd, &load]);
     for k in 0..N {
         let [sin, cos, qd, load] = [&sin, &cos, &qd, &load].map(|x| lane(x, k));

@@ -2,11 +2,12 @@
 
 use proptest::prelude::*;
 use reachtube_robot::{
-    Dh, InertiaPoint, JointDescription, ParameterSet, PlacementDescription, Robot, RobotDescription,
+    Dh, InertiaPoint, JointDescription, JointKind, ParameterSet, PlacementDescription, Robot,
+    RobotDescription,
 };
 
 /// Makes a joint whose link is a body of four random points, so that its parameters are physical.
-fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
+fn joint(x: Vec<f64>, index: usize, by_dh: bool, kind: JointKind) -> JointDescription {
     let points = x[..12].chunks(3).map(|c| nalgebra::Vector3::new(c[0], c[1], c[2]));
     let mass = 1.0 + x[12].abs();
     let com = points.clone().sum::<nalgebra::Vector3<f64>>() / 4.0;
@@ -23,6 +24,8 @@ fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
     };
     JointDescription {
         name: format!("j{index}"),
+        kind,
+        position_limits: (kind == JointKind::Prismatic).then_some([-1.0, 1.5]),
         dh: by_dh.then_some(Dh { a: x[16], alpha: x[13], theta: x[14], d: x[17] }),
         placement: (!by_dh).then_some(placement),
         axis: (!by_dh).then_some([x[19], x[20], 0.3 + x[21].abs()]),
@@ -35,10 +38,13 @@ fn joint(x: Vec<f64>, index: usize, by_dh: bool) -> JointDescription {
     }
 }
 
-/// Generates robots with 1 to 7 joints and no friction.
+/// Generates robots with 1 to 7 joints of both kinds and no friction.
 pub fn robots() -> impl Strategy<Value = Robot> {
-    let joints =
-        prop::collection::vec((prop::collection::vec(-1.0..1.0f64, 22), any::<bool>()), 1..8);
+    let kinds = prop_oneof![2 => Just(JointKind::Revolute), 1 => Just(JointKind::Prismatic)];
+    let joints = prop::collection::vec(
+        (prop::collection::vec(-1.0..1.0f64, 22), any::<bool>(), kinds),
+        1..8,
+    );
     (joints, prop::array::uniform3(-10.0..10.0f64)).prop_map(|(joints, gravity)| {
         let description = RobotDescription {
             schema_version: 1,
@@ -46,10 +52,11 @@ pub fn robots() -> impl Strategy<Value = Robot> {
             parameters: ParameterSet::Physical,
             convention: Default::default(),
             gravity,
+            locked: Vec::new(),
             joints: joints
                 .into_iter()
                 .enumerate()
-                .map(|(i, (x, by_dh))| joint(x, i, by_dh))
+                .map(|(i, (x, by_dh, kind))| joint(x, i, by_dh, kind))
                 .collect(),
         };
         Robot::from_description(&description).unwrap()

@@ -55,6 +55,7 @@ pub fn description(oracle: &Value) -> RobotDescription {
         parameters: ParameterSet::Physical,
         convention: Convention::Standard,
         gravity: triple(&oracle["gravity"]),
+        locked: Vec::new(),
         joints: oracle["links"].as_array().unwrap().iter().map(joint).collect(),
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::close::assert_close;
 use crate::shared::{description, numbers, oracle};
-use reachtube_robot::{Parameter, ParameterKind, Robot, Urdf, UrdfEnds};
+use reachtube_robot::{Parameter, ParameterKind, Robot, Urdf, UrdfOptions};
 
 const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
 
@@ -11,11 +11,11 @@ const SHARED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
 const ARM: &str = include_str!("arm.urdf");
 
 fn read(text: &str) -> Urdf {
-    Urdf::parse(text, "arm.urdf", &UrdfEnds::default()).unwrap()
+    Urdf::parse(text, "arm.urdf", &UrdfOptions::default()).unwrap()
 }
 
 fn error_of(text: &str) -> String {
-    Urdf::parse(text, "arm.urdf", &UrdfEnds::default()).unwrap_err().to_string()
+    Urdf::parse(text, "arm.urdf", &UrdfOptions::default()).unwrap_err().to_string()
 }
 
 /// Returns the error after one part of the arm is replaced.
@@ -30,7 +30,7 @@ fn shared_urdf(path: &str) -> Option<Urdf> {
         eprintln!("skipped: {path} is missing");
         return None;
     }
-    Some(Urdf::load(path, &UrdfEnds::default()).unwrap())
+    Some(Urdf::load(path, &UrdfOptions::default()).unwrap())
 }
 
 #[test]
@@ -133,7 +133,11 @@ fn centre_height(robot: &Robot) -> f64 {
 
 #[test]
 fn a_base_may_be_named_and_keeps_the_direction_of_gravity() {
-    let ends = |base: &str, tip: &str| UrdfEnds { base: Some(base.into()), tip: Some(tip.into()) };
+    let ends = |base: &str, tip: &str| UrdfOptions {
+        base: Some(base.into()),
+        tip: Some(tip.into()),
+        locks: Vec::new(),
+    };
     let whole = read(ARM);
     let from_mount = Urdf::parse(ARM, "arm.urdf", &ends("mount", "tool")).unwrap();
     let (q, qd, qdd) = ([0.3, -0.4], [0.5, 0.6], [0.7, 0.8]);
@@ -188,12 +192,12 @@ fn round_trips() {
     )
     .unwrap();
     let (text, companion) = (urdf.updated(&changed).unwrap(), urdf.companion(&changed));
-    let back = Urdf::parse_with(&text, "arm.urdf", &companion, &UrdfEnds::default()).unwrap();
+    let back = Urdf::parse_with(&text, "arm.urdf", &companion, &UrdfOptions::default()).unwrap();
     assert_close(&back.robot().parameter_values(&parameters), &values, "parameters");
     assert_eq!(back.robot().joints(), changed.joints());
     assert_eq!(back.updated(back.robot()).unwrap(), text);
     assert_eq!(
-        Urdf::parse_with(&text, "", &companion, &UrdfEnds::default()).unwrap().robot(),
+        Urdf::parse_with(&text, "", &companion, &UrdfOptions::default()).unwrap().robot(),
         back.robot()
     );
     let described = Robot::from_toml(&back.robot().description().to_toml(), "arm.toml").unwrap();
@@ -205,7 +209,7 @@ fn round_trips() {
 
 #[test]
 fn the_companion_gives_motors_and_ends_and_its_errors_name_the_joint() {
-    let with = |toml: &str| Urdf::parse_with(ARM, "arm.urdf", toml, &UrdfEnds::default());
+    let with = |toml: &str| Urdf::parse_with(ARM, "arm.urdf", toml, &UrdfOptions::default());
     let text = "tip = \"tool\"\ngravity = [0.0, 0.0, 0.0]\n\
                 [[joint]]\nname = \"elbow\"\narmature = 0.7\n\
                 friction = { viscous = [1.0, 0.0, 0.5] }\n";
@@ -228,9 +232,7 @@ fn the_companion_gives_motors_and_ends_and_its_errors_name_the_joint() {
 #[test]
 fn unsupported_joints_are_refused_by_name() {
     let kind = "<joint name=\"elbow\" type=\"continuous\">";
-    for (name, verb) in
-        [("prismatic", "is prismatic"), ("floating", "is floating"), ("planar", "is planar")]
-    {
+    for (name, verb) in [("floating", "is floating"), ("planar", "is planar")] {
         let error = error_with(kind, &kind.replace("continuous", name));
         assert!(
             error.starts_with(&format!(
@@ -252,7 +254,7 @@ fn unsupported_joints_are_refused_by_name() {
         error.contains("tip is ambiguous: `finger`, `lower` carry no other moving link"),
         "{error}"
     );
-    let ends = UrdfEnds { base: None, tip: Some("tool".into()) };
+    let ends = UrdfOptions { tip: Some("tool".into()), ..Default::default() };
     let error = Urdf::parse(&branched, "arm.urdf", &ends).unwrap_err().to_string();
     assert!(
         error.starts_with(
@@ -339,13 +341,14 @@ fn damaged_files_are_read_or_refused() {
     let cut = (0..ARM.len()).step_by(7).map(|k| ARM[..k].to_string());
     let mut read = 0;
     for text in (0..lines.len()).map(without).chain(cut) {
-        let Ok(urdf) = Urdf::parse(&text, "arm.urdf", &UrdfEnds::default()) else { continue };
+        let Ok(urdf) = Urdf::parse(&text, "arm.urdf", &UrdfOptions::default()) else { continue };
         let masses = Parameter::of_joints(urdf.robot().joint_count(), &[ParameterKind::Mass]);
         let changed =
             urdf.robot().description().with_values(&masses, &vec![3.0; masses.len()]).unwrap();
         let Ok(changed) = Robot::from_description(&changed) else { continue };
-        let back = Urdf::parse(&urdf.updated(&changed).unwrap(), "arm.urdf", &UrdfEnds::default())
-            .unwrap();
+        let back =
+            Urdf::parse(&urdf.updated(&changed).unwrap(), "arm.urdf", &UrdfOptions::default())
+                .unwrap();
         assert_close(&back.robot().parameter_values(&masses), &vec![3.0; masses.len()], "masses");
         read += 1;
     }

@@ -6,6 +6,7 @@ use reachtube::conform::{Centre, Method, NominalStart, States};
 use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;
+use crate::lock_arguments::LockArguments;
 use crate::option_values::{Choices, MODELS, choice, numbered_choice};
 
 const HELP: &str = "\
@@ -31,6 +32,8 @@ pub struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long, help_heading = "Model", required_unless_present = "abstraction")]
     pub robot: Option<String>,
+    #[command(flatten)]
+    pub lock: LockArguments,
     /// Model of the forward dynamics, numbered as in the paper
     #[arg(
         long,
@@ -57,7 +60,7 @@ pub struct Arguments {
         long,
         help_heading = "Model",
         value_name = "FILE",
-        conflicts_with_all = ["robot", "expansion", "model", "order"]
+        conflicts_with_all = ["robot", "lock", "expansion", "model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
     #[command(flatten)]

@@ -2,7 +2,6 @@
 
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube::conform::{Noise, Settings, Setup, Tolerance, Weights};
-use reachtube_robot::Robot;
 
 use super::arguments::Arguments;
 use crate::data_arguments::gap_limit;
@@ -13,7 +12,7 @@ use crate::error::{Error, Result};
 pub fn setup(args: &Arguments) -> Result<Setup> {
     let mut setup = match &args.abstraction {
         None => {
-            let robot = Robot::load(args.robot.as_deref().unwrap_or_default())?;
+            let robot = args.lock.load(args.robot.as_deref().unwrap_or_default())?;
             robot.check_physical()?;
             let settings = settings(args, robot.joint_count())?;
             Setup::new(robot, settings)?

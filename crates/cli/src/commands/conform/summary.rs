@@ -4,6 +4,9 @@ use std::fmt::Write;
 
 use reachtube::Model;
 use reachtube::conform::{Enclosure, MOST_TIGHT, Witness};
+use reachtube::recordings::State;
+use reachtube::units::ColumnUnit;
+use reachtube_robot::JointKind;
 
 use crate::table::{plural, table};
 use crate::verdict::lost;
@@ -24,7 +27,7 @@ pub fn summary(model: &Model) -> String {
     }
     text.push_str(&touching(model));
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
-        let _ = writeln!(text, "\n{}", explained.words(tolerance));
+        let _ = writeln!(text, "\n{}", explained.words(tolerance, &model.robot.kinds()));
     }
     let _ = writeln!(
         text,
@@ -111,22 +114,27 @@ fn cost(model: &Model) -> String {
 /// Returns the sets joint by joint, as in Table II of the paper.
 fn sets(model: &Model) -> String {
     let n = model.joints();
-    let mut header = vec!["joint", "X0 q [rad]", "X0 qd [rad/s]", "U [N m]"];
+    let kinds = model.robot.kinds();
+    let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
+    let [q, qd, u] = units.map(|unit| ColumnUnit::new(&kinds, unit));
+    let mut header = vec!["joint".into(), q.head("X0 q"), qd.head("X0 qd"), u.head("U")];
     if model.noise_set.is_some() {
-        header.extend(["V q [rad]", "V qd [rad/s]"]);
+        header.extend([q.head("V q"), qd.head("V qd")]);
     }
     let row = |joint: usize| {
         let mut row = vec![
             model.robot.joints[joint].name.clone(),
-            interval(model.initial_set.bounds(joint)),
-            interval(model.initial_set.bounds(n + joint)),
-            interval(model.input_set.bounds(joint)),
+            q.cell(joint, interval(model.initial_set.bounds(joint))),
+            qd.cell(joint, interval(model.initial_set.bounds(n + joint))),
+            u.cell(joint, interval(model.input_set.bounds(joint))),
         ];
         if let Some(noise) = &model.noise_set {
-            row.extend([interval(noise.bounds(joint)), interval(noise.bounds(n + joint))]);
+            row.push(q.cell(joint, interval(noise.bounds(joint))));
+            row.push(qd.cell(joint, interval(noise.bounds(n + joint))));
         }
         row
     };
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
     table(&header, &(0..n).map(row).collect::<Vec<_>>())
 }
 
@@ -170,21 +178,28 @@ fn touching(model: &Model) -> String {
         MOST_TIGHT => format!("{MOST_TIGHT} or more recorded values touch"),
         count => format!("{count} recorded values touch"),
     };
-    format!("\n{count} {set} and decide X0 and U:\n{}", places(&model.tight))
+    format!("\n{count} {set} and decide X0 and U:\n{}", places(&model.tight, &model.robot.kinds()))
 }
 
-fn places(places: &[Witness]) -> String {
+fn places(places: &[Witness], kinds: &[JointKind]) -> String {
+    // Margins of both units stand in one column.
+    let is_plain = kinds.iter().all(|kind| *kind == JointKind::Revolute);
+    let unit = |state: &State| match is_plain {
+        true => String::new(),
+        false => format!(" {}", state.kind.unit(kinds[state.joint])),
+    };
     let row = |place: &Witness| {
         vec![
             place.run.clone(),
             format!("{:.3} s", place.time),
             place.state.to_string(),
             format!("{:?}", place.side).to_lowercase(),
-            format!("{:.1e}", 0.0 - place.excess),
+            format!("{:.1e}{}", 0.0 - place.excess, unit(&place.state)),
         ]
     };
     let rows: Vec<_> = places.iter().take(MOST_PLACES).map(row).collect();
-    let mut text = table(&["run", "time", "state", "side", "margin [rad, rad/s]"], &rows);
+    let margin = if is_plain { "margin [rad, rad/s]" } else { "margin" };
+    let mut text = table(&["run", "time", "state", "side", margin], &rows);
     if places.len() > MOST_PLACES {
         let _ = writeln!(text, "  and {} more; --json lists all", places.len() - MOST_PLACES);
     }

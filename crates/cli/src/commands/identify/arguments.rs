@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use crate::lock_arguments::LockArguments;
 use clap::Args;
 
 const HELP: &str = "\
@@ -22,6 +23,8 @@ pub struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file; required here or in the settings file
     #[arg(long)]
     pub robot: Option<String>,
+    #[command(flatten)]
+    pub lock: LockArguments,
     /// TOML file with the settings; its paths are relative to its folder
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,

@@ -4,7 +4,7 @@ use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
 use reachtube::report::write_identified_html;
 use reachtube::write;
-use reachtube_robot::{Robot, Urdf, UrdfEnds};
+use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use super::arguments::Arguments;
 use super::summary::summary;
@@ -17,9 +17,10 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (settings, folder) = settings(args)?;
     let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);
-    let robot = Robot::load(&name)?;
+    let robot = args.lock.load(&name)?;
     check_urdf(args, &name)?;
-    let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &UrdfEnds::default())).transpose()?;
+    let options = UrdfOptions { locks: args.lock.lock.clone(), ..UrdfOptions::default() };
+    let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &options)).transpose()?;
     for path in [&args.out, &args.urdf].into_iter().flatten() {
         write::try_at(path)?;
     }

@@ -5,6 +5,10 @@ use reachtube::identify::{
     PhysicalFit, WindowErrors,
 };
 
+use reachtube::identify::friction::FrictionFit;
+use reachtube::units::ColumnUnit;
+use reachtube_robot::JointKind;
+
 use crate::table::table;
 use reachtube::number::four_decimals;
 
@@ -43,15 +47,15 @@ fn gravity(found: &Identification) -> String {
     let row = |(joint, name): (usize, &str)| {
         [
             vec![name.into()],
-            gravity_cells(gravity.at_rest.get(joint)),
-            gravity_cells(gravity.in_motion.get(joint)),
+            gravity_cells(gravity.at_rest.get(joint), &|value| force(found).cell(joint, value)),
+            gravity_cells(gravity.in_motion.get(joint), &|value| force(found).cell(joint, value)),
         ]
         .concat()
     };
     let rows: Vec<_> = names(found).into_iter().enumerate().map(row).collect();
     let header = [
         "joint",
-        "at rest: tau rms [N m]",
+        &force(found).head("at rest: tau rms"),
         "residual",
         "relative",
         "moving: tau rms",
@@ -66,11 +70,15 @@ fn gravity(found: &Identification) -> String {
     )
 }
 
-fn gravity_cells(fit: Option<&JointFit>) -> Vec<String> {
+/// Returns the unit of torques.
+fn force(found: &Identification) -> ColumnUnit {
+    ColumnUnit::new(&found.description.kinds(), JointKind::force_unit)
+}
+
+fn gravity_cells(fit: Option<&JointFit>, force: &dyn Fn(String) -> String) -> Vec<String> {
+    let torque = |value| force(four_decimals(value));
     match fit {
-        Some(fit) => {
-            vec![four_decimals(fit.torque), four_decimals(fit.residual), percent(fit.relative())]
-        }
+        Some(fit) => vec![torque(fit.torque), torque(fit.residual), percent(fit.relative())],
         None => vec!["-".into(); 3],
     }
 }
@@ -80,12 +88,19 @@ fn friction(found: &Identification) -> String {
         return "\n2. friction: no slow motions of single joints are given; step 3 identifies it\n"
             .into();
     }
-    let rows: Vec<_> = found.friction.iter().map(|fit| friction_row(&fit.joint)).collect();
+    let kind = |name: &str| {
+        let own = found.description.joints.iter().find(|joint| joint.name == name);
+        own.map_or_else(JointKind::default, |joint| joint.kind)
+    };
+    let kinds: Vec<_> = found.friction.iter().map(|fit| kind(&fit.joint.joint)).collect();
+    let force = ColumnUnit::new(&kinds, JointKind::force_unit);
+    let row = |(i, fit): (usize, &FrictionFit)| friction_row(&fit.joint, &|x| force.cell(i, x));
+    let rows: Vec<_> = found.friction.iter().enumerate().map(row).collect();
     let header = [
         "joint",
         "R2",
         "R2 without gravity",
-        "residual [N m]",
+        &force.head("residual"),
         "samples (independent)",
         "Coulomb a1..a8",
         "viscous v1..v3",
@@ -93,14 +108,14 @@ fn friction(found: &Identification) -> String {
     format!("\n2. friction, with the gravity torque as load\n{}", table(&header, &rows))
 }
 
-fn friction_row(joint: &JointFriction) -> Vec<String> {
+fn friction_row(joint: &JointFriction, force: &dyn Fn(String) -> String) -> Vec<String> {
     let list =
         |values: &[f64]| values.iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ");
     vec![
         joint.joint.clone(),
         format!("{:.5}", joint.r2),
         format!("{:.4}", joint.r2_without_gravity),
-        four_decimals(joint.residual),
+        force(four_decimals(joint.residual)),
         format!("{} ({:.0})", joint.samples.0, joint.samples.1),
         list(&joint.coefficients.coulomb),
         list(&joint.coefficients.viscous),
@@ -112,11 +127,11 @@ fn inertia(found: &Identification) -> String {
     let determined =
         fit.parameters.iter().filter(|parameter| parameter.standard_error.is_finite()).count();
     let rows: Vec<_> =
-        names(found).into_iter().enumerate().map(|(j, name)| inertia_row(fit, j, name)).collect();
+        names(found).into_iter().enumerate().map(|(j, name)| inertia_row(found, j, name)).collect();
     let header = [
         "joint",
         "samples (independent)",
-        "tau rms [N m]",
+        &force(found).head("tau rms"),
         "residual",
         "relative",
         "residual, physical",
@@ -135,14 +150,16 @@ fn inertia(found: &Identification) -> String {
     )
 }
 
-fn inertia_row(fit: &InertiaFit, j: usize, name: &str) -> Vec<String> {
+fn inertia_row(found: &Identification, j: usize, name: &str) -> Vec<String> {
+    let torque = |value| force(found).cell(j, four_decimals(value));
+    let fit = &found.inertia;
     let joint = &fit.joints[j];
-    let physical = fit.physical.as_ref().map(|physical| four_decimals(physical.residuals[j][1]));
+    let physical = fit.physical.as_ref().map(|physical| torque(physical.residuals[j][1]));
     vec![
         name.into(),
         format!("{} ({:.0})", joint.rows, joint.independent),
-        four_decimals(joint.torque),
-        four_decimals(joint.residual),
+        torque(joint.torque),
+        torque(joint.residual),
         percent(joint.relative()),
         physical.unwrap_or_else(|| "-".into()),
         percent(joint.outliers),
@@ -226,13 +243,16 @@ fn validation(found: &Identification) -> String {
 }
 
 fn windows(found: &Identification) -> String {
+    let kinds = found.description.kinds();
+    let q = ColumnUnit::new(&kinds, JointKind::position_unit);
+    let qd = ColumnUnit::new(&kinds, JointKind::velocity_unit);
     let row = |windows: &WindowErrors| {
         let cell = |j: usize| {
             format!(
                 "{} ({}; {})",
-                four_decimals(windows.q[j]),
-                four_decimals(windows.motion[j]),
-                four_decimals(windows.qd[j])
+                q.cell(j, four_decimals(windows.q[j])),
+                q.cell(j, four_decimals(windows.motion[j])),
+                qd.cell(j, four_decimals(windows.qd[j]))
             )
         };
         let head = format!(
@@ -243,8 +263,10 @@ fn windows(found: &Identification) -> String {
     };
     let rows: Vec<Vec<String>> = found.windows.iter().map(row).collect();
     format!(
-        "\n5. motion simulated from the recorded torque: rms position error [rad] at the end of \
-         each window (rms motion [rad]; rms velocity error [rad/s])\n{}",
+        "\n5. motion simulated from the recorded torque: {} at the end of each window ({}; {})\n{}",
+        q.head("rms position error"),
+        q.head("rms motion"),
+        qd.head("rms velocity error"),
         table(&joint_header("window", found), &rows)
     )
 }

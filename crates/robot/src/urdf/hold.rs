@@ -1,0 +1,141 @@
+//! Joints of a URDF that are locked, and joints that mimic others.
+
+use super::document::{Tree, TreeJoint, element};
+use crate::error::RobotError;
+use crate::joint_kind::JointKind;
+use crate::lock::{Lock, LockedJoint};
+use crate::placement::Placement;
+use nalgebra::Vector3;
+
+impl<'a> TreeJoint<'a> {
+    /// Returns the name of the joint that this one mimics.
+    pub fn leader(&self) -> Option<&'a str> {
+        element(self.node, "mimic").map(|mimic| mimic.attribute("joint").unwrap_or(""))
+    }
+
+    /// Returns how the joint moves, if its position is one number.
+    pub fn motion(&self) -> Option<JointKind> {
+        match self.kind {
+            "revolute" | "continuous" => Some(JointKind::Revolute),
+            "prismatic" => Some(JointKind::Prismatic),
+            _ => None,
+        }
+    }
+}
+
+impl<'a> Tree<'a> {
+    /// Locks joints, and the joints that mimic them.
+    pub fn lock(&mut self, locks: &[Lock]) -> Result<(), RobotError> {
+        for lock in locks {
+            let k = self.lockable(lock)?;
+            self.joints[k].locked = Some(lock.position);
+        }
+        // A joint may mimic one that mimics another.
+        for _ in 0..self.joints.len() {
+            for k in 0..self.joints.len() {
+                if let Some(position) = self.mimicked_position(k)? {
+                    self.joints[k].locked = Some(position);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the joint that a lock names.
+    fn lockable(&self, lock: &Lock) -> Result<usize, RobotError> {
+        let found = self.joints.iter().position(|joint| joint.name == lock.joint);
+        let Some(k) = found else {
+            let free = self.joints.iter().filter(|j| j.motion().is_some() && j.leader().is_none());
+            let names: Vec<_> = free.map(|joint| format!("`{}`", joint.name)).collect();
+            return Err(self.error(
+                self.document.root_element(),
+                format!("there is no joint `{}` to lock", lock.joint),
+                &format!("lock one of {}", names.join(", ")),
+            ));
+        };
+        let joint = &self.joints[k];
+        let refuse = |problem: String, remedy: &str| Err(self.error(joint.node, problem, remedy));
+        let Some(motion) = joint.motion() else {
+            let problem = format!("the joint is {} and cannot be locked", joint.kind);
+            return refuse(problem, "lock revolute, continuous and prismatic joints only");
+        };
+        if let Some(leader) = joint.leader() {
+            let problem = format!("the joint mimics `{leader}` and cannot be locked by itself");
+            return refuse(problem, &format!("lock `{leader}`; this joint follows it"));
+        }
+        if joint.locked.is_some() {
+            return refuse("the joint is locked twice".into(), "lock it once");
+        }
+        let limits = self.limits(joint)?.0;
+        match motion.problem_of_lock(lock.position, limits) {
+            Some(problem) => refuse(problem, "give a position within the limits, in rad or m"),
+            None => Ok(k),
+        }
+    }
+
+    /// Returns the position of a joint that mimics a locked or fixed one.
+    fn mimicked_position(&self, k: usize) -> Result<Option<f64>, RobotError> {
+        let joint = &self.joints[k];
+        let (Some(mimic), None) = (element(joint.node, "mimic"), joint.locked) else {
+            return Ok(None);
+        };
+        let leader = self.joints.iter().find(|j| Some(j.name) == joint.leader());
+        let held = leader.filter(|leader| leader.is_fixed() && joint.motion().is_some());
+        let Some(held) = held else { return Ok(None) };
+        let number = |name| self.number(mimic, name);
+        let multiplier = number("multiplier")?.unwrap_or(1.0);
+        let offset = number("offset")?.unwrap_or(0.0);
+        Ok(Some(multiplier * held.locked.unwrap_or(0.0) + offset))
+    }
+
+    /// Returns the placement of the frame of a joint's child in its parent, for a joint that does
+    /// not move.
+    pub fn placement_when_held(&self, joint: &TreeJoint<'a>) -> Result<Placement, RobotError> {
+        let placement = self.placement_of(joint.node)?;
+        let (Some(position), Some(motion)) = (joint.locked, joint.motion()) else {
+            return Ok(placement);
+        };
+        let axis = Vector3::from(self.axis_of(joint)?);
+        if axis.norm() == 0.0 {
+            let remedy = "give a vector of positive length";
+            return Err(self.error(joint.node, "the axis has no direction".into(), remedy));
+        }
+        Ok(placement.then(&motion.motion(&axis.normalize(), position)))
+    }
+
+    /// Returns the axis of a joint, of any length.
+    pub fn axis_of(&self, joint: &TreeJoint<'a>) -> Result<[f64; 3], RobotError> {
+        let axis = element(joint.node, "axis").map(|node| self.triple(node, "xyz"));
+        Ok(axis.transpose()?.flatten().unwrap_or([1.0, 0.0, 0.0]))
+    }
+
+    /// Returns all joints that are locked, in the order of the file.
+    pub fn locked(&self) -> Vec<LockedJoint> {
+        let record = |joint: &TreeJoint| {
+            let (position, kind) = (joint.locked?, joint.motion()?);
+            Some(LockedJoint { name: joint.name.into(), kind, position })
+        };
+        self.joints.iter().filter_map(record).collect()
+    }
+
+    /// Returns the joint that decides the position of a joint: itself, or the one that it mimics
+    /// in the end.
+    pub fn independent(&self, k: usize) -> usize {
+        let leader =
+            |k: &usize| self.joints.iter().position(|j| Some(j.name) == self.joints[*k].leader());
+        let path = core::iter::successors(Some(k), leader).take(self.joints.len());
+        path.last().unwrap_or(k)
+    }
+
+    /// Returns the options that lock joints, such as `--lock finger=0`: at 0, or at the limit that
+    /// is nearest to it.
+    pub fn lock_options(&self, joints: impl IntoIterator<Item = usize>) -> String {
+        let option = |k: usize| {
+            let joint = &self.joints[k];
+            let [low, high] = self.limits(joint).ok().and_then(|l| l.0).unwrap_or([0.0, 0.0]);
+            let position = if low > 0.0 { low } else { high.min(0.0) };
+            format!("--lock {}={position}", joint.name)
+        };
+        joints.into_iter().map(option).collect::<Vec<_>>().join(" ")
+    }
+}
