@@ -1,28 +1,30 @@
 //! A proved bound of a model's truncation error over an operating box.
 
-use std::sync::Arc;
-
+use nalgebra::DMatrix;
 use rayon::prelude::*;
-use reachtube_robot::{Robot, Workspace};
-use reachtube_scalar::{Elementary, Interval, TaylorBox, TaylorModel, TaylorSpace};
+use reachtube_robot::Robot;
+use reachtube_scalar::{Interval, TaylorModel, TaylorPolynomial};
 
 use crate::error::Result;
 use crate::model_kind::ModelKind;
 use crate::operating_box::OperatingBox;
-use crate::polynomial_model::{ModelWorkspace, PolynomialModel};
+use crate::polynomial_model::PolynomialModel;
 use crate::preconditioned::Preconditioned;
 use crate::remainder::Remainder;
+use crate::residual::{Equations, Scratch, position_variables};
 use crate::sampled_error::sampled_error;
 
-/// Order of the Taylor models for models 1 and 2, whose error begins at the first order of q.
-const LOW_ORDER: u32 = 3;
+/// Lowest order of the Taylor models: that of the series of M_m⁻¹.
+const LOW_ORDER: u32 = 4;
 /// Highest order for model 3: the order p + 1 cancels all terms that the model has right.
-const HIGH_ORDER: u32 = 6;
+const HIGH_ORDER: u32 = 8;
 /// Number of boxes that are cut at once, so that all cores have work.
-const BATCH: usize = 32;
+const BATCH: usize = 8;
 /// A bound at most this many times the sampled error is not refined further.
-const TIGHT_RATIO: f64 = 1.05;
-/// Above this relative spread of the mass matrix, positions are cut before other sides.
+const TIGHT_RATIO: f64 = 1.3;
+const GOAL: f64 = 1.2;
+const SLACK: f64 = 0.02;
+/// Above this relative error of the inverse of the mass matrix, a part is cut.
 const WIDE_SPREAD: f64 = 0.3;
 
 impl PolynomialModel {
@@ -52,8 +54,15 @@ impl PolynomialModel {
         let robot = Robot::from_description(self.robot())?;
         operating_box.check(&robot)?;
         let sampled_error = sampled_error(self, &robot, operating_box);
-        let mut search = BranchAndBound::new(self, &robot, &sampled_error)?;
-        search.refine(operating_box.sides(), max_boxes);
+        if std::env::var("TRACE").is_ok() { eprintln!("sampled {sampled_error:?}"); }
+        let order: u32 = std::env::var("ORDER").map_or_else(|_| match self.kind() {
+            ModelKind::Three => (self.order() + 2).clamp(LOW_ORDER, HIGH_ORDER),
+            _ => LOW_ORDER,
+        }, |o| o.parse().unwrap());
+        let equations = Equations::new(self, &robot, operating_box, order)?;
+        let mut search =
+            BranchAndBound { equations, sampled_error: &sampled_error, cells: Vec::new() };
+        search.refine(operating_box.sides()[..robot.joint_count()].to_vec(), max_boxes);
         let bound = |i: usize| {
             let hull = search.cells.iter().map(|cell| cell.bounds[i]).reduce(Interval::hull)?;
             (hull.lo().is_finite() && hull.hi().is_finite()).then(|| [hull.lo(), hull.hi()])
@@ -76,7 +85,7 @@ impl PolynomialModel {
 
 /// A part of the operating box.
 struct Cell {
-    /// Sides (q, q̇, u), 3n.
+    /// Sides of the positions, n, rad; velocities and inputs are those of the whole box.
     sides: Vec<Interval>,
     /// Bounds of the truncation error, n, rad/s².
     bounds: Vec<Interval>,
@@ -88,29 +97,12 @@ struct Cell {
 
 /// A search by branch and bound.
 struct BranchAndBound<'a> {
-    model: &'a PolynomialModel,
-    robot: &'a Robot,
+    equations: Equations<'a>,
     sampled_error: &'a [f64],
-    space: Arc<TaylorSpace>,
     cells: Vec<Cell>,
 }
 
-/// Scratch memory of one thread.
-struct Scratch {
-    robot: Workspace<TaylorModel>,
-    model: ModelWorkspace<TaylorModel>,
-}
-
-impl<'a> BranchAndBound<'a> {
-    fn new(model: &'a PolynomialModel, robot: &'a Robot, sampled_error: &'a [f64]) -> Result<Self> {
-        let order = match model.kind() {
-            ModelKind::Three => (model.order() + 1).clamp(LOW_ORDER, HIGH_ORDER),
-            _ => LOW_ORDER,
-        };
-        let space = TaylorSpace::new(3 * robot.joint_count(), order)?;
-        Ok(Self { model, robot, sampled_error, space, cells: Vec::new() })
-    }
-
+impl BranchAndBound<'_> {
     /// Cuts the cells with the largest ratios until there are `max_boxes` or all are tight.
     fn refine(&mut self, whole: Vec<Interval>, max_boxes: usize) {
         self.cells = self.cells_of(vec![whole]);
@@ -123,6 +115,11 @@ impl<'a> BranchAndBound<'a> {
             let done = open.is_empty();
             self.cells.extend(tight);
             self.cells.extend(self.cells_of(open.iter().flat_map(Cell::halves).collect()));
+            if std::env::var("TRACE").is_ok() {
+                let unproved = self.cells.iter().filter(|c| c.ratio == f64::INFINITY).count();
+                let worst = self.cells.iter().map(|c| c.ratio).filter(|r| r.is_finite()).fold(0.0, f64::max);
+                eprintln!("{} cells, {unproved} unproved, worst {worst:.3}", self.cells.len());
+            }
             if done {
                 break;
             }
@@ -131,59 +128,56 @@ impl<'a> BranchAndBound<'a> {
 
     /// Bounds the truncation error over each of `parts`, in parallel.
     fn cells_of(&self, parts: Vec<Vec<Interval>>) -> Vec<Cell> {
-        let scratch =
-            || Scratch { robot: Workspace::new(self.robot), model: self.model.workspace() };
         parts
             .into_par_iter()
-            .map_init(scratch, |scratch, sides| self.cell(sides, scratch))
+            .map_init(|| self.equations.scratch(), |scratch, sides| self.cell(sides, scratch))
             .collect()
     }
 
     fn cell(&self, sides: Vec<Interval>, scratch: &mut Scratch) -> Cell {
-        let (mass, residual) = self.residual(&sides, scratch);
-        let mass = Preconditioned::new(&mass);
-        let Some((bounds, load)) = mass.as_ref().and_then(|mass| mass.solve(&residual)) else {
-            let cut = widest_position(&sides, self.robot.joint_count());
+        let angles = self.equations.angles(&sides);
+        let mass = self.equations.mass_matrix(&angles, scratch);
+        let t0 = std::time::Instant::now();
+        let known = Preconditioned::new(mass.clone(), self.equations.positions())
+            .filter(|known| known.spread() < std::env::var("WIDE").map_or(WIDE_SPREAD, |w| w.parse().unwrap()));
+        let Some(known) = known else {
+            let cut = stiffest(&mass, &sides);
             let bounds = vec![Interval::ENTIRE; self.sampled_error.len()];
             return Cell { bounds, cut, ratio: f64::INFINITY, sides };
         };
+        let t1 = t0.elapsed();
+        let load = self.equations.load(&angles, scratch);
+        let rate = self.equations.acceleration(&angles, scratch);
+        let t2 = t0.elapsed();
+        let load = known.residual(&load, &rate);
+        let t3 = t0.elapsed();
+        let goals = self.sampled_error.iter().map(|error| GOAL * error);
+        let joined: Vec<TaylorModel> = load
+            .iter()
+            .zip(goals.clone())
+            .map(|(load, goal)| self.equations.joined(load, SLACK * goal))
+            .collect();
+        let t4 = t0.elapsed();
+        let parts: usize = std::env::var("PARTS").map_or(200, |p| p.parse().unwrap());
+        let ranges: Vec<Interval> =
+            joined.iter().zip(goals).map(|(load, goal)| load.range_to_goal(goal, parts)).collect();
+        let t5 = t0.elapsed();
+        let bounds = known.solve(&ranges);
+        let Some(bounds) = bounds else {
+            let bounds = vec![Interval::ENTIRE; self.sampled_error.len()];
+            return Cell { bounds, cut: stiffest(&mass, &sides), ratio: f64::INFINITY, sides };
+        };
         let ratio = |i: usize| bounds[i].mag() / self.sampled_error[i].max(f64::MIN_POSITIVE);
         let worst = (0..bounds.len()).max_by(|i, j| ratio(*i).total_cmp(&ratio(*j))).unwrap_or(0);
-        let cut = if mass.is_some_and(|mass| mass.spread() > WIDE_SPREAD) {
-            widest_position(&sides, self.robot.joint_count())
-        } else {
-            most_curved(&load[worst], &sides)
-        };
-        Cell { ratio: ratio(worst), bounds, cut, sides }
-    }
-
-    /// Returns M_m (row-major n x n) and ρ (n) over a box as Taylor models in (q, q̇, u).
-    fn residual(
-        &self,
-        sides: &[Interval],
-        scratch: &mut Scratch,
-    ) -> (Vec<TaylorModel>, Vec<TaylorModel>) {
-        let n = self.robot.joint_count();
-        let variables = TaylorBox::new(&self.space, sides).variables();
-        let (q, rest) = variables.split_at(n);
-        let (qd, u) = rest.split_at(n);
-        let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(Elementary::sin_cos).unzip();
-        let mut state = [q, qd].concat();
-        if self.model.layout().trigonometric {
-            state.extend(sin.iter().chain(&cos).cloned());
+        let cut = most_curved(&joined[worst], &sides);
+        if std::env::var("TRACE").is_ok() {
+            eprintln!("E {t1:?} rho {:?} load {:?} join {:?} range {:?}: terms {} spread {:.3} ratios {:?} natural {:?} rem {:?} cut {cut}",
+            t2-t1, t3-t2, t4-t3, t5-t4, joined[worst].polynomial().term_count(), known.spread(),
+            (0..bounds.len()).map(|i| (ratio(i)*100.0).round()/100.0).collect::<Vec<_>>(),
+            joined.iter().zip(self.sampled_error).map(|(j, s)| (j.range().mag()/s*100.0).round()/100.0).collect::<Vec<_>>(),
+            joined.iter().zip(self.sampled_error).map(|(j, s)| (j.remainder().mag()/s*100.0).round()/100.0).collect::<Vec<_>>());
         }
-        let zeros = |count| vec![TaylorModel::from(0.0); count];
-        let (mut rate, mut mass, mut coriolis) = (zeros(state.len()), zeros(n * n), zeros(n));
-        self.model.rate_into(&state, u, &mut scratch.model, &mut rate);
-        self.robot.crba(&sin, &cos, &mut scratch.robot, &mut mass);
-        self.robot.coriolis(&sin, &cos, qd, &mut scratch.robot, &mut coriolis);
-        let residual = |i: usize| {
-            let friction = self.robot.joints()[i].friction.viscous.torque(&qd[i]);
-            let inertial = (0..n).map(|j| &mass[i * n + j] * &rate[n + j]);
-            inertial.fold(&(&u[i] - &coriolis[i]) - &friction, |sum, term| &sum - &term)
-        };
-        let residual = (0..n).map(residual).collect();
-        (mass, residual)
+        Cell { ratio: ratio(worst), bounds, cut, sides }
     }
 }
 
@@ -205,21 +199,49 @@ impl Cell {
     }
 }
 
-/// Returns the widest of the first `n` sides.
-fn widest_position(sides: &[Interval], n: usize) -> usize {
-    (0..n).max_by(|i, j| sides[*i].width().total_cmp(&sides[*j].width())).unwrap_or(0)
+/// Returns the widest side.
+fn widest(sides: &[Interval]) -> usize {
+    (0..sides.len()).max_by(|i, j| sides[*i].width().total_cmp(&sides[*j].width())).unwrap_or(0)
+}
+
+/// Returns the side along which the mass matrix changes most, measured by P M for the inverse P of
+/// its middle. Entry (i, j) is scaled by the inertias, because it maps rad/s² of j to those of i.
+fn stiffest(mass: &[TaylorModel], sides: &[Interval]) -> usize {
+    let n = sides.len();
+    let middle = DMatrix::from_fn(n, n, |i, j| mass[i * n + j].polynomial().constant_term());
+    let Some(inverse) = middle.clone().try_inverse() else { return widest(sides) };
+    let mut change = vec![0.0; n];
+    for ij in 0..n * n {
+        let (i, j) = (ij / n, ij % n);
+        let terms = (0..n).map(|k| mass[k * n + j].polynomial().scaled(&inverse[(i, k)]));
+        let product = terms.fold(TaylorPolynomial::from(0.0), |sum, term| sum + term);
+        let scale = (middle[(i, i)] / middle[(j, j)]).abs().sqrt();
+        add_curvature(&product, scale, 0, &mut change);
+    }
+    largest(&change).unwrap_or_else(|| widest(sides))
 }
 
 /// Returns the side along which the model bends most; a linear part is bounded exactly and needs no
 /// cut.
 fn most_curved(model: &TaylorModel, sides: &[Interval]) -> usize {
     let mut curvature = vec![0.0; sides.len()];
-    for term in model.polynomial().terms() {
-        if term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() > 1 {
-            let factors = term.exponents.iter().zip(&mut curvature).filter(|(e, _)| **e > 0);
-            factors.for_each(|(_, c)| *c += term.coefficient.abs());
+    add_curvature(model.polynomial(), 1.0, 1, &mut curvature);
+    largest(&curvature).unwrap_or_else(|| widest(sides))
+}
+
+/// Adds the magnitudes of the terms of a degree above `degree` to the sides that they depend on.
+fn add_curvature(polynomial: &TaylorPolynomial, scale: f64, degree: u32, sides: &mut [f64]) {
+    let positions = position_variables(sides.len());
+    for term in polynomial.terms() {
+        if term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() > degree {
+            let factors = term.exponents.iter().zip(&mut sides[positions.clone()]);
+            factors.filter(|(e, _)| **e > 0).for_each(|(_, c)| *c += scale * term.coefficient.abs());
         }
     }
-    let bent = (0..sides.len()).max_by(|i, j| curvature[*i].total_cmp(&curvature[*j])).unwrap_or(0);
-    if curvature[bent] > 0.0 { bent } else { widest_position(sides, sides.len()) }
+}
+
+/// Returns the index of the largest value, where it is above 0.
+fn largest(values: &[f64]) -> Option<usize> {
+    let index = (0..values.len()).max_by(|i, j| values[*i].total_cmp(&values[*j]))?;
+    (values[index] > 0.0).then_some(index)
 }

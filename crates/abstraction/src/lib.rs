@@ -50,6 +50,7 @@ mod polynomial_model;
 mod preconditioned;
 mod records;
 mod remainder;
+mod residual;
 mod sampled_error;
 mod systems;
 

@@ -61,9 +61,7 @@ fn upper_bound(p: &TaylorPolynomial, sign: f64) -> f64 {
     if total >= OVERFLOW_GUARD {
         return f64::INFINITY;
     }
-    let (attained, factors) = (f64::NEG_INFINITY, Vec::new());
-    let slopes = vec![Slope::default(); space.variables()];
-    BranchAndBound { space, total, attained, slopes, factors }.upper_bound(terms, MAX_DEPTH, 0.0)
+    PolynomialSearch::new(space, total).upper_bound(terms, MAX_DEPTH, 0.0)
 }
 
 /// The partial derivative in one variable over the box.
@@ -82,7 +80,7 @@ impl Slope {
 }
 
 /// A branch-and-bound search for an upper bound of a polynomial.
-struct BranchAndBound<'a> {
+pub(super) struct PolynomialSearch<'a> {
     space: &'a TaylorSpace,
     /// Σ |c| over the whole box.
     total: f64,
@@ -92,9 +90,40 @@ struct BranchAndBound<'a> {
     factors: Vec<u8>,
 }
 
-impl BranchAndBound<'_> {
+/// A part of the box, with the polynomial in the part's own coordinates.
+pub(super) struct Part {
+    terms: Terms,
+    /// Bound of the rounding errors of the terms.
+    error: f64,
+    /// Upper bound over the part, with the error.
+    pub bound: f64,
+    /// The variable to cut; `None` where the bound cannot become smaller.
+    pub cut: Option<usize>,
+}
+
+impl<'a> PolynomialSearch<'a> {
+    /// Prepares a search for a polynomial whose magnitudes of coefficients sum up to `total`.
+    pub fn new(space: &'a TaylorSpace, total: f64) -> Self {
+        let slopes = vec![Slope::default(); space.variables()];
+        Self { space, total, attained: f64::NEG_INFINITY, slopes, factors: Vec::new() }
+    }
+
     /// Returns an upper bound of every function that is within `error` of the given terms.
-    fn upper_bound(&mut self, mut terms: Terms, depth: u32, mut error: f64) -> f64 {
+    fn upper_bound(&mut self, terms: Terms, depth: u32, error: f64) -> f64 {
+        let part = self.part(terms, error);
+        let is_tight = part.bound - self.attained <= RELATIVE_GAP * self.total;
+        match part.cut {
+            Some(cut) if depth > 0 && !is_tight => {
+                let [low, high] = self.halved_terms(&part, cut);
+                let low = self.upper_bound(low.0, depth - 1, low.1);
+                low.max(self.upper_bound(high.0, depth - 1, high.1)).min(part.bound)
+            }
+            _ => part.bound,
+        }
+    }
+
+    /// Bounds a polynomial over a part, given by its terms in the part's coordinates.
+    pub fn part(&mut self, mut terms: Terms, mut error: f64) -> Part {
         // Fix the variables in which the polynomial is monotonic, until none is left.
         loop {
             self.differentiate(&terms);
@@ -109,20 +138,26 @@ impl BranchAndBound<'_> {
         let (bound, middle) = self.bound(&terms);
         self.attained = self.attained.max(middle);
         // Branch: bisect the variable with the largest non-linear derivative.
-        let branching = (0..self.slopes.len())
-            .max_by(|i, j| self.slopes[*i].non_linear.total_cmp(&self.slopes[*j].non_linear));
-        let is_tight = bound - self.attained <= RELATIVE_GAP * self.total;
-        match branching {
-            Some(i) if depth > 0 && !is_tight && self.slopes[i].non_linear > 0.0 => {
-                let [low, high] = [-0.5, 0.5].map(|at| {
-                    let mut error = error;
-                    let half = self.restricted_to_half(&terms, i, at, &mut error);
-                    self.upper_bound(half, depth - 1, error)
-                });
-                low.max(high).min(add_up(bound, error))
-            }
-            _ => add_up(bound, error),
-        }
+        let cut = (0..self.slopes.len())
+            .max_by(|i, j| self.slopes[*i].non_linear.total_cmp(&self.slopes[*j].non_linear))
+            .filter(|i| self.slopes[*i].non_linear > 0.0);
+        Part { terms, error, bound: add_up(bound, error), cut }
+    }
+
+    /// Returns the bounds over the two halves of a part.
+    pub fn halves(&mut self, part: &Part, cut: usize) -> [Part; 2] {
+        self.halved_terms(part, cut).map(|(terms, error)| {
+            let half = self.part(terms, error);
+            Part { bound: half.bound.min(part.bound), ..half }
+        })
+    }
+
+    /// Returns the terms over the two halves of a part, each with its error.
+    fn halved_terms(&self, part: &Part, cut: usize) -> [(Terms, f64); 2] {
+        [-0.5, 0.5].map(|at| {
+            let mut error = part.error;
+            (self.restricted_to_half(&part.terms, cut, at, &mut error), error)
+        })
     }
 
     /// Computes the slope in each variable.
