@@ -36,6 +36,8 @@
 mod abstraction;
 mod bound;
 mod build;
+mod cut;
+mod equations;
 mod error;
 mod expansion_point;
 mod field;
@@ -50,9 +52,9 @@ mod polynomial_model;
 mod preconditioned;
 mod records;
 mod remainder;
-mod residual;
 mod sampled_error;
 mod systems;
+mod taylor_order;
 
 pub use abstraction::Abstraction;
 pub use error::{Error, RecordsError, Result};

@@ -7,7 +7,7 @@ use reachtube_robot::ltdl;
 use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_down};
 use reachtube_scalar::{Interval, TaylorModel, TaylorPolynomial, TaylorSpace};
 
-use crate::residual::InputPolynomial;
+use crate::equations::InputPolynomial;
 
 /// Highest order of the series X of M⁻¹; a longer one helps little where it converges and harms
 /// where it does not.
@@ -30,7 +30,7 @@ impl Preconditioned {
     /// Preconditions `mass`, row-major n x n; `None` where no proof of invertibility was found.
     pub(crate) fn new(mass: Vec<TaylorModel>, space: &Arc<TaylorSpace>) -> Option<Self> {
         let n = mass.len().isqrt();
-        let inverse = inverse_series(&mass, space, std::env::var("SO").map_or(SERIES_ORDER, |o| o.parse().unwrap()).min(space.order()));
+        let inverse = inverse_series(&mass, space, SERIES_ORDER.min(space.order()));
         let entry = |i: usize, j: usize| {
             let products = (0..n).map(|k| &inverse[i * n + k] * &mass[k * n + j]);
             let one = TaylorModel::from(f64::from(i == j));
@@ -54,9 +54,9 @@ impl Preconditioned {
     /// Returns |1 - X M| v, rounded up, for v ≥ 0.
     fn deviation_times(&self, v: &[f64]) -> Vec<f64> {
         let row = |i: usize| {
-            v.iter().enumerate().fold(0.0, |sum, (j, v)| {
-                add_up(sum, mul_up(self.deviation[(i, j)], *v))
-            })
+            v.iter()
+                .enumerate()
+                .fold(0.0, |sum, (j, v)| add_up(sum, mul_up(self.deviation[(i, j)], *v)))
         };
         (0..v.len()).map(row).collect()
     }
@@ -125,6 +125,6 @@ fn inverse_series(mass: &[TaylorModel], space: &Arc<TaylorSpace>, order: u32) ->
     };
     let columns: Vec<_> = (0..n).map(column).collect();
     (0..n * n)
-        .map(|ij| TaylorModel::from(columns[ij % n][ij / n].embedded(space, &indices)))
+        .map(|ij| columns[ij % n][ij / n].embedded(space, &indices).stored_densely().into())
         .collect()
 }

@@ -7,10 +7,9 @@ use super::bounds::{OVERFLOW_GUARD, inflated};
 use super::model::TaylorModel;
 use crate::interval::closed::Interval;
 use crate::rounding::{add_up, mul_up};
-use crate::taylor::monomial::exponents_only;
+use crate::taylor::monomial::{Packing, exponents_only};
 use crate::taylor::polynomial::TaylorPolynomial;
 use crate::taylor::space::TaylorSpace;
-use crate::taylor::sparse::collect_like_terms;
 
 /// Largest number of nested bisections of the box.
 const MAX_DEPTH: u32 = 5;
@@ -152,14 +151,6 @@ impl<'a> PolynomialSearch<'a> {
         })
     }
 
-    /// Returns the terms over the two halves of a part, each with its error.
-    fn halved_terms(&self, part: &Part, cut: usize) -> [(Terms, f64); 2] {
-        [-0.5, 0.5].map(|at| {
-            let mut error = part.error;
-            (self.restricted_to_half(&part.terms, cut, at, &mut error), error)
-        })
-    }
-
     /// Computes the slope in each variable.
     fn differentiate(&mut self, terms: &Terms) {
         self.slopes.fill(Slope::default());
@@ -201,37 +192,54 @@ impl<'a> PolynomialSearch<'a> {
         self.collect(terms, error)
     }
 
-    /// Restricts the polynomial to half of the side of variable i: x_i = `at` + x_i'/2, `at` =
-    /// ±1/2.
-    fn restricted_to_half(&self, terms: &Terms, i: usize, at: f64, error: &mut f64) -> Terms {
+    /// Restricts the polynomial to the halves of the side of variable i, x_i = ∓1/2 + x_i'/2. The
+    /// second number of each half bounds the error, given that of the polynomial.
+    fn halved_terms(&self, part: &Part, i: usize) -> [(Terms, f64); 2] {
         let packing = self.space.packing;
-        let mut all = Vec::with_capacity(2 * terms.len());
-        for (m, c) in terms {
-            let exponent = packing.exponent(*m, i);
-            let (mut monomial, mut binomial) = (*m, 1.0);
-            for step in 0..=exponent {
-                // The coefficient is c C(e, e - step) at^step / 2^(e - step). For e ≤ 50, only the
-                // product with c is rounded.
-                let factor =
-                    binomial * at.powi(step as i32) * 0.5f64.powi((exponent - step) as i32);
-                all.push((monomial, c * factor));
-                if step < exponent {
-                    monomial -= packing.variable(i);
+        // The terms c_e x_i^e with one monomial of the other variables become neighbours.
+        let mut terms = part.terms.clone();
+        terms.sort_unstable_by_key(|(m, _)| packing.without(*m, i));
+        let mut halves = [Vec::with_capacity(terms.len()), Vec::with_capacity(terms.len())];
+        let mut highest = 0;
+        for group in terms.chunk_by(|a, b| packing.without(a.0, i) == packing.without(b.0, i)) {
+            let others = packing.without(group[0].0, i);
+            let degree = group.iter().map(|(m, _)| packing.exponent(*m, i)).max().unwrap_or(0);
+            highest = highest.max(degree);
+            for k in 0..=degree {
+                let (even, odd) = half_coefficient(packing, group, i, k);
+                let monomial = others + u128::from(k) * packing.variable(i);
+                for (half, coefficient) in halves.iter_mut().zip([even - odd, even + odd]) {
+                    if coefficient != 0.0 {
+                        half.push((monomial, coefficient));
+                    }
                 }
-                binomial = binomial * f64::from(exponent - step) / f64::from(step + 1);
             }
         }
-        self.collect(all, error)
+        // Each coefficient has at most `highest` additions and three products, and above e = 50 the
+        // roundings of binomial coefficients.
+        let error = add_up(part.error, self.rounding(3 * highest as usize + 4, terms.len()));
+        halves.map(|terms| (terms, error))
     }
 
-    /// Collects like terms, and adds a bound of the rounding of these sums and of three products
-    /// per term to the error.
-    fn collect(&self, terms: Terms, error: &mut f64) -> Terms {
-        let roundings = (terms.len() + 3) as f64;
-        let rounding =
-            add_up(mul_up(roundings * f64::EPSILON, self.total), roundings * f64::MIN_POSITIVE);
-        *error = add_up(*error, rounding);
-        collect_like_terms(terms)
+    /// Collects like terms, and adds a bound of the rounding of these sums to the error.
+    fn collect(&self, mut terms: Terms, error: &mut f64) -> Terms {
+        *error = add_up(*error, self.rounding(terms.len(), terms.len()));
+        terms.sort_unstable_by_key(|term| term.0);
+        terms.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 += next.1;
+            }
+            same
+        });
+        terms.retain(|(_, c)| *c != 0.0);
+        terms
+    }
+
+    /// Bounds the rounding of terms whose coefficients are rounded `roundings` times each.
+    fn rounding(&self, roundings: usize, terms: usize) -> f64 {
+        let underflow = (roundings * (terms + 1)) as f64 * f64::MIN_POSITIVE;
+        add_up(mul_up(roundings as f64 * f64::EPSILON, self.total), underflow)
     }
 
     /// Returns an upper bound over the whole box, and the value at its centre.
@@ -247,6 +255,23 @@ impl<'a> PolynomialSearch<'a> {
         }
         (add_up(middle, inflated(sum, terms.len())), middle)
     }
+}
+
+/// Returns the coefficient of x_i'^k for x_i = ±1/2 + x_i'/2 of terms that differ in the exponent of
+/// x_i alone, as two parts: the coefficient is the first part plus or minus the second one.
+///
+/// The coefficient is the sum of c_e C(e, k) (±1/2)^(e - k) / 2^k over e ≥ k.
+fn half_coefficient(packing: Packing, group: &[(u128, f64)], i: usize, k: u32) -> (f64, f64) {
+    let (mut even, mut odd) = (0.0, 0.0);
+    for (m, c) in group {
+        let e = packing.exponent(*m, i);
+        if e >= k {
+            let binomial = (0..k).fold(1.0, |b, j| b * f64::from(e - j) / f64::from(j + 1));
+            let value = c * binomial * 0.5f64.powi(e as i32);
+            if (e - k) % 2 == 0 { even += value } else { odd += value }
+        }
+    }
+    (even, odd)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The residual of a model's acceleration over a box of positions.
+//! The equations of motion over a box of positions, as polynomials in velocities and inputs.
 
 use std::sync::Arc;
 
@@ -123,7 +123,9 @@ impl<'a> Equations<'a> {
         let mut state = vec![InputPolynomial::from(0.0); n];
         state.extend_from_slice(&self.velocities);
         if self.model.layout().trigonometric {
-            state.extend([&angles.sin, &angles.cos].into_iter().flat_map(|models| constants(models)));
+            state.extend(
+                [&angles.sin, &angles.cos].into_iter().flat_map(|models| constants(models)),
+            );
         }
         let mut rate = vec![InputPolynomial::from(0.0); state.len()];
         self.model.rate_into(&state, &self.inputs, &mut scratch.rate, &mut rate);
@@ -143,8 +145,10 @@ impl<'a> Equations<'a> {
             let values = if is_square { Interval::ZERO } else { Interval::point(-1.0) };
             remainder += coefficient.remainder() * values.hull(Interval::ONE);
             let exponents = [vec![0; k], exponents].concat();
-            let monomial =
-                TaylorPolynomial::from_terms(&self.all, [TaylorTerm { exponents, coefficient: 1.0 }]);
+            let monomial = TaylorPolynomial::from_terms(
+                &self.all,
+                [TaylorTerm { exponents, coefficient: 1.0 }],
+            );
             sum += &coefficient.polynomial().embedded(&self.all, &indices) * &monomial;
         }
         TaylorModel::from(sum) + TaylorModel::from(remainder)
