@@ -19,14 +19,21 @@ pub(crate) fn halves(sides: &[Interval], joint: usize) -> Option<[Vec<Interval>;
     is_divisible.then(|| [part(side.lo()), part(side.hi())])
 }
 
+/// Width above which a side is cut first, rad or m: a Taylor series in a wider angle says little.
+const WIDE_SIDE: f64 = 1.0;
+
 /// Returns the joint along whose position the mass matrix, row-major n x n, changes most.
 ///
 /// The change is that of P M, where P is the inverse of M in the middle of the box. Entry (i, j) is
 /// scaled by the inertias of the joints, because it maps an acceleration of j to one of i.
 pub(crate) fn stiffest(mass: &[TaylorModel], sides: &[Interval]) -> usize {
     let n = sides.len();
+    let joint = widest(sides);
+    if sides[joint].width() > WIDE_SIDE {
+        return joint;
+    }
     let middle = DMatrix::from_fn(n, n, |i, j| mass[i * n + j].polynomial().constant_term());
-    let Some(inverse) = middle.clone().try_inverse() else { return widest(sides) };
+    let Some(inverse) = middle.clone().try_inverse() else { return joint };
     let mut change = vec![0.0; n];
     for (i, j) in (0..n * n).map(|ij| (ij / n, ij % n)) {
         let terms = (0..n).map(|k| mass[k * n + j].polynomial().scaled(&inverse[(i, k)]));
@@ -34,7 +41,7 @@ pub(crate) fn stiffest(mass: &[TaylorModel], sides: &[Interval]) -> usize {
         let scale = (middle[(i, i)] / middle[(j, j)]).abs().sqrt();
         add_terms_above(&product, 0, scale, &mut change);
     }
-    largest(&change).unwrap_or_else(|| widest(sides))
+    largest(&change).unwrap_or(joint)
 }
 
 /// Returns the joint along whose position the model bends most; a linear part is bounded exactly
@@ -65,7 +72,8 @@ fn largest(values: &[f64]) -> Option<usize> {
     (values[index] > 0.0).then_some(index)
 }
 
-/// Returns the widest side.
+/// Returns the joint with the widest side among those that M_m depends on.
 fn widest(sides: &[Interval]) -> usize {
-    (0..sides.len()).max_by(|i, j| sides[*i].width().total_cmp(&sides[*j].width())).unwrap_or(0)
+    let width = |i: &usize| sides[*i].width();
+    position_variables(sides.len()).max_by(|i, j| width(i).total_cmp(&width(j))).unwrap_or(0)
 }

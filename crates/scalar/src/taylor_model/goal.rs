@@ -123,3 +123,62 @@ fn bound_to_goal(p: &TaylorPolynomial, sign: f64, goal: f64, most_parts: usize) 
     }
     closed
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::taylor::polynomial::TaylorTerm;
+    use crate::taylor::space::TaylorSpace;
+
+    /// Returns a reproducible number in [-1, 1].
+    fn number(bits: &mut u64) -> f64 {
+        *bits = bits.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (*bits >> 11) as f64 / 2f64.powi(52) - 1.0
+    }
+
+    /// Returns a polynomial of three variables with 16 terms up to degree 6.
+    fn random_polynomial(bits: &mut u64) -> TaylorModel {
+        let space = TaylorSpace::new(3, 6).unwrap();
+        let mut term = || TaylorTerm {
+            exponents: (0..3).map(|_| (number(bits).abs() * 4.0) as u8).collect(),
+            coefficient: number(bits),
+        };
+        TaylorModel::from(TaylorPolynomial::from_terms(&space, (0..16).map(|_| term())))
+    }
+
+    #[test]
+    fn bounds_enclose_values_and_reach_goals_that_are_not_too_close() {
+        let mut bits = 3;
+        for _ in 0..60 {
+            let p = random_polynomial(&mut bits);
+            let mut largest = 0.0f64;
+            let close = p.range_to_goal(0.0, 200);
+            for _ in 0..4000 {
+                let at: Vec<f64> =
+                    (0..3).map(|_| (1.5 * number(&mut bits)).clamp(-1.0, 1.0)).collect();
+                let value = p.polynomial().evaluate(&at);
+                largest = largest.max(value.abs());
+                assert!(close.lo() - 1e-13 <= value && value <= close.hi() + 1e-13, "{close:?}");
+            }
+            assert!(p.range().encloses(&close) && close.mag() < 1.2 * largest, "{close:?}");
+            let goal = 1.3 * largest;
+            let enough = p.range_to_goal(goal, 200);
+            assert!(enough.mag() <= goal && enough.encloses(&close), "{enough:?} {goal}");
+        }
+    }
+
+    #[test]
+    fn small_terms_go_into_the_remainder() {
+        let mut bits = 5;
+        for _ in 0..50 {
+            let p = random_polynomial(&mut bits);
+            let fewer = p.without_small_terms(0.5);
+            assert!(fewer.polynomial().term_count() < p.polynomial().term_count());
+            assert!(fewer.remainder().mag() <= 0.5);
+            let at: Vec<f64> = (0..3).map(|_| number(&mut bits)).collect();
+            let value = |model: &TaylorModel| model.polynomial().evaluate(&at);
+            let rest = Interval::point(value(&p) - value(&fewer));
+            assert!((fewer.remainder() + Interval::centred(0.0, 1e-14)).encloses(&rest));
+        }
+    }
+}
