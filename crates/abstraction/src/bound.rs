@@ -1,38 +1,47 @@
 //! A proved bound of a model's truncation error over an operating box.
 
-use std::sync::Arc;
-
 use rayon::prelude::*;
-use reachtube_robot::{Robot, Workspace};
-use reachtube_scalar::{Interval, TaylorBox, TaylorModel, TaylorSpace};
+use reachtube_robot::Robot;
+use reachtube_scalar::{Interval, TaylorModel};
 
+use crate::cut::{halves, most_curved, stiffest};
+use crate::equations::{Angles, Equations, Scratch};
 use crate::error::Result;
-use crate::model_kind::ModelKind;
 use crate::operating_box::OperatingBox;
-use crate::polynomial_model::{ModelWorkspace, PolynomialModel};
+use crate::polynomial_model::PolynomialModel;
 use crate::preconditioned::Preconditioned;
 use crate::remainder::Remainder;
 use crate::sampled_error::sampled_error;
+use crate::taylor_order::{part_cost, taylor_order};
 
-/// Order of the Taylor models for models 1 and 2, whose error begins at the first order of q.
-const LOW_ORDER: u32 = 3;
-/// Highest order for model 3: the order p + 1 cancels all terms that the model has right.
-const HIGH_ORDER: u32 = 6;
-/// Number of boxes that are cut at once, so that all cores have work.
-const BATCH: usize = 32;
+/// Work of the default number of parts, in products of coefficients: some 20 s on two cores.
+const DEFAULT_WORK: f64 = 2e9;
+/// Number of parts that are cut at once, so that all cores have work.
+const BATCH: usize = 8;
+/// Number of parts of positions, velocities and inputs together for the bound of a polynomial.
+const POLYNOMIAL_PARTS: usize = 64;
+/// A bound of a polynomial at most this many times the sampled error is not refined further.
+const GOAL: f64 = 1.15;
 /// A bound at most this many times the sampled error is not refined further.
-const TIGHT_RATIO: f64 = 1.05;
-/// Above this relative spread of the mass matrix, positions are cut before other sides.
-const WIDE_SPREAD: f64 = 0.3;
+const TIGHT_RATIO: f64 = 1.25;
+/// The smallest terms of a polynomial, with this sum relative to the sampled error, are not
+/// distinguished.
+const SMALL_TERMS: f64 = 0.02;
+/// Largest relative error of an inverse of the mass matrix with which a part is bounded.
+const MAX_SPREAD: f64 = 0.3;
+/// Largest number of parts with which a narrower box is looked for.
+const NARROW_PARTS: usize = 8;
+/// Largest number of halvings of a side for a narrower box.
+const MAX_HALVINGS: usize = 100;
 
 impl PolynomialModel {
     /// Bounds the truncation error of the forward dynamics (10) over an operating box, by branch
-    /// and bound with at most `max_boxes` boxes (docs/method.md, correction J).
+    /// and bound with at most `max_boxes` parts (docs/method.md, correction J).
     ///
     /// With the residual ρ = u - c - τ_v - M_m f_p, the truncation error is r = M_m⁻¹ ρ. Over a
-    /// box, ρ is a Taylor model in (q, q̇, u), computed by the same recursions as the dynamics
-    /// itself. With P the inverse of M_m's midpoint, r = P ρ + (1 - P M_m) r bounds r without the
-    /// inverse of a set. Boxes with the largest bound are cut in two.
+    /// part, X is a series of M_m⁻¹ in q, and r = X ρ + (1 - X M_m) r bounds r. X ρ is a polynomial
+    /// in (q̇, u), whose coefficients are Taylor models in q alone. Parts with the largest bound are
+    /// cut in two.
     ///
     /// # Guarantee
     ///
@@ -42,8 +51,10 @@ impl PolynomialModel {
     ///
     /// # Errors
     ///
-    /// [`Error::BoxSize`](crate::Error::BoxSize) for a box of the wrong size, and
-    /// [`Error::BeyondLimits`](crate::Error::BeyondLimits) for a box beyond the joints' limits.
+    /// - [`Error::BoxSize`](crate::Error::BoxSize) for a box of the wrong size.
+    /// - [`Error::BeyondLimits`](crate::Error::BeyondLimits) for a box beyond the joints' limits.
+    /// - [`Error::Space`](crate::Error::Space) for a robot of 14 joints or more, for which the
+    ///   Taylor models do not fit.
     pub fn bound_remainder(
         &self,
         operating_box: &OperatingBox,
@@ -51,36 +62,70 @@ impl PolynomialModel {
     ) -> Result<Remainder> {
         let robot = Robot::from_description(self.robot())?;
         operating_box.check(&robot)?;
+        let n = robot.joint_count();
+        let equations = Equations::new(self, &robot, operating_box, taylor_order(self))?;
         let sampled_error = sampled_error(self, &robot, operating_box);
-        let mut search = BranchAndBound::new(self, &robot, &sampled_error)?;
-        search.refine(operating_box.sides(), max_boxes);
+        let search = BranchAndBound { equations, sampled_error: &sampled_error };
+        let cells = search.refined(operating_box.sides()[..n].to_vec(), max_boxes);
         let bound = |i: usize| {
-            let hull = search.cells.iter().map(|cell| cell.bounds[i]).reduce(Interval::hull)?;
-            (hull.lo().is_finite() && hull.hi().is_finite()).then(|| [hull.lo(), hull.hi()])
+            let bounds = cells.iter().map(|cell| cell.bounds.as_ref().map(|bounds| bounds[i]));
+            let hull = bounds.reduce(|a, b| Some(a?.hull(b?)))??;
+            Some([hull.lo(), hull.hi()])
         };
         Ok(Remainder {
             operating_box: operating_box.clone(),
-            bounds: (0..robot.joint_count()).map(bound).collect(),
-            boxes: search.cells.len(),
+            bounds: (0..n).map(bound).collect(),
+            boxes: cells.len(),
             sampled_error,
         })
     }
 
-    /// Returns a number of boxes for which [`bound_remainder`](Self::bound_remainder) takes some
-    /// seconds. It falls with the number of the model's terms.
+    /// Returns a number of parts for which [`bound_remainder`](Self::bound_remainder) takes at most
+    /// some 20 s on two cores. It falls with the number of joints and the order.
     #[must_use]
     pub fn default_max_boxes(&self) -> usize {
-        (300_000 / self.term_count().max(1)).clamp(16, 2000)
+        ((DEFAULT_WORK / part_cost(self.joints(), taylor_order(self))) as usize).clamp(4, 1000)
+    }
+
+    /// Returns a narrower box, for which [`bound_remainder`](Self::bound_remainder) with
+    /// `max_boxes` parts finds bounds: ranges of positions are halved about their middles until the
+    /// mass matrix is proved to be invertible. `None` where no such box is found.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`bound_remainder`](Self::bound_remainder).
+    pub fn narrower_box(
+        &self,
+        operating_box: &OperatingBox,
+        max_boxes: usize,
+    ) -> Result<Option<OperatingBox>> {
+        let robot = Robot::from_description(self.robot())?;
+        operating_box.check(&robot)?;
+        let equations = Equations::new(self, &robot, operating_box, taylor_order(self))?;
+        let search = BranchAndBound { equations, sampled_error: &[] };
+        let mut narrower = operating_box.clone();
+        for _ in 0..MAX_HALVINGS {
+            let sides = narrower.sides()[..robot.joint_count()].to_vec();
+            match search.invertible_parts(sides, max_boxes.min(NARROW_PARTS)) {
+                Ok(()) => return Ok(Some(narrower)),
+                Err(joint) => {
+                    let [low, high] = narrower.q[joint];
+                    let (middle, radius) = (0.5 * (low + high), 0.25 * (high - low));
+                    narrower.q[joint] = [middle - radius, middle + radius];
+                }
+            }
+        }
+        Ok(None)
     }
 }
 
-/// A part of the operating box.
+/// A part of the operating box, with all its velocities and inputs.
 struct Cell {
-    /// Sides (q, q̇, u), 3n.
+    /// Sides of the positions, n, rad.
     sides: Vec<Interval>,
-    /// Bounds of the truncation error, n, rad/s².
-    bounds: Vec<Interval>,
-    /// Index of the side to cut next.
+    /// Bounds of the truncation error, n, rad/s²; `None` where there is no proof of a bound.
+    bounds: Option<Vec<Interval>>,
+    /// The joint whose side is cut next.
     cut: usize,
     /// Largest ratio of a bound to the sampled error.
     ratio: f64,
@@ -88,138 +133,112 @@ struct Cell {
 
 /// A search by branch and bound.
 struct BranchAndBound<'a> {
-    model: &'a PolynomialModel,
-    robot: &'a Robot,
+    equations: Equations<'a>,
     sampled_error: &'a [f64],
-    space: Arc<TaylorSpace>,
-    cells: Vec<Cell>,
 }
 
-/// Scratch memory of one thread.
-struct Scratch {
-    robot: Workspace<TaylorModel>,
-    model: ModelWorkspace<TaylorModel>,
-}
-
-impl<'a> BranchAndBound<'a> {
-    fn new(model: &'a PolynomialModel, robot: &'a Robot, sampled_error: &'a [f64]) -> Result<Self> {
-        let order = match model.kind() {
-            ModelKind::Three => (model.order() + 1).clamp(LOW_ORDER, HIGH_ORDER),
-            _ => LOW_ORDER,
-        };
-        let space = TaylorSpace::new(3 * robot.joint_count(), order)?;
-        Ok(Self { model, robot, sampled_error, space, cells: Vec::new() })
-    }
-
+impl BranchAndBound<'_> {
     /// Cuts the cells with the largest ratios until there are `max_boxes` or all are tight.
-    fn refine(&mut self, whole: Vec<Interval>, max_boxes: usize) {
-        self.cells = self.cells_of(vec![whole]);
-        while self.cells.len() < max_boxes {
-            self.cells.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
-            let batch = BATCH.min(max_boxes - self.cells.len()).min(self.cells.len());
-            let worst = self.cells.split_off(self.cells.len() - batch);
-            let (tight, open): (Vec<Cell>, Vec<Cell>) =
-                worst.into_iter().partition(|cell| cell.ratio <= TIGHT_RATIO || cell.is_point());
-            let done = open.is_empty();
-            self.cells.extend(tight);
-            self.cells.extend(self.cells_of(open.iter().flat_map(Cell::halves).collect()));
-            if done {
+    fn refined(&self, whole: Vec<Interval>, max_boxes: usize) -> Vec<Cell> {
+        let mut cells = self.cells_of(vec![whole]);
+        while cells.len() < max_boxes {
+            cells.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+            let batch = BATCH.min(max_boxes - cells.len()).min(cells.len());
+            let worst = cells.split_off(cells.len() - batch);
+            let mut parts = Vec::new();
+            for cell in worst {
+                match halves(&cell.sides, cell.cut).filter(|_| cell.ratio > TIGHT_RATIO) {
+                    Some(halves) => parts.extend(halves),
+                    None => cells.push(cell),
+                }
+            }
+            if parts.is_empty() {
                 break;
             }
+            cells.extend(self.cells_of(parts));
         }
+        cells
     }
 
     /// Bounds the truncation error over each of `parts`, in parallel.
     fn cells_of(&self, parts: Vec<Vec<Interval>>) -> Vec<Cell> {
-        let scratch =
-            || Scratch { robot: Workspace::new(self.robot), model: self.model.workspace() };
         parts
             .into_par_iter()
-            .map_init(scratch, |scratch, sides| self.cell(sides, scratch))
+            .map_init(|| self.equations.scratch(), |scratch, sides| self.cell(sides, scratch))
             .collect()
     }
 
     fn cell(&self, sides: Vec<Interval>, scratch: &mut Scratch) -> Cell {
-        let (mass, residual) = self.residual(&sides, scratch);
-        let mass = Preconditioned::new(&mass);
-        let Some((bounds, load)) = mass.as_ref().and_then(|mass| mass.solve(&residual)) else {
-            let cut = widest_position(&sides, self.robot.joint_count());
-            let bounds = vec![Interval::ENTIRE; self.sampled_error.len()];
-            return Cell { bounds, cut, ratio: f64::INFINITY, sides };
-        };
-        let ratio = |i: usize| bounds[i].mag() / self.sampled_error[i].max(f64::MIN_POSITIVE);
-        let worst = (0..bounds.len()).max_by(|i, j| ratio(*i).total_cmp(&ratio(*j))).unwrap_or(0);
-        let cut = if mass.is_some_and(|mass| mass.spread() > WIDE_SPREAD) {
-            widest_position(&sides, self.robot.joint_count())
-        } else {
-            most_curved(&load[worst], &sides)
-        };
-        Cell { ratio: ratio(worst), bounds, cut, sides }
+        let angles = self.equations.angles(&sides);
+        match self.preconditioned(&sides, &angles, scratch) {
+            Ok(mass) => self.bounded(sides, &angles, &mass, scratch),
+            Err(cut) => Cell { sides, bounds: None, cut, ratio: f64::INFINITY },
+        }
     }
 
-    /// Returns M_m (row-major n x n) and ρ (n) over a box as Taylor models in (q, q̇, u).
-    fn residual(
+    /// Returns M_m and its inverse over a part, or the joint to cut where the inverse is not known
+    /// well enough.
+    fn preconditioned(
         &self,
         sides: &[Interval],
+        angles: &Angles,
         scratch: &mut Scratch,
-    ) -> (Vec<TaylorModel>, Vec<TaylorModel>) {
-        let n = self.robot.joint_count();
-        let variables = TaylorBox::new(&self.space, sides).variables();
-        let (q, rest) = variables.split_at(n);
-        let (qd, u) = rest.split_at(n);
-        let (sin, cos) = self.robot.sin_cos(q);
-        let mut state = [q, qd].concat();
-        if self.model.layout().trigonometric {
-            state.extend(sin.iter().chain(&cos).cloned());
-        }
-        let zeros = |count| vec![TaylorModel::from(0.0); count];
-        let (mut rate, mut mass, mut coriolis) = (zeros(state.len()), zeros(n * n), zeros(n));
-        self.model.rate_into(&state, u, &mut scratch.model, &mut rate);
-        self.robot.crba(&sin, &cos, &mut scratch.robot, &mut mass);
-        self.robot.coriolis(&sin, &cos, qd, &mut scratch.robot, &mut coriolis);
-        let residual = |i: usize| {
-            let friction = self.robot.joints()[i].friction.viscous.torque(&qd[i]);
-            let inertial = (0..n).map(|j| &mass[i * n + j] * &rate[n + j]);
-            inertial.fold(&(&u[i] - &coriolis[i]) - &friction, |sum, term| &sum - &term)
+    ) -> core::result::Result<Preconditioned, usize> {
+        let mass = self.equations.mass_matrix(angles, scratch);
+        let cut = stiffest(&mass, sides);
+        let mass = Preconditioned::new(mass, self.equations.positions());
+        mass.filter(|mass| mass.spread() <= MAX_SPREAD).ok_or(cut)
+    }
+
+    /// Bounds the truncation error over a part on which M_m is invertible.
+    fn bounded(
+        &self,
+        sides: Vec<Interval>,
+        angles: &Angles,
+        mass: &Preconditioned,
+        scratch: &mut Scratch,
+    ) -> Cell {
+        let load = self.equations.load(angles, scratch);
+        let acceleration = self.equations.acceleration(angles, scratch);
+        let residual = mass.residual(&load, &acceleration);
+        let models: Vec<TaylorModel> = residual
+            .iter()
+            .zip(self.sampled_error)
+            .map(|(residual, error)| self.equations.joined(residual, SMALL_TERMS * error))
+            .collect();
+        let range = |(model, error): (&TaylorModel, &f64)| {
+            model.range_to_goal(GOAL * error, POLYNOMIAL_PARTS)
         };
-        let residual = (0..n).map(residual).collect();
-        (mass, residual)
-    }
-}
-
-impl Cell {
-    /// Returns whether the side to cut has no number between its ends.
-    fn is_point(&self) -> bool {
-        let side = self.sides[self.cut];
-        side.mid() <= side.lo() || side.mid() >= side.hi()
-    }
-
-    fn halves(&self) -> [Vec<Interval>; 2] {
-        let side = self.sides[self.cut];
-        let part = |low: f64, high: f64| {
-            let mut sides = self.sides.clone();
-            sides[self.cut] = Interval::point(low).hull(Interval::point(high));
-            sides
+        let ranges: Vec<Interval> = models.iter().zip(self.sampled_error).map(range).collect();
+        let bounds = mass.solve(&ranges);
+        let ratio = |i: usize| match &bounds {
+            Some(bounds) => bounds[i].mag() / self.sampled_error[i].max(f64::MIN_POSITIVE),
+            None => f64::INFINITY,
         };
-        [part(side.lo(), side.mid()), part(side.mid(), side.hi())]
+        let worst = (0..sides.len()).max_by(|i, j| ratio(*i).total_cmp(&ratio(*j))).unwrap_or(0);
+        let (cut, ratio) = (most_curved(&models[worst], &sides), ratio(worst));
+        Cell { sides, bounds, cut, ratio }
     }
-}
 
-/// Returns the widest of the first `n` sides.
-fn widest_position(sides: &[Interval], n: usize) -> usize {
-    (0..n).max_by(|i, j| sides[*i].width().total_cmp(&sides[*j].width())).unwrap_or(0)
-}
-
-/// Returns the side along which the model bends most; a linear part is bounded exactly and needs no
-/// cut.
-fn most_curved(model: &TaylorModel, sides: &[Interval]) -> usize {
-    let mut curvature = vec![0.0; sides.len()];
-    for term in model.polynomial().terms() {
-        if term.exponents.iter().map(|e| u32::from(*e)).sum::<u32>() > 1 {
-            let factors = term.exponents.iter().zip(&mut curvature).filter(|(e, _)| **e > 0);
-            factors.for_each(|(_, c)| *c += term.coefficient.abs());
+    /// Cuts a box of positions into parts, on each of which M_m is proved to be invertible, or
+    /// returns the joint whose range is too wide for `max_parts` parts.
+    fn invertible_parts(
+        &self,
+        whole: Vec<Interval>,
+        max_parts: usize,
+    ) -> core::result::Result<(), usize> {
+        let mut scratch = self.equations.scratch();
+        let (mut open, mut parts, mut first_cut) = (vec![whole], 1, None);
+        while let Some(sides) = open.pop() {
+            let angles = self.equations.angles(&sides);
+            let Err(cut) = self.preconditioned(&sides, &angles, &mut scratch) else { continue };
+            let too_wide = *first_cut.get_or_insert(cut);
+            parts += 1;
+            match halves(&sides, cut).filter(|_| parts <= max_parts) {
+                Some(halves) => open.extend(halves),
+                None => return Err(too_wide),
+            }
         }
+        Ok(())
     }
-    let bent = (0..sides.len()).max_by(|i, j| curvature[*i].total_cmp(&curvature[*j])).unwrap_or(0);
-    if curvature[bent] > 0.0 { bent } else { widest_position(sides, sides.len()) }
 }

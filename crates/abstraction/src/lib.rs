@@ -36,6 +36,8 @@
 mod abstraction;
 mod bound;
 mod build;
+mod cut;
+mod equations;
 mod error;
 mod expansion_point;
 mod field;
@@ -52,6 +54,7 @@ mod records;
 mod remainder;
 mod sampled_error;
 mod systems;
+mod taylor_order;
 
 pub use abstraction::Abstraction;
 pub use error::{Error, RecordsError, Result};

@@ -1,90 +1,130 @@
 //! Linear equations with a mass matrix that is known over a box only.
 
-use nalgebra::DMatrix;
-use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_down};
-use reachtube_scalar::{Interval, TaylorModel};
+use std::sync::Arc;
 
-/// A mass matrix M over a box, preconditioned with the inverse P of its midpoint. M is proved to be
-/// invertible everywhere in the box.
+use nalgebra::DMatrix;
+use reachtube_robot::ltdl;
+use reachtube_scalar::rounding::{add_up, div_up, mul_up, sub_down};
+use reachtube_scalar::{Interval, TaylorModel, TaylorPolynomial, TaylorSpace};
+
+use crate::equations::InputPolynomial;
+
+/// Highest order of the series X of M⁻¹; a longer one helps little where it converges and harms
+/// where it does not.
+const SERIES_ORDER: u32 = 4;
+
+/// A mass matrix M over a box, preconditioned with a series X of its inverse about the middle. M is
+/// proved to be invertible everywhere in the box.
 pub(crate) struct Preconditioned {
-    /// The preconditioner P, n x n.
-    inverse: DMatrix<f64>,
-    /// Enclosure of 1 - P M, row-major n x n.
-    deviation: Vec<Interval>,
-    /// A vector w > 0 with |1 - P M| w < w, which proves that M is invertible.
+    /// M, row-major n x n.
+    mass: Vec<TaylorModel>,
+    /// The preconditioner X, row-major n x n: polynomials in the positions.
+    inverse: Vec<TaylorModel>,
+    /// Upper bounds of |1 - X M|, n x n.
+    deviation: DMatrix<f64>,
+    /// A vector w > 0 with |1 - X M| w < w, which proves that M is invertible.
     weights: Vec<f64>,
 }
 
 impl Preconditioned {
     /// Preconditions `mass`, row-major n x n; `None` where no proof of invertibility was found.
-    pub(crate) fn new(mass: &[TaylorModel]) -> Option<Self> {
+    pub(crate) fn new(mass: Vec<TaylorModel>, space: &Arc<TaylorSpace>) -> Option<Self> {
         let n = mass.len().isqrt();
-        let ranges: Vec<Interval> = mass.iter().map(TaylorModel::range).collect();
-        let inverse = DMatrix::from_fn(n, n, |i, j| ranges[i * n + j].mid()).try_inverse()?;
+        let inverse = inverse_series(&mass, space, SERIES_ORDER.min(space.order()));
         let entry = |i: usize, j: usize| {
-            let product: Interval = (0..n).map(|k| ranges[k * n + j] * inverse[(i, k)]).sum();
-            Interval::point(f64::from(i == j)) - product
+            let products = (0..n).map(|k| &inverse[i * n + k] * &mass[k * n + j]);
+            let one = TaylorModel::from(f64::from(i == j));
+            products.fold(one, |rest, product| rest - product).range().mag()
         };
-        let deviation: Vec<Interval> = (0..n * n).map(|ij| entry(ij / n, ij % n)).collect();
-        let magnitude = DMatrix::from_fn(n, n, |i, j| deviation[i * n + j].mag());
+        let deviation = DMatrix::from_fn(n, n, entry);
         // The unrounded weights are a guess; the rounded comparison below is the proof.
-        let weights = (DMatrix::identity(n, n) - magnitude).try_inverse()?.column_sum();
-        let mass = Self { inverse, deviation, weights: weights.iter().copied().collect() };
-        let shrunk = mass.magnitude_times(&mass.weights);
+        let weights = (DMatrix::identity(n, n) - &deviation).try_inverse()?.column_sum();
+        let mass = Self { mass, inverse, deviation, weights: weights.iter().copied().collect() };
+        let shrunk = mass.deviation_times(&mass.weights);
         let shrinks = shrunk.iter().zip(&mass.weights).all(|(s, w)| *w > 0.0 && s < w);
         shrinks.then_some(mass)
     }
 
-    /// Returns the row-sum norm of |1 - P M|, unrounded: the relative spread of M.
+    /// Returns the largest ratio of |1 - X M| w to w, unrounded: how far X is from the inverse.
     pub(crate) fn spread(&self) -> f64 {
-        let n = self.weights.len();
-        self.deviation.chunks(n).map(|row| row.iter().map(|d| d.mag()).sum()).fold(0.0, f64::max)
+        let shrunk = self.deviation_times(&self.weights);
+        shrunk.iter().zip(&self.weights).map(|(s, w)| s / w).fold(0.0, f64::max)
     }
 
-    /// Returns |1 - P M| v, rounded up, for v ≥ 0.
-    fn magnitude_times(&self, v: &[f64]) -> Vec<f64> {
-        let row = |row: &[Interval]| {
-            row.iter().zip(v).fold(0.0, |sum, (d, v)| add_up(sum, mul_up(d.mag(), *v)))
+    /// Returns |1 - X M| v, rounded up, for v ≥ 0.
+    fn deviation_times(&self, v: &[f64]) -> Vec<f64> {
+        let row = |i: usize| {
+            v.iter()
+                .enumerate()
+                .fold(0.0, |sum, (j, v)| add_up(sum, mul_up(self.deviation[(i, j)], *v)))
         };
-        self.deviation.chunks(v.len()).map(row).collect()
+        (0..v.len()).map(row).collect()
     }
 
-    /// Bounds the solution r of M r = ρ and returns the bounds with P ρ; `None` where they are
-    /// infinite.
+    /// Returns X (l - M f), n: nearly the solution of M r = l - M f.
+    pub(crate) fn residual(
+        &self,
+        load: &[InputPolynomial],
+        acceleration: &[InputPolynomial],
+    ) -> Vec<InputPolynomial> {
+        let n = load.len();
+        let residual: Vec<InputPolynomial> = (0..n)
+            .map(|i| {
+                let inertial = (0..n).map(|j| acceleration[j].scaled(&self.mass[i * n + j]));
+                inertial.fold(load[i].clone(), |sum, term| sum - term)
+            })
+            .collect();
+        let row = |i: usize| {
+            let terms = (0..n).map(|j| residual[j].scaled(&self.inverse[i * n + j]));
+            terms.fold(InputPolynomial::from(0.0), |sum, term| sum + term)
+        };
+        (0..n).map(row).collect()
+    }
+
+    /// Bounds the solution r of M r = ρ, given the ranges of X ρ; `None` where a bound is infinite.
     ///
-    /// The solution satisfies r = P ρ + (1 - P M) r. Any α with |P ρ| ≤ α (w - |1 - P M| w) gives
-    /// |r| ≤ α w, and |r| ≤ |P ρ| + |1 - P M| |r| then makes the bound smaller.
+    /// The solution satisfies r = X ρ + (1 - X M) r. Any α with |X ρ| ≤ α (w - |1 - X M| w) gives
+    /// |r| ≤ α w, and |r| ≤ |X ρ| + |1 - X M| |r| then makes the bound smaller.
     ///
     /// # Guarantee
     ///
     /// Outer, with directed rounding: r lies in the bounds for every M and ρ over the box.
-    pub(crate) fn solve(
-        &self,
-        residual: &[TaylorModel],
-    ) -> Option<(Vec<Interval>, Vec<TaylorModel>)> {
-        // P ρ.
-        let n = residual.len();
-        let load = |i: usize| {
-            let terms = (0..n).map(|j| &TaylorModel::from(self.inverse[(i, j)]) * &residual[j]);
-            terms.fold(TaylorModel::from(0.0), |sum, term| &sum + &term)
-        };
-        let load: Vec<TaylorModel> = (0..n).map(load).collect();
-        let ranges: Vec<Interval> = load.iter().map(TaylorModel::range).collect();
+    pub(crate) fn solve(&self, load: &[Interval]) -> Option<Vec<Interval>> {
+        let n = load.len();
         // |r| ≤ α w.
-        let shrunk = self.magnitude_times(&self.weights);
-        let needed = |i: usize| div_up(ranges[i].mag(), sub_down(self.weights[i], shrunk[i]));
+        let shrunk = self.deviation_times(&self.weights);
+        let needed = |i: usize| div_up(load[i].mag(), sub_down(self.weights[i], shrunk[i]));
         let scale = (0..n).map(needed).fold(0.0, f64::max);
         let mut radius: Vec<f64> = self.weights.iter().map(|w| mul_up(scale, *w)).collect();
-        // |r| ≤ |P ρ| + |1 - P M| |r|.
-        for _ in 0..4 {
-            let rest = self.magnitude_times(&radius);
-            radius =
-                rest.iter().zip(&ranges).map(|(rest, load)| add_up(load.mag(), *rest)).collect();
+        // |r| ≤ |X ρ| + |1 - X M| |r|.
+        for _ in 0..8 {
+            let rest = self.deviation_times(&radius);
+            radius = rest.iter().zip(load).map(|(rest, load)| add_up(load.mag(), *rest)).collect();
         }
-        let rest = self.magnitude_times(&radius);
+        let rest = self.deviation_times(&radius);
         let bounds: Vec<Interval> =
-            ranges.iter().zip(&rest).map(|(load, r)| *load + Interval::centred(0.0, *r)).collect();
-        let finite = bounds.iter().all(|b| b.mag().is_finite());
-        finite.then_some((bounds, load))
+            load.iter().zip(&rest).map(|(load, r)| *load + Interval::centred(0.0, *r)).collect();
+        bounds.iter().all(|b| b.mag().is_finite()).then_some(bounds)
     }
+}
+
+/// Returns a series of M⁻¹ to `order` about the middle of the box, row-major n x n, in double
+/// precision.
+fn inverse_series(mass: &[TaylorModel], space: &Arc<TaylorSpace>, order: u32) -> Vec<TaylorModel> {
+    let n = mass.len().isqrt();
+    let indices: Vec<usize> = (0..space.variables()).collect();
+    let low = TaylorSpace::new(space.variables(), order).expect("a lower order fits");
+    let mut factors: Vec<TaylorPolynomial> =
+        mass.iter().map(|m| m.polynomial().embedded(&low, &indices)).collect();
+    ltdl::factor(&mut factors, n);
+    let column = |j: usize| {
+        let mut column: Vec<TaylorPolynomial> =
+            (0..n).map(|i| TaylorPolynomial::from(f64::from(i == j))).collect();
+        ltdl::solve(&factors, &mut column);
+        column
+    };
+    let columns: Vec<_> = (0..n).map(column).collect();
+    (0..n * n)
+        .map(|ij| columns[ij % n][ij / n].embedded(space, &indices).stored_densely().into())
+        .collect()
 }

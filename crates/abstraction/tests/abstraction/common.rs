@@ -55,3 +55,70 @@ pub fn simulated<S: Lanewise + Powers>(
     assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
     states
 }
+
+/// Returns an arm with the axes of a usual arm of seven joints. Its masses and lengths are made up.
+pub fn seven_joints() -> Robot {
+    Robot::from_toml(SEVEN_JOINTS, "seven joints").unwrap()
+}
+
+/// Returns the arm of seven joints without its motors. The inertia of its last joint is a
+/// thousandth of that of the first one, so its mass matrix changes by a multiple over small boxes.
+pub fn light_wrist() -> Robot {
+    let lines = SEVEN_JOINTS.lines().filter(|line| !line.contains("armature"));
+    Robot::from_toml(&lines.collect::<Vec<_>>().join("\n"), "light wrist").unwrap()
+}
+
+const SEVEN_JOINTS: &str = r#"
+    schema_version = 1
+    name = "seven joints"
+    convention = "modified"
+    [[joint]]
+    name = "1"
+    dh = { a = 0.0, alpha = 0.0, theta = 0.0, d = 0.3 }
+    mass = 3.0
+    com = [0.0, 0.02, -0.1]
+    inertia = [0.03, 0.0, 0.0, 0.03, 0.0, 0.01]
+    armature = 0.5
+    [[joint]]
+    name = "2"
+    dh = { a = 0.0, alpha = -1.5707963267948966, theta = 0.0, d = 0.0 }
+    mass = 3.0
+    com = [0.0, -0.1, 0.02]
+    inertia = [0.03, 0.0, 0.0, 0.01, 0.0, 0.03]
+    armature = 0.5
+    [[joint]]
+    name = "3"
+    dh = { a = 0.0, alpha = 1.5707963267948966, theta = 0.0, d = 0.3 }
+    mass = 2.0
+    com = [0.03, 0.02, -0.05]
+    inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]
+    armature = 0.4
+    [[joint]]
+    name = "4"
+    dh = { a = 0.08, alpha = 1.5707963267948966, theta = 0.0, d = 0.0 }
+    mass = 2.0
+    com = [-0.04, 0.08, 0.02]
+    inertia = [0.02, 0.0, 0.0, 0.01, 0.0, 0.02]
+    armature = 0.4
+    [[joint]]
+    name = "5"
+    dh = { a = -0.08, alpha = -1.5707963267948966, theta = 0.0, d = 0.38 }
+    mass = 1.5
+    com = [0.0, 0.03, -0.1]
+    inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.004]
+    armature = 0.2
+    [[joint]]
+    name = "6"
+    dh = { a = 0.0, alpha = 1.5707963267948966, theta = 0.0, d = 0.0 }
+    mass = 1.0
+    com = [0.05, 0.0, 0.0]
+    inertia = [0.002, 0.0, 0.0, 0.004, 0.0, 0.004]
+    armature = 0.2
+    [[joint]]
+    name = "7"
+    dh = { a = 0.088, alpha = 1.5707963267948966, theta = 0.0, d = 0.1 }
+    mass = 0.7
+    com = [0.01, 0.0, 0.06]
+    inertia = [0.002, 0.0, 0.0, 0.002, 0.0, 0.001]
+    armature = 0.2
+"#;

@@ -65,7 +65,7 @@ fn two_thousand_steps_enclose_the_exact_exponential_and_integral() {
 }
 
 #[test]
-fn widths_grow_linearly_not_exponentially() {
+fn widths_grow_linearly_where_the_exponential_stays_bounded() {
     for system in [rotation(), double_integrator(), arm()] {
         let propagation = uniform(&system, 2001);
         let relative =
@@ -102,6 +102,22 @@ fn growth_beyond_the_rounding_unit_is_enclosed() {
     let rows = exact_step(&explosive, &exact(2.0));
     let width = assert_encloses(&propagation.exponential(512), &rows, 0, "E");
     assert!(width < 1e-11 * largest(&propagation.exponential(512)));
+}
+
+/// The entries e^{40 t} cos 30 t and e^{40 t} sin 30 t change sign, and exceed 1/ε after 0.9 s. The
+/// documentation names this limit: widths grow exponentially relative to the entries.
+#[test]
+fn beyond_a_growth_of_the_rounding_unit_widths_grow_faster_than_linearly() {
+    let spiral = system(&[&[40.0, 30.0], &[-30.0, 40.0]], &[&[1.0], &[0.0]], &[0.0, 0.0]);
+    let relative = |propagation: Propagation, k: usize| {
+        let exponential = propagation.exponential(k);
+        widest(&exponential) / largest(&exponential)
+    };
+    let at_a_rate = [1024, 2048].map(|k| relative(uniform(&spiral, k + 1), k));
+    let as_recorded = [128, 256].map(|k| relative(recorded(&spiral, k + 1), k));
+    for [once, twice] in [at_a_rate, as_recorded] {
+        assert!(twice > 100.0 * once, "{once:e} {twice:e}");
+    }
 }
 
 #[test]

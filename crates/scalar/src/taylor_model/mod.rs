@@ -10,12 +10,14 @@
 //! 6. `division`: quotients and the operator `/`.
 //! 7. `functions`: elementary functions.
 //! 8. `tight`: closer bounds by branch and bound.
-//! 9. `taylor_box`: the box that models are defined over.
+//! 9. `goal`: bounds as close as a goal asks for.
+//! 10. `taylor_box`: the box that models are defined over.
 
 mod arithmetic;
 mod bounds;
 mod division;
 mod functions;
+mod goal;
 mod model;
 mod polarisation;
 mod product;

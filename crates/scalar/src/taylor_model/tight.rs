@@ -7,10 +7,9 @@ use super::bounds::{OVERFLOW_GUARD, inflated};
 use super::model::TaylorModel;
 use crate::interval::closed::Interval;
 use crate::rounding::{add_up, mul_up};
-use crate::taylor::monomial::exponents_only;
+use crate::taylor::monomial::{Packing, exponents_only};
 use crate::taylor::polynomial::TaylorPolynomial;
 use crate::taylor::space::TaylorSpace;
-use crate::taylor::sparse::collect_like_terms;
 
 /// Largest number of nested bisections of the box.
 const MAX_DEPTH: u32 = 5;
@@ -61,9 +60,7 @@ fn upper_bound(p: &TaylorPolynomial, sign: f64) -> f64 {
     if total >= OVERFLOW_GUARD {
         return f64::INFINITY;
     }
-    let (attained, factors) = (f64::NEG_INFINITY, Vec::new());
-    let slopes = vec![Slope::default(); space.variables()];
-    BranchAndBound { space, total, attained, slopes, factors }.upper_bound(terms, MAX_DEPTH, 0.0)
+    PolynomialSearch::new(space, total).upper_bound(terms, MAX_DEPTH, 0.0)
 }
 
 /// The partial derivative in one variable over the box.
@@ -82,7 +79,7 @@ impl Slope {
 }
 
 /// A branch-and-bound search for an upper bound of a polynomial.
-struct BranchAndBound<'a> {
+pub(super) struct PolynomialSearch<'a> {
     space: &'a TaylorSpace,
     /// Σ |c| over the whole box.
     total: f64,
@@ -92,9 +89,40 @@ struct BranchAndBound<'a> {
     factors: Vec<u8>,
 }
 
-impl BranchAndBound<'_> {
+/// A part of the box, with the polynomial in the part's own coordinates.
+pub(super) struct Part {
+    terms: Terms,
+    /// Bound of the rounding errors of the terms.
+    error: f64,
+    /// Upper bound over the part, with the error.
+    pub bound: f64,
+    /// The variable to cut; `None` where the bound cannot become smaller.
+    pub cut: Option<usize>,
+}
+
+impl<'a> PolynomialSearch<'a> {
+    /// Prepares a search for a polynomial whose magnitudes of coefficients sum up to `total`.
+    pub fn new(space: &'a TaylorSpace, total: f64) -> Self {
+        let slopes = vec![Slope::default(); space.variables()];
+        Self { space, total, attained: f64::NEG_INFINITY, slopes, factors: Vec::new() }
+    }
+
     /// Returns an upper bound of every function that is within `error` of the given terms.
-    fn upper_bound(&mut self, mut terms: Terms, depth: u32, mut error: f64) -> f64 {
+    fn upper_bound(&mut self, terms: Terms, depth: u32, error: f64) -> f64 {
+        let part = self.part(terms, error);
+        let is_tight = part.bound - self.attained <= RELATIVE_GAP * self.total;
+        match part.cut {
+            Some(cut) if depth > 0 && !is_tight => {
+                let [low, high] = self.halved_terms(&part, cut);
+                let low = self.upper_bound(low.0, depth - 1, low.1);
+                low.max(self.upper_bound(high.0, depth - 1, high.1)).min(part.bound)
+            }
+            _ => part.bound,
+        }
+    }
+
+    /// Bounds a polynomial over a part, given by its terms in the part's coordinates.
+    pub fn part(&mut self, mut terms: Terms, mut error: f64) -> Part {
         // Fix the variables in which the polynomial is monotonic, until none is left.
         loop {
             self.differentiate(&terms);
@@ -109,20 +137,18 @@ impl BranchAndBound<'_> {
         let (bound, middle) = self.bound(&terms);
         self.attained = self.attained.max(middle);
         // Branch: bisect the variable with the largest non-linear derivative.
-        let branching = (0..self.slopes.len())
-            .max_by(|i, j| self.slopes[*i].non_linear.total_cmp(&self.slopes[*j].non_linear));
-        let is_tight = bound - self.attained <= RELATIVE_GAP * self.total;
-        match branching {
-            Some(i) if depth > 0 && !is_tight && self.slopes[i].non_linear > 0.0 => {
-                let [low, high] = [-0.5, 0.5].map(|at| {
-                    let mut error = error;
-                    let half = self.restricted_to_half(&terms, i, at, &mut error);
-                    self.upper_bound(half, depth - 1, error)
-                });
-                low.max(high).min(add_up(bound, error))
-            }
-            _ => add_up(bound, error),
-        }
+        let cut = (0..self.slopes.len())
+            .max_by(|i, j| self.slopes[*i].non_linear.total_cmp(&self.slopes[*j].non_linear))
+            .filter(|i| self.slopes[*i].non_linear > 0.0);
+        Part { terms, error, bound: add_up(bound, error), cut }
+    }
+
+    /// Returns the bounds over the two halves of a part.
+    pub fn halves(&mut self, part: &Part, cut: usize) -> [Part; 2] {
+        self.halved_terms(part, cut).map(|(terms, error)| {
+            let half = self.part(terms, error);
+            Part { bound: half.bound.min(part.bound), ..half }
+        })
     }
 
     /// Computes the slope in each variable.
@@ -166,37 +192,54 @@ impl BranchAndBound<'_> {
         self.collect(terms, error)
     }
 
-    /// Restricts the polynomial to half of the side of variable i: x_i = `at` + x_i'/2, `at` =
-    /// ±1/2.
-    fn restricted_to_half(&self, terms: &Terms, i: usize, at: f64, error: &mut f64) -> Terms {
+    /// Restricts the polynomial to the halves of the side of variable i, x_i = ∓1/2 + x_i'/2. The
+    /// second number of each half bounds the error, given that of the polynomial.
+    fn halved_terms(&self, part: &Part, i: usize) -> [(Terms, f64); 2] {
         let packing = self.space.packing;
-        let mut all = Vec::with_capacity(2 * terms.len());
-        for (m, c) in terms {
-            let exponent = packing.exponent(*m, i);
-            let (mut monomial, mut binomial) = (*m, 1.0);
-            for step in 0..=exponent {
-                // The coefficient is c C(e, e - step) at^step / 2^(e - step). For e ≤ 50, only the
-                // product with c is rounded.
-                let factor =
-                    binomial * at.powi(step as i32) * 0.5f64.powi((exponent - step) as i32);
-                all.push((monomial, c * factor));
-                if step < exponent {
-                    monomial -= packing.variable(i);
+        // The terms c_e x_i^e with one monomial of the other variables become neighbours.
+        let mut terms = part.terms.clone();
+        terms.sort_unstable_by_key(|(m, _)| packing.without(*m, i));
+        let mut halves = [Vec::with_capacity(terms.len()), Vec::with_capacity(terms.len())];
+        let mut highest = 0;
+        for group in terms.chunk_by(|a, b| packing.without(a.0, i) == packing.without(b.0, i)) {
+            let others = packing.without(group[0].0, i);
+            let degree = group.iter().map(|(m, _)| packing.exponent(*m, i)).max().unwrap_or(0);
+            highest = highest.max(degree);
+            for k in 0..=degree {
+                let (even, odd) = half_coefficient(packing, group, i, k);
+                let monomial = others + u128::from(k) * packing.variable(i);
+                for (half, coefficient) in halves.iter_mut().zip([even - odd, even + odd]) {
+                    if coefficient != 0.0 {
+                        half.push((monomial, coefficient));
+                    }
                 }
-                binomial = binomial * f64::from(exponent - step) / f64::from(step + 1);
             }
         }
-        self.collect(all, error)
+        // Each coefficient has at most `highest` additions and three products, and above e = 50 the
+        // roundings of binomial coefficients.
+        let error = add_up(part.error, self.rounding(3 * highest as usize + 4, terms.len()));
+        halves.map(|terms| (terms, error))
     }
 
-    /// Collects like terms, and adds a bound of the rounding of these sums and of three products
-    /// per term to the error.
-    fn collect(&self, terms: Terms, error: &mut f64) -> Terms {
-        let roundings = (terms.len() + 3) as f64;
-        let rounding =
-            add_up(mul_up(roundings * f64::EPSILON, self.total), roundings * f64::MIN_POSITIVE);
-        *error = add_up(*error, rounding);
-        collect_like_terms(terms)
+    /// Collects like terms, and adds a bound of the rounding of these sums to the error.
+    fn collect(&self, mut terms: Terms, error: &mut f64) -> Terms {
+        *error = add_up(*error, self.rounding(terms.len(), terms.len()));
+        terms.sort_unstable_by_key(|term| term.0);
+        terms.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 += next.1;
+            }
+            same
+        });
+        terms.retain(|(_, c)| *c != 0.0);
+        terms
+    }
+
+    /// Bounds the rounding of terms whose coefficients are rounded `roundings` times each.
+    fn rounding(&self, roundings: usize, terms: usize) -> f64 {
+        let underflow = (roundings * (terms + 1)) as f64 * f64::MIN_POSITIVE;
+        add_up(mul_up(roundings as f64 * f64::EPSILON, self.total), underflow)
     }
 
     /// Returns an upper bound over the whole box, and the value at its centre.
@@ -212,6 +255,23 @@ impl BranchAndBound<'_> {
         }
         (add_up(middle, inflated(sum, terms.len())), middle)
     }
+}
+
+/// Returns the coefficient of x_i'^k for x_i = ±1/2 + x_i'/2 of terms that differ in the exponent of
+/// x_i alone, as two parts: the coefficient is the first part plus or minus the second one.
+///
+/// The coefficient is the sum of c_e C(e, k) (±1/2)^(e - k) / 2^k over e ≥ k.
+fn half_coefficient(packing: Packing, group: &[(u128, f64)], i: usize, k: u32) -> (f64, f64) {
+    let (mut even, mut odd) = (0.0, 0.0);
+    for (m, c) in group {
+        let e = packing.exponent(*m, i);
+        if e >= k {
+            let binomial = (0..k).fold(1.0, |b, j| b * f64::from(e - j) / f64::from(j + 1));
+            let value = c * binomial * 0.5f64.powi(e as i32);
+            if (e - k) % 2 == 0 { even += value } else { odd += value }
+        }
+    }
+    (even, odd)
 }
 
 #[cfg(test)]

@@ -22,10 +22,14 @@ const MOST_SHORT_STEPS: f64 = 4096.0;
 /// error of Ẽ_k is e_k = Σ_j δ_j e^{A(t_k - t_{j+1})}. Two bounds hold, and each entry takes the
 /// smaller one:
 ///
-/// - |e_k| <= (Σ_j |δ_j|) M with M >= |e^{Aτ}| over the whole horizon grows linearly;
-///   [`RoundedProducts::horizon_bound`] finds M a posteriori;
+/// - |e_k| <= (Σ_j |δ_j|) M with M >= |e^{Aτ}| over the whole horizon grows linearly with k where
+///   e^{At} stays bounded; [`RoundedProducts::horizon_bound`] finds M a posteriori;
 /// - |e_{k+1}| <= |e_k| |Φ_k| + |δ_k| follows the growth or decay of a system whose entries keep
 ///   their signs.
+///
+/// Where e^{At} grows to about 1/ε over the horizon, Σ|δ_j| is no longer small and no M is found.
+/// The second bound alone is left. For entries that change sign, it grows exponentially faster than
+/// the entries.
 pub(crate) struct Powers {
     pub(crate) mid: Vec<DMatrix<f64>>,
     pub(crate) rad: Vec<DMatrix<f64>>,
