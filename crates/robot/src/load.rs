@@ -2,6 +2,7 @@
 
 use crate::error::RobotError;
 use crate::robot::Robot;
+use crate::text_file::read_text;
 use crate::urdf::read::{Urdf, UrdfEnds};
 use std::path::Path;
 
@@ -23,9 +24,7 @@ impl Robot {
         if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) {
             return Ok(Urdf::load(path, &UrdfEnds::default())?.into_robot());
         }
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| RobotError::Read { path: name_or_path.into(), source })?;
-        Self::from_toml(&text, name_or_path)
+        Self::from_toml(&read_text(path)?, name_or_path)
     }
 
     /// Returns the Schunk LWA 4P as identified by Liu & Althoff (IROS 2018), Table III.

@@ -5,6 +5,7 @@ use super::describe::MovedLink;
 use super::document::{Tree, parse_document};
 use crate::error::RobotError;
 use crate::robot::Robot;
+use crate::text_file::read_text;
 use std::path::Path;
 
 /// The ends of the chain that is read from a URDF.
@@ -72,14 +73,10 @@ impl Urdf {
     /// floating and mimic joints in the chain.
     pub fn load(path: impl AsRef<Path>, ends: &UrdfEnds) -> Result<Self, RobotError> {
         let path = path.as_ref();
-        let read = |path: &Path| {
-            std::fs::read_to_string(path)
-                .map_err(|source| RobotError::Read { path: path.into(), source })
-        };
-        let text = read(path)?;
+        let text = read_text(path)?;
         let companion = path.with_extension("toml");
         let companion = if companion.exists() {
-            Companion::parse(&read(&companion)?, &companion.display().to_string())?
+            Companion::parse(&read_text(&companion)?, &companion.display().to_string())?
         } else {
             Companion::default()
         };
