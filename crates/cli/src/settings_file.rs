@@ -172,3 +172,47 @@ fn item(value: &Value) -> Result<String, String> {
         )),
     }
 }
+
+#[cfg(test)]
+#[path = "../../reachtube/tests/hostile/mutation.rs"]
+mod mutation;
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use clap::CommandFactory;
+
+    use super::mutation::attack;
+    use super::{COMMAND, SettingsFile};
+    use crate::cli::Cli;
+
+    const SETTINGS: &str = "robot = \"arm.toml\"\ndata = \"data\"\nsuites = [\"A\", \"B\"]\n\
+                            torque = \"motor\"\nweights = [1, 0.5]\nuntil = 0.25\norder = 3\n\
+                            max-gap = 1\ncentre = 'zero'\n";
+
+    fn attack_settings(count: u64) {
+        let path = Path::new("settings.toml");
+        attack("conform's settings", &[SETTINGS.into()], count, |bytes| {
+            let text = String::from_utf8_lossy(bytes);
+            let arguments =
+                SettingsFile::parse(path, &text).and_then(|file| file.arguments(|_| false));
+            if let Ok(arguments) = arguments {
+                let line = ["reachtube".into(), COMMAND.into()].into_iter().chain(arguments);
+                let _ = Cli::command().try_get_matches_from(line);
+            }
+        });
+    }
+
+    #[test]
+    fn a_sample_of_hostile_settings_is_read_without_harm() {
+        attack_settings(1000);
+    }
+
+    #[test]
+    #[ignore = "takes long; REACHTUBE_HOSTILE_INPUTS sets the number of inputs"]
+    fn many_hostile_settings_are_read_without_harm() {
+        let count = std::env::var("REACHTUBE_HOSTILE_INPUTS").ok();
+        attack_settings(count.map_or(10_000, |count| count.parse().unwrap()));
+    }
+}

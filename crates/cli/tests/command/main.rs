@@ -10,6 +10,7 @@ mod index;
 mod inspect;
 mod nonlinear;
 mod options;
+mod output_schema;
 mod outputs;
 mod overwrite;
 mod reach;

@@ -116,5 +116,6 @@ fn windows_longer_than_the_recordings_are_an_error() {
         "give a shorter --window",
     ]);
     assert!(!lab.path("windows").exists());
-    lab.run(&format!("{prepare} --window 1")).exits(0).notes("wrote 2 recordings");
+    let run = lab.run(&format!("{prepare} --window 1 --json")).exits(0).notes("wrote 1 recordings");
+    crate::output_schema::fits("prepare", &run.json());
 }
