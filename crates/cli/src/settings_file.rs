@@ -43,7 +43,7 @@ fn cli(matches: Result<ArgMatches, clap::Error>) -> Result<Cli> {
 /// Parses the command line together with the options in the file `path` that it does not give.
 fn with_file(line: &[OsString], given: &ArgMatches, path: &Path) -> Result<Cli> {
     let text =
-        reachtube_files::read_text(path, "give a settings file as docs/conform.md describes")?;
+        reachtube_files::read_text(path, "give a settings file as docs/commands.md describes")?;
     let file = SettingsFile::parse(path, &text)?;
     let at = line.iter().position(|argument| argument == COMMAND).unwrap_or(line.len() - 1) + 1;
     let on_line = |key: &str| given.value_source(&id(key)) == Some(ValueSource::CommandLine);

@@ -84,13 +84,13 @@ pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Inspection {
     let options = ReadOptions { gap_limit, ..ReadOptions::default() };
     let groups = groups(data);
     let read = |(_, _, members): &(String, bool, Vec<usize>)| read_group(data, members, &options);
-    let read: Vec<(usize, Summary)> = groups.par_iter().flat_map_iter(read).collect();
-    let joints = first_joints(&read);
+    let mut read: Vec<(usize, Summary)> = groups.par_iter().flat_map_iter(read).collect();
+    read.sort_by_key(|(index, _)| *index);
+    let first = read.iter().find_map(|(_, run)| run.as_ref().ok());
+    let joints = first.map_or(0, RunSummary::joint_count);
     let mut refused = Vec::new();
     let mut sound: Vec<Option<RunSummary>> = data.runs().iter().map(|_| None).collect();
-    let mut in_order = read;
-    in_order.sort_by_key(|(index, _)| *index);
-    for (index, summary) in in_order {
+    for (index, summary) in read {
         match summary.and_then(|run| same_joints(data, index, run, joints)) {
             Ok(run) => sound[index] = Some(run),
             Err(refusals) => merge(&mut refused, refusals),
@@ -135,12 +135,6 @@ fn read_group(data: &DataSet, members: &[usize], options: &ReadOptions) -> Vec<(
         }
     }
     summaries
-}
-
-/// Returns the number of joints of the first recording that was read, and 0 where none was.
-fn first_joints(read: &[(usize, Summary)]) -> usize {
-    let sound = read.iter().filter_map(|(index, run)| Some((index, run.as_ref().ok()?)));
-    sound.min_by_key(|(index, _)| **index).map_or(0, |(_, run)| run.joint_count())
 }
 
 /// Refuses a run whose number of joints differs from that of the first.

@@ -36,7 +36,7 @@ fn results_fit_the_schema() {
     let lab = Lab::new();
     lab.conform("--suites A --out model.json").exits(0);
     let with = "--model model.json --data data --torque compensated";
-    let mut run = |name: &str, command: &str| {
+    let run = |name: &str, command: &str| {
         fits(name, &lab.run(&format!("{command} --json")).exits(0).json());
     };
     run("inspect", "inspect --data data");

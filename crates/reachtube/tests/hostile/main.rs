@@ -21,96 +21,51 @@ const SAMPLE: u64 = 2000;
 /// Memory that reading all of the inputs may reserve, bytes.
 const MOST_MEMORY: u64 = 1 << 30;
 
-/// Runs a reader of text; bytes that are not text are no input for it.
-fn of_text(read: impl Fn(&str)) -> impl FnMut(&[u8]) {
-    move |bytes| read(&String::from_utf8_lossy(bytes))
-}
-
-/// Runs a reader of files.
-fn of_file(path: &Path, read: impl Fn(&Path)) -> impl FnMut(&[u8]) {
-    move |bytes| {
-        std::fs::write(path, bytes).unwrap();
-        read(path);
-    }
-}
-
-/// Tries `count` inputs on each reader.
+/// Tries `count` inputs on each reader, and checks the memory that this takes.
 fn try_all(count: u64) {
     let memory_before = reserved_memory();
     let memory = Path::new("/dev/shm");
-    let folder =
-        tempfile::tempdir_in(if memory.is_dir() { memory.into() } else { std::env::temp_dir() });
-    let folder = folder.unwrap();
-    let at = |name: &str| folder.path().join(name);
-    let csv = at("run.csv");
-    attack(
-        "csv",
-        &seeds::recordings(),
-        count,
-        of_file(&csv, |path| {
-            let _ = read_csv(path, &ReadOptions::default());
-        }),
-    );
-    std::fs::write(&csv, seeds::recordings().remove(0)).unwrap();
-    attack(
-        "index",
-        &seeds::indices(),
-        count,
-        of_file(&at("runs.csv"), |path| {
-            let _ = DataSet::open(path.parent().unwrap());
-        }),
-    );
-    attack(
-        "toml",
-        &seeds::robots(),
-        count,
-        of_text(|text| {
-            let _ = Robot::from_toml(text, "robot.toml");
-        }),
-    );
-    attack(
-        "urdf",
-        &seeds::urdfs(),
-        count,
-        of_text(|text| {
-            let _ = Urdf::parse(text, "robot.urdf", &UrdfEnds::default());
-        }),
-    );
-    attack(
-        "companion",
-        &seeds::companions(),
-        count,
-        of_text(|text| {
-            let urdf = String::from_utf8(seeds::urdfs().remove(0)).unwrap();
-            let _ = Urdf::parse_with(&urdf, "robot.urdf", text, &UrdfEnds::default());
-        }),
-    );
-    attack(
-        "settings",
-        &seeds::settings(),
-        count,
-        of_text(|text| {
-            let _ = IdentifySettings::from_toml(text, "settings.toml");
-        }),
-    );
-    attack(
-        "model",
-        &seeds::models(),
-        count,
-        of_file(&at("model.json"), |path| {
-            let _ = Model::open(path);
-        }),
-    );
-    attack(
-        "abstraction",
-        &seeds::abstractions(),
-        count,
-        of_file(&at("a.json"), |path| {
-            let _ = PolynomialModel::load(path);
-        }),
-    );
+    let folder = if memory.is_dir() { memory.into() } else { std::env::temp_dir() };
+    let folder = tempfile::tempdir_in(folder).unwrap();
+    try_texts(count);
+    try_files(count, folder.path());
     let grown = reserved_memory().saturating_sub(memory_before);
     assert!(grown < MOST_MEMORY, "reading reserved {grown} bytes");
+}
+
+/// Tries the readers of text.
+fn try_texts(count: u64) {
+    let try_text = |name: &str, seeds: Vec<Vec<u8>>, read: &dyn Fn(&str)| {
+        attack(name, &seeds, count, |bytes| read(&String::from_utf8_lossy(bytes)));
+    };
+    let ends = UrdfEnds::default();
+    try_text("toml", seeds::robots(), &|text| drop(Robot::from_toml(text, "robot.toml")));
+    try_text("urdf", seeds::urdfs(), &|text| drop(Urdf::parse(text, "robot.urdf", &ends)));
+    let urdf = String::from_utf8(seeds::urdfs().remove(0)).unwrap();
+    try_text("companion", seeds::companions(), &|text| {
+        drop(Urdf::parse_with(&urdf, "robot.urdf", text, &ends));
+    });
+    try_text("settings", seeds::settings(), &|text| {
+        drop(IdentifySettings::from_toml(text, "settings.toml"));
+    });
+}
+
+/// Tries the readers of files, in a folder.
+fn try_files(count: u64, folder: &Path) {
+    let try_file = |name: &str, seeds: Vec<Vec<u8>>, read: &dyn Fn(&Path)| {
+        let path = folder.join(name);
+        attack(name, &seeds, count, |bytes| {
+            std::fs::write(&path, bytes).unwrap();
+            read(&path);
+        });
+    };
+    let options = ReadOptions::default();
+    try_file("run.csv", seeds::recordings(), &|path| drop(read_csv(path, &options)));
+    // The index lists a recording that is there.
+    std::fs::write(folder.join("run.csv"), seeds::recordings().remove(0)).unwrap();
+    try_file("runs.csv", seeds::indices(), &|_| drop(DataSet::open(folder)));
+    try_file("model.json", seeds::models(), &|path| drop(Model::open(path)));
+    try_file("abstraction.json", seeds::abstractions(), &|path| drop(PolynomialModel::load(path)));
 }
 
 /// Returns the most memory that the process has reserved, bytes; 0 where that is not known.
