@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::{
-    Elementary, Interval, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace, TaylorTerm,
+    Interval, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace, TaylorTerm,
 };
 
 use crate::error::Result;
@@ -91,7 +91,7 @@ impl<'a> Equations<'a> {
         let mut models: Vec<TaylorModel> = q.iter().map(|side| TaylorModel::from(*side)).collect();
         let positions = TaylorBox::new(&self.positions, &sides).variables();
         models.splice(variables, positions);
-        let (sin, cos) = models.iter().map(Elementary::sin_cos).unzip();
+        let (sin, cos) = self.robot.sin_cos(&models);
         Angles { sin, cos }
     }
 

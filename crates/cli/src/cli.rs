@@ -5,9 +5,11 @@ use clap::{Parser, Subcommand};
 use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
-    r#abstract, check, conform, demo, excite, identify, inspect, prepare, reach, report,
+    r#abstract, check, completions, conform, demo, excite, identify, inspect, man, prepare, reach,
+    report,
 };
 use crate::error::Result;
+use crate::global::GlobalOptions;
 use crate::outcome::Outcome;
 
 /// Robot models that provably cover your recordings
@@ -16,14 +18,16 @@ use crate::outcome::Outcome;
 /// which every recorded sample lies in the interval hull of the model's reachable set. It checks
 /// this with directed rounding.
 #[derive(Debug, Parser)]
-#[command(name = "reachtube", version, after_help = HELP)]
+#[command(name = "reachtube", version = VERSION, after_help = HELP)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
-    /// Print the result as JSON on standard output
-    #[arg(long, global = true)]
-    pub json: bool,
+    #[command(flatten)]
+    pub global: GlobalOptions,
 }
+
+/// The version, and the commit where the command was built from a clone.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("REACHTUBE_COMMIT"));
 
 const HELP: &str = "\
 Examples:
@@ -64,22 +68,27 @@ pub enum Command {
     Report(report::Arguments),
     #[command(subcommand)]
     Reproduce(ReproduceCommand),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
 }
 
 /// Runs the command that the arguments name.
 pub fn run(cli: &Cli) -> Result<Outcome> {
+    let json = cli.global.json;
     match &cli.command {
-        Command::Demo(args) => demo::run(args, cli.json),
-        Command::Robot(RobotCommand::Show(args)) => robot::show(args, cli.json),
-        Command::Identify(args) => identify::run(args, cli.json),
-        Command::Inspect(args) => inspect::run(args, cli.json),
-        Command::Abstract(args) => r#abstract::run(args, cli.json),
-        Command::Excite(args) => excite::run(args, cli.json),
-        Command::Prepare(args) => prepare::run(args, cli.json),
-        Command::Conform(args) => conform::run(args, cli.json),
-        Command::Check(args) => check::run(args, cli.json),
-        Command::Reach(args) => reach::run(args, cli.json),
-        Command::Report(args) => report::run(args, cli.json),
-        Command::Reproduce(ReproduceCommand::Table1(args)) => reproduce::table1(args, cli.json),
+        Command::Demo(args) => demo::run(args, json),
+        Command::Robot(RobotCommand::Show(args)) => robot::show(args, json),
+        Command::Identify(args) => identify::run(args, json),
+        Command::Inspect(args) => inspect::run(args, json),
+        Command::Abstract(args) => r#abstract::run(args, json),
+        Command::Excite(args) => excite::run(args, json),
+        Command::Prepare(args) => prepare::run(args, json),
+        Command::Conform(args) => conform::run(args, json),
+        Command::Check(args) => check::run(args, json),
+        Command::Reach(args) => reach::run(args, json),
+        Command::Report(args) => report::run(args, json),
+        Command::Reproduce(ReproduceCommand::Table1(args)) => reproduce::table1(args, json),
+        Command::Completions(args) => completions::run(args),
+        Command::Man(args) => man::run(args),
     }
 }

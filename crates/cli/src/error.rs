@@ -2,12 +2,36 @@
 
 use std::path::PathBuf;
 
+use reachtube::recordings::Refusal;
 use thiserror::Error;
 
 /// Why a command failed. A model that is not conformant is an [`Outcome`](crate::outcome::Outcome),
 /// not an error.
 #[derive(Debug, Error)]
 pub enum Error {
+    /// The command line is wrong, or asks for help or the version.
+    #[error("{}", usage_words(.0))]
+    Usage(clap::Error),
+    /// A settings file is not TOML.
+    #[error("{}: {message}", path.display())]
+    SettingsSyntax {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        message: String,
+    },
+    /// A key of a settings file is wrong.
+    #[error("{}:{line}: {key}: {problem}", path.display())]
+    SettingsKey {
+        /// The file.
+        path: PathBuf,
+        /// Line in the file, from 1.
+        line: usize,
+        /// The key.
+        key: String,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
     /// The result could not be printed.
     #[error(
         "standard output: cannot write: {0}; make room or print elsewhere, and run the command \
@@ -85,9 +109,105 @@ pub enum Error {
         /// Number of states 2n.
         states: usize,
     },
+    /// `excite` would write more samples than allowed.
+    #[error(
+        "--period {period} s at --rate {rate} Hz gives {samples:.0} samples, about {megabytes:.0} \
+         MB of CSV, but at most {most} are allowed; shorten the period, lower the rate, or allow \
+         more with --most-samples"
+    )]
+    TooManySamples {
+        /// The period, s.
+        period: f64,
+        /// The sample rate, Hz.
+        rate: f64,
+        /// Number of samples.
+        samples: f64,
+        /// Size of the file, MB.
+        megabytes: f64,
+        /// Largest number of samples.
+        most: u64,
+    },
+    /// No recording fills a window of `prepare`.
+    #[error("no recording is left: {}", match window {
+        Some(window) => format!(
+            "the windows are {window} s long, but the longest prepared recording lasts \
+             {longest:.3} s; give a shorter --window"
+        ),
+        None => "no log has two samples or more; give longer --logs".into(),
+    })]
+    NothingPrepared {
+        /// Length of the windows, s, where it is given.
+        window: Option<f64>,
+        /// Duration of the longest recording, s.
+        longest: f64,
+    },
+    /// `inspect` found recordings that cannot be used.
+    #[error("{}", refused.iter().map(Refusal::to_string).collect::<Vec<_>>().join("\n"))]
+    Refused {
+        /// One entry for each kind of defect.
+        refused: Vec<Refusal>,
+    },
+    /// The recordings' torques mean something else than those that a model was found for.
+    #[error(
+        "--torque {given}, but the model was found with --torque {model}, and its input set covers \
+         that only; give --torque {model}, or run conform on recordings with --torque {given}"
+    )]
+    OtherTorque {
+        /// The meaning given.
+        given: String,
+        /// The model's.
+        model: String,
+    },
     /// The library reported an error.
     #[error(transparent)]
     Library(#[from] reachtube::Error),
+}
+
+impl Error {
+    /// Returns what the error is about, as `--json` prints it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Usage(_) => "usage",
+            Self::Output(_) => "file",
+            Self::Refused { .. } => "recordings",
+            Self::Library(error) => kind(error),
+            _ => "setting",
+        }
+    }
+}
+
+/// Returns what an error of the library is about: what is wrong in the end, else the step.
+fn kind(error: &reachtube::Error) -> &'static str {
+    use reachtube::Error as E;
+    use reachtube::abstraction::Error as Abstraction;
+    use reachtube::conform::Error as Conform;
+    use reachtube::identify::Error as Identify;
+    match error {
+        E::File(_)
+        | E::Identify(Identify::File(_))
+        | E::Abstraction(Abstraction::File(_))
+        | E::Conform(Conform::File(_)) => "file",
+        E::Recordings(_)
+        | E::Identify(Identify::Recordings(_))
+        | E::Conform(Conform::Recordings(_)) => "recordings",
+        E::Robot(_)
+        | E::Identify(Identify::Robot(_))
+        | E::Abstraction(Abstraction::Robot(_))
+        | E::Conform(Conform::Robot(_)) => "robot",
+        E::Identify(_) => "identify",
+        E::Abstraction(_) | E::Conform(Conform::Abstraction(_)) => "abstraction",
+        E::Conform(_) => "conform",
+        E::Demo(_) => "demo",
+        E::Reproduce(_) => "reproduce",
+        E::Report(_) => "report",
+        _ => "other",
+    }
+}
+
+/// Returns clap's message without its mark as an error, and without colours.
+fn usage_words(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    text.strip_prefix("error: ").unwrap_or(&text).trim_end().into()
 }
 
 /// A result of the command line.

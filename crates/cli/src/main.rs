@@ -5,6 +5,7 @@ mod commands;
 mod data_arguments;
 mod error;
 mod file_names;
+mod global;
 mod lock_arguments;
 mod opened;
 mod option_values;
@@ -12,13 +13,11 @@ mod outcome;
 mod output;
 mod progress;
 mod report_files;
+mod settings_file;
 mod table;
 mod verdict;
 
-use std::io::Write;
 use std::process::ExitCode;
-
-use clap::Parser;
 
 use crate::outcome::Outcome;
 
@@ -29,14 +28,21 @@ const NOT_CONFORMANT: u8 = 1;
 const ERROR: u8 = 2;
 
 fn main() -> ExitCode {
-    let arguments = cli::Cli::parse();
-    match cli::run(&arguments) {
+    let json = std::env::args().any(|argument| argument == "--json");
+    let outcome = settings_file::parse(std::env::args_os().collect()).and_then(|arguments| {
+        arguments.global.install();
+        cli::run(&arguments)
+    });
+    match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::NotConformant) => ExitCode::from(NOT_CONFORMANT),
+        Err(error::Error::Usage(message)) if !json || !message.use_stderr() => message.exit(),
+        Err(error) if json => {
+            output::json_error(&error.to_string(), error.kind(), ERROR);
+            ExitCode::from(ERROR)
+        }
         Err(error) => {
-            for line in error.to_string().lines() {
-                let _ = writeln!(std::io::stderr(), "error: {line}");
-            }
+            output::error(&error.to_string());
             ExitCode::from(ERROR)
         }
     }

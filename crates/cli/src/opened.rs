@@ -5,7 +5,7 @@ use reachtube::conform::{Check, Hulls, Keep, Problem, Setup, SuiteReach, check, 
 use reachtube::recordings::DataSet;
 
 use crate::data_arguments::{DataArguments, ModelArguments, gap_limit};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output;
 use crate::progress::Progress;
 
@@ -32,7 +32,11 @@ impl Opened {
                  found; --until changes the limit"
             ));
         }
-        settings.torque = args.torque;
+        if settings.torque != args.torque {
+            let name = |torque| format!("{torque:?}").to_lowercase();
+            let (given, model) = (name(args.torque), name(settings.torque));
+            return Err(Error::OtherTorque { given, model });
+        }
         settings.until = args.until.or(settings.until);
         settings.gap_limit = gap_limit(args.max_gap);
         let source = Box::new(DataSet::open(&args.data)?);

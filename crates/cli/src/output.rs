@@ -1,19 +1,25 @@
 //! Results on standard output, notes on standard error.
 
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::global::global;
 
 /// Largest number of notes that one command prints.
 const MOST_NOTES: usize = 20;
 
-/// Prints a result. A reader that closes the pipe early is not an error.
+/// Prints a result as text. A reader that closes the pipe early is not an error.
 pub fn print(text: &str) -> Result<()> {
+    write_out(printable(text).as_bytes())
+}
+
+/// Writes bytes to standard output.
+pub fn write_out(bytes: &[u8]) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Output(error)),
         _ => Ok(()),
     }
@@ -22,12 +28,37 @@ pub fn print(text: &str) -> Result<()> {
 /// Prints a result as JSON.
 pub fn print_json(value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).expect("results have string keys");
-    print(&(text + "\n"))
+    print_json_text(&(text + "\n"))
+}
+
+/// Prints text that is JSON already. JSON escapes control characters itself, but for those from
+/// U+007F to U+009F, which terminals obey too.
+pub fn print_json_text(text: &str) -> Result<()> {
+    let escaped = |c: char| match c {
+        '\u{7f}'..='\u{9f}' => format!("\\u{:04x}", u32::from(c)),
+        c => c.to_string(),
+    };
+    if text.chars().any(|c| ('\u{7f}'..='\u{9f}').contains(&c)) {
+        write_out(text.chars().map(escaped).collect::<String>().as_bytes())
+    } else {
+        write_out(text.as_bytes())
+    }
 }
 
 /// Prints a result as JSON or as text.
 pub fn show(json: bool, value: &impl Serialize, text: impl FnOnce() -> String) -> Result<()> {
     if json { print_json(value) } else { print(&text()) }
+}
+
+/// Checks, before a long job, that a file can be written at `path` and that none is lost by it.
+/// Every file that a command writes passes here or through [`claim_all`].
+pub fn claim(path: &Path) -> Result<()> {
+    Ok(global().overwrite().check(path)?)
+}
+
+/// Claims all files of a result before the first of them is written.
+pub fn claim_all<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+    paths.into_iter().try_for_each(|path| claim(path))
 }
 
 /// Reports a file that was written.
@@ -37,19 +68,69 @@ pub fn wrote(path: &Path) {
 
 /// Prints a note on standard error. A closed standard error is ignored: nobody reads it.
 pub fn note(text: &str) {
-    let _ = writeln!(std::io::stderr(), "note: {text}");
+    if !global().quiet {
+        line("note", text);
+    }
+}
+
+/// Prints a note that only `--verbose` asks for.
+pub fn detail(text: &str) {
+    if global().verbose {
+        line("note", text);
+    }
 }
 
 /// Prints a warning on standard error.
 pub fn warn(text: &str) {
-    let _ = writeln!(std::io::stderr(), "warning: {text}");
+    line("warning", text);
 }
 
-/// Prints the first notes of a list, and the number of the others.
+/// Prints an error on standard error, each of its lines marked as one.
+pub fn error(text: &str) {
+    text.lines().for_each(|text| line("error", text));
+}
+
+/// Prints an error as one line of JSON on standard error.
+pub fn json_error(error: &str, kind: &str, exit_code: u8) {
+    let object = serde_json::json!({ "error": error, "kind": kind, "exit_code": exit_code });
+    let _ = writeln!(std::io::stderr(), "{object}");
+}
+
+fn line(kind: &str, text: &str) {
+    let _ = writeln!(std::io::stderr(), "{kind}: {}", printable(text));
+}
+
+/// Prints the first notes of a list, and the number of the others; all notes with `--verbose`.
 pub fn notes(notes: &[String]) {
-    notes.iter().take(MOST_NOTES).for_each(|text| note(text));
-    if notes.len() > MOST_NOTES {
-        let more = notes.len() - MOST_NOTES;
-        note(&format!("{more} more notes; reachtube inspect --json lists all"));
+    let most = if global().verbose { notes.len() } else { MOST_NOTES };
+    notes.iter().take(most).for_each(|text| note(text));
+    if notes.len() > most {
+        note(&format!("{} more notes; --verbose prints all", notes.len() - most));
+    }
+}
+
+/// Returns text in which control characters are written as escapes, except the ends of lines. Names
+/// in files can hold codes that would move the cursor of a terminal or change its colours.
+pub fn printable(text: &str) -> String {
+    let escaped = |c: char| match c {
+        '\n' => c.to_string(),
+        c if c.is_control() => format!("\\u{{{:x}}}", u32::from(c)),
+        c => c.to_string(),
+    };
+    if text.chars().any(|c| c.is_control() && c != '\n') {
+        text.chars().map(escaped).collect()
+    } else {
+        text.into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::printable;
+
+    #[test]
+    fn control_characters_are_escaped() {
+        assert_eq!(printable("q̇ ± 1\n"), "q̇ ± 1\n");
+        assert_eq!(printable("\u{1b}[2Jarm\r\u{9b}m"), "\\u{1b}[2Jarm\\u{d}\\u{9b}m");
     }
 }

@@ -1,10 +1,11 @@
 //! A progress bar on a terminal, for jobs that take longer than a second.
 
 use std::fmt::Write;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 
+use crate::global::global;
 use crate::output;
 
 /// Jobs shorter than this show no bar.
@@ -17,28 +18,38 @@ const REFRESH: Duration = Duration::from_millis(100);
 const BAR: u64 = 32;
 
 /// Progress of one job. Nothing is drawn unless standard error is a terminal.
-pub struct Progress(ProgressBar);
+pub struct Progress {
+    bar: ProgressBar,
+    job: &'static str,
+    started: Instant,
+}
 
 impl Progress {
     /// Shows progress in reading recordings.
     pub fn new() -> Self {
-        Self::of("reading recordings")
+        Self::with("reading recordings", "the job")
     }
 
     /// Shows progress in the job that `doing` names.
     pub fn of(doing: &'static str) -> Self {
+        Self::with(doing, doing)
+    }
+
+    /// Shows progress in the first part of a job; `job` names all of it.
+    fn with(doing: &'static str, job: &'static str) -> Self {
         let line = move |state: &ProgressState, out: &mut dyn Write| draw(doing, state, out);
         let style = ProgressStyle::default_bar().template("{line}").expect("one placeholder");
-        let bar = ProgressBar::no_length().with_style(style.with_key("line", line));
+        let bar = if global().quiet { ProgressBar::hidden() } else { ProgressBar::no_length() };
+        let bar = bar.with_style(style.with_key("line", line));
         if !bar.is_hidden() {
             bar.enable_steady_tick(REFRESH);
         }
-        Self(bar)
+        Self { bar, job, started: Instant::now() }
     }
 
     /// Reports that `done` of `total` parts are finished; parallel parts may report out of order.
     pub fn show(&self, done: usize, total: usize) {
-        self.0.update(|state| {
+        self.bar.update(|state| {
             state.set_len(total as u64);
             state.set_pos(state.pos().max(done as u64));
         });
@@ -46,7 +57,7 @@ impl Progress {
 
     /// Prints a note above the bar.
     pub fn note(&self, text: &str) {
-        self.0.suspend(|| output::note(text));
+        self.bar.suspend(|| output::note(text));
     }
 }
 
@@ -62,7 +73,9 @@ impl reachtube::conform::Progress for Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
+        let seconds = self.started.elapsed().as_secs_f64();
+        output::detail(&format!("{} took {seconds:.2} s", self.job));
     }
 }
 

@@ -6,7 +6,7 @@ use reachtube::report::{Page, Sources, page, suite_svg, write_html};
 use reachtube::write;
 
 use crate::error::Result;
-use crate::file_names;
+use crate::{file_names, output};
 
 /// Returns where the page is written in `folder`.
 pub fn page_in(folder: &Path) -> PathBuf {
@@ -16,7 +16,7 @@ pub fn page_in(folder: &Path) -> PathBuf {
 /// Writes the page and its figures to `folder` and returns the page's path.
 pub fn write(sources: &Sources, folder: &Path) -> Result<PathBuf> {
     let path = page_in(folder);
-    write::try_at(&path)?;
+    output::claim(&path)?;
     let page = page(sources)?;
     let mut html = Vec::new();
     write_html(&page, &mut html)?;
@@ -27,12 +27,17 @@ pub fn write(sources: &Sources, folder: &Path) -> Result<PathBuf> {
 
 /// Writes one SVG file per suite and view: A_motion.svg, A_deviation.svg.
 pub fn write_figures(page: &Page, folder: &Path) -> Result<()> {
+    let mut figures = Vec::new();
     for (figure, name) in page.suites.iter().zip(file_names::of_figures(&page.suites)) {
         for &view in figure.views() {
-            let svg = suite_svg(figure, view)?;
-            let path = folder.join(format!("{name}_{}.svg", format!("{view:?}").to_lowercase()));
-            write::atomically(&path, |out| out.write_all(svg.as_bytes()))?;
+            let view_name = format!("{view:?}").to_lowercase();
+            figures.push((folder.join(format!("{name}_{view_name}.svg")), figure, view));
         }
+    }
+    output::claim_all(figures.iter().map(|(path, ..)| path))?;
+    for (path, figure, view) in figures {
+        let svg = suite_svg(figure, view)?;
+        write::atomically(&path, |out| out.write_all(svg.as_bytes()))?;
     }
     Ok(())
 }

@@ -1,12 +1,21 @@
 //! Tables and plurals.
 
+use crate::output::printable;
+
 /// Returns the word in the number that `count` asks for.
 pub fn plural(count: usize, word: &str) -> String {
     format!("{word}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Returns the text of a cell on one line, so that no name can pretend to be a row of its own.
+fn one_line(text: &str) -> String {
+    printable(&text.replace('\n', "\\n"))
+}
+
 /// Lays out a table: the first column is left-aligned, the others are right-aligned.
 pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+    let rows: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|cell| one_line(cell)).collect()).collect();
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
         cells.chain([header[column].chars().count()]).max().unwrap_or(0)

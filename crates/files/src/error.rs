@@ -29,6 +29,16 @@ pub enum Error {
         /// The operating system's reason.
         source: std::io::Error,
     },
+    /// A file exists that reachtube did not write.
+    #[error(
+        "{}: a file of this name exists, and it carries no mark of reachtube, so it is not \
+         overwritten; choose another name, or overwrite it with --force",
+        path.display()
+    )]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 /// A result of this crate.

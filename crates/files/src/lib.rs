@@ -2,8 +2,9 @@
 //!
 //! - [`write::atomically`] writes through a temporary file beside the target.
 //! - [`write::try_at`] checks, before a long job, whether its result can be written.
+//! - [`Overwrite`] decides which existing files may be replaced.
 //! - [`json`] reads and writes versioned files.
-//! - [`read`] and [`read_text`] read a file with an error that names it.
+//! - [`read`] and [`read_text`] read a file with an error that names it, and [`bytes`] without.
 //!
 //! # Examples
 //!
@@ -21,12 +22,14 @@
 mod digest;
 mod error;
 pub mod json;
+mod overwrite;
 mod read;
 pub mod write;
 
 pub use digest::hex;
 pub use error::{Error, Result};
-pub use read::{read, read_text};
+pub use overwrite::{MARK, Overwrite};
+pub use read::{bytes, read, read_text};
 
 /// Name and version of the program, which every file that it writes records.
 pub const TOOL: &str = concat!("reachtube ", env!("CARGO_PKG_VERSION"));

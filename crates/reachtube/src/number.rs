@@ -46,21 +46,63 @@ pub fn six_digits(value: f64) -> String {
 
 /// Formats an interval by its ends, or by centre ± radius where its ends would look equal.
 ///
-/// The result is rounded to nearest and encloses nothing; see [`outward`] for bounds that do.
+/// # Guarantee
+///
+/// Outer: the printed ends, or centre and radius, read back as `f64`, enclose the interval.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube::number::interval;
+///
+/// assert_eq!(interval((-0.10001, 0.25)), "[-0.1001, 0.2500]");
+/// assert_eq!(interval((0.5, 0.5)), "0.5000");
+/// ```
 #[must_use]
 pub fn interval((low, high): (f64, f64)) -> String {
     let (size, radius) = (low.abs().max(high.abs()), 0.5 * (high - low));
-    let centre = 0.5 * (low + high);
-    if radius == 0.0 {
-        four_decimals(centre)
-    } else if radius < SMALL * size {
-        format!("{} ± {radius:.1e}", four_decimals(centre))
-    } else if (TINY..LARGE).contains(&size) {
-        let decimals = (1.0 - radius.log10().floor()).clamp(4.0, 6.0) as usize;
-        format!("[{}, {}]", fixed(low, decimals), fixed(high, decimals))
-    } else {
-        format!("[{low:.2e}, {high:.2e}]")
+    if low == high {
+        let short = four_decimals(low);
+        return if short.parse() == Ok(low) { short } else { format!("{low:e}") };
     }
+    // The width has three digits, and no end has more than four decimals without need.
+    let digits = (2.0 - radius.log10().floor()).clamp(4.0, 17.0) as usize;
+    if radius < SMALL * size && size < LARGE {
+        return about(low, high, digits);
+    }
+    if !(TINY..LARGE).contains(&size) {
+        return format!(
+            "[{}, {}]",
+            downward_with_exponent(low),
+            upward(high, downward_with_exponent)
+        );
+    }
+    let [low, high] = outward([low, high], digits.min(7));
+    format!("[{low}, {high}]")
+}
+
+/// Formats an interval as centre ± radius, the radius rounded up.
+fn about(low: f64, high: f64, decimals: usize) -> String {
+    let centre = fixed(0.5 * (low + high), decimals);
+    let read: f64 = centre.parse().unwrap_or(f64::NAN);
+    // Differences of numbers this close are exact.
+    let radius = (high - read).max(read - low);
+    let two_digits = |value| downward_to(value, |value| format!("{value:.1e}"));
+    format!("{centre} ± {}", upward(radius, two_digits))
+}
+
+/// Formats a radius or width like [`four_decimals`], rounded up.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube::number::at_least;
+///
+/// assert_eq!([0.25, 0.00201, 2.14e-9].map(at_least), ["0.2500", "0.0021", "2.2e-9"]);
+/// ```
+#[must_use]
+pub fn at_least(value: f64) -> String {
+    upward(value, |value| downward_to(value, four_decimals))
 }
 
 /// Formats a number with `decimals` decimals; a result of zero has no sign.
@@ -136,28 +178,45 @@ pub fn column_decimals(column: &[[f64; 2]]) -> usize {
 /// ```
 #[must_use]
 pub fn outward(bounds: [f64; 2], decimals: usize) -> [String; 2] {
-    let upper = downward(-bounds[1], decimals);
-    let upper = match upper.strip_prefix('-') {
+    [downward(bounds[0], decimals), upward(bounds[1], |value| downward(value, decimals))]
+}
+
+/// Rounds up where `downward` rounds down.
+fn upward(value: f64, downward: impl Fn(f64) -> String) -> String {
+    let text = downward(-value);
+    match text.strip_prefix('-') {
         Some(positive) => positive.to_string(),
-        None if upper == "0" => upper,
-        None => format!("-{upper}"),
-    };
-    [downward(bounds[0], decimals), upper]
+        None if text == "0" => text,
+        None => format!("-{text}"),
+    }
 }
 
 /// Formats the largest number with `decimals` decimals that is not above `value`.
 fn downward(value: f64, decimals: usize) -> String {
-    if value == 0.0 {
-        return "0".into();
-    }
-    let nearest = format!("{value:.decimals$}");
-    let read: f64 = nearest.parse().unwrap_or(f64::NAN);
-    let text = if read <= value {
+    downward_to(value, |value| format!("{value:.decimals$}"))
+}
+
+fn downward_with_exponent(value: f64) -> String {
+    downward_to(value, |value| format!("{value:.2e}"))
+}
+
+/// Formats the largest number in a format that is not above `value`.
+fn downward_to(value: f64, format: impl Fn(f64) -> String) -> String {
+    let nearest = format(value);
+    let read = |text: &str| text.parse::<f64>().unwrap_or(f64::NAN);
+    let text = if value == 0.0 || read(&nearest) <= value {
         nearest
     } else {
-        format!("{:.decimals$}", read - 10f64.powi(-(decimals as i32)))
+        format(read(&nearest) - last_digit(&nearest))
     };
-    if text.parse() == Ok(0.0) { "0".into() } else { text }
+    if read(&text) == 0.0 { "0".into() } else { text }
+}
+
+/// Returns the value of one unit in the last digit of a number.
+fn last_digit(text: &str) -> f64 {
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len() as i32);
+    10f64.powi(exponent.parse::<i32>().unwrap_or(0) - decimals)
 }
 
 #[cfg(test)]
@@ -176,6 +235,35 @@ mod tests {
             prop_assert!(printed[0] <= a && a + width <= printed[1]);
             let digit = 1.000_001 * 10f64.powi(-(decimals as i32));
             prop_assert!(a - printed[0] <= digit && printed[1] - (a + width) <= digit);
+        }
+
+        #[test]
+        fn printed_intervals_enclose(
+            a in -1.0..1.0_f64,
+            width in 0.0..1.0_f64,
+            [size, narrow] in [-12..9_i32, -14..1_i32],
+        ) {
+            let low = a * 10f64.powi(size);
+            let high = low + width * 10f64.powi(size + narrow);
+            let text = interval((low, high));
+            let number = |text: &str| text.parse::<f64>().unwrap();
+            let encloses = match text.split_once(" ± ") {
+                Some((centre, radius)) => {
+                    (high - number(centre)).max(number(centre) - low) <= number(radius)
+                }
+                None => match text.trim_matches(['[', ']']).split_once(", ") {
+                    Some((from, to)) => number(from) <= low && high <= number(to),
+                    None => number(&text) == low && low == high,
+                },
+            };
+            prop_assert!(encloses, "{text} of {low:e}, {high:e}");
+        }
+
+        #[test]
+        fn widths_are_rounded_up(width in 0.0..1.0_f64, size in -12..9_i32) {
+            let width = width * 10f64.powi(size);
+            let printed: f64 = at_least(width).parse().unwrap();
+            prop_assert!(printed >= width && printed <= 1.12 * width, "{printed} of {width}");
         }
 
         #[test]
@@ -206,16 +294,22 @@ mod tests {
             (-6.8e-4, 3.94e-4),
             (-2.1e-9, 2.1e-9),
             (0.5 - 3e-8, 0.5 + 3e-8),
+            (0.12345 - 3e-8, 0.12345 + 3.1e-8),
             (0.5, 0.5),
+            (0.12345, 0.12345),
+            (-2e6, 1.2345e6),
         ];
         let expected = [
             "0",
             "[-0.1000, 0.2500]",
-            "[0.0000, 0.2500]",
-            "[-0.00068, 0.00039]",
+            "[-0.0001, 0.2500]",
+            "[-0.000680, 0.000394]",
             "[-2.10e-9, 2.10e-9]",
-            "0.5000 ± 3.0e-8",
+            "0.5000000000 ± 3.1e-8",
+            "0.1234500005 ± 3.1e-8",
             "0.5000",
+            "1.2345e-1",
+            "[-2.00e6, 1.24e6]",
         ];
         assert_eq!(shown.map(interval), expected);
     }

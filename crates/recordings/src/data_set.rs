@@ -1,5 +1,5 @@
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use crate::defect::Defect;
 use crate::error::Error;
@@ -73,6 +73,31 @@ impl RunSource for DataSet {
         read_csv(&self.run_name(index), options)
     }
 
+    fn notes(&self) -> Vec<String> {
+        self.outside_note().into_iter().chain(self.unlisted_note()).collect()
+    }
+}
+
+impl DataSet {
+    /// Returns a note about runs that do not move with the folder.
+    fn outside_note(&self) -> Option<String> {
+        let outside = |run: &&RunEntry| {
+            let within = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+            !Path::new(&run.file).components().all(within)
+        };
+        let mut runs = self.runs.iter().filter(outside);
+        let (first, more) = (runs.next()?, runs.count());
+        let others = if more == 0 { String::new() } else { format!(" (and {more} more)") };
+        Some(format!(
+            "{}:{}: the path \"{}\"{others} leads out of the folder, so a copy of the folder would \
+             lack the recording; list paths in the folder",
+            self.index_name().display(),
+            first.line,
+            first.file
+        ))
+    }
+
+    /// Returns a note about files that are not used.
     fn unlisted_note(&self) -> Option<String> {
         let (first, root) = (self.unlisted.first()?.display(), self.root.display());
         Some(match self.unlisted.len() {

@@ -1,8 +1,65 @@
 use std::fmt;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Number of defects of one file that are listed in full; the rest are counted.
 const LISTED_PER_FILE: usize = 20;
+
+/// What kind of defect a recording has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DefectKind {
+    /// The file cannot be read, or it is not comma-separated text.
+    File,
+    /// The header differs.
+    Header,
+    /// The number of joints differs.
+    Joints,
+    /// A line has another number of fields than the header.
+    Fields,
+    /// A value is not a finite number.
+    Value,
+    /// A time is not later than the one before.
+    Time,
+    /// Samples are missing for this long.
+    Gap(Duration),
+    /// There is no sample.
+    Empty,
+    /// Values cannot be in rad and rad/s.
+    Units,
+    /// Any other kind.
+    Other,
+}
+
+impl DefectKind {
+    /// Returns the kind of a gap of some length, s.
+    #[must_use]
+    pub fn gap(seconds: f64) -> Self {
+        Self::Gap(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX))
+    }
+
+    /// Returns the name in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::File => "file",
+            Self::Header => "header",
+            Self::Joints => "joints",
+            Self::Fields => "fields",
+            Self::Value => "value",
+            Self::Time => "time",
+            Self::Gap(_) => "gap",
+            Self::Empty => "empty",
+            Self::Units => "units",
+            Self::Other => "other",
+        }
+    }
+
+    /// Returns whether both are of one kind; gaps of any length are.
+    #[must_use]
+    pub fn is_like(self, other: Self) -> bool {
+        std::mem::discriminant(&self) == std::mem::discriminant(&other)
+    }
+}
 
 /// A defect of a recording: where it is, what is wrong, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,6 +70,8 @@ pub struct Defect {
     pub line: Option<u64>,
     /// The joint, from 1; `None` for a defect of no single joint.
     pub joint: Option<usize>,
+    /// The kind of defect.
+    pub kind: DefectKind,
     /// What is wrong, with the value and the limit.
     pub problem: String,
     /// What to do.
@@ -32,6 +91,7 @@ impl Defect {
             file: file.into(),
             line,
             joint: None,
+            kind: DefectKind::Other,
             problem: problem.into(),
             remedy: remedy.into(),
         }
@@ -41,6 +101,13 @@ impl Defect {
     #[must_use]
     pub fn of_joint(mut self, joint: Option<usize>) -> Self {
         self.joint = joint;
+        self
+    }
+
+    /// Returns the same defect with its kind.
+    #[must_use]
+    pub fn of_kind(mut self, kind: DefectKind) -> Self {
+        self.kind = kind;
         self
     }
 }

@@ -1,20 +1,18 @@
 //! A summary of a data set, for a look at it before it is used.
+//!
+//! Runs are read one by one and folded into small summaries, so that memory does not grow with
+//! their samples.
 
 use rayon::prelude::*;
-use reachtube_reach::TimeGrid;
 use serde::Serialize;
 
 use crate::data_set::DataSet;
-use crate::defect::Defect;
-use crate::error::{Error, Result};
+use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
-use crate::notes::{copies_note, run_notes};
-use crate::run::Run;
+use crate::inspect_run::RunSummary;
+use crate::notes::copies_note;
+use crate::refusal::{Refusal, merge};
 use crate::source::{ReadOptions, RunSource};
-use crate::units::integral_gap;
-
-/// Speed below which a joint sticks, rad/s.
-const STICKING: f64 = 0.01;
 
 /// A summary of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,6 +25,8 @@ pub struct Inspection {
     pub runs: usize,
     /// Test suites, then one group for each kind of the recordings without a suite.
     pub groups: Vec<Group>,
+    /// Recordings that were refused are in no group; one entry for each kind of defect.
+    pub refused: Vec<Refusal>,
     /// Notes for the user.
     pub notes: Vec<String>,
 }
@@ -79,61 +79,74 @@ pub struct JointSummary {
 }
 
 /// Reads every recording of the index and summarises the data set.
-///
-/// # Errors
-///
-/// [`Error::Defects`] with every defect of every recording, or with each recording whose number of
-/// joints differs from that of the first.
-pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Result<Inspection> {
+#[must_use]
+pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Inspection {
     let options = ReadOptions { gap_limit, ..ReadOptions::default() };
-    let read = |index: usize| data.read(index, &options);
-    let results: Vec<_> = (0..data.runs().len()).into_par_iter().map(read).collect();
-    let mut runs = Vec::new();
-    let mut defects = Vec::new();
-    for result in results {
-        match result {
-            Ok(run) => runs.push(run),
-            Err(found) => defects.extend(found),
+    let groups = groups(data);
+    let read = |(_, _, members): &(String, bool, Vec<usize>)| read_group(data, members, &options);
+    let mut read: Vec<(usize, Summary)> = groups.par_iter().flat_map_iter(read).collect();
+    read.sort_by_key(|(index, _)| *index);
+    let first = read.iter().find_map(|(_, run)| run.as_ref().ok());
+    let joints = first.map_or(0, RunSummary::joint_count);
+    let mut refused = Vec::new();
+    let mut sound: Vec<Option<RunSummary>> = data.runs().iter().map(|_| None).collect();
+    for (index, summary) in read {
+        match summary.and_then(|run| same_joints(data, index, run, joints)) {
+            Ok(run) => sound[index] = Some(run),
+            Err(refusals) => merge(&mut refused, refusals),
         }
     }
-    if defects.is_empty() {
-        defects.extend(other_joint_count(data, &runs));
-    }
-    if !defects.is_empty() {
-        return Err(Error::Defects(defects));
-    }
-    let groups = groups(data)
-        .into_iter()
-        .map(|(name, suite, members)| {
-            let chosen: Vec<&Run> = members.iter().map(|&index| &runs[index]).collect();
-            Group::new(name, suite, data.runs()[members[0]].motion.clone(), &chosen)
-        })
-        .collect();
-    Ok(Inspection {
+    Inspection {
         folder: data.root().display().to_string(),
-        joints: runs[0].joints,
-        runs: runs.len(),
-        groups,
-        notes: notes(data, &runs),
-    })
+        joints,
+        runs: data.runs().len(),
+        notes: notes(data, &sound),
+        groups: groups
+            .into_iter()
+            .filter_map(|(name, suite, members)| {
+                let motion = data.runs()[members[0]].motion.clone();
+                let runs: Vec<_> = members.iter().filter_map(|&i| sound[i].as_ref()).collect();
+                (!runs.is_empty()).then(|| Group::new(name, suite, motion, &runs))
+            })
+            .collect(),
+        refused,
+    }
 }
 
-/// Returns a defect for each run whose number of joints differs from that of the first.
-fn other_joint_count(data: &DataSet, runs: &[Run]) -> Vec<Defect> {
-    let odd = |(index, run): (usize, &Run)| {
-        let problem = format!(
-            "the recording has {} joints, but the first has {}",
-            run.joints, runs[0].joints
-        );
-        let defect = Defect::new(
-            data.run_name(index),
-            Some(1),
-            problem,
-            "keep the recordings of one robot in one data set",
-        );
-        (run.joints != runs[0].joints).then_some(defect)
-    };
-    runs.iter().enumerate().filter_map(odd).collect()
+/// The summary of a run, or why it is refused.
+type Summary = Result<RunSummary, Vec<Refusal>>;
+
+/// Reads the runs of a group, and compares each with the first that has no defect. At most the
+/// first run and one for each core are held at once.
+fn read_group(data: &DataSet, members: &[usize], options: &ReadOptions) -> Vec<(usize, Summary)> {
+    let read = |index: usize| data.read(index, options).map_err(Refusal::of_recording);
+    let mut summaries = Vec::new();
+    for (count, &index) in members.iter().enumerate() {
+        match read(index) {
+            Err(refusals) => summaries.push((index, Err(refusals))),
+            Ok(first) => {
+                summaries.push((index, Ok(RunSummary::new(data, index, &first, &first))));
+                let others = members[count + 1..].par_iter().map(|&index| {
+                    (index, read(index).map(|run| RunSummary::new(data, index, &run, &first)))
+                });
+                summaries.par_extend(others);
+                break;
+            }
+        }
+    }
+    summaries
+}
+
+/// Refuses a run whose number of joints differs from that of the first.
+fn same_joints(data: &DataSet, index: usize, run: RunSummary, joints: usize) -> Summary {
+    let found = run.joint_count();
+    if found == joints {
+        return Ok(run);
+    }
+    let problem = format!("the recording has {found} joints, but the first has {joints}");
+    let remedy = "keep the recordings of one robot in one data set";
+    let defect = Defect::new(data.run_name(index), Some(1), problem, remedy);
+    Err(Refusal::of_recording(vec![defect.of_kind(DefectKind::Joints)]))
 }
 
 /// Returns the suites, then one group for each kind of the runs without one: name, whether it is a
@@ -151,72 +164,62 @@ fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
     groups
 }
 
-fn notes(data: &DataSet, runs: &[Run]) -> Vec<String> {
-    let mut notes = data.unlisted_note().into_iter().collect::<Vec<_>>();
-    for (index, run) in runs.iter().enumerate() {
-        notes.extend(run_notes(data, index, run));
-    }
-    notes.extend(copies_note(data, runs.iter().map(|run| run.sha256.as_str()).enumerate()));
+fn notes(data: &DataSet, runs: &[Option<RunSummary>]) -> Vec<String> {
+    let mut notes = data.notes();
+    let sound = || runs.iter().enumerate().filter_map(|(index, run)| Some((index, run.as_ref()?)));
+    notes.extend(sound().flat_map(|(_, run)| run.notes.iter().cloned()));
+    notes.extend(copies_note(data, sound().map(|(index, run)| (index, run.sha256.as_str()))));
     notes
 }
 
 impl Group {
-    fn new(name: String, suite: bool, motion: Option<String>, runs: &[&Run]) -> Self {
-        let steps = runs.iter().flat_map(|run| run.times.windows(2).map(|pair| pair[1] - pair[0]));
-        let (shortest, longest) =
-            steps.fold((f64::INFINITY, 0.0f64), |(a, b), h| (a.min(h), b.max(h)));
-        let rate = |run: &&Run| TimeGrid::from_times(&run.times).ok().and_then(|grid| grid.step());
-        let first = rate(&runs[0]);
-        let samples = runs.iter().map(|run| run.len());
+    fn new(name: String, suite: bool, motion: Option<String>, runs: &[&RunSummary]) -> Self {
+        let shortest = runs.iter().map(|run| run.steps[0]).fold(f64::INFINITY, f64::min);
+        let longest = runs.iter().map(|run| run.steps[1]).fold(0.0, f64::max);
+        let first = runs[0].step;
+        let samples = runs.iter().map(|run| run.samples);
         Self {
             name,
             suite,
             motion,
             runs: runs.len(),
             samples: [samples.clone().min().unwrap_or(0), samples.max().unwrap_or(0)],
-            duration: runs.iter().map(|run| run.duration()).fold(0.0, f64::max),
-            step: first.filter(|_| runs.iter().all(|run| rate(run) == first)),
+            duration: runs.iter().map(|run| run.duration).fold(0.0, f64::max),
+            step: first.filter(|_| runs.iter().all(|run| run.step == first)),
             steps: [shortest.min(longest), longest],
-            same_torque: runs.iter().all(|run| same_torque(runs[0], run)),
-            joints: (0..runs[0].joints).map(|joint| JointSummary::new(joint, runs)).collect(),
+            same_torque: runs.iter().all(|run| run.same_torque),
+            joints: (0..runs[0].joint_count())
+                .map(|joint| JointSummary::new(joint, runs))
+                .collect(),
         }
     }
 }
 
-/// Returns whether two runs have equal torques at equal times, up to the end of the shorter one.
-/// The torque of the last sample acts on nothing and is not compared.
-fn same_torque(a: &Run, b: &Run) -> bool {
-    let count = a.len().min(b.len());
-    let since_start = |run: &Run, k: usize| run.times[k] - run.times[0];
-    let acting = count.saturating_sub(1) * a.joints;
-    a.torques[..acting] == b.torques[..acting]
-        && (0..count).all(|k| (since_start(a, k) - since_start(b, k)).abs() <= 1e-9)
-}
-
 impl JointSummary {
-    fn new(joint: usize, runs: &[&Run]) -> Self {
-        let positions = runs.iter().flat_map(|run| (0..run.len()).map(|k| run.q(k)[joint]));
-        let speeds = || runs.iter().flat_map(|run| (0..run.len()).map(|k| run.qd(k)[joint].abs()));
-        let torques =
-            runs.iter().flat_map(|run| (0..run.len()).map(|k| run.torque(k)[joint].abs()));
-        let longest = runs.iter().map(|run| run.len()).max().unwrap_or(0);
+    fn new(joint: usize, runs: &[&RunSummary]) -> Self {
+        let of = || runs.iter().map(|run| &run.joints[joint]);
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let longest = runs.iter().map(|run| run.samples).max().unwrap_or(0);
         let ends: Vec<f64> = runs
             .iter()
-            .filter(|run| run.len() == longest)
-            .map(|run| run.q(longest - 1)[joint])
+            .filter(|run| run.samples == longest)
+            .map(|run| run.joints[joint].last)
             .collect();
-        let starts: Vec<f64> = runs.iter().map(|run| run.q(0)[joint]).collect();
-        let sticking = speeds().filter(|speed| *speed < STICKING).count() as f64;
+        let starts: Vec<f64> = of().map(|run| run.first).collect();
+        let samples: usize = runs.iter().map(|run| run.samples).sum();
+        let sticking: usize = of().map(|run| run.sticking).sum();
         Self {
-            position: positions
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], q| [a.min(q), b.max(q)]),
-            speed: speeds().fold(0.0, f64::max),
-            torque: torques.fold(0.0, f64::max),
+            position: [
+                of().map(|run| run.position[0]).fold(f64::INFINITY, f64::min),
+                of().map(|run| run.position[1]).fold(f64::NEG_INFINITY, f64::max),
+            ],
+            speed: largest(&mut of().map(|run| run.speed)),
+            torque: largest(&mut of().map(|run| run.torque)),
             start_spread: spread(&starts),
             end_spread: (ends.len() > 1).then(|| spread(&ends)),
             drift: order_correlation(&ends),
-            sticking: sticking / speeds().count().max(1) as f64,
-            integral_gap: runs.iter().map(|run| integral_gap(run, joint)).fold(0.0, f64::max),
+            sticking: sticking as f64 / samples.max(1) as f64,
+            integral_gap: largest(&mut of().map(|run| run.integral_gap)),
         }
     }
 }

@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use sha2::{Digest, Sha256};
 
-use crate::defect::Defect;
+use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
 use crate::index::RunEntry;
 use crate::run::Run;
@@ -66,7 +66,8 @@ impl RunSource for MemoryRuns {
             let problem =
                 format!("the run has {} joints, but the robot has {expected}", run.joints);
             let remedy = "give the robot of the recordings";
-            return Err(vec![Defect::new(self.run_name(index), None, problem, remedy)]);
+            let defect = Defect::new(self.run_name(index), None, problem, remedy);
+            return Err(vec![defect.of_kind(DefectKind::Joints)]);
         }
         let gaps = gaps(self.run_name(index), &run, options.gap_limit);
         if !gaps.is_empty() {
@@ -88,7 +89,7 @@ fn gaps(name: PathBuf, run: &Run, limit: GapLimit) -> Vec<Defect> {
         );
         let remedy = "samples are missing and the input there is unknown: record again, cut the \
                       run, or raise the gap limit";
-        Defect::new(&name, None, problem, remedy)
+        Defect::new(&name, None, problem, remedy).of_kind(DefectKind::gap(*step))
     };
     steps.iter().enumerate().filter(|(_, step)| **step > longest).map(defect).collect()
 }

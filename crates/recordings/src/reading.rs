@@ -6,7 +6,7 @@ use reachtube_files::hex;
 use sha2::{Digest, Sha256};
 
 use crate::decimal::picoseconds;
-use crate::defect::Defect;
+use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
 use crate::run::{Run, column_names};
 use crate::source::ReadOptions;
@@ -14,15 +14,22 @@ use crate::text::{line_of, quoted};
 
 const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m";
 
+/// Number of defects after which a file is not read on.
+const MOST_DEFECTS: usize = 1000;
+
+/// Largest number of joints of a recording; a header with more is a mistake.
+const MOST_JOINTS: usize = 100;
+
 /// Reads the recording in the CSV file `path`.
 ///
 /// # Errors
 ///
 /// Every defect of the file, with its line and joint.
 pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> {
-    let bytes = std::fs::read(path).map_err(|source| {
+    let bytes = reachtube_files::bytes(path).map_err(|source| {
         let problem = format!("cannot read: {source}");
-        vec![Defect::new(path, None, problem, "check the path and its permissions")]
+        let defect = Defect::new(path, None, problem, "check the path and its permissions");
+        vec![defect.of_kind(DefectKind::File)]
     })?;
     let mut run = read_samples(path, &bytes, options.joints, options.gap_limit)?;
     run.sha256 = hex(&Sha256::digest(&bytes));
@@ -62,14 +69,14 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    fn defect(&mut self, line: Option<u64>, joint: Option<usize>, problem: String, remedy: &str) {
-        self.defects.push(Defect::new(self.path, line, problem, remedy).of_joint(joint));
+    fn defect(&mut self, kind: DefectKind, line: Option<u64>, problem: String, remedy: &str) {
+        self.defects.push(Defect::new(self.path, line, problem, remedy).of_kind(kind));
     }
 
     fn header_and_rows(&mut self, bytes: &[u8], joints: Option<usize>) {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         if let Some((problem, remedy)) = other_format(bytes) {
-            return self.defect(Some(1), None, problem, remedy);
+            return self.defect(DefectKind::File, Some(1), problem, remedy);
         }
         let mut reader =
             csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
@@ -80,8 +87,8 @@ impl Reading<'_> {
                 .collect::<Vec<_>>(),
             Err(error) => {
                 return self.defect(
+                    DefectKind::File,
                     Some(1),
-                    None,
                     error.to_string(),
                     "write the file as UTF-8 CSV",
                 );
@@ -93,6 +100,11 @@ impl Reading<'_> {
         let mut record = csv::ByteRecord::new();
         let mut values = vec![0.0; 1 + 3 * self.run.joints];
         loop {
+            if self.defects.len() >= MOST_DEFECTS {
+                let problem = format!("reading stopped after {MOST_DEFECTS} defects");
+                self.defect(DefectKind::Other, None, problem, "correct the defects before");
+                return;
+            }
             match reader.read_byte_record(&mut record) {
                 Ok(true) => {
                     self.row(line_of(bytes, record.position()), &record, header.len(), &mut values)
@@ -100,33 +112,40 @@ impl Reading<'_> {
                 Ok(false) => break,
                 Err(error) => {
                     let line = line_of(bytes, error.position());
-                    return self.defect(Some(line), None, error.to_string(), "correct the line");
+                    let problem = error.to_string();
+                    return self.defect(DefectKind::File, Some(line), problem, "correct the line");
                 }
             }
         }
         if self.rows.is_empty() {
             let remedy = "record at least one sample, or leave the run out of runs.csv";
-            self.defect(None, None, "there is no sample after the header".into(), remedy);
+            let problem = "there is no sample after the header".into();
+            self.defect(DefectKind::Empty, None, problem, remedy);
         }
     }
 
     /// Returns whether the header is `t,q1..qn,qd1..qdn,tau1..taun`, with any columns after these.
     fn header(&mut self, header: &[String], joints: Option<usize>) -> bool {
         let n = header.iter().skip(1).take_while(|name| is_numbered(name, "q")).count();
+        if n > MOST_JOINTS {
+            let problem = format!("the header has {n} joints, but at most {MOST_JOINTS} are read");
+            self.defect(DefectKind::Header, Some(1), problem, HEADER);
+            return false;
+        }
         let expected: Vec<String> =
             std::iter::once("t".into()).chain(column_names(n.max(1))).collect();
         let wrong = expected.iter().enumerate().find(|(i, name)| header.get(*i) != Some(name));
         if let Some((i, name)) = wrong {
             let found = header.get(i).map_or("missing".into(), |found| quoted(found));
             let problem = format!("column {} of the header is {found}, expected \"{name}\"", i + 1);
-            self.defect(Some(1), None, problem, HEADER);
+            self.defect(DefectKind::Header, Some(1), problem, HEADER);
             return false;
         }
         if let Some(robot) = joints.filter(|robot| *robot != n) {
             let problem = format!("the recording has {n} joints, but the robot has {robot}");
             self.defect(
+                DefectKind::Joints,
                 Some(1),
-                None,
                 problem,
                 "give the robot that was recorded, or the right data set",
             );
@@ -144,7 +163,7 @@ impl Reading<'_> {
                 format!("the line has {} fields, but the header has {fields}", record.len());
             let remedy =
                 "the line is cut short or has a stray comma or quote: correct it or record again";
-            return self.defect(Some(line), None, problem, remedy);
+            return self.defect(DefectKind::Fields, Some(line), problem, remedy);
         }
         let mut sound = true;
         for (column, value) in values.iter_mut().enumerate() {
@@ -175,7 +194,8 @@ impl Reading<'_> {
             _ => format!("{name} is {}, not a finite number", quoted(text)),
         };
         let remedy = "every value must be a number: cut the run before this line, or record again";
-        self.defect(Some(line), joint, problem, remedy);
+        let defect = Defect::new(self.path, Some(line), problem, remedy).of_kind(DefectKind::Value);
+        self.defects.push(defect.of_joint(joint));
     }
 
     /// Returns the time of a line in picoseconds, where it is a number and later than that of the
@@ -192,7 +212,8 @@ impl Reading<'_> {
                 "earlier than the line above"
             };
             let remedy = "times must increase strictly: sort the samples and drop duplicates";
-            self.defect(Some(line), None, format!("t = {text} s is {what}"), remedy);
+            let problem = format!("t = {text} s is {what}");
+            self.defect(DefectKind::Time, Some(line), problem, remedy);
         }
         time.filter(|_| follows)
     }
@@ -223,7 +244,7 @@ impl Reading<'_> {
             );
             let remedy = "samples are missing and the input there is unknown: record again, cut \
                           the run, or accept it with --max-gap SECONDS";
-            self.defect(Some(line), None, problem, remedy);
+            self.defect(DefectKind::gap(step), Some(line), problem, remedy);
         }
     }
 }

@@ -74,9 +74,10 @@ pub trait RunSource: fmt::Debug + Send + Sync {
     /// Panics where there is no run `index`.
     fn read(&self, index: usize, options: &ReadOptions) -> Result<Run, Vec<Defect>>;
 
-    /// Returns a note about recordings that are stored with the listed ones but are not used.
-    fn unlisted_note(&self) -> Option<String> {
-        None
+    /// Returns notes about where recordings are: stored with the listed ones but not used, or
+    /// outside the folder.
+    fn notes(&self) -> Vec<String> {
+        vec![]
     }
 
     /// Returns all test suites, in the order in which the source first names them.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use reachtube_robot::{JointDescription, JointKind, Robot};
 
-use crate::defect::Defect;
+use crate::defect::{Defect, DefectKind};
 use crate::run::Run;
 
 /// Motion of a joint below which q and the integral of q̇ are not compared, rad or m.
@@ -149,7 +149,7 @@ fn velocity_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
 }
 
 fn joint_defect(path: &Path, joint: usize, problem: String, remedy: &str) -> Defect {
-    Defect::new(path, None, problem, remedy).of_joint(Some(joint + 1))
+    Defect::new(path, None, problem, remedy).of_joint(Some(joint + 1)).of_kind(DefectKind::Units)
 }
 
 #[cfg(test)]

@@ -36,6 +36,7 @@ mod rnea;
 mod robot;
 mod simulate;
 mod singular_values;
+mod text_file;
 mod urdf;
 mod workspace;
 

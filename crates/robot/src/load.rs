@@ -3,6 +3,7 @@
 use crate::error::RobotError;
 use crate::lock::Lock;
 use crate::robot::Robot;
+use crate::text_file::read_text;
 use crate::urdf::read::{Urdf, UrdfOptions};
 use std::path::Path;
 
@@ -56,9 +57,7 @@ impl Robot {
         if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == name_or_path) {
             return Self::from_toml(text, name);
         }
-        let text = std::fs::read_to_string(name_or_path)
-            .map_err(|source| RobotError::Read { path: name_or_path.into(), source })?;
-        Self::from_toml(&text, name_or_path)
+        Self::from_toml(&read_text(Path::new(name_or_path))?, name_or_path)
     }
 
     /// Returns the Schunk LWA 4P as identified by Liu & Althoff (IROS 2018), Table III.

@@ -72,7 +72,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     robot.check_physical()?;
     let point = ExpansionPoint::from_values(&args.at, robot.joint_count())?;
     if let Some(path) = &args.out {
-        write::try_at(path)?;
+        output::claim(path)?;
     }
     let started = Instant::now();
     let mut model = PolynomialModel::new(&robot, args.model, args.order, &point)?;

@@ -46,6 +46,10 @@ pub struct Arguments {
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::lwa4p();
     let folder = args.out.join("recordings");
+    let path = args.out.join("model.json");
+    let pages = [args.out.join("report"), args.out.join("held-out")];
+    output::claim(&path)?;
+    output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
     let options = DemoOptions { seed: args.seed, ..DemoOptions::default() };
     let bar = Progress::new();
     let recorded = record(&robot, &options, &folder)?;
@@ -64,13 +68,12 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let found = conform(&problem, &bar, None)?;
     drop(bar);
     let model = Model::new(&problem, &found);
-    let path = args.out.join("model.json");
     write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
     output::wrote(&path);
-    let page = conform_command::report(&problem, &model, &found, &args.out.join("report"))?;
+    let page = conform_command::report(&problem, &model, &found, &pages[0])?;
     output::wrote(&page);
     // Try them on the motions held out.
-    let (model, held_out) = check_held_out(model, setup, &folder, &recorded.check, &args.out)?;
+    let (model, held_out) = check_held_out(model, setup, &folder, &recorded.check, &pages[1])?;
     if json {
         output::print_json(&json!({ "model": model, "held_out": held_out }))?;
     } else {
@@ -91,7 +94,7 @@ fn check_held_out(
     setup: Setup,
     folder: &Path,
     suites: &[String],
-    out: &Path,
+    page: &Path,
 ) -> Result<(Model, Check)> {
     let args = DataArguments {
         data: folder.to_path_buf(),
@@ -104,7 +107,7 @@ fn check_held_out(
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
     let sources = Sources { model, problem, reach: &reach, check: &check };
-    let page = report_files::write(&sources, &out.join("held-out"))?;
+    let page = report_files::write(&sources, page)?;
     output::wrote(&page);
     Ok((opened.model, check))
 }

@@ -4,16 +4,17 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use reachtube::write;
 use reachtube_robot::{Criterion, Excitation, ExcitationSettings, Parameter, ParameterKind, Robot};
 use serde_json::json;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
 use crate::option_values::{hertz, seconds};
 use crate::outcome::Outcome;
 use crate::output;
-use reachtube::number::four_decimals;
+use reachtube::number::{at_least, four_decimals, outward};
 
 const HELP: &str = "\
 Example:
@@ -37,7 +38,12 @@ pub struct Arguments {
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     pub period: f64,
     /// Number of harmonics of each joint
-    #[arg(long, default_value_t = 5, value_name = "COUNT")]
+    #[arg(
+        long,
+        default_value = "5",
+        value_name = "COUNT",
+        value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST_HARMONICS)
+    )]
     pub harmonics: usize,
     /// Largest acceleration in rad/s^2: one number for all joints, or one per joint [default: no
     /// limit]
@@ -53,6 +59,9 @@ pub struct Arguments {
     /// Sample rate of the CSV file, above 0 Hz
     #[arg(long, value_name = "HZ", value_parser = hertz, default_value = "100")]
     pub rate: f64,
+    /// Largest number of samples that the CSV file may hold
+    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000)]
+    pub most_samples: u64,
     /// Seed of the search; the same seed gives the same motion
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
@@ -62,13 +71,19 @@ pub struct Arguments {
     pub out: PathBuf,
 }
 
+/// Largest number of harmonics: the search holds a regressor for 20 samples of each.
+const MOST_HARMONICS: u64 = 1000;
+
+/// Usual length of one number in the CSV file with its comma, bytes.
+const BYTES_PER_VALUE: f64 = 11.0;
+
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
-    write::try_at(&args.out)?;
+    output::claim(&args.out)?;
     let n = robot.joint_count();
+    check_size(args, n)?;
     let found = robot.excitation(&parameters(n), &settings(args))?;
-    let text = csv(&found, n, args.rate);
-    write::atomically(&args.out, |out| out.write_all(text.as_bytes()))?;
+    write::atomically(&args.out, |out| write_csv(out, &found, n, args.rate))?;
     output::wrote(&args.out);
     let values = json!({
         "condition": found.quality.condition,
@@ -77,6 +92,21 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     });
     output::show(json, &values, || summary(&found, &robot))?;
     Ok(Outcome::Done)
+}
+
+/// Refuses a file that is larger than was meant, before the search.
+fn check_size(args: &Arguments, joints: usize) -> Result<()> {
+    let samples = (args.period * args.rate).ceil() + 1.0;
+    if samples <= args.most_samples as f64 {
+        return Ok(());
+    }
+    Err(Error::TooManySamples {
+        period: args.period,
+        rate: args.rate,
+        samples,
+        megabytes: samples * (1 + 3 * joints) as f64 * BYTES_PER_VALUE / 1e6,
+        most: args.most_samples,
+    })
 }
 
 fn settings(args: &Arguments) -> ExcitationSettings {
@@ -116,12 +146,12 @@ fn summary(found: &Excitation, robot: &Robot) -> String {
         four_decimals(found.initial_quality.log_determinant)
     );
     for (j, joint) in robot.joints().iter().enumerate() {
-        let [low, high] = found.trajectory.position_range(j);
-        let speed = found.trajectory.speed_bound(j);
+        let [low, high] = outward(found.trajectory.position_range(j), 3);
+        let speed = at_least(found.trajectory.speed_bound(j));
         let (unit, speed_unit) = (joint.kind.position_unit(), joint.kind.velocity_unit());
         let _ = writeln!(
             text,
-            "  {}: {low:.3} to {high:.3} {unit}, at most {speed:.3} {speed_unit}",
+            "  {}: {low} to {high} {unit}, at most {speed} {speed_unit}",
             joint.name
         );
     }
@@ -132,16 +162,21 @@ fn summary(found: &Excitation, robot: &Robot) -> String {
     text
 }
 
-/// Returns one period as CSV with the columns t, q1..qn, qd1..qdn, qdd1..qddn.
-fn csv(found: &Excitation, joints: usize, rate: f64) -> String {
+/// Writes one period as CSV with the columns t, q1..qn, qd1..qdn, qdd1..qddn.
+fn write_csv(
+    out: &mut dyn std::io::Write,
+    found: &Excitation,
+    joints: usize,
+    rate: f64,
+) -> std::io::Result<()> {
     let names = |prefix: &str| (1..=joints).map(|i| format!(",{prefix}{i}")).collect::<String>();
-    let mut text = format!("t{}{}{}\n", names("q"), names("qd"), names("qdd"));
+    writeln!(out, "t{}{}{}", names("q"), names("qd"), names("qdd"))?;
     for sample in found.trajectory.samples(rate) {
-        let _ = write!(text, "{:.6}", sample.t);
+        write!(out, "{:.6}", sample.t)?;
         for value in sample.q.iter().chain(&sample.qd).chain(&sample.qdd) {
-            let _ = write!(text, ",{value:.7}");
+            write!(out, ",{value:.7}")?;
         }
-        text.push('\n');
+        writeln!(out)?;
     }
-    text
+    Ok(())
 }

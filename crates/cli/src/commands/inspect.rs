@@ -20,7 +20,10 @@ use reachtube_robot::JointKind;
 const HELP: &str = "\
 Example:
   reachtube inspect --data recordings
-  reachtube inspect --data recordings --json";
+  reachtube inspect --data recordings --json
+
+Exit codes: 0 every recording can be used, 2 some are refused: each kind of defect has one line,
+with the number of defects, the first of them, and the option that accepts it.";
 
 /// Summarise a data set: its suites, runs, sample times, ranges and drift
 #[derive(Debug, Args)]
@@ -41,13 +44,17 @@ pub struct Arguments {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let bar = Progress::new();
-    let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap))?;
+    let bar = Progress::of("reading recordings");
+    let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap));
     drop(bar);
     let kinds = kinds(args, inspection.joints)?;
     output::notes(&inspection.notes);
     output::show(json, &inspection, || summary(&inspection, &kinds))?;
-    Ok(Outcome::Done)
+    if inspection.refused.is_empty() {
+        Ok(Outcome::Done)
+    } else {
+        Err(Error::Refused { refused: inspection.refused })
+    }
 }
 
 /// Returns the kinds of the recorded joints.
@@ -63,11 +70,15 @@ fn kinds(args: &Arguments, joints: usize) -> Result<Vec<JointKind>> {
 /// Returns the result of `inspect`, with one table per suite.
 fn summary(inspection: &Inspection, kinds: &[JointKind]) -> String {
     let Inspection { folder, runs, joints, .. } = inspection;
+    let sound: usize = inspection.groups.iter().map(|group| group.runs).sum();
     let mut text = format!(
         "{folder}: {runs} {} of {joints} {}\n",
         plural(*runs, "recording"),
         plural(*joints, "joint")
     );
+    if sound < *runs {
+        text += &format!("{} refused, and not counted below\n", runs - sound);
+    }
     for group in &inspection.groups {
         text.push_str(&format!("\n{}\n{}", heading(group), joint_table(group, kinds)));
     }

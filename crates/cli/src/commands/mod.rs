@@ -2,11 +2,13 @@
 
 pub mod r#abstract;
 pub mod check;
+pub mod completions;
 pub mod conform;
 pub mod demo;
 pub mod excite;
 pub mod identify;
 pub mod inspect;
+pub mod man;
 pub mod prepare;
 pub mod reach;
 pub mod report;

@@ -4,12 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::identify::prepare::{
-    LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, windows,
+    Log, LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, windows,
 };
-use reachtube::write;
 use serde_json::json;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
 use crate::option_values::{hertz, seconds};
 use crate::outcome::Outcome;
@@ -66,12 +65,18 @@ pub struct Arguments {
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     let settings = settings(args);
-    write::try_at(&args.out.join("runs.csv"))?;
+    let index = args.out.join("runs.csv");
+    output::claim(&index)?;
     let entries: Vec<LogEntry> = args.logs.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, std::path::Path::new(""), &robot, &settings)?;
     let cut_off = cut_off(&raw.iter().collect::<Vec<&RawLog>>(), &settings)?;
     let prepared = prepare(&raw, &settings, cut_off)?;
     let cut = windows(&prepared.logs, args.window, args.repeats);
+    if cut.windows.is_empty() {
+        return Err(nothing_left(args, &prepared.logs));
+    }
+    let files: Vec<PathBuf> = cut.file_names().map(|name| args.out.join(name)).collect();
+    output::claim_all(&files)?;
     cut.write(&args.out)?;
     output::notes(&[prepared.changes, cut.changes].concat());
     output::note(&format!(
@@ -83,6 +88,15 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print_json(&json!({ "cut_off": cut_off, "recordings": cut.windows.len() }))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Returns the error of windows that no recording fills.
+fn nothing_left(args: &Arguments, logs: &[Log]) -> Error {
+    let duration = |log: &Log| log.len().saturating_sub(1) as f64 * log.step;
+    Error::NothingPrepared {
+        window: args.window,
+        longest: logs.iter().map(duration).fold(0.0, f64::max),
+    }
 }
 
 fn settings(args: &Arguments) -> PrepareSettings {

@@ -17,7 +17,7 @@ use crate::output;
 use crate::report_files;
 use crate::table::table;
 use crate::verdict::lost;
-use reachtube::number::four_decimals;
+use reachtube::number::at_least;
 use reachtube_robot::JointKind;
 
 const HELP: &str = "\
@@ -53,13 +53,17 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let Opened { model, problem, .. } = &opened;
     output::notes(&problem.recordings().notes);
     let (reach, check) = (opened.reach()?, opened.check()?);
-    let mut written = Vec::new();
-    for (reach, name) in reach.iter().zip(file_names::of_reach(&reach)) {
-        let samples = args.out.join(format!("{name}.csv"));
-        write::atomically(&samples, |out| reach.write_samples(out))?;
-        let tube = args.out.join(format!("{name}_tube.csv"));
-        write::atomically(&tube, |out| reach.write_tube(out))?;
-        written.push(Written { reach, samples, tube });
+    let file = |reach, name: String| Written {
+        reach,
+        samples: args.out.join(format!("{name}.csv")),
+        tube: args.out.join(format!("{name}_tube.csv")),
+    };
+    let names = file_names::of_reach(&reach);
+    let written: Vec<_> = reach.iter().zip(names).map(|(reach, name)| file(reach, name)).collect();
+    output::claim_all(written.iter().flat_map(|file| [&file.samples, &file.tube]))?;
+    for Written { reach, samples, tube } in &written {
+        write::atomically(samples, |out| reach.write_samples(out))?;
+        write::atomically(tube, |out| reach.write_tube(out))?;
     }
     let sources = Sources { model, problem, reach: &reach, check: &check };
     report_files::write_figures(&page(&sources)?, &args.out)?;
@@ -99,15 +103,15 @@ impl Written<'_> {
             "duration": self.reach.times.last(),
             "final_width": self.final_width(),
             "lost": self.reach.lost,
-            "csv": self.samples,
-            "tube_csv": self.tube,
+            "csv": self.samples.display().to_string(),
+            "tube_csv": self.tube.display().to_string(),
         })
     }
 
     fn row(&self) -> Vec<String> {
         let widths = self.final_width();
         let (positions, velocities) = widths.split_at(widths.len() / 2);
-        let widest = |widths: &[f64]| four_decimals(widths.iter().copied().fold(0.0, f64::max));
+        let widest = |widths: &[f64]| at_least(widths.iter().copied().fold(0.0, f64::max));
         vec![
             self.reach.suite.clone(),
             self.reach.run.clone().unwrap_or_else(|| "all".into()),

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Args;
 use reachtube::conform::Keep;
 use reachtube::report::Sources;
-use reachtube::write;
 use serde_json::json;
 
 use crate::data_arguments::ModelArguments;
@@ -32,13 +31,15 @@ pub struct Arguments {
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    write::try_at(&report_files::page_in(&args.out))?;
+    output::claim(&report_files::page_in(&args.out))?;
     let opened = Opened::new(&args.model, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
     let page =
         report_files::write(&Sources { model, problem, reach: &reach, check: &check }, &args.out)?;
     output::notes(&problem.recordings().notes);
-    output::show(json, &json!({ "report": page }), || format!("wrote {}\n", page.display()))?;
+    output::show(json, &json!({ "report": page.display().to_string() }), || {
+        format!("wrote {}\n", page.display())
+    })?;
     Ok(Outcome::Done)
 }

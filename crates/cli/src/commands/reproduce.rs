@@ -70,7 +70,7 @@ pub fn table1(args: &Table1Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     robot.check_physical()?;
     if let Some(path) = &args.out {
-        write::try_at(path)?;
+        output::claim(path)?;
     }
     let bar = Progress::of("simulating");
     let table = make_table1(&robot, &options(args), &|done, total| bar.show(done, total))?;

@@ -10,7 +10,7 @@ fn refused(change: impl FnOnce(&mut Vec<String>), parts: &[&str]) {
     lab.edit("data/A_2.csv", change);
     lab.conform("--out model.json").fails_with(parts);
     assert!(!lab.path("model.json").exists());
-    lab.run("inspect --data data").fails_with(parts);
+    lab.run("inspect --data data").fails_after_result(parts);
 }
 
 /// Changes the bytes of A_2.csv, and asserts that `conform` refuses it with each of `parts`.
@@ -19,7 +19,7 @@ fn refused_bytes(change: impl FnOnce(String) -> Vec<u8>, parts: &[&str]) {
     let lab = Lab::new();
     let bytes = change(lab.read("data/A_2.csv"));
     lab.write("data/A_2.csv", bytes);
-    lab.conform("--json").fails_with(parts);
+    lab.conform("--json").fails_in_json("recordings", parts);
 }
 
 /// Asserts that another way to write the same recording gives the same model.

@@ -157,6 +157,26 @@ impl Run {
         self
     }
 
+    /// Asserts an error after a result: exit code 2, and each of `parts` in the lines of the error.
+    #[track_caller]
+    pub fn fails_after_result(mut self, parts: &[&str]) -> Self {
+        assert!(!self.stdout.is_empty(), "{self:#?}");
+        self.stdout.clear();
+        self.fails_with_last(parts)
+    }
+
+    /// Asserts an error in JSON: exit code 2, nothing on standard output, and an object of this
+    /// kind, with each of `parts` in its message, as the last line of standard error.
+    #[track_caller]
+    pub fn fails_in_json(self, kind: &str, parts: &[&str]) -> Self {
+        assert_eq!((self.code, self.stdout.as_str()), (2, ""), "{self:#?}");
+        let error: Value = serde_json::from_str(self.stderr.lines().last().unwrap()).unwrap();
+        assert_eq!((&error["kind"], &error["exit_code"]), (&kind.into(), &2.into()), "{error}");
+        let message = error["error"].as_str().unwrap();
+        parts.iter().for_each(|part| assert!(message.contains(part), "{part:?} is not in {error}"));
+        self
+    }
+
     /// Asserts an error as [`fails_with`](Self::fails_with) does, after notes.
     #[track_caller]
     pub fn fails_with_last(mut self, parts: &[&str]) -> Self {

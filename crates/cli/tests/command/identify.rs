@@ -61,6 +61,7 @@ fn a_pendulum_is_found_and_its_file_is_a_robot() {
         .notes("wrote found.toml")
         .notes("were filtered forward and backward");
     let found = run.json();
+    crate::output_schema::fits("identify", &found);
     assert_eq!(found["kept_back"], true);
     // The low-pass filter smooths the steps of Coulomb friction where the joint reverses: 1 % of
     // the torque.

@@ -7,7 +7,7 @@ fn refused(change: impl FnOnce(&mut Vec<String>), parts: &[&str]) {
     let lab = Lab::new();
     lab.edit("data/runs.csv", change);
     lab.conform("").fails_with(parts);
-    lab.run("inspect --data data --json").fails_with(parts);
+    lab.run("inspect --data data --json").fails_in_json("recordings", parts);
 }
 
 #[test]

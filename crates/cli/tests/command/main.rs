@@ -1,19 +1,25 @@
 //! Tests of the binary: its exit codes, its output and the files it writes.
 
 mod abstraction;
+mod bad_input;
 mod browser;
 mod defects;
 mod fixture;
 mod identify;
 mod index;
+mod inspect;
 mod locks;
 mod nonlinear;
 mod options;
+mod output_schema;
 mod outputs;
+mod overwrite;
 mod prismatic;
 mod reach;
 mod reproduce;
 mod robots;
 mod schema;
 mod schunk;
+mod settings;
+mod terminal;
 mod verdicts;

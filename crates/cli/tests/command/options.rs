@@ -19,6 +19,8 @@ fn help_has_examples_and_exit_codes() {
         "reach",
         "report",
         "reproduce table1",
+        "completions",
+        "man",
     ] {
         let help = lab.run(&format!("{command} --help")).exits(0).stdout;
         assert!(
@@ -32,10 +34,19 @@ fn help_has_examples_and_exit_codes() {
             .stdout
             .contains("Exit codes: 0 conformant (or done), 1 not conformant, 2 error")
     );
-    assert_eq!(
-        lab.run("--version").exits(0).stdout,
-        concat!("reachtube ", env!("CARGO_PKG_VERSION"), "\n")
-    );
+}
+
+/// A clone of the repository has a commit, a source archive has none.
+#[test]
+fn the_version_shows_the_commit() {
+    let version = Lab::new().run("--version").exits(0).stdout;
+    let rest = version.strip_prefix(concat!("reachtube ", env!("CARGO_PKG_VERSION"))).unwrap();
+    if std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../.git")).exists() {
+        let commit = rest.strip_prefix(" (").and_then(|rest| rest.strip_suffix(")\n")).unwrap();
+        assert!(commit.len() == 12 && commit.bytes().all(|b| b.is_ascii_hexdigit()), "{version}");
+    } else {
+        assert_eq!(rest, "\n");
+    }
 }
 
 #[test]

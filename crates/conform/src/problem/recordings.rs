@@ -70,7 +70,7 @@ fn index_notes(source: &dyn RunSource, chosen: &[SuiteEntry]) -> Vec<String> {
             all.len() - used - without,
         ));
     }
-    notes.extend(source.unlisted_note());
+    notes.extend(source.notes());
     notes
 }
 

@@ -79,6 +79,12 @@ pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
 }
 
 impl Windows {
+    /// Returns the name of each window's file.
+    pub fn file_names(&self) -> impl Iterator<Item = String> + '_ {
+        let windows = self.windows.iter().enumerate();
+        windows.map(|(number, window)| format!("{:04}_{}.csv", number + 1, window.log.name))
+    }
+
     /// Writes the windows as CSV files into a folder, with their index runs.csv.
     ///
     /// Times in a file count from the start of its window.
@@ -88,8 +94,7 @@ impl Windows {
     /// [`Error::File`](crate::Error::File) if a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         let mut index = String::from("file,suite,motion\n");
-        for (number, window) in self.windows.iter().enumerate() {
-            let file = format!("{:04}_{}.csv", number + 1, window.log.name);
+        for (file, window) in self.file_names().zip(&self.windows) {
             let _ = writeln!(index, "{file},{},{}", window.suite, window.motion);
             let text = csv(&window.log);
             atomically(&folder.join(&file), |out| out.write_all(text.as_bytes()))?;

@@ -1,7 +1,7 @@
 //! Identification of real robots: errors of the predicted torque in validation recordings.
 //!
-//! The recordings are expected in `../shared/data` beside the repository. Without them a test
-//! prints a line and passes.
+//! The recordings are expected in `../shared/data` beside the repository. The tests are ignored
+//! unless asked for.
 
 use reachtube_identify::{Identification, IdentifySettings, identify};
 use reachtube_robot::Robot;
@@ -9,19 +9,16 @@ use std::path::{Path, PathBuf};
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
 
-fn identified(folder: &str, settings: &str) -> Option<Identification> {
+fn identified(folder: &str, settings: &str) -> Identification {
     let folder = Path::new(DATA).join(folder);
-    if !folder.exists() {
-        println!("skipped: {} does not exist", folder.display());
-        return None;
-    }
     let settings = IdentifySettings::from_toml(settings, "settings").unwrap();
     let robot =
         Robot::load(&folder.join(settings.robot.as_ref().unwrap()).display().to_string()).unwrap();
-    Some(identify(&robot, &settings, &folder, &|_, _| {}).unwrap())
+    identify(&robot, &settings, &folder, &|_, _| {}).unwrap()
 }
 
 #[test]
+#[ignore = "needs the recordings in ../shared"]
 fn the_ur10e_predicts_validation_recordings() {
     let settings = r#"
         robot = "ur10e.urdf"
@@ -35,7 +32,7 @@ fn the_ur10e_predicts_validation_recordings() {
         ]
         prepare.cut_off = 6.0
     "#;
-    let Some(found) = identified("ur10e", settings) else { return };
+    let found = identified("ur10e", settings);
     assert!(found.friction.len() == 6 && found.friction.iter().all(|fit| fit.joint.r2 > 0.99));
     let all = found.validation.last().unwrap();
     assert_eq!(all.log, "all");
@@ -70,12 +67,9 @@ const PANDA: [[f64; 3]; 7] = [
 ];
 
 #[test]
+#[ignore = "needs the recordings in ../shared"]
 fn half_of_the_pandas_motion_predicts_the_other_half() {
     let file = "panda/excitation/traj1_000_015s.csv";
-    if !Path::new(DATA).join(file).exists() {
-        println!("skipped: {DATA}/{file} does not exist");
-        return;
-    }
     let joint = |(k, [a, quarter_turns, d]): (usize, &[f64; 3])| {
         let alpha = quarter_turns * std::f64::consts::FRAC_PI_2;
         format!(
@@ -111,6 +105,7 @@ fn half_of_the_pandas_motion_predicts_the_other_half() {
 }
 
 #[test]
+#[ignore = "needs the recordings in ../shared"]
 fn the_double_pendulum_is_identified_up_to_its_friction() {
     let settings = r#"
         robot = "acrobot.urdf"
@@ -118,7 +113,7 @@ fn the_double_pendulum_is_identified_up_to_its_friction() {
         validate = [{ path = "repeats_acrobot/acrobot_01.csv", until = 4.0 }]
         prepare.cut_off = 6.0
     "#;
-    let Some(found) = identified("double_pendulum", settings) else { return };
+    let found = identified("double_pendulum", settings);
     let joints = &found.validation[0].joints;
     assert!(joints[0].relative < 0.5 && joints[1].relative < 0.2, "{joints:?}");
     assert!(

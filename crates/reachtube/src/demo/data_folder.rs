@@ -18,13 +18,17 @@ const TITLE: &str = "# Recordings of a virtual robot";
 
 const INDEX_HEADER: &str = "file,kind,suite,motion,use,repeat,rows,duration_s,temperature,sha256\n";
 
-/// Refuses a folder with an index that no demo has written.
+/// Refuses a folder that holds files but no README of a demo.
 pub(super) fn refuse_foreign(folder: &Path) -> Result<(), DemoError> {
-    let index = folder.join("runs.csv");
+    let is_empty = std::fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
     let ours = || {
         std::fs::read_to_string(folder.join("README.md")).is_ok_and(|text| text.starts_with(TITLE))
     };
-    if !index.exists() || ours() { Ok(()) } else { Err(DemoError::ForeignFolder { index }) }
+    if is_empty || ours() {
+        Ok(())
+    } else {
+        Err(DemoError::ForeignFolder { folder: folder.into() })
+    }
 }
 
 /// Writes run `repeat` (from 1) of a suite, and returns its line of the index. `states` has the

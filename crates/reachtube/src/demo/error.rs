@@ -38,15 +38,15 @@ pub enum DemoError {
         /// The longest duration \[s\].
         longest: f64,
     },
-    /// The folder holds recordings that no demo has written.
+    /// The folder holds files that no demo has written.
     #[error(
-        "{}: the index of recordings that no demo has written, which would be overwritten; give \
+        "{}: the folder holds files that no demo has written and that could be overwritten; give \
          an empty folder",
-        index.display()
+        folder.display()
     )]
     ForeignFolder {
-        /// The index of the recordings.
-        index: PathBuf,
+        /// The folder.
+        folder: PathBuf,
     },
     /// The simulation diverged.
     #[error(

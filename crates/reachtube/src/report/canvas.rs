@@ -1,6 +1,7 @@
 //! The drawing area of a figure, and the SVG document made of it.
 
 use super::layout::units;
+use super::skeleton::own_mark;
 use super::text::Text;
 use maud::{PreEscaped, html};
 use plotters::coord::Shift;
@@ -33,6 +34,7 @@ pub(super) fn svg_document(
     let document = html! {
         svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height) viewBox=(view_box)
             stroke-linejoin="round" role="img" aria-label=(Text(label)) {
+            (own_mark())
             (PreEscaped(without_root(&drawing)))
         }
     };

@@ -20,6 +20,7 @@ pub(super) fn document(
         html lang="en" {
             head {
                 meta charset="utf-8";
+                (own_mark())
                 meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
@@ -42,6 +43,11 @@ pub(super) fn document(
         }
     };
     document.into_string() + "\n"
+}
+
+/// Returns the comment by which a later command recognises a file that it may replace.
+pub(super) fn own_mark() -> Markup {
+    PreEscaped(format!("<!-- {} -->", reachtube_files::MARK))
 }
 
 /// Returns a section under a heading.

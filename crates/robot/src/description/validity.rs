@@ -11,6 +11,9 @@ use std::collections::HashSet;
 /// error of numbers with 12 digits.
 const TOLERANCE: f64 = 1e-9;
 
+/// Largest number of joints. The dynamics need memory that grows with its square.
+const MOST_JOINTS: usize = 100;
+
 /// An invalid value of a description.
 pub(crate) struct InvalidValue {
     /// Index of the joint, or `None` for the robot as a whole.
@@ -63,6 +66,10 @@ impl RobotDescription {
         )?;
         require(!self.joints.is_empty(), "joint", "add a [[joint]] table for each joint", || {
             "the robot has no joints".into()
+        })?;
+        let count = self.joints.len();
+        require(count <= MOST_JOINTS, "joint", "describe one serial chain", || {
+            format!("the robot has {count} joints, but at most {MOST_JOINTS} are supported")
         })?;
         finite("gravity", &self.gravity)
     }

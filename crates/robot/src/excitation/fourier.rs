@@ -66,9 +66,12 @@ impl FourierTrajectory {
     }
 
     /// Samples one period, both ends included, with at least the given rate \[1/s\].
-    pub fn samples(&self, rate: f64) -> Vec<MotionSample> {
-        let count = (self.period * rate).ceil().max(1.0) as usize;
-        (0..=count).map(|k| self.at(self.period * k as f64 / count as f64)).collect()
+    ///
+    /// The samples are computed one by one, as they are taken.
+    pub fn samples(&self, rate: f64) -> impl ExactSizeIterator<Item = MotionSample> + '_ {
+        let steps = (self.period * rate).ceil().max(1.0) as usize;
+        let time = move |k: usize| self.period * k as f64 / steps as f64;
+        (0..steps.saturating_add(1)).map(move |k| self.at(time(k)))
     }
 
     /// Returns bounds of a joint's position at all times \[rad\].

@@ -6,6 +6,7 @@ use super::document::{Tree, parse_document};
 use crate::error::RobotError;
 use crate::lock::Lock;
 use crate::robot::Robot;
+use crate::text_file::read_text;
 use std::path::Path;
 
 /// What is read from a URDF: the ends of the chain, and the joints that do not move.
@@ -77,14 +78,10 @@ impl Urdf {
     /// and planar joints, floating joints and joints that mimic moving ones in the chain.
     pub fn load(path: impl AsRef<Path>, options: &UrdfOptions) -> Result<Self, RobotError> {
         let path = path.as_ref();
-        let read = |path: &Path| {
-            std::fs::read_to_string(path)
-                .map_err(|source| RobotError::Read { path: path.into(), source })
-        };
-        let text = read(path)?;
+        let text = read_text(path)?;
         let companion = path.with_extension("toml");
         let companion = if companion.exists() {
-            Companion::parse(&read(&companion)?, &companion.display().to_string())?
+            Companion::parse(&read_text(&companion)?, &companion.display().to_string())?
         } else {
             Companion::default()
         };

@@ -115,13 +115,10 @@ fn combinations_read_like_table_iii() {
 
 /// The oracle has the counts and gaps of Pinocchio's regressor over other random states.
 #[test]
+#[ignore = "needs the recordings in ../shared"]
 fn counts_and_gaps_agree_with_pinocchio() {
     for name in ["ur5", "dh6"] {
-        let (Some(robot), Some(oracle)) =
-            (oracle_robot(name), oracle(&format!("oracle/{name}.json")))
-        else {
-            return;
-        };
+        let (robot, oracle) = (oracle_robot(name), oracle(&format!("oracle/{name}.json")));
         let inertial = Parameter::of_joints(6, &ParameterKind::INERTIAL);
         let check = |base: BaseParameters, key: &str| {
             let expected = &oracle["base_parameters"];

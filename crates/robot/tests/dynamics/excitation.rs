@@ -44,7 +44,7 @@ fn velocities_and_accelerations_are_derivatives_of_the_positions() {
         .excitation(&parameters(), &ExcitationSettings { trials: 1, ..settings() })
         .unwrap()
         .trajectory;
-    let samples = motion.samples(1000.0);
+    let samples: Vec<_> = motion.samples(1000.0).collect();
     assert_eq!(samples.len(), 10_001);
     for ends in [&samples[0], &samples[10_000]] {
         assert!(ends.qd.iter().chain(&ends.qdd).all(|x| x.abs() < 1e-12), "{ends:?}");

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueHint};
 use reachtube::abstraction::ModelKind;
 use reachtube::conform::{Centre, Method, NominalStart, States};
 use reachtube_reach::Disturbance;
@@ -30,7 +30,12 @@ Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
 #[command(after_help = HELP)]
 pub struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
-    #[arg(long, help_heading = "Model", required_unless_present = "abstraction")]
+    #[arg(
+        long,
+        help_heading = "Model",
+        required_unless_present = "abstraction",
+        value_hint = ValueHint::FilePath
+    )]
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
@@ -63,6 +68,10 @@ pub struct Arguments {
         conflicts_with_all = ["robot", "lock", "expansion", "model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
+    /// TOML file with values for the options of this command; its paths are relative to its
+    /// folder, and options on the command line come before it
+    #[arg(long, value_name = "FILE")]
+    pub settings: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArguments,
     /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable

@@ -18,10 +18,10 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let setup = setup(args)?;
     let source = Box::new(DataSet::open(&args.data.data)?);
     if let Some(path) = &args.out {
-        write::try_at(path)?;
+        output::claim(path)?;
     }
     if let Some(folder) = &args.report {
-        write::try_at(&report_files::page_in(folder))?;
+        output::claim(&report_files::page_in(folder))?;
     }
     let keep = if args.report.is_some() { Keep::All } else { Keep::Needed };
     let bar = Progress::new();
@@ -35,7 +35,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::wrote(path);
     }
     if json {
-        output::print(&model.to_json())?;
+        output::print_json_text(&model.to_json())?;
     } else {
         output::print(&summary(&model))?;
     }

@@ -4,6 +4,7 @@ use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
 use reachtube::report::write_identified_html;
 use reachtube::write;
+use reachtube_files::MARK;
 use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use super::arguments::Arguments;
@@ -21,9 +22,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     check_urdf(args, &name)?;
     let options = UrdfOptions { locks: args.lock.lock.clone(), ..UrdfOptions::default() };
     let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &options)).transpose()?;
-    for path in [&args.out, &args.urdf].into_iter().flatten() {
-        write::try_at(path)?;
-    }
+    output::claim_all(&outputs(args))?;
     let bar = Progress::of("identifying");
     let found = identify(&robot, &settings, &folder, &|done, total| bar.show(done, total))?;
     drop(bar);
@@ -32,6 +31,22 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::show(json, &found.summary(), || summary(&found))?;
     found.warnings.iter().for_each(|warning| output::warn(warning));
     Ok(Outcome::Done)
+}
+
+/// Returns the files that the arguments ask for.
+fn outputs(args: &Arguments) -> Vec<PathBuf> {
+    let page = args.report.as_ref().map(|folder| page_in(folder));
+    let companion = args.urdf.as_ref().map(|path| path.with_extension("toml"));
+    [args.out.clone(), args.urdf.clone(), companion, page].into_iter().flatten().collect()
+}
+
+fn page_in(folder: &Path) -> PathBuf {
+    folder.join("identify.html")
+}
+
+/// Returns a TOML file with the mark by which a later command knows that it may replace it.
+fn marked(toml: &str) -> String {
+    format!("# {MARK} identify.\n{toml}")
 }
 
 /// Checks that a URDF can be written: the robot was read from one, and the companion file beside
@@ -51,18 +66,18 @@ fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
 /// Writes the robot file, the report page and the URDF that the arguments ask for.
 fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
     if let Some(path) = &args.out {
-        save(path, found.robot_toml().as_bytes())?;
+        save(path, marked(&found.robot_toml()).as_bytes())?;
     }
     if let Some(folder) = &args.report {
         let mut page = Vec::new();
         write_identified_html(found, &mut page)?;
-        save(&folder.join("identify.html"), &page)?;
+        save(&page_in(folder), &page)?;
     }
     if let (Some(path), Some(urdf)) = (&args.urdf, urdf) {
         let robot = Robot::from_description(&found.description)?;
         save(path, urdf.updated(&robot)?.as_bytes())?;
         // URDF has no elements for motors and load-dependent friction.
-        save(&path.with_extension("toml"), urdf.companion(&robot).as_bytes())?;
+        save(&path.with_extension("toml"), marked(&urdf.companion(&robot)).as_bytes())?;
     }
     Ok(())
 }

@@ -1,0 +1,44 @@
+//! Options that every command has.
+
+use std::sync::OnceLock;
+
+use clap::Args;
+use reachtube_files::Overwrite;
+
+// A comment, not a doc comment: clap would show it as the description of the command.
+// Options that every command has.
+#[derive(Debug, Clone, Copy, Default, Args)]
+#[command(next_help_heading = "Global options")]
+pub struct GlobalOptions {
+    /// Print the result as JSON on standard output, and an error as JSON on standard error
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Overwrite existing files that carry no mark of reachtube
+    #[arg(long, global = true)]
+    pub force: bool,
+    /// Print no notes and no progress; warnings and errors remain
+    #[arg(long, short, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Print every note, and how long each step took
+    #[arg(long, short, global = true)]
+    pub verbose: bool,
+}
+
+static OPTIONS: OnceLock<GlobalOptions> = OnceLock::new();
+
+impl GlobalOptions {
+    /// Makes these the options of the process. Later calls have no effect.
+    pub fn install(self) {
+        OPTIONS.get_or_init(|| self);
+    }
+
+    /// Returns the files that commands may replace.
+    pub fn overwrite(self) -> Overwrite {
+        if self.force { Overwrite::Any } else { Overwrite::Own }
+    }
+}
+
+/// Returns the options of the process.
+pub fn global() -> GlobalOptions {
+    OPTIONS.get().copied().unwrap_or_default()
+}

@@ -1,0 +1,90 @@
+//! What commands print with `--json` fits docs/output.schema.json.
+
+use serde_json::{Value, json};
+
+use crate::fixture::Lab;
+
+/// Returns the schema of one command's output.
+fn schema(name: &str) -> jsonschema::Validator {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/output.schema.json");
+    let mut schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    jsonschema::draft202012::meta::validate(&schema).unwrap();
+    schema["oneOf"] = json!([{ "$ref": format!("#/$defs/{name}") }]);
+    jsonschema::draft202012::new(&schema).unwrap()
+}
+
+/// Asserts that a value fits the schema of a command's output.
+#[track_caller]
+pub fn fits(name: &str, value: &Value) {
+    let schema = schema(name);
+    let complaints: Vec<String> = schema
+        .iter_errors(value)
+        .flat_map(|error| {
+            let text = format!("{}: {error}", error.instance_path());
+            [text, format!("{:?}", error.kind())]
+        })
+        .collect();
+    assert_eq!(complaints, Vec::<String>::new(), "{name}");
+    // A schema that accepts everything would prove nothing.
+    let mut more = value.clone();
+    more["more"] = json!(1);
+    assert!(!schema.is_valid(&more), "{name} accepts any key");
+}
+
+#[test]
+fn results_fit_the_schema() {
+    let lab = Lab::new();
+    lab.conform("--suites A --out model.json").exits(0);
+    let with = "--model model.json --data data --torque compensated";
+    let run = |name: &str, command: &str| {
+        fits(name, &lab.run(&format!("{command} --json")).exits(0).json());
+    };
+    run("inspect", "inspect --data data");
+    run("check", &format!("check {with}"));
+    run("check", &format!("check {with} --suites B"));
+    run("reach", &format!("reach {with} --out sets"));
+    run("report", &format!("report {with} --out page"));
+    run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");
+    run("robot_show", "robot show arm.toml");
+    run("abstract", "abstract --robot arm.toml");
+    run("abstract", "abstract --robot arm.toml --box 0.1,0.1,1");
+    run("reproduce_table1", "reproduce table1 --robot arm.toml --motions 1 --orders 1");
+}
+
+#[test]
+fn a_demo_fits_the_schema() {
+    fits("demo", &Lab::new().run("demo --out demo --json").exits(0).json());
+}
+
+#[test]
+fn refusals_and_errors_fit_the_schema() {
+    let lab = Lab::new();
+    lab.conform("--out model.json").exits(0);
+    lab.edit("data/A_2.csv", |lines| drop(lines.drain(10..12)));
+    lab.edit("data/B_3.csv", |lines| lines.truncate(1));
+    fits("inspect", &lab.run("inspect --data data --json").exits(2).json());
+    for command in [
+        "inspect --data none",
+        "inspect --data data",
+        "conform --robot none.toml --data data --torque motor",
+        "check --model model.json --data data --torque motor",
+        "check --model none.json --data data --torque motor",
+        "excite --robot arm.toml --period 1e9 --out e.csv",
+        "conforms",
+        "conform",
+        "abstract --robot arm.toml --order 0",
+        "conform --robot arm.toml --data data --torque compensated --out arm.toml",
+    ] {
+        let run = lab.run(&format!("{command} --json")).exits(2);
+        let last = run.stderr.lines().last().unwrap();
+        fits("error", &serde_json::from_str(last).unwrap());
+    }
+}
+
+#[test]
+fn a_value_outside_fits_the_schema() {
+    let lab = Lab::new();
+    lab.conform("--out model.json").exits(0);
+    lab.edit("data/B_2.csv", |lines| crate::fixture::set_cell(&mut lines[21], 1, "1.5"));
+    fits("check", &lab.check("--json").exits(1).json());
+}

@@ -1,0 +1,118 @@
+//! Texts of the shape of real files, from which hostile ones are made.
+
+use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube::{
+    Keep, MemoryRuns, Model, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform,
+};
+use reachtube_robot::Urdf;
+
+const ROBOT: &str = r#"schema_version = 1
+name = "arm"
+gravity = [0.0, 0.0, -9.81]
+
+[[joint]]
+name = "hinge"
+placement = { translation = [0.0, 0.0, 1.0], rpy = [0.0, 0.1, 0.0] }
+axis = [0.0, 1.0, 0.0]
+mass = 1.0
+com = [0.0, 0.0, -0.3]
+inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]
+armature = 0.1
+position_limits = [-1.0, 1.0]
+velocity_limit = 3.0
+friction = { viscous = [0.5, 0.0, 0.0], coulomb = [0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0] }
+
+[[joint]]
+name = "elbow"
+dh = { a = 0.3, alpha = 0.0, theta = 0.0, d = 0.1 }
+mass = 0.5
+com = [0.1, 0.0, 0.0]
+inertia = [0.01, 0.0, 0.0, 0.01, 0.0, 0.01]
+"#;
+
+const URDF: &str = r#"<?xml version="1.0"?>
+<robot name="pendulum">
+  <link name="base"/>
+  <link name="arm">
+    <inertial>
+      <origin xyz="0 0 -0.3" rpy="0 0 0"/>
+      <mass value="1.0"/>
+      <inertia ixx="0.02" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.01"/>
+    </inertial>
+  </link>
+  <link name="tool"/>
+  <joint name="hinge" type="revolute">
+    <parent link="base"/><child link="arm"/>
+    <origin xyz="0 0 1" rpy="0 0 0"/>
+    <axis xyz="0 1 0"/>
+    <limit lower="-1.5" upper="1.5" velocity="3" effort="10"/>
+    <dynamics damping="0.5" friction="0.1"/>
+  </joint>
+  <joint name="flange" type="fixed"><parent link="arm"/><child link="tool"/></joint>
+</robot>
+"#;
+
+pub fn recordings() -> Vec<Vec<u8>> {
+    let line =
+        |k: usize| format!("{:.3},{:?},-1.5e-3,0.25,1,2,3\n", k as f64 * 0.01, 0.1 * k as f64);
+    let samples: String = (0..12).map(line).collect();
+    let plain = format!("t,q1,q2,qd1,qd2,tau1,tau2\n{samples}");
+    let quoted = plain.replacen("0.010", "\"0.010\"", 1).replace('\n', "\r\n");
+    [plain, quoted, "t,q1,qd1,tau1,note\n0,0,0,0,a\n1,0,0,0,\"b,c\"\n".into()]
+        .map(String::into_bytes)
+        .into()
+}
+
+pub fn indices() -> Vec<Vec<u8>> {
+    [
+        "file,suite\nrun.csv,A\n",
+        "\u{feff}file,kind,suite,motion,temperature,sha256\r\nrun.csv,x,A,m,21.5,00ab\r\n",
+    ]
+    .map(Into::into)
+    .into()
+}
+
+pub fn robots() -> Vec<Vec<u8>> {
+    vec![ROBOT.into(), Robot::lwa4p().description().to_toml().into_bytes()]
+}
+
+pub fn urdfs() -> Vec<Vec<u8>> {
+    vec![URDF.into()]
+}
+
+pub fn companions() -> Vec<Vec<u8>> {
+    let urdf = Urdf::parse(URDF, "pendulum.urdf", &Default::default()).unwrap();
+    vec![urdf.companion(urdf.robot()).into_bytes(), b"base = \"base\"\ntip = \"tool\"\n".into()]
+}
+
+pub fn settings() -> Vec<Vec<u8>> {
+    let text = "robot = \"arm.urdf\"\nstatic = [\"poses\"]\ndynamic = [\"a.csv\", { path = \
+                \"b.csv\", from = 2.0, until = 4.5 }]\n\n[prepare]\ncut_off = 5.0\ngains = [1.0, \
+                2]\n\n[model]\nmotor_inertia = false\nprior = \"none\"\nwindows = [0.5]\n";
+    vec![text.into()]
+}
+
+pub fn models() -> Vec<Vec<u8>> {
+    let robot = Robot::from_toml(ROBOT, "arm").unwrap();
+    let mut runs = MemoryRuns::default();
+    for offset in [0.0, 0.001] {
+        let states = [offset, offset, 0.0, 0.0].repeat(3);
+        let run = Run::new(2, vec![0.0, 0.01, 0.02], states, vec![0.0; 6]).unwrap();
+        runs.push(&format!("run{offset}"), Some("A"), None, run);
+    }
+    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 2)).unwrap();
+    let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
+    vec![Model::new(&problem, &conform(&problem, &Silent, None).unwrap()).to_json().into_bytes()]
+}
+
+pub fn abstractions() -> Vec<Vec<u8>> {
+    let robot = Robot::from_toml(ROBOT, "arm").unwrap();
+    let point = ExpansionPoint::from_values(&[], 2).unwrap();
+    let make = |kind, order| PolynomialModel::new(&robot, kind, order, &point).unwrap();
+    let mut bounded = make(ModelKind::One, 2);
+    let about = OperatingBox::about(&point, &[0.1, 0.1, 1.0]).unwrap();
+    bounded.set_remainder(bounded.bound_remainder(&about, 4).unwrap());
+    [bounded, make(ModelKind::Two, 3), make(ModelKind::Three, 2)]
+        .map(|model| model.to_json().into_bytes())
+        .into()
+}
