@@ -61,4 +61,4 @@ pub use run::{Run, column_names};
 pub use source::{ReadOptions, RunSource, SuiteEntry};
 pub use state::{State, StateKind};
 pub use torque::Torque;
-pub use units::check_limits;
+pub use units::{check_limits, integral_gap, velocity_mismatch};
