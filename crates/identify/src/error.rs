@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -99,7 +99,7 @@ pub enum Error {
          times; name another recording with --validate, or give the two disjoint intervals with \
          from and until",
         validate.display(),
-        if validate == fitted { "it".into() } else { format!("{}, which has the same content,", fitted.display()) }
+        same_content(validate, fitted)
     )]
     NotHeldOut {
         /// The validation recording.
@@ -178,8 +178,8 @@ pub enum Error {
     },
     /// Least squares gives values that no robot has.
     #[error(
-        "least squares gives a robot that cannot exist: {problem}; set model.physical = true for the \
-         nearest physical links{}",
+        "least squares gives a robot that cannot exist: {problem}; set model.physical = true for \
+         the nearest physical links{}",
         causes.iter().map(|cause| format!("\nprobable cause: {cause}")).collect::<String>()
     )]
     ImpossibleRobot {
@@ -203,6 +203,15 @@ pub enum Error {
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+}
+
+/// Names the recording of a fit that has the content of a validation recording.
+fn same_content(validate: &Path, fitted: &Path) -> String {
+    if validate == fitted {
+        "it".into()
+    } else {
+        format!("{}, which has the same content,", fitted.display())
+    }
 }
 
 /// A result of this crate.

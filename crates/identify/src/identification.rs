@@ -140,8 +140,8 @@ fn impossible(error: Error, implausible: &[String]) -> Error {
 /// Fits the inertial parameters to motions with the friction of slow motions subtracted.
 ///
 /// A joint whose torque is explained better by friction that only the exciting motions determine
-/// gets that friction: slow motions do not show all of it. Returns the known friction, one entry per
-/// joint, the robot with it, and the fit.
+/// gets that friction: slow motions do not show all of it. Returns the known friction, one entry
+/// per joint, the robot with it, and the fit.
 ///
 /// The poses at rest take part unless gravity keeps its own mass moments.
 fn fit_links(

@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 use reachtube_robot::{BaseParameters, Robot};
 use serde::Serialize;
 
-/// Part of a parameter's variance over the reference motion that may lie in undetermined directions.
+/// Part of a parameter's variance over the reference motion that may lie in undetermined
+/// directions.
 const MIN_OPEN: f64 = 0.0025;
 
 /// A base parameter: an identifiable combination of parameters, with its value in SI units.
@@ -30,8 +31,8 @@ pub struct BaseFit {
     pub parameters: Vec<BaseParameter>,
     /// Number of combinations that the recordings determine.
     pub determined: usize,
-    /// Condition number: the largest over the smallest excitation of a combination, each relative to
-    /// its excitation by the reference motion. It is infinite if a combination is not determined.
+    /// Condition number: the largest over the smallest excitation of a combination, each relative
+    /// to its excitation by the reference motion. It is infinite if a combination is not determined.
     pub condition: f64,
 }
 

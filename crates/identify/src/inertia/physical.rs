@@ -38,8 +38,8 @@ pub struct PhysicalFit {
 }
 
 impl PhysicalFit {
-    /// Returns a warning for each joint whose residual grows too much by the physical constraint and
-    /// its prior.
+    /// Returns a warning for each joint whose residual grows too much by the physical constraint
+    /// and its prior.
     pub(crate) fn growth_warnings(&self, robot: &Robot) -> Vec<String> {
         let joints = robot.joints().iter().zip(&self.residuals);
         let grown = joints.filter(|(_, [plain, physical])| *physical > MAX_GROWTH * plain);

@@ -38,8 +38,8 @@ impl LinkPrior {
     /// Gives the balls the mean mass and the mean second moment of the links with parameters `x`.
     ///
     /// Returns whether they changed. Among balls of one size these are the most likely ones for the
-    /// links (a minimum of the divergence). Without this step, balls of 1 kg would outweigh the data
-    /// of a heavy arm.
+    /// links (a minimum of the divergence). Without this step, balls of 1 kg would outweigh the
+    /// data of a heavy arm.
     pub fn adapt(&mut self, x: &[f64]) -> bool {
         if self.described.iter().all(Option::is_some) {
             return false;

@@ -1,6 +1,6 @@
 //! A folder of simulated recordings, and the robots that they are made with.
 
-use crate::virtual_robot::{Random, Recorder, excitation};
+use crate::virtual_robot::{Random, Recorder, excitation, rest, slow};
 use reachtube_identify::{Identification, IdentifySettings, identify};
 use reachtube_robot::{Robot, RobotDescription};
 use std::path::{Path, PathBuf};
@@ -58,6 +58,26 @@ impl Lab {
         };
         settings.prepare.cut_off = Some(8.0);
         settings
+    }
+
+    /// Records poses at rest and slow motions of each joint, and adds them to the settings.
+    pub fn record_slowly(&self, robot: &Robot, settings: &mut IdentifySettings) {
+        let mut recorder =
+            Recorder { robot, noise: 0.1, gains: vec![1.0; 6], random: Random::new(3) };
+        let mut random = Random::new(11);
+        for k in 0..20 {
+            let name = PathBuf::from(format!("rest_{k}.csv"));
+            let q = (0..6).map(|_| 2.0 * random.uniform() - 1.0).collect();
+            recorder.record(&self.path().join(&name), 3.0, rest(q));
+            settings.rest.push(name.into());
+        }
+        for joint in 0..6 {
+            for (k, pose) in [0.0, 0.8, -0.6].into_iter().enumerate() {
+                let name = PathBuf::from(format!("slow_{joint}_{k}.csv"));
+                recorder.record(&self.path().join(&name), 24.0, slow(6, joint, pose));
+                settings.friction.push(name.into());
+            }
+        }
     }
 
     /// Returns the folder.

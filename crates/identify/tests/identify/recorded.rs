@@ -21,6 +21,21 @@ fn identified(folder: &str, settings: &str) -> Option<Identification> {
     Some(identify(&robot, &settings, &folder, &|_, _| {}).unwrap())
 }
 
+/// Asserts that no joint is predicted worse than by one plain weighted least-squares fit of inertia
+/// and friction to the exciting motions, by more than the 2 % that the choice of a model costs.
+fn no_worse_than_one_joint_fit(found: &Identification, settings: &str) {
+    let dynamic_only: Vec<&str> = settings
+        .lines()
+        .filter(|line| !line.contains("static =") && !line.contains("friction ="))
+        .collect();
+    let plain = "model = { physical = false, robust = false, cubic = true, windows = [] }";
+    let plain = identified("ur10e", &format!("{}\n{plain}", dynamic_only.join("\n"))).unwrap();
+    let joints = |found: &Identification| found.validation.last().unwrap().joints.clone();
+    for (joint, plain) in joints(found).iter().zip(&joints(&plain)) {
+        assert!(joint.residual < 1.02 * plain.residual, "{joint:?} {plain:?}");
+    }
+}
+
 #[test]
 fn the_ur10e_predicts_validation_recordings() {
     let settings = r#"
@@ -36,6 +51,7 @@ fn the_ur10e_predicts_validation_recordings() {
         prepare.cut_off = 6.0
     "#;
     let Some(found) = identified("ur10e", settings) else { return };
+    no_worse_than_one_joint_fit(&found, settings);
     assert!(found.friction.len() == 6 && found.friction.iter().all(|fit| fit.joint.r2 > 0.99));
     let all = found.validation.last().unwrap();
     assert_eq!(all.log, "all");
@@ -49,8 +65,8 @@ fn the_ur10e_predicts_validation_recordings() {
     let robot = Robot::from_description(&found.description).unwrap();
     assert!(matches!(robot.check_physical(), Ok(reachtube_robot::Physicality::Links { .. })));
     // The literature counts 58 combinations of inertia, motors, viscous and Coulomb friction and
-    // offset for this arm. Six cubic terms are added, and a quadratic term for each joint that keeps
-    // the friction of its slow motions.
+    // offset for this arm. Six cubic terms are added, and a quadratic term for each joint that
+    // keeps the friction of its slow motions.
     let quadratic = found.inertia.columns.iter().filter(|c| c.kind == ParameterKind::Viscous2);
     assert_eq!(found.inertia.parameters.len(), 58 + 6 + quadratic.count());
     let half_second = &found.windows[0];
@@ -94,10 +110,18 @@ fn half_of_the_pandas_motion_predicts_the_other_half() {
     let settings = format!(
         "dynamic = [{{ path = \"{file}\", until = 7.5 }}]\n\
          validate = [{{ path = \"{file}\", from = 7.5 }}]\n\
-         prepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.physical = true\nmodel.windows = []"
+         prepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.windows = []"
     );
-    let settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
+    let mut settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
     let robot = Robot::from_toml(&text, "panda.toml").unwrap();
+    // Base parameters stay those of least squares.
+    let base = identify(&robot, &settings, &PathBuf::from(DATA), &|_, _| {}).unwrap();
+    for joint in &base.validation[0].joints {
+        let ratio = joint.relative.unwrap() / joint.relative_plain.unwrap();
+        assert!((ratio - 1.0).abs() < 1e-6, "{joint:?}");
+    }
+    assert!(base.warnings.iter().any(|w| w.contains("cannot exist")), "{:?}", base.warnings);
+    settings.model.physical = Some(true);
     let found = identify(&robot, &settings, &PathBuf::from(DATA), &|_, _| {}).unwrap();
     let physical = found.inertia.physical.as_ref().unwrap();
     assert!(physical.plain_impossible.is_some(), "least squares must give no physical robot");

@@ -1,7 +1,7 @@
 //! Identification recovers the robot of simulated recordings, with the errors that theory predicts.
 
 use crate::lab::{Lab, geometry, lwa4p, simple_friction};
-use crate::virtual_robot::{Random, Recorder, rest, slow};
+use crate::virtual_robot::{Random, Recorder, slow};
 use reachtube_identify::friction::CoulombForm;
 use reachtube_identify::{Identification, IdentifySettings, identify};
 use reachtube_robot::{BaseParameters, Robot};
@@ -79,26 +79,8 @@ fn gravity_and_friction_quadrants_are_recovered() {
     let truth = lwa4p();
     let lab = Lab::new();
     lab.excite(&truth, 0.1, &[1.0; 6]);
-    let mut recorder =
-        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random::new(3) };
-    let mut random = Random::new(11);
-    for k in 0..20 {
-        let q = (0..6).map(|_| 2.0 * random.uniform() - 1.0).collect();
-        recorder.record(&lab.path().join(format!("rest_{k}.csv")), 3.0, rest(q));
-    }
-    for joint in 0..6 {
-        for (k, pose) in [0.0, 0.8, -0.6].into_iter().enumerate() {
-            recorder.record(
-                &lab.path().join(format!("slow_{joint}_{k}.csv")),
-                24.0,
-                slow(6, joint, pose),
-            );
-        }
-    }
     let mut settings = lab.settings();
-    settings.rest = (0..20).map(|k| PathBuf::from(format!("rest_{k}.csv")).into()).collect();
-    let names = (0..6).flat_map(|joint| (0..3).map(move |k| format!("slow_{joint}_{k}.csv")));
-    settings.friction = names.map(|name| PathBuf::from(name).into()).collect();
+    lab.record_slowly(&truth, &mut settings);
     settings.model.physical = Some(false);
     let found = lab.identify(&geometry(&truth), &settings);
     let gravity = found.gravity.as_ref().unwrap();
@@ -120,6 +102,25 @@ fn gravity_and_friction_quadrants_are_recovered() {
         "{:?}",
         found.validation[0]
     );
+}
+
+#[test]
+fn friction_of_slow_motions_is_dropped_where_exciting_motions_contradict_it() {
+    // The slow motions show friction that depends on the load, the exciting motions do not.
+    let truth = simple_friction(&lwa4p());
+    let lab = Lab::new();
+    lab.excite(&truth, 0.1, &[1.0; 6]);
+    let mut settings = lab.settings();
+    settings.model.physical = Some(false);
+    settings.model.windows = vec![];
+    settings.model.cubic = Some(true);
+    let plain = lab.identify(&geometry(&truth), &settings);
+    lab.record_slowly(&lwa4p(), &mut settings);
+    let found = lab.identify(&geometry(&truth), &settings);
+    assert_eq!(found.friction.len(), 6);
+    for (joint, plain) in found.validation[0].joints.iter().zip(&plain.validation[0].joints) {
+        assert!(joint.residual < 1.03 * plain.residual, "{joint:?} {plain:?}");
+    }
 }
 
 #[test]

@@ -121,7 +121,8 @@ fn inertia(found: &Identification) -> String {
         "outliers",
     ];
     format!(
-        "\n3. inertial parameters: {} of {} combinations determined, condition number {} (relative singular values beside the rank cut: {:.0e} | {:.0e})\n{}{}{}",
+        "\n3. inertial parameters: {} of {} combinations determined, condition number {} (relative \
+         singular values beside the rank cut: {:.0e} | {:.0e})\n{}{}{}",
         fit.determined,
         fit.parameters.len(),
         four_decimals(fit.condition),
@@ -229,13 +230,11 @@ fn validation(found: &Identification) -> String {
 
 fn windows(found: &Identification) -> String {
     let row = |windows: &WindowErrors| {
+        let some_end = windows.diverged < windows.windows;
+        let error = |error: f64| if some_end { four_decimals(error) } else { "-".into() };
         let cell = |j: usize| {
-            format!(
-                "{} ({}; {})",
-                four_decimals(windows.q[j]),
-                four_decimals(windows.motion[j]),
-                four_decimals(windows.qd[j])
-            )
+            let motion = four_decimals(windows.motion[j]);
+            format!("{} ({motion}; {})", error(windows.q[j]), error(windows.qd[j]))
         };
         let head = format!(
             "{} s, {} windows, {} diverged",
