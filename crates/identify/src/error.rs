@@ -1,4 +1,4 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
@@ -68,14 +68,62 @@ pub enum Error {
     },
     /// The cut-off frequency is not between 0 and half the sample rate.
     #[error(
-        "cut_off = {cut_off} Hz must be above 0 and below half the sample rate, {limit:.4} Hz; \
-         choose a value between, or remove it to have one chosen"
+        "cut_off = {cut_off} Hz must be above 0 and below {limit:.4} Hz, half the sample rate of \
+         {log}; choose a value between, or remove it to have one chosen"
     )]
     CutOff {
         /// The cut-off \[Hz\].
         cut_off: f64,
         /// Half the lowest sample rate \[Hz\].
         limit: f64,
+        /// Name of the recording with the lowest sample rate.
+        log: String,
+    },
+    /// The times of a recording are not in seconds.
+    #[error(
+        "{}: the times look like {unit}, because the positions move {slope:.1e} times as far as \
+         the integrals of the velocities; give times in s",
+        file.display()
+    )]
+    TimeUnit {
+        /// The recording.
+        file: PathBuf,
+        /// Motion per integral of the velocity.
+        slope: f64,
+        /// The unit that the times seem to have.
+        unit: &'static str,
+    },
+    /// A validation recording is also a recording of a fit.
+    #[error(
+        "{}: this validation recording is not held out, because the fit uses {} over the same \
+         times; name another recording with --validate, or give the two disjoint intervals with \
+         from and until",
+        validate.display(),
+        same_content(validate, fitted)
+    )]
+    NotHeldOut {
+        /// The validation recording.
+        validate: PathBuf,
+        /// The recording of the fit.
+        fitted: PathBuf,
+    },
+    /// Separate gravity moments are requested, but nothing determines them.
+    #[error(
+        "model.separate_gravity = true needs recordings for a gravity fit; name poses at rest with \
+         --static or slow motions with --friction, or remove the setting"
+    )]
+    SeparateGravity,
+    /// The static recordings hold no pose.
+    #[error(
+        "the static recordings have no pose: in none of them does every joint stay below \
+         model.rest_speed = {rest_speed} rad/s for {shortest} s; record rests, raise \
+         model.rest_speed, or name motions with --friction or --dynamic"
+    )]
+    NoPose {
+        /// Speed up to which the robot counts as at rest \[rad/s\].
+        rest_speed: f64,
+        /// Shortest rest that counts as a pose \[s\].
+        shortest: f64,
     },
     /// A recording is too short for the low-pass.
     #[error(
@@ -94,8 +142,8 @@ pub enum Error {
     },
     /// A recording is sampled too slowly for the low-pass.
     #[error(
-        "{log}: the sample rate of {rate:.4} Hz is not above twice cut_off = {cut_off} Hz; lower \
-         cut_off or remove the recording from the settings"
+        "{log}: the sample rate of {rate:.4} Hz is not above twice cut_off = {cut_off} Hz; check \
+         that its times are in s, lower cut_off, or remove the recording from the settings"
     )]
     SampledTooSlowly {
         /// Name of the recording.
@@ -113,19 +161,32 @@ pub enum Error {
     NoMotion,
     /// The recordings do not determine all parameters, and no prior may decide.
     #[error(
-        "the recordings do not determine {} of {total} combinations of parameters (condition \
-         above {limit:.0e}): {}; move all joints through more positions and faster, or set \
-         model.physical = true to let the description decide about them",
-        combinations.len(),
+        "the recordings do not determine {count} of {total} combinations of parameters (condition \
+         above {limit:.0e}), which leaves these open: {}; move all joints through more positions \
+         and faster, or set model.physical = true to let the description decide about them",
         combinations.join("; ")
     )]
     Undetermined {
-        /// The combinations that are not determined.
+        /// Number of combinations that are not determined.
+        count: usize,
+        /// The base parameters that depend on them.
         combinations: Vec<String>,
         /// Number of all combinations.
         total: usize,
         /// Condition above which a combination counts as not determined.
         limit: f64,
+    },
+    /// Least squares gives values that no robot has.
+    #[error(
+        "least squares gives a robot that cannot exist: {problem}; set model.physical = true for \
+         the nearest physical links{}",
+        causes.iter().map(|cause| format!("\nprobable cause: {cause}")).collect::<String>()
+    )]
+    ImpossibleRobot {
+        /// The value that is not possible.
+        problem: String,
+        /// Warnings about the recordings that may explain it.
+        causes: Vec<String>,
     },
     /// The search for physically consistent links failed.
     #[error(
@@ -142,6 +203,15 @@ pub enum Error {
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+}
+
+/// Names the recording of a fit that has the content of a validation recording.
+fn same_content(validate: &Path, fitted: &Path) -> String {
+    if validate == fitted {
+        "it".into()
+    } else {
+        format!("{}, which has the same content,", fitted.display())
+    }
 }
 
 /// A result of this crate.

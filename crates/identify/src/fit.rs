@@ -13,6 +13,12 @@ pub const CONDITION_LIMIT: f64 = 1e4;
 /// Rounds of reweighting; the weights change by less than 1 % after three.
 const ROUNDS: usize = 4;
 
+/// Robust standard deviations beyond which a residual counts as an outlier.
+///
+/// Errors of the model are larger than noise for whole stretches of a motion. A lower limit would
+/// take weight from such stretches, and predict other motions worse than plain least squares does.
+const OUTLIER_DEVIATIONS: f64 = 4.0;
+
 /// Lower bound of a joint's standard deviation, relative to the root mean square of its torque.
 const MIN_RELATIVE_DEVIATION: f64 = 1e-6;
 
@@ -73,12 +79,7 @@ impl Fit {
         for _ in 0..ROUNDS {
             let theta = joined(groups, &weights).solve().x;
             for (samples, weights) in groups.iter().zip(&mut weights) {
-                *weights = reweighted(
-                    samples,
-                    &samples.residuals(&theta),
-                    plain,
-                    &vec![1.0; samples.joints],
-                );
+                *weights = reweighted(samples, &samples.residuals(&theta), plain, 1.0);
             }
         }
         // Quality of the fit, and weights that count independent samples only.
@@ -88,9 +89,10 @@ impl Fit {
             let residuals = samples.residuals(&theta);
             let fits: Vec<JointFit> =
                 (0..samples.joints).map(|joint| joint_fit(samples, &residuals, joint)).collect();
-            let inflation: Vec<f64> =
-                fits.iter().map(|fit| fit.rows.max(1) as f64 / fit.independent.max(1.0)).collect();
-            *weights = reweighted(samples, &residuals, plain, &inflation);
+            let rows: usize = fits.iter().map(|fit| fit.rows).sum();
+            let independent: f64 = fits.iter().map(|fit| fit.independent).sum();
+            let inflation = rows.max(1) as f64 / independent.max(1.0);
+            *weights = reweighted(samples, &residuals, plain, inflation);
             joints.push(fits);
         }
         let whitened = joined(groups, &weights);
@@ -113,31 +115,47 @@ fn flat(samples: &Samples, values: &[f64], joint: usize) -> Vec<f64> {
 
 /// Returns the factor of each row: the reciprocal of its standard deviation, less for outliers.
 ///
-/// `inflation` gives, per joint, the number of rows that count as one independent row.
-fn reweighted(samples: &Samples, residuals: &[f64], plain: bool, inflation: &[f64]) -> Vec<f64> {
-    let deviation = |joint: usize| {
-        deviation(&flat(samples, residuals, joint), &flat(samples, &samples.torque, joint), plain)
-    };
-    let deviations: Vec<f64> = (0..samples.joints).map(deviation).collect();
+/// `inflation` is the number of rows that count as one independent row. All joints share it:
+/// residuals that last are errors of the model, and a joint with such errors is not less important.
+fn reweighted(samples: &Samples, residuals: &[f64], plain: bool, inflation: f64) -> Vec<f64> {
+    let noise: Vec<Noise> = (0..samples.joints)
+        .map(|joint| Noise::of_joint(samples, residuals, joint, plain))
+        .collect();
     let weight = |(r, residual): (usize, &f64)| {
-        let joint = r % samples.joints;
-        let huber = if plain { 1.0 } else { huber_row_factor(*residual, deviations[joint]) };
-        huber / (deviations[joint] * inflation[joint].sqrt())
+        let noise = &noise[r % samples.joints];
+        huber_row_factor(*residual, noise.outlier) / (noise.deviation * inflation.sqrt())
     };
     residuals.iter().enumerate().map(weight).collect()
 }
 
-/// Returns the standard deviation of a joint's residuals, robust unless `plain`.
-///
-/// The lower bound keeps the weights finite for exact data.
-fn deviation(residuals: &[f64], torque: &[f64], plain: bool) -> f64 {
+/// The noise of one joint's torque.
+struct Noise {
+    /// Size beyond which a residual is an outlier \[N m\]; infinite for a plain fit.
+    outlier: f64,
+    /// Root mean square of the residuals, outliers with less weight \[N m\].
+    deviation: f64,
+}
+
+impl Noise {
+    fn of_joint(samples: &Samples, residuals: &[f64], joint: usize, plain: bool) -> Self {
+        let torque = flat(samples, &samples.torque, joint);
+        let residuals = flat(samples, residuals, joint);
+        let robust = robust_deviation(&residuals, &torque);
+        let outlier = if plain { f64::INFINITY } else { OUTLIER_DEVIATIONS * robust };
+        let weighted = residuals.iter().map(|r| r * huber_row_factor(*r, outlier));
+        Self { outlier, deviation: root_mean_square(weighted).max(least_deviation(&torque)) }
+    }
+}
+
+/// Returns the robust standard deviation of a joint's residuals \[N m\].
+fn robust_deviation(residuals: &[f64], torque: &[f64]) -> f64 {
+    robust_standard_deviation(residuals).max(least_deviation(torque))
+}
+
+/// Returns a lower bound that keeps the weights finite for exact data \[N m\].
+fn least_deviation(torque: &[f64]) -> f64 {
     let size = root_mean_square(torque.iter().copied()).max(f64::MIN_POSITIVE);
-    let spread = if plain {
-        root_mean_square(residuals.iter().copied())
-    } else {
-        robust_standard_deviation(residuals)
-    };
-    spread.max(MIN_RELATIVE_DEVIATION * size)
+    MIN_RELATIVE_DEVIATION * size
 }
 
 fn joint_fit(samples: &Samples, residuals: &[f64], joint: usize) -> JointFit {
@@ -145,7 +163,7 @@ fn joint_fit(samples: &Samples, residuals: &[f64], joint: usize) -> JointFit {
     let torque = flat(samples, &samples.recorded, joint);
     let all = by_log.concat();
     let series: Vec<&[f64]> = by_log.iter().map(Vec::as_slice).collect();
-    let deviation = deviation(&all, &torque, false);
+    let deviation = robust_deviation(&all, &torque);
     JointFit {
         rows: all.len(),
         independent: all.len() as f64 / autocorrelation_time(&series),

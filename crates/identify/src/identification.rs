@@ -1,4 +1,4 @@
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::fit::FrictionFit;
 use crate::friction::joints::coefficients;
 use crate::gravity::alternation::fit_gravity_and_friction;
@@ -8,7 +8,8 @@ use crate::inertia::description::description;
 use crate::inertia::fit::{InertiaFit, fit_inertia};
 use crate::inputs::Inputs;
 use crate::plausibility::gain::{Gain, GainLikelihood, gains};
-use crate::plausibility::warnings::{Checked, poor_prediction};
+use crate::plausibility::validation::{poor_prediction, still_recordings, useless_simulation};
+use crate::plausibility::warnings::Checked;
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples};
 use crate::settings::{IdentifySettings, ModelSettings};
@@ -83,11 +84,12 @@ pub fn identify(
     progress(2, STEPS);
 
     // Inertial parameters, with the friction and its load subtracted.
-    let friction = coefficients(&first.friction, robot);
     let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
-    let known = with_friction(load, &friction)?;
-    let inertia = fit_links([robot, &known], &inputs, model, first.friction.len())?;
-    let mut description = description(robot, &inertia, &friction)?;
+    let friction = coefficients(&first.friction, robot);
+    let (friction, known, inertia) = fit_links([robot, load], friction, &inputs, model)?;
+    let (gains, implausible) = check([robot, &known], &inertia, &friction, &inputs);
+    let mut description =
+        description(robot, &inertia, &friction).map_err(|error| impossible(error, &implausible))?;
     if let Some(gravity) = first.gravity.as_ref().filter(|_| model.separate_gravity) {
         set_gravity_moments(&mut description, &gravity.robot);
     }
@@ -98,13 +100,16 @@ pub fn identify(
     let (kept_back, tried) = inputs.validation();
     let (validation, traces) = predict_torque(&found, &known, tried, sampling, &inertia);
     let windows = simulate(&found, tried, &model.windows);
-    let (gains, implausible) = check([robot, &known], &inertia, &friction, &inputs);
-    let mut warnings = first.warnings;
-    warnings.extend(inertia.undetermined_warning());
+    let mut warnings = inputs.warnings;
+    warnings.extend(first.warnings);
     warnings.extend(implausible);
+    warnings.extend(inertia.undetermined_warning());
+    warnings.extend(inertia.body_warnings(robot));
     if kept_back {
+        warnings.extend(still_recordings(&validation));
         warnings.extend(poor_prediction(robot, &validation));
     }
+    warnings.extend(useless_simulation(robot, &windows));
     progress(STEPS, STEPS);
     Ok(Identification {
         description,
@@ -122,22 +127,50 @@ pub fn identify(
     })
 }
 
-/// Fits the inertial parameters; `friction_fits` is the number of joints with a friction fit.
+/// Returns the error for values of least squares that no robot has, with the probable cause.
+fn impossible(error: Error, implausible: &[String]) -> Error {
+    match error {
+        Error::Robot(error) => {
+            Error::ImpossibleRobot { problem: error.to_string(), causes: implausible.to_vec() }
+        }
+        other => other,
+    }
+}
+
+/// Fits the inertial parameters to motions with the friction of slow motions subtracted.
+///
+/// A joint whose torque is explained better by friction that only the exciting motions determine
+/// gets that friction: slow motions do not show all of it. Returns the known friction, one entry
+/// per joint, the robot with it, and the fit.
 ///
 /// The poses at rest take part unless gravity keeps its own mass moments.
 fn fit_links(
-    [robot, known]: [&Robot; 2],
+    [robot, load]: [&Robot; 2],
+    slow: Vec<FrictionDescription>,
     inputs: &Inputs,
     model: &ModelSettings,
-    friction_fits: usize,
-) -> Result<InertiaFit> {
-    let friction = FrictionColumns {
-        fitted: model.refit_friction || friction_fits < robot.joint_count(),
-        cubic: model.cubic.unwrap_or(friction_fits > 0),
+) -> Result<(Vec<FrictionDescription>, Robot, InertiaFit)> {
+    let none = FrictionDescription::default();
+    let known_count = slow.iter().filter(|friction| **friction != none).count();
+    let columns = FrictionColumns {
+        fitted: model.refit_friction || known_count < slow.len(),
+        cubic: model.cubic.unwrap_or(known_count > 0),
     };
     let rest: &[Log] = if model.separate_gravity { &[] } else { &inputs.rest };
     let logs = [&inputs.dynamic[..], rest];
-    fit_inertia(robot, known, logs, &inputs.sampling, model, friction)
+    let fit = |friction: Vec<FrictionDescription>| {
+        let known = with_friction(load, &friction)?;
+        let fit = fit_inertia(robot, &known, logs, &inputs.sampling, model, columns)?;
+        Ok((friction, known, fit))
+    };
+    let first = fit(slow)?;
+    if known_count == 0 || !model.refit_friction {
+        return Ok(first);
+    }
+    let free = fit(vec![none; robot.joint_count()])?;
+    let better = |j: usize| free.2.joints[j].residual < first.2.joints[j].residual;
+    let chosen = first.0.iter().enumerate().map(|(j, slow)| if better(j) { none } else { *slow });
+    fit(chosen.collect())
 }
 
 /// Returns the gains of the joints and warnings about implausible results.

@@ -1,10 +1,12 @@
 use crate::error::Result;
+use crate::held_out::check_held_out;
 use crate::prepare::cut_off::cut_off;
 use crate::prepare::entry::LogEntry;
 use crate::prepare::log::Log;
 use crate::prepare::prepared::prepare;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::read::read;
+use crate::prepare::velocity::velocity_warnings;
 use crate::samples::Sampling;
 use crate::settings::IdentifySettings;
 use reachtube_robot::{JointKind, Robot};
@@ -41,6 +43,8 @@ pub struct Inputs {
     pub sampling: Sampling,
     /// Changes to the recordings, one sentence each.
     pub changes: Vec<String>,
+    /// Warnings about the recordings.
+    pub warnings: Vec<String>,
 }
 
 impl Inputs {
@@ -53,11 +57,13 @@ impl Inputs {
             raw(&settings.dynamic)?,
             raw(&settings.validate)?,
         ];
+        check_held_out(&groups[3], groups[..3].iter().flatten())?;
         let exciting: Vec<&RawLog> = groups[2].iter().collect();
         let cut_off = cut_off(&exciting, &settings.prepare)?;
         // All groups are prepared together, so that they get one sample time.
         let counts = groups.each_ref().map(Vec::len);
-        let prepared = prepare(&groups.concat(), &settings.prepare, cut_off)?;
+        let all = groups.concat();
+        let prepared = prepare(&all, &settings.prepare, cut_off)?;
         let mut logs = prepared.logs.into_iter();
         let [rest, friction, dynamic, validate] =
             counts.map(|count| logs.by_ref().take(count).collect::<Vec<Log>>());
@@ -69,7 +75,8 @@ impl Inputs {
         };
         let mut changes = prepared.changes;
         changes.push(described(&sampling, robot));
-        Ok(Self { rest, friction, dynamic, validate, sampling, changes })
+        let warnings = velocity_warnings(robot, &all);
+        Ok(Self { rest, friction, dynamic, validate, sampling, changes, warnings })
     }
 
     /// Returns whether there are validation recordings, and the recordings for the validation:

@@ -50,6 +50,7 @@ mod error;
 mod fit;
 pub mod friction;
 mod gravity;
+mod held_out;
 mod identification;
 mod inertia;
 mod inputs;

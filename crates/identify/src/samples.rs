@@ -7,7 +7,7 @@ use reachtube_robot::{Parameter, ParameterKind, Regressor, Robot};
 use std::ops::Range;
 
 /// Shortest rest that counts as a pose \[s\].
-const SHORTEST_REST: f64 = 0.5;
+pub const SHORTEST_REST: f64 = 0.5;
 
 /// Rows of the regression τ = Y θ for a group of logs: n rows per sample, one per joint.
 #[derive(Debug, Clone)]

@@ -73,7 +73,9 @@ pub struct ModelSettings {
     /// Whether outliers lose weight by Huber's function; otherwise least squares is plain.
     pub robust: bool,
     /// Whether the links must be physically consistent.
-    pub physical: bool,
+    ///
+    /// By default they must, unless the description has `parameters = "base"`.
+    pub physical: Option<bool>,
     /// Prior of the links in directions that the recordings do not determine.
     pub prior: Prior,
     /// Weight of the prior, roughly in independent samples per link.
@@ -104,7 +106,7 @@ impl Default for ModelSettings {
             slow: None,
             rest_speed: 0.01,
             robust: true,
-            physical: true,
+            physical: None,
             prior: Prior::Description,
             prior_strength: 1.0,
             separate_gravity: false,
@@ -139,8 +141,8 @@ impl IdentifySettings {
     ///
     /// # Errors
     ///
-    /// [`Error::NoExcitingMotions`], [`Error::GainCount`], [`Error::Gain`] or
-    /// [`Error::NotPositive`].
+    /// [`Error::NoExcitingMotions`], [`Error::GainCount`], [`Error::Gain`],
+    /// [`Error::SeparateGravity`] or [`Error::NotPositive`].
     pub fn validate(&self, joints: usize) -> Result<()> {
         if self.dynamic.is_empty() {
             return Err(Error::NoExcitingMotions);
@@ -151,6 +153,9 @@ impl IdentifySettings {
         }
         if let Some(joint) = gains.iter().position(|gain| *gain == 0.0 || !gain.is_finite()) {
             return Err(Error::Gain { number: joint + 1, gain: gains[joint] });
+        }
+        if self.model.separate_gravity && self.rest.is_empty() && self.friction.is_empty() {
+            return Err(Error::SeparateGravity);
         }
         self.model.validate()
     }
@@ -203,6 +208,11 @@ mod tests {
         let mut gains = given.clone();
         gains.prepare.gains = vec![1.0; 5];
         assert!(gains.validate(6).unwrap_err().to_string().contains("each of the 6 joints"));
+        let mut separate = given.clone();
+        separate.model.separate_gravity = true;
+        assert!(separate.validate(6).unwrap_err().to_string().contains("--static"));
+        separate.rest = vec![std::path::PathBuf::from("poses").into()];
+        assert!(separate.validate(6).is_ok());
         let mut windows = given;
         windows.model.windows = vec![0.0];
         assert!(windows.validate(6).unwrap_err().to_string().contains("above 0"));

@@ -27,7 +27,9 @@ pub struct Summary<'a> {
     pub inertia: &'a [JointFit],
     /// The identifiable combinations of parameters.
     pub parameters: &'a [BaseParameter],
-    /// Condition number of the base regressor, columns scaled to unit length.
+    /// Number of combinations that the recordings determine.
+    pub determined: usize,
+    /// Condition number of the recorded motions, relative to a motion through all positions.
     pub condition: f64,
     /// Effect of the constraint that every link is physically consistent.
     pub physical: &'a Option<PhysicalFit>,
@@ -55,6 +57,7 @@ impl Identification {
             friction: self.friction.iter().map(|fit| &fit.joint).collect(),
             inertia: &self.inertia.joints,
             parameters: &self.inertia.parameters,
+            determined: self.inertia.determined,
             condition: self.inertia.condition,
             physical: &self.inertia.physical,
             gains: &self.gains,

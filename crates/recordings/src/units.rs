@@ -20,7 +20,8 @@ const PLAUSIBLE_RATIO: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
 /// Returns each joint (from 0) whose q does not follow ∫q̇ dt, with the slope of q over ∫q̇ dt
 /// where this is implausible. Joints that hardly move are skipped.
-pub(crate) fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
+#[must_use]
+pub fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
     (0..run.joints)
         .filter_map(|joint| {
             let slope = position_per_integral(run, joint)?;
@@ -31,7 +32,8 @@ pub(crate) fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
 
 /// Returns the largest difference of q and ∫q̇ dt (trapezoidal rule) of `joint` (from 0) over a
 /// run, rad or m.
-pub(crate) fn integral_gap(run: &Run, joint: usize) -> f64 {
+#[must_use]
+pub fn integral_gap(run: &Run, joint: usize) -> f64 {
     let (mut integral, mut largest) = (run.q(0)[joint], 0.0f64);
     for k in 1..run.len() {
         integral +=

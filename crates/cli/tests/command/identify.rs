@@ -152,6 +152,35 @@ cut_off = 8.0
 }
 
 #[test]
+fn recordings_that_cannot_serve_their_purpose_are_named() {
+    let lab = lab();
+    let job = "identify --robot pendulum.toml --cut-off 15 --dynamic b.csv";
+    lab.write("copy.csv", lab.read("b.csv"));
+    lab.run(&format!("{job} --validate copy.csv")).fails_with(&[
+        "copy.csv",
+        "not held out",
+        "b.csv, which has the same content",
+    ]);
+    // A rest predicts no torque.
+    let rest: String = (0..800).map(|k| format!("{:.3},0.4,0,3.1\n", 0.005 * k as f64)).collect();
+    lab.write("rest.csv", format!("t,q1,qd1,tau1\n{rest}"));
+    let run = lab.run(&format!("{job} --validate rest.csv c.csv")).exits(0);
+    assert!(run.stderr.contains("no joint moves in the validation recordings rest:"), "{run:?}");
+    assert!(run.stdout.contains("at rest (-;"), "{}", run.stdout);
+    // The remedy of a gap is an option of this command.
+    let with_gap: Vec<String> = lab.read("a.csv").lines().map(String::from).collect();
+    let with_gap = [&with_gap[..2000], &with_gap[2010..]].concat().join("\n");
+    lab.write("gap.csv", with_gap + "\n");
+    lab.run(&format!("{job} gap.csv")).fails_with(&["gap.csv:2001", "--max-gap SECONDS"]);
+    lab.run(&format!("{job} gap.csv --max-gap 0.1")).exits(0);
+    lab.write(
+        "job.toml",
+        "robot = \"pendulum.toml\"\ndynamic = [\"a.csv\"]\n[model]\nseparate_gravity = true\n",
+    );
+    lab.run("identify --settings job.toml").fails_with(&["separate_gravity", "--static"]);
+}
+
+#[test]
 fn windows_of_recordings_are_suites_and_motions_are_designed() {
     let lab = lab();
     lab.run("prepare --robot pendulum.toml --logs a.csv b.csv --window 2 --out windows")

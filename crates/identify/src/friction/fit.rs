@@ -1,7 +1,8 @@
 use crate::friction::form::CoulombForm;
 use crate::friction::sample::{FrictionSample, quadrant_counts};
 use crate::regression::residuals::{
-    autocorrelation_time, huber_row_factor, robust_standard_deviation, root_mean_square,
+    HUBER_DEVIATIONS, autocorrelation_time, huber_row_factor, robust_standard_deviation,
+    root_mean_square,
 };
 use crate::regression::solution::Solution;
 use crate::regression::triangular_factor::TriangularFactor;
@@ -96,8 +97,8 @@ fn robust_solution(form: CoulombForm, samples: &[FrictionSample]) -> (Solution, 
     let mut weights = vec![1.0; samples.len()];
     for _ in 0..ROUNDS {
         let left = residuals(form, samples, &weighted_solution(form, samples, &weights).x);
-        let deviation = robust_standard_deviation(&left);
-        weights = left.iter().map(|r| huber_row_factor(*r, deviation)).collect();
+        let limit = HUBER_DEVIATIONS * robust_standard_deviation(&left);
+        weights = left.iter().map(|r| huber_row_factor(*r, limit)).collect();
     }
     (weighted_solution(form, samples, &weights), weights)
 }

@@ -1,7 +1,7 @@
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::{Fit, JointFit};
 use crate::prepare::log::Log;
-use crate::samples::{KnownTorque, Samples, Sampling};
+use crate::samples::{KnownTorque, SHORTEST_REST, Samples, Sampling};
 use crate::settings::ModelSettings;
 use crate::variant::with_parameters;
 use reachtube_robot::{BaseParameters, Parameter, ParameterKind, Robot};
@@ -39,6 +39,10 @@ pub struct GravityFit {
 ///
 /// Friction slopes that differ between driving and braking look like gravity in motion. Only poses
 /// separate the two, so that enough poses are used alone.
+///
+/// # Errors
+///
+/// [`Error::NoPose`] if the recordings of rests have no pose.
 pub(super) fn fit_gravity(
     robot: &Robot,
     rests: &[Log],
@@ -57,6 +61,9 @@ pub(super) fn fit_gravity(
     };
     let at_rest = Samples::at_rest(robot, &columns, rests, model.rest_speed);
     let poses = at_rest.len() / n;
+    if poses == 0 && !rests.is_empty() {
+        return Err(Error::NoPose { rest_speed: model.rest_speed, shortest: SHORTEST_REST });
+    }
     let enough = poses >= POSES_PER_PARAMETER * BaseParameters::at_rest(robot, &inertial).count();
     let slow = if enough { &[] } else { slow };
     let in_motion = Samples::in_motion(robot, &columns, slow, sampling, known);

@@ -1,8 +1,14 @@
 use crate::error::{Error, Result};
-use crate::fit::{CONDITION_LIMIT, Fit};
+use crate::fit::CONDITION_LIMIT;
+use crate::regression::singular::Singular;
+use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
 use reachtube_robot::{BaseParameters, Robot};
 use serde::Serialize;
+
+/// Part of a parameter's variance over the reference motion that may lie in undetermined
+/// directions.
+const MIN_OPEN: f64 = 0.0025;
 
 /// A base parameter: an identifiable combination of parameters, with its value in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,29 +25,42 @@ pub struct BaseParameter {
     pub described: f64,
 }
 
-/// Returns the base parameters with their errors, and the condition of their regression.
+/// The base parameters with their errors, and how well the recordings determine them.
+pub struct BaseFit {
+    /// The base parameters.
+    pub parameters: Vec<BaseParameter>,
+    /// Number of combinations that the recordings determine.
+    pub determined: usize,
+    /// Condition number: the largest over the smallest excitation of a combination, each relative
+    /// to its excitation by the reference motion. It is infinite if a combination is not determined.
+    pub condition: f64,
+}
+
+/// Returns the base parameters by least squares beside the `values` that are used.
+///
+/// `reference` is the triangular factor of [`reference_factor`], which measures combinations
+/// independently of the frames.
 ///
 /// # Errors
 ///
 /// [`Error::Undetermined`] if a combination is not determined and the links need not be
 /// `physical`, so that no prior decides about it.
+///
+/// [`reference_factor`]: crate::inertia::reference::reference_factor
 pub fn base_parameters(
     robot: &Robot,
     base: &BaseParameters,
-    fit: &Fit,
+    [fit, reference]: [&TriangularFactor; 2],
     values: &DVector<f64>,
     physical: bool,
-) -> Result<(Vec<BaseParameter>, f64)> {
-    // Least squares in the independent columns alone.
-    let independent = DMatrix::from_fn(base.parameters().len(), base.count(), |i, j| {
-        f64::from(u8::from(base.independent()[j] == i))
-    });
-    let solution =
-        fit.whitened.with_mapped_columns(&independent).solve_within(CONDITION_LIMIT.recip());
+) -> Result<BaseFit> {
+    let solution = LeastSquares::new(base, fit, reference);
     let names = base.names();
-    if !physical && !solution.undetermined.is_empty() {
+    if !physical && solution.determined < names.len() {
+        let open = (0..names.len()).filter(|k| solution.errors[*k].is_infinite());
         return Err(Error::Undetermined {
-            combinations: solution.undetermined.iter().map(|k| names[*k].clone()).collect(),
+            count: names.len() - solution.determined,
+            combinations: open.map(|k| names[k].clone()).collect(),
             total: names.len(),
             limit: CONDITION_LIMIT,
         });
@@ -49,13 +68,73 @@ pub fn base_parameters(
     // Values of the identified and of the given robot.
     let (found, described) =
         (base.reduce(values.as_slice()), base.reduce(&robot.parameter_values(base.parameters())));
-    let errors = solution.standard_errors();
     let parameter = |(k, name)| BaseParameter {
         name,
         value: found[k],
         least_squares: solution.x[k],
-        standard_error: errors[k],
+        standard_error: solution.errors[k],
         described: described[k],
     };
-    Ok((names.into_iter().enumerate().map(parameter).collect(), solution.condition))
+    Ok(BaseFit {
+        parameters: names.into_iter().enumerate().map(parameter).collect(),
+        determined: solution.determined,
+        condition: solution.condition,
+    })
+}
+
+/// The least-squares solution for k base parameters.
+struct LeastSquares {
+    /// The base parameters.
+    x: DVector<f64>,
+    /// Standard errors; infinite for a parameter with a part in an undetermined direction.
+    errors: Vec<f64>,
+    /// Number of determined directions.
+    determined: usize,
+    condition: f64,
+}
+
+impl LeastSquares {
+    /// Solves in coordinates y in which the reference motion excites all directions equally.
+    ///
+    /// With the reference factor R of the independent columns, x = R⁻¹ y. Another choice of the
+    /// links' frames changes x, but y only by a rotation. The singular values in y are therefore
+    /// those of the motion, and not of the frames.
+    fn new(base: &BaseParameters, fit: &TriangularFactor, reference: &TriangularFactor) -> Self {
+        let independent = DMatrix::from_fn(base.parameters().len(), base.count(), |i, j| {
+            f64::from(u8::from(base.independent()[j] == i))
+        });
+        let k = base.count();
+        let from_y = reference
+            .with_mapped_columns(&independent)
+            .r
+            .solve_upper_triangular(&DMatrix::identity(k, k))
+            .expect("the columns are independent over the reference motion");
+        let data = fit.with_mapped_columns(&(independent * &from_y));
+        let Singular { u, values: sigma, v } = Singular::of(&data.r);
+        let cut = sigma.max() / CONDITION_LIMIT;
+        // Each direction of y is a column of x-values.
+        let directions = &from_y * v;
+        let (mut x, mut variances) = (DVector::zeros(k), vec![0.0; k]);
+        let mut open = vec![0.0; k];
+        for d in 0..k {
+            let direction = directions.column(d);
+            if sigma[d] > cut {
+                x += direction * (u.column(d).dot(&data.z) / sigma[d]);
+                let add = |(v, e): (&mut f64, &f64)| *v += (e / sigma[d]).powi(2);
+                variances.iter_mut().zip(direction.iter()).for_each(add);
+            } else {
+                open.iter_mut().zip(direction.iter()).for_each(|(o, e)| *o += e * e);
+            }
+        }
+        let is_open = |i: usize| open[i] > MIN_OPEN * directions.row(i).norm_squared();
+        let error = |i: usize| if is_open(i) { f64::INFINITY } else { variances[i].sqrt() };
+        let determined = sigma.iter().filter(|s| **s > cut).count();
+        let whole = determined == k;
+        Self {
+            x,
+            errors: (0..k).map(error).collect(),
+            determined,
+            condition: if whole { sigma.max() / sigma.min() } else { f64::INFINITY },
+        }
+    }
 }

@@ -1,6 +1,6 @@
 use crate::settings::ModelSettings;
 use nalgebra::DVector;
-use reachtube_robot::{Parameter, ParameterKind};
+use reachtube_robot::{Parameter, ParameterKind, Robot};
 
 /// Columns of friction that are fitted together with the inertial parameters.
 #[derive(Debug, Clone, Copy)]
@@ -12,11 +12,14 @@ pub struct FrictionColumns {
 }
 
 /// Returns the columns that are fitted to exciting motions.
+///
+/// The correction of a known quadratic friction needs a column of its own.
 pub fn fitted_columns(
-    joints: usize,
+    known: &Robot,
     model: &ModelSettings,
     friction: FrictionColumns,
 ) -> Vec<Parameter> {
+    let joints = known.joint_count();
     let mut columns = Parameter::of_joints(joints, &ParameterKind::INERTIAL);
     if model.motor_inertia {
         columns.extend(Parameter::of_joints(joints, &[ParameterKind::MotorInertia]));
@@ -29,6 +32,10 @@ pub fn fitted_columns(
             ParameterKind::Viscous3,
         ];
         columns.extend(Parameter::of_joints(joints, &kinds[..if friction.cubic { 4 } else { 3 }]));
+        let known = known.description().joints.iter().enumerate();
+        let quadratic = known.filter(|(_, known)| known.friction.viscous[1] != 0.0);
+        columns
+            .extend(quadratic.map(|(joint, _)| Parameter { joint, kind: ParameterKind::Viscous2 }));
     }
     columns
 }

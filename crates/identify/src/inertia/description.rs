@@ -41,6 +41,7 @@ fn add_friction(friction: &mut FrictionDescription, column: &Parameter, value: f
         ParameterKind::Coulomb => add([1.0, -1.0, -1.0, 1.0]),
         ParameterKind::Offset => add([1.0; 4]),
         ParameterKind::Viscous1 => viscous[0] += value,
+        ParameterKind::Viscous2 => viscous[1] += value,
         ParameterKind::Viscous3 => viscous[2] += value,
         _ => {}
     }

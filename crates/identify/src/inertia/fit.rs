@@ -2,12 +2,13 @@ use crate::error::{Error, Result};
 use crate::fit::{Fit, JointFit};
 use crate::inertia::base::{BaseParameter, base_parameters};
 use crate::inertia::columns::{FrictionColumns, fitted_columns};
-use crate::inertia::physical::{PhysicalFit, nearest_bodies};
+use crate::inertia::physical::{PhysicalFit, nearest_bodies, why_impossible};
+use crate::inertia::reference::reference_factor;
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use crate::settings::ModelSettings;
 use nalgebra::DVector;
-use reachtube_robot::{BaseParameters, Parameter, Robot};
+use reachtube_robot::{BaseParameters, Parameter, ParameterSet, Robot};
 
 /// The fit of the inertial parameters to exciting motions.
 #[derive(Debug, Clone)]
@@ -21,13 +22,19 @@ pub struct InertiaFit {
     pub values: DVector<f64>,
     /// Effect of the physical constraint; `None` if it was not requested.
     pub physical: Option<PhysicalFit>,
+    /// Reason why no physical robot has the values of least squares, if these are used.
+    pub impossible: Option<String>,
     /// Quality of the fit, one entry per joint.
     pub joints: Vec<JointFit>,
     /// The identifiable combinations of parameters.
     pub parameters: Vec<BaseParameter>,
-    /// Condition number of the base regressor, columns scaled to unit length.
+    /// Number of combinations that the recordings determine.
+    pub determined: usize,
+    /// Condition number of the recorded motions: the largest over the smallest excitation of a
+    /// combination, each relative to a motion through all positions with the recorded speeds.
     ///
-    /// It is infinite if the recordings do not determine a combination.
+    /// It does not depend on the frames of the links, and is infinite if the recordings do not
+    /// determine a combination.
     pub condition: f64,
     /// Relative singular values on either side of the rank of the structural regressor.
     ///
@@ -50,7 +57,7 @@ pub fn fit_inertia(
     model: &ModelSettings,
     friction: FrictionColumns,
 ) -> Result<InertiaFit> {
-    let columns = fitted_columns(robot.joint_count(), model, friction);
+    let columns = fitted_columns(known, model, friction);
     // Regression on motions and poses.
     let known_torque = KnownTorque::Friction(known);
     let moving = Samples::in_motion(robot, &columns, dynamic, sampling, &known_torque);
@@ -62,17 +69,24 @@ pub fn fit_inertia(
         [&moving, &still].into_iter().filter(|samples| !samples.is_empty()).collect();
     let fit = Fit::of_groups(&groups, !model.robust);
     // Physically consistent links.
-    let physical = model
-        .physical
+    let has_bodies = robot.description().parameters == ParameterSet::Physical;
+    let has_bodies = model.physical.unwrap_or(has_bodies);
+    let physical = has_bodies
         .then(|| nearest_bodies([robot, known], &columns, &fit, &moving, model))
         .transpose()?;
-    let (values, physical) = match physical {
-        Some((values, physical)) => (values, Some(physical)),
-        None => (fit.solution.x.clone(), None),
+    let (values, physical, impossible) = match physical {
+        Some((values, physical)) => (values, Some(physical), None),
+        None => {
+            let values = fit.solution.x.clone();
+            let impossible = why_impossible(robot, &columns, &values)?;
+            (values, None, impossible)
+        }
     };
     // Identifiable combinations.
     let base = BaseParameters::of_robot(robot, &columns);
-    let (parameters, condition) = base_parameters(robot, &base, &fit, &values, model.physical)?;
+    let reference = reference_factor(robot, &columns, dynamic, &fit.joints[0]);
+    let factors = [&fit.whitened, &reference];
+    let base_fit = base_parameters(robot, &base, factors, &values, has_bodies)?;
     Ok(InertiaFit {
         joints: fit.joints[0].clone(),
         gap: base.gap(),
@@ -80,12 +94,27 @@ pub fn fit_inertia(
         fit,
         values,
         physical,
-        parameters,
-        condition,
+        impossible,
+        parameters: base_fit.parameters,
+        determined: base_fit.determined,
+        condition: base_fit.condition,
     })
 }
 
 impl InertiaFit {
+    /// Returns warnings about links that contradict the data, and about values that no physical
+    /// robot has.
+    pub(crate) fn body_warnings(&self, robot: &Robot) -> Vec<String> {
+        let impossible = self.impossible.iter().map(|why| {
+            format!(
+                "least squares gives a robot that cannot exist: {why}; set model.physical = true \
+                 for the nearest physical links, without which motion cannot be simulated"
+            )
+        });
+        let physical = self.physical.iter().flat_map(|physical| physical.growth_warnings(robot));
+        impossible.chain(physical).collect()
+    }
+
     /// Returns a warning that names the combinations that only the prior determines, if there are
     /// any.
     #[must_use]
@@ -99,8 +128,8 @@ impl InertiaFit {
         (!names.is_empty()).then(|| {
             format!(
                 "the recordings do not determine {} of {} combinations of parameters; the prior \
-                 decides about them: {}",
-                names.len(),
+                 decides about them, which affects: {}",
+                self.parameters.len() - self.determined,
                 self.parameters.len(),
                 names.join("; ")
             )

@@ -5,6 +5,8 @@ pub(crate) mod columns;
 pub(crate) mod description;
 pub(crate) mod fit;
 pub(crate) mod physical;
+mod prior;
+mod reference;
 
 pub use base::BaseParameter;
 pub use fit::InertiaFit;

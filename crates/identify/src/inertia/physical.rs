@@ -1,18 +1,21 @@
 use crate::bodies::program::BodyProgram;
-use crate::bodies::pseudo_inertia::{PER_LINK, pseudo_inertia};
 use crate::error::{Error, Result};
 use crate::fit::Fit;
 use crate::inertia::columns::inertia_part;
+use crate::inertia::prior::LinkPrior;
 use crate::regression::residuals::root_mean_square;
 use crate::samples::Samples;
-use crate::settings::{ModelSettings, Prior};
+use crate::settings::ModelSettings;
 use crate::variant::with_parameters;
-use nalgebra::{Cholesky, DVector, Matrix4, Vector4};
+use nalgebra::DVector;
 use reachtube_robot::{FrictionDescription, Parameter, ParameterKind, Robot, RobotError};
 use serde::Serialize;
 
-/// Radius of the solid balls that are the prior of unknown links \[m\].
-const BALL_RADIUS: f64 = 0.1;
+/// Limit of the rounds in which the size of the balls is adapted.
+const SIZE_ROUNDS: usize = 30;
+
+/// Growth of a joint's residual by physical links beyond which a warning names the joint.
+const MAX_GROWTH: f64 = 1.3;
 
 /// Effect of the constraint that every link is physically consistent.
 #[derive(Debug, Clone, Serialize)]
@@ -34,6 +37,25 @@ pub struct PhysicalFit {
     pub balls: Vec<String>,
 }
 
+impl PhysicalFit {
+    /// Returns a warning for each joint whose residual grows too much by the physical constraint
+    /// and its prior.
+    pub(crate) fn growth_warnings(&self, robot: &Robot) -> Vec<String> {
+        let joints = robot.joints().iter().zip(&self.residuals);
+        let grown = joints.filter(|(_, [plain, physical])| *physical > MAX_GROWTH * plain);
+        grown
+            .map(|(joint, [plain, physical])| {
+                format!(
+                    "{}: physical links raise the residual from {plain:.4} to {physical:.4} N m; \
+                     give masses in the description, lower model.prior_strength, or set parameters \
+                     = \"base\" in the description to keep the parameters of least squares",
+                    joint.name
+                )
+            })
+            .collect()
+    }
+}
+
 /// Finds the physically consistent links nearest to the data.
 ///
 /// Returns all values of `columns` and the effect of the constraint. `known` is the robot whose
@@ -49,22 +71,31 @@ pub fn nearest_bodies(
     moving: &Samples,
     model: &ModelSettings,
 ) -> Result<(DVector<f64>, PhysicalFit)> {
-    let (prior, balls) = prior(robot, model.prior);
     let positive = positive_columns(known, columns);
-    let strength = model.prior_strength;
-    let program = BodyProgram { data: &fit.whitened, prior: &prior, strength, positive: &positive };
-    let solution = program.solve().ok_or(Error::NoPhysicalLinks)?;
-    let (inertia_columns, values) = inertia_part(columns, &fit.solution.x);
-    let least_squares = with_parameters(robot, &inertia_columns, &values);
+    let solve = |prior: &LinkPrior| {
+        let (prior, strength) = (prior.inertias(), model.prior_strength);
+        BodyProgram { data: &fit.whitened, prior: &prior, strength, positive: &positive }
+            .solve()
+            .ok_or(Error::NoPhysicalLinks)
+    };
+    // The data decide the size of the balls.
+    let mut prior = LinkPrior::new(robot, model.prior);
+    let mut solution = solve(&prior)?;
+    for _ in 0..SIZE_ROUNDS {
+        if !prior.adapt(solution.x.as_slice()) {
+            break;
+        }
+        solution = solve(&prior)?;
+    }
     let before = residual_sizes(moving, &fit.solution.x);
     let after = residual_sizes(moving, &solution.x);
     let physical = PhysicalFit {
-        plain_impossible: why_impossible(least_squares)?,
+        plain_impossible: why_impossible(robot, columns, &fit.solution.x)?,
         cost: fit.whitened.sum_of_squares(&solution.x)
             - fit.whitened.sum_of_squares(&fit.solution.x),
         gap: solution.gap,
         residuals: before.into_iter().zip(after).map(<[f64; 2]>::from).collect(),
-        balls,
+        balls: prior.balls(robot),
     };
     Ok((solution.x, physical))
 }
@@ -92,10 +123,16 @@ fn residual_sizes(moving: &Samples, x: &DVector<f64>) -> Vec<f64> {
     (0..moving.joints).map(size).collect()
 }
 
-/// Returns why a robot is not physical: a negative motor inertia, or a mass matrix that is not
-/// positive definite.
-fn why_impossible(robot: Result<Robot>) -> Result<Option<String>> {
-    let checked = robot.and_then(|robot| Ok(robot.check_physical().map(drop)?));
+/// Returns why no physical robot has the given values: a negative motor inertia, or a mass matrix
+/// that is not positive definite.
+pub fn why_impossible(
+    robot: &Robot,
+    columns: &[Parameter],
+    x: &DVector<f64>,
+) -> Result<Option<String>> {
+    let (columns, values) = inertia_part(columns, x);
+    let checked = with_parameters(robot, &columns, &values)
+        .and_then(|robot| Ok(robot.check_physical().map(drop)?));
     match checked {
         Ok(()) => Ok(None),
         Err(Error::Robot(
@@ -103,28 +140,4 @@ fn why_impossible(robot: Result<Robot>) -> Result<Option<String>> {
         )) => Ok(Some(error.to_string())),
         Err(other) => Err(other),
     }
-}
-
-/// Returns the pseudo-inertia of each link's prior, and the names of the links that have a ball.
-///
-/// The prior is the link of the description, or a solid ball with the mean mass of the usable
-/// links.
-fn prior(robot: &Robot, prior: Prior) -> (Vec<Matrix4<f64>>, Vec<String>) {
-    let parameters = robot.inertial_parameters();
-    let links: Vec<Matrix4<f64>> = parameters.chunks_exact(PER_LINK).map(pseudo_inertia).collect();
-    let usable = |p: &Matrix4<f64>| prior == Prior::Description && Cholesky::new(*p).is_some();
-    let masses: Vec<f64> = links.iter().filter(|p| usable(p)).map(|p| p[(3, 3)]).collect();
-    let mean =
-        if masses.is_empty() { 1.0 } else { masses.iter().sum::<f64>() / masses.len() as f64 };
-    // A solid ball has the second moment m r² / 5 along each axis.
-    let second = 0.2 * mean * BALL_RADIUS * BALL_RADIUS;
-    let ball = Matrix4::from_diagonal(&Vector4::new(second, second, second, mean));
-    let replaced = robot
-        .joints()
-        .iter()
-        .zip(&links)
-        .filter(|(_, p)| !usable(p))
-        .map(|(joint, _)| joint.name.clone())
-        .collect();
-    (links.iter().map(|p| if usable(p) { *p } else { ball }).collect(), replaced)
 }

@@ -1,4 +1,5 @@
 use crate::fit::{Fit, JointFit};
+use crate::regression::singular::Singular;
 use crate::regression::triangular_factor::TriangularFactor;
 use crate::samples::Samples;
 use nalgebra::{DMatrix, DVector};
@@ -135,11 +136,10 @@ impl GainLikelihood {
 /// The first p columns may be linearly dependent.
 fn eliminated(whole: &TriangularFactor, p: usize) -> DMatrix<f64> {
     let n = whole.r.ncols() - p;
-    let svd = whole.r.columns(0, p).into_owned().svd(true, false);
-    let Some(u) = svd.u else { unreachable!("u is computed") };
-    let cut = 1e-9 * svd.singular_values.max();
+    let Singular { u, values, .. } = Singular::of(&whole.r.columns(0, p).into_owned());
+    let cut = 1e-9 * values.max();
     let mut torque = whole.r.columns(p, n).into_owned();
-    for k in (0..p).filter(|k| svd.singular_values[*k] > cut) {
+    for k in (0..p).filter(|k| values[*k] > cut) {
         let direction = u.column(k);
         let part = direction.transpose() * &torque;
         torque -= direction * part;

@@ -1,8 +1,10 @@
 //! Plausibility of an identification: wrong signs and gains contradict the dynamics of rigid
 //! bodies.
 
+mod fault;
 pub(crate) mod gain;
-mod sign;
+mod search;
+pub(crate) mod validation;
 pub(crate) mod warnings;
 
 pub use gain::Gain;

@@ -1,9 +1,9 @@
 use crate::inertia::fit::InertiaFit;
+use crate::plausibility::fault::{Columns, Fault};
 use crate::plausibility::gain::{Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
-use crate::plausibility::sign::inverted_columns;
+use crate::plausibility::search::find_fault;
 use crate::prepare::log::Log;
 use crate::samples::{Samples, Sampling};
-use crate::validate::torque::LogValidation;
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
@@ -29,18 +29,24 @@ pub struct Checked<'a> {
 }
 
 impl Checked<'_> {
-    /// Returns warnings about implausible results: wrong signs, friction that does not dissipate,
-    /// wrong gains, and unexplained torque.
+    /// Returns warnings about implausible results: faults of the columns, friction that does not
+    /// dissipate, wrong gains, and unexplained torque.
+    ///
+    /// A fault of the columns makes all gains meaningless, so that it replaces their warnings.
     pub fn warnings(&self, likelihood: &GainLikelihood, gains: &[Gain]) -> Vec<String> {
-        let inverted_torque = likelihood.inverted_torque();
-        let mut warnings: Vec<String> = self.wrong_sign(inverted_torque).into_iter().collect();
-        warnings.extend(self.driving_friction());
-        // A wrong sign of a torque makes all gains meaningless.
-        if inverted_torque.is_none() {
-            warnings.extend(gains.iter().filter_map(wrong_gain));
-        }
-        warnings.extend(self.unexplained_torque());
-        warnings
+        let driving: Vec<String> = self.driving_friction().collect();
+        let gains: Vec<String> = gains.iter().filter_map(wrong_gain).collect();
+        let unexplained: Vec<String> = self.unexplained_torque().collect();
+        let inverted = || {
+            let (joint, share) = likelihood.inverted_torque()?;
+            let fault = Fault::Sign { joint, columns: Columns::Torque };
+            Some(fault.warning(self.robot, (joint, share)))
+        };
+        let fault = find_fault(self.robot, self.logs, self.samples, self.sampling)
+            .map(|found| found.fault.warning(self.robot, found.clearest))
+            .or_else(inverted);
+        let gains = if fault.is_some() { Vec::new() } else { gains };
+        fault.into_iter().chain(driving).chain(gains).chain(unexplained).collect()
     }
 
     fn name(&self, joint: usize) -> &str {
@@ -51,20 +57,6 @@ impl Checked<'_> {
     fn poorly_fitted(&self) -> impl Iterator<Item = usize> {
         let joints = &self.fit.joints;
         (0..joints.len()).filter(|j| joints[*j].relative() > MAX_UNEXPLAINED)
-    }
-
-    /// Without an inverted torque, the search over all signs runs only if the fit is poor.
-    fn wrong_sign(&self, inverted_torque: Option<(usize, f64)>) -> Option<String> {
-        let poor = self.poorly_fitted().next().is_some();
-        let search = || inverted_columns(self.robot, self.logs, self.samples, self.sampling);
-        let (what, share) = inverted_torque
-            .map(|(j, share)| (format!("tau of {}", self.name(j)), share))
-            .or_else(|| poor.then(search).flatten())?;
-        Some(format!(
-            "the sign of {what} is probably wrong: the other sign reduces the sum of squared \
-             residuals to {share:.3} of its value; multiply the columns by -1 (for tau, set a \
-             negative gain)"
-        ))
     }
 
     fn driving_friction(&self) -> impl Iterator<Item = String> {
@@ -123,21 +115,4 @@ fn least_squares_friction(
         0.25 * (a1 + a7 - a3 - a5) + fitted(ParameterKind::Coulomb),
         known.viscous[0] + fitted(ParameterKind::Viscous1),
     )
-}
-
-/// Returns a warning for each joint of which more than 30 % of the torque in the validation
-/// recordings is not predicted.
-pub fn poor_prediction(robot: &Robot, validation: &[LogValidation]) -> Vec<String> {
-    let joints = validation.last().map_or(&[][..], |all| &all.joints);
-    let poor = robot.joints().iter().zip(joints).filter(|(_, e)| e.relative > MAX_UNEXPLAINED);
-    poor.map(|(joint, error)| {
-        format!(
-            "{}: {:.0} % of the torque in the validation recordings is not explained; friction \
-             that the model does not describe, or a motion far from the fitted ones, has this \
-             effect",
-            joint.name,
-            100.0 * error.relative
-        )
-    })
-    .collect()
 }

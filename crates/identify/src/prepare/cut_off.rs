@@ -28,12 +28,14 @@ const HIGHEST_SHARE: f64 = 0.2;
 ///
 /// [`Error::CutOff`] if the cut-off that is set is not between 0 and half the lowest sample rate.
 pub fn cut_off(logs: &[&RawLog], settings: &PrepareSettings) -> Result<f64> {
-    let lowest_rate =
-        logs.iter().filter_map(|log| median_step(&log.run.times)).fold(0.0, f64::max).recip();
+    let step = |log: &&RawLog| median_step(&log.run.times).unwrap_or(0.0);
+    let slowest = logs.iter().max_by(|a, b| step(a).total_cmp(&step(b)));
+    let lowest_rate = slowest.map_or(0.0, step).recip();
     if let Some(given) = settings.cut_off {
         let limit = 0.5 * lowest_rate;
         if !(given > 0.0 && given < limit) {
-            return Err(Error::CutOff { cut_off: given, limit });
+            let log = slowest.map_or_else(String::new, |log| log.name.clone());
+            return Err(Error::CutOff { cut_off: given, limit, log });
         }
         return Ok(given);
     }

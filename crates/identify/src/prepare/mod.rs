@@ -19,6 +19,8 @@ mod resample;
 pub(crate) mod rest;
 pub(crate) mod settings;
 mod spectrum;
+mod time_unit;
+pub(crate) mod velocity;
 mod windows;
 
 pub use align::delay;

@@ -171,7 +171,7 @@ mod tests {
             times,
             sha256: String::new(),
         };
-        RawLog { name: "wave".into(), run }
+        RawLog { name: "wave".into(), file: "wave.csv".into(), run }
     }
 
     #[test]

@@ -1,10 +1,13 @@
 use reachtube_recordings::Run;
+use std::path::PathBuf;
 
 /// A recording as read, with its columns in the order of the robot's joints.
 #[derive(Debug, Clone)]
 pub struct RawLog {
     /// Name of the file.
     pub name: String,
+    /// The file.
+    pub file: PathBuf,
     /// The samples.
     pub run: Run,
 }

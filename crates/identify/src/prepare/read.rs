@@ -2,6 +2,7 @@ use crate::error::{Error, Result};
 use crate::prepare::entry::{LogEntry, csv_files};
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
+use crate::prepare::time_unit::check_time_unit;
 use reachtube_recordings::{GapLimit, ReadOptions, Run, check_limits, read_csv};
 use reachtube_robot::Robot;
 use std::path::Path;
@@ -15,6 +16,7 @@ use std::path::Path;
 /// - [`Error::Recordings`] lists defects of the files, such as units that do not fit the robot.
 /// - [`Error::File`] reports a path that cannot be read, [`Error::NoCsvFile`] an empty folder.
 /// - [`Error::JointNames`] reports names that are not the robot's joints.
+/// - [`Error::TimeUnit`] reports times that are not in seconds.
 pub fn read(
     entries: &[LogEntry],
     folder: &Path,
@@ -32,7 +34,10 @@ pub fn read(
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             let run = reordered(starting_at(run, from), &order);
             match check_limits(&file, &run, robot) {
-                defects if defects.is_empty() => logs.push(RawLog { name, run }),
+                defects if defects.is_empty() => {
+                    check_time_unit(&file, &run)?;
+                    logs.push(RawLog { name, file, run });
+                }
                 defects => return Err(reachtube_recordings::Error::Defects(defects).into()),
             }
         }

@@ -6,11 +6,13 @@
 //! samples.
 
 pub(crate) mod residuals;
+pub(crate) mod singular;
 pub(crate) mod solution;
 pub(crate) mod triangular_factor;
 
 pub use residuals::{
-    autocorrelation_time, huber_row_factor, robust_standard_deviation, root_mean_square,
+    HUBER_DEVIATIONS, autocorrelation_time, huber_row_factor, robust_standard_deviation,
+    root_mean_square,
 };
 pub use solution::Solution;
 pub use triangular_factor::TriangularFactor;

@@ -1,7 +1,8 @@
-/// Huber's threshold: the influence of a residual stops growing at this many standard deviations.
+/// Huber's limit for independent errors: the influence of a residual stops growing at this many
+/// standard deviations.
 ///
 /// The value has 95 % of the efficiency of least squares for normal errors (Huber 1964).
-const HUBER: f64 = 1.345;
+pub const HUBER_DEVIATIONS: f64 = 1.345;
 
 /// Standard deviation of normal errors whose median magnitude is 1.
 const DEVIATION_PER_MEDIAN: f64 = 1.4826;
@@ -25,12 +26,12 @@ pub fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 
 /// Returns the factor that multiplies a row in a robust fit: the square root of Huber's weight.
 ///
-/// The factor is 1 for residuals of up to 1.345 standard deviations. Beyond, the squared factor
-/// times the residual stays constant, so that an outlier's influence is bounded.
+/// The factor is 1 for residuals of up to `limit`. Beyond, the squared factor times the residual
+/// stays constant, so that an outlier's influence is bounded.
 #[must_use]
-pub fn huber_row_factor(residual: f64, deviation: f64) -> f64 {
+pub fn huber_row_factor(residual: f64, limit: f64) -> f64 {
     let size = residual.abs();
-    if size <= HUBER * deviation { 1.0 } else { (HUBER * deviation / size).sqrt() }
+    if size <= limit { 1.0 } else { (limit / size).sqrt() }
 }
 
 /// Returns the integrated autocorrelation time of residuals, in samples and at least 1.
@@ -90,7 +91,7 @@ mod tests {
         assert!((robust_standard_deviation(&residuals) / before - 1.0).abs() < 0.12);
         assert_eq!(huber_row_factor(1.0, 1.0), 1.0);
         assert!(
-            (huber_row_factor(100.0, 1.0).powi(2) * 100.0 - HUBER).abs() < 1e-12,
+            (huber_row_factor(100.0, 1.3).powi(2) * 100.0 - 1.3).abs() < 1e-12,
             "the influence of an outlier must stay the same"
         );
     }

@@ -1,3 +1,4 @@
+use crate::regression::singular::Singular;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
 
@@ -51,23 +52,22 @@ impl TriangularFactor {
         let inverse = |s: &f64| if *s > 1e-12 * largest_scale { 1.0 / s } else { 0.0 };
         let unit = DVector::from_iterator(p, scale.iter().map(inverse));
         // Singular values of the scaled factor.
-        let svd = (&self.r * DMatrix::from_diagonal(&unit)).svd(true, true);
-        let (Some(u), Some(v_t)) = (&svd.u, &svd.v_t) else { unreachable!("both are computed") };
-        let sigma = &svd.singular_values;
+        let Singular { u, values: sigma, v } =
+            Singular::of(&(&self.r * DMatrix::from_diagonal(&unit)));
         let cut = tolerance * sigma.max();
         // Solution and covariance from the determined directions.
         let mut scaled = DVector::zeros(p);
         let mut covariance = DMatrix::zeros(p, p);
         let mut undetermined = vec![false; p];
         for k in 0..p {
-            let direction = v_t.row(k).transpose();
+            let direction = v.column(k);
             if sigma[k] > cut {
-                scaled += &direction * (u.column(k).dot(&self.z) / sigma[k]);
-                covariance += &direction * direction.transpose() / sigma[k].powi(2);
+                scaled += direction * (u.column(k).dot(&self.z) / sigma[k]);
+                covariance += direction * direction.transpose() / sigma[k].powi(2);
             } else {
                 undetermined
                     .iter_mut()
-                    .zip(&direction)
+                    .zip(direction.iter())
                     .for_each(|(flag, entry)| *flag |= entry.abs() > MIN_ENTRY);
             }
         }

@@ -13,15 +13,16 @@ pub struct JointError {
     pub torque: f64,
     /// Root mean square of recorded minus predicted torque while the joint moves \[N m\].
     pub residual: f64,
-    /// Ratio of `residual` to `torque`.
-    pub relative: f64,
+    /// Ratio of `residual` to `torque`; `None` if the joint does not move.
+    pub relative: Option<f64>,
     /// The same ratio for the parameters of least squares, before links were made physically
     /// consistent.
-    pub relative_plain: f64,
+    pub relative_plain: Option<f64>,
     /// The same ratio over all samples, including standstill.
-    pub relative_all: f64,
-    /// Share of the recorded torque's variance that is predicted while the joint moves.
-    pub r2: f64,
+    pub relative_all: Option<f64>,
+    /// Share of the recorded torque's variance that is predicted while the joint moves; `None` if
+    /// it does not move.
+    pub r2: Option<f64>,
     /// Number of samples in which the joint moves.
     pub samples: usize,
 }
@@ -94,7 +95,7 @@ fn joint_error(
     let size = |rows: &[usize], values: &[f64]| root_mean_square(rows.iter().map(|r| values[*r]));
     let ratio = |rows: &[usize], values: &[f64]| {
         let torque = size(rows, &samples.recorded);
-        if torque > 0.0 { size(rows, values) / torque } else { 0.0 }
+        (torque > 0.0).then(|| size(rows, values) / torque)
     };
     let mean =
         moving.iter().map(|r| samples.recorded[*r]).sum::<f64>() / moving.len().max(1) as f64;
@@ -106,7 +107,7 @@ fn joint_error(
         relative: ratio(&moving, residuals),
         relative_plain: ratio(&moving, plain),
         relative_all: ratio(&all, residuals),
-        r2: if spread > 0.0 { 1.0 - (residual / spread).powi(2) } else { 0.0 },
+        r2: (spread > 0.0).then(|| 1.0 - (residual / spread).powi(2)),
         samples: moving.len(),
     }
 }

@@ -1,5 +1,10 @@
 //! Identification from simulated recordings of known robots, and from real recordings.
 
+mod faults;
+mod frames;
+mod heavy;
+mod lab;
+mod messages;
 mod recorded;
 mod recovery;
 mod virtual_robot;

@@ -116,3 +116,15 @@ impl Recorder<'_> {
         std::fs::write(path, text).unwrap();
     }
 }
+
+/// Changes the rows of a recording: t, q, q̇ and τ, 1 + 3 n entries each.
+pub fn edit(path: &Path, change: impl Fn(&mut Vec<Vec<f64>>)) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let (header, body) = text.split_once('\n').unwrap();
+    let row = |line: &str| line.split(',').map(|value| value.parse().unwrap()).collect();
+    let mut rows: Vec<Vec<f64>> = body.lines().map(row).collect();
+    change(&mut rows);
+    let line = |row: &Vec<f64>| row.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let lines: Vec<String> = rows.iter().map(line).collect();
+    std::fs::write(path, format!("{header}\n{}\n", lines.join("\n"))).unwrap();
+}

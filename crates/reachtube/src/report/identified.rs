@@ -114,12 +114,16 @@ fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, ReportE
 }
 
 fn validation_row(log: &LogValidation, kinds: &[JointKind]) -> Vec<String> {
+    let part = |part: Option<f64>| part.map_or("-".into(), percent);
     let cell = |(error, kind): (&JointError, &JointKind)| {
+        let Some(relative) = error.relative else {
+            return format!("at rest ({})", part(error.relative_all));
+        };
         format!(
-            "{} ({}), R² {:.4}, {} {}",
-            percent(error.relative),
-            percent(error.relative_all),
-            error.r2,
+            "{} ({}), R² {}, {} {}",
+            percent(relative),
+            part(error.relative_all),
+            error.r2.map_or("-".into(), |r2| format!("{r2:.4}")),
             significant(error.residual, 3),
             kind.force_unit()
         )

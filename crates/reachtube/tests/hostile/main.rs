@@ -40,10 +40,10 @@ fn try_texts(count: u64) {
     };
     let options = UrdfOptions::default();
     try_text("toml", seeds::robots(), &|text| drop(Robot::from_toml(text, "robot.toml")));
-    try_text("urdf", seeds::urdfs(), &|text| drop(Urdf::parse(text, "robot.urdf", &ends)));
+    try_text("urdf", seeds::urdfs(), &|text| drop(Urdf::parse(text, "robot.urdf", &options)));
     let urdf = String::from_utf8(seeds::urdfs().remove(0)).unwrap();
     try_text("companion", seeds::companions(), &|text| {
-        drop(Urdf::parse_with(&urdf, "robot.urdf", text, &ends));
+        drop(Urdf::parse_with(&urdf, "robot.urdf", text, &options));
     });
     try_text("settings", seeds::settings(), &|text| {
         drop(IdentifySettings::from_toml(text, "settings.toml"));

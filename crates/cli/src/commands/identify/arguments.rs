@@ -3,6 +3,8 @@ use std::path::PathBuf;
 use crate::lock_arguments::LockArguments;
 use clap::Args;
 
+use crate::option_values::seconds;
+
 const HELP: &str = "\
 Examples:
   reachtube identify --robot arm.urdf --static poses --friction slow --dynamic a.csv b.csv \\
@@ -48,6 +50,10 @@ pub struct Arguments {
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
     #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub gains: Vec<f64>,
+    /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, or 10
+    /// times where the sample times jitter]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub max_gap: Option<f64>,
     /// The torque was measured at the link side of the gear and does not drive the motor's inertia
     #[arg(long)]
     pub link_torque: bool,

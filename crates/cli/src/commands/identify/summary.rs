@@ -124,8 +124,6 @@ fn friction_row(joint: &JointFriction, force: &dyn Fn(String) -> String) -> Vec<
 
 fn inertia(found: &Identification) -> String {
     let fit = &found.inertia;
-    let determined =
-        fit.parameters.iter().filter(|parameter| parameter.standard_error.is_finite()).count();
     let rows: Vec<_> =
         names(found).into_iter().enumerate().map(|(j, name)| inertia_row(found, j, name)).collect();
     let header = [
@@ -138,8 +136,9 @@ fn inertia(found: &Identification) -> String {
         "outliers",
     ];
     format!(
-        "\n3. inertial parameters: {determined} of {} combinations determined, condition number \
-         {} (relative singular values beside the rank cut: {:.0e} | {:.0e})\n{}{}{}",
+        "\n3. inertial parameters: {} of {} combinations determined, condition number {} (relative \
+         singular values beside the rank cut: {:.0e} | {:.0e})\n{}{}{}",
+        fit.determined,
         fit.parameters.len(),
         four_decimals(fit.condition),
         fit.gap[0],
@@ -223,12 +222,16 @@ fn validation(found: &Identification) -> String {
         "the recordings of the fit, since none were held out"
     };
     let cell = |joint: &JointError| {
+        let part = |part: Option<f64>| part.map_or("-".into(), percent);
+        if joint.samples == 0 {
+            return format!("at rest (-; {})", part(joint.relative_all));
+        }
         format!(
-            "{} ({}; {}) {:.4}",
-            percent(joint.relative),
-            percent(joint.relative_plain),
-            percent(joint.relative_all),
-            joint.r2
+            "{} ({}; {}) {}",
+            part(joint.relative),
+            part(joint.relative_plain),
+            part(joint.relative_all),
+            joint.r2.map_or("-".into(), |r2| format!("{r2:.4}"))
         )
     };
     let row = |log: &LogValidation| {
@@ -247,12 +250,14 @@ fn windows(found: &Identification) -> String {
     let q = ColumnUnit::new(&kinds, JointKind::position_unit);
     let qd = ColumnUnit::new(&kinds, JointKind::velocity_unit);
     let row = |windows: &WindowErrors| {
+        let some_end = windows.diverged < windows.windows;
+        let error = |error: f64| if some_end { four_decimals(error) } else { "-".into() };
         let cell = |j: usize| {
             format!(
                 "{} ({}; {})",
-                q.cell(j, four_decimals(windows.q[j])),
+                q.cell(j, error(windows.q[j])),
                 q.cell(j, four_decimals(windows.motion[j])),
-                qd.cell(j, four_decimals(windows.qd[j]))
+                qd.cell(j, error(windows.qd[j]))
             )
         };
         let head = format!(

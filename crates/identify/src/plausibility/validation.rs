@@ -1,0 +1,82 @@
+//! Warnings about the validation.
+
+use crate::validate::simulation::WindowErrors;
+use crate::validate::torque::{JointError, LogValidation};
+use reachtube_robot::Robot;
+
+/// Share of the torque that may stay unexplained without a warning.
+const MAX_UNEXPLAINED: f64 = 0.3;
+
+/// Error of a simulated position that is not worth a warning \[rad\].
+const NEGLIGIBLE: f64 = 0.05;
+
+/// Returns a warning for each joint of which more than 30 % of the torque in the validation
+/// recordings is not predicted.
+pub fn poor_prediction(robot: &Robot, validation: &[LogValidation]) -> Vec<String> {
+    let joints = validation.last().map_or(&[][..], |all| &all.joints);
+    let warning = |(joint, error): (_, &JointError)| {
+        error.relative.filter(|relative| *relative > MAX_UNEXPLAINED).map(|relative| {
+            format!(
+                "{joint}: {:.0} % of the torque in the validation recordings is not explained; \
+                 friction that the model does not describe, or a motion far from the fitted ones, \
+                 has this effect",
+                100.0 * relative
+            )
+        })
+    };
+    robot.joints().iter().map(|joint| &joint.name).zip(joints).filter_map(warning).collect()
+}
+
+/// Returns a warning that names the validation recordings in which no joint moves.
+pub fn still_recordings(validation: &[LogValidation]) -> Option<String> {
+    let still = |log: &&LogValidation| log.joints.iter().all(|joint| joint.samples == 0);
+    let names: Vec<&str> = validation
+        .iter()
+        .filter(still)
+        .map(|log| log.log.as_str())
+        .filter(|log| *log != "all")
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "no joint moves in the validation recordings {}: friction at rest has no unique value, \
+             so that these recordings validate nothing; name motions with --validate, and poses \
+             with --static",
+            names.join(", ")
+        )
+    })
+}
+
+/// Returns a warning for the shortest windows whose simulated motion ends further from the recorded
+/// one than the joint moved.
+pub fn useless_simulation(robot: &Robot, windows: &[WindowErrors]) -> Option<String> {
+    let mut windows: Vec<&WindowErrors> = windows.iter().filter(|w| w.windows > 0).collect();
+    windows.sort_by(|a, b| a.duration.total_cmp(&b.duration));
+    windows.into_iter().find_map(|window| {
+        let joints: Vec<String> = robot
+            .joints()
+            .iter()
+            .enumerate()
+            .filter(|(j, _)| window.q[*j] > window.motion[*j].max(NEGLIGIBLE))
+            .map(|(j, joint)| {
+                let (error, motion) = (window.q[j], window.motion[j]);
+                format!("{} by {error:.3} rad where it moves {motion:.3} rad", joint.name)
+            })
+            .collect();
+        let diverged = window.diverged == window.windows;
+        (diverged || !joints.is_empty()).then(|| {
+            let what = if diverged {
+                "diverges in every window".into()
+            } else {
+                format!(
+                    "misses the recorded position by more than a joint moves ({})",
+                    joints.join(", ")
+                )
+            };
+            format!(
+                "motion simulated from the recorded torque over {} s {what}; errors of the torque \
+                 accumulate to this, so do not use the robot to predict motion over this time",
+                window.duration
+            )
+        })
+    })
+}

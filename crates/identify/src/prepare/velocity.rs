@@ -1,0 +1,44 @@
+//! Velocities that do not integrate to the positions.
+
+use crate::prepare::raw_log::RawLog;
+use reachtube_recordings::{Run, integral_gap};
+use reachtube_robot::Robot;
+
+/// Difference of a position and the integral of its velocity that is not worth a warning \[rad\].
+const MIN_GAP: f64 = 0.05;
+
+/// The same difference relative to the range of the joint's motion.
+const MIN_SHARE: f64 = 0.03;
+
+/// Returns a warning for each joint whose velocity does not integrate to its position.
+///
+/// The warning names the recording in which the two differ most.
+pub(crate) fn velocity_warnings(robot: &Robot, logs: &[RawLog]) -> Vec<String> {
+    let worst = |joint: usize| {
+        let gap = |log: &RawLog| {
+            (log.name.clone(), integral_gap(&log.run, joint), range(&log.run, joint))
+        };
+        logs.iter()
+            .map(gap)
+            .filter(|(_, gap, range)| *gap > MIN_GAP.max(MIN_SHARE * range))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let warning = |(joint, name): (usize, &String)| {
+        worst(joint).map(|(log, gap, range)| {
+            format!(
+                "{log}: the velocity of {name} does not integrate to its position: the two differ \
+                 by up to {gap:.3} rad, where the joint moves over {range:.3} rad; check the \
+                 columns qd{number}, q{number} and t, or set prepare.velocity = \"differentiated\"",
+                number = joint + 1
+            )
+        })
+    };
+    let names = robot.joints().iter().map(|joint| &joint.name);
+    names.enumerate().filter_map(warning).collect()
+}
+
+/// Returns the range of a joint's position \[rad\].
+fn range(run: &Run, joint: usize) -> f64 {
+    let positions = (0..run.len()).map(|k| run.q(k)[joint]);
+    positions.clone().fold(f64::MIN, f64::max) - positions.fold(f64::MAX, f64::min)
+}
