@@ -106,9 +106,9 @@ impl<S: Scalar> ArticulatedScratch<S> {
     pub fn eliminate_joint(&mut self, link: &Link, tau: &S) {
         let body = &mut self.body;
         (self.axis_moment, self.axis_force) = body.along_axis(link.kind);
-        let own = link.axis_component(&self.axis_force, &self.axis_moment).clone();
+        let own = link.axis_component(&self.axis_force, &self.axis_moment);
         self.inverse_pivot = S::one() / (own + S::from(link.armature));
-        self.net_torque = tau.clone() - link.axis_component(&body.force, &body.moment).clone();
+        self.net_torque = tau.clone() - link.axis_component(&body.force, &body.moment);
         let moment = self.axis_moment.scaled(&self.inverse_pivot);
         let force = self.axis_force.scaled(&self.inverse_pivot);
         body.inertia.subtract_product(&self.axis_moment, &moment);

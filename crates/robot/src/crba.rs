@@ -36,7 +36,7 @@ impl Robot {
         for i in (0..n).rev() {
             let link = &self.links[i];
             let (mut force, mut moment) = unit_wrench(link, &first_moment, &second_moments);
-            m[i * n + i] = link.axis_component(&force, &moment).clone() + S::from(link.armature);
+            m[i * n + i] = link.axis_component(&force, &moment) + S::from(link.armature);
             // Its axis components at the joints towards the base are row and column i of M.
             for j in (1..=i).rev() {
                 let pose = &scratch[j].pose;
@@ -44,7 +44,7 @@ impl Robot {
                 moment = pose.to_parent(&moment).plus(&pose.origin.cross(&force));
                 let entry = self.links[j - 1].axis_component(&force, &moment);
                 m[i * n + j - 1] = entry.clone();
-                m[(j - 1) * n + i] = entry.clone();
+                m[(j - 1) * n + i] = entry;
             }
             // The composite body grows by the next link towards the base.
             if i > 0 {
@@ -82,22 +82,24 @@ impl Robot {
 /// Returns the force and the moment that give a link and all later ones, as one body with the first
 /// moment h and the second moments Σ, a unit acceleration of the link's joint.
 ///
-/// A rotation about z takes the force z × h and the moment I z; a motion along z takes m z and
-/// h × z.
+/// A rotation about z takes the force z × h and the moment I z.
 #[inline(always)]
 fn unit_wrench<S: Scalar>(link: &Link, h: &Vec3<S>, m: &Sym3<S>) -> (Vec3<S>, Vec3<S>) {
-    let zero = S::zero();
-    match link.kind {
-        JointKind::Revolute => {
-            let inertia = m.xx.clone() + m.yy.clone();
-            let force = Vec3::new(-h.y.clone(), h.x.clone(), zero);
-            (force, Vec3::new(-m.xz.clone(), -m.yz.clone(), inertia))
-        }
-        JointKind::Prismatic => {
-            let force = Vec3::new(zero.clone(), zero.clone(), S::from(link.composite_mass));
-            (force, Vec3::new(h.y.clone(), -h.x.clone(), zero))
-        }
+    if link.kind == JointKind::Prismatic {
+        return unit_wrench_of_slide(link, h);
     }
+    let inertia = m.xx.clone() + m.yy.clone();
+    let force = Vec3::new(-h.y.clone(), h.x.clone(), S::zero());
+    (force, Vec3::new(-m.xz.clone(), -m.yz.clone(), inertia))
+}
+
+/// Returns the wrench for a prismatic joint: a motion along z takes the force m z and the moment
+/// h × z.
+#[cold]
+#[inline(never)]
+fn unit_wrench_of_slide<S: Scalar>(link: &Link, h: &Vec3<S>) -> (Vec3<S>, Vec3<S>) {
+    let force = Vec3::new(S::zero(), S::zero(), S::from(link.composite_mass));
+    (force, Vec3::new(h.y.clone(), -h.x.clone(), S::zero()))
 }
 
 /// Returns the moments of a link and all later ones about the parent's origin.

@@ -67,7 +67,7 @@ impl Robot {
         }
         accumulate_to_parents(scratch);
         for ((g, link), s) in g.iter_mut().zip(&self.links).zip(scratch) {
-            *g = link.axis_component(&s.force, &s.moment).clone();
+            *g = link.axis_component(&s.force, &s.moment);
         }
     }
 

@@ -106,14 +106,12 @@ impl LinkFrame {
     /// Returns E for sin q and cos q.
     #[inline(always)]
     fn rotation_at<S: Scalar>(&self, sin: &S, cos: &S) -> Rotation<S> {
+        if self.kind == JointKind::Prismatic {
+            return Rotation(core::array::from_fn(|k| S::from(self.rotation[k].constant)));
+        }
         Rotation(core::array::from_fn(|k| {
             let w = &self.rotation[k];
-            match self.kind {
-                JointKind::Revolute => {
-                    S::from(w.constant) + sum2(&S::from(w.sine), sin, &S::from(w.cosine), cos)
-                }
-                JointKind::Prismatic => S::from(w.constant),
-            }
+            S::from(w.constant) + sum2(&S::from(w.sine), sin, &S::from(w.cosine), cos)
         }))
     }
 

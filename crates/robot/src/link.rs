@@ -53,33 +53,42 @@ impl Link {
     /// Returns the pose in the parent for sin q and cos q, or for q of a prismatic joint.
     #[inline(always)]
     pub fn pose<S: Scalar>(&self, sin: &S, cos: &S) -> Pose<S> {
+        if self.kind == JointKind::Prismatic {
+            return self.pose_of_slide(sin);
+        }
         let (s0, c0) = (S::from(self.sin_offset), S::from(self.cos_offset));
+        Pose {
+            sin: sin.clone() * c0.clone() + cos.clone() * s0.clone(),
+            cos: cos.clone() * c0 - sin.clone() * s0,
+            sin_twist: S::from(self.sin_twist),
+            cos_twist: S::from(self.cos_twist),
+            origin: Vec3::constant(self.origin),
+        }
+    }
+
+    /// Returns the pose in the parent for the position q of a prismatic joint.
+    ///
+    /// The paths of prismatic joints are functions of their own, so that those of revolute joints
+    /// stay as short as without them.
+    #[cold]
+    #[inline(never)]
+    fn pose_of_slide<S: Scalar>(&self, q: &S) -> Pose<S> {
         let (sin_twist, cos_twist) = (S::from(self.sin_twist), S::from(self.cos_twist));
         let mut origin = Vec3::constant(self.origin);
-        match self.kind {
-            JointKind::Revolute => Pose {
-                sin: sin.clone() * c0.clone() + cos.clone() * s0.clone(),
-                cos: cos.clone() * c0 - sin.clone() * s0,
-                sin_twist,
-                cos_twist,
-                origin,
-            },
-            JointKind::Prismatic => {
-                // The axis is (0, -sin twist, cos twist) in the parent.
-                origin.y -= mul(&sin_twist, sin);
-                origin.z += mul(&cos_twist, sin);
-                Pose { sin: s0, cos: c0, sin_twist, cos_twist, origin }
-            }
-        }
+        // The axis is (0, -sin twist, cos twist) in the parent.
+        origin.y -= mul(&sin_twist, q);
+        origin.z += mul(&cos_twist, q);
+        let (sin, cos) = (S::from(self.sin_offset), S::from(self.cos_offset));
+        Pose { sin, cos, sin_twist, cos_twist, origin }
     }
 
     /// Returns the component of a wrench that acts on the joint: the moment about its axis, or the
     /// force along it.
     #[inline(always)]
-    pub fn axis_component<'a, S>(&self, force: &'a Vec3<S>, moment: &'a Vec3<S>) -> &'a S {
+    pub fn axis_component<S: Scalar>(&self, force: &Vec3<S>, moment: &Vec3<S>) -> S {
         match self.kind {
-            JointKind::Revolute => &moment.z,
-            JointKind::Prismatic => &force.z,
+            JointKind::Revolute => moment.z.clone(),
+            JointKind::Prismatic => force.z.clone(),
         }
     }
 

@@ -78,7 +78,7 @@ impl Robot {
         for i in 0..n {
             let link = &self.links[i];
             let torque = link.axis_component(&scratch[i].force, &scratch[i].moment);
-            tau[i] = torque.clone() + scale(link.armature, &qdd[i]);
+            tau[i] = torque + scale(link.armature, &qdd[i]);
         }
     }
 

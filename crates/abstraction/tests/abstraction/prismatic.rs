@@ -62,7 +62,7 @@ fn models_are_those_of_the_closed_form() {
     let (mut seed, robot) = (3, polar());
     let two = model(ModelKind::Two, 4);
     assert_eq!(two.variable_names(), ["qd1", "qd2", "s1", "q2", "c1", "one2", "u1", "u2"]);
-    assert!(two.to_string().contains(" qd1 qd2 (q2 - 0.6)"), "{two}");
+    assert!(two.to_string().contains(" qd1 qd2 q2\n"), "{two}");
     for _ in 0..50 {
         let [q, qd, u] = near(&mut seed, 0.3);
         let exact = closed_form(q[1], &qd, &u);

@@ -2,7 +2,7 @@
 
 use super::document::{Tree, TreeJoint, element};
 use crate::error::RobotError;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The joints from base to tip.
 pub(super) struct Chain<'a> {
@@ -128,11 +128,9 @@ impl<'a> Tree<'a> {
         let independent =
             |path: &BTreeSet<usize>| path.iter().map(|k| self.independent(*k)).collect();
         let leaders: Vec<BTreeSet<usize>> = paths.iter().map(independent).collect();
-        let own = |i: usize| {
-            let elsewhere =
-                |k: &&usize| (0..leaders.len()).any(|j| j != i && leaders[j].contains(k));
-            leaders[i].iter().filter(|k| !elsewhere(k)).count()
-        };
+        let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+        leaders.iter().flatten().for_each(|k| *uses.entry(*k).or_default() += 1);
+        let own = |i: usize| leaders[i].iter().filter(|k| uses[k] == 1).count();
         let longest = (0..leaders.len()).rev().max_by_key(|i| own(*i)).filter(|i| own(*i) >= 2);
         let trunk = || paths.iter().skip(1).fold(paths[0].clone(), |all, path| &all & path);
         let kept = longest.map_or_else(trunk, |i| leaders[i].clone());

@@ -13,6 +13,8 @@ pub(super) struct Tree<'a> {
     /// Links by name; `None` for a `world` link without an element.
     pub links: BTreeMap<&'a str, Option<Node<'a, 'a>>>,
     pub joints: Vec<TreeJoint<'a>>,
+    /// Index of each joint by name.
+    pub by_name: HashMap<&'a str, usize>,
     /// Index of the joint that carries each link.
     pub carrier: HashMap<&'a str, usize>,
 }
@@ -62,6 +64,7 @@ impl<'a> Tree<'a> {
             origin,
             links: BTreeMap::new(),
             joints: Vec::new(),
+            by_name: HashMap::new(),
             carrier: HashMap::new(),
         };
         let root = document.root_element();
@@ -106,7 +109,7 @@ impl<'a> Tree<'a> {
             if joint.parent == "world" {
                 self.links.entry("world").or_insert(None);
             }
-            if self.joints.iter().any(|j| j.name == name) {
+            if self.by_name.insert(name, self.joints.len()).is_some() {
                 return Err(self.error(
                     node,
                     "the name occurs twice".into(),

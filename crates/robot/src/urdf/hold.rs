@@ -7,6 +7,9 @@ use crate::lock::{Lock, LockedJoint};
 use crate::placement::Placement;
 use nalgebra::Vector3;
 
+/// Number of joints that are followed where each mimics the next; it ends circles.
+const MOST_LEADERS: usize = 100;
+
 impl<'a> TreeJoint<'a> {
     /// Returns the name of the joint that this one mimics.
     pub fn leader(&self) -> Option<&'a str> {
@@ -30,21 +33,25 @@ impl<'a> Tree<'a> {
             let k = self.lockable(lock)?;
             self.joints[k].locked = Some(lock.position);
         }
-        // A joint may mimic one that mimics another.
-        for _ in 0..self.joints.len() {
-            for k in 0..self.joints.len() {
-                if let Some(position) = self.mimicked_position(k)? {
-                    self.joints[k].locked = Some(position);
-                }
+        for k in 0..self.joints.len() {
+            // A joint may mimic one that mimics another: the leaders are locked first.
+            let path: Vec<_> = self.leaders(k).collect();
+            for k in path.into_iter().rev() {
+                self.joints[k].locked = self.mimicked_position(k)?.or(self.joints[k].locked);
             }
         }
         Ok(())
     }
 
+    /// Returns a joint, the joint that it mimics, the one that this mimics, and so on.
+    fn leaders(&self, k: usize) -> impl Iterator<Item = usize> {
+        let leader = |k: &usize| self.by_name.get(self.joints[*k].leader()?).copied();
+        core::iter::successors(Some(k), leader).take(MOST_LEADERS)
+    }
+
     /// Returns the joint that a lock names.
     fn lockable(&self, lock: &Lock) -> Result<usize, RobotError> {
-        let found = self.joints.iter().position(|joint| joint.name == lock.joint);
-        let Some(k) = found else {
+        let Some(&k) = self.by_name.get(lock.joint.as_str()) else {
             let free = self.joints.iter().filter(|j| j.motion().is_some() && j.leader().is_none());
             let names: Vec<_> = free.map(|joint| format!("`{}`", joint.name)).collect();
             return Err(self.error(
@@ -79,8 +86,10 @@ impl<'a> Tree<'a> {
         let (Some(mimic), None) = (element(joint.node, "mimic"), joint.locked) else {
             return Ok(None);
         };
-        let leader = self.joints.iter().find(|j| Some(j.name) == joint.leader());
-        let held = leader.filter(|leader| leader.is_fixed() && joint.motion().is_some());
+        let leader = joint.leader().and_then(|name| self.by_name.get(name));
+        let held = leader
+            .map(|leader| &self.joints[*leader])
+            .filter(|leader| leader.is_fixed() && joint.motion().is_some());
         let Some(held) = held else { return Ok(None) };
         let number = |name| self.number(mimic, name);
         let multiplier = number("multiplier")?.unwrap_or(1.0);
@@ -121,10 +130,7 @@ impl<'a> Tree<'a> {
     /// Returns the joint that decides the position of a joint: itself, or the one that it mimics
     /// in the end.
     pub fn independent(&self, k: usize) -> usize {
-        let leader =
-            |k: &usize| self.joints.iter().position(|j| Some(j.name) == self.joints[*k].leader());
-        let path = core::iter::successors(Some(k), leader).take(self.joints.len());
-        path.last().unwrap_or(k)
+        self.leaders(k).last().unwrap_or(k)
     }
 
     /// Returns the options that lock joints, such as `--lock finger=0`: at 0, or at the limit that
