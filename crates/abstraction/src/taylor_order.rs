@@ -9,6 +9,8 @@ const LOW_ORDER: u32 = 5;
 /// Number of orders above that of model 3. The first is its error, which must be exact; the others
 /// make the rest small.
 const HIGHER_ORDERS: u32 = 3;
+/// Highest order, for robots with few joints.
+const MAX_ORDER: u32 = 24;
 /// Largest work for one part, in products of coefficients: some 3 s.
 const MAX_WORK: f64 = 4e8;
 
@@ -23,13 +25,10 @@ pub(crate) fn taylor_order(model: &PolynomialModel) -> u32 {
     (LOW_ORDER - 1..=wanted).rev().find(fits).unwrap_or(LOW_ORDER - 1)
 }
 
-/// Highest order for robots with few joints.
-const MAX_ORDER: u32 = 24;
-
-/// Returns the work for one part, in products of coefficients: n⁴ products of Taylor models in n
-/// variables, each of C(order + 2n, order) products of coefficients.
+/// Returns the work for one part, in products of coefficients: n⁴ products of Taylor models in k
+/// variables, each of C(order + 2k, order) products of coefficients.
 pub(crate) fn part_cost(joints: usize, order: u32) -> f64 {
-    let n = joints.saturating_sub(1).max(1) as f64;
-    let products = (1..=order).map(f64::from).fold(1.0, |c, i| c * (2.0 * n + i) / i);
+    let variables = joints.saturating_sub(1).max(1) as f64;
+    let products = (1..=order).map(f64::from).fold(1.0, |c, i| c * (2.0 * variables + i) / i);
     (joints as f64).powi(4) * products
 }

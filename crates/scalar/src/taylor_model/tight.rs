@@ -268,7 +268,7 @@ fn half_coefficient(packing: Packing, group: &[(u128, f64)], i: usize, k: u32) -
         if e >= k {
             let binomial = (0..k).fold(1.0, |b, j| b * f64::from(e - j) / f64::from(j + 1));
             let value = c * binomial * 0.5f64.powi(e as i32);
-            if (e - k) % 2 == 0 { even += value } else { odd += value }
+            if (e - k).is_multiple_of(2) { even += value } else { odd += value }
         }
     }
     (even, odd)
