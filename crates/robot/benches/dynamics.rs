@@ -47,7 +47,11 @@ fn each<S: Lanewise>(
     name: &str,
     mut call: impl FnMut(&Robot, &State<S>, &mut Workspace<S>, &mut [S]),
 ) {
-    let robot = if name == "lwa4p" { Robot::lwa4p() } else { shared::oracle_robot(name) };
+    let robot = match name {
+        "lwa4p" => Robot::lwa4p(),
+        _ if std::path::Path::new(shared::FOLDER).exists() => shared::oracle_robot(name),
+        _ => return,
+    };
     let n = robot.joint_count();
     let (states, mut ws, mut out, mut k) =
         (states(n), Workspace::new(&robot), vec![S::zero(); n * n], 0);

@@ -6,10 +6,12 @@ use reachtube_robot::{
 };
 use serde_json::Value;
 
+/// The folder of reference values, beside the repository.
+pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
+
 /// Reads a JSON file of the shared folder. Tests that need one are ignored unless asked for.
 pub fn oracle(path: &str) -> Value {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
-    let text = std::fs::read_to_string(format!("{folder}{path}"));
+    let text = std::fs::read_to_string(format!("{FOLDER}{path}"));
     serde_json::from_str(&text.unwrap_or_else(|error| panic!("{path}: {error}"))).unwrap()
 }
 
