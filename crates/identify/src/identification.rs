@@ -105,11 +105,7 @@ pub fn identify(
     warnings.extend(implausible);
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
-    if kept_back {
-        warnings.extend(still_recordings(&validation));
-        warnings.extend(poor_prediction(robot, &validation));
-    }
-    warnings.extend(useless_simulation(robot, &windows));
+    warnings.extend(validation_warnings(robot, &validation, &windows, kept_back));
     progress(STEPS, STEPS);
     Ok(Identification {
         description,
@@ -125,6 +121,22 @@ pub fn identify(
         traces,
         warnings,
     })
+}
+
+/// Returns warnings about the validation; only held-out recordings show how well torque is
+/// predicted.
+fn validation_warnings(
+    robot: &Robot,
+    validation: &[LogValidation],
+    windows: &[WindowErrors],
+    kept_back: bool,
+) -> Vec<String> {
+    let held_out = if kept_back { validation } else { &[] };
+    let still = still_recordings(held_out).into_iter();
+    still
+        .chain(poor_prediction(robot, held_out))
+        .chain(useless_simulation(robot, windows))
+        .collect()
 }
 
 /// Returns the error for values of least squares that no robot has, with the probable cause.

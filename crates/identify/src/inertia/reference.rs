@@ -65,7 +65,7 @@ fn state(robot: &Robot, [speeds, accelerations]: &[Vec<f64>; 2], k: usize) -> [V
 /// Returns number k of a sequence that fills 0..1 evenly; sequences with different `index` are
 /// independent of each other (Weyl, with roots of primes).
 fn spread(k: usize, index: usize) -> f64 {
-    let is_prime = |number: &u32| (2..*number).all(|divisor| number % divisor != 0);
+    let is_prime = |number: &u32| (2..*number).all(|divisor| !number.is_multiple_of(divisor));
     let prime = (2..).filter(is_prime).nth(index).unwrap_or(2);
     ((k + 1) as f64 * f64::from(prime).sqrt()).fract()
 }

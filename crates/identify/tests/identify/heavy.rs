@@ -5,8 +5,11 @@ use reachtube_identify::Identification;
 use reachtube_robot::{ParameterSet, Robot, RobotDescription};
 use std::f64::consts::FRAC_PI_2;
 
-/// Placement \[m, rad\], mass \[kg\] and centre of mass \[m\] of the links of an arm of 300 kg.
-const LINKS: [([f64; 3], [f64; 3], f64, [f64; 3]); 6] = [
+/// Translation \[m\], rotation \[rad\], mass \[kg\] and centre of mass \[m\] of a link.
+type Link = ([f64; 3], [f64; 3], f64, [f64; 3]);
+
+/// The links of an arm of 300 kg.
+const LINKS: [Link; 6] = [
     ([0.0, 0.0, 0.6], [0.0, 0.0, 0.0], 110.0, [0.1, 0.0, -0.1]),
     ([0.3, 0.0, 0.2], [-FRAC_PI_2, 0.0, 0.0], 85.0, [0.5, 0.0, 0.1]),
     ([1.1, 0.0, 0.0], [0.0, 0.0, 0.0], 60.0, [0.1, -0.2, 0.0]),
@@ -17,7 +20,7 @@ const LINKS: [([f64; 3], [f64; 3], f64, [f64; 3]); 6] = [
 
 /// Returns the arm with friction.
 fn heavy_arm() -> Robot {
-    let link = |(k, (translation, rpy, mass, com)): (usize, &([f64; 3], [f64; 3], f64, _))| {
+    let link = |(k, (translation, rpy, mass, com)): (usize, &Link)| {
         let inertia = [0.06 * mass, 0.0, 0.0, 0.05 * mass, 0.0, 0.04 * mass];
         format!(
             "[[joint]]\nname = \"joint{}\"\nplacement = {{ translation = {translation:?}, rpy = \

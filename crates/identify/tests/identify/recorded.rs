@@ -18,17 +18,19 @@ fn identified(folder: &str, settings: &str) -> Identification {
 }
 
 /// Asserts that no joint is predicted worse than by one plain weighted least-squares fit of inertia
-/// and friction to the exciting motions, by more than the 2 % that the choice of a model costs.
+/// and friction to the exciting motions.
+///
+/// Both use the same samples, since the settings give the speed limit of slow samples.
 fn no_worse_than_one_joint_fit(found: &Identification, settings: &str) {
     let dynamic_only: Vec<&str> = settings
         .lines()
         .filter(|line| !line.contains("static =") && !line.contains("friction ="))
         .collect();
-    let plain = "model = { physical = false, robust = false, cubic = true, windows = [] }";
+    let plain = "model.physical = false\nmodel.robust = false\nmodel.cubic = true";
     let plain = identified("ur10e", &format!("{}\n{plain}", dynamic_only.join("\n")));
     let joints = |found: &Identification| found.validation.last().unwrap().joints.clone();
     for (joint, plain) in joints(found).iter().zip(&joints(&plain)) {
-        assert!(joint.residual < 1.02 * plain.residual, "{joint:?} {plain:?}");
+        assert!(joint.residual < 1.01 * plain.residual, "{joint:?} {plain:?}");
     }
 }
 
@@ -46,6 +48,7 @@ fn the_ur10e_predicts_validation_recordings() {
             "excitation/20_02_10-20sec_7harm.csv",
         ]
         prepare.cut_off = 6.0
+        model.slow = 0.02
     "#;
     let found = identified("ur10e", settings);
     no_worse_than_one_joint_fit(&found, settings);
