@@ -1,6 +1,7 @@
 use serde::Serialize;
 
 use crate::error::Result;
+use crate::growth::Growth;
 use crate::hulls::Hulls;
 use crate::model::file::Model;
 use crate::plausibility::Warning;
@@ -17,6 +18,9 @@ pub struct Check {
     pub verdict: Verdict,
     /// What the check says about the next motion; nothing when a recording was used in the fit.
     pub trust: Option<Trust>,
+    /// What would have to grow so that the recordings were enclosed; nothing where they are, or
+    /// where a reachable set was lost.
+    pub growth: Option<Growth>,
     /// What a user should know about the data.
     pub notes: Vec<String>,
 }
@@ -31,8 +35,14 @@ pub struct Check {
 ///
 /// As [`Problem::run`]. A violation is no error.
 pub fn check(model: &Model, problem: &Problem, hulls: &Hulls) -> Result<Check> {
-    let verdict = Verdict::new(problem, hulls, |_, _, _| {})?;
-    Ok(Check::new(model, problem, verdict))
+    let mut excess = vec![0.0f64; 2 * problem.joints()];
+    let verdict = Verdict::new(problem, hulls, |_, _, row| {
+        let largest = row.edges.iter().map(|edge| edge.excess).fold(0.0, f64::max);
+        excess[row.state] = excess[row.state].max(largest);
+    })?;
+    let can_grow = !verdict.conformant && excess.iter().all(|excess| excess.is_finite());
+    let growth = can_grow.then(|| Growth::new(problem, &hulls.sets, &excess)).transpose()?;
+    Ok(Check { growth, ..Check::new(model, problem, verdict) })
 }
 
 impl Check {
@@ -46,7 +56,7 @@ impl Check {
         let of_model = |warning: &Warning| format!("of the model itself: {}", warning.text);
         notes.extend(model.warnings.iter().map(of_model));
         notes.extend(recordings.suites.iter().filter_map(|suite| other_start_note(model, suite)));
-        Self { verdict, trust, notes }
+        Self { verdict, trust, growth: None, notes }
     }
 }
 

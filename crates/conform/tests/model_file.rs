@@ -118,3 +118,36 @@ fn sealed(model: &Model) -> String {
     let value: serde_json::Value = serde_json::from_str(&model.to_json()).unwrap();
     value["sha256"].as_str().unwrap().into()
 }
+
+#[test]
+fn the_growth_that_is_named_encloses_the_recordings() {
+    let (robot, folder) = (two_joints(), tempfile::tempdir().unwrap());
+    let path = fitted(&robot, folder.path());
+    let (model, setup) = Model::open(&path).unwrap();
+    let problem = read(setup, recorded(&robot, |name, _| Some(name.into())));
+    let checked = |sets| {
+        let hulls = Hulls::new(&problem, sets).unwrap();
+        check(&model, &problem, &hulls).unwrap()
+    };
+    let growth = checked(model.sets()).growth.unwrap();
+    let (x0, u) = (growth.initial_set.unwrap(), growth.input_set.unwrap());
+    assert!(x0 > 1.0 && u > 1.0 && growth.noise_velocity > 0.0, "{growth:?}");
+    let grow = |radii: &mut Vec<f64>, factor: f64| radii.iter_mut().for_each(|r| *r *= factor);
+    for (part, encloses) in [(1.0 + 1e-9, true), (0.999, false)] {
+        let mut wider_start = model.sets();
+        grow(&mut wider_start.initial_set.radius, x0 * part);
+        let mut wider_input = model.sets();
+        grow(&mut wider_input.input_set.radius, u * part);
+        let mut noisy = model.sets();
+        let noise = [growth.noise_position, growth.noise_velocity].map(|r| r * part);
+        noisy.noise_set = Some(reachtube_reach::Hyperrectangle {
+            centre: vec![0.0; 4],
+            radius: vec![noise[0], noise[0], noise[1], noise[1]],
+        });
+        for sets in [wider_start, wider_input, noisy] {
+            let again = checked(sets);
+            assert_eq!(again.verdict.conformant, encloses);
+            assert_eq!(again.growth.is_none(), encloses);
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use clap::Args;
-use reachtube::conform::{Check, Keep, SuiteVerdict, Witness};
+use reachtube::conform::{Check, Growth, Keep, SuiteVerdict, Witness};
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
@@ -12,7 +12,7 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::table::{plural, table};
 use crate::verdict::lost;
-use reachtube::number::four_decimals;
+use reachtube::number::{at_least, four_decimals};
 use reachtube_robot::JointKind;
 
 const HELP: &str = "\
@@ -58,6 +58,9 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
     for set in &verdict.lost {
         let _ = writeln!(text, "{}", lost(set));
     }
+    if let Some(growth) = &check.growth {
+        let _ = writeln!(text, "\n{}", growth_words(growth, kinds));
+    }
     let next_motion = match &check.trust {
         Some(held_out) => held_out.words(set, "left it"),
         None => {
@@ -66,6 +69,30 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
     };
     let _ = writeln!(text, "\n{next_motion}");
     text
+}
+
+/// Says which set would have to grow, and by how much.
+fn growth_words(growth: &Growth, kinds: &[JointKind]) -> String {
+    let set = |name: &str, factor: Option<f64>| match factor {
+        Some(factor) => format!("{name} about {} times as wide", at_least(factor)),
+        None => format!("no factor of {name} suffices"),
+    };
+    let noise = format!(
+        "V wider by {} {} and {} {}",
+        at_least(growth.noise_position),
+        JointKind::any_unit(kinds, JointKind::position_unit),
+        at_least(growth.noise_velocity),
+        JointKind::any_unit(kinds, JointKind::velocity_unit)
+    );
+    match (growth.initial_set, growth.input_set) {
+        (None, None) => format!("to enclose these recordings by V alone: {noise} (not proved)"),
+        (initial, input) => format!(
+            "to enclose these recordings, one of the sets would have to grow: {}; {}; or {noise} \
+             (not proved)",
+            set("U", input),
+            set("X0", initial)
+        ),
+    }
 }
 
 fn suite_row(suite: &SuiteVerdict, kinds: &[JointKind]) -> Vec<String> {

@@ -1,0 +1,51 @@
+use serde::Serialize;
+
+use crate::envelope::Envelope;
+use crate::error::Result;
+use crate::linear::block::Block;
+use crate::linear::program::Program;
+use crate::problem::problem::Problem;
+use crate::sets::UncertaintySets;
+use crate::weights::state_weights;
+
+/// What would have to grow, alone and by how much, so that a model encloses recordings that leave
+/// its sets. Not proved: to rounding, with the centres where they are.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Growth {
+    /// Factor of all radii of X0, for a linear model. Nothing where no factor suffices.
+    pub initial_set: Option<f64>,
+    /// Factor of all radii of U, for a linear model. Nothing where no factor suffices.
+    pub input_set: Option<f64>,
+    /// What the radii of V in all positions would have to grow by, rad or m.
+    pub noise_position: f64,
+    /// What the radii of V in all velocities would have to grow by, rad/s or m/s.
+    pub noise_velocity: f64,
+}
+
+impl Growth {
+    /// Computes the growth for rows whose largest excess in each state is `excess`, 2n.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::deviations`].
+    pub(crate) fn new(problem: &Problem, sets: &UncertaintySets, excess: &[f64]) -> Result<Self> {
+        let (positions, velocities) = excess.split_at(problem.joints());
+        let largest = |excess: &[f64]| excess.iter().copied().fold(0.0, f64::max);
+        let [initial_set, input_set] = match problem.dynamics().linear_system() {
+            None => [None, None],
+            Some(_) => factors(problem, sets)?,
+        };
+        let (noise_position, noise_velocity) = (largest(positions), largest(velocities));
+        Ok(Self { initial_set, input_set, noise_position, noise_velocity })
+    }
+}
+
+/// The factors of X0 and of U with which every row of a linear model holds.
+fn factors(problem: &Problem, sets: &UncertaintySets) -> Result<[Option<f64>; 2]> {
+    let (settings, joints) = (problem.settings(), problem.joints());
+    let (grids, deviations) = (problem.grids()?, problem.deviations()?);
+    let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
+    let weights = state_weights(&settings.weights, &envelopes, joints);
+    let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
+    Ok(Program::new(settings, &weights, blocks).growth_factors(sets))
+}
