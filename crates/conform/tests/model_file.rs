@@ -124,7 +124,15 @@ fn the_growth_that_is_named_encloses_the_recordings() {
     let (robot, folder) = (two_joints(), tempfile::tempdir().unwrap());
     let path = fitted(&robot, folder.path());
     let (model, setup) = Model::open(&path).unwrap();
-    let problem = read(setup, recorded(&robot, |name, _| Some(name.into())));
+    let mut runs = MemoryRuns::default();
+    let times = grid(0.01, 40);
+    let arm = Disturbed { robot: &robot, times: &times, start: 1e-4, input: 2.0 };
+    for (index, seed) in [1, 2, 3].into_iter().enumerate() {
+        let run = arm.record(&mut Random(seed));
+        let run = Run::new(2, run.times, run.states, run.torques).unwrap();
+        runs.push(&format!("{index}"), Some("A"), None, run);
+    }
+    let problem = read(setup, runs);
     let checked = |sets| {
         let hulls = Hulls::new(&problem, sets).unwrap();
         check(&model, &problem, &hulls).unwrap()

@@ -10,6 +10,9 @@ const RUNS: usize = 8;
 /// Number of samples of each that are looked at, at most.
 const SAMPLES: usize = 300;
 
+/// Runs of fewer samples say nothing.
+const FEWEST: usize = 8;
+
 /// Half the time over which accelerations and torques are averaged, s.
 const HALF_WINDOW: f64 = 0.02;
 
@@ -59,7 +62,7 @@ impl<'a> Evidence<'a> {
     pub fn unexplained(&self, hypothesis: &Hypothesis) -> f64 {
         let n = self.robot.joint_count();
         let mut sums = vec![[0.0; 2]; n];
-        for run in &self.runs {
+        for run in self.runs.iter().filter(|run| run.len() >= FEWEST) {
             let step = hypothesis.time * run.times.last().unwrap_or(&0.0) / run.len() as f64;
             let half = ((HALF_WINDOW / step).round() as usize).clamp(1, run.len() / 8 + 1);
             let lag = (hypothesis.lag / step).round() as usize;
