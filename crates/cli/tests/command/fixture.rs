@@ -129,6 +129,11 @@ pub struct Run {
     pub stderr: String,
 }
 
+/// Returns the file of a model whose content was changed, with the SHA-256 of the new content.
+pub fn sealed(model: serde_json::Value) -> String {
+    serde_json::from_value::<reachtube::Model>(model).unwrap().to_json()
+}
+
 impl Run {
     pub fn of(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).unwrap();

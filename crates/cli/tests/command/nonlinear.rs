@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::fixture::{Lab, Run, SAMPLES, cell, robot_toml};
+use crate::fixture::{Lab, Run, SAMPLES, cell, robot_toml, sealed};
 
 /// The arm of the recordings, but with cubic viscous friction.
 fn bent() -> Lab {
@@ -41,7 +41,7 @@ fn a_nonlinear_model_goes_through_every_command() {
         .notes("round 1: the linearised sets cost");
     for part in [
         "conformant: 6 recordings in 2 suites; 408 of 408 rows (suite, sample, state) lie in \
-         the computed reachable set, an outer enclosure",
+         the computed outer set, an enclosure",
         "for the linearised sets",
         "decide X0 and U",
         "a motion of the model itself (start in X0, input in U, held over each sample) was found \
@@ -70,7 +70,7 @@ fn a_nonlinear_model_goes_through_every_command() {
         }
     }
     let page = lab.read("report/report.html");
-    for part in ["computed reachable set", "outer enclosure", "Explanations were searched for"] {
+    for part in ["computed outer set", "outer enclosure", "Explanations were searched for"] {
         assert!(page.contains(part), "{part}");
     }
 }
@@ -179,7 +179,7 @@ fn a_model_that_runs_away_is_refused_and_a_lost_set_is_an_answer() {
     for radius in model["input_set"]["radius"].as_array_mut().unwrap() {
         *radius = json!(30.0);
     }
-    lab.write("model.json", model.to_string());
+    lab.write("model.json", sealed(model));
     let check = lab.check("").exits(1);
     assert!(
         check.stdout.contains("the reachable set could not be computed beyond"),

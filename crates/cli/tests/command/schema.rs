@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::fixture::Lab;
+use crate::fixture::{Lab, sealed};
 
 fn schema() -> jsonschema::Validator {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/model.schema.json");
@@ -57,7 +57,7 @@ fn the_schema_refuses_what_the_program_refuses() {
         (set("/format", json!("other")), "format is not"),
         (
             set("/version", json!(1)),
-            "version 1 of the format, but this program reads version 2; run conform again",
+            "version 1 of the format, but this program reads version 3; run conform again",
         ),
         (set("/cost", json!(null)), "it has no cost"),
         (set("/input_set/radius/0", json!(-0.1)), "input_set or noise_set"),
@@ -98,7 +98,7 @@ fn a_smaller_set_is_no_longer_conformant() {
     let lab = Lab::new();
     let mut model = lab.conform("--json").exits(0).json();
     model["input_set"]["radius"] = json!([0.05, 0.1]);
-    lab.write("model.json", model.to_string());
+    lab.write("model.json", sealed(model));
     let worst = lab.check("--json").exits(1).json()["violations"]["worst"].clone();
     assert_eq!(worst["joint"], 1);
 }

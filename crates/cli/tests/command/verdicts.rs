@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::fixture::{Lab, SAMPLES, START, TORQUE, cell, set_cell};
+use crate::fixture::{Lab, SAMPLES, START, TORQUE, cell, sealed, set_cell};
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
@@ -107,7 +107,7 @@ fn the_page_says_that_sets_are_not_the_smallest() {
     let mut model: serde_json::Value = serde_json::from_str(&lab.read("model.json")).unwrap();
     assert!(model["optimality_gap"].as_f64().unwrap() < 1e-6);
     model["optimality_gap"] = serde_json::json!(29.0);
-    lab.write("model.json", model.to_string());
+    lab.write("model.json", sealed(model));
     lab.run("report --model model.json --data data --torque compensated --out page").exits(0);
     let page = lab.read("page/report.html");
     assert!(page.contains("are not the smallest") && page.contains("not minimal, gap 2.9e1"));

@@ -139,7 +139,7 @@ pub const CASES: &[Case] = &[
     ),
     Case::refused(
         "a model of another version",
-        |lab| replace(lab, "model.json", "\"version\": 2", "\"version\": 9"),
+        |lab| replace(lab, "model.json", "\"version\": 3", "\"version\": 9"),
         CHECK,
         &["model.json: it has version 9", "run conform again"],
     ),
