@@ -99,7 +99,7 @@ pub const CASES: &[Case] = &[
     case(
         "a cut-off beyond the rate",
         "prepare --robot arm.toml --logs data/A_1.csv --cut-off 1e6 --out windows",
-        &["cut_off = 1000000 Hz must be above 0 and below half the sample rate"],
+        &["cut_off = 1000000 Hz must be above 0 and below 50.0000 Hz"],
     ),
     case("no robot for identify", "identify --dynamic data/A_1.csv", &["no robot is given"]),
     case("no exciting motions", "identify --robot arm.toml", &["--dynamic"]),
