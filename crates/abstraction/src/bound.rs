@@ -40,8 +40,8 @@ impl PolynomialModel {
     ///
     /// With the residual ρ = u - c - τ_v - M_m f_p, the truncation error is r = M_m⁻¹ ρ. Over a
     /// part, X is a series of M_m⁻¹ in q, and r = X ρ + (1 - X M_m) r bounds r. X ρ is a polynomial
-    /// in (q̇, u), whose coefficients are Taylor models in q alone. Parts with the largest bound are
-    /// cut in two.
+    /// in (q̇, u), whose coefficients are Taylor models in q alone. Parts with the largest bound
+    /// are cut in two.
     ///
     /// # Guarantee
     ///

@@ -160,7 +160,7 @@ pub enum Error {
     },
     /// The library reported an error.
     #[error(transparent)]
-    Library(#[from] reachtube::Error),
+    Library(Box<reachtube::Error>),
 }
 
 impl Error {
@@ -218,13 +218,14 @@ macro_rules! from_library {
     ($($error:ty),* $(,)?) => {
         $(impl From<$error> for Error {
             fn from(error: $error) -> Self {
-                Self::Library(error.into())
+                Self::Library(Box::new(error.into()))
             }
         })*
     };
 }
 
 from_library!(
+    reachtube::Error,
     reachtube::abstraction::Error,
     reachtube::conform::Error,
     reachtube::identify::Error,

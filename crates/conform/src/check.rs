@@ -4,7 +4,6 @@ use crate::error::Result;
 use crate::growth::Growth;
 use crate::hulls::Hulls;
 use crate::model::file::Model;
-use crate::plausibility::Warning;
 use crate::problem::problem::Problem;
 use crate::problem::suite::{RunSummary, Suite};
 use crate::trust::Trust;
@@ -53,8 +52,6 @@ impl Check {
         let is_held_out = !model.was_fitted_to(recordings);
         let trust = is_held_out.then(|| Trust::of_check(recordings, &verdict));
         let mut notes = recordings.notes.clone();
-        let of_model = |warning: &Warning| format!("of the model itself: {}", warning.text);
-        notes.extend(model.warnings.iter().map(of_model));
         notes.extend(recordings.suites.iter().filter_map(|suite| other_start_note(model, suite)));
         Self { verdict, trust, growth: None, notes }
     }

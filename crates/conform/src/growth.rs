@@ -16,6 +16,8 @@ pub struct Growth {
     pub initial_set: Option<f64>,
     /// Factor of all radii of U, for a linear model. Nothing where no factor suffices.
     pub input_set: Option<f64>,
+    /// Factor of all radii of X0 and U, for a linear model. Nothing where no factor suffices.
+    pub both_sets: Option<f64>,
     /// What the radii of V in all positions would have to grow by, rad or m.
     pub noise_position: f64,
     /// What the radii of V in all velocities would have to grow by, rad/s or m/s.
@@ -31,17 +33,17 @@ impl Growth {
     pub(crate) fn new(problem: &Problem, sets: &UncertaintySets, excess: &[f64]) -> Result<Self> {
         let (positions, velocities) = excess.split_at(problem.joints());
         let largest = |excess: &[f64]| excess.iter().copied().fold(0.0, f64::max);
-        let [initial_set, input_set] = match problem.dynamics().linear_system() {
-            None => [None, None],
+        let [initial_set, input_set, both_sets] = match problem.dynamics().linear_system() {
+            None => [None; 3],
             Some(_) => factors(problem, sets)?,
         };
         let (noise_position, noise_velocity) = (largest(positions), largest(velocities));
-        Ok(Self { initial_set, input_set, noise_position, noise_velocity })
+        Ok(Self { initial_set, input_set, both_sets, noise_position, noise_velocity })
     }
 }
 
-/// The factors of X0 and of U with which every row of a linear model holds.
-fn factors(problem: &Problem, sets: &UncertaintySets) -> Result<[Option<f64>; 2]> {
+/// The factors of X0, of U and of both with which every row of a linear model holds.
+fn factors(problem: &Problem, sets: &UncertaintySets) -> Result<[Option<f64>; 3]> {
     let (settings, joints) = (problem.settings(), problem.joints());
     let (grids, deviations) = (problem.grids()?, problem.deviations()?);
     let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();

@@ -139,7 +139,8 @@ fn the_growth_that_is_named_encloses_the_recordings() {
     };
     let growth = checked(model.sets()).growth.unwrap();
     let (x0, u) = (growth.initial_set.unwrap(), growth.input_set.unwrap());
-    assert!(x0 > 1.0 && u > 1.0 && growth.noise_velocity > 0.0, "{growth:?}");
+    let both = growth.both_sets.unwrap();
+    assert!(x0 > both && u > both && both > 1.0 && growth.noise_velocity > 0.0, "{growth:?}");
     let grow = |radii: &mut Vec<f64>, factor: f64| radii.iter_mut().for_each(|r| *r *= factor);
     for (part, encloses) in [(1.0 + 1e-9, true), (0.999, false)] {
         let mut wider_start = model.sets();
@@ -152,7 +153,10 @@ fn the_growth_that_is_named_encloses_the_recordings() {
             centre: vec![0.0; 4],
             radius: vec![noise[0], noise[0], noise[1], noise[1]],
         });
-        for sets in [wider_start, wider_input, noisy] {
+        let mut wider = model.sets();
+        grow(&mut wider.initial_set.radius, both * part);
+        grow(&mut wider.input_set.radius, both * part);
+        for sets in [wider_start, wider_input, wider, noisy] {
             let again = checked(sets);
             assert_eq!(again.verdict.conformant, encloses);
             assert_eq!(again.growth.is_none(), encloses);

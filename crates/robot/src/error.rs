@@ -61,9 +61,9 @@ pub enum RobotError {
         /// The pivot of this joint \[kg m²; kg for a prismatic joint\].
         pivot: f64,
         /// The position \[rad; m\].
-        q: Vec<f64>,
+        q: Box<[f64]>,
         /// The kinds of all joints.
-        kinds: Vec<JointKind>,
+        kinds: Box<[JointKind]>,
     },
     /// A setting is outside its range; the message names the setting, its value and a remedy.
     #[error("{0}")]

@@ -140,7 +140,7 @@ impl JointKind {
                 "it is locked at {q} {unit}, but its limits are {low} and {high} {unit}"
             )),
             // A value in degrees.
-            (None, Self::Revolute) if !(q.abs() <= TAU) => {
+            (None, Self::Revolute) if q.is_nan() || q.abs() > TAU => {
                 Some(format!("it is locked at {q} {unit}, more than a turn"))
             }
             _ => None,

@@ -163,8 +163,8 @@ fn no_bound(
     parts: usize,
 ) -> String {
     let text = format!(
-        "no bound of the model error was found in {parts} parts of the box, because the mass matrix \
-         changes too much over the positions"
+        "no bound of the model error was found in {parts} parts of the box, because the mass \
+         matrix changes too much over the positions"
     );
     let Some(narrower) = narrower else {
         return text + "; choose smaller radii of the positions in --box";

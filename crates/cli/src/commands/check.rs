@@ -37,6 +37,9 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model, Keep::Needed)?;
     let check = opened.check()?;
     output::notes(&check.notes);
+    for warning in &opened.model.warnings {
+        output::note(&format!("of the model itself: {}", warning.text));
+    }
     output::show(json, &check, || summary(&check, &opened.model.robot.kinds()))?;
     Ok(Outcome::of(check.verdict.conformant))
 }
@@ -84,13 +87,14 @@ fn growth_words(growth: &Growth, kinds: &[JointKind]) -> String {
         at_least(growth.noise_velocity),
         JointKind::any_unit(kinds, JointKind::velocity_unit)
     );
-    match (growth.initial_set, growth.input_set) {
-        (None, None) => format!("to enclose these recordings by V alone: {noise} (not proved)"),
-        (initial, input) => format!(
-            "to enclose these recordings, one of the sets would have to grow: {}; {}; or {noise} \
-             (not proved)",
-            set("U", input),
-            set("X0", initial)
+    match growth.both_sets {
+        None => format!("to enclose these recordings: {noise} (not proved)"),
+        both => format!(
+            "to enclose these recordings, one of these would be needed: {}; {}; {}; {noise} (not \
+             proved)",
+            set("U", growth.input_set),
+            set("X0", growth.initial_set),
+            set("X0 and U", both)
         ),
     }
 }

@@ -19,13 +19,13 @@ impl Program<'_> {
         if self.cost(&widened) < self.cost(&scaled) { widened } else { scaled }
     }
 
-    /// Returns the factors of the radii of X0 alone, and of U alone, with which every row holds up
-    /// to rounding; nothing where no factor suffices.
+    /// Returns the factors of the radii of X0 alone, of U alone, and of both, with which every row
+    /// holds up to rounding; nothing where no factor suffices.
     #[must_use]
-    pub fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 2] {
+    pub fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
         let unknowns = self.unknowns(sets);
-        let states = sets.initial_set.dimension();
-        [0..states, states..unknowns.radius.len()].map(|part| {
+        let (states, all) = (sets.initial_set.dimension(), unknowns.radius.len());
+        [0..states, states..all, 0..all].map(|part| {
             let needed = |index: RowIndex| {
                 let excess = self.excess(index, &unknowns);
                 let gains = &self.row(index.0, index.1, index.2).1[part.clone()];

@@ -190,8 +190,8 @@ impl Problem {
         &self.sensor_noise
     }
 
-    /// Returns what the sensor noise limits: a V that is fitted, and X0 where each run starts at its
-    /// own measured state.
+    /// Returns what the sensor noise limits: a V that is fitted, and X0 where each run starts at
+    /// its own measured state.
     pub(crate) fn limits(&self) -> Limits {
         let radii = || self.sensor_noise.radius.iter().map(|r| r.max(LEAST_LIMIT)).collect();
         Limits {

@@ -94,7 +94,8 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     };
     let mut not_proved = not_proved(model, outer);
     not_proved.extend(answer.lost.iter().map(end));
-    Verdict { ok: answer.conformant, words, proved, not_proved }
+    let warnings = model.warnings.iter().map(|warning| sentence(&warning.text)).collect();
+    Verdict { ok: answer.conformant, words, warnings, proved, not_proved }
 }
 
 /// Returns what a reader must not take for proved.
@@ -215,13 +216,11 @@ fn sentence(words: &str) -> String {
 }
 
 fn caution(model: &Model) -> Vec<String> {
-    let mut words: Vec<String> =
-        model.warnings.iter().map(|warning| sentence(&warning.text)).collect();
-    words.push(
+    let mut words = vec![
         "It is a fact about these recordings that the sets enclose them. It implies nothing \
          certain about motions, payloads or temperatures that were not recorded."
             .to_string(),
-    );
+    ];
     if let Some(gap) = model.gap_of_not_minimal() {
         words.push(format!(
             "The sets enclose the recordings but are not the smallest: the solver of the linear \

@@ -56,12 +56,18 @@ pub fn write_html(page: &Page, out: &mut impl Write) -> Result<(), ReportError> 
 }
 
 fn verdict(verdict: &Verdict) -> Markup {
-    let (class, word) =
-        if verdict.ok { ("verdict ok", "Conformant") } else { ("verdict bad", "Not conformant") };
+    let (class, word) = match (verdict.ok, verdict.warnings.is_empty()) {
+        (true, true) => ("verdict ok", "Conformant"),
+        (true, false) => ("verdict doubtful", "Conformant, with warnings"),
+        (false, _) => ("verdict bad", "Not conformant"),
+    };
     html! {
         section class=(class) aria-labelledby="verdict" {
             h2 #verdict { (word) }
             p.words { (Text(&verdict.words)) }
+            @if !verdict.warnings.is_empty() {
+                ul.warnings { @for warning in &verdict.warnings { li { (Text(warning)) } } }
+            }
             (pair_of_lists([
                 ("Proved", "yes", &verdict.proved),
                 ("Not proved", "no", &verdict.not_proved),

@@ -36,6 +36,8 @@ pub struct Verdict {
     pub ok: bool,
     /// The outcome as one sentence.
     pub words: String,
+    /// What can hardly be right about the answer, one sentence each.
+    pub warnings: Vec<String>,
     /// Claims that were checked with directed rounding.
     pub proved: Vec<String>,
     /// Claims that were not checked, or hold only with a stated confidence.

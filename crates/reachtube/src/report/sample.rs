@@ -79,6 +79,7 @@ pub(super) fn page() -> Page {
         verdict: Verdict {
             ok: true,
             words: hostile("words"),
+            warnings: vec![hostile("warning")],
             proved: vec![hostile("proved")],
             not_proved: vec![hostile("not proved")],
         },

@@ -1,7 +1,7 @@
 //! Hostile files: every reader of a file refuses them in bounded time and memory, without a panic.
 //!
-//! `cargo test` tries a sample. `REACHTUBE_HOSTILE_INPUTS=10000000 cargo test --release -p reachtube
-//! --test hostile -- --ignored` tries that many for each reader.
+//! `cargo test` tries a sample. `REACHTUBE_HOSTILE_INPUTS=10000000 cargo test --release
+//! -p reachtube --test hostile -- --ignored` tries that many for each reader.
 
 mod mutation;
 mod seeds;

@@ -118,8 +118,8 @@ impl<'a> Probe<'a> {
                 joint: self.robot.joints[joint].name.clone(),
                 kind: self.robot.joints[joint].kind,
                 pivot: self.pivots[joint],
-                q: q.to_vec(),
-                kinds: self.robot.kinds(),
+                q: q.into(),
+                kinds: self.robot.kinds().into(),
             }),
         }
     }

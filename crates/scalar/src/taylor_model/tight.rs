@@ -257,8 +257,8 @@ impl<'a> PolynomialSearch<'a> {
     }
 }
 
-/// Returns the coefficient of x_i'^k for x_i = ±1/2 + x_i'/2 of terms that differ in the exponent of
-/// x_i alone, as two parts: the coefficient is the first part plus or minus the second one.
+/// Returns the coefficient of x_i'^k for x_i = ±1/2 + x_i'/2 of terms that differ in the exponent
+/// of x_i alone, as two parts: the coefficient is the first part plus or minus the second one.
 ///
 /// The coefficient is the sum of c_e C(e, k) (±1/2)^(e - k) / 2^k over e ≥ k.
 fn half_coefficient(packing: Packing, group: &[(u128, f64)], i: usize, k: u32) -> (f64, f64) {

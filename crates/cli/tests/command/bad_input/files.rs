@@ -62,7 +62,8 @@ pub const CASES: &[Case] = &[
         |lab| {
             let joint = |i| {
                 format!(
-                    "[[joint]]\nname = \"j{i}\"\narmature = 1.0\nplacement = {{ translation = [0.0, 0.0, 0.1] }}\n"
+                    "[[joint]]\nname = \"j{i}\"\narmature = 1.0\n\
+                     placement = {{ translation = [0.0, 0.0, 0.1] }}\n"
                 )
             };
             let joints: String = (0..101).map(joint).collect();
@@ -95,8 +96,11 @@ pub const CASES: &[Case] = &[
     Case::refused(
         "entities that grow",
         |lab| {
-            lab.write("arm.urdf",
-            "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;\">]><robot name=\"&b;\"/>")
+            lab.write(
+                "arm.urdf",
+                "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;\">]>\
+             <robot name=\"&b;\"/>",
+            )
         },
         SHOW,
         &["arm.urdf", "not well-formed XML"],
