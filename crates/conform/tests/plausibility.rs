@@ -44,7 +44,7 @@ fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
             for &t in &times {
                 let wave = |j: usize| (3.0 + 0.5 * j as f64, 2.0 * j as f64 + phase);
                 let value = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
-                    (0..JOINTS).map(|j| wave(j)).map(|(w, p)| 0.25 * f(w, w * t + p)).collect()
+                    (0..JOINTS).map(wave).map(|(w, p)| 0.25 * f(w, w * t + p)).collect()
                 };
                 let q = value(&|_, x| x.sin());
                 let qd = value(&|w, x| w * x.cos());
