@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::f64::consts::FRAC_PI_2;
+
 use common::{Random, grid};
 use reachtube_conform::{Keep, Noise, NominalStart, Problem, Settings, Setup, Silent, conform};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
@@ -14,7 +16,7 @@ const JOINTS: usize = 7;
 fn seven_joints() -> Robot {
     let mut text = String::from("schema_version = 1\nname = \"seven joints\"\n");
     for joint in 0..JOINTS {
-        let alpha = [0.0, -1.5707963267948966, 1.5707963267948966][joint % 3];
+        let alpha = [0.0, -FRAC_PI_2, FRAC_PI_2][joint % 3];
         let size = 10f64.powf(-0.75 * joint as f64);
         text += &format!(
             "[[joint]]\nname = \"joint{}\"\n\
