@@ -267,6 +267,8 @@ mod tests {
     #[test]
     fn the_verdict_is_given_in_words() {
         let mut page = sample::page();
+        assert!(written(&page).contains(">Conformant, with warnings<"));
+        page.verdict.warnings.clear();
         assert!(written(&page).contains(">Conformant<"));
         page.verdict.ok = false;
         assert!(written(&page).contains(">Not conformant<"));
