@@ -161,6 +161,17 @@ pub enum Error {
 #[derive(Debug, Error, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum RecordsError {
+    /// The model has more possible terms than a file may ask for.
+    #[error(
+        "its polynomials of order {order} in {variables} variables have more than 1e12 possible \
+         terms, and a file is checked by making its model again; choose a lower order"
+    )]
+    Order {
+        /// The order.
+        order: u32,
+        /// Number of variables.
+        variables: usize,
+    },
     /// The variables are not those of the model.
     #[error("its variables are not {}", expected.join(", "))]
     Variables {

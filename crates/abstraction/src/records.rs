@@ -28,6 +28,14 @@ pub struct Records {
     pub acceleration: Vec<Vec<TermRecord>>,
 }
 
+/// A model of more possible terms takes minutes to make again, which a file must not ask for.
+const MOST_MONOMIALS: f64 = 1e12;
+
+/// Returns the number of monomials in `variables` variables up to the degree `order`.
+fn monomials(variables: usize, order: u32) -> f64 {
+    (1..=variables).map(|k| (f64::from(order) + k as f64) / k as f64).product()
+}
+
 impl PolynomialModel {
     /// Returns the polynomials as a file holds them.
     #[must_use]
@@ -61,6 +69,9 @@ impl PolynomialModel {
         records.check_sizes(layout, &robot.kinds())?;
         if point.q.len() != n || point.qd.len() != n || point.input().len() != n {
             return Err(RecordsError::ExpansionPoint { joints: n }.into());
+        }
+        if monomials(layout.variables(), order) > MOST_MONOMIALS {
+            return Err(RecordsError::Order { order, variables: layout.variables() }.into());
         }
         let space = TaylorSpace::new(layout.variables(), order)?;
         let mut acceleration = Vec::with_capacity(n);

@@ -66,4 +66,9 @@ fn changed_records_are_refused() {
         RecordsError::Term { joint: 3, .. }
     ));
     assert_eq!(refused(|records| records.acceleration[5][0].1 *= 1.001), RecordsError::Changed);
+    // A file must not ask for a model that takes minutes to make.
+    let large = Abstraction { order: 60, ..abstraction };
+    let (point, records) = (model.expansion_point(), model.records());
+    let error = PolynomialModel::from_records(&robot, large, point, records).unwrap_err();
+    assert!(matches!(error, Error::Records(RecordsError::Order { order: 60, variables: 24 })));
 }
