@@ -74,6 +74,9 @@ impl Trust {
     pub fn words(&self, set: &str, role: &str) -> String {
         let Self { motions, deciding, violation_probability: bound, confidence, basis } = self;
         let plural = if *motions == 1 { "motion" } else { "motions" };
+        if *bound > LARGEST_BOUND && *deciding == 0 {
+            return format!("nothing is known of the next motion: {basis}");
+        }
         let counted = format!("{deciding} of {motions} independent {plural} {role}");
         if *bound > LARGEST_BOUND {
             return format!(

@@ -4,8 +4,8 @@ mod common;
 
 use common::{Random, grid};
 use reachtube_conform::{
-    Conformance, Keep, Model, Noise, NominalStart, Problem, Settings, Setup, Silent, Warning,
-    WarningKind, conform,
+    Conformance, Keep, Method, Model, Noise, NominalStart, Problem, Settings, Setup, Silent,
+    Warning, WarningKind, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
@@ -115,9 +115,16 @@ fn the_cause_of_a_wrong_reading_is_named() {
 
 #[test]
 fn noise_and_own_starts_are_limited_by_the_sensors() {
-    for noise in [Noise::None, Noise::Fitted] {
+    let cases = [
+        (Method::Program, Noise::None, None),
+        (Method::Program, Noise::Fitted, None),
+        (Method::Bisection, Noise::Fitted, Some(0.1)),
+    ];
+    for (method, noise, until) in cases {
         let settings = Settings {
-            noise: noise.clone(),
+            method,
+            noise,
+            until,
             nominal: NominalStart::Own,
             ..Settings::new(Torque::Motor, JOINTS)
         };

@@ -12,7 +12,8 @@ use crate::run::{Run, column_names};
 use crate::source::ReadOptions;
 use crate::text::{line_of, quoted};
 
-const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m";
+const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m \
+                      (m, m/s and N for a prismatic joint)";
 
 /// Number of defects after which a file is not read on.
 const MOST_DEFECTS: usize = 1000;

@@ -16,7 +16,7 @@ use crate::option_values::{MODELS, numbered_choice};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
-use crate::table::table;
+use crate::table::{plural, table};
 use reachtube::number::{four_decimals, interval};
 use reachtube::units::ColumnUnit;
 
@@ -146,8 +146,9 @@ fn summary(model: &PolynomialModel, seconds: f64) -> String {
             let _ = writeln!(
                 text,
                 "\nmodel error: forward dynamics minus model, at every point of the box \
-                 (cut into {} parts)\nlargest found: its largest magnitude in a search of the box",
-                remainder.boxes
+                 (cut into {} {})\nlargest found: its largest magnitude in a search of the box",
+                remainder.boxes,
+                plural(remainder.boxes, "part")
             );
         }
         None => text.push_str(&table(&["joint", "terms"], &rows)),
@@ -171,9 +172,10 @@ fn no_bound(
     };
     let radius = |[low, high]: [f64; 2]| 0.5 * (high - low);
     let change = |(i, (whole, part)): (usize, (&[f64; 2], &[f64; 2]))| {
-        let name = &model.robot().joints[i].name;
+        let joint = &model.robot().joints[i];
         let [from, to] = [whole, part].map(|side| four_decimals(radius(*side)));
-        (whole != part).then(|| format!("{name} from {from} to {to} rad"))
+        let (name, unit) = (&joint.name, joint.kind.position_unit());
+        (whole != part).then(|| format!("{name} from {from} to {to} {unit}"))
     };
     let sides = operating_box.q.iter().zip(&narrower.q).enumerate();
     let changes: Vec<String> = sides.filter_map(change).collect();

@@ -38,7 +38,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let check = opened.check()?;
     output::notes(&check.notes);
     for warning in &opened.model.warnings {
-        output::note(&format!("of the model itself: {}", warning.text));
+        output::warn(&format!("of the model itself: {}", warning.text));
     }
     output::show(json, &check, || summary(&check, &opened.model.robot.kinds()))?;
     Ok(Outcome::of(check.verdict.conformant))

@@ -19,6 +19,16 @@ impl Limits {
     pub fn is_any(&self) -> bool {
         self.noise.is_some() || self.start.is_some()
     }
+
+    /// Makes the radii of X0 so small that X0 keeps its limit.
+    pub fn shrink(&self, initial_set: &mut Hyperrectangle) {
+        let Hyperrectangle { centre, radius } = initial_set;
+        for ((radius, centre), limit) in
+            radius.iter_mut().zip(centre).zip(self.start.iter().flatten())
+        {
+            *radius = radius.min((limit - centre.abs()).max(0.0));
+        }
+    }
 }
 
 /// Which column of the solver's matrix each unknown is: the centres (c_x, c_u) where they are

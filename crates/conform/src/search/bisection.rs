@@ -56,6 +56,7 @@ pub(super) fn run(
     while !state.enclosed && state.factor < FACTORS.len() {
         let factor = FACTORS[state.factor];
         state.sets = linearised.inflated(factor, 0.0);
+        search.problem.limits().shrink(&mut state.sets.initial_set);
         state.enclosed = encloses(search, &state.sets)?;
         state.first = state.radius_now();
         (state.factor, state.reachable_sets) = (state.factor + 1, state.reachable_sets + 1);

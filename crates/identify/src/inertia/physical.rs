@@ -46,10 +46,11 @@ impl PhysicalFit {
         grown
             .map(|(joint, [plain, physical])| {
                 format!(
-                    "{}: physical links raise the residual from {plain:.4} to {physical:.4} N m; \
+                    "{}: physical links raise the residual from {plain:.4} to {physical:.4} {}; \
                      give masses in the description, lower model.prior_strength, or set parameters \
                      = \"base\" in the description to keep the parameters of least squares",
-                    joint.name
+                    joint.name,
+                    joint.kind.force_unit()
                 )
             })
             .collect()

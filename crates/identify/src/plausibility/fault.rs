@@ -106,8 +106,9 @@ impl Fault {
             ],
             Self::Offset { joint, offset } => [
                 format!(
-                    "the position of {} probably has an offset of {offset:.3} rad",
-                    name(joint)
+                    "the position of {} probably has an offset of {offset:.3} {}",
+                    name(joint),
+                    robot.joints()[joint].kind.position_unit()
                 ),
                 "subtracting it".into(),
                 format!(

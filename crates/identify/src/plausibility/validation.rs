@@ -59,7 +59,8 @@ pub fn useless_simulation(robot: &Robot, windows: &[WindowErrors]) -> Option<Str
             .filter(|(j, _)| window.q[*j] > window.motion[*j].max(NEGLIGIBLE))
             .map(|(j, joint)| {
                 let (error, motion) = (window.q[j], window.motion[j]);
-                format!("{} by {error:.3} rad where it moves {motion:.3} rad", joint.name)
+                let (name, unit) = (&joint.name, joint.kind.position_unit());
+                format!("{name} by {error:.3} {unit} where it moves {motion:.3} {unit}")
             })
             .collect();
         let diverged = window.diverged == window.windows;

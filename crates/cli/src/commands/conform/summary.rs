@@ -142,6 +142,9 @@ fn sets(model: &Model) -> String {
 fn sensor_noise(model: &Model) -> String {
     let Some(noise) = &model.sensor_noise else { return String::new() };
     let (q, qd) = noise.radius.split_at(model.joints());
+    let kinds = model.robot.kinds();
+    let [position, velocity] = [JointKind::position_unit, JointKind::velocity_unit]
+        .map(|unit| JointKind::units(&kinds, unit));
     let list = |radii: &[f64]| {
         radii.iter().map(|radius| format!("{radius:.1e}")).collect::<Vec<_>>().join(" ")
     };
@@ -150,7 +153,7 @@ fn sensor_noise(model: &Model) -> String {
     } else {
         "given"
     };
-    format!("sensor noise ({source}): q {} rad; qd {} rad/s\n", list(q), list(qd))
+    format!("sensor noise ({source}): q {} {position}; qd {} {velocity}\n", list(q), list(qd))
 }
 
 /// Returns how much of the motion the nominal solutions explain, joint by joint.
