@@ -8,6 +8,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// A nominal model that cannot be fitted.
+    #[error("the nominal model cannot be fitted: {0}")]
+    Fit(String),
     /// A setting has another number of values than the robot has states.
     #[error("{given} {setting} values; there are {needed} states, q then q̇")]
     SettingCount {

@@ -14,6 +14,8 @@ mod dynamics;
 mod envelope;
 mod error;
 mod explain;
+
+mod fitting;
 mod flowpipes;
 mod found;
 mod grids;
@@ -21,6 +23,7 @@ mod growth;
 mod hulls;
 mod linear;
 mod model;
+mod nominal;
 mod optimality;
 mod plausibility;
 mod problem;
@@ -44,6 +47,10 @@ pub use dynamics::Dynamics;
 pub use envelope::Envelope;
 pub use error::{Error, Result};
 pub use explain::{Explanation, explain};
+pub use fitting::{
+    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, LeftOut, PullCost,
+    TorquePrediction, fit,
+};
 pub use found::SearchSummary;
 pub use grids::{Grid, Grids};
 pub use growth::Growth;
@@ -53,6 +60,7 @@ pub use linear::program::{Program, Solution};
 pub use model::{
     DataRecord, Explained, FORMAT, MOST_TIGHT, Model, Residual, RunRecord, SuiteRecord, VERSION,
 };
+pub use nominal::correction::{InputCorrection, JointCorrection, WarmthLaw};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
 pub use problem::{Case, Keep, Problem, Recordings, RunInput, RunSummary, Setup, Suite};

@@ -33,7 +33,7 @@ impl Limits {
 
 /// Which column of the solver's matrix each unknown is: the centres (c_x, c_u) where they are
 /// unknown, the radii (r_x, r_u), and the radii of the noise where they are unknown.
-pub(super) struct Layout {
+pub(crate) struct Layout {
     joints: usize,
     has_centres: bool,
     /// Cost of each column; that of a centre is the cost of its radius, for scaling only.

@@ -54,14 +54,14 @@ pub struct Program<'a> {
     joints: usize,
     blocks: Vec<Block>,
     /// For each block and sample, how much its widths count.
-    shares: Vec<Vec<f64>>,
+    pub(crate) shares: Vec<Vec<f64>>,
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
     centre_bounds: Vec<[f64; 2]>,
     limits: Limits,
     /// Cost of each radius (r_x, r_u).
-    pub(super) cost: Vec<f64>,
+    pub(crate) cost: Vec<f64>,
     /// Cost of each noise radius.
-    noise_cost: Vec<f64>,
+    pub(crate) noise_cost: Vec<f64>,
     /// Largest |d| in the checked states, at least the smallest normal number.
     pub(super) scale: f64,
 }
@@ -388,6 +388,6 @@ pub(super) struct Unknowns {
     free_noise: Vec<f64>,
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -16,7 +16,9 @@ use crate::conformance::Conformance;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
 use crate::found::SearchSummary;
+use crate::fitting::record::FitRecord;
 use crate::model::records::{DataRecord, Explained, SuiteRecord};
+use crate::nominal::correction::InputCorrection;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::Warning;
 use crate::problem::problem::{Problem, Setup};
@@ -106,6 +108,12 @@ pub struct Model {
     pub tight: Vec<Witness>,
     /// The settings.
     pub settings: Settings,
+    /// What is taken off the recorded inputs along the nominal motions, where anything is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correction: Option<InputCorrection>,
+    /// How the nominal model was fitted, where it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fit: Option<FitRecord>,
     /// A, 2n x 2n, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub a: Vec<Vec<f64>>,
@@ -170,6 +178,8 @@ impl Model {
             trust: found.trust.clone(),
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),
+            correction: problem.setup().correction.clone(),
+            fit: None,
             a: matrix(LinearSystem::a),
             b: matrix(LinearSystem::b),
             drift: linear.map_or_else(Vec::new, |system| system.drift().iter().copied().collect()),
@@ -216,6 +226,12 @@ impl Model {
     #[must_use]
     pub fn to_json(&self) -> String {
         json::to_lines(&self.clone().sealed())
+    }
+
+    /// Returns the model with the record of how its nominal model was fitted.
+    #[must_use]
+    pub fn with_fit(self, record: FitRecord) -> Self {
+        Self { fit: Some(record), ..self }.sealed()
     }
 
     fn sealed(self) -> Self {
@@ -295,6 +311,8 @@ impl Model {
             format!("its expansion point is not one of {n} joints")
         } else if self.data.suites.iter().any(|suite| !suite.fits(n)) {
             format!("a nominal_start is not a state of {n} joints")
+        } else if self.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
+            format!("its correction is not one of {n} joints")
         } else if !fits_box {
             format!("its operating box is not one of {n} joints")
         } else {
@@ -320,7 +338,7 @@ impl Model {
         }
         let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
         let nominal_starts = self.data.suites.iter().filter_map(start).collect();
-        Ok(Setup { robot, dynamics, settings: self.settings.clone(), nominal_starts })
+        Ok(Setup { robot, dynamics, settings: self.settings.clone(), nominal_starts, correction: self.correction.clone() })
     }
 
     /// Returns the model bit by bit as the file has it, or what speaks against it.

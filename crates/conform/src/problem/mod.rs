@@ -1,6 +1,7 @@
 //! A model, settings and recordings that are read once: what every step of a conformance takes.
 
 pub(crate) mod case;
+mod cases;
 pub(crate) mod input;
 mod kept;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]

@@ -2,22 +2,20 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, OnceLock};
 
-use rayon::prelude::*;
 use reachtube_abstraction::{OperatingBox, PolynomialModel};
 use reachtube_recordings::{ReadOptions, Run, RunEntry, RunSource, State};
-use reachtube_robot::Robot;
+use reachtube_robot::{Robot, RobotDescription};
 
 use crate::deviation::Deviation;
 use crate::dynamics::Dynamics;
-use crate::envelope::Envelope;
 use crate::error::{Error, Result};
 use crate::grids::Grids;
 use crate::linear::layout::Limits;
+use crate::nominal::correction::InputCorrection;
 use crate::problem::case::Case;
-use crate::problem::input::RunInput;
 use crate::problem::kept::KeptRuns;
 use crate::problem::recordings::Recordings;
-use crate::problem::suite::{RunSummary, Suite, SuiteReader};
+use crate::problem::suite::{Suite, SuiteReader};
 use crate::progress::Progress;
 use crate::sensor_noise::SensorNoise;
 use crate::settings::{Noise, NominalStart, Settings};
@@ -41,6 +39,8 @@ pub struct Setup {
     /// The nominal initial states of suites by their name, 2n each, where they are known. Any
     /// other suite starts at the mean of the recordings at hand.
     pub nominal_starts: BTreeMap<String, Vec<f64>>,
+    /// What is taken off the recorded inputs along the nominal motions, where anything is.
+    pub correction: Option<InputCorrection>,
 }
 
 impl Setup {
@@ -52,7 +52,7 @@ impl Setup {
     pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
         settings.validate(robot.joint_count())?;
         let dynamics = Dynamics::new(&robot, &settings)?;
-        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new() })
+        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new(), correction: None })
     }
 
     /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
@@ -67,7 +67,7 @@ impl Setup {
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
         let dynamics = Dynamics::of(model, settings.method);
-        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new() })
+        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new(), correction: None })
     }
 }
 
@@ -90,7 +90,7 @@ pub enum Keep {
 /// ```
 /// use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
 /// use reachtube_recordings::{MemoryRuns, Run, Torque};
-/// use reachtube_robot::Robot;
+/// use reachtube_robot::{Robot, RobotDescription};
 ///
 /// // Two runs of the arm at rest, a little apart.
 /// let mut runs = MemoryRuns::default();
@@ -109,13 +109,21 @@ pub enum Keep {
 #[derive(Debug)]
 pub struct Problem {
     setup: Setup,
-    source: Box<dyn RunSource>,
-    recordings: Recordings,
-    kept: HashMap<usize, Run>,
+    pub(super) read: Arc<Read>,
     grids: OnceLock<Grids>,
-    cases: OnceLock<Vec<Case>>,
+    pub(super) cases: OnceLock<Vec<Case>>,
     deviations: OnceLock<Vec<Deviation>>,
+}
+
+/// What was read of the recordings. It does not depend on the model.
+#[derive(Debug)]
+pub(super) struct Read {
+    pub source: Box<dyn RunSource>,
+    pub recordings: Recordings,
+    kept: HashMap<usize, Run>,
     sensor_noise: SensorNoise,
+    /// The robot whose inputs the suites have.
+    pub robot: RobotDescription,
 }
 
 impl Problem {
@@ -145,19 +153,35 @@ impl Problem {
             kept: &kept,
             keep_all: keep == Keep::All || settings.explain.is_some(),
         };
-        let recordings = Recordings::read(&reader, names, progress)?;
-        let (grids, cases, deviations) = Default::default();
+        let mut recordings = Recordings::read(&reader, names, progress)?;
         let kept = kept.into_runs();
         let sensor_noise = match &setup.settings.sensor_noise {
             Some(radius) => SensorNoise::given(radius.clone()),
             None => SensorNoise::estimate(&recordings, setup.robot.joint_count()),
         };
-        let mut problem =
-            Self { setup, source, recordings, kept, grids, cases, deviations, sensor_noise };
-        problem.check_starts()?;
-        let leaving = problem.leaving_notes();
-        problem.recordings.notes.extend(leaving);
-        Ok(problem)
+        check_starts(&setup, source.as_ref(), &recordings)?;
+        recordings.notes.extend(leaving_notes(&setup, &recordings));
+        let robot = setup.robot.description().clone();
+        Ok(Self::of(setup, Arc::new(Read { source, recordings, kept, sensor_noise, robot })))
+    }
+
+    /// Returns the problem of another model and other settings with the same recordings, which are
+    /// not read again. What was recorded and how it was read must stay: the number of joints, the
+    /// kind of torque, the nominal starts and the end of the runs.
+    #[must_use]
+    pub fn with_setup(&self, setup: Setup) -> Self {
+        Self::of(setup, Arc::clone(&self.read))
+    }
+
+    fn of(setup: Setup, read: Arc<Read>) -> Self {
+        let (grids, cases, deviations) = Default::default();
+        Self { setup, read, grids, cases, deviations }
+    }
+
+    /// Returns the setup: robot, model, settings.
+    #[must_use]
+    pub fn setup(&self) -> &Setup {
+        &self.setup
     }
 
     /// Returns the robot.
@@ -181,19 +205,19 @@ impl Problem {
     /// Returns the recordings.
     #[must_use]
     pub fn recordings(&self) -> &Recordings {
-        &self.recordings
+        &self.read.recordings
     }
 
     /// Returns the noise of the sensors, as it was given or estimated.
     #[must_use]
     pub fn sensor_noise(&self) -> &SensorNoise {
-        &self.sensor_noise
+        &self.read.sensor_noise
     }
 
     /// Returns what the sensor noise limits: a V that is fitted, and X0 where each run starts at
     /// its own measured state.
     pub(crate) fn limits(&self) -> Limits {
-        let radii = || self.sensor_noise.radius.iter().map(|r| r.max(LEAST_LIMIT)).collect();
+        let radii = || self.read.sensor_noise.radius.iter().map(|r| r.max(LEAST_LIMIT)).collect();
         Limits {
             noise: (self.settings().noise == Noise::Fitted).then(radii),
             start: (self.settings().nominal == NominalStart::Own).then(radii),
@@ -209,7 +233,7 @@ impl Problem {
     /// Returns the source's entry of run `index`.
     #[must_use]
     pub fn entry(&self, index: usize) -> &RunEntry {
-        &self.source.runs()[index]
+        &self.read.source.runs()[index]
     }
 
     /// Returns the samples of run `index`: those in memory, or read once more where they were not
@@ -219,17 +243,18 @@ impl Problem {
     ///
     /// Defects, or [`Error::Changed`] when the recording is not the one that was read first.
     pub fn run(&self, index: usize) -> Result<Cow<'_, Run>> {
-        if let Some(run) = self.kept.get(&index) {
+        if let Some(run) = self.read.kept.get(&index) {
             return Ok(Cow::Borrowed(run));
         }
         let run = self
+            .read
             .source
             .read(index, &read_options(&self.setup))
             .map_err(reachtube_recordings::Error::Defects)?;
-        let summaries = self.recordings.suites.iter().flat_map(|suite| &suite.runs);
+        let summaries = self.read.recordings.suites.iter().flat_map(|suite| &suite.runs);
         let read_first = summaries.into_iter().find(|summary| summary.index == index);
         if read_first.is_some_and(|summary| summary.sha256 != run.sha256) {
-            return Err(Error::Changed { path: self.source.run_name(index) });
+            return Err(Error::Changed { path: self.read.source.run_name(index) });
         }
         Ok(Cow::Owned(run))
     }
@@ -246,7 +271,7 @@ impl Problem {
             return Ok(grids);
         }
         let system = self.dynamics().linear_system().ok_or(Error::NotLinear)?;
-        let runs = self.recordings.suites.iter().flat_map(|suite| &suite.runs);
+        let runs = self.read.recordings.suites.iter().flat_map(|suite| &suite.runs);
         let times = runs.map(|run| run.grid.as_ref());
         let grids = Grids::new(times, system, self.settings().disturbance)?;
         Ok(self.grids.get_or_init(|| grids))
@@ -268,111 +293,48 @@ impl Problem {
         }
         let grids = self.grids()?;
         let of = |suite| self.cases_of(suite, |case| Ok(Deviation::new(grids, &case)));
-        let suites = (0..self.recordings.suites.len()).map(of).collect::<Result<Vec<_>>>()?;
+        let suites = (0..self.read.recordings.suites.len()).map(of).collect::<Result<Vec<_>>>()?;
         Ok(self.deviations.get_or_init(|| Deviation::merge(suites.into_iter().flatten())))
     }
+}
 
-    /// Returns the cases of all suites, in their order. They are made when first asked for and
-    /// stay in memory.
-    ///
-    /// # Errors
-    ///
-    /// As [`run`](Self::run).
-    pub fn cases(&self) -> Result<&[Case]> {
-        if let Some(cases) = self.cases.get() {
-            return Ok(cases);
-        }
-        let suites = 0..self.recordings.suites.len();
-        let parts: Vec<Vec<Case>> =
-            suites.map(|suite| self.cases_of(suite, Ok)).collect::<Result<_>>()?;
-        Ok(self.cases.get_or_init(|| parts.concat()))
-    }
-
-    /// Hands each case of suite `index` to `visit`, on all cores, without keeping it; returns the
-    /// answers in the order of the cases.
-    ///
-    /// # Errors
-    ///
-    /// As [`run`](Self::run), and those of `visit`.
-    pub(crate) fn cases_of<T: Send>(
-        &self,
-        index: usize,
-        visit: impl Fn(Case) -> Result<T> + Sync,
-    ) -> Result<Vec<T>> {
-        let suite = &self.recordings.suites[index];
-        match &suite.shared {
-            Some(input) => Ok(vec![visit(Case {
-                name: format!("suite {}", suite.entry.name),
-                suite: index,
-                run: None,
-                grid: Arc::clone(&input.grid),
-                inputs: Arc::clone(&input.inputs),
-                start: suite.nominal_start.clone(),
-                measured: Arc::clone(&suite.envelope),
-            })?]),
-            None => {
-                let own =
-                    |summary: &RunSummary| visit(self.case_of_run(suite, index, summary.index)?);
-                suite.runs.par_iter().map(own).collect()
+/// Refuses recordings that start outside the box over which the model's error was bounded: an
+/// initial set that holds them would leave it too.
+fn check_starts(setup: &Setup, source: &dyn RunSource, recordings: &Recordings) -> Result<()> {
+    let Some(operating_box) = &setup.settings.operating_box else { return Ok(()) };
+    for run in recordings.suites.iter().flat_map(|suite| &suite.runs) {
+        for (i, &value) in run.start.iter().enumerate() {
+            let [low, high] = side(operating_box, i);
+            if !(low..=high).contains(&value) {
+                let file = source.runs()[run.index].file.clone();
+                let state = State::from_index(i, setup.robot.joint_count());
+                return Err(Error::StartsOutsideBox { file, state, value, low, high });
             }
         }
     }
+    Ok(())
+}
 
-    fn case_of_run(&self, suite: &Suite, index: usize, run: usize) -> Result<Case> {
-        let recorded = self.run(run)?;
-        let path = self.source.run_name(run);
-        let RunInput { grid, inputs } =
-            RunInput::new(&path, &recorded, self.robot(), self.settings().torque)
-                .map_err(reachtube_recordings::Error::Defects)?;
-        let mut measured = Envelope::new(2 * recorded.joints);
-        measured.include(run as u32, &recorded.states);
-        let start = match self.settings().nominal {
-            NominalStart::Mean => suite.nominal_start.clone(),
-            NominalStart::Own => recorded.state(0).to_vec(),
+/// Names, for each suite that leaves the box, where it does so first.
+fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
+    let Some(operating_box) = &setup.settings.operating_box else { return Vec::new() };
+    let leaves = |suite: &Suite| {
+        let envelope = &suite.envelope;
+        let outside = |k: usize, i: usize| {
+            let [low, high] = side(operating_box, i);
+            envelope.upper(k, i) > high || envelope.lower(k, i) < low
         };
-        let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
-        let measured = Arc::new(measured);
-        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured })
-    }
-
-    /// Refuses recordings that start outside the box over which the model's error was bounded: an
-    /// initial set that holds them would leave it too.
-    fn check_starts(&self) -> Result<()> {
-        let Some(operating_box) = &self.settings().operating_box else { return Ok(()) };
-        for run in self.recordings.suites.iter().flat_map(|suite| &suite.runs) {
-            for (i, &value) in run.start.iter().enumerate() {
-                let [low, high] = side(operating_box, i);
-                if !(low..=high).contains(&value) {
-                    let (file, state) =
-                        (self.entry(run.index).file.clone(), State::from_index(i, self.joints()));
-                    return Err(Error::StartsOutsideBox { file, state, value, low, high });
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Names, for each suite that leaves the box, where it does so first.
-    fn leaving_notes(&self) -> Vec<String> {
-        let Some(operating_box) = &self.settings().operating_box else { return Vec::new() };
-        let leaves = |suite: &Suite| {
-            let envelope = &suite.envelope;
-            let outside = |k: usize, i: usize| {
-                let [low, high] = side(operating_box, i);
-                envelope.upper(k, i) > high || envelope.lower(k, i) < low
-            };
-            let states = envelope.dimension();
-            let mut places = (0..envelope.len()).flat_map(|k| (0..states).map(move |i| (k, i)));
-            let (k, i) = places.find(|&(k, i)| outside(k, i))?;
-            Some(format!(
-                "suite {}: {} leaves the operating box at sample {k}. The model error has no \
-                 proved bound outside the box; there it is covered only by these recordings",
-                suite.entry.name,
-                State::from_index(i, self.joints())
-            ))
-        };
-        self.recordings.suites.iter().filter_map(leaves).collect()
-    }
+        let states = envelope.dimension();
+        let mut places = (0..envelope.len()).flat_map(|k| (0..states).map(move |i| (k, i)));
+        let (k, i) = places.find(|&(k, i)| outside(k, i))?;
+        Some(format!(
+            "suite {}: {} leaves the operating box at sample {k}. The model error has no proved \
+             bound outside the box; there it is covered only by these recordings",
+            suite.entry.name,
+            State::from_index(i, setup.robot.joint_count())
+        ))
+    };
+    recordings.suites.iter().filter_map(leaves).collect()
 }
 
 fn read_options(setup: &Setup) -> ReadOptions {

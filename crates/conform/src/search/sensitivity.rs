@@ -47,7 +47,7 @@ pub(super) struct Node {
 }
 
 /// Beyond this |x| a motion counts as having run away, rad or rad/s.
-pub(super) const BOUND: f64 = 1e4;
+pub(crate) const BOUND: f64 = 1e4;
 
 impl Sensitivity {
     /// Linearises the model along `case` about the centres of `sets`.
@@ -109,7 +109,8 @@ pub(crate) fn nominal(model: &PolynomialModel, case: &Case) -> Result<Vec<f64>> 
         .map_err(|time| runs_away(case, time))
 }
 
-fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> usize {
+/// Returns the number of Runge-Kutta steps from one sample to the next.
+pub(crate) fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> usize {
     let rest = vec![0.0; case.joints()];
     let (a, _) = linearisation.at(start, case.inputs.get(..case.joints()).unwrap_or(&rest));
     let norm = a.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);

@@ -1,0 +1,78 @@
+//! The recordings as a fit needs them: cases with their recorded inputs, at some of their samples.
+
+use std::sync::Arc;
+
+use reachtube_reach::TimeGrid;
+
+use crate::error::Result;
+use crate::problem::case::Case;
+use crate::problem::problem::Problem;
+
+/// Rows in one state are thinned to about this number, samples of all cases together.
+const MOST_SAMPLES: usize = 16_000;
+
+/// The recordings of a problem.
+pub(crate) struct Data {
+    /// The distinct sample grids, the longest first; a grid that is the beginning of another is not
+    /// distinct.
+    pub grids: Vec<Arc<TimeGrid>>,
+    /// The cases.
+    pub tracks: Vec<Track>,
+    /// Every how many samples rows are taken.
+    pub stride: usize,
+    /// The names of the motions.
+    pub motions: Vec<String>,
+}
+
+/// A case with its recorded inputs.
+pub(crate) struct Track {
+    pub case: Case,
+    /// Index of the grid.
+    pub grid: usize,
+    /// Index of the motion.
+    pub motion: usize,
+}
+
+impl Track {
+    /// Returns the samples that are rows.
+    pub fn samples(&self, stride: usize) -> impl Iterator<Item = usize> + use<> {
+        (0..self.case.measured.len()).step_by(stride)
+    }
+}
+
+impl Data {
+    /// Takes the cases of a problem; each run is a case when `by_run`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn new(problem: &Problem, by_run: bool) -> Result<Self> {
+        let (mut cases, mut motions, mut motion_of) = (Vec::new(), Vec::<String>::new(), vec![]);
+        for (index, suite) in problem.recordings().suites.iter().enumerate() {
+            let name = suite.entry.motion.as_ref().unwrap_or(&suite.entry.name);
+            let motion = motions.iter().position(|known| known == name).unwrap_or_else(|| {
+                motions.push(name.clone());
+                motions.len() - 1
+            });
+            let of_suite = problem.recorded_cases_of(suite, index, by_run, Ok)?;
+            motion_of.extend(of_suite.iter().map(|_| motion));
+            cases.extend(of_suite);
+        }
+        let mut sorted: Vec<Arc<TimeGrid>> =
+            cases.iter().map(|case| Arc::clone(&case.grid)).collect();
+        sorted.sort_by_key(|grid| std::cmp::Reverse(grid.len()));
+        let mut grids: Vec<Arc<TimeGrid>> = Vec::new();
+        for grid in sorted {
+            if !grids.iter().any(|longer| grid.is_prefix_of(longer)) {
+                grids.push(grid);
+            }
+        }
+        let samples: usize = cases.iter().map(|case| case.measured.len()).sum();
+        let track = |(case, motion): (Case, usize)| {
+            let grid = grids.iter().position(|grid| case.grid.is_prefix_of(grid));
+            Track { grid: grid.expect("every grid is in the list"), case, motion }
+        };
+        let tracks = cases.into_iter().zip(motion_of).map(track).collect();
+        Ok(Self { tracks, stride: samples.div_ceil(MOST_SAMPLES).max(1), grids, motions })
+    }
+}

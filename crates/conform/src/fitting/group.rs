@@ -1,0 +1,59 @@
+use serde::{Deserialize, Serialize};
+
+/// A group of parameters of the nominal model that a fit may move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Group {
+    /// The inertia that each motor feels, by the motor inertia of the joint: the links stay what
+    /// they are, and the mass matrix stays positive definite.
+    Inertia,
+    /// Viscous friction v1 of each joint.
+    Viscous,
+    /// Quadratic and cubic viscous friction v2 and v3 of each joint. What the order of the model
+    /// leaves out is taken off the input along the nominal motion.
+    Cubic,
+    /// Coulomb friction of each joint, by quadrant where the quadrants differ, along the nominal
+    /// motion.
+    Coulomb,
+    /// The change of viscous friction with the order of the runs in their suite.
+    WarmUp,
+    /// A point mass at the origin of the last link's frame.
+    Payload,
+}
+
+impl Group {
+    /// All groups.
+    pub const ALL: [Self; 6] = [
+        Self::Inertia,
+        Self::Viscous,
+        Self::Cubic,
+        Self::Coulomb,
+        Self::WarmUp,
+        Self::Payload,
+    ];
+
+    /// Returns the name of the group, as users write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Inertia => "inertia",
+            Self::Viscous => "viscous",
+            Self::Cubic => "cubic",
+            Self::Coulomb => "coulomb",
+            Self::WarmUp => "warm-up",
+            Self::Payload => "payload",
+        }
+    }
+}
+
+/// What a fit may move, and how strongly it is pulled toward the identified values.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitSettings {
+    /// The groups of parameters.
+    pub groups: Vec<Group>,
+    /// The weight of the pull: part of the identified model's cost per unit of the logarithm of a
+    /// factor. It is chosen by leaving one motion out where it is `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pull: Option<f64>,
+}

@@ -1,0 +1,62 @@
+//! The weight of the pull toward the identified values, chosen by leaving one motion out.
+
+use rayon::prelude::*;
+
+use crate::error::Result;
+use crate::fitting::evaluation::Fit;
+use crate::fitting::record::{LeftOut, PullCost};
+use crate::fitting::search::Search;
+
+/// The weights that are tried, in parts of the identified model's cost per unit, the strongest
+/// first.
+const PULLS: [f64; 4] = [0.05, 0.02, 0.005, 0.001];
+
+/// The pull that was chosen.
+pub(crate) struct PullChoice {
+    pub pull: f64,
+    /// Cost of the sets of all motions when one was left out of the fit.
+    pub left_out: Vec<LeftOut>,
+    /// The mean of these costs for each weight that was tried.
+    pub tried: Vec<PullCost>,
+}
+
+/// Chooses among the weights, or tries `given` only: for each motion the model is fitted without
+/// it, and the sets of all motions are found for that model. The weight with the least mean cost is
+/// chosen.
+///
+/// # Errors
+///
+/// As [`Search::run`].
+pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
+    let pulls = given.map_or_else(|| PULLS.to_vec(), |pull| vec![pull]);
+    let of_motion = |motion: usize| leave_out(fit, motion, &pulls);
+    let motions = fit.data.motions.len();
+    let costs: Vec<Vec<f64>> =
+        (0..motions).into_par_iter().map(of_motion).collect::<Result<_>>()?;
+    let mean = |at: usize| costs.iter().map(|of| of[at]).sum::<f64>() / motions as f64;
+    let tried: Vec<PullCost> = pulls
+        .iter()
+        .enumerate()
+        .map(|(at, &pull)| PullCost { pull, cost: mean(at) })
+        .collect();
+    let best = (0..pulls.len()).min_by(|a, b| mean(*a).total_cmp(&mean(*b))).unwrap_or(0);
+    let left_out = fit.data.motions.iter().zip(&costs);
+    let left_out =
+        left_out.map(|(motion, of)| LeftOut { motion: motion.clone(), cost: of[best] }).collect();
+    Ok(PullChoice { pull: pulls[best], left_out, tried })
+}
+
+/// Fits without a motion for each weight, each from the answer before, and returns the costs of the
+/// sets of all motions.
+fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<f64>> {
+    let tracks = fit.tracks(Some(motion));
+    let mut numbers = vec![0.0; fit.parameters.len()];
+    let identified = fit.smallest(&fit.model(&numbers, None)?, &tracks)?.cost;
+    let mut costs = Vec::new();
+    for pull in pulls {
+        let search = Search { fit, tracks: tracks.clone(), pull: pull * identified };
+        numbers = search.run(&numbers)?.numbers;
+        costs.push(fit.smallest(&fit.model(&numbers, None)?, &fit.tracks(None))?.cost);
+    }
+    Ok(costs)
+}

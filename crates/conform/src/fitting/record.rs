@@ -1,0 +1,92 @@
+use serde::{Deserialize, Serialize};
+
+use crate::fitting::group::Group;
+
+/// How the nominal model was fitted, for people and for the model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitRecord {
+    /// The weight of the pull toward the identified values, in parts of the identified model's cost
+    /// per unit of the logarithm of a factor.
+    pub pull: f64,
+    /// Cost of the smallest sets of the identified model.
+    pub identified_cost: f64,
+    /// Cost of the smallest sets of the fitted model.
+    pub cost: f64,
+    /// What each group is worth.
+    pub groups: Vec<GroupCost>,
+    /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
+    /// compare with `identified_cost`.
+    pub leave_one_out: Vec<LeftOut>,
+    /// The weights of the pull that were tried.
+    pub pulls: Vec<PullCost>,
+    /// The parameters.
+    pub parameters: Vec<FittedParameter>,
+    /// How well both models predict the input, joint by joint.
+    pub torque: Vec<TorquePrediction>,
+}
+
+/// What a group of parameters is worth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupCost {
+    /// The group.
+    pub group: Group,
+    /// Cost of the sets with this group at its identified values and all others as fitted.
+    pub cost_without: f64,
+}
+
+/// A fit without one motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftOut {
+    /// The motion.
+    pub motion: String,
+    /// Cost of the sets of all motions for the nominal model that was fitted without it.
+    pub cost: f64,
+}
+
+/// A weight of the pull that was tried.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PullCost {
+    /// The weight.
+    pub pull: f64,
+    /// The mean cost over the motions left out.
+    pub cost: f64,
+}
+
+/// A parameter before and after.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FittedParameter {
+    /// Its group.
+    pub group: Group,
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The quadrant of Coulomb friction, where it is about one: driving forward, driving backward,
+    /// braking backward, braking forward.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quadrant: Option<String>,
+    /// The unit of the values.
+    pub unit: String,
+    /// The identified value.
+    pub identified: f64,
+    /// The fitted value.
+    pub fitted: f64,
+    /// What the identified value is multiplied by, where the parameter is a factor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor: Option<f64>,
+}
+
+/// The error of the predicted input of one joint along the recordings, N m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TorquePrediction {
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The root mean square with the identified model.
+    pub identified: f64,
+    /// The root mean square with the fitted model.
+    pub fitted: f64,
+}

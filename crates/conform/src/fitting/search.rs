@@ -1,0 +1,110 @@
+use crate::error::Result;
+use crate::fitting::evaluation::{Fit, Model, Smallest};
+use crate::fitting::slopes::slopes;
+use crate::fitting::step::{Step, StepRow};
+
+/// The first trust region: numbers may move by this much.
+const FIRST_TRUST: f64 = 0.5;
+
+/// The search ends when the trust region is smaller than this.
+const LEAST_TRUST: f64 = 2e-3;
+
+/// The search ends when a step promises less than this part of the cost.
+const SETTLED: f64 = 2e-4;
+
+/// Steps at most.
+const STEPS: usize = 40;
+
+/// What a search found.
+#[derive(Debug, Clone)]
+pub(crate) struct Optimum {
+    /// The numbers of the parameters.
+    pub numbers: Vec<f64>,
+    /// Cost of the sets, without the pull.
+    pub cost: f64,
+    /// Number of steps that were accepted.
+    pub steps: usize,
+}
+
+/// The parameters for which the sets of some tracks cost least, with a pull.
+pub(crate) struct Search<'a> {
+    pub fit: &'a Fit<'a>,
+    pub tracks: Vec<usize>,
+    /// Cost of a number's distance from 0.
+    pub pull: f64,
+}
+
+/// A point of the search.
+struct Point {
+    numbers: Vec<f64>,
+    model: Model,
+    smallest: Smallest,
+}
+
+impl Search<'_> {
+    /// Searches from `start`.
+    ///
+    /// # Errors
+    ///
+    /// When the first program is not solved.
+    pub fn run(&self, start: &[f64]) -> Result<Optimum> {
+        let mut point = self.point(start.to_vec())?;
+        let (mut trust, mut steps, mut rows) = (FIRST_TRUST, 0, Vec::<StepRow>::new());
+        'search: for _ in 0..STEPS {
+            let slopes = slopes(self.fit, &point.numbers, &point.model, &point.smallest)?;
+            let program = self.fit.program(&point.model, &self.tracks);
+            loop {
+                let step = Step {
+                    fit: self.fit,
+                    model: &point.model,
+                    slopes: &slopes,
+                    program: &program,
+                    tracks: &self.tracks,
+                    numbers: &point.numbers,
+                    trust,
+                    pull: self.pull,
+                };
+                let Ok(answer) = step.solve(&mut rows) else { break 'search };
+                let promised = self.value(&point) - answer.cost;
+                if promised < SETTLED * point.smallest.cost {
+                    break 'search;
+                }
+                let moved = largest_move(&answer.numbers, &point.numbers);
+                let next = self.point(answer.numbers).ok();
+                let gained = next.as_ref().map_or(-1.0, |next| self.value(&point) - self.value(next));
+                if let Some(next) = next.filter(|_| gained > 0.1 * promised) {
+                    if gained > 0.7 * promised && moved > 0.9 * trust {
+                        trust *= 2.0;
+                    } else if gained < 0.3 * promised {
+                        trust = 0.5 * moved;
+                    }
+                    (point, steps) = (next, steps + 1);
+                    if gained < SETTLED * point.smallest.cost {
+                        break 'search;
+                    }
+                    break;
+                }
+                trust = 0.35 * moved.min(trust);
+                if trust < LEAST_TRUST {
+                    break 'search;
+                }
+            }
+        }
+        Ok(Optimum { numbers: point.numbers, cost: point.smallest.cost, steps })
+    }
+
+    fn point(&self, numbers: Vec<f64>) -> Result<Point> {
+        let model = self.fit.model(&numbers, None)?;
+        let smallest = self.fit.smallest(&model, &self.tracks)?;
+        Ok(Point { numbers, model, smallest })
+    }
+
+    /// The cost with the pull.
+    fn value(&self, point: &Point) -> f64 {
+        point.smallest.cost + self.pull * point.numbers.iter().map(|x| x.abs()).sum::<f64>()
+    }
+}
+
+fn largest_move(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}

@@ -1,0 +1,119 @@
+//! The correction of the input, evaluated at one state after another without allocation.
+
+use reachtube_robot::friction::{Coulomb, LoadLine};
+use reachtube_robot::{ParameterSet, Robot, RobotDescription, Workspace};
+
+use crate::error::Result;
+use crate::nominal::correction::InputCorrection;
+
+/// Below this speed, rad/s or m/s, Coulomb friction is taken in proportion to the speed, so that
+/// the nominal motion comes to rest instead of jumping between two signs.
+pub const SLOW: f64 = 0.02;
+
+/// Evaluates a correction for one robot.
+#[derive(Debug, Clone)]
+pub(crate) struct Corrector<'a> {
+    robot: &'a Robot,
+    correction: &'a InputCorrection,
+    /// The velocities of the expansion point, n.
+    origin: &'a [f64],
+    has_coulomb: bool,
+    /// A robot that only has a mass of 1 kg at its tip.
+    unit_payload: Option<Robot>,
+    workspace: Workspace<f64>,
+    sin: Vec<f64>,
+    cos: Vec<f64>,
+    torque: Vec<f64>,
+}
+
+impl<'a> Corrector<'a> {
+    /// Prepares the correction of `robot`; `origin` are the velocities of the expansion point.
+    ///
+    /// # Errors
+    ///
+    /// When no robot can be made with a payload only.
+    pub fn new(
+        robot: &'a Robot,
+        correction: &'a InputCorrection,
+        origin: &'a [f64],
+    ) -> Result<Self> {
+        let n = robot.joint_count();
+        let has_coulomb = correction.joints.iter().any(|joint| joint.coulomb != [0.0; 4]);
+        let unit_payload = match correction.payload {
+            0.0 => None,
+            _ => Some(Robot::from_description(&only_payload(robot.description()))?),
+        };
+        let zeros = || vec![0.0; n];
+        Ok(Self {
+            robot,
+            correction,
+            origin,
+            has_coulomb,
+            unit_payload,
+            workspace: Workspace::new(robot),
+            sin: zeros(),
+            cos: zeros(),
+            torque: zeros(),
+        })
+    }
+
+    /// Takes the correction at the state (q, q̇) off the input `u` (n, N m); `warmth` is that of
+    /// the joints in this run.
+    pub fn take_off(&mut self, q: &[f64], qd: &[f64], warmth: f64, u: &mut [f64]) {
+        let joints = self.correction.joints.iter().enumerate();
+        for (j, joint) in joints {
+            let offset = qd[j] - self.origin[j];
+            let viscous = (joint.quadratic + joint.cubic * offset) * offset * offset;
+            u[j] -= viscous + joint.warm_up * warmth * qd[j];
+        }
+        if !self.has_coulomb && self.unit_payload.is_none() {
+            return;
+        }
+        for (j, joint) in self.robot.joints().iter().enumerate() {
+            (self.sin[j], self.cos[j]) = joint.kind.sin_cos(&q[j]);
+        }
+        if self.has_coulomb {
+            self.robot.gravity(&self.sin, &self.cos, &mut self.workspace, &mut self.torque);
+            let joints = self.robot.joints().iter().zip(&self.correction.joints);
+            for (j, (joint, correction)) in joints.enumerate() {
+                let scaled = scaled(&joint.friction.coulomb, &correction.coulomb);
+                let part = (qd[j].abs() / SLOW).min(1.0);
+                u[j] -= part * scaled.torque(self.torque[j], qd[j]);
+            }
+        }
+        if let Some(payload) = &self.unit_payload {
+            payload.gravity(&self.sin, &self.cos, &mut self.workspace, &mut self.torque);
+            let weights = u.iter_mut().zip(&self.torque);
+            weights.for_each(|(u, unit)| *u -= self.correction.payload * unit);
+        }
+    }
+}
+
+/// The Coulomb friction with each quadrant in these parts.
+fn scaled(coulomb: &Coulomb, parts: &[f64; 4]) -> Coulomb {
+    let line = |line: LoadLine, part: f64| LoadLine {
+        offset: part * line.offset,
+        slope: part * line.slope,
+    };
+    Coulomb {
+        driving_forward: line(coulomb.driving_forward, parts[0]),
+        driving_backward: line(coulomb.driving_backward, parts[1]),
+        braking_backward: line(coulomb.braking_backward, parts[2]),
+        braking_forward: line(coulomb.braking_forward, parts[3]),
+    }
+}
+
+/// The description of a robot without any mass but 1 kg at the origin of its last link's frame.
+fn only_payload(description: &RobotDescription) -> RobotDescription {
+    let mut only = description.clone();
+    only.parameters = ParameterSet::Base;
+    let last = only.joints.len() - 1;
+    for (j, joint) in only.joints.iter_mut().enumerate() {
+        joint.gravity_moments = None;
+        joint.com = None;
+        joint.first_moment = Some([0.0; 3]);
+        joint.inertia = [0.0; 6];
+        joint.mass = if j == last { 1.0 } else { 0.0 };
+    }
+    only
+}

@@ -1,0 +1,6 @@
+//! The nominal motion of a case, and what is taken off its input along it.
+
+pub(crate) mod correction;
+pub(crate) mod corrector;
+pub(crate) mod motion;
+pub(crate) mod steps;

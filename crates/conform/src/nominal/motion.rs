@@ -1,0 +1,98 @@
+use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
+use reachtube_ode::{Ensemble, Outcome, Run};
+use reachtube_robot::Robot;
+
+use crate::dynamics::Dynamics;
+use crate::error::Result;
+use crate::nominal::correction::InputCorrection;
+use crate::nominal::corrector::Corrector;
+use crate::nominal::steps::Steps;
+use crate::problem::case::Case;
+use crate::search::sensitivity::{BOUND, runs_away, substeps};
+
+/// A nominal motion with the inputs that cause it, unrounded.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct NominalMotion {
+    /// Samples x 2n.
+    pub states: Vec<f64>,
+    /// The corrected input, samples x n, N m. The last one acts on nothing and is the recorded one.
+    pub inputs: Vec<f64>,
+}
+
+/// A model whose input is corrected along its nominal motions.
+pub(crate) struct Corrected<'a> {
+    /// The robot.
+    pub robot: &'a Robot,
+    /// The model.
+    pub dynamics: &'a Dynamics,
+    /// The correction.
+    pub correction: &'a InputCorrection,
+    /// The velocities of the expansion point, n.
+    pub origin: &'a [f64],
+}
+
+impl Corrected<'_> {
+    /// Simulates the nominal motion of a case from its recorded inputs; `steps` discretise a linear
+    /// model over the case's grid.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::RunsAway`](crate::Error::RunsAway).
+    pub fn motion(&self, case: &Case, steps: Option<&Steps>) -> Result<NominalMotion> {
+        let mut corrector = Corrector::new(self.robot, self.correction, self.origin)?;
+        let correct = |x: &[f64], u: &mut [f64]| {
+            let (q, qd) = x.split_at(u.len());
+            corrector.take_off(q, &qd[..u.len()], case.warmth, u);
+        };
+        match steps {
+            Some(steps) => Ok(linear(case, steps, correct)),
+            None => polynomial(self.dynamics.polynomials(), case, correct),
+        }
+    }
+}
+
+fn linear(
+    case: &Case,
+    steps: &Steps,
+    mut correct: impl FnMut(&[f64], &mut [f64]),
+) -> NominalMotion {
+    let (n, samples) = (case.joints(), case.grid.len());
+    let mut inputs = case.inputs.to_vec();
+    let mut states = vec![0.0; samples * 2 * n];
+    states[..2 * n].copy_from_slice(&case.start);
+    for k in 0..samples.saturating_sub(1) {
+        let (before, after) = states.split_at_mut((k + 1) * 2 * n);
+        let (x, u) = (&before[k * 2 * n..], &mut inputs[k * n..(k + 1) * n]);
+        correct(x, u);
+        steps.advance(k, x, u, &mut after[..2 * n]);
+    }
+    NominalMotion { states, inputs }
+}
+
+fn polynomial(
+    model: &PolynomialModel,
+    case: &Case,
+    mut correct: impl FnMut(&[f64], &mut [f64]),
+) -> Result<NominalMotion> {
+    let (n, times) = (case.joints(), case.grid.times());
+    let substeps = substeps(&mut Linearisation::new(model), case, &case.start);
+    let mut field = ModelField::new(model);
+    let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
+    let mut x = model.state(&case.start[..n], &case.start[n..]);
+    let (mut inputs, mut states) = (case.inputs.to_vec(), case.start.clone());
+    for k in 0..times.len().saturating_sub(1) {
+        let u = &mut inputs[k * n..(k + 1) * n];
+        correct(&x[..2 * n], u);
+        let (run, mut next) = ([Run { start: &x, inputs: u }], x.clone());
+        let outcomes =
+            ensemble.integrate(&mut field, &times[k..k + 2], substeps, &run, |_, _, x| {
+                next.copy_from_slice(x);
+            });
+        if let Outcome::Diverged { .. } = outcomes[0] {
+            return Err(runs_away(case, times[k]));
+        }
+        x = next;
+        states.extend(&x[..2 * n]);
+    }
+    Ok(NominalMotion { states, inputs })
+}

@@ -1,0 +1,119 @@
+//! The cases of a problem, and the correction of their inputs.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use reachtube_recordings::Torque;
+
+use crate::envelope::Envelope;
+use crate::error::Result;
+use crate::nominal::motion::Corrected;
+use crate::nominal::steps::Steps;
+use crate::problem::case::Case;
+use crate::problem::input::RunInput;
+use crate::problem::problem::Problem;
+use crate::problem::suite::{RunSummary, Suite};
+use crate::settings::NominalStart;
+
+impl Problem {
+    /// Returns the cases of all suites, in their order. They are made when first asked for and
+    /// stay in memory.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn cases(&self) -> Result<&[Case]> {
+        if let Some(cases) = self.cases.get() {
+            return Ok(cases);
+        }
+        let suites = 0..self.recordings().suites.len();
+        let parts: Vec<Vec<Case>> =
+            suites.map(|suite| self.cases_of(suite, Ok)).collect::<Result<_>>()?;
+        Ok(self.cases.get_or_init(|| parts.concat()))
+    }
+
+    /// Hands each case of suite `index` to `visit`, on all cores, without keeping it; returns the
+    /// answers in the order of the cases.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and those of `visit`.
+    pub(crate) fn cases_of<T: Send>(
+        &self,
+        index: usize,
+        visit: impl Fn(Case) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let suite = &self.recordings().suites[index];
+        let by_run = self.setup().correction.as_ref().is_some_and(|c| c.differs_by_run());
+        self.recorded_cases_of(suite, index, by_run, |case| visit(self.corrected(case)?))
+    }
+
+    /// Hands each case of a suite with its recorded inputs to `visit`, on all cores; a case is one
+    /// run when `by_run`, or when the runs of the suite do not share their inputs.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and those of `visit`.
+    pub(crate) fn recorded_cases_of<T: Send>(
+        &self,
+        suite: &Suite,
+        index: usize,
+        by_run: bool,
+        visit: impl Fn(Case) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        match suite.shared.as_ref().filter(|_| !by_run && self.inputs_are_current()) {
+            Some(input) => Ok(vec![visit(Case {
+                name: format!("suite {}", suite.entry.name),
+                suite: index,
+                run: None,
+                grid: Arc::clone(&input.grid),
+                inputs: Arc::clone(&input.inputs),
+                start: suite.nominal_start.clone(),
+                measured: Arc::clone(&suite.envelope),
+                warmth: 0.0,
+            })?]),
+            None => {
+                let own = |(place, summary): (usize, &RunSummary)| {
+                    visit(self.case_of_run(suite, index, summary.index, place + 1)?)
+                };
+                suite.runs.par_iter().enumerate().map(own).collect()
+            }
+        }
+    }
+
+    /// Returns whether the inputs that were computed at reading are those of the problem's robot:
+    /// its viscous friction is in the input of link torques.
+    fn inputs_are_current(&self) -> bool {
+        self.settings().torque != Torque::Link || self.read.robot == *self.robot().description()
+    }
+
+    fn case_of_run(&self, suite: &Suite, index: usize, run: usize, place: usize) -> Result<Case> {
+        let recorded = self.run(run)?;
+        let path = self.read.source.run_name(run);
+        let RunInput { grid, inputs } =
+            RunInput::new(&path, &recorded, self.robot(), self.settings().torque)
+                .map_err(reachtube_recordings::Error::Defects)?;
+        let mut measured = Envelope::new(2 * recorded.joints);
+        measured.include(run as u32, &recorded.states);
+        let start = match self.settings().nominal {
+            NominalStart::Mean => suite.nominal_start.clone(),
+            NominalStart::Own => recorded.state(0).to_vec(),
+        };
+        let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
+        let measured = Arc::new(measured);
+        let law = self.setup().correction.as_ref().and_then(|c| c.warmth.as_ref());
+        let warmth = law.map_or(0.0, |law| law.warmth(place));
+        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, warmth })
+    }
+
+    /// Takes the correction of the problem's model off the inputs of a case.
+    fn corrected(&self, case: Case) -> Result<Case> {
+        let Some(correction) = &self.setup().correction else { return Ok(case) };
+        let (robot, dynamics) = (self.robot(), self.dynamics());
+        let origin = &self.settings().expansion_point.qd;
+        let model = Corrected { robot, dynamics, correction, origin };
+        let steps = dynamics.linear_system().map(|system| Steps::new(system, case.grid.times()));
+        let inputs = model.motion(&case, steps.as_ref())?.inputs.into();
+        Ok(Case { inputs, ..case })
+    }
+}
