@@ -12,7 +12,7 @@ use reachtube_robot::Robot;
 #[ignore = "needs the recordings in ../shared"]
 fn the_sets_of_the_papers_arm_shrink() {
     let folder = common::shared("schunk_lwa4p");
-    let groups = std::env::var("GROUPS").unwrap_or("inertia,viscous".into());
+    let groups = std::env::var("FITGROUPS").unwrap_or("inertia,viscous".into());
     let groups: Vec<Group> =
         groups.split(',').map(|g| Group::ALL.into_iter().find(|x| x.name() == g).unwrap()).collect();
     let pull = std::env::var("PULL").ok().map(|p| p.parse().unwrap());

@@ -114,6 +114,7 @@ fn parameters_of(fit: &Fit, numbers: &[f64], setup: &Setup) -> Vec<FittedParamet
             Group::Cubic => format!("{}/({})³", kind.force_unit(), kind.velocity_unit()),
             Group::Coulomb => kind.force_unit().into(),
             Group::Payload => "kg".into(),
+            Group::Links => "1".into(),
         };
         FittedParameter {
             group: parameter.group,

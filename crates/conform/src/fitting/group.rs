@@ -7,6 +7,8 @@ pub enum Group {
     /// The inertia that each motor feels, by the motor inertia of the joint: the links stay what
     /// they are, and the mass matrix stays positive definite.
     Inertia,
+    /// The inertia of each link, by its density.
+    Links,
     /// Viscous friction v1 of each joint.
     Viscous,
     /// Quadratic and cubic viscous friction v2 and v3 of each joint. What the order of the model
@@ -23,8 +25,9 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Inertia,
+        Self::Links,
         Self::Viscous,
         Self::Cubic,
         Self::Coulomb,
@@ -37,6 +40,7 @@ impl Group {
     pub fn name(self) -> &'static str {
         match self {
             Self::Inertia => "inertia",
+            Self::Links => "links",
             Self::Viscous => "viscous",
             Self::Cubic => "cubic",
             Self::Coulomb => "coulomb",

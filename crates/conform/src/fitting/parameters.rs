@@ -71,6 +71,7 @@ impl<'a> Parameters<'a> {
                 let least = (1.0 - armature / self.inertia[joint]).max(0.1).ln();
                 vec![make(least.min(0.0), LN_10)]
             }
+            Group::Links if self.setup.robot.inertial_parameters()[10*joint..10*joint+10].iter().any(|x| *x != 0.0) => vec![make(-LN_10, LN_10)],
             Group::Viscous if friction.viscous.v1 > 0.0 => vec![make(-LN_10, LN_10)],
             Group::Cubic if friction.viscous.v2 != 0.0 || friction.viscous.v3 != 0.0 => {
                 vec![make(-1.0, 5.0)]
@@ -80,7 +81,7 @@ impl<'a> Parameters<'a> {
             Group::Payload if joint + 1 == self.setup.robot.joint_count() => {
                 vec![make(0.0, LARGEST_PAYLOAD)]
             }
-            Group::Viscous | Group::Cubic | Group::WarmUp | Group::Payload => Vec::new(),
+            Group::Links | Group::Viscous | Group::Cubic | Group::WarmUp | Group::Payload => Vec::new(),
         }
     }
 
@@ -105,7 +106,7 @@ impl<'a> Parameters<'a> {
     /// Returns whether parameter `p` changes A and B, and not only the nominal motions.
     pub fn changes_model(&self, p: usize) -> bool {
         match self.list[p].group {
-            Group::Inertia | Group::Viscous | Group::Payload => true,
+            Group::Inertia | Group::Links | Group::Viscous | Group::Payload => true,
             Group::Cubic => self.setup.settings.abstraction.order >= 2,
             Group::Coulomb | Group::WarmUp => false,
         }
@@ -121,6 +122,7 @@ impl<'a> Parameters<'a> {
                 let identified = self.inertia[joint];
                 (identified, identified * number.exp(), Some(number.exp()))
             }
+            Group::Links => (1.0, number.exp(), Some(number.exp())),
             Group::Viscous => (viscous.v1, viscous.v1 * number.exp(), Some(number.exp())),
             Group::Cubic => (viscous.v3, viscous.v3 * (1.0 + number), Some(1.0 + number)),
             Group::Coulomb => {
@@ -143,6 +145,7 @@ impl<'a> Parameters<'a> {
         let mut correction = InputCorrection::none(robot.joint_count());
         correction.warmth = self.law.clone().filter(|_| self.has.contains(&Group::WarmUp));
         let (mut changed, mut values) = (Vec::new(), Vec::new());
+        let links = robot.inertial_parameters();
         let mut change = |joint, kind, value| {
             changed.push(reachtube_robot::Parameter { joint, kind });
             values.push(value);
@@ -156,6 +159,12 @@ impl<'a> Parameters<'a> {
                 Group::Inertia => {
                     let armature = identified.armature + self.inertia[joint] * number.exp_m1();
                     change(joint, ParameterKind::MotorInertia, armature.max(0.0));
+                }
+                Group::Links => {
+                    let link = &links[10 * joint..10 * joint + 10];
+                    for (kind, value) in ParameterKind::INERTIAL.into_iter().zip(link) {
+                        change(joint, kind, value * number.exp());
+                    }
                 }
                 Group::Viscous => {
                     change(joint, ParameterKind::Viscous1, viscous.v1 * number.exp());
@@ -180,7 +189,7 @@ impl<'a> Parameters<'a> {
             }
         }
         let mut description = robot.description().with_values(&changed, &values)?;
-        if correction.payload != 0.0 {
+        if correction.payload != 0.0 || self.has.contains(&Group::Links) {
             keep_weight(robot, &mut description);
         }
         let robot = Robot::from_description(&description)?;
