@@ -13,8 +13,10 @@ use reachtube_robot::Robot;
 fn the_sets_of_the_papers_arm_shrink() {
     let folder = common::shared("schunk_lwa4p");
     let groups = std::env::var("FITGROUPS").unwrap_or("inertia,viscous".into());
-    let groups: Vec<Group> =
-        groups.split(',').map(|g| Group::ALL.into_iter().find(|x| x.name() == g).unwrap()).collect();
+    let groups: Vec<Group> = groups
+        .split(',')
+        .map(|g| Group::ALL.into_iter().find(|x| x.name() == g).unwrap())
+        .collect();
     let pull = std::env::var("PULL").ok().map(|p| p.parse().unwrap());
     for disturbance in [Disturbance::Sample, Disturbance::Constant] {
         let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
@@ -26,7 +28,7 @@ fn the_sets_of_the_papers_arm_shrink() {
         eprintln!("{} -> {} pull {}", r.identified_cost, r.cost, r.pull);
         eprintln!("{:?}\n{:?}\n{:?}", r.pulls, r.leave_one_out, r.groups);
         for p in &r.parameters {
-            eprintln!("{:?} {} {:?} {} -> {} {:?}", p.group, p.joint, p.quadrant, p.identified, p.fitted, p.factor);
+            eprintln!("{} {} {} -> {} {:?}", p.name, p.joint, p.identified, p.fitted, p.factor);
         }
         eprintln!("{:?}", r.torque);
         let found = conform_all(&fitted.problem);

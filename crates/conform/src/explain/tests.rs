@@ -56,7 +56,7 @@ fn case() -> Case {
         inputs: (0..SAMPLES * JOINTS).map(|at| dyadic(input(at))).collect(),
         start: (0..2 * JOINTS).map(|i| i as f64 / 16.0).collect(),
         measured: Arc::new(Envelope::new(2 * JOINTS)),
-        warmth: 0.0,
+        place: 1,
     }
 }
 

@@ -1,20 +1,26 @@
 //! The program of one choice of the parameters.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
+use reachtube_reach::{Disturbance, TimeGrid};
 
 use crate::envelope::Envelope;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fitting::data::{Data, Track};
 use crate::fitting::parameters::Parameters;
-use crate::grids::Grids;
 use crate::linear::block::Block;
 use crate::linear::layout::Limits;
-use crate::linear::program::Program;
+use crate::linear::program::{Program, RowIndex};
+use crate::nominal::correction::InputCorrection;
 use crate::nominal::motion::Corrected;
 use crate::nominal::steps::Steps;
 use crate::problem::problem::Setup;
 use crate::sets::UncertaintySets;
 use crate::settings::Settings;
+
+/// Rows within this part of the largest deviation are kept for the next program.
+const CLOSE: f64 = 0.02;
 
 /// What does not change during a fit.
 pub(crate) struct Fit<'a> {
@@ -29,7 +35,7 @@ pub(crate) struct Fit<'a> {
 /// The model of one choice of the parameters beside the recordings.
 pub(crate) struct Model {
     /// For each grid, the entries of E_k and R_k at the samples that are rows, as in a [`Block`].
-    pub coefficients: Vec<Vec<f64>>,
+    pub coefficients: Arc<Vec<Vec<f64>>>,
     /// For each track, the nominal motion at the samples that are rows, samples x 2n.
     pub motions: Vec<Vec<f64>>,
 }
@@ -50,47 +56,36 @@ impl Fit<'_> {
     ///
     /// # Errors
     ///
-    /// A robot that is not physical, a motion that runs away.
+    /// A robot that is not physical, a model that is not linear.
     pub fn model(&self, numbers: &[f64], known: Option<&Model>) -> Result<Model> {
         let setup = self.parameters.apply(numbers)?;
+        let system = setup.dynamics.linear_system().ok_or(Error::NotLinear)?;
+        let grids = self.data.grids.iter();
+        let steps: Vec<Steps> = grids.map(|grid| Steps::new(system, grid.times())).collect();
         let coefficients = match known {
-            Some(model) => model.coefficients.clone(),
-            None => self.coefficients(&setup)?,
+            Some(model) => Arc::clone(&model.coefficients),
+            None => Arc::new(self.coefficients(&steps)),
         };
-        Ok(Model { coefficients, motions: self.motions(&setup)? })
+        Ok(Model { coefficients, motions: self.motions(&setup, &steps)? })
     }
 
-    fn coefficients(&self, setup: &Setup) -> Result<Vec<Vec<f64>>> {
-        let system = setup.dynamics.linear_system().ok_or(crate::error::Error::NotLinear)?;
-        let times = self.data.grids.iter().map(AsRef::as_ref);
-        let grids = Grids::new(times, system, self.settings.disturbance)?;
-        let n = self.joints();
-        let blocks = Block::of_grids(grids.as_slice(), &[], n);
-        let width = 2 * n * 6 * n;
-        let thin = |grid: &reachtube_reach::TimeGrid| {
-            let block = &blocks[grids.find(grid)];
-            let samples = block.coefficients.chunks_exact(width).step_by(self.data.stride);
-            samples.flatten().copied().collect()
+    fn coefficients(&self, steps: &[Steps]) -> Vec<Vec<f64>> {
+        let constant = self.settings.disturbance == Disturbance::Constant;
+        let of = |(steps, grid): (&Steps, &Arc<TimeGrid>)| {
+            steps.coefficients(grid.len(), self.data.stride, constant)
         };
-        Ok(self.data.grids.iter().map(|grid| thin(grid)).collect())
+        steps.iter().zip(&self.data.grids).map(of).collect()
     }
 
-    fn motions(&self, setup: &Setup) -> Result<Vec<Vec<f64>>> {
-        let system = setup.dynamics.linear_system();
-        let steps: Vec<Option<Steps>> = self
-            .data
-            .grids
-            .iter()
-            .map(|grid| system.map(|system| Steps::new(system, grid.times())))
-            .collect();
+    fn motions(&self, setup: &Setup, steps: &[Steps]) -> Result<Vec<Vec<f64>>> {
         let origin = &setup.settings.expansion_point.qd;
-        let none = crate::nominal::correction::InputCorrection::none(self.joints());
+        let none = InputCorrection::none(self.joints());
         let correction = setup.correction.as_ref().unwrap_or(&none);
         let (robot, dynamics) = (&setup.robot, &setup.dynamics);
         let corrected = Corrected { robot, dynamics, correction, origin };
         let width = 2 * self.joints();
         let of = |track: &Track| {
-            let states = corrected.motion(&track.case, steps[track.grid].as_ref())?.states;
+            let states = corrected.motion(&track.case, Some(&steps[track.grid]))?.states;
             let rows = states.chunks_exact(width).step_by(self.data.stride);
             Ok(rows.flatten().copied().collect())
         };
@@ -101,7 +96,7 @@ impl Fit<'_> {
     pub fn program(&self, model: &Model, tracks: &[usize]) -> Program<'_> {
         let (stride, states) = (self.data.stride, 2 * self.joints());
         let mut blocks: Vec<Block> = Vec::new();
-        for (grid, coefficients) in self.data.grids.iter().zip(&model.coefficients) {
+        for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
             let times = grid.times().iter().step_by(stride).copied().collect();
             let envelope = Envelope::new(states);
             blocks.push(Block { times, coefficients: coefficients.clone(), envelope });
@@ -136,9 +131,28 @@ impl Fit<'_> {
     ///
     /// As [`Program::solve`].
     pub fn smallest(&self, model: &Model, tracks: &[usize]) -> Result<Smallest> {
+        self.smallest_from(model, tracks, &mut Vec::new())
+    }
+
+    /// Returns the smallest sets as [`smallest`](Self::smallest) does, with the rows `rows` first;
+    /// they become those that nearly decide the sets.
+    ///
+    /// # Errors
+    ///
+    /// As [`Program::solve`].
+    pub fn smallest_from(
+        &self,
+        model: &Model,
+        tracks: &[usize],
+        rows: &mut Vec<RowIndex>,
+    ) -> Result<Smallest> {
         let program = self.program(model, tracks);
-        let solution = program.solve()?;
+        if rows.is_empty() {
+            *rows = program.first_rows();
+        }
+        let solution = program.solve_from(rows)?;
         let sets = program.repaired(&solution.sets);
+        program.keep_close(rows, &sets, CLOSE);
         Ok(Smallest { cost: program.cost(&sets), sets })
     }
 

@@ -3,7 +3,7 @@ use crate::error::{Error, Result};
 use crate::fitting::data::Data;
 use crate::fitting::evaluation::Fit;
 use crate::fitting::group::{FitSettings, Group};
-use crate::fitting::parameters::Parameters;
+use crate::fitting::parameters::{Parameter, Parameters, Quantity};
 use crate::fitting::pull::choose;
 use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fitting::search::Search;
@@ -66,7 +66,12 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let groups = settings
         .groups
         .iter()
-        .map(|group| Ok(GroupCost { group: *group, cost_without: without(&fit, *group, &found.numbers, &all)? }))
+        .map(|group| {
+            Ok(GroupCost {
+                group: *group,
+                cost_without: without(&fit, *group, &found.numbers, &all)?,
+            })
+        })
         .collect::<Result<_>>()?;
     let mut fitted = fit.parameters.apply(&found.numbers)?;
     if fitted.settings.weights == Weights::Spread {
@@ -93,38 +98,40 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
 /// The cost of the sets with one group at its identified values.
 fn without(fit: &Fit, group: Group, numbers: &[f64], tracks: &[usize]) -> Result<f64> {
     let pairs = numbers.iter().zip(&fit.parameters.list);
-    let kept: Vec<f64> =
-        pairs.map(|(x, parameter)| if parameter.group == group { 0.0 } else { *x }).collect();
+    let kept: Vec<f64> = pairs
+        .map(|(x, parameter)| if parameter.quantity.group() == group { 0.0 } else { *x })
+        .collect();
     Ok(fit.smallest(&fit.model(&kept, None)?, tracks)?.cost)
 }
 
-const QUADRANTS: [&str; 4] =
-    ["driving forward", "driving backward", "braking backward", "braking forward"];
+fn coulomb_name(quadrants: [bool; 4]) -> &'static str {
+    match quadrants {
+        [true, false, false, false] => "Coulomb friction, driving forward",
+        [false, true, false, false] => "Coulomb friction, driving backward",
+        [false, false, true, false] => "Coulomb friction, braking backward",
+        [false, false, false, true] => "Coulomb friction, braking forward",
+        _ => "Coulomb friction",
+    }
+}
 
 fn parameters_of(fit: &Fit, numbers: &[f64], setup: &Setup) -> Vec<FittedParameter> {
     let of = |p: usize| {
-        let parameter = &fit.parameters.list[p];
-        let kind = setup.robot.joints()[parameter.joint].kind;
+        let Parameter { quantity, joint, .. } = fit.parameters.list[p];
+        let kind = setup.robot.joints()[joint].kind;
         let (identified, fitted, factor) = fit.parameters.values(p, numbers[p]);
-        let is_one = parameter.quadrants.iter().filter(|is| **is).count() == 1;
-        let at = parameter.quadrants.iter().position(|is| *is).filter(|_| is_one);
-        let unit = match parameter.group {
-            Group::Inertia => kind.inertia_unit().into(),
-            Group::Viscous | Group::WarmUp => format!("{}/({})", kind.force_unit(), kind.velocity_unit()),
-            Group::Cubic => format!("{}/({})³", kind.force_unit(), kind.velocity_unit()),
-            Group::Coulomb => kind.force_unit().into(),
-            Group::Payload => "kg".into(),
-            Group::Links => "1".into(),
+        let of_velocity =
+            |power| format!("{}/({}){power}", kind.force_unit(), kind.velocity_unit());
+        let (name, unit) = match quantity {
+            Quantity::MotorInertia => ("inertia at the motor", kind.inertia_unit().into()),
+            Quantity::Density => ("mass of the link", "kg".into()),
+            Quantity::Viscous => ("viscous friction", of_velocity("")),
+            Quantity::Cubic => ("cubic friction", of_velocity("³")),
+            Quantity::Coulomb(quadrants) => (coulomb_name(quadrants), kind.force_unit().into()),
+            Quantity::WarmUp => ("viscous friction per unit of warmth", of_velocity("")),
+            Quantity::Payload => ("payload", "kg".into()),
         };
-        FittedParameter {
-            group: parameter.group,
-            joint: parameter.joint + 1,
-            quadrant: at.map(|at| QUADRANTS[at].into()),
-            unit,
-            identified,
-            fitted,
-            factor,
-        }
+        let (group, joint) = (quantity.group(), joint + 1);
+        FittedParameter { group, name: name.into(), joint, unit, identified, fitted, factor }
     };
     (0..numbers.len()).map(of).collect()
 }

@@ -4,11 +4,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Group {
-    /// The inertia that each motor feels, by the motor inertia of the joint: the links stay what
-    /// they are, and the mass matrix stays positive definite.
+    /// The motor inertia of each joint and the density of each link: a link that is a body stays
+    /// one, and the mass matrix stays positive definite. Gravity stays what it is.
     Inertia,
-    /// The inertia of each link, by its density.
-    Links,
     /// Viscous friction v1 of each joint.
     Viscous,
     /// Quadratic and cubic viscous friction v2 and v3 of each joint. What the order of the model
@@ -25,22 +23,14 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub const ALL: [Self; 7] = [
-        Self::Inertia,
-        Self::Links,
-        Self::Viscous,
-        Self::Cubic,
-        Self::Coulomb,
-        Self::WarmUp,
-        Self::Payload,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Inertia, Self::Viscous, Self::Cubic, Self::Coulomb, Self::WarmUp, Self::Payload];
 
     /// Returns the name of the group, as users write it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Inertia => "inertia",
-            Self::Links => "links",
             Self::Viscous => "viscous",
             Self::Cubic => "cubic",
             Self::Coulomb => "coulomb",

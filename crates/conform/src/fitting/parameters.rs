@@ -8,14 +8,35 @@ use crate::fitting::group::Group;
 use crate::nominal::correction::{InputCorrection, WarmthLaw};
 use crate::problem::problem::Setup;
 
+/// The number of inertial parameters of a link.
+const INERTIAL: usize = ParameterKind::INERTIAL.len();
+
+/// What a number of a fit changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Quantity {
+    /// The motor inertia: the number is the logarithm of the factor on the inertia that the motor
+    /// feels at the expansion point.
+    MotorInertia,
+    /// The density of a link: the logarithm of a factor.
+    Density,
+    /// v1: the logarithm of a factor.
+    Viscous,
+    /// v2 and v3: a factor minus 1.
+    Cubic,
+    /// Coulomb friction in these quadrants: a factor minus 1.
+    Coulomb([bool; 4]),
+    /// The change of v1 per unit of warmth, in parts of v1.
+    WarmUp,
+    /// A mass, kg.
+    Payload,
+}
+
 /// One number that a fit moves. The number 0 stands for the identified value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Parameter {
-    pub group: Group,
+    pub quantity: Quantity,
     /// The joint, from 0.
     pub joint: usize,
-    /// Which quadrants of Coulomb friction it scales.
-    pub quadrants: [bool; 4],
     /// The lowest and the highest number allowed.
     pub bounds: [f64; 2],
 }
@@ -24,28 +45,49 @@ pub(crate) struct Parameter {
 pub(crate) struct Parameters<'a> {
     setup: &'a Setup,
     law: Option<WarmthLaw>,
-    has: Vec<Group>,
     /// The diagonal of the mass matrix at the expansion point, n, kg m².
     inertia: Vec<f64>,
+    /// The inertial parameters of each link, 10 n.
+    links: Vec<f64>,
     pub list: Vec<Parameter>,
 }
 
+/// Numbers of logarithms lie within this distance from 0: a factor of 10.
+const WIDEST: f64 = LN_10;
+
+/// The least factor on the inertia that a motor feels.
+const LEAST_INERTIA: f64 = 0.1;
+
 /// The largest payload that is tried, kg.
 const LARGEST_PAYLOAD: f64 = 100.0;
+
+impl Quantity {
+    /// Returns the group.
+    pub fn group(self) -> Group {
+        match self {
+            Self::MotorInertia | Self::Density => Group::Inertia,
+            Self::Viscous => Group::Viscous,
+            Self::Cubic => Group::Cubic,
+            Self::Coulomb(_) => Group::Coulomb,
+            Self::WarmUp => Group::WarmUp,
+            Self::Payload => Group::Payload,
+        }
+    }
+}
 
 impl<'a> Parameters<'a> {
     /// Lists the parameters of `groups` that the robot has; `law` measures warmth.
     pub fn new(setup: &'a Setup, groups: &[Group], law: Option<WarmthLaw>) -> Self {
         let robot = &setup.robot;
-        let n = robot.joint_count();
         let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
-        let inertia: Vec<f64> = (0..n).map(|j| mass_matrix[(j, j)]).collect();
-        let has: Vec<Group> = Group::ALL.into_iter().filter(|g| groups.contains(g)).collect();
-        let mut parameters = Self { setup, law, has, inertia, list: Vec::new() };
-        for group in parameters.has.clone() {
-            for joint in 0..n {
+        let inertia = mass_matrix.diagonal().iter().copied().collect();
+        let (links, list) = (robot.inertial_parameters(), Vec::new());
+        let mut parameters = Self { setup, law, inertia, links, list };
+        for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
+            for joint in 0..robot.joint_count() {
                 let of_joint = parameters.of_joint(group, joint);
-                parameters.list.extend(of_joint);
+                let make = |(quantity, bounds)| Parameter { quantity, joint, bounds };
+                parameters.list.extend(of_joint.into_iter().map(make));
             }
         }
         parameters
@@ -56,82 +98,78 @@ impl<'a> Parameters<'a> {
         self.list.len()
     }
 
-    fn of_joint(&self, group: Group, joint: usize) -> Vec<Parameter> {
-        let friction = &self.setup.robot.joints()[joint].friction;
-        let armature = self.setup.robot.joints()[joint].armature;
-        let make = |low: f64, high: f64| Parameter {
-            group,
-            joint,
-            quadrants: [true; 4],
-            bounds: [low, high],
-        };
+    fn of_joint(&self, group: Group, joint: usize) -> Vec<(Quantity, [f64; 2])> {
+        let drive = &self.setup.robot.joints()[joint];
+        let viscous = &drive.friction.viscous;
+        let is_last = joint + 1 == self.inertia.len();
+        let if_any =
+            |any: bool, quantity, bounds| if any { vec![(quantity, bounds)] } else { Vec::new() };
         match group {
             Group::Inertia => {
                 // The motor inertia must not become negative.
-                let least = (1.0 - armature / self.inertia[joint]).max(0.1).ln();
-                vec![make(least.min(0.0), LN_10)]
+                let rest = (1.0 - drive.armature / self.inertia[joint]).max(LEAST_INERTIA);
+                let motor = (Quantity::MotorInertia, [rest.ln().min(0.0), WIDEST]);
+                let link = self.link(joint).iter().any(|x| *x != 0.0);
+                let density = if_any(link, Quantity::Density, [-WIDEST, WIDEST]);
+                [vec![motor], density].concat()
             }
-            Group::Links if self.setup.robot.inertial_parameters()[10*joint..10*joint+10].iter().any(|x| *x != 0.0) => vec![make(-LN_10, LN_10)],
-            Group::Viscous if friction.viscous.v1 > 0.0 => vec![make(-LN_10, LN_10)],
-            Group::Cubic if friction.viscous.v2 != 0.0 || friction.viscous.v3 != 0.0 => {
-                vec![make(-1.0, 5.0)]
+            Group::Viscous => if_any(viscous.v1 > 0.0, Quantity::Viscous, [-WIDEST, WIDEST]),
+            Group::Cubic => {
+                if_any(viscous.v2 != 0.0 || viscous.v3 != 0.0, Quantity::Cubic, [-1.0, 5.0])
             }
             Group::Coulomb => self.coulomb(joint),
-            Group::WarmUp if friction.viscous.v1 > 0.0 => vec![make(-0.9, 2.0)],
-            Group::Payload if joint + 1 == self.setup.robot.joint_count() => {
-                vec![make(0.0, LARGEST_PAYLOAD)]
-            }
-            Group::Links | Group::Viscous | Group::Cubic | Group::WarmUp | Group::Payload => Vec::new(),
+            Group::WarmUp => if_any(viscous.v1 > 0.0, Quantity::WarmUp, [-0.9, 2.0]),
+            Group::Payload => if_any(is_last, Quantity::Payload, [0.0, LARGEST_PAYLOAD]),
         }
     }
 
     /// One parameter per quadrant where the quadrants differ, one for all where they do not, none
     /// without Coulomb friction.
-    fn coulomb(&self, joint: usize) -> Vec<Parameter> {
+    fn coulomb(&self, joint: usize) -> Vec<(Quantity, [f64; 2])> {
         let a = self.setup.robot.description().joints[joint].friction.coulomb;
-        let whole =
-            Parameter { group: Group::Coulomb, joint, quadrants: [true; 4], bounds: [-1.0, 5.0] };
         let is_plain = a[1..].iter().step_by(2).all(|slope| *slope == 0.0)
             && a.iter().step_by(2).all(|offset| offset.abs() == a[0].abs());
-        if a == [0.0; 8] {
+        let quadrants: Vec<[bool; 4]> = if a == [0.0; 8] {
             Vec::new()
         } else if is_plain {
-            vec![whole]
+            vec![[true; 4]]
         } else {
-            let of = |at: usize| Parameter { quadrants: [0, 1, 2, 3].map(|q| q == at), ..whole };
-            (0..4).map(of).collect()
-        }
+            (0..4).map(|at| [0, 1, 2, 3].map(|quadrant| quadrant == at)).collect()
+        };
+        quadrants.into_iter().map(|of| (Quantity::Coulomb(of), [-1.0, 5.0])).collect()
+    }
+
+    fn link(&self, joint: usize) -> &[f64] {
+        &self.links[INERTIAL * joint..INERTIAL * (joint + 1)]
     }
 
     /// Returns whether parameter `p` changes A and B, and not only the nominal motions.
     pub fn changes_model(&self, p: usize) -> bool {
-        match self.list[p].group {
-            Group::Inertia | Group::Links | Group::Viscous | Group::Payload => true,
-            Group::Cubic => self.setup.settings.abstraction.order >= 2,
-            Group::Coulomb | Group::WarmUp => false,
+        match self.list[p].quantity {
+            Quantity::Cubic => self.setup.settings.abstraction.order >= 2,
+            Quantity::Coulomb(_) | Quantity::WarmUp => false,
+            _ => true,
         }
     }
 
-    /// Returns the identified and the fitted value of parameter `p`, and what it multiplies the
-    /// identified value by where it is a factor.
+    /// Returns the identified and the fitted value of parameter `p`, and what multiplies the
+    /// identified value where that is how it changes.
     pub fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {
-        let Parameter { group, joint, quadrants, .. } = self.list[p];
+        let Parameter { quantity, joint, .. } = self.list[p];
         let viscous = &self.setup.robot.joints()[joint].friction.viscous;
-        match group {
-            Group::Inertia => {
-                let identified = self.inertia[joint];
-                (identified, identified * number.exp(), Some(number.exp()))
-            }
-            Group::Links => (1.0, number.exp(), Some(number.exp())),
-            Group::Viscous => (viscous.v1, viscous.v1 * number.exp(), Some(number.exp())),
-            Group::Cubic => (viscous.v3, viscous.v3 * (1.0 + number), Some(1.0 + number)),
-            Group::Coulomb => {
+        let times = |identified: f64, factor: f64| (identified, identified * factor, Some(factor));
+        match quantity {
+            Quantity::MotorInertia => times(self.inertia[joint], number.exp()),
+            Quantity::Density => times(self.link(joint)[0], number.exp()),
+            Quantity::Viscous => times(viscous.v1, number.exp()),
+            Quantity::Cubic => times(viscous.v3, 1.0 + number),
+            Quantity::Coulomb(quadrants) => {
                 let a = self.setup.robot.description().joints[joint].friction.coulomb;
                 let at = quadrants.iter().position(|is| *is).unwrap_or(0);
-                (a[2 * at], a[2 * at] * (1.0 + number), Some(1.0 + number))
+                times(a[2 * at], 1.0 + number)
             }
-            Group::WarmUp => (0.0, viscous.v1 * number, None),
-            Group::Payload => (0.0, number, None),
+            Quantity::WarmUp => (0.0, viscous.v1 * number, None),
+            Quantity::Payload => (0.0, number, None),
         }
     }
 
@@ -143,53 +181,53 @@ impl<'a> Parameters<'a> {
     pub fn apply(&self, numbers: &[f64]) -> Result<Setup> {
         let Setup { robot, settings, nominal_starts, .. } = self.setup;
         let mut correction = InputCorrection::none(robot.joint_count());
-        correction.warmth = self.law.clone().filter(|_| self.has.contains(&Group::WarmUp));
-        let (mut changed, mut values) = (Vec::new(), Vec::new());
-        let links = robot.inertial_parameters();
+        correction.warmth.clone_from(&self.law);
+        let (mut changed, mut values, mut links) = (Vec::new(), Vec::new(), self.links.clone());
         let mut change = |joint, kind, value| {
             changed.push(reachtube_robot::Parameter { joint, kind });
             values.push(value);
         };
         for (parameter, &number) in self.list.iter().zip(numbers) {
-            let Parameter { group, joint, quadrants, .. } = *parameter;
-            let identified = &robot.joints()[joint];
-            let viscous = &identified.friction.viscous;
+            let Parameter { quantity, joint, .. } = *parameter;
+            let drive = &robot.joints()[joint];
+            let viscous = &drive.friction.viscous;
             let corrected = &mut correction.joints[joint];
-            match group {
-                Group::Inertia => {
-                    let armature = identified.armature + self.inertia[joint] * number.exp_m1();
+            match quantity {
+                Quantity::MotorInertia => {
+                    let armature = drive.armature + self.inertia[joint] * number.exp_m1();
                     change(joint, ParameterKind::MotorInertia, armature.max(0.0));
                 }
-                Group::Links => {
-                    let link = &links[10 * joint..10 * joint + 10];
-                    for (kind, value) in ParameterKind::INERTIAL.into_iter().zip(link) {
-                        change(joint, kind, value * number.exp());
-                    }
+                Quantity::Density => {
+                    let link = &mut links[INERTIAL * joint..INERTIAL * (joint + 1)];
+                    link.iter_mut().for_each(|value| *value *= number.exp());
                 }
-                Group::Viscous => {
+                Quantity::Viscous => {
                     change(joint, ParameterKind::Viscous1, viscous.v1 * number.exp());
                 }
-                Group::Cubic => {
+                Quantity::Cubic => {
                     let [v2, v3] = [viscous.v2, viscous.v3].map(|v| v * (1.0 + number));
                     change(joint, ParameterKind::Viscous2, v2);
                     change(joint, ParameterKind::Viscous3, v3);
-                    let left_out = self.left_out(joint, v2, v3);
-                    [corrected.quadratic, corrected.cubic] = left_out;
+                    [corrected.quadratic, corrected.cubic] = self.left_out(joint, v2, v3);
                 }
-                Group::Coulomb => {
+                Quantity::Coulomb(quadrants) => {
                     let parts = corrected.coulomb.iter_mut().zip(quadrants);
                     parts.filter(|(_, is)| *is).for_each(|(part, _)| *part = number);
                 }
-                Group::WarmUp => corrected.warm_up = viscous.v1 * number,
-                Group::Payload => {
+                Quantity::WarmUp => corrected.warm_up = viscous.v1 * number,
+                Quantity::Payload => {
                     correction.payload = number;
-                    let mass = robot.description().joints[joint].mass + number;
-                    change(joint, ParameterKind::Mass, mass);
+                    links[INERTIAL * joint] += number;
                 }
             }
         }
+        for (at, (new, old)) in links.iter().zip(&self.links).enumerate() {
+            if new != old {
+                change(at / INERTIAL, ParameterKind::INERTIAL[at % INERTIAL], *new);
+            }
+        }
         let mut description = robot.description().with_values(&changed, &values)?;
-        if correction.payload != 0.0 || self.has.contains(&Group::Links) {
+        if links != self.links {
             keep_weight(robot, &mut description);
         }
         let robot = Robot::from_description(&description)?;
@@ -214,7 +252,7 @@ impl<'a> Parameters<'a> {
 /// in the recorded inputs.
 fn keep_weight(robot: &Robot, description: &mut RobotDescription) {
     let links = robot.inertial_parameters();
-    for (joint, link) in description.joints.iter_mut().zip(links.chunks_exact(10)) {
+    for (joint, link) in description.joints.iter_mut().zip(links.chunks_exact(INERTIAL)) {
         let weight = GravityMoments { mass: link[0], first_moment: [link[1], link[2], link[3]] };
         joint.gravity_moments.get_or_insert(weight);
     }

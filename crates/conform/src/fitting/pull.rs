@@ -34,11 +34,8 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
     let costs: Vec<Vec<f64>> =
         (0..motions).into_par_iter().map(of_motion).collect::<Result<_>>()?;
     let mean = |at: usize| costs.iter().map(|of| of[at]).sum::<f64>() / motions as f64;
-    let tried: Vec<PullCost> = pulls
-        .iter()
-        .enumerate()
-        .map(|(at, &pull)| PullCost { pull, cost: mean(at) })
-        .collect();
+    let tried: Vec<PullCost> =
+        pulls.iter().enumerate().map(|(at, &pull)| PullCost { pull, cost: mean(at) }).collect();
     let best = (0..pulls.len()).min_by(|a, b| mean(*a).total_cmp(&mean(*b))).unwrap_or(0);
     let left_out = fit.data.motions.iter().zip(&costs);
     let left_out =

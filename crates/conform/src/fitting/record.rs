@@ -62,12 +62,10 @@ pub struct PullCost {
 pub struct FittedParameter {
     /// Its group.
     pub group: Group,
+    /// What it is.
+    pub name: String,
     /// The joint, from 1.
     pub joint: usize,
-    /// The quadrant of Coulomb friction, where it is about one: driving forward, driving backward,
-    /// braking backward, braking forward.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub quadrant: Option<String>,
     /// The unit of the values.
     pub unit: String,
     /// The identified value.

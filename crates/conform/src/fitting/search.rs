@@ -2,6 +2,7 @@ use crate::error::Result;
 use crate::fitting::evaluation::{Fit, Model, Smallest};
 use crate::fitting::slopes::slopes;
 use crate::fitting::step::{Step, StepRow};
+use crate::linear::program::RowIndex;
 
 /// The first trust region: numbers may move by this much.
 const FIRST_TRUST: f64 = 0.5;
@@ -48,8 +49,9 @@ impl Search<'_> {
     ///
     /// When the first program is not solved.
     pub fn run(&self, start: &[f64]) -> Result<Optimum> {
-        let mut point = self.point(start.to_vec())?;
-        let (mut trust, mut steps, mut rows) = (FIRST_TRUST, 0, Vec::<StepRow>::new());
+        let (mut rows, mut own_rows) = (Vec::<StepRow>::new(), Vec::new());
+        let mut point = self.point(start.to_vec(), &mut own_rows)?;
+        let (mut trust, mut steps) = (FIRST_TRUST, 0);
         'search: for _ in 0..STEPS {
             let slopes = slopes(self.fit, &point.numbers, &point.model, &point.smallest)?;
             let program = self.fit.program(&point.model, &self.tracks);
@@ -70,8 +72,9 @@ impl Search<'_> {
                     break 'search;
                 }
                 let moved = largest_move(&answer.numbers, &point.numbers);
-                let next = self.point(answer.numbers).ok();
-                let gained = next.as_ref().map_or(-1.0, |next| self.value(&point) - self.value(next));
+                let next = self.point(answer.numbers, &mut own_rows).ok();
+                let gained =
+                    next.as_ref().map_or(-1.0, |next| self.value(&point) - self.value(next));
                 if let Some(next) = next.filter(|_| gained > 0.1 * promised) {
                     if gained > 0.7 * promised && moved > 0.9 * trust {
                         trust *= 2.0;
@@ -93,9 +96,9 @@ impl Search<'_> {
         Ok(Optimum { numbers: point.numbers, cost: point.smallest.cost, steps })
     }
 
-    fn point(&self, numbers: Vec<f64>) -> Result<Point> {
+    fn point(&self, numbers: Vec<f64>, rows: &mut Vec<RowIndex>) -> Result<Point> {
         let model = self.fit.model(&numbers, None)?;
-        let smallest = self.fit.smallest(&model, &self.tracks)?;
+        let smallest = self.fit.smallest_from(&model, &self.tracks, rows)?;
         Ok(Point { numbers, model, smallest })
     }
 

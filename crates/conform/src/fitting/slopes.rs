@@ -51,7 +51,7 @@ pub(crate) fn slopes(
             rows.map(|(other, here)| reach_slope(other, here, &centre, &radius, step)).collect()
         };
         let reach = changes
-            .then(|| other.coefficients.iter().zip(&model.coefficients).map(rows).collect());
+            .then(|| other.coefficients.iter().zip(model.coefficients.iter()).map(rows).collect());
         Ok(Slope { motions, reach })
     };
     (0..fit.parameters.len()).into_par_iter().map(of).collect()

@@ -30,6 +30,9 @@ const WINDOWS: usize = 24;
 /// Rounds of row generation at most.
 const ROUNDS: usize = 25;
 
+/// Rows within this part of the largest deviation are kept for the next step.
+const CLOSE: f64 = 0.02;
+
 /// The weight of the pull at least, in parts of the cost: without any, the program has no unique
 /// answer where a parameter does nothing.
 const LEAST_PULL: f64 = 1e-6;
@@ -291,7 +294,7 @@ impl Step<'_> {
     /// Keeps the rows that nearly decide the answer, for the next step.
     fn keep_tight(&self, unknowns: &[f64], rows: &mut Vec<StepRow>) {
         let (layout, moved) = (self.layout(), self.moved(unknowns));
-        let limit = -0.05 * self.program.scale();
+        let limit = -CLOSE * self.program.scale();
         rows.retain(|row| self.excess(*row, &layout, unknowns, &moved) > limit);
     }
 }

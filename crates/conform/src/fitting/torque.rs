@@ -27,19 +27,17 @@ pub(super) fn residual(setup: &Setup, tracks: &[Track]) -> Result<Vec<f64>> {
     let (mut sums, mut count) = (vec![0.0; n], 0.0f64);
     for track in tracks {
         let (case, times) = (&track.case, track.case.grid.times());
-        let middle = |k: usize, i: usize| {
-            0.5 * (case.measured.upper(k, i) + case.measured.lower(k, i))
-        };
+        let middle =
+            |k: usize, i: usize| 0.5 * (case.measured.upper(k, i) + case.measured.lower(k, i));
         let reach = times.partition_point(|t| *t <= SPAN).max(1);
         for k in reach..case.measured.len().saturating_sub(reach) {
             let of = |from: usize| -> Vec<f64> { (from..from + n).map(|i| middle(k, i)).collect() };
             let (q, qd) = (of(0), of(n));
             let span = times[k + reach] - times[k - reach];
             let mut u = case.inputs[k * n..(k + 1) * n].to_vec();
-            corrector.take_off(&q, &qd, case.warmth, &mut u);
-            let qdd: Vec<f64> = (n..2 * n)
-                .map(|i| (middle(k + reach, i) - middle(k - reach, i)) / span)
-                .collect();
+            corrector.take_off(&q, &qd, case.place, &mut u);
+            let qdd: Vec<f64> =
+                (n..2 * n).map(|i| (middle(k + reach, i) - middle(k - reach, i)) / span).collect();
             let needed = setup.robot.mass_matrix(&q) * DVector::from_vec(qdd)
                 + setup.robot.coriolis_torque(&q, &qd)
                 + setup.robot.viscous_torque(&qd);

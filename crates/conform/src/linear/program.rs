@@ -146,16 +146,25 @@ impl<'a> Program<'a> {
     ///
     /// [`Error::Program`] when the solver does not reach an optimum.
     pub fn solve(&self) -> Result<Solution> {
-        let mut indices = self.first_rows();
+        self.solve_from(&mut self.first_rows())
+    }
+
+    /// Solves the program as [`solve`](Self::solve) does, with the rows `indices` first; takes
+    /// those that were added.
+    ///
+    /// # Errors
+    ///
+    /// As [`solve`](Self::solve).
+    pub(crate) fn solve_from(&self, indices: &mut Vec<RowIndex>) -> Result<Solution> {
         let mut best: Option<(f64, Solution)> = None;
         let mut scalings = 0;
         for round in 1..=ROUNDS {
             let near = best.as_ref().map(|(_, solution)| &solution.sets);
-            let (candidates, lower_bound) = match self.solve_rows(&indices, near) {
+            let (candidates, lower_bound) = match self.solve_rows(indices, near) {
                 Err(_) if best.is_some() => break,
                 answer => answer?,
             };
-            let added = self.violated(&candidates[0], &indices);
+            let added = self.violated(&candidates[0], indices);
             if !added.is_empty() {
                 indices.extend(added);
                 continue;
@@ -187,7 +196,7 @@ impl<'a> Program<'a> {
     }
 
     /// The rows of every `stride`-th sample.
-    pub(super) fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
+    pub(crate) fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
         let states = self.settings.states.rows(self.joints);
         self.blocks.iter().enumerate().flat_map(move |(b, block)| {
             (0..block.envelope.len()).step_by(stride).flat_map(move |k| {
@@ -196,7 +205,8 @@ impl<'a> Program<'a> {
         })
     }
 
-    fn first_rows(&self) -> Vec<RowIndex> {
+    /// Returns the rows of a few samples.
+    pub(crate) fn first_rows(&self) -> Vec<RowIndex> {
         let longest = self.blocks.iter().map(|block| block.envelope.len()).max().unwrap_or(0);
         self.indices((longest / 8).max(1)).collect()
     }
@@ -352,6 +362,12 @@ impl<'a> Program<'a> {
             self.excess(*index, &unknowns) >= -TIGHT * radius
         };
         self.indices(1).filter(touches).collect()
+    }
+
+    /// Keeps those of some rows that come within `part` of the largest |d| of the sets' reach.
+    pub(crate) fn keep_close(&self, rows: &mut Vec<RowIndex>, sets: &UncertaintySets, part: f64) {
+        let unknowns = self.unknowns(sets);
+        rows.retain(|row| self.excess(*row, &unknowns) > -part * self.scale);
     }
 
     /// Returns the largest |d| among the rows.

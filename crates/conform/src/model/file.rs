@@ -15,8 +15,8 @@ use sha2::{Digest, Sha256};
 use crate::conformance::Conformance;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
-use crate::found::SearchSummary;
 use crate::fitting::record::FitRecord;
+use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained, SuiteRecord};
 use crate::nominal::correction::InputCorrection;
 use crate::optimality::LARGEST_GAP;
@@ -338,7 +338,13 @@ impl Model {
         }
         let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
         let nominal_starts = self.data.suites.iter().filter_map(start).collect();
-        Ok(Setup { robot, dynamics, settings: self.settings.clone(), nominal_starts, correction: self.correction.clone() })
+        Ok(Setup {
+            robot,
+            dynamics,
+            settings: self.settings.clone(),
+            nominal_starts,
+            correction: self.correction.clone(),
+        })
     }
 
     /// Returns the model bit by bit as the file has it, or what speaks against it.

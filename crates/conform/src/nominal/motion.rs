@@ -42,7 +42,7 @@ impl Corrected<'_> {
         let mut corrector = Corrector::new(self.robot, self.correction, self.origin)?;
         let correct = |x: &[f64], u: &mut [f64]| {
             let (q, qd) = x.split_at(u.len());
-            corrector.take_off(q, &qd[..u.len()], case.warmth, u);
+            corrector.take_off(q, &qd[..u.len()], case.place, u);
         };
         match steps {
             Some(steps) => Ok(linear(case, steps, correct)),

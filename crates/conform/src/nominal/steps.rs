@@ -47,6 +47,48 @@ impl Steps {
             *next = state + input + rest[self.inputs];
         }
     }
+
+    /// Returns the entries of E_k and R_k of a linear program at every `stride`-th sample, for
+    /// `samples` samples: as a [`Block`](crate::Block) has them, but rounded to nearest, and exact
+    /// for spans of one length only. A disturbance that is measurable counts as one that is
+    /// constant over samples.
+    #[must_use]
+    pub fn coefficients(&self, samples: usize, stride: usize, constant: bool) -> Vec<f64> {
+        let (states, inputs) = (self.states, self.inputs);
+        let mut coefficients = Vec::with_capacity(samples.div_ceil(stride) * states * 6 * inputs);
+        let mut exponential = DMatrix::<f64>::identity(states, states);
+        let mut integral = DMatrix::<f64>::zeros(states, inputs);
+        let mut gains = integral.clone();
+        let maps: Vec<DMatrix<f64>> = self.maps.iter().map(|map| self.matrix(map)).collect();
+        let mut moved = DMatrix::zeros(states, states + inputs);
+        for k in 0..samples {
+            if k % stride == 0 {
+                for i in 0..states {
+                    let (e, g) = (exponential.row(i), integral.row(i));
+                    coefficients.extend(e.iter().chain(g.iter()));
+                    coefficients.extend(e.iter().map(|x| x.abs()));
+                    match constant {
+                        true => coefficients.extend(g.iter().map(|x| x.abs())),
+                        false => coefficients.extend(gains.row(i).iter()),
+                    }
+                }
+            }
+            if k + 1 < samples {
+                exponential.mul_to(&maps[self.of_span[k]], &mut moved);
+                integral += moved.columns(states, inputs);
+                gains.zip_apply(&moved.columns(states, inputs), |sum, x| *sum += x.abs());
+                exponential.copy_from(&moved.columns(0, states));
+            }
+        }
+        coefficients
+    }
+
+    /// The map (x, u) -> x of one span, 2n x 3n.
+    fn matrix(&self, map: &[f64]) -> DMatrix<f64> {
+        let width = self.states + self.inputs;
+        let rows = map.chunks_exact(width + 1).flat_map(|row| row[..width].iter().copied());
+        DMatrix::from_row_iterator(self.states, width, rows)
+    }
 }
 
 /// The map (x, u, 1) -> x(h) of ẋ = A x + B u + d.

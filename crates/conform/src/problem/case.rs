@@ -24,8 +24,8 @@ pub struct Case {
     pub start: Vec<f64>,
     /// The measured states.
     pub measured: Arc<Envelope>,
-    /// The warmth of the joints, where friction depends on it.
-    pub warmth: f64,
+    /// The run's place in the order of its suite, from 1; 1 where the case is a suite.
+    pub place: usize,
 }
 
 impl Case {

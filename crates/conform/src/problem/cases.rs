@@ -70,7 +70,7 @@ impl Problem {
                 inputs: Arc::clone(&input.inputs),
                 start: suite.nominal_start.clone(),
                 measured: Arc::clone(&suite.envelope),
-                warmth: 0.0,
+                place: 1,
             })?]),
             None => {
                 let own = |(place, summary): (usize, &RunSummary)| {
@@ -101,9 +101,7 @@ impl Problem {
         };
         let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
         let measured = Arc::new(measured);
-        let law = self.setup().correction.as_ref().and_then(|c| c.warmth.as_ref());
-        let warmth = law.map_or(0.0, |law| law.warmth(place));
-        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, warmth })
+        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, place })
     }
 
     /// Takes the correction of the problem's model off the inputs of a case.
