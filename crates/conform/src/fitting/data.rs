@@ -1,4 +1,4 @@
-//! The recordings as a fit needs them: cases with their recorded inputs, at some of their samples.
+//! The recordings as a fit needs them: cases with their recorded inputs.
 
 use std::sync::Arc;
 
@@ -8,8 +8,8 @@ use crate::error::Result;
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 
-/// Rows in one state are thinned to about this number, samples of all cases together.
-const MOST_SAMPLES: usize = 16_000;
+/// While parameters are moved, samples are thinned to about this number, of all cases together.
+const MOST_SAMPLES: usize = 6_000;
 
 /// The recordings of a problem.
 pub(crate) struct Data {
@@ -18,8 +18,6 @@ pub(crate) struct Data {
     pub grids: Vec<Arc<TimeGrid>>,
     /// The cases.
     pub tracks: Vec<Track>,
-    /// Every how many samples rows are taken.
-    pub stride: usize,
     /// The names of the motions.
     pub motions: Vec<String>,
 }
@@ -41,6 +39,12 @@ impl Track {
 }
 
 impl Data {
+    /// Returns every how many samples rows are taken while parameters are moved.
+    pub fn stride(&self) -> usize {
+        let samples: usize = self.tracks.iter().map(|track| track.case.measured.len()).sum();
+        samples.div_ceil(MOST_SAMPLES).max(1)
+    }
+
     /// Takes the cases of a problem; each run is a case when `by_run`.
     ///
     /// # Errors
@@ -67,12 +71,11 @@ impl Data {
                 grids.push(grid);
             }
         }
-        let samples: usize = cases.iter().map(|case| case.measured.len()).sum();
         let track = |(case, motion): (Case, usize)| {
             let grid = grids.iter().position(|grid| case.grid.is_prefix_of(grid));
             Track { grid: grid.expect("every grid is in the list"), case, motion }
         };
         let tracks = cases.into_iter().zip(motion_of).map(track).collect();
-        Ok(Self { tracks, stride: samples.div_ceil(MOST_SAMPLES).max(1), grids, motions })
+        Ok(Self { tracks, grids, motions })
     }
 }

@@ -22,10 +22,16 @@ use crate::settings::Settings;
 /// Rows within this part of the largest deviation are kept for the next program.
 const CLOSE: f64 = 0.02;
 
+/// Tracks of a suite that are enough to compare weights of the pull by.
+const FEW: usize = 4;
+
 /// What does not change during a fit.
+#[derive(Clone)]
 pub(crate) struct Fit<'a> {
-    pub parameters: Parameters<'a>,
-    pub data: Data,
+    pub parameters: &'a Parameters<'a>,
+    pub data: &'a Data,
+    /// Every how many samples rows are taken.
+    pub stride: usize,
     /// The weights of the states, s, 2n.
     pub weights: Vec<f64>,
     pub settings: &'a Settings,
@@ -72,7 +78,7 @@ impl Fit<'_> {
     fn coefficients(&self, steps: &[Steps]) -> Vec<Vec<f64>> {
         let constant = self.settings.disturbance == Disturbance::Constant;
         let of = |(steps, grid): (&Steps, &Arc<TimeGrid>)| {
-            steps.coefficients(grid.len(), self.data.stride, constant)
+            steps.coefficients(grid.len(), self.stride, constant)
         };
         steps.iter().zip(&self.data.grids).map(of).collect()
     }
@@ -86,7 +92,7 @@ impl Fit<'_> {
         let width = 2 * self.joints();
         let of = |track: &Track| {
             let states = corrected.motion(&track.case, Some(&steps[track.grid]))?.states;
-            let rows = states.chunks_exact(width).step_by(self.data.stride);
+            let rows = states.chunks_exact(width).step_by(self.stride);
             Ok(rows.flatten().copied().collect())
         };
         self.data.tracks.par_iter().map(of).collect()
@@ -94,7 +100,7 @@ impl Fit<'_> {
 
     /// Returns the program of `model` for the tracks named.
     pub fn program(&self, model: &Model, tracks: &[usize]) -> Program<'_> {
-        let (stride, states) = (self.data.stride, 2 * self.joints());
+        let (stride, states) = (self.stride, 2 * self.joints());
         let mut blocks: Vec<Block> = Vec::new();
         for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
             let times = grid.times().iter().step_by(stride).copied().collect();
@@ -154,6 +160,29 @@ impl Fit<'_> {
         let sets = program.repaired(&solution.sets);
         program.keep_close(rows, &sets, CLOSE);
         Ok(Smallest { cost: program.cost(&sets), sets })
+    }
+
+    /// Returns the cost of the smallest sets of all tracks at every sample.
+    ///
+    /// # Errors
+    ///
+    /// As [`model`](Self::model) and [`Program::solve`].
+    pub fn whole_cost(&self, numbers: &[f64]) -> Result<f64> {
+        let whole = Self { stride: 1, ..self.clone() };
+        Ok(whole.smallest(&whole.model(numbers, None)?, &whole.tracks(None))?.cost)
+    }
+
+    /// Returns a few tracks of each suite, from the first to the last, of all motions but `left_out`.
+    pub fn few_tracks(&self, left_out: Option<usize>) -> Vec<usize> {
+        let suite = |t: &usize| self.data.tracks[*t].case.suite;
+        let all = self.tracks(left_out);
+        let of_suite = |tracks: &[usize]| {
+            let last = tracks.len() - 1;
+            let mut few: Vec<usize> = (0..FEW).map(|i| tracks[i * last / (FEW - 1)]).collect();
+            few.dedup();
+            few
+        };
+        all.chunk_by(|a, b| suite(a) == suite(b)).flat_map(of_suite).collect()
     }
 
     /// Returns the tracks of all motions but `left_out`.

@@ -1,17 +1,21 @@
+use rayon::prelude::*;
+use reachtube_abstraction::Abstraction;
+
+use crate::dynamics::Dynamics;
 use crate::envelope::Envelope;
 use crate::error::{Error, Result};
 use crate::fitting::data::Data;
 use crate::fitting::evaluation::Fit;
 use crate::fitting::group::{FitSettings, Group};
 use crate::fitting::parameters::{Parameter, Parameters, Quantity};
-use crate::fitting::pull::choose;
+use crate::fitting::pull::{PullChoice, choose};
 use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fitting::search::Search;
+use crate::fitting::search::{Effort, Search};
 use crate::fitting::torque;
 use crate::nominal::correction::WarmthLaw;
 use crate::problem::problem::{Problem, Setup};
 use crate::progress::Progress;
-use crate::settings::Weights;
+use crate::settings::{Method, Weights};
 use crate::weights::state_weights;
 
 /// What a fit found.
@@ -23,85 +27,113 @@ pub struct Fitted {
     pub record: FitRecord,
 }
 
-/// Finds the parameters of the nominal model for which the sets of a linear model cost least.
+/// Finds the parameters of the nominal model for which its sets cost least.
 ///
 /// The answer is a model, not a claim: [`conform`](crate::conform) finds and proves its sets as it
-/// does for any other.
+/// does for any other. A model that is not linear is given the parameters that suit the linear
+/// model of the same robot about the same point; the costs of the record are those of the linear
+/// model.
 ///
 /// # Errors
 ///
-/// [`Error::Fit`] with fewer than two motions, without any parameter, and for a model that is not
-/// linear; as [`Problem::run`] and [`conform`](crate::conform).
+/// [`Error::Fit`] with fewer than two motions, without any parameter, and where the fitted robot is
+/// not physical; as [`Problem::run`] and [`conform`](crate::conform).
 pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
     let refused = |why: &str| Err(Error::Fit(why.into()));
-    if problem.dynamics().linear_system().is_none() {
-        return refused("only linear models can be fitted yet; give --order 1");
+    if settings.pull.is_some_and(|pull| !(0.0..=1.0).contains(&pull)) {
+        return refused("the weight of the pull must be a number from 0 to 1");
     }
+    let linear;
+    let steering = match problem.dynamics().linear_system() {
+        Some(_) => problem,
+        None => {
+            linear = problem.with_setup(linear_setup(problem.setup())?);
+            &linear
+        }
+    };
+    let (setup, joints) = (steering.setup(), steering.joints());
     let by_run = settings.groups.contains(&Group::WarmUp);
-    let data = Data::new(problem, by_run)?;
+    let data = Data::new(steering, by_run)?;
     if data.motions.len() < 2 {
         return refused(
             "there is only one motion, and a model that is chosen for one motion holds for no \
              other; record a second motion, or name the motions in the column motion of runs.csv",
         );
     }
-    let (setup, joints) = (problem.setup(), problem.joints());
     let law = by_run.then_some(WarmthLaw::Runs);
-    let parameters = Parameters::new(setup, &settings.groups, law);
+    let parameters = Parameters::new(setup, &settings.groups, law.clone());
     if parameters.len() == 0 {
         return refused("the robot has none of the parameters of these groups");
     }
-    let envelopes: Vec<&Envelope> = problem.deviations()?.iter().map(|d| &d.envelope).collect();
-    let weights = state_weights(&problem.settings().weights, &envelopes, joints);
-    let fit =
-        Fit { parameters, data, weights, settings: problem.settings(), limits: problem.limits() };
+    let envelopes: Vec<&Envelope> = steering.deviations()?.iter().map(|d| &d.envelope).collect();
+    let fit = Fit {
+        parameters: &parameters,
+        data: &data,
+        stride: data.stride(),
+        weights: state_weights(&setup.settings.weights, &envelopes, joints),
+        settings: &setup.settings,
+        limits: steering.limits(),
+    };
     let choice = choose(&fit, settings.pull)?;
-    progress.finished(&format!("the pull toward the identified values: {}", choice.pull));
-    let all = fit.tracks(None);
-    let start = vec![0.0; fit.parameters.len()];
-    let identified = fit.smallest(&fit.model(&start, None)?, &all)?.cost;
-    let pull = choice.pull * identified;
-    let found = Search { fit: &fit, tracks: all.clone(), pull }.run(&start)?;
-    progress.finished(&format!("{} steps of the fit", found.steps));
-    let groups = settings
-        .groups
-        .iter()
-        .map(|group| {
-            Ok(GroupCost {
-                group: *group,
-                cost_without: without(&fit, *group, &found.numbers, &all)?,
-            })
-        })
-        .collect::<Result<_>>()?;
-    let mut fitted = fit.parameters.apply(&found.numbers)?;
+    progress.finished(&format!("the weight of the pull is {}", choice.pull));
+    let (start, tracks) = (vec![0.0; parameters.len()], fit.tracks(None));
+    let pull = choice.pull * fit.smallest(&fit.model(&start, None)?, &tracks)?.cost;
+    let found = Search { fit: &fit, tracks, pull, effort: Effort::WHOLE }.run(&start)?;
+    progress.finished(&format!("the fit took {} steps", found.steps));
+    // The numbers, given to the model that was asked for.
+    let own = Parameters::new(problem.setup(), &settings.groups, law);
+    let mut fitted = own.apply(&found.numbers)?;
+    if let Err(error) = fitted.robot.check_physical() {
+        return refused(&format!("{error}; give a larger weight to the pull"));
+    }
     if fitted.settings.weights == Weights::Spread {
         fitted.settings.weights = Weights::Given(fit.weights.clone());
     }
-    let before = torque::residual(setup, &fit.data.tracks)?;
-    let after = torque::residual(&fitted, &fit.data.tracks)?;
-    let torque = before.into_iter().zip(after).enumerate();
-    let record = FitRecord {
-        pull: choice.pull,
-        identified_cost: identified,
-        cost: found.cost,
-        groups,
-        leave_one_out: choice.left_out,
-        pulls: choice.tried,
-        parameters: parameters_of(&fit, &found.numbers, setup),
-        torque: torque
-            .map(|(j, (identified, fitted))| TorquePrediction { joint: j + 1, identified, fitted })
-            .collect(),
-    };
+    let record = record(&fit, settings, choice, &found.numbers)?;
     Ok(Fitted { problem: problem.with_setup(fitted), record })
 }
 
-/// The cost of the sets with one group at its identified values.
-fn without(fit: &Fit, group: Group, numbers: &[f64], tracks: &[usize]) -> Result<f64> {
-    let pairs = numbers.iter().zip(&fit.parameters.list);
-    let kept: Vec<f64> = pairs
-        .map(|(x, parameter)| if parameter.quantity.group() == group { 0.0 } else { *x })
-        .collect();
-    Ok(fit.smallest(&fit.model(&kept, None)?, tracks)?.cost)
+/// The linear model of the same robot about the same point.
+fn linear_setup(setup: &Setup) -> Result<Setup> {
+    let mut linear = setup.clone();
+    linear.settings.abstraction = Abstraction::default();
+    linear.settings.method = Method::Program;
+    linear.settings.operating_box = None;
+    linear.dynamics = Dynamics::new(&linear.robot, &linear.settings)?;
+    Ok(linear)
+}
+
+fn record(
+    fit: &Fit,
+    settings: &FitSettings,
+    choice: PullChoice,
+    numbers: &[f64],
+) -> Result<FitRecord> {
+    let setup = fit.parameters.setup();
+    let none = Parameters::new(setup, &[], None);
+    let cost_without = |group: &Group| {
+        let kept = |(x, parameter): (&f64, &Parameter)| match parameter.quantity.group() {
+            of if of == *group => 0.0,
+            _ => *x,
+        };
+        let numbers: Vec<f64> = numbers.iter().zip(&fit.parameters.list).map(kept).collect();
+        Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&numbers)? })
+    };
+    let before = torque::residual(setup, &fit.data.tracks)?;
+    let after = torque::residual(&fit.parameters.apply(numbers)?, &fit.data.tracks)?;
+    let torque = before.into_iter().zip(after).enumerate();
+    Ok(FitRecord {
+        pull: choice.pull,
+        identified_cost: Fit { parameters: &none, ..fit.clone() }.whole_cost(&[])?,
+        cost: fit.whole_cost(numbers)?,
+        groups: settings.groups.par_iter().map(cost_without).collect::<Result<_>>()?,
+        leave_one_out: choice.left_out,
+        pulls: choice.tried,
+        parameters: parameters_of(fit, numbers, setup),
+        torque: torque
+            .map(|(j, (identified, fitted))| TorquePrediction { joint: j + 1, identified, fitted })
+            .collect(),
+    })
 }
 
 fn coulomb_name(quadrants: [bool; 4]) -> &'static str {

@@ -93,6 +93,11 @@ impl<'a> Parameters<'a> {
         parameters
     }
 
+    /// Returns the identified model.
+    pub fn setup(&self) -> &'a Setup {
+        self.setup
+    }
+
     /// Returns the number of parameters.
     pub fn len(&self) -> usize {
         self.list.len()

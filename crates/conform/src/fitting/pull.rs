@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::error::Result;
 use crate::fitting::evaluation::Fit;
 use crate::fitting::record::{LeftOut, PullCost};
-use crate::fitting::search::Search;
+use crate::fitting::search::{Effort, Search};
 
 /// The weights that are tried, in parts of the identified model's cost per unit, the strongest
 /// first.
@@ -46,14 +46,15 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
 /// Fits without a motion for each weight, each from the answer before, and returns the costs of the
 /// sets of all motions.
 fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<f64>> {
-    let tracks = fit.tracks(Some(motion));
+    let tracks = fit.few_tracks(Some(motion));
     let mut numbers = vec![0.0; fit.parameters.len()];
     let identified = fit.smallest(&fit.model(&numbers, None)?, &tracks)?.cost;
     let mut costs = Vec::new();
     for pull in pulls {
-        let search = Search { fit, tracks: tracks.clone(), pull: pull * identified };
+        let search =
+            Search { fit, tracks: tracks.clone(), pull: pull * identified, effort: Effort::QUICK };
         numbers = search.run(&numbers)?.numbers;
-        costs.push(fit.smallest(&fit.model(&numbers, None)?, &fit.tracks(None))?.cost);
+        costs.push(fit.whole_cost(&numbers)?);
     }
     Ok(costs)
 }

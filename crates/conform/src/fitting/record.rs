@@ -56,6 +56,21 @@ pub struct PullCost {
     pub cost: f64,
 }
 
+impl FitRecord {
+    /// Returns the mean cost over the motions left out, with the weight that was chosen.
+    #[must_use]
+    pub fn left_out_mean(&self) -> f64 {
+        let sum: f64 = self.leave_one_out.iter().map(|left| left.cost).sum();
+        sum / self.leave_one_out.len() as f64
+    }
+
+    /// Returns whether the fit makes the sets of motions larger that it has not seen.
+    #[must_use]
+    pub fn is_overfitted(&self) -> bool {
+        self.left_out_mean() > self.identified_cost
+    }
+}
+
 /// A parameter before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -75,6 +90,14 @@ pub struct FittedParameter {
     /// What the identified value is multiplied by, where the parameter is a factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factor: Option<f64>,
+}
+
+impl FittedParameter {
+    /// Returns the size that a change of the value is compared with.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.identified.abs().max(self.fitted.abs()).max(1e-6)
+    }
 }
 
 /// The error of the predicted input of one joint along the recordings, N m.

@@ -10,19 +10,11 @@ const FIRST_TRUST: f64 = 0.5;
 /// The search ends when the trust region is smaller than this.
 const LEAST_TRUST: f64 = 2e-3;
 
-/// The search ends when a step promises less than this part of the cost.
-const SETTLED: f64 = 2e-4;
-
-/// Steps at most.
-const STEPS: usize = 40;
-
 /// What a search found.
 #[derive(Debug, Clone)]
 pub(crate) struct Optimum {
     /// The numbers of the parameters.
     pub numbers: Vec<f64>,
-    /// Cost of the sets, without the pull.
-    pub cost: f64,
     /// Number of steps that were accepted.
     pub steps: usize,
 }
@@ -33,6 +25,23 @@ pub(crate) struct Search<'a> {
     pub tracks: Vec<usize>,
     /// Cost of a number's distance from 0.
     pub pull: f64,
+    pub effort: Effort,
+}
+
+/// When a search ends.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// It ends when a step promises, or gains, less than this part of the cost.
+    pub settled: f64,
+    /// Steps at most.
+    pub steps: usize,
+}
+
+impl Effort {
+    /// For the answer.
+    pub const WHOLE: Self = Self { settled: 2e-4, steps: 40 };
+    /// For comparisons.
+    pub const QUICK: Self = Self { settled: 2e-3, steps: 12 };
 }
 
 /// A point of the search.
@@ -52,7 +61,7 @@ impl Search<'_> {
         let (mut rows, mut own_rows) = (Vec::<StepRow>::new(), Vec::new());
         let mut point = self.point(start.to_vec(), &mut own_rows)?;
         let (mut trust, mut steps) = (FIRST_TRUST, 0);
-        'search: for _ in 0..STEPS {
+        'search: for _ in 0..self.effort.steps {
             let slopes = slopes(self.fit, &point.numbers, &point.model, &point.smallest)?;
             let program = self.fit.program(&point.model, &self.tracks);
             loop {
@@ -68,7 +77,7 @@ impl Search<'_> {
                 };
                 let Ok(answer) = step.solve(&mut rows) else { break 'search };
                 let promised = self.value(&point) - answer.cost;
-                if promised < SETTLED * point.smallest.cost {
+                if promised < self.effort.settled * point.smallest.cost {
                     break 'search;
                 }
                 let moved = largest_move(&answer.numbers, &point.numbers);
@@ -82,7 +91,7 @@ impl Search<'_> {
                         trust = 0.5 * moved;
                     }
                     (point, steps) = (next, steps + 1);
-                    if gained < SETTLED * point.smallest.cost {
+                    if gained < self.effort.settled * point.smallest.cost {
                         break 'search;
                     }
                     break;
@@ -93,7 +102,7 @@ impl Search<'_> {
                 }
             }
         }
-        Ok(Optimum { numbers: point.numbers, cost: point.smallest.cost, steps })
+        Ok(Optimum { numbers: point.numbers, steps })
     }
 
     fn point(&self, numbers: Vec<f64>, rows: &mut Vec<RowIndex>) -> Result<Point> {

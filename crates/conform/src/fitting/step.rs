@@ -144,7 +144,7 @@ impl Step<'_> {
     /// What a row must reach at the present parameters.
     fn deviation(&self, (t, k, i, side): StepRow) -> f64 {
         let track = &self.fit.data.tracks[t];
-        let (sample, states) = (k * self.fit.data.stride, 2 * self.fit.joints());
+        let (sample, states) = (k * self.fit.stride, 2 * self.fit.joints());
         let nominal = self.model.motions[t][k * states + i];
         let known = match &self.fit.settings.noise {
             Noise::Fixed(radii) => radii[i],

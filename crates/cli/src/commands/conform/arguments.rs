@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use reachtube::abstraction::ModelKind;
-use reachtube::conform::{Centre, Method, NominalStart, States};
+use reachtube::conform::{Centre, Group, Method, NominalStart, States};
 use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;
@@ -18,6 +18,8 @@ Examples:
   reachtube conform --robot lwa4p --data recordings --torque compensated \\
       --centre origin --disturbance constant
       with the settings of Liu and Althoff (2018)
+  reachtube conform --robot lwa4p --data recordings --torque compensated \\
+      --fit inertia,viscous,coulomb --out model.json
   reachtube conform --robot lwa4p --model 2 --order 5 --data recordings --torque compensated \\
       --resume search.json
 
@@ -74,6 +76,19 @@ pub struct Arguments {
     pub settings: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArguments,
+    /// Fit these parameters of the nominal model for the smallest sets, separated by commas
+    #[arg(
+        long,
+        help_heading = "Fit",
+        value_name = "GROUP,..",
+        value_delimiter = ',',
+        value_parser = choice::<Group>(GROUPS)
+    )]
+    pub fit: Vec<Group>,
+    /// Weight of the pull toward the identified values, from 0 to 1: part of the identified model's
+    /// cost per unit of the logarithm of a factor [default: chosen by leaving one motion out]
+    #[arg(long, help_heading = "Fit", value_name = "WEIGHT", requires = "fit")]
+    pub pull: Option<f64>,
     /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable
     /// disturbances in any case
     #[arg(
@@ -162,6 +177,15 @@ const DISTURBANCES: Choices = &[
     ("constant", "constant over the whole recording, as in the paper"),
     ("sample", "constant over each sample"),
     ("measurable", "any measurable function of time"),
+];
+
+const GROUPS: Choices = &[
+    ("inertia", "motor inertia of each joint and density of each link"),
+    ("viscous", "viscous friction"),
+    ("cubic", "quadratic and cubic viscous friction"),
+    ("coulomb", "Coulomb friction, by quadrant where the quadrants differ"),
+    ("warm-up", "viscous friction that changes with the order of a suite's runs"),
+    ("payload", "a point mass at the last link's frame"),
 ];
 
 const CENTRES: Choices = &[

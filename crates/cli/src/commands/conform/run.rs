@@ -1,6 +1,8 @@
 use std::path::{Path, PathBuf};
 
-use reachtube::conform::{Check, Conformance, Keep, Problem, conform, reach};
+use reachtube::conform::{
+    Check, Conformance, FitSettings, Group, Keep, Problem, conform, fit, reach,
+};
 use reachtube::recordings::DataSet;
 use reachtube::report::Sources;
 use reachtube::{Model, write};
@@ -23,13 +25,24 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if let Some(folder) = &args.report {
         output::claim(&report_files::page_in(folder))?;
     }
-    let keep = if args.report.is_some() { Keep::All } else { Keep::Needed };
+    let by_run = args.report.is_some() || args.fit.contains(&Group::WarmUp);
+    let keep = if by_run { Keep::All } else { Keep::Needed };
     let bar = Progress::new();
-    let problem = Problem::read(setup, source, &args.data.suites, keep, &bar)?;
+    let mut problem = Problem::read(setup, source, &args.data.suites, keep, &bar)?;
+    let mut record = None;
+    if !args.fit.is_empty() {
+        let settings = FitSettings { groups: args.fit.clone(), pull: args.pull };
+        let fitted = fit(&problem, &settings, &bar)?;
+        (problem, record) = (fitted.problem, Some(fitted.record));
+    }
     let found = conform(&problem, &bar, args.resume.as_deref())?;
     drop(bar);
     output::notes(&problem.recordings().notes);
     let model = Model::new(&problem, &found);
+    let model = match record {
+        Some(record) => model.with_fit(record),
+        None => model,
+    };
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
         output::wrote(path);

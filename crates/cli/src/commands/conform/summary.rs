@@ -8,6 +8,7 @@ use reachtube::recordings::State;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 
+use super::fit_summary::fit_summary;
 use crate::table::{plural, table};
 use crate::verdict::lost;
 use reachtube::number::{four_decimals, interval};
@@ -25,6 +26,7 @@ pub fn summary(model: &Model) -> String {
     for warning in &model.warnings {
         let _ = writeln!(text, "warning: {}", warning.text);
     }
+    text.push_str(&fit_summary(model));
     text.push_str(&touching(model));
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         let _ = writeln!(text, "\n{}", explained.words(tolerance, &model.robot.kinds()));

@@ -1,0 +1,104 @@
+//! The text about a fit of the nominal model.
+
+use std::fmt::Write;
+
+use reachtube::Model;
+use reachtube::conform::{FitRecord, FittedParameter, Group};
+use reachtube::number::four_decimals;
+
+use crate::table::table;
+
+/// Beyond this factor, or below 1 over it, a parameter is said to be no longer what its name says.
+const MOST_FACTOR: f64 = 1.5;
+
+/// Returns how the nominal model was fitted, for a model that was.
+pub fn fit_summary(model: &Model) -> String {
+    let Some(record) = &model.fit else { return String::new() };
+    let linear = if model.a.is_empty() { " of the linear model" } else { "" };
+    let mut text = format!(
+        "\nnominal model fitted for small sets: cost{linear} {} before, {} after ({:+.1} %), with \
+         a pull of {} toward the identified values\n",
+        four_decimals(record.identified_cost),
+        four_decimals(record.cost),
+        100.0 * (record.cost / record.identified_cost - 1.0),
+        record.pull
+    );
+    let groups = record.groups.iter();
+    let groups =
+        groups.map(|group| format!("{} {}", group.group.name(), four_decimals(group.cost_without)));
+    let _ = writeln!(text, "cost without a group: {}", groups.collect::<Vec<_>>().join(", "));
+    text.push_str(&left_out(record));
+    text.push_str(&parameters(model, record));
+    text.push_str(&torque(record));
+    text
+}
+
+/// Returns what the fit is worth for motions that it has not seen.
+fn left_out(record: &FitRecord) -> String {
+    let of = |left: &reachtube::conform::LeftOut| {
+        format!("{} {}", left.motion, four_decimals(left.cost))
+    };
+    let each: Vec<String> = record.leave_one_out.iter().map(of).collect();
+    let mut text = format!(
+        "cost with one motion left out of the fit: {}; mean {}\n",
+        each.join(", "),
+        four_decimals(record.left_out_mean())
+    );
+    if record.is_overfitted() {
+        text.push_str(
+            "warning: with a motion left out the fitted model needs larger sets than the \
+             identified one; the fit suits these motions only, so record more of them, fit fewer \
+             groups or give a larger --pull\n",
+        );
+    }
+    text
+}
+
+/// Returns the parameters that changed, with a remark where one no longer is what its name says.
+fn parameters(model: &Model, record: &FitRecord) -> String {
+    let has_changed = |p: &&FittedParameter| (p.fitted - p.identified).abs() > 5e-4 * p.size();
+    let changed: Vec<&FittedParameter> = record.parameters.iter().filter(has_changed).collect();
+    let row = |p: &&FittedParameter| {
+        vec![
+            model.robot.joints[p.joint - 1].name.clone(),
+            p.name.clone(),
+            format!("{} {}", four_decimals(p.identified), p.unit),
+            four_decimals(p.fitted),
+            p.factor.map_or_else(String::new, |factor| format!("{factor:.3}")),
+        ]
+    };
+    let rows: Vec<Vec<String>> = changed.iter().map(row).collect();
+    let mut text = table(&["joint", "parameter", "identified", "fitted", "factor"], &rows);
+    let kept = record.parameters.len() - changed.len();
+    if kept > 0 {
+        let _ = writeln!(text, "  {kept} of {} keep their values", record.parameters.len());
+    }
+    let is_far = |p: &&&FittedParameter| {
+        p.factor.is_some_and(|factor| !(1.0 / MOST_FACTOR..=MOST_FACTOR).contains(&factor))
+    };
+    if changed.iter().any(|p| is_far(&p)) {
+        let _ = writeln!(
+            text,
+            "  a factor beyond {MOST_FACTOR} is no measurement: such a parameter stands for what \
+             the model leaves out, and only the model as a whole has a meaning"
+        );
+    }
+    if record.groups.iter().any(|group| group.group == Group::WarmUp) {
+        text.push_str(
+            "  to use this model one must know how many runs the robot has done since its start\n",
+        );
+    }
+    text
+}
+
+fn torque(record: &FitRecord) -> String {
+    let list = |of: fn(&reachtube::conform::TorquePrediction) -> f64| {
+        let values = record.torque.iter().map(|torque| format!("{:.2}", of(torque)));
+        values.collect::<Vec<_>>().join(" ")
+    };
+    format!(
+        "error of the predicted input, root mean square, joint by joint: {} before, {} after\n",
+        list(|torque| torque.identified),
+        list(|torque| torque.fitted)
+    )
+}
