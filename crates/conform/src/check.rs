@@ -4,9 +4,9 @@ use crate::error::Result;
 use crate::growth::Growth;
 use crate::hulls::Hulls;
 use crate::model::file::Model;
+use crate::next_motion::trust::Trust;
 use crate::problem::problem::Problem;
 use crate::problem::suite::{RunSummary, Suite};
-use crate::trust::Trust;
 use crate::verdict::Verdict;
 
 /// The answer of a check.

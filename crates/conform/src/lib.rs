@@ -6,7 +6,6 @@
 //! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
 //! [`explain()`] searches for the motion of the model closest to each run.
 
-mod bounds;
 mod check;
 mod conformance;
 mod deviation;
@@ -21,6 +20,7 @@ mod growth;
 mod hulls;
 mod linear;
 mod model;
+mod next_motion;
 mod optimality;
 mod plausibility;
 mod problem;
@@ -32,11 +32,10 @@ mod sensor_noise;
 mod sets;
 mod settings;
 mod side;
-mod trust;
+mod smallest_sets;
 mod verdict;
 mod weights;
 
-pub use bounds::{clopper_pearson, scenario_bound};
 pub use check::{Check, check};
 pub use conformance::{Conformance, conform};
 pub use deviation::{Deviation, Nominal};
@@ -53,6 +52,10 @@ pub use linear::program::{Program, Solution};
 pub use model::{
     DataRecord, Explained, FORMAT, MOST_TIGHT, Model, Residual, RunRecord, SuiteRecord, VERSION,
 };
+pub use next_motion::bounds::{clopper_pearson, scenario_bound};
+pub use next_motion::calibration::{Calibration, Gauge};
+pub use next_motion::left_out::LeftOut;
+pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
 pub use problem::{Case, Keep, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
@@ -63,5 +66,4 @@ pub use sensor_noise::SensorNoise;
 pub use sets::UncertaintySets;
 pub use settings::{Centre, Method, Noise, NominalStart, Settings, States, Tolerance, Weights};
 pub use side::Side;
-pub use trust::{CONFIDENCE, Trust};
 pub use verdict::{SuiteVerdict, Verdict, Violations, Witness};

@@ -6,6 +6,7 @@ mod kept;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod problem;
 pub(crate) mod recordings;
+mod subset;
 pub(crate) mod suite;
 
 pub use case::Case;

@@ -108,14 +108,14 @@ pub enum Keep {
 /// ```
 #[derive(Debug)]
 pub struct Problem {
-    setup: Setup,
-    source: Box<dyn RunSource>,
-    recordings: Recordings,
-    kept: HashMap<usize, Run>,
-    grids: OnceLock<Grids>,
-    cases: OnceLock<Vec<Case>>,
-    deviations: OnceLock<Vec<Deviation>>,
-    sensor_noise: SensorNoise,
+    pub(super) setup: Setup,
+    pub(super) source: Arc<dyn RunSource>,
+    pub(super) recordings: Recordings,
+    pub(super) kept: Arc<HashMap<usize, Run>>,
+    pub(super) grids: OnceLock<Grids>,
+    pub(super) cases: OnceLock<Vec<Case>>,
+    pub(super) deviations: OnceLock<Vec<Deviation>>,
+    pub(super) sensor_noise: SensorNoise,
 }
 
 impl Problem {
@@ -147,11 +147,9 @@ impl Problem {
         };
         let recordings = Recordings::read(&reader, names, progress)?;
         let (grids, cases, deviations) = Default::default();
-        let kept = kept.into_runs();
-        let sensor_noise = match &setup.settings.sensor_noise {
-            Some(radius) => SensorNoise::given(radius.clone()),
-            None => SensorNoise::estimate(&recordings, setup.robot.joint_count()),
-        };
+        let kept = Arc::new(kept.into_runs());
+        let sensor_noise = sensor_noise(&setup, &recordings);
+        let source = source.into();
         let mut problem =
             Self { setup, source, recordings, kept, grids, cases, deviations, sensor_noise };
         problem.check_starts()?;
@@ -372,6 +370,14 @@ impl Problem {
             ))
         };
         self.recordings.suites.iter().filter_map(leaves).collect()
+    }
+}
+
+/// The noise of the sensors, as the settings give it or these recordings show it.
+pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNoise {
+    match &setup.settings.sensor_noise {
+        Some(radius) => SensorNoise::given(radius.clone()),
+        None => SensorNoise::estimate(recordings, setup.robot.joint_count()),
     }
 }
 

@@ -16,7 +16,7 @@ use crate::problem::kept::KeptRuns;
 use crate::settings::NominalStart;
 
 /// One test suite after reading.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Suite {
     /// The suite's name and runs.
     pub entry: SuiteEntry,

@@ -8,6 +8,7 @@ use reachtube::recordings::State;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 
+use super::next_motion::next_motion;
 use crate::table::{plural, table};
 use crate::verdict::lost;
 use reachtube::number::{four_decimals, interval};
@@ -29,11 +30,7 @@ pub fn summary(model: &Model) -> String {
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         let _ = writeln!(text, "\n{}", explained.words(tolerance, &model.robot.kinds()));
     }
-    let _ = writeln!(
-        text,
-        "\n{}",
-        model.trust.words(model.proof.enclosure.set_name(), "touched the set")
-    );
+    text.push_str(&next_motion(model));
     text
 }
 

@@ -1,0 +1,52 @@
+//! Recordings that a linear program was not made of, beside its sets.
+
+use crate::deviation::Deviation;
+use crate::envelope::Envelope;
+use crate::linear::program::{Program, RowIndex, dot};
+use crate::sets::UncertaintySets;
+
+impl Program<'_> {
+    /// Returns the program with other deviations on each of its blocks: the cost is the same.
+    #[must_use]
+    pub(crate) fn with_deviations<'d>(
+        &self,
+        deviations: impl IntoIterator<Item = &'d Deviation>,
+    ) -> Self {
+        let mut program = self.clone();
+        let blocks = &mut program.blocks;
+        blocks.iter_mut().for_each(|block| block.envelope = Envelope::new(2 * self.joints));
+        deviations.into_iter().for_each(|d| blocks[d.grid].envelope.merge(&d.envelope));
+        program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program
+    }
+
+    /// Returns the number of rows, both sides together, that do not hold, up to rounding.
+    #[must_use]
+    pub(crate) fn outside(&self, sets: &UncertaintySets) -> usize {
+        let unknowns = self.unknowns(sets);
+        let violated =
+            |index: &RowIndex| self.is_violated(*index, self.excess(*index, &unknowns), &unknowns);
+        let mut rows: Vec<_> =
+            self.indices(1).filter(violated).map(|(b, k, i, _)| (b, k, i)).collect();
+        rows.dedup();
+        rows.len()
+    }
+
+    /// Returns the factors of the radii of X0 alone, of U alone, and of both, with which every row
+    /// holds up to rounding; nothing where no factor suffices.
+    #[must_use]
+    pub fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
+        let unknowns = self.unknowns(sets);
+        let (states, all) = (sets.initial_set.dimension(), unknowns.radius.len());
+        [0..states, states..all, 0..all].map(|part| {
+            let needed = |index: RowIndex| {
+                let excess = self.excess(index, &unknowns);
+                let gains = &self.row(index.0, index.1, index.2).1[part.clone()];
+                let given = dot(gains, &unknowns.radius[part.clone()]);
+                if excess > 0.0 { 1.0 + excess / given } else { 1.0 }
+            };
+            let factor = self.indices(1).map(needed).fold(1.0, f64::max);
+            factor.is_finite().then_some(factor)
+        })
+    }
+}
