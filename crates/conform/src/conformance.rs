@@ -7,7 +7,9 @@ use crate::explain::explanation::{Explanation, explain};
 use crate::found::{Found, SearchSummary};
 use crate::hulls::Hulls;
 use crate::next_motion::calibration::{Calibrated, Calibration, calibrate};
+use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::left_out::{LeftOut, leave_each_out};
+use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::{NominalFit, Warning, warnings};
@@ -45,6 +47,10 @@ pub struct Conformance {
     /// The sets without each of the motions they were found on; none for one motion, or for a
     /// model that is not linear.
     pub left_out: Vec<LeftOut>,
+    /// The runs that decide the sets.
+    pub deciding_runs: DecidingRuns,
+    /// The joints whose motion follows the order of the runs.
+    pub trends: Vec<Trend>,
     /// How the sets of a model that is not linear were found.
     pub search: Option<SearchSummary>,
     /// The recorded values that touch the reachable set, the closest first; the linearised set
@@ -106,6 +112,7 @@ pub fn conform(
     let fit = NominalFit::new(problem)?;
     let warnings = warnings(problem, &hulls.sets, &radii, &fit)?;
     let is_proved = verdict.conformant;
+    let smallest_cost = calibration.is_none().then_some(cost);
     Ok(Conformance {
         sets: hulls.sets.clone(),
         warnings,
@@ -125,6 +132,8 @@ pub fn conform(
             }
             _ => Trust::of_fit(problem.recordings(), &tight),
         },
+        deciding_runs: DecidingRuns::new(problem, &tight, smallest_cost)?,
+        trends: trends(problem),
         calibration,
         left_out,
         search,

@@ -54,11 +54,14 @@ pub use model::{
 };
 pub use next_motion::bounds::{clopper_pearson, scenario_bound};
 pub use next_motion::calibration::{Calibration, Gauge};
+pub use next_motion::deciding_runs::{DecidingRun, DecidingRuns};
 pub use next_motion::left_out::LeftOut;
+pub use next_motion::rates::{Rate, Rates};
+pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
-pub use problem::{Case, Keep, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
+pub use problem::{Case, Keep, Marks, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use rows::{Edge, Hull, HullBounds, Row, rows};

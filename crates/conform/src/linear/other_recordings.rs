@@ -1,5 +1,7 @@
 //! Recordings that a linear program was not made of, beside its sets.
 
+use std::sync::Arc;
+
 use crate::deviation::Deviation;
 use crate::envelope::Envelope;
 use crate::linear::program::{Program, RowIndex, dot};
@@ -17,6 +19,22 @@ impl Program<'_> {
         blocks.iter_mut().for_each(|block| block.envelope = Envelope::new(2 * self.joints));
         deviations.into_iter().for_each(|d| blocks[d.grid].envelope.merge(&d.envelope));
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program
+    }
+
+    /// Returns the program with every `stride`-th sample of its blocks alone, at the same cost of
+    /// each radius. Its deviations are to be given anew.
+    #[must_use]
+    pub(crate) fn with_every(&self, stride: usize) -> Self {
+        let mut program = self.clone();
+        let row = 2 * self.joints * 6 * self.joints;
+        for (block, shares) in program.blocks.iter_mut().zip(&mut program.shares) {
+            block.times = block.times.iter().copied().step_by(stride).collect();
+            *shares = shares.iter().copied().step_by(stride).collect();
+            let samples = block.coefficients.chunks_exact(row).step_by(stride);
+            block.coefficients = Arc::new(samples.flatten().copied().collect());
+            block.envelope = Envelope::new(2 * self.joints);
+        }
         program
     }
 

@@ -55,7 +55,7 @@ pub struct Program<'a> {
     pub(super) joints: usize,
     pub(super) blocks: Vec<Block>,
     /// For each block and sample, how much its widths count.
-    shares: Vec<Vec<f64>>,
+    pub(super) shares: Vec<Vec<f64>>,
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
     centre_bounds: Vec<[f64; 2]>,
     limits: Limits,

@@ -18,7 +18,9 @@ use crate::error::{Error, Result};
 use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained, SuiteRecord};
 use crate::next_motion::calibration::Calibration;
+use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::left_out::LeftOut;
+use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::Warning;
@@ -109,6 +111,12 @@ pub struct Model {
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
+    /// The runs that decide the sets.
+    #[serde(default)]
+    pub deciding_runs: DecidingRuns,
+    /// The joints whose motion follows the order of the runs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trends: Vec<Trend>,
     /// The recorded points that touch the reachable set and so decide the sets, the closest first,
     /// 500 at most.
     pub tight: Vec<Witness>,
@@ -178,6 +186,8 @@ impl Model {
             trust: found.trust.clone(),
             calibration: found.calibration.clone(),
             left_out: found.left_out.clone(),
+            deciding_runs: found.deciding_runs.clone(),
+            trends: found.trends.clone(),
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),
             a: matrix(LinearSystem::a),

@@ -3,6 +3,9 @@
 
 pub(crate) mod bounds;
 pub(crate) mod calibration;
+pub(crate) mod deciding_runs;
 pub(crate) mod left_out;
 pub(crate) mod motions;
+pub(crate) mod rates;
+pub(crate) mod trends;
 pub(crate) mod trust;

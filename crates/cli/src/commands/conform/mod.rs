@@ -1,6 +1,7 @@
 //! `reachtube conform`: the smallest sets for which a model encloses every recording.
 
 mod arguments;
+mod dependence;
 mod next_motion;
 mod run;
 mod settings;

@@ -8,6 +8,7 @@ use reachtube::recordings::State;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 
+use super::dependence::dependence;
 use super::next_motion::next_motion;
 use crate::table::{plural, table};
 use crate::verdict::lost;
@@ -31,6 +32,7 @@ pub fn summary(model: &Model) -> String {
         let _ = writeln!(text, "\n{}", explained.words(tolerance, &model.robot.kinds()));
     }
     text.push_str(&next_motion(model));
+    text.push_str(&dependence(model));
     text
 }
 
@@ -100,6 +102,7 @@ fn cost(model: &Model) -> String {
             search.reachable_sets,
             plural(search.reachable_sets, "time")
         ),
+        (None, None) if model.calibration.is_some() => " (calibrated, not the smallest)".into(),
         (None, None) => String::new(),
     };
     format!(
