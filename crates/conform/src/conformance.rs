@@ -92,8 +92,7 @@ pub fn conform(
         let left_out = leave_each_out(problem, &found.hulls.sets)?;
         (found, None, left_out)
     } else {
-        let Calibrated { fit, fitted, found, calibration } =
-            calibrate(problem, progress, resume)?;
+        let Calibrated { fit, fitted, found, calibration } = calibrate(problem, progress, resume)?;
         (found, Some(calibration), leave_each_out(&fit, &fitted)?)
     };
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;

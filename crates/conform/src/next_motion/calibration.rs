@@ -81,10 +81,13 @@ pub(crate) fn calibrate(
     let first = smallest_sets(&fit, progress, resume)?;
     let (fitted, search) = (first.hulls.sets, first.search);
     let input_only = problem.limits().start.is_some();
-    let grown = |factor: f64| if input_only { fitted.with_input_scaled(factor) } else { fitted.inflated(factor, 0.0) };
+    let grown = |factor: f64| {
+        if input_only { fitted.with_input_scaled(factor) } else { fitted.inflated(factor, 0.0) }
+    };
     let gauge = |motion: &&str| {
-        let suites: Vec<bool> =
-            (0..problem.recordings().suites.len()).map(|s| motions.of_suite(s) == *motion).collect();
+        let suites: Vec<bool> = (0..problem.recordings().suites.len())
+            .map(|s| motions.of_suite(s) == *motion)
+            .collect();
         let gauge = match problem.dynamics().linear_system() {
             Some(_) => linear_gauge(problem, &fitted, &suites, input_only),
             None => outer_gauge(problem, &suites, &grown),
@@ -108,8 +111,10 @@ fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet
     for name in &problem.settings().calibrate {
         let known = all.iter().find(|motion| *motion == name);
         let unknown = || {
-            format!("there is no motion \"{name}\"; the motions of the recordings are {}",
-                all.join(", "))
+            format!(
+                "there is no motion \"{name}\"; the motions of the recordings are {}",
+                all.join(", ")
+            )
         };
         kept_back.insert(*known.ok_or_else(|| Error::Calibration(unknown()))?);
     }
@@ -124,7 +129,8 @@ fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet
 }
 
 fn no_factor(motion: &str, input_only: bool) -> String {
-    let sets = if input_only { "U, which alone may grow beside the sensor noise," } else { "X0 and U" };
+    let sets =
+        if input_only { "U, which alone may grow beside the sensor noise," } else { "X0 and U" };
     format!(
         "no factor of {sets} makes the sets of the other motions enclose motion {motion}; a set \
          may have no width in a direction in which it deviates, or its reachable set is lost; \
@@ -155,7 +161,8 @@ fn outer_gauge(
     let suffices = |steps: i32| {
         let sets = grown(STEP.powi(steps));
         let is_inside = |case: &&Case| is_enclosed(problem, case, &sets, Effort::Whole);
-        let outside = cases.par_iter().map(is_inside).find_any(|inside| !matches!(inside, Ok(true)));
+        let outside =
+            cases.par_iter().map(is_inside).find_any(|inside| !matches!(inside, Ok(true)));
         outside.unwrap_or(Ok(true))
     };
     // Double the steps until they suffice, then halve the interval.

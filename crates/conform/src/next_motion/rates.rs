@@ -79,9 +79,10 @@ impl Rates {
             }
         };
         let intervals = if self.motions < FEWEST_MOTIONS {
-            format!("no interval, which {} motions are too few for", self.motions)
+            let (plural, are) = if self.motions == 1 { ("", "is") } else { ("s", "are") };
+            format!("no interval: {} motion{plural} {are} too few for one", self.motions)
         } else if self.rows.interval.is_none() {
-            "no interval, because there is no spread".into()
+            "no interval: there is no spread".into()
         } else {
             format!(
                 "in brackets the spread over {} motions ({:.0} % cluster bootstrap)",

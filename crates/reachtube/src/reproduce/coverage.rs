@@ -145,9 +145,8 @@ pub fn coverage(
 /// Finds sets for the motions of one campaign, and measures what is stated of them.
 fn campaign(robot: &Robot, motions: &MemoryRuns, next: &Problem) -> Result<Stated> {
     let names = |from: usize, to: usize| (from..to).map(|m| format!("M{m}")).collect::<Vec<_>>();
-    let read = |names: &[String], calibrate: &[String]| {
-        problem(robot, motions.clone(), names, calibrate)
-    };
+    let read =
+        |names: &[String], calibrate: &[String]| problem(robot, motions.clone(), names, calibrate);
     let fitted = names(0, FITTED);
     let fit = read(&fitted, &[])?;
     let found = conform(&fit, &Silent, None)?;

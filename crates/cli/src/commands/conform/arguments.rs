@@ -139,12 +139,7 @@ pub struct Arguments {
     /// Motions that are kept back from the fit, separated by commas, as runs.csv names them. The
     /// sets found on the others are scaled until they enclose these too, which bounds the
     /// probability that the next motion leaves them
-    #[arg(
-        long,
-        help_heading = "Sets",
-        value_name = "MOTION,..",
-        value_delimiter = ','
-    )]
+    #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
     pub calibrate: Vec<String>,
     /// Method that finds the sets
     #[arg(

@@ -32,9 +32,8 @@ pub fn next_motion(model: &Model) -> String {
 /// Says which motions calibrated the sets, and by what factor.
 fn calibrated(calibration: &Calibration) -> String {
     let Calibration { fitted, gauges, factor, input_only } = calibration;
-    let gauge = |gauge: &reachtube::conform::Gauge| {
-        format!("{} {}", gauge.motion, at_least(gauge.gauge))
-    };
+    let gauge =
+        |gauge: &reachtube::conform::Gauge| format!("{} {}", gauge.motion, at_least(gauge.gauge));
     let mut list: Vec<String> = gauges.iter().take(MOST_GAUGES).map(gauge).collect();
     if gauges.len() > MOST_GAUGES {
         list.push(format!("{} more", gauges.len() - MOST_GAUGES));
