@@ -149,7 +149,7 @@ fn a_motion_left_out_is_as_a_separate_conformance_and_check_find_it() {
 #[test]
 fn the_outer_sets_of_a_model_that_is_not_linear_calibrate_it() {
     let folder = recorded([0.3, 0.3, 0.3, 0.9]);
-    let abstraction = Abstraction { model: ModelKind::Two, order: 2 };
+    let abstraction = Abstraction { model: ModelKind::Two, order: 3 };
     let settings = Settings { abstraction, ..settings(&["d"]) };
     let problem = read(&two_joints(), folder.path(), &["a", "b", "d"], &settings);
     assert!(problem.dynamics().linear_system().is_none());
@@ -198,7 +198,7 @@ fn a_joint_that_follows_the_order_of_the_runs_is_named() {
 #[test]
 fn the_cost_without_the_runs_that_decide_is_about_that_of_the_others() {
     // One run of many is far out.
-    let mut torques = vec![0.01, -0.01].repeat(12);
+    let mut torques = [0.01, -0.01].repeat(12);
     torques[5] = 0.08;
     let found = conform_all(&drifting(&torques));
     let runs = &found.deciding_runs;

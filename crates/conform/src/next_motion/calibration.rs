@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::flowpipes::{Effort, is_enclosed};
 use crate::found::{Deciding, Found};
 use crate::hulls::Hulls;
-use crate::linear::program::TIGHT;
+use crate::linear::program::{Program, TIGHT};
 use crate::linear::smallest_sets::{program, prove};
 use crate::next_motion::motions::Motions;
 use crate::problem::case::Case;
@@ -81,6 +81,7 @@ pub(crate) fn calibrate(
     let first = smallest_sets(&fit, progress, resume)?;
     let (fitted, search) = (first.hulls.sets, first.search);
     let input_only = problem.limits().start.is_some();
+    let linear = problem.dynamics().linear_system().map(|_| program(problem)).transpose()?;
     let grown = |factor: f64| {
         if input_only { fitted.with_input_scaled(factor) } else { fitted.inflated(factor, 0.0) }
     };
@@ -88,8 +89,8 @@ pub(crate) fn calibrate(
         let suites: Vec<bool> = (0..problem.recordings().suites.len())
             .map(|s| motions.of_suite(s) == *motion)
             .collect();
-        let gauge = match problem.dynamics().linear_system() {
-            Some(_) => linear_gauge(problem, &fitted, &suites, input_only),
+        let gauge = match &linear {
+            Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
             None => outer_gauge(problem, &suites, &grown),
         }?;
         let gauge = gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only)))?;
@@ -141,12 +142,13 @@ fn no_factor(motion: &str, input_only: bool) -> String {
 /// Returns the gauge of the suites that are marked under the sets of a linear model.
 fn linear_gauge(
     problem: &Problem,
+    program: &Program,
     sets: &UncertaintySets,
     suites: &[bool],
     input_only: bool,
 ) -> Result<Option<f64>> {
     let own = problem.deviations()?.iter().filter(|deviation| suites[deviation.suite]);
-    let [_, input, both] = program(problem)?.with_deviations(own).growth_factors(sets);
+    let [_, input, both] = program.with_deviations(own).growth_factors(sets);
     Ok(if input_only { input } else { both })
 }
 

@@ -45,44 +45,65 @@ pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Resul
     }
     let (program, deviations) = (program(problem)?, problem.deviations()?);
     let input_only = problem.limits().start.is_some();
-    let of = |motion: &&str| {
-        let is_own = |d: &&Deviation| motions.of_suite(d.suite) == *motion;
-        let own: Vec<Program> =
-            deviations.iter().filter(is_own).map(|d| program.with_deviations([d])).collect();
-        let rows = own.iter().map(|own| own.rows() / 2).sum();
-        let left = LeftOut {
-            motion: (*motion).into(),
-            cost: Some(program.cost(sets)),
-            rows,
-            outside: Some(0),
-            gauge: Some(1.0),
-        };
-        let decides = own.iter().any(|own| !own.tight(sets).is_empty());
-        let others = || program.with_deviations(deviations.iter().filter(|d| !is_own(d)));
-        (left, own, decides.then(others))
+    let of = |motion: &&str| -> Vec<&Deviation> {
+        deviations.iter().filter(|d| motions.of_suite(d.suite) == *motion).collect()
     };
+    let decides = |own: &Vec<&Deviation>| {
+        !program.with_deviations(own.iter().copied()).tight(sets).is_empty()
+    };
+    // Which motions need a program, in their order, so that the answer does not depend on cores.
+    let all: Vec<&str> = motions.distinct();
     let mut programs = 0;
-    let mut all: Vec<_> = motions.distinct().iter().map(of).collect();
-    for (left, _, others) in &mut all {
-        programs += usize::from(others.is_some());
-        if programs > MOST_PROGRAMS && others.take().is_some() {
-            (left.cost, left.outside, left.gauge) = (None, None, None);
+    let steps: Vec<(&str, Step)> = all
+        .iter()
+        .map(|motion| {
+            let step = match decides(&of(motion)) {
+                false => Step::Same,
+                true if programs == MOST_PROGRAMS => Step::Skip,
+                true => {
+                    programs += 1;
+                    Step::Solve
+                }
+            };
+            (*motion, step)
+        })
+        .collect();
+    let leave_out = |(motion, step): &(&str, Step)| {
+        let own: Vec<Program> =
+            of(motion).into_iter().map(|d| program.with_deviations([d])).collect();
+        let rows = own.iter().map(|own| own.rows() / 2).sum();
+        let unknown =
+            LeftOut { motion: (*motion).into(), cost: None, rows, outside: None, gauge: None };
+        match step {
+            Step::Skip => unknown,
+            Step::Same => {
+                let cost = Some(program.cost(sets));
+                LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown }
+            }
+            Step::Solve => {
+                let others = deviations.iter().filter(|d| motions.of_suite(d.suite) != *motion);
+                unknown.with(&program.with_deviations(others), &own, input_only)
+            }
         }
-    }
-    let solve = |(left, own, others): (LeftOut, Vec<Program>, Option<Program>)| match others {
-        None => left,
-        Some(others) => left.with(&others, &own, input_only),
     };
-    Ok(all.into_par_iter().map(solve).collect())
+    Ok(steps.par_iter().map(leave_out).collect())
+}
+
+/// What leaving a motion out takes.
+enum Step {
+    /// A program of the other motions.
+    Solve,
+    /// Nothing, because the motion decides nothing.
+    Same,
+    /// A program too many.
+    Skip,
 }
 
 impl LeftOut {
     /// Solves the program of the other motions and compares the motion's own rows with its sets.
     /// A program that the solver gives up on leaves nothing to compare with.
     fn with(self, others: &Program, own: &[Program], input_only: bool) -> Self {
-        let Ok(solution) = others.solve() else {
-            return Self { cost: None, outside: None, gauge: None, ..self };
-        };
+        let Ok(solution) = others.solve() else { return self };
         let sets = others.repaired(&solution.sets);
         let gauge = |own: &Program| {
             let [_, input, both] = own.growth_factors(&sets);
