@@ -27,7 +27,11 @@ fn left_out(model: &Model) -> String {
         };
     }
     let mut all: Vec<&LeftOut> = model.left_out.iter().collect();
-    let size = |left: &LeftOut| left.gauge.unwrap_or(f64::INFINITY);
+    // What was not computed goes last.
+    let size = |left: &LeftOut| match left.cost {
+        Some(_) => left.gauge.unwrap_or(f64::INFINITY),
+        None => 0.0,
+    };
     all.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let row = |left: &&LeftOut| {
         let or = |value: Option<String>, other: &str| value.unwrap_or_else(|| other.into());
