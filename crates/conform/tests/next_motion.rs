@@ -147,6 +147,24 @@ fn a_motion_left_out_is_as_a_separate_conformance_and_check_find_it() {
 }
 
 #[test]
+fn motions_of_one_run_decide_nothing_at_their_first_sample() {
+    let (robot, times, mut random) = (two_joints(), grid(0.01, 10), Random(5));
+    let arm = Disturbed { robot: &robot, times: &times, start: 0.01, input: 0.5 };
+    let mut runs = MemoryRuns::default();
+    for motion in 0..70 {
+        let Recorded { times, states, torques } = arm.record(&mut random);
+        let (name, run) = (format!("M{motion}"), Run::new(2, times, states, torques).unwrap());
+        runs.push(&name, Some(&name), None, run);
+    }
+    let setup = Setup::new(robot, settings(&[])).unwrap();
+    let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
+    let found = conform_all(&problem);
+    // More than 60 motions would have needed a program.
+    assert!(found.left_out.len() == 70 && found.left_out.iter().all(|left| left.cost.is_some()));
+    assert!(found.left_out.iter().any(|left| left.gauge.unwrap() > 1.0));
+}
+
+#[test]
 fn the_outer_sets_of_a_model_that_is_not_linear_calibrate_it() {
     let folder = recorded([0.3, 0.3, 0.3, 0.9]);
     let abstraction = Abstraction { model: ModelKind::Two, order: 3 };

@@ -7,6 +7,9 @@ use crate::envelope::Envelope;
 use crate::linear::program::{Program, RowIndex, dot};
 use crate::sets::UncertaintySets;
 
+/// A radius that nobody can tell from none, rad or rad/s.
+const NEGLIGIBLE_RADIUS: f64 = 1e-9;
+
 impl Program<'_> {
     /// Returns the program with other deviations on each of its blocks: the cost is the same.
     #[must_use]
@@ -36,6 +39,16 @@ impl Program<'_> {
             block.envelope = Envelope::new(2 * self.joints);
         }
         program
+    }
+
+    /// Returns whether a row touches the reach of the sets where they have one. At a first sample
+    /// that no recording leaves, all rows touch a set without width, and none decides anything.
+    #[must_use]
+    pub(crate) fn touches(&self, sets: &UncertaintySets) -> bool {
+        let radius = self.unknowns(sets).radius;
+        let has_width =
+            |&(b, k, i, _): &RowIndex| dot(self.row(b, k, i).1, &radius) > NEGLIGIBLE_RADIUS;
+        self.tight(sets).iter().any(has_width)
     }
 
     /// Returns the number of rows, both sides together, that do not hold, up to rounding.

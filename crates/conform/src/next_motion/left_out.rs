@@ -48,9 +48,8 @@ pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Resul
     let of = |motion: &&str| -> Vec<&Deviation> {
         deviations.iter().filter(|d| motions.of_suite(d.suite) == *motion).collect()
     };
-    let decides = |own: &Vec<&Deviation>| {
-        !program.with_deviations(own.iter().copied()).tight(sets).is_empty()
-    };
+    let decides =
+        |own: &Vec<&Deviation>| program.with_deviations(own.iter().copied()).touches(sets);
     // Which motions need a program, in their order, so that the answer does not depend on cores.
     let all: Vec<&str> = motions.distinct();
     let mut programs = 0;
