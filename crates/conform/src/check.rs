@@ -4,9 +4,10 @@ use crate::error::Result;
 use crate::growth::Growth;
 use crate::hulls::Hulls;
 use crate::model::file::Model;
+use crate::next_motion::rates::Rates;
+use crate::next_motion::trust::Trust;
 use crate::problem::problem::Problem;
 use crate::problem::suite::{RunSummary, Suite};
-use crate::trust::Trust;
 use crate::verdict::Verdict;
 
 /// The answer of a check.
@@ -17,6 +18,9 @@ pub struct Check {
     pub verdict: Verdict,
     /// What the check says about the next motion; nothing when a recording was used in the fit.
     pub trust: Option<Trust>,
+    /// How often the recordings leave the set, with their spread over motions; nothing when a
+    /// recording was used in the fit.
+    pub rates: Option<Rates>,
     /// What would have to grow so that the recordings were enclosed; nothing where they are, or
     /// where a reachable set was lost.
     pub growth: Option<Growth>,
@@ -51,9 +55,10 @@ impl Check {
         let recordings = problem.recordings();
         let is_held_out = !model.was_fitted_to(recordings);
         let trust = is_held_out.then(|| Trust::of_check(recordings, &verdict));
+        let rates = is_held_out.then(|| Rates::new(recordings, &verdict));
         let mut notes = recordings.notes.clone();
         notes.extend(recordings.suites.iter().filter_map(|suite| other_start_note(model, suite)));
-        Self { verdict, trust, growth: None, notes }
+        Self { verdict, trust, rates, growth: None, notes }
     }
 }
 

@@ -6,14 +6,17 @@ use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
 use crate::found::{Found, SearchSummary};
 use crate::hulls::Hulls;
-use crate::linear::smallest_sets as linear;
+use crate::next_motion::calibration::{Calibrated, Calibration, calibrate};
+use crate::next_motion::deciding_runs::DecidingRuns;
+use crate::next_motion::left_out::{LeftOut, leave_each_out};
+use crate::next_motion::trends::{Trend, trends};
+use crate::next_motion::trust::Trust;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::{NominalFit, Warning, warnings};
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
-use crate::search::smallest_sets as search;
 use crate::sets::UncertaintySets;
-use crate::trust::Trust;
+use crate::smallest_sets::smallest_sets;
 use crate::verdict::{Verdict, Witness};
 
 /// The result of [`conform`].
@@ -39,6 +42,15 @@ pub struct Conformance {
     pub verdict: Verdict,
     /// What may be expected of motions that were not recorded.
     pub trust: Trust,
+    /// How the sets were scaled, where motions were kept back for it.
+    pub calibration: Option<Calibration>,
+    /// The sets without each of the motions they were found on; none for one motion, or for a
+    /// model that is not linear.
+    pub left_out: Vec<LeftOut>,
+    /// The runs that decide the sets.
+    pub deciding_runs: DecidingRuns,
+    /// The joints whose motion follows the order of the runs.
+    pub trends: Vec<Trend>,
     /// How the sets of a model that is not linear were found.
     pub search: Option<SearchSummary>,
     /// The recorded values that touch the reachable set, the closest first; the linearised set
@@ -75,9 +87,13 @@ pub fn conform(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    let found = match problem.dynamics().linear_system() {
-        Some(_) => linear::smallest_sets(problem)?,
-        None => search::smallest_sets(problem, progress, resume)?,
+    let (found, calibration, left_out) = if problem.settings().calibrate.is_empty() {
+        let found = smallest_sets(problem, progress, resume)?;
+        let left_out = leave_each_out(problem, &found.hulls.sets)?;
+        (found, None, left_out)
+    } else {
+        let Calibrated { fit, fitted, found, calibration } = calibrate(problem, progress, resume)?;
+        (found, Some(calibration), leave_each_out(&fit, &fitted)?)
     };
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, deciding, .. } = found;
@@ -94,6 +110,8 @@ pub fn conform(
     };
     let fit = NominalFit::new(problem)?;
     let warnings = warnings(problem, &hulls.sets, &radii, &fit)?;
+    let is_proved = verdict.conformant;
+    let smallest_cost = calibration.is_none().then_some(cost);
     Ok(Conformance {
         sets: hulls.sets.clone(),
         warnings,
@@ -104,10 +122,19 @@ pub fn conform(
         paper_cost,
         hull_volume,
         verdict,
-        trust: match optimality_gap {
-            Some(gap) if gap > LARGEST_GAP => Trust::without_optimum(problem.recordings(), gap),
+        trust: match (&calibration, optimality_gap) {
+            (Some(calibration), _) => {
+                Trust::of_calibration(problem.recordings(), calibration, is_proved)
+            }
+            (None, Some(gap)) if gap > LARGEST_GAP => {
+                Trust::without_optimum(problem.recordings(), gap)
+            }
             _ => Trust::of_fit(problem.recordings(), &tight),
         },
+        deciding_runs: DecidingRuns::new(problem, &tight, smallest_cost)?,
+        trends: trends(problem),
+        calibration,
+        left_out,
         search,
         tight,
         explanations,

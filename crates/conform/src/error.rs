@@ -71,6 +71,9 @@ pub enum Error {
     /// A step for linear models was asked of another one.
     #[error("the model is not linear; use the steps for polynomial models")]
     NotLinear,
+    /// Motions cannot calibrate the sets.
+    #[error("calibrate: {0}")]
+    Calibration(String),
     /// A model file is not one, or of another version.
     #[error("{}: {problem}", path.display())]
     ModelFile {

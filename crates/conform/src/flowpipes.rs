@@ -4,6 +4,8 @@ use reachtube_reach::{Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInp
 
 use crate::error::Result;
 use crate::problem::case::Case;
+use crate::problem::problem::Problem;
+use crate::rows::rows;
 use crate::sets::UncertaintySets;
 
 /// Variables over whose vertices remainders are bounded, one number after the other while a set is
@@ -51,4 +53,22 @@ pub fn flowpipe(
         }
     }
     Ok(furthest)
+}
+
+/// Returns whether the flowpipe of a case under `sets` encloses its recordings.
+///
+/// # Errors
+///
+/// As [`flowpipe`].
+pub fn is_enclosed(
+    problem: &Problem,
+    case: &Case,
+    sets: &UncertaintySets,
+    effort: Effort,
+) -> Result<bool> {
+    let flowpipe = flowpipe(problem.dynamics().polynomial_system()?, case, sets, effort)?;
+    let mut all = true;
+    let states = problem.settings().states;
+    rows(&case.measured, case.grid.times(), &flowpipe, sets, states, |row| all &= row.holds());
+    Ok(all)
 }

@@ -1,12 +1,9 @@
 use serde::Serialize;
 
-use crate::envelope::Envelope;
 use crate::error::Result;
-use crate::linear::block::Block;
-use crate::linear::program::Program;
+use crate::linear::smallest_sets::program;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
-use crate::weights::state_weights;
 
 /// What would have to grow, alone and by how much, so that a model encloses recordings that leave
 /// its sets. Not proved: to rounding, with the centres where they are.
@@ -35,19 +32,9 @@ impl Growth {
         let largest = |excess: &[f64]| excess.iter().copied().fold(0.0, f64::max);
         let [initial_set, input_set, both_sets] = match problem.dynamics().linear_system() {
             None => [None; 3],
-            Some(_) => factors(problem, sets)?,
+            Some(_) => program(problem)?.growth_factors(sets),
         };
         let (noise_position, noise_velocity) = (largest(positions), largest(velocities));
         Ok(Self { initial_set, input_set, both_sets, noise_position, noise_velocity })
     }
-}
-
-/// The factors of X0, of U and of both with which every row of a linear model holds.
-fn factors(problem: &Problem, sets: &UncertaintySets) -> Result<[Option<f64>; 3]> {
-    let (settings, joints) = (problem.settings(), problem.joints());
-    let (grids, deviations) = (problem.grids()?, problem.deviations()?);
-    let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
-    let weights = state_weights(&settings.weights, &envelopes, joints);
-    let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
-    Ok(Program::new(settings, &weights, blocks).growth_factors(sets))
 }

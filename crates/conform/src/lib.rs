@@ -6,7 +6,6 @@
 //! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
 //! [`explain()`] searches for the motion of the model closest to each run.
 
-mod bounds;
 mod check;
 mod conformance;
 mod deviation;
@@ -23,6 +22,7 @@ mod growth;
 mod hulls;
 mod linear;
 mod model;
+mod next_motion;
 mod nominal;
 mod optimality;
 mod plausibility;
@@ -35,11 +35,10 @@ mod sensor_noise;
 mod sets;
 mod settings;
 mod side;
-mod trust;
+mod smallest_sets;
 mod verdict;
 mod weights;
 
-pub use bounds::{clopper_pearson, scenario_bound};
 pub use check::{Check, check};
 pub use conformance::{Conformance, conform};
 pub use deviation::{Deviation, Nominal};
@@ -48,8 +47,8 @@ pub use envelope::Envelope;
 pub use error::{Error, Result};
 pub use explain::{Explanation, explain};
 pub use fitting::{
-    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, LeftOut, PullCost,
-    TorquePrediction, fit,
+    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, PullCost, TorquePrediction,
+    UnseenMotion, fit,
 };
 pub use found::SearchSummary;
 pub use grids::{Grid, Grids};
@@ -60,10 +59,17 @@ pub use linear::program::{Program, Solution};
 pub use model::{
     DataRecord, Explained, FORMAT, MOST_TIGHT, Model, Residual, RunRecord, SuiteRecord, VERSION,
 };
+pub use next_motion::bounds::{clopper_pearson, scenario_bound};
+pub use next_motion::calibration::{Calibration, Gauge};
+pub use next_motion::deciding_runs::{DecidingRun, DecidingRuns};
+pub use next_motion::left_out::LeftOut;
+pub use next_motion::rates::{Rate, Rates};
+pub use next_motion::trends::Trend;
+pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use nominal::correction::{InputCorrection, JointCorrection, WarmthLaw};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
-pub use problem::{Case, Keep, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
+pub use problem::{Case, Keep, Marks, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use rows::{Edge, Hull, HullBounds, Row, rows};
@@ -71,5 +77,4 @@ pub use sensor_noise::SensorNoise;
 pub use sets::UncertaintySets;
 pub use settings::{Centre, Method, Noise, NominalStart, Settings, States, Tolerance, Weights};
 pub use side::Side;
-pub use trust::{CONFIDENCE, Trust};
 pub use verdict::{SuiteVerdict, Verdict, Violations, Witness};

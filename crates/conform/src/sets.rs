@@ -21,6 +21,13 @@ impl UncertaintySets {
         self.noise_set.as_ref().map_or(0.0, |set| set.radius[i])
     }
 
+    /// The radii of U times `factor`, rounded to nearest.
+    pub(crate) fn with_input_scaled(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        scaled.input_set.radius.iter_mut().for_each(|radius| *radius *= factor);
+        scaled
+    }
+
     /// All radii times `factor` plus `term`, both rounded to nearest. The radius of V is left
     /// alone: where it is known it must stay.
     pub(crate) fn inflated(&self, factor: f64, term: f64) -> Self {

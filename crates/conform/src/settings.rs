@@ -150,6 +150,10 @@ pub struct Settings {
     pub sensor_noise: Option<Vec<f64>>,
     /// Where nominal solutions start.
     pub nominal: NominalStart,
+    /// The motions that are kept back from the fit and then calibrate its sets. They are not
+    /// looked at but by [`conform`](crate::conform).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calibrate: Vec<String>,
     /// What counts as an explanation of a run; none is searched for where it is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explain: Option<Tolerance>,
@@ -177,6 +181,7 @@ impl Settings {
             noise: Noise::default(),
             sensor_noise: None,
             nominal: NominalStart::default(),
+            calibrate: Vec::new(),
             explain: None,
             until: None,
             gap_limit: GapLimit::default(),

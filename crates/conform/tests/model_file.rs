@@ -95,10 +95,11 @@ fn a_file_whose_content_was_changed_is_refused() {
     let (robot, folder) = (two_joints(), tempfile::tempdir().unwrap());
     let path = fitted(&robot, folder.path());
     let model = Model::load(&path).unwrap();
-    let changes: [fn(&mut Model); 4] = [
+    let changes: [fn(&mut Model); 5] = [
         |model| model.trust.violation_probability = 0.01,
         |model| model.data.suites[0].name = "C".into(),
         |model| model.data.suites[1].motion = Some("another".into()),
+        |model| model.left_out[0].gauge = Some(1.0),
         |model| model.initial_set.radius[0] *= 0.5,
     ];
     for change in changes {

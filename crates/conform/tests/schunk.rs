@@ -7,7 +7,7 @@ use std::path::Path;
 
 use common::{check_against, conform_all, read};
 use nalgebra::{DMatrix, DVector};
-use reachtube_conform::{Centre, Conformance, Dynamics, Model, Problem, Settings, States};
+use reachtube_conform::{Centre, Conformance, Dynamics, Model, Problem, Settings, States, Trend};
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
@@ -86,6 +86,22 @@ fn costs_are_those_of_an_independent_solver_and_the_sets_are_proved() {
                 Centre::Zero => assert!(sets.clone().all(|(c, _)| *c == 0.0), "{case}"),
             }
         }
+    }
+}
+
+/// Gauges by an independent linear program: 1.6, 2.2, 2.0 and 3.0.
+#[test]
+#[ignore = "needs the recordings in ../shared"]
+fn gauges_are_those_of_an_independent_program_and_warming_up_is_named() {
+    let folder = common::shared("schunk_lwa4p");
+    let (_, found) = conform_with(&folder, &["A", "B", "D", "E"], |_| {});
+    let gauges: Vec<f64> = found.left_out.iter().map(|left| left.gauge.unwrap()).collect();
+    for (gauge, expected) in gauges.iter().zip([1.6, 2.2, 2.0, 3.0]) {
+        assert!((gauge - expected).abs() < 0.05, "{gauges:?}");
+    }
+    for (suite, joint) in [("A", 3), ("B", 3), ("E", 3)] {
+        let trend = |trend: &&Trend| trend.suite == suite && trend.joint == joint;
+        assert!(found.trends.iter().find(trend).unwrap().correlation.abs() > 0.9);
     }
 }
 

@@ -71,6 +71,9 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
         }
     };
     let _ = writeln!(text, "\n{next_motion}");
+    if let Some(rates) = &check.rates {
+        let _ = writeln!(text, "\n{}", rates.words());
+    }
     text
 }
 

@@ -1,11 +1,14 @@
-//! `reachtube reproduce`: tables of the paper.
+//! `reachtube reproduce`: tables of the paper, and how often bounds for the next motion hold.
 
 use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use reachtube::abstraction::ModelKind;
-use reachtube::reproduce::{Cell, Paper, Speed, Table1, Table1Options, table1 as make_table1};
+use reachtube::reproduce::{
+    Cell, Coverage, CoverageOptions, CoverageRow, Paper, Speed, Table1, Table1Options,
+    coverage as simulate_coverage, table1 as make_table1,
+};
 use reachtube::write;
 
 use crate::error::Result;
@@ -16,10 +19,11 @@ use crate::progress::Progress;
 use crate::table::table;
 use reachtube::number::four_decimals;
 
-/// Reproduce a table of the paper
+/// Reproduce a table of the paper, or put the bounds for the next motion to the test
 #[derive(Debug, Subcommand)]
 pub enum ReproduceCommand {
     Table1(Table1Arguments),
+    Coverage(CoverageArguments),
 }
 
 const TABLE1_HELP: &str = "\
@@ -63,6 +67,61 @@ pub struct Table1Arguments {
     /// Write the error of each motion to this CSV file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+}
+
+const COVERAGE_HELP: &str = "\
+Example:
+  reachtube reproduce coverage --campaigns 400 --seed 1
+
+Exit codes: 0 every bound holds within three standard errors, 1 one does not, 2 error.";
+
+/// Simulate how often the bounds for the next motion are wrong
+///
+/// Each campaign records random motions of a virtual arm, finds sets for them, and states bounds of
+/// the probability that the next motion leaves them. 2000 further motions give the truth.
+#[derive(Debug, Args)]
+#[command(after_help = COVERAGE_HELP)]
+pub struct CoverageArguments {
+    /// Number of campaigns, 1 or more
+    #[arg(long, default_value_t = 400, value_name = "COUNT")]
+    pub campaigns: usize,
+    /// Seed of the motions; the same seed gives the same motions
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// Runs `reproduce coverage`.
+pub fn coverage(args: &CoverageArguments, json: bool) -> Result<Outcome> {
+    let bar = Progress::of("simulating");
+    let options = CoverageOptions { campaigns: args.campaigns, seed: args.seed };
+    let coverage = simulate_coverage(&options, &|done, total| bar.show(done, total))?;
+    drop(bar);
+    output::show(json, &coverage, || coverage_summary(&coverage))?;
+    Ok(Outcome::of(coverage.rows.iter().all(CoverageRow::holds)))
+}
+
+/// Returns how often each bound was wrong, beside how often it may be.
+fn coverage_summary(coverage: &Coverage) -> String {
+    let Coverage { options, fitted, held_out, calibrating, next, rows } = coverage;
+    let row = |row: &CoverageRow| {
+        vec![
+            row.statement.clone(),
+            format!("{:.3}", row.mean_bound),
+            format!("{:.3}", row.mean_truth),
+            format!("{:.3}", row.nominal),
+            format!("{:.3} ± {:.3}", row.observed, row.standard_error),
+            if row.holds() { "yes".into() } else { "NO".into() },
+        ]
+    };
+    let header = ["statement", "mean bound", "mean truth", "may be wrong", "was wrong", "holds"];
+    format!(
+        "{} campaigns of {fitted} random motions (seed {}), {held_out} more for the hold-out \
+         bound; {calibrating} of the {fitted} calibrate the sets of the others; the truth is the \
+         part of {next} further motions that leave the sets\n\n{}",
+        options.campaigns,
+        options.seed,
+        table(&header, &rows.iter().map(row).collect::<Vec<_>>())
+    )
 }
 
 /// Runs `reproduce table1`.

@@ -150,6 +150,37 @@ fn trust_is_stated_for_recordings_that_were_held_out_only() {
 }
 
 #[test]
+fn motions_that_are_kept_back_calibrate_the_sets() {
+    let lab = Lab::new();
+    lab.edit("data/runs.csv", |lines| {
+        lines.iter_mut().for_each(|line| *line = line.replace("motion ", "M"));
+    });
+    let text = lab.conform("--calibrate MB --out model.json").exits(0).stdout;
+    for words in [
+        "(calibrated, not the smallest)",
+        "for 1 motion was scaled about the centres by",
+        "leaves the reachable set with probability at most 0.500 (1 in 2)",
+        "basis: split conformal calibration",
+    ] {
+        assert!(text.contains(words), "{words} is not in\n{text}");
+    }
+    assert_eq!(lab.check("--json").exits(0).json()["trust"], Value::Null);
+    lab.conform("--calibrate MC").fails_with(&["no motion \"MC\"", "MA, MB"]);
+    lab.conform("--calibrate MA,MB").fails_with(&["all motions are kept back", "name fewer"]);
+}
+
+#[test]
+fn what_each_motion_decides_is_a_table() {
+    let lab = Lab::new();
+    let text = lab.conform("").exits(0).stdout;
+    for words in ["without motion", "growth that holds it", "a description of these motions"] {
+        assert!(text.contains(words), "{words} is not in\n{text}");
+    }
+    let text = lab.conform("--suites A").exits(0).stdout;
+    assert!(!text.contains("without motion"), "{text}");
+}
+
+#[test]
 fn a_suite_of_one_run_needs_no_initial_set() {
     let lab = Lab::new();
     lab.edit("data/runs.csv", |lines| lines.truncate(2));

@@ -41,7 +41,7 @@ pub(crate) struct Fit<'a> {
 /// The model of one choice of the parameters beside the recordings.
 pub(crate) struct Model {
     /// For each grid, the entries of E_k and R_k at the samples that are rows, as in a [`Block`].
-    pub coefficients: Arc<Vec<Vec<f64>>>,
+    pub coefficients: Vec<Arc<Vec<f64>>>,
     /// For each track, the nominal motion at the samples that are rows, samples x 2n.
     pub motions: Vec<Vec<f64>>,
 }
@@ -69,16 +69,16 @@ impl Fit<'_> {
         let grids = self.data.grids.iter();
         let steps: Vec<Steps> = grids.map(|grid| Steps::new(system, grid.times())).collect();
         let coefficients = match known {
-            Some(model) => Arc::clone(&model.coefficients),
-            None => Arc::new(self.coefficients(&steps)),
+            Some(model) => model.coefficients.clone(),
+            None => self.coefficients(&steps),
         };
         Ok(Model { coefficients, motions: self.motions(&setup, &steps)? })
     }
 
-    fn coefficients(&self, steps: &[Steps]) -> Vec<Vec<f64>> {
+    fn coefficients(&self, steps: &[Steps]) -> Vec<Arc<Vec<f64>>> {
         let constant = self.settings.disturbance == Disturbance::Constant;
         let of = |(steps, grid): (&Steps, &Arc<TimeGrid>)| {
-            steps.coefficients(grid.len(), self.stride, constant)
+            Arc::new(steps.coefficients(grid.len(), self.stride, constant))
         };
         steps.iter().zip(&self.data.grids).map(of).collect()
     }
@@ -105,7 +105,7 @@ impl Fit<'_> {
         for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
             let times = grid.times().iter().step_by(stride).copied().collect();
             let envelope = Envelope::new(states);
-            blocks.push(Block { times, coefficients: coefficients.clone(), envelope });
+            blocks.push(Block { times, coefficients: Arc::clone(coefficients), envelope });
         }
         for &t in tracks {
             let (track, motion) = (&self.data.tracks[t], &model.motions[t]);
@@ -126,7 +126,6 @@ impl Fit<'_> {
         for block in &mut blocks {
             let samples = block.envelope.len();
             block.times.truncate(samples);
-            block.coefficients.truncate(samples * states * 3 * states);
         }
         Program::new(self.settings, &self.weights, blocks).with_limits(self.limits.clone())
     }

@@ -22,4 +22,4 @@ mod torque;
 
 pub use fit::{Fitted, fit};
 pub use group::{FitSettings, Group};
-pub use record::{FitRecord, FittedParameter, GroupCost, LeftOut, PullCost, TorquePrediction};
+pub use record::{FitRecord, FittedParameter, GroupCost, PullCost, TorquePrediction, UnseenMotion};

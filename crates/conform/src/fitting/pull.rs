@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::fitting::evaluation::Fit;
-use crate::fitting::record::{LeftOut, PullCost};
+use crate::fitting::record::{PullCost, UnseenMotion};
 use crate::fitting::search::{Effort, Search};
 
 /// The weights that are tried, in parts of the identified model's cost per unit, the strongest
@@ -15,7 +15,7 @@ const PULLS: [f64; 4] = [0.05, 0.02, 0.005, 0.001];
 pub(crate) struct PullChoice {
     pub pull: f64,
     /// Cost of the sets of all motions when one was left out of the fit.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<UnseenMotion>,
     /// The mean of these costs for each weight that was tried.
     pub tried: Vec<PullCost>,
 }
@@ -38,8 +38,9 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
         pulls.iter().enumerate().map(|(at, &pull)| PullCost { pull, cost: mean(at) }).collect();
     let best = (0..pulls.len()).min_by(|a, b| mean(*a).total_cmp(&mean(*b))).unwrap_or(0);
     let left_out = fit.data.motions.iter().zip(&costs);
-    let left_out =
-        left_out.map(|(motion, of)| LeftOut { motion: motion.clone(), cost: of[best] }).collect();
+    let left_out = left_out
+        .map(|(motion, of)| UnseenMotion { motion: motion.clone(), cost: of[best] })
+        .collect();
     Ok(PullChoice { pull: pulls[best], left_out, tried })
 }
 

@@ -17,7 +17,7 @@ pub struct FitRecord {
     pub groups: Vec<GroupCost>,
     /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
     /// compare with `identified_cost`.
-    pub leave_one_out: Vec<LeftOut>,
+    pub leave_one_out: Vec<UnseenMotion>,
     /// The weights of the pull that were tried.
     pub pulls: Vec<PullCost>,
     /// The parameters.
@@ -39,7 +39,7 @@ pub struct GroupCost {
 /// A fit without one motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct LeftOut {
+pub struct UnseenMotion {
     /// The motion.
     pub motion: String,
     /// Cost of the sets of all motions for the nominal model that was fitted without it.

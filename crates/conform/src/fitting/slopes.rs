@@ -1,5 +1,7 @@
 //! How the rows of the program change with each parameter, by differences.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::error::Result;
@@ -46,7 +48,7 @@ pub(crate) fn slopes(
             other.iter().zip(here).map(|(x, y)| (x - y) / step).collect()
         };
         let motions = pairs.map(difference).collect();
-        let rows = |(other, here): (&Vec<f64>, &Vec<f64>)| {
+        let rows = |(other, here): (&Arc<Vec<f64>>, &Arc<Vec<f64>>)| {
             let rows = other.chunks_exact(6 * n).zip(here.chunks_exact(6 * n));
             rows.map(|(other, here)| reach_slope(other, here, &centre, &radius, step)).collect()
         };

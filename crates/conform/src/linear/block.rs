@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use crate::deviation::Deviation;
 use crate::envelope::Envelope;
 use crate::grids::Grid;
@@ -8,7 +10,7 @@ pub struct Block {
     /// Sample times, s.
     pub times: Vec<f64>,
     /// Samples x states x (unknown centres, then radii): the entries of E_k, then of R_k.
-    pub coefficients: Vec<f64>,
+    pub coefficients: Arc<Vec<f64>>,
     /// The deviations that must be covered.
     pub envelope: Envelope,
 }
@@ -21,7 +23,7 @@ impl Block {
         deviations.iter().for_each(|deviation| merged[deviation.grid].merge(&deviation.envelope));
         let block = |(grid, envelope): (&Grid, Envelope)| Self {
             times: grid.propagation.grid().times().to_vec(),
-            coefficients: coefficients(grid),
+            coefficients: Arc::new(coefficients(grid)),
             envelope,
         };
         grids.iter().zip(merged).map(block).collect()

@@ -3,6 +3,7 @@
 pub(crate) mod block;
 pub(crate) mod costs;
 pub(crate) mod layout;
+mod other_recordings;
 pub(crate) mod program;
 mod repair;
 pub(crate) mod smallest_sets;

@@ -49,10 +49,11 @@ const SCALINGS: usize = 4;
 const NEGLIGIBLE_PART: f64 = 1e-7;
 
 /// The program.
+#[derive(Clone)]
 pub struct Program<'a> {
     settings: &'a Settings,
-    joints: usize,
-    blocks: Vec<Block>,
+    pub(super) joints: usize,
+    pub(super) blocks: Vec<Block>,
     /// For each block and sample, how much its widths count.
     pub(crate) shares: Vec<Vec<f64>>,
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
@@ -191,7 +192,7 @@ impl<'a> Program<'a> {
         )))
     }
 
-    fn largest_bound(&self) -> f64 {
+    pub(super) fn largest_bound(&self) -> f64 {
         self.indices(1).map(|index| self.bound(index).abs()).fold(0.0, f64::max)
     }
 
@@ -245,11 +246,8 @@ impl<'a> Program<'a> {
         let known: HashSet<&RowIndex> = known.iter().collect();
         let mut worst: BTreeMap<(usize, usize, usize, bool), (f64, RowIndex)> = BTreeMap::new();
         for index in self.indices(1) {
-            let excess = self.excess(index, &unknowns);
-            let (b, k, i, side) = index;
-            let reach = dot(self.row(b, k, i).1, &unknowns.radius);
-            let size = self.bound(index).abs().max(reach);
-            if excess <= (TOLERANCE * size).max(ROUNDING * self.scale) || known.contains(&index) {
+            let (excess, (b, k, i, side)) = (self.excess(index, &unknowns), index);
+            if !self.is_violated(index, excess, &unknowns) || known.contains(&index) {
                 continue;
             }
             let window = k * WINDOWS / self.blocks[b].envelope.len();
@@ -260,6 +258,14 @@ impl<'a> Program<'a> {
             }
         }
         worst.into_values().map(|(_, index)| index).collect()
+    }
+
+    /// Whether a row with this excess misses more than rounding.
+    pub(super) fn is_violated(&self, index: RowIndex, excess: f64, unknowns: &Unknowns) -> bool {
+        let (b, k, i, _) = index;
+        let reach = dot(self.row(b, k, i).1, &unknowns.radius);
+        let size = self.bound(index).abs().max(reach);
+        excess > (TOLERANCE * size).max(ROUNDING * self.scale)
     }
 
     pub(super) fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {

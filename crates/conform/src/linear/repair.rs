@@ -19,24 +19,6 @@ impl Program<'_> {
         if self.cost(&widened) < self.cost(&scaled) { widened } else { scaled }
     }
 
-    /// Returns the factors of the radii of X0 alone, of U alone, and of both, with which every row
-    /// holds up to rounding; nothing where no factor suffices.
-    #[must_use]
-    pub fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
-        let unknowns = self.unknowns(sets);
-        let (states, all) = (sets.initial_set.dimension(), unknowns.radius.len());
-        [0..states, states..all, 0..all].map(|part| {
-            let needed = |index: RowIndex| {
-                let excess = self.excess(index, &unknowns);
-                let gains = &self.row(index.0, index.1, index.2).1[part.clone()];
-                let given = dot(gains, &unknowns.radius[part.clone()]);
-                if excess > 0.0 { 1.0 + excess / given } else { 1.0 }
-            };
-            let factor = self.indices(1).map(needed).fold(1.0, f64::max);
-            factor.is_finite().then_some(factor)
-        })
-    }
-
     /// The sets with radii that are larger by terms of the same cost, so that every row holds.
     fn widened(&self, sets: &UncertaintySets) -> UncertaintySets {
         let unknowns = self.unknowns(sets);

@@ -19,14 +19,9 @@ const REPAIRS: i32 = 60;
 ///
 /// [`Error::Program`](crate::Error::Program), and as [`Problem::deviations`].
 pub(crate) fn smallest_sets(problem: &Problem) -> Result<Found> {
-    let (settings, joints) = (problem.settings(), problem.joints());
-    let (grids, deviations) = (problem.grids()?, problem.deviations()?);
-    let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
-    let weights = state_weights(&settings.weights, &envelopes, joints);
-    let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
-    let program = Program::new(settings, &weights, blocks).with_limits(problem.limits());
+    let program = program(problem)?;
     let solution = program.solve()?;
-    let hulls = repair(problem, &program, &solution.sets)?;
+    let hulls = prove(problem, program.repaired(&solution.sets), program.scale())?;
     let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
     let (cost, lower_bound) = (program.cost(&hulls.sets), solution.lower_bound);
     let gap = optimality_gap(cost, lower_bound, program.negligible_cost());
@@ -42,18 +37,35 @@ pub(crate) fn smallest_sets(problem: &Problem) -> Result<Found> {
     })
 }
 
-/// Makes the solver's answer true (docs/method.md, correction H): enlarges the radii until every
-/// row holds, checks with directed rounding, and inflates them by a growing last bit until the
-/// check passes.
-fn repair(problem: &Problem, program: &Program, found: &UncertaintySets) -> Result<Hulls> {
-    let repaired = program.repaired(found);
-    let mut hulls = Hulls::new(problem, repaired.clone())?;
+/// Returns the program of a linear model and its recordings.
+///
+/// # Errors
+///
+/// As [`Problem::deviations`].
+pub(crate) fn program(problem: &Problem) -> Result<Program<'_>> {
+    let (settings, joints) = (problem.settings(), problem.joints());
+    let (grids, deviations) = (problem.grids()?, problem.deviations()?);
+    let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
+    let weights = state_weights(&settings.weights, &envelopes, joints);
+    let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
+    Ok(Program::new(settings, &weights, blocks).with_limits(problem.limits()))
+}
+
+/// Makes sets that satisfy every row up to rounding true (docs/method.md, correction H): checks
+/// them with directed rounding, and inflates the radii by a growing last bit until the check
+/// passes. `scale` is the largest deviation.
+///
+/// # Errors
+///
+/// As [`Hulls::new`].
+pub(crate) fn prove(problem: &Problem, sets: UncertaintySets, scale: f64) -> Result<Hulls> {
+    let mut hulls = Hulls::new(problem, sets.clone())?;
     for attempt in 0..REPAIRS {
         if encloses(problem, &hulls)? {
             break;
         }
         let bit = f64::EPSILON * 2f64.powi(attempt);
-        hulls = Hulls::new(problem, repaired.inflated(1.0 + bit, bit * program.scale()))?;
+        hulls = Hulls::new(problem, sets.inflated(1.0 + bit, bit * scale))?;
     }
     Ok(hulls)
 }

@@ -18,6 +18,11 @@ use crate::error::{Error, Result};
 use crate::fitting::record::FitRecord;
 use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained, SuiteRecord};
+use crate::next_motion::calibration::Calibration;
+use crate::next_motion::deciding_runs::DecidingRuns;
+use crate::next_motion::left_out::LeftOut;
+use crate::next_motion::trends::Trend;
+use crate::next_motion::trust::Trust;
 use crate::nominal::correction::InputCorrection;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::Warning;
@@ -26,7 +31,6 @@ use crate::problem::recordings::Recordings;
 use crate::sensor_noise::SensorNoise;
 use crate::sets::UncertaintySets;
 use crate::settings::Settings;
-use crate::trust::Trust;
 use crate::verdict::{Verdict, Witness};
 
 /// What the field `format` of every model file says.
@@ -103,6 +107,18 @@ pub struct Model {
     pub proof: Verdict,
     /// What may be expected of the next motion.
     pub trust: Trust,
+    /// How the sets were scaled, where motions were kept back for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Calibration>,
+    /// The sets without each of the motions they were found on, of a linear model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOut>,
+    /// The runs that decide the sets.
+    #[serde(default)]
+    pub deciding_runs: DecidingRuns,
+    /// The joints whose motion follows the order of the runs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trends: Vec<Trend>,
     /// The recorded points that touch the reachable set and so decide the sets, the closest first,
     /// 500 at most.
     pub tight: Vec<Witness>,
@@ -176,6 +192,10 @@ impl Model {
             nominal_explains: found.nominal_explains.clone(),
             proof: found.verdict.clone(),
             trust: found.trust.clone(),
+            calibration: found.calibration.clone(),
+            left_out: found.left_out.clone(),
+            deciding_runs: found.deciding_runs.clone(),
+            trends: found.trends.clone(),
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),
             correction: problem.setup().correction.clone(),
@@ -286,7 +306,9 @@ impl Model {
         };
         let set =
             |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
-        let costs = [self.cost, self.cost_lower_bound, self.cost_paper, self.hull_volume];
+        // Sets that were calibrated are not the smallest, so nothing bounds their cost from below.
+        let lower_bound = self.cost_lower_bound.or(self.calibration.as_ref().and(Some(0.0)));
+        let costs = [self.cost, lower_bound, self.cost_paper, self.hull_volume];
         let is_linear = self.acceleration.is_empty();
         let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
         let none = self.a.is_empty() && self.b.is_empty() && self.drift.is_empty();

@@ -1,5 +1,7 @@
 //! What a model file says about its recordings.
 
+use std::collections::BTreeSet;
+
 use reachtube_robot::JointKind;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -166,6 +168,13 @@ impl DataRecord {
         let suites = problem.recordings().suites.iter().map(suite).collect();
         let record = Self { sha256: String::new(), suites };
         Self { sha256: record.digest(), ..record }
+    }
+
+    /// Returns the number of distinct motions; a suite without a motion counts as one.
+    #[must_use]
+    pub fn motions(&self) -> usize {
+        let motion = |suite: &'_ SuiteRecord| suite.motion.as_ref().unwrap_or(&suite.name).clone();
+        self.suites.iter().map(motion).collect::<BTreeSet<String>>().len()
     }
 
     /// Returns the SHA-256 that the record must have.

@@ -4,13 +4,16 @@ pub(crate) mod case;
 mod cases;
 pub(crate) mod input;
 mod kept;
+pub(crate) mod marks;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod problem;
 pub(crate) mod recordings;
+mod subset;
 pub(crate) mod suite;
 
 pub use case::Case;
 pub use input::RunInput;
+pub use marks::Marks;
 pub use problem::{Keep, Problem, Setup};
 pub use recordings::Recordings;
 pub use suite::{RunSummary, Suite};

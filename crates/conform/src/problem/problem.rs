@@ -118,10 +118,10 @@ pub struct Problem {
 /// What was read of the recordings. It does not depend on the model.
 #[derive(Debug)]
 pub(super) struct Read {
-    pub source: Box<dyn RunSource>,
+    pub source: Arc<dyn RunSource>,
     pub recordings: Recordings,
-    kept: HashMap<usize, Run>,
-    sensor_noise: SensorNoise,
+    pub kept: Arc<HashMap<usize, Run>>,
+    pub sensor_noise: SensorNoise,
     /// The robot whose inputs the suites have.
     pub robot: RobotDescription,
 }
@@ -154,14 +154,11 @@ impl Problem {
             keep_all: keep == Keep::All || settings.explain.is_some(),
         };
         let mut recordings = Recordings::read(&reader, names, progress)?;
-        let kept = kept.into_runs();
-        let sensor_noise = match &setup.settings.sensor_noise {
-            Some(radius) => SensorNoise::given(radius.clone()),
-            None => SensorNoise::estimate(&recordings, setup.robot.joint_count()),
-        };
+        let kept = Arc::new(kept.into_runs());
+        let sensor_noise = sensor_noise(&setup, &recordings);
         check_starts(&setup, source.as_ref(), &recordings)?;
         recordings.notes.extend(leaving_notes(&setup, &recordings));
-        let robot = setup.robot.description().clone();
+        let (robot, source) = (setup.robot.description().clone(), source.into());
         Ok(Self::of(setup, Arc::new(Read { source, recordings, kept, sensor_noise, robot })))
     }
 
@@ -173,7 +170,7 @@ impl Problem {
         Self::of(setup, Arc::clone(&self.read))
     }
 
-    fn of(setup: Setup, read: Arc<Read>) -> Self {
+    pub(super) fn of(setup: Setup, read: Arc<Read>) -> Self {
         let (grids, cases, deviations) = Default::default();
         Self { setup, read, grids, cases, deviations }
     }
@@ -335,6 +332,14 @@ fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
         ))
     };
     recordings.suites.iter().filter_map(leaves).collect()
+}
+
+/// The noise of the sensors, as the settings give it or these recordings show it.
+pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNoise {
+    match &setup.settings.sensor_noise {
+        Some(radius) => SensorNoise::given(radius.clone()),
+        None => SensorNoise::estimate(recordings, setup.robot.joint_count()),
+    }
 }
 
 fn read_options(setup: &Setup) -> ReadOptions {

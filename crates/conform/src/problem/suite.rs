@@ -13,10 +13,11 @@ use reachtube_scalar::Interval;
 use crate::envelope::Envelope;
 use crate::problem::input::RunInput;
 use crate::problem::kept::KeptRuns;
+use crate::problem::marks::Marks;
 use crate::settings::NominalStart;
 
 /// One test suite after reading.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Suite {
     /// The suite's name and runs.
     pub entry: SuiteEntry,
@@ -46,6 +47,8 @@ pub struct RunSummary {
     pub grid: Arc<TimeGrid>,
     /// The first state, 2n.
     pub start: Vec<f64>,
+    /// Some of its states.
+    pub marks: Marks,
     /// SHA-256 of the recording.
     pub sha256: String,
     /// The standard deviation of the noise in each state, 2n, as
@@ -112,6 +115,7 @@ impl SuiteReader<'_> {
             duration: input.grid.times().last().copied().unwrap_or(0.0),
             grid: part.grid(&input.grid),
             start: run.state(0).to_vec(),
+            marks: Marks::new(&run),
             sha256: run.sha256.clone(),
             noise: noise_deviations(&run),
             notes: run_notes(self.source, index, &run),

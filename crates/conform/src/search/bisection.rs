@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::flowpipes::{Effort, flowpipe};
+use crate::flowpipes::{Effort, is_enclosed};
 use crate::found::SearchSummary;
 use crate::problem::case::Case;
 use crate::progress::Progress;
@@ -86,14 +86,7 @@ pub(super) fn run(
 
 /// Returns whether the reachable sets under `sets` enclose every recording.
 fn encloses(search: &SuccessiveLinearisation, sets: &UncertaintySets) -> Result<bool> {
-    let of_case = |case: &Case| -> Result<bool> {
-        let system = search.problem.dynamics().polynomial_system()?;
-        let flowpipe = flowpipe(system, case, sets, Effort::Quick)?;
-        let mut all = true;
-        let states = search.problem.settings().states;
-        rows(&case.measured, case.grid.times(), &flowpipe, sets, states, |row| all &= row.holds());
-        Ok(all)
-    };
+    let of_case = |case: &Case| is_enclosed(search.problem, case, sets, Effort::Quick);
     // The first case that is not enclosed, or fails, ends the others.
     let outside = search.cases.par_iter().map(of_case).find_any(|all| !matches!(all, Ok(true)));
     outside.unwrap_or(Ok(true))

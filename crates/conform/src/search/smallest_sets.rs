@@ -68,6 +68,22 @@ fn case_weights(problem: &Problem, cases: &[Case]) -> Result<Vec<f64>> {
     Ok(state_weights(weights, &envelopes.iter().collect::<Vec<_>>(), problem.joints()))
 }
 
+/// Returns the sums of [`sums`] over the reachable sets of a model that is not linear; of any
+/// other, nothing.
+///
+/// # Errors
+///
+/// As [`Problem::cases`].
+pub(crate) fn costs(problem: &Problem, hulls: &Hulls) -> Result<(f64, f64)> {
+    let cases = problem.cases()?;
+    match &hulls.kind {
+        HullKind::Linear(_) => Ok((0.0, 0.0)),
+        HullKind::Outer(flowpipes) => {
+            Ok(sums(cases, flowpipes, &hulls.sets, &case_weights(problem, cases)?))
+        }
+    }
+}
+
 /// Returns Σ_k Σ_i s_i width_i(t_k) of the reachable sets with the noise set, where cases at one
 /// time count by their mean, and Σ_k Δt Π_i width_i(t_k), eq. (2) of the paper. Both are infinite
 /// where a set was lost.

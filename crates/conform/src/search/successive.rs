@@ -323,7 +323,8 @@ fn block(
         |k, i, upper| from_nominal(k, i, upper) - correction.at(k, i, Side::Upper),
         |k, i, lower| from_nominal(k, i, lower) + correction.at(k, i, Side::Lower),
     );
-    Block { times: case.grid.times().to_vec(), coefficients: sensitivity.coefficients, envelope }
+    let coefficients = sensitivity.coefficients.into();
+    Block { times: case.grid.times().to_vec(), coefficients, envelope }
 }
 
 /// Returns the largest change of a centre or radius, in parts of the largest of its kind:

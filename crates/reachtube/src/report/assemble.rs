@@ -1,11 +1,12 @@
 //! Assembly of a page from a model and recordings.
 
 use reachtube_conform::{
-    Check, Enclosure, Lost, Model, Problem, States, Suite, SuiteReach, Witness,
+    Check, Enclosure, LeftOut, Lost, Model, Problem, States, Suite, SuiteReach, Witness,
 };
 use reachtube_reach::Hyperrectangle;
 
 use crate::error::Result;
+use crate::number::at_least;
 use crate::report::error::ReportError;
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
@@ -235,7 +236,35 @@ fn caution(model: &Model) -> Vec<String> {
                 .into(),
         );
     }
+    words.extend(furthest_motion(model));
+    words.extend(changed_robot(model));
     words
+}
+
+/// Says how far the motion that the others foretell least lies outside their sets.
+fn furthest_motion(model: &Model) -> Option<String> {
+    let growth = |left: &LeftOut| left.gauge.filter(|_| left.cost.is_some());
+    let all = model.left_out.iter().filter_map(|left| Some((left, growth(left)?)));
+    let (left, gauge) = all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, gauge)| *gauge > 1.0)?;
+    Some(format!(
+        "The sets found without motion {} would have to grow {} times to hold it. Another motion \
+         may need as much. This describes the recorded motions and bounds no probability.",
+        left.motion,
+        at_least(gauge)
+    ))
+}
+
+/// Names the suites whose runs change with their order.
+fn changed_robot(model: &Model) -> Option<String> {
+    let mut suites: Vec<&str> = model.trends.iter().map(|trend| trend.suite.as_str()).collect();
+    suites.dedup();
+    (!suites.is_empty()).then(|| {
+        format!(
+            "The robot changed while it was recorded, for example by warming up: in {}, joints \
+             follow the order of the runs. A later motion may lie further out.",
+            suites.join(", ")
+        )
+    })
 }
 
 /// Makes the figure of one suite.

@@ -1,4 +1,4 @@
-//! Errors of the reproduced tables.
+//! Errors of what is reproduced.
 
 /// The reason why a table of the paper could not be reproduced.
 #[derive(Debug, thiserror::Error)]
@@ -7,6 +7,9 @@ pub enum ReproduceError {
     /// There is nothing to simulate.
     #[error("Table I: no motions or no orders to simulate; give at least 1 of each")]
     NothingToSimulate,
+    /// There is no campaign to simulate.
+    #[error("coverage: no campaigns to simulate; give at least 1")]
+    NoCampaigns,
     /// A joint cannot move within the range.
     #[error(
         "joint `{joint}` cannot move within {range} rad of the expansion point 0: its limits are \

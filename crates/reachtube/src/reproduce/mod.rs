@@ -1,12 +1,15 @@
-//! Tables of the paper, reproduced.
+//! Tables of the paper, reproduced, and the bounds for the next motion put to the test.
 
+mod coverage;
 pub(crate) mod error;
 mod full_speed_motion;
 mod paper;
+mod random_motions;
 mod speed;
 mod table1;
 mod trajectories;
 
+pub use coverage::{Coverage, CoverageOptions, CoverageRow, coverage};
 pub use error::ReproduceError;
 pub use paper::Paper;
 pub use speed::Speed;

@@ -22,6 +22,8 @@ Examples:
       --fit inertia,viscous,coulomb --out model.json
   reachtube conform --robot lwa4p --model 2 --order 5 --data recordings --torque compensated \\
       --resume search.json
+  reachtube conform --robot arm.toml --data recordings --torque motor --calibrate M7,M8,M9
+      find the sets on the other motions, and scale them to hold these three
 
 Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
 
@@ -149,6 +151,11 @@ pub struct Arguments {
         value_parser = choice::<NominalStart>(NOMINAL_STARTS)
     )]
     pub nominal: NominalStart,
+    /// Motions that are kept back from the fit, separated by commas, as runs.csv names them. The
+    /// sets found on the others are scaled until they enclose these too, which bounds the
+    /// probability that the next motion leaves them
+    #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
+    pub calibrate: Vec<String>,
     /// Method that finds the sets
     #[arg(
         long,

@@ -35,7 +35,7 @@ pub fn fit_summary(model: &Model) -> String {
 
 /// Returns what the fit is worth for motions that it has not seen.
 fn left_out(record: &FitRecord) -> String {
-    let of = |left: &reachtube::conform::LeftOut| {
+    let of = |left: &reachtube::conform::UnseenMotion| {
         format!("{} {}", left.motion, four_decimals(left.cost))
     };
     let each: Vec<String> = record.leave_one_out.iter().map(of).collect();

@@ -1,7 +1,9 @@
 //! `reachtube conform`: the smallest sets for which a model encloses every recording.
 
 mod arguments;
+mod dependence;
 mod fit_summary;
+mod next_motion;
 mod run;
 mod settings;
 mod summary;

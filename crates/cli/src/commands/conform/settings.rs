@@ -68,6 +68,7 @@ fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
             None => None,
         },
         nominal: args.nominal,
+        calibrate: args.calibrate.clone(),
         until: args.data.until,
         gap_limit: gap_limit(args.data.max_gap),
         ..Settings::new(args.data.torque, joints)

@@ -8,7 +8,9 @@ use reachtube::recordings::State;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 
+use super::dependence::dependence;
 use super::fit_summary::fit_summary;
+use super::next_motion::next_motion;
 use crate::table::{plural, table};
 use crate::verdict::lost;
 use reachtube::number::{four_decimals, interval};
@@ -31,11 +33,8 @@ pub fn summary(model: &Model) -> String {
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         let _ = writeln!(text, "\n{}", explained.words(tolerance, &model.robot.kinds()));
     }
-    let _ = writeln!(
-        text,
-        "\n{}",
-        model.trust.words(model.proof.enclosure.set_name(), "touched the set")
-    );
+    text.push_str(&next_motion(model));
+    text.push_str(&dependence(model));
     text
 }
 
@@ -105,6 +104,7 @@ fn cost(model: &Model) -> String {
             search.reachable_sets,
             plural(search.reachable_sets, "time")
         ),
+        (None, None) if model.calibration.is_some() => " (calibrated, not the smallest)".into(),
         (None, None) => String::new(),
     };
     format!(

@@ -3,11 +3,11 @@
 //! "These sets enclose these runs" is a fact. Anything about the next motion is statistical, and
 //! needs motions that are independent and alike. Several suites of one motion count once.
 
-use std::collections::BTreeSet;
-
 use serde::{Deserialize, Serialize};
 
-use crate::bounds::{clopper_pearson, scenario_bound};
+use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
+use crate::next_motion::calibration::{Calibration, Gauge};
+use crate::next_motion::motions::Motions;
 use crate::problem::recordings::Recordings;
 use crate::verdict::{Verdict, Witness};
 
@@ -27,6 +27,10 @@ pub struct Trust {
     pub deciding: usize,
     /// Upper bound of the probability that the next motion leaves the reachable set.
     pub violation_probability: f64,
+    /// The same before the calibration motions are drawn, which holds without a confidence: over
+    /// their draw and that of the next motion together. For calibrated sets only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub average_probability: Option<f64>,
     /// Confidence of that bound.
     pub confidence: f64,
     /// How the bound is made and what it assumes.
@@ -38,9 +42,9 @@ impl Trust {
     /// rows of support are among the tight ones.
     #[must_use]
     pub fn of_fit(recordings: &Recordings, tight: &[Witness]) -> Self {
-        let motions = Motions::of(recordings);
-        let deciding = motions.count(tight.iter().map(|witness| witness.suite.as_str()));
-        let bound = scenario_bound(motions.all(), deciding, 1.0 - CONFIDENCE);
+        let motions = Motions::new(recordings);
+        let deciding = motions.count_of(tight.iter().map(|witness| witness.suite.as_str()));
+        let bound = scenario_bound(motions.count(), deciding, 1.0 - CONFIDENCE);
         Self::new(&motions, deciding, bound, "scenario bound (Campi and Garatti 2018)")
     }
 
@@ -48,23 +52,55 @@ impl Trust {
     /// there is none, because the scenario bound holds for an optimum only.
     #[must_use]
     pub fn without_optimum(recordings: &Recordings, gap: f64) -> Self {
-        let motions = Motions::of(recordings);
+        let motions = Motions::new(recordings);
         let basis = format!(
             "no scenario bound: it holds for the smallest sets only, and the program was solved to \
              a relative gap of {gap:.1e}"
         );
-        let (motions, deciding) = (motions.all(), 0);
-        let (violation_probability, confidence) = (1.0, CONFIDENCE);
-        Self { motions, deciding, violation_probability, confidence, basis }
+        Self::unknown(motions.count(), basis)
+    }
+
+    /// Returns the bound for sets that were calibrated by motions that were kept back from the fit,
+    /// and that enclose them where `is_proved`.
+    ///
+    /// The next motion leaves the sets only if its gauge is above those of all n kept-back motions.
+    /// Of n + 1 exchangeable motions, each is that one with probability at most 1/(n + 1). For
+    /// independent motions, the probability given the kept-back ones is above ε with probability
+    /// at most (1 - ε)^n, which is the hold-out bound without a violation.
+    #[must_use]
+    pub fn of_calibration(
+        recordings: &Recordings,
+        calibration: &Calibration,
+        is_proved: bool,
+    ) -> Self {
+        let (motions, count) = (Motions::new(recordings), calibration.gauges.len());
+        if !is_proved {
+            let basis = "no calibration bound: the scaled sets were not proved to enclose the \
+                         recordings";
+            return Self::unknown(count, basis.into());
+        }
+        let largest = |gauge: &&Gauge| gauge.gauge >= calibration.factor;
+        Self {
+            motions: count,
+            deciding: calibration.gauges.iter().filter(largest).count(),
+            violation_probability: clopper_pearson(count, 0, 1.0 - CONFIDENCE),
+            average_probability: Some(1.0 / (count as f64 + 1.0)),
+            confidence: CONFIDENCE,
+            basis: format!(
+                "split conformal calibration (Vovk 2012) for exchangeable motions; at confidence \
+                 for independent ones{}",
+                motions.caveat()
+            ),
+        }
     }
 
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
     #[must_use]
     pub fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
-        let motions = Motions::of(recordings);
+        let motions = Motions::new(recordings);
         let violating = verdict.suites.iter().filter(|suite| suite.violations.count > 0);
-        let violating = motions.count(violating.map(|suite| suite.suite.as_str()));
-        let bound = clopper_pearson(motions.all(), violating, 1.0 - CONFIDENCE);
+        let violating = motions.count_of(violating.map(|suite| suite.suite.as_str()));
+        let bound = clopper_pearson(motions.count(), violating, 1.0 - CONFIDENCE);
         Self::new(&motions, violating, bound, "hold-out bound (Clopper and Pearson 1934)")
     }
 
@@ -72,8 +108,17 @@ impl Trust {
     /// says what the deciding motions did.
     #[must_use]
     pub fn words(&self, set: &str, role: &str) -> String {
-        let Self { motions, deciding, violation_probability: bound, confidence, basis } = self;
+        let Self { motions, deciding, violation_probability: bound, confidence, basis, .. } = self;
         let plural = if *motions == 1 { "motion" } else { "motions" };
+        if let Some(average) = self.average_probability {
+            return format!(
+                "the next motion leaves the {set} with probability at most {average:.3} (1 in \
+                 {}), on average over the {motions} kept-back {plural}; given these, at most \
+                 {bound:.3} at confidence {:.0} %; basis: {basis}",
+                motions + 1,
+                100.0 * confidence
+            );
+        }
         if *bound > LARGEST_BOUND && *deciding == 0 {
             return format!("nothing is known of the next motion: {basis}");
         }
@@ -94,50 +139,24 @@ impl Trust {
 
     fn new(motions: &Motions, deciding: usize, bound: f64, name: &str) -> Self {
         Self {
-            motions: motions.all(),
+            motions: motions.count(),
             deciding,
             violation_probability: bound,
+            average_probability: None,
             confidence: CONFIDENCE,
             basis: format!("{name} for independent motions{}", motions.caveat()),
         }
     }
-}
 
-/// The motion of each suite; its own name where the source names none.
-struct Motions<'a> {
-    of_suite: Vec<(&'a str, &'a str)>,
-    /// Whether the source names a motion for every suite.
-    are_named: bool,
-}
-
-impl<'a> Motions<'a> {
-    fn of(recordings: &'a Recordings) -> Self {
-        let entries = || recordings.suites.iter().map(|suite| &suite.entry);
-        let motion = |entry: &'a reachtube_recordings::SuiteEntry| {
-            (entry.name.as_str(), entry.motion.as_deref().unwrap_or(&entry.name))
-        };
-        let are_named = entries().all(|entry| entry.motion.is_some());
-        Self { of_suite: entries().map(motion).collect(), are_named }
-    }
-
-    fn all(&self) -> usize {
-        self.count(self.of_suite.iter().map(|(suite, _)| *suite))
-    }
-
-    /// Returns the number of distinct motions of some suites.
-    fn count<'s>(&self, suites: impl Iterator<Item = &'s str>) -> usize {
-        let motion = |name: &str| {
-            self.of_suite.iter().find(|(suite, _)| *suite == name).map(|(_, motion)| *motion)
-        };
-        suites.filter_map(motion).collect::<BTreeSet<_>>().len()
-    }
-
-    fn caveat(&self) -> &'static str {
-        if self.are_named {
-            ""
-        } else {
-            "; runs.csv has no column motion, so each suite counts as a motion of its own, which \
-             is too optimistic where suites share one"
+    /// Returns that nothing is known, and why.
+    fn unknown(motions: usize, basis: String) -> Self {
+        Self {
+            motions,
+            deciding: 0,
+            violation_probability: 1.0,
+            average_probability: None,
+            confidence: CONFIDENCE,
+            basis,
         }
     }
 }

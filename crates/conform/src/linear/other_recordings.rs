@@ -1,0 +1,83 @@
+//! Recordings that a linear program was not made of, beside its sets.
+
+use std::sync::Arc;
+
+use crate::deviation::Deviation;
+use crate::envelope::Envelope;
+use crate::linear::program::{Program, RowIndex, dot};
+use crate::sets::UncertaintySets;
+
+/// A radius that nobody can tell from none, rad or rad/s.
+const NEGLIGIBLE_RADIUS: f64 = 1e-9;
+
+impl Program<'_> {
+    /// Returns the program with other deviations on each of its blocks: the cost is the same.
+    #[must_use]
+    pub(crate) fn with_deviations<'d>(
+        &self,
+        deviations: impl IntoIterator<Item = &'d Deviation>,
+    ) -> Self {
+        let mut program = self.clone();
+        let blocks = &mut program.blocks;
+        blocks.iter_mut().for_each(|block| block.envelope = Envelope::new(2 * self.joints));
+        deviations.into_iter().for_each(|d| blocks[d.grid].envelope.merge(&d.envelope));
+        program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program
+    }
+
+    /// Returns the program with every `stride`-th sample of its blocks alone, at the same cost of
+    /// each radius. Its deviations are to be given anew.
+    #[must_use]
+    pub(crate) fn with_every(&self, stride: usize) -> Self {
+        let mut program = self.clone();
+        let row = 2 * self.joints * 6 * self.joints;
+        for (block, shares) in program.blocks.iter_mut().zip(&mut program.shares) {
+            block.times = block.times.iter().copied().step_by(stride).collect();
+            *shares = shares.iter().copied().step_by(stride).collect();
+            let samples = block.coefficients.chunks_exact(row).step_by(stride);
+            block.coefficients = Arc::new(samples.flatten().copied().collect());
+            block.envelope = Envelope::new(2 * self.joints);
+        }
+        program
+    }
+
+    /// Returns whether a row touches the reach of the sets where they have one. At a first sample
+    /// that no recording leaves, all rows touch a set without width, and none decides anything.
+    #[must_use]
+    pub(crate) fn touches(&self, sets: &UncertaintySets) -> bool {
+        let radius = self.unknowns(sets).radius;
+        let has_width =
+            |&(b, k, i, _): &RowIndex| dot(self.row(b, k, i).1, &radius) > NEGLIGIBLE_RADIUS;
+        self.tight(sets).iter().any(has_width)
+    }
+
+    /// Returns the number of rows, both sides together, that do not hold, up to rounding.
+    #[must_use]
+    pub(crate) fn outside(&self, sets: &UncertaintySets) -> usize {
+        let unknowns = self.unknowns(sets);
+        let violated =
+            |index: &RowIndex| self.is_violated(*index, self.excess(*index, &unknowns), &unknowns);
+        let mut rows: Vec<_> =
+            self.indices(1).filter(violated).map(|(b, k, i, _)| (b, k, i)).collect();
+        rows.dedup();
+        rows.len()
+    }
+
+    /// Returns the factors of the radii of X0 alone, of U alone, and of both, with which every row
+    /// holds up to rounding; nothing where no factor suffices.
+    #[must_use]
+    pub fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
+        let unknowns = self.unknowns(sets);
+        let (states, all) = (sets.initial_set.dimension(), unknowns.radius.len());
+        [0..states, states..all, 0..all].map(|part| {
+            let needed = |index: RowIndex| {
+                let excess = self.excess(index, &unknowns);
+                let gains = &self.row(index.0, index.1, index.2).1[part.clone()];
+                let given = dot(gains, &unknowns.radius[part.clone()]);
+                if excess > 0.0 { 1.0 + excess / given } else { 1.0 }
+            };
+            let factor = self.indices(1).map(needed).fold(1.0, f64::max);
+            factor.is_finite().then_some(factor)
+        })
+    }
+}

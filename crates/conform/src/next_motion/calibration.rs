@@ -1,0 +1,211 @@
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::flowpipes::{Effort, is_enclosed};
+use crate::found::{Deciding, Found};
+use crate::hulls::Hulls;
+use crate::linear::program::{Program, TIGHT};
+use crate::linear::smallest_sets::{program, prove};
+use crate::next_motion::motions::Motions;
+use crate::problem::case::Case;
+use crate::problem::problem::Problem;
+use crate::progress::Progress;
+use crate::search::smallest_sets::costs;
+use crate::sets::UncertaintySets;
+use crate::smallest_sets::smallest_sets;
+
+/// Ratio of the factors that are tried for a model that is not linear.
+const STEP: f64 = 1.01;
+
+/// Number of factors that are tried at most, as powers of [`STEP`]: up to 160.
+const MOST_STEPS: i32 = 512;
+
+/// Sets that were found on some motions and then scaled so that they enclose the others, which were
+/// kept back: split conformal calibration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Calibration {
+    /// The motions that the sets were found on.
+    pub fitted: Vec<String>,
+    /// The motions that were kept back, each with its gauge.
+    pub gauges: Vec<Gauge>,
+    /// The factor of the radii: the largest gauge.
+    pub factor: f64,
+    /// Whether only U was scaled, because the noise of the sensors limits X0.
+    pub input_only: bool,
+}
+
+/// The gauge of a motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gauge {
+    /// The motion.
+    pub motion: String,
+    /// The factor, at least 1, by which the radii must grow about their centres so that the sets
+    /// enclose the motion.
+    pub gauge: f64,
+}
+
+/// The answer of [`calibrate`].
+pub(crate) struct Calibrated {
+    /// The problem of the motions that the sets were found on.
+    pub fit: Problem,
+    /// The sets that were found on them.
+    pub fitted: UncertaintySets,
+    /// The scaled sets.
+    pub found: Found,
+    /// How they were scaled.
+    pub calibration: Calibration,
+}
+
+/// Finds the smallest sets for the motions that the settings do not keep back, and scales their
+/// radii until they enclose the others too. V is not scaled, because it is the noise of the
+/// sensors; nor is X0 where that noise limits it.
+///
+/// # Errors
+///
+/// A motion that is unknown, none left to find the sets with, a motion that no factor suffices
+/// for; as [`conform`](crate::conform).
+pub(crate) fn calibrate(
+    problem: &Problem,
+    progress: &dyn Progress,
+    resume: Option<&Path>,
+) -> Result<Calibrated> {
+    let motions = Motions::new(problem.recordings());
+    let kept_back = kept_back(problem, &motions)?;
+    let fit = problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)));
+    let first = smallest_sets(&fit, progress, resume)?;
+    let (fitted, search) = (first.hulls.sets, first.search);
+    let input_only = problem.limits().start.is_some();
+    let linear = problem.dynamics().linear_system().map(|_| program(problem)).transpose()?;
+    let grown = |factor: f64| {
+        if input_only { fitted.with_input_scaled(factor) } else { fitted.inflated(factor, 0.0) }
+    };
+    let gauge = |motion: &&str| {
+        let suites: Vec<bool> = (0..problem.recordings().suites.len())
+            .map(|s| motions.of_suite(s) == *motion)
+            .collect();
+        let gauge = match &linear {
+            Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
+            None => outer_gauge(problem, &suites, &grown),
+        }?;
+        let gauge = gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only)))?;
+        Ok(Gauge { motion: (*motion).to_string(), gauge })
+    };
+    let gauges = kept_back.iter().map(gauge).collect::<Result<Vec<_>>>()?;
+    let factor = gauges.iter().map(|gauge| gauge.gauge).fold(1.0, f64::max);
+    let found = Found { search, ..scaled(problem, grown(factor))? };
+    let all = motions.distinct().into_iter();
+    let others = all.filter(|motion| !kept_back.contains(motion)).map(String::from).collect();
+    let calibration = Calibration { fitted: others, gauges, factor, input_only };
+    Ok(Calibrated { fit, fitted, found, calibration })
+}
+
+/// Returns the motions that the settings keep back, or why that cannot be.
+fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
+    let all = motions.distinct();
+    let mut kept_back = BTreeSet::new();
+    for name in &problem.settings().calibrate {
+        let known = all.iter().find(|motion| *motion == name);
+        let unknown = || {
+            format!(
+                "there is no motion \"{name}\"; the motions of the recordings are {}",
+                all.join(", ")
+            )
+        };
+        kept_back.insert(*known.ok_or_else(|| Error::Calibration(unknown()))?);
+    }
+    if kept_back.len() == all.len() {
+        return Err(Error::Calibration(
+            "all motions are kept back, so that none is left to find the sets with; name fewer \
+             motions, or record more"
+                .into(),
+        ));
+    }
+    Ok(kept_back)
+}
+
+fn no_factor(motion: &str, input_only: bool) -> String {
+    let sets =
+        if input_only { "U, which alone may grow beside the sensor noise," } else { "X0 and U" };
+    format!(
+        "no factor of {sets} makes the sets of the other motions enclose motion {motion}; a set \
+         may have no width in a direction in which it deviates, or its reachable set is lost; \
+         keep back other motions, or find the sets with this one"
+    )
+}
+
+/// Returns the gauge of the suites that are marked under the sets of a linear model.
+fn linear_gauge(
+    problem: &Problem,
+    program: &Program,
+    sets: &UncertaintySets,
+    suites: &[bool],
+    input_only: bool,
+) -> Result<Option<f64>> {
+    let own = problem.deviations()?.iter().filter(|deviation| suites[deviation.suite]);
+    let [_, input, both] = program.with_deviations(own).growth_factors(sets);
+    Ok(if input_only { input } else { both })
+}
+
+/// Returns the gauge of the suites that are marked by the computed outer sets: the least power of
+/// [`STEP`] that suffices, on the assumption that larger sets have larger outer sets.
+fn outer_gauge(
+    problem: &Problem,
+    suites: &[bool],
+    grown: &(impl Fn(f64) -> UncertaintySets + Sync),
+) -> Result<Option<f64>> {
+    let cases: Vec<&Case> = problem.cases()?.iter().filter(|case| suites[case.suite]).collect();
+    let suffices = |steps: i32| {
+        let sets = grown(STEP.powi(steps));
+        let is_inside = |case: &&Case| is_enclosed(problem, case, &sets, Effort::Whole);
+        let outside =
+            cases.par_iter().map(is_inside).find_any(|inside| !matches!(inside, Ok(true)));
+        outside.unwrap_or(Ok(true))
+    };
+    // Double the steps until they suffice, then halve the interval.
+    let (mut low, mut high) = (-1, 0);
+    while !suffices(high)? {
+        if high >= MOST_STEPS {
+            return Ok(None);
+        }
+        (low, high) = (high, (2 * high).max(8));
+    }
+    while high - low > 1 {
+        let middle = i32::midpoint(low, high);
+        if suffices(middle)? { high = middle } else { low = middle }
+    }
+    Ok(Some(STEP.powi(high)))
+}
+
+/// Returns the scaled sets with their reachable sets over all recordings. They are not the
+/// smallest, so there is no lower bound.
+fn scaled(problem: &Problem, sets: UncertaintySets) -> Result<Found> {
+    let (cost, paper_cost, hull_volume, hulls) = match problem.dynamics().linear_system() {
+        Some(_) => {
+            let program = program(problem)?;
+            let hulls = prove(problem, sets, program.scale())?;
+            let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
+            (program.cost(&hulls.sets), Some(paper_cost), hull_volume, hulls)
+        }
+        None => {
+            let hulls = Hulls::new(problem, sets)?;
+            let (cost, volume) = costs(problem, &hulls)?;
+            (cost, None, volume, hulls)
+        }
+    };
+    Ok(Found {
+        hulls,
+        cost,
+        lower_bound: None,
+        optimality_gap: None,
+        paper_cost,
+        hull_volume,
+        search: None,
+        deciding: Deciding::Touching(if paper_cost.is_some() { TIGHT } else { STEP - 1.0 }),
+    })
+}

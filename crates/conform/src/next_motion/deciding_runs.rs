@@ -1,0 +1,124 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use crate::deviation::Deviation;
+use crate::envelope::Envelope;
+use crate::error::Result;
+use crate::linear::program::Program;
+use crate::linear::smallest_sets::program;
+use crate::problem::problem::Problem;
+use crate::problem::suite::Suite;
+use crate::verdict::Witness;
+
+/// Number of runs that are named.
+const MOST_NAMED: usize = 10;
+
+/// The runs that decide the sets.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DecidingRuns {
+    /// How many there are.
+    pub count: usize,
+    /// The ten that decide the most rows, the first first.
+    pub most: Vec<DecidingRun>,
+    /// About what the smallest sets would cost without those ten, by programs over the samples
+    /// that stay in memory of each run. Nothing for a model that is not linear, for calibrated
+    /// sets, or where the ten are half of all runs or more.
+    pub cost_without: Option<f64>,
+}
+
+/// A run that decides the sets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DecidingRun {
+    /// Path in the data set.
+    pub file: String,
+    /// How many of its values touch the reachable set.
+    pub values: usize,
+}
+
+impl DecidingRuns {
+    /// Counts the runs of the values `tight`; `cost` is that of the sets where these are the
+    /// smallest.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::deviations`].
+    pub(crate) fn new(problem: &Problem, tight: &[Witness], cost: Option<f64>) -> Result<Self> {
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        tight.iter().for_each(|witness| *counts.entry(&witness.run).or_insert(0) += 1);
+        let count = counts.len();
+        let mut most: Vec<(&str, usize)> = counts.into_iter().collect();
+        most.sort_by_key(|(_, values)| std::cmp::Reverse(*values));
+        most.truncate(MOST_NAMED);
+        let named: BTreeSet<&str> = most.iter().map(|(file, _)| *file).collect();
+        let runs = problem.recordings().suites.iter().flat_map(|suite| &suite.runs);
+        let is_named = |index: &usize| named.contains(problem.entry(*index).file.as_str());
+        let dropped: BTreeSet<usize> = runs.map(|run| run.index).filter(is_named).collect();
+        let few = !dropped.is_empty() && 2 * dropped.len() < problem.recordings().run_count();
+        let cost_without = match cost.filter(|_| few) {
+            Some(cost) => cost_without(problem, &dropped)?.map(|part| part * cost),
+            None => None,
+        };
+        let run = |(file, values): (&str, usize)| DecidingRun { file: file.into(), values };
+        Ok(Self { count, most: most.into_iter().map(run).collect(), cost_without })
+    }
+}
+
+/// Returns the part of the cost that is left without the runs `dropped`, by the programs of the
+/// samples that were kept of every run.
+fn cost_without(problem: &Problem, dropped: &BTreeSet<usize>) -> Result<Option<f64>> {
+    if problem.dynamics().linear_system().is_none() {
+        return Ok(None);
+    }
+    let runs = problem.recordings().suites.iter().flat_map(|suite| &suite.runs);
+    let stride = runs.map(|run| run.marks.stride).max().unwrap_or(1);
+    let program = program(problem)?.with_every(stride);
+    let deviations = problem.deviations()?;
+    let cost = |dropped: &BTreeSet<usize>| {
+        let kept: Vec<Deviation> =
+            deviations.iter().map(|d| at_marks(problem, d, stride, dropped)).collect();
+        let program: Program = program.with_deviations(&kept);
+        program.solve().map(|solution| program.cost(&program.repaired(&solution.sets)))
+    };
+    // A program that the solver gives up on leaves nothing to report.
+    let (Ok(all), Ok(without)) = (cost(&BTreeSet::new()), cost(dropped)) else { return Ok(None) };
+    Ok((all > 0.0).then(|| without / all))
+}
+
+/// Returns the deviations of a suite at every `stride`-th sample, without some of its runs. Where
+/// the runs have inputs of their own, the envelope of all is taken.
+fn at_marks(
+    problem: &Problem,
+    deviation: &Deviation,
+    stride: usize,
+    dropped: &BTreeSet<usize>,
+) -> Deviation {
+    let (suite, whole) = (&problem.recordings().suites[deviation.suite], &deviation.envelope);
+    let states = whole.dimension();
+    let mut envelope = Envelope::new(states);
+    if suite.shared.is_some() {
+        for run in suite.runs.iter().filter(|run| !dropped.contains(&run.index)) {
+            let samples = (0..=run.marks.last(stride)).step_by(stride);
+            let of = |k: usize| {
+                let state = run.marks.state(k).iter().enumerate();
+                state.map(move |(i, value)| value - nominal(suite, whole, k, i))
+            };
+            let values: Vec<f64> = samples.flat_map(of).collect();
+            envelope.include(run.index as u32, &values);
+        }
+    } else {
+        let bounds = |bound: fn(&Envelope, usize, usize) -> f64| -> Vec<f64> {
+            let samples = (0..whole.len()).step_by(stride);
+            samples.flat_map(|k| (0..states).map(move |i| bound(whole, k, i))).collect()
+        };
+        envelope.include_bounds(0, &bounds(Envelope::lower), &bounds(Envelope::upper));
+    }
+    Deviation { suite: deviation.suite, grid: deviation.grid, envelope }
+}
+
+/// The nominal solution of a suite, to rounding: what lies between its states and deviations.
+fn nominal(suite: &Suite, deviations: &Envelope, k: usize, i: usize) -> f64 {
+    suite.envelope.upper(k, i) - deviations.upper(k, i)
+}

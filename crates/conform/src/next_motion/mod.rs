@@ -1,0 +1,11 @@
+//! What may be said of motions that were not recorded: bounds, calibration by kept-back motions,
+//! and descriptions of how far the sets depend on single motions and runs.
+
+pub(crate) mod bounds;
+pub(crate) mod calibration;
+pub(crate) mod deciding_runs;
+pub(crate) mod left_out;
+pub(crate) mod motions;
+pub(crate) mod rates;
+pub(crate) mod trends;
+pub(crate) mod trust;

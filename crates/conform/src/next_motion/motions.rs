@@ -1,0 +1,57 @@
+use std::collections::BTreeSet;
+
+use crate::problem::recordings::Recordings;
+
+/// The motion of each suite: its own name where the source names none.
+pub(crate) struct Motions<'a> {
+    /// Suite and motion, in the order of the suites.
+    of_suites: Vec<(&'a str, &'a str)>,
+    /// Whether the source names a motion for every suite.
+    are_named: bool,
+}
+
+impl<'a> Motions<'a> {
+    pub fn new(recordings: &'a Recordings) -> Self {
+        let entries = || recordings.suites.iter().map(|suite| &suite.entry);
+        let motion = |entry: &'a reachtube_recordings::SuiteEntry| {
+            (entry.name.as_str(), entry.motion.as_deref().unwrap_or(&entry.name))
+        };
+        let are_named = entries().all(|entry| entry.motion.is_some());
+        Self { of_suites: entries().map(motion).collect(), are_named }
+    }
+
+    /// Returns the motion of suite `index`.
+    pub fn of_suite(&self, index: usize) -> &'a str {
+        self.of_suites[index].1
+    }
+
+    /// Returns the distinct motions, in the order of their first suites.
+    pub fn distinct(&self) -> Vec<&'a str> {
+        let mut seen = BTreeSet::new();
+        let motions = self.of_suites.iter().map(|(_, motion)| *motion);
+        motions.filter(|motion| seen.insert(*motion)).collect()
+    }
+
+    /// Returns the number of distinct motions.
+    pub fn count(&self) -> usize {
+        self.distinct().len()
+    }
+
+    /// Returns the number of distinct motions of some suites, named one by one.
+    pub fn count_of<'s>(&self, suites: impl Iterator<Item = &'s str>) -> usize {
+        let motion = |name: &str| {
+            self.of_suites.iter().find(|(suite, _)| *suite == name).map(|(_, motion)| *motion)
+        };
+        suites.filter_map(motion).collect::<BTreeSet<_>>().len()
+    }
+
+    /// Returns what weakens a statement that counts motions, to follow its basis.
+    pub fn caveat(&self) -> &'static str {
+        if self.are_named {
+            ""
+        } else {
+            "; runs.csv has no column motion, so each suite counts as a motion of its own, which \
+             is too optimistic where suites share one"
+        }
+    }
+}

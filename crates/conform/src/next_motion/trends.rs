@@ -1,0 +1,92 @@
+use serde::{Deserialize, Serialize};
+
+use crate::problem::problem::Problem;
+use crate::problem::suite::{RunSummary, Suite};
+
+/// The least rank correlation that is called a trend.
+const LEAST_CORRELATION: f64 = 0.7;
+
+/// Standard deviations of the rank correlation of unrelated numbers, 1/√(runs - 1), that a trend
+/// must exceed: one joint in a hundred does by chance.
+const DEVIATIONS: f64 = 2.6;
+
+/// A joint whose motion follows the order of the runs of a suite: the robot changed while it was
+/// recorded, for example by warming up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Trend {
+    /// The suite.
+    pub suite: String,
+    /// Number of its runs.
+    pub runs: usize,
+    /// The joint, from 1.
+    pub joint: usize,
+    /// Spearman's rank correlation of the joint's last position with the order of the runs.
+    pub correlation: f64,
+    /// The largest difference of these positions, rad or m.
+    pub range: f64,
+}
+
+/// Returns the trends of all suites whose runs share their input. Positions are compared at the
+/// last sample that was kept of all runs of a suite; the order is that of the index.
+pub(crate) fn trends(problem: &Problem) -> Vec<Trend> {
+    let suites = problem.recordings().suites.iter().filter(|suite| suite.shared.is_some());
+    suites.flat_map(|suite| of_suite(suite, problem.joints())).collect()
+}
+
+fn of_suite(suite: &Suite, joints: usize) -> Vec<Trend> {
+    let count = suite.runs.len();
+    let stride = suite.runs.iter().map(|run| run.marks.stride).max().unwrap_or(1);
+    let last = suite.runs.iter().map(|run| run.marks.last(stride)).min().unwrap_or(0);
+    if last == 0 || count < 2 {
+        return Vec::new();
+    }
+    let least = LEAST_CORRELATION.max(DEVIATIONS / ((count - 1) as f64).sqrt());
+    let of_joint = |joint: usize| {
+        let position = |run: &RunSummary| run.marks.state(last)[joint];
+        let positions: Vec<f64> = suite.runs.iter().map(position).collect();
+        let correlation = rank_correlation(&positions);
+        let extreme = |pick: fn(f64, f64) -> f64| positions.iter().copied().reduce(pick);
+        let range = extreme(f64::max).unwrap_or(0.0) - extreme(f64::min).unwrap_or(0.0);
+        (correlation.abs() >= least).then(|| Trend {
+            suite: suite.entry.name.clone(),
+            runs: count,
+            joint: joint + 1,
+            correlation,
+            range,
+        })
+    };
+    (0..joints).filter_map(of_joint).collect()
+}
+
+/// Returns Spearman's correlation of values with their order; 0 where they are all the same.
+fn rank_correlation(values: &[f64]) -> f64 {
+    // Equal values share the mean of their ranks.
+    let rank = |value: &f64| {
+        let (below, same) = values.iter().fold((0.0, 0.0), |(below, same), other| {
+            (below + f64::from(other < value), same + f64::from(other == value))
+        });
+        below + 0.5 * (same - 1.0)
+    };
+    let middle = 0.5 * (values.len() as f64 - 1.0);
+    let (mut both, mut ranks, mut orders) = (0.0, 0.0, 0.0);
+    for (order, value) in values.iter().enumerate() {
+        let (rank, order) = (rank(value) - middle, order as f64 - middle);
+        (both, ranks, orders) = (both + rank * order, ranks + rank * rank, orders + order * order);
+    }
+    if ranks > 0.0 { both / (ranks * orders).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rank_correlation;
+
+    #[test]
+    fn ranks_not_sizes_decide_and_ties_share_theirs() {
+        assert_eq!(rank_correlation(&[1.0, 2.0, 30.0, 31.0]), 1.0);
+        assert_eq!(rank_correlation(&[4.0, 3.0, -2.0]), -1.0);
+        assert_eq!(rank_correlation(&[1.0, 1.0, 1.0]), 0.0);
+        // By hand: ranks 0.5, 0.5, 2 against 0, 1, 2 give 1.5 / √(1.5 · 2).
+        assert!((rank_correlation(&[1.0, 1.0, 2.0]) - 0.75f64.sqrt()).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,37 @@
+use reachtube_recordings::Run;
+
+/// Number of states that are kept of a run at most.
+const MOST_MARKS: usize = 64;
+
+/// Some states of a run: those at the multiples of a power of two of samples. They stay in memory
+/// for every run, so that runs can be compared without reading them again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Marks {
+    /// Samples from one to the next, a power of two.
+    pub stride: usize,
+    /// The states, row-major, marks x 2n.
+    states: Vec<f64>,
+    dimension: usize,
+}
+
+impl Marks {
+    /// Takes 64 states of a run at most.
+    pub(super) fn new(run: &Run) -> Self {
+        let stride = run.len().div_ceil(MOST_MARKS).next_power_of_two();
+        let states = (0..run.len()).step_by(stride).flat_map(|k| run.state(k).iter().copied());
+        Self { stride, states: states.collect(), dimension: 2 * run.joints }
+    }
+
+    /// Returns the last sample that is a multiple of `stride`, which is one of this run's or a
+    /// greater power of two.
+    pub(crate) fn last(&self, stride: usize) -> usize {
+        let marks = self.states.len() / self.dimension;
+        marks.saturating_sub(1) * self.stride / stride * stride
+    }
+
+    /// Returns the state at sample `k`, a multiple of the stride up to the last one, 2n.
+    pub(crate) fn state(&self, k: usize) -> &[f64] {
+        let start = k / self.stride * self.dimension;
+        &self.states[start..start + self.dimension]
+    }
+}
