@@ -108,6 +108,7 @@ fn the_long_way(robot: &Robot, folder: &Path, names: &[&str], settings: &Setting
         dynamics,
         settings: settings.clone(),
         nominal_starts: Default::default(),
+        correction: None,
     };
     conform_all(&read_with(setup, folder, names))
 }
