@@ -35,13 +35,15 @@ pub(crate) struct Effort {
     pub settled: f64,
     /// Steps at most.
     pub steps: usize,
+    /// Whether the robot must be physical after each step, at every position that is searched.
+    pub is_physical: bool,
 }
 
 impl Effort {
     /// For the answer.
-    pub const WHOLE: Self = Self { settled: 2e-4, steps: 40 };
+    pub const WHOLE: Self = Self { settled: 2e-4, steps: 40, is_physical: true };
     /// For comparisons.
-    pub const QUICK: Self = Self { settled: 2e-3, steps: 12 };
+    pub const QUICK: Self = Self { settled: 2e-3, steps: 12, is_physical: false };
 }
 
 /// A point of the search.
@@ -106,6 +108,9 @@ impl Search<'_> {
     }
 
     fn point(&self, numbers: Vec<f64>, rows: &mut Vec<RowIndex>) -> Result<Point> {
+        if self.effort.is_physical {
+            self.fit.parameters.apply(&numbers)?.robot.check_physical()?;
+        }
         let model = self.fit.model(&numbers, None)?;
         let smallest = self.fit.smallest_from(&model, &self.tracks, rows)?;
         Ok(Point { numbers, model, smallest })
