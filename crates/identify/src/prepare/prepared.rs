@@ -169,6 +169,7 @@ mod tests {
             states: times.iter().flat_map(states).collect(),
             torques: times.iter().map(torques).collect(),
             times,
+            temperatures: vec![],
             sha256: String::new(),
         };
         RawLog { name: "wave".into(), file: "wave.csv".into(), run }

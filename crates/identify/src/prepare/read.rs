@@ -65,7 +65,8 @@ fn reordered(run: Run, order: &[usize]) -> Run {
     let pick = |row: &[f64]| order.iter().map(|column| row[*column]).collect::<Vec<_>>();
     let states = (0..run.len()).flat_map(|k| [pick(run.q(k)), pick(run.qd(k))].concat()).collect();
     let torques = run.torques.chunks_exact(n).flat_map(pick).collect();
-    Run { states, torques, ..run }
+    let temperatures = run.temperatures.chunks_exact(n).flat_map(pick).collect();
+    Run { states, torques, temperatures, ..run }
 }
 
 /// Removes the samples before `from` \[s\].
@@ -74,6 +75,7 @@ fn starting_at(mut run: Run, from: f64) -> Run {
     run.times.drain(..first);
     run.states.drain(..2 * n * first);
     run.torques.drain(..n * first);
+    run.temperatures.drain(..run.temperatures.len().min(n * first));
     run
 }
 
@@ -98,9 +100,11 @@ mod tests {
             times: vec![0.0],
             states: vec![1.0, 2.0, 3.0, 4.0],
             torques: vec![5.0, 6.0],
+            temperatures: vec![7.0, 8.0],
             sha256: String::new(),
         };
         let swapped = reordered(run, &[1, 0]);
+        assert_eq!(swapped.temperatures, [8.0, 7.0]);
         assert_eq!((swapped.states, swapped.torques), (vec![2.0, 1.0, 4.0, 3.0], vec![6.0, 5.0]));
     }
 
