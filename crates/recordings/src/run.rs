@@ -155,6 +155,16 @@ impl Run {
         &self.torques[k * self.joints..(k + 1) * self.joints]
     }
 
+    /// Returns the recorded temperatures at sample `k` (from 0), n, °C.
+    ///
+    /// # Panics
+    ///
+    /// Panics where none were recorded.
+    #[must_use]
+    pub fn temperature(&self, k: usize) -> &[f64] {
+        &self.temperatures[k * self.joints..(k + 1) * self.joints]
+    }
+
     /// Returns the mean temperature of each joint over the samples, n, °C; `None` where none were
     /// recorded.
     #[must_use]

@@ -27,7 +27,7 @@ pub fn read(
     let mut logs = Vec::new();
     for entry in entries {
         let (path, from, until) = entry.parts();
-        for file in csv_files(&folder.join(path))? {
+        for (index, file) in (0..).zip(csv_files(&folder.join(path))?) {
             let gap_limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
             let options = ReadOptions { joints: Some(robot.joint_count()), gap_limit, until };
             let run = read_csv(&file, &options).map_err(reachtube_recordings::Error::Defects)?;
@@ -36,7 +36,8 @@ pub fn read(
             match check_limits(&file, &run, robot) {
                 defects if defects.is_empty() => {
                     check_time_unit(&file, &run)?;
-                    logs.push(RawLog { name, file, run });
+                    let order = entry.order().map(|first| first + index);
+                    logs.push(RawLog { name, file, order, run });
                 }
                 defects => return Err(reachtube_recordings::Error::Defects(defects).into()),
             }
@@ -117,11 +118,12 @@ mod tests {
         let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6\n";
         std::fs::write(folder.path().join("a.csv"), format!("{header}{rows}")).unwrap();
         std::fs::write(folder.path().join("runs.csv"), "file,suite\n").unwrap();
-        let entry = LogEntry::Stretch { path: ".".into(), from: 1.0, until: Some(2.0) };
+        let entry =
+            LogEntry::Stretch { path: ".".into(), from: 1.0, until: Some(2.0), order: Some(7) };
         let robot = Robot::lwa4p();
         let logs = read(&[entry], folder.path(), &robot, &PrepareSettings::default()).unwrap();
         assert_eq!((logs.len(), logs[0].name.as_str(), logs[0].run.len()), (1, "a", 11));
-        assert_eq!(logs[0].run.torque(0)[5], 10.0);
+        assert_eq!((logs[0].run.torque(0)[5], logs[0].order), (10.0, Some(7)));
         let nowhere =
             read(&[LogEntry::Path("b".into())], folder.path(), &robot, &PrepareSettings::default());
         assert!(nowhere.unwrap_err().to_string().contains("folder of them"));
