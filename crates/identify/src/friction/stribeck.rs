@@ -34,8 +34,8 @@ pub struct StribeckTrial {
 /// Tries the Stribeck effect on samples with these row weights: the speed by a scan, the rest by
 /// least squares. Returns the trial and the speed \[rad/s\] where the effect is accepted.
 ///
-/// The effect is accepted only if it predicts kept-back stretches better, by more than the standard
-/// error of the gain. Each stretch gets a speed of its own, so that the scan is kept back too.
+/// The effect is accepted only if it predicts kept-back stretches better, by more than two standard
+/// errors of the gain. Each stretch gets a speed of its own, so that the scan is kept back too.
 pub(super) fn try_stribeck(
     form: CoulombForm,
     samples: &[FrictionSample],
@@ -177,4 +177,61 @@ fn solve(gram: &DMatrix<f64>, columns: &[usize]) -> Option<DVector<f64>> {
 fn squares(gram: &DMatrix<f64>, x: &DVector<f64>) -> f64 {
     let z = x.clone().push(-1.0);
     (z.transpose() * gram * &z)[(0, 0)].max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::friction::fit::{FrictionFit, fit_with_stribeck};
+    use rand::RngExt;
+    use rand_xoshiro::SplitMix64;
+    use rand_xoshiro::rand_core::SeedableRng;
+
+    /// Fits slow swings down to a speed \[rad/s\], whose torque is written out anew: Coulomb
+    /// friction 3 N m, viscous friction 6 N m s/rad, and a rise of `excess` below 0.08 rad/s.
+    fn fitted(excess: f64, slowest: f64, seed: u64) -> FrictionFit {
+        let mut generator = SplitMix64::seed_from_u64(seed);
+        let mut random = || generator.random::<f64>() - 0.5;
+        let sample = |k: usize| {
+            let t = 0.02 * k as f64;
+            let (qd, qdd) = (0.6 * (0.7 * t).sin(), 0.42 * (0.7 * t).cos());
+            let load = 5.0 * (0.11 * t).cos();
+            let rise = excess / (qd * qd / 0.0064).exp();
+            let torque =
+                (3.0 + rise) * qd / qd.abs() + 6.0 * qd + 1.7 * qdd + 0.1 * random() * 12f64.sqrt();
+            FrictionSample { qd, qdd, load, torque, factors: [1.0; 2] }
+        };
+        let samples: Vec<_> = (1..9000).map(sample).filter(|s| s.qd.abs() > slowest).collect();
+        fit_with_stribeck("joint", &samples).unwrap()
+    }
+
+    #[test]
+    fn excess_and_speed_are_recovered_within_their_errors() {
+        let mut within = 0;
+        for seed in 1..=10 {
+            let found = fitted(1.2, 0.005, seed).joint;
+            let (law, error) =
+                (found.coefficients.stribeck.unwrap(), found.standard_errors.stribeck.unwrap());
+            let off =
+                [(law.excess - 1.2).abs() / error.excess, (law.speed - 0.08).abs() / error.speed];
+            assert!(off.iter().all(|off| *off < 4.0), "{law:?} ± {error:?}");
+            assert!(error.excess < 0.1 && error.speed < 0.01, "{error:?}");
+            within += off.iter().filter(|off| **off < 2.0).count();
+            let [without, with] = found.stribeck.unwrap().kept_back;
+            assert!(with < 0.9 * without, "{without} {with}");
+        }
+        assert!(within >= 16, "{within} of 20 within two standard errors");
+    }
+
+    #[test]
+    fn an_effect_that_is_not_there_or_not_shown_is_refused_with_the_reason() {
+        let refused: Vec<String> = (1..=10)
+            .filter_map(|seed| fitted(0.0, 0.005, seed).joint.stribeck.unwrap().reason)
+            .collect();
+        assert!(refused.len() >= 9, "{refused:?}");
+        assert!(refused[0].contains("kept-back slow motions are not predicted better"));
+        let fast = fitted(1.2, 0.3, 1).joint;
+        assert_eq!(fast.coefficients.stribeck, None);
+        assert!(!fast.stribeck.unwrap().accepted);
+    }
 }

@@ -1,6 +1,7 @@
 use crate::kept_back::gains;
 use crate::warming::law_fit::{LawFit, Shape};
 use crate::warming::rows::{FrictionRow, FrictionRows};
+use rayon::prelude::*;
 use reachtube_robot::friction::{Warming, WarmingBy};
 use serde::Serialize;
 
@@ -93,7 +94,7 @@ impl WarmingFit {
                 let law = Warming { by: *by, time_constant, ..Warming::default() };
                 let law = Warming { reference: reference(&rows, *by), ..law };
                 let joints: Vec<JointWarming> = names
-                    .iter()
+                    .par_iter()
                     .zip(&rows.joints)
                     .map(|(name, parts)| JointWarming::choose(name, law, parts))
                     .collect();

@@ -6,7 +6,7 @@ use crate::warming::rows::FrictionRow;
 use reachtube_robot::friction::Warming;
 
 /// Rounds of Gauss and Newton with new weights; rates of some percent converge in a few.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 5;
 
 /// Robust standard deviations beyond which a residual is an outlier, as in the fit of the links.
 const OUTLIER_DEVIATIONS: f64 = 4.0;

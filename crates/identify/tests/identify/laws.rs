@@ -47,7 +47,7 @@ fn settings(warming: WarmingChoice, with_order: bool) -> IdentifySettings {
         path: format!("run_{run}.csv").into(),
         from: 0.0,
         until: None,
-        order: with_order.then_some(run),
+        order: with_order.then_some(run * run),
     };
     let mut settings = IdentifySettings {
         dynamic: (1..=MOTIONS).map(entry).collect(),
@@ -115,7 +115,7 @@ fn friction_by_runs_is_told_from_a_thermal_state() {
         time_constant: None,
     };
     let lab = Lab::new();
-    record(&lab, &|run| with_law(law).at_run(run as f64), None);
+    record(&lab, &|run| with_law(law).at_run((run * run) as f64), None);
     let found = lab.identify(&geometry(&lwa4p()), &settings(WarmingChoice::Runs, true));
     assert_rates(&found, WarmingBy::Runs, [0.2, 0.2]);
     assert_eq!(found.warming.unwrap().candidates.len(), 6);
