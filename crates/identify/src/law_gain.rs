@@ -22,8 +22,7 @@ impl LawGain {
     /// Returns a warning for each joint that the laws predict worse on validation recordings.
     pub(crate) fn warnings(&self, robot: &Robot) -> Vec<String> {
         let pairs = self.before.iter().zip(&self.after).zip(robot.joints());
-        let worse =
-            pairs.filter(|((before, after), _)| self.kept_back && *after > &(WORSE * *before));
+        let worse = pairs.filter(|((old, new), _)| self.kept_back && **new > WORSE * **old);
         let warning = |((before, after), joint): ((&f64, &f64), &reachtube_robot::Joint)| {
             format!(
                 "{}: the friction laws predict the validation recordings worse (residual {after:.4} \

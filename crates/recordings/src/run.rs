@@ -70,7 +70,8 @@ impl Run {
     ///
     /// # Errors
     ///
-    /// A message that names the sample (from 0) when their number does not fit or one is not finite.
+    /// A message that names the sample (from 0) when their number does not fit or one is not
+    /// finite.
     ///
     /// # Examples
     ///

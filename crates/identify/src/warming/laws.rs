@@ -18,8 +18,8 @@ const ROUNDS: usize = 3;
 ///
 /// # Errors
 ///
-/// [`Error::UnknownWarmth`] where a law was asked for that the recordings cannot show, and errors of
-/// the fits.
+/// [`Error::UnknownWarmth`] where a law was asked for that the recordings cannot show, and errors
+/// of the fits.
 pub(crate) fn fit_warming(
     robot: &Robot,
     inputs: &mut Inputs,

@@ -17,7 +17,7 @@ axis = [0.0, 1.0, 0.0]
 mass = 2.0
 com = [0.0, 0.0, -0.5]
 inertia = [0.1, 0.0, 0.0, 0.1, 0.0, 0.02]
-friction = { coulomb = [3.0, 0.1, -3.0, 0.1, -2.0, 0.0, 2.0, 0.0], viscous = [6.0, 0.5, -0.4], LAWS }
+friction = { coulomb = [3.0, 0.1, -3.0, 0.1, -2.0, 0.0, 2.0, 0.0], viscous = [6.0, 0.5,-0.4], LAWS }
 "#;
 
 const LAWS: &str = "stribeck = { excess = 0.8, speed = 0.05 }, warming = { by = \"temperature\", \
@@ -50,7 +50,7 @@ proptest! {
         let robot = arm(LAWS).unwrap().at_temperature(&[temperature]);
         let found = robot.coulomb_torque(&[q], &[v])[0] + robot.viscous_torque(&[v])[0];
         let expected = oracle(robot.gravity_torque(&[q])[0], v, temperature);
-        prop_assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{found} {expected}");
+        prop_assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{expected}");
         prop_assert_eq!(robot.warms_by(), vec![]);
         prop_assert_eq!(robot.at_temperature(&[3.0]), robot);
     }
@@ -93,7 +93,9 @@ proptest! {
     #[test]
     fn descriptions_with_laws_survive_their_file(
         excess in 0.0..5.0f64, speed in 1e-4..1.0f64, coulomb in -0.4..0.4f64, tau in 0.1..99.0f64,
-        by in prop::sample::select(vec![WarmingBy::Temperature, WarmingBy::Runs, WarmingBy::Thermal]),
+        by in prop::sample::select(
+            vec![WarmingBy::Temperature, WarmingBy::Runs, WarmingBy::Thermal],
+        ),
     ) {
         let mut description = arm(LAWS).unwrap().description().clone();
         let time_constant = (by == WarmingBy::Thermal).then_some(tau);
@@ -103,7 +105,8 @@ proptest! {
         let robot = Robot::from_description(&description).unwrap();
         prop_assert_eq!(&Robot::from_toml(&description.to_toml(), "copy").unwrap(), &robot);
         let json = serde_json::to_string(&description).unwrap();
-        prop_assert_eq!(serde_json::from_str::<reachtube_robot::RobotDescription>(&json).unwrap(), description);
+        let back: reachtube_robot::RobotDescription = serde_json::from_str(&json).unwrap();
+        prop_assert_eq!(back, description);
         prop_assert_eq!(robot.warms_by(), vec![by]);
     }
 }
