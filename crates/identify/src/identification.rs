@@ -1,22 +1,19 @@
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::fitted::Fitted;
 use crate::friction::fit::FrictionFit;
-use crate::friction::joints::coefficients;
-use crate::gravity::alternation::fit_gravity_and_friction;
 use crate::gravity::fit::GravityFit;
-use crate::inertia::columns::FrictionColumns;
-use crate::inertia::description::description;
-use crate::inertia::fit::{InertiaFit, fit_inertia};
+use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
-use crate::plausibility::gain::{Gain, GainLikelihood, gains};
+use crate::law_gain::{LawGain, kept_back_residuals};
+use crate::plausibility::gain::Gain;
 use crate::plausibility::validation::{poor_prediction, still_recordings, useless_simulation};
-use crate::plausibility::warnings::Checked;
-use crate::prepare::log::Log;
-use crate::samples::{KnownTorque, Samples};
-use crate::settings::{IdentifySettings, ModelSettings};
+use crate::settings::{IdentifySettings, ModelSettings, WarmingChoice};
 use crate::validate::simulation::{WindowErrors, simulate};
 use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
-use crate::variant::{set_gravity_moments, with_friction, with_gravity_of_links};
-use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
+use crate::variant::with_gravity_of_links;
+use crate::warming::choice::WarmingFit;
+use crate::warming::laws::{fit_warming, law_warnings};
+use reachtube_robot::{Robot, RobotDescription};
 use std::path::Path;
 
 /// Number of steps that progress reports.
@@ -39,6 +36,10 @@ pub struct Identification {
     pub inertia: InertiaFit,
     /// Gains of the joints' torques relative to each other.
     pub gains: Vec<Gain>,
+    /// Laws by which friction falls while the joints warm up, if they were asked for.
+    pub warming: Option<WarmingFit>,
+    /// Torque residuals without and with the friction laws, if some were asked for.
+    pub laws: Option<LawGain>,
     /// Errors of the predicted torque in the validation recordings.
     ///
     /// Without validation recordings they are the errors in the exciting motions.
@@ -75,33 +76,42 @@ pub fn identify(
     let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
 
     // Recordings, filtered and downsampled.
-    let inputs = Inputs::read(robot, settings, folder)?;
+    let mut inputs = Inputs::read(robot, settings, folder)?;
     progress(1, STEPS);
 
-    // Gravity and friction in alternation.
-    let (rest, slow, sampling) = (&inputs.rest, &inputs.friction, &inputs.sampling);
-    let first = fit_gravity_and_friction(robot, rest, slow, sampling, model)?;
+    // Gravity and friction in alternation, then the inertial parameters.
+    let plain = ModelSettings { stribeck: false, ..model.clone() };
+    let mut fitted = Fitted::new(robot, &inputs, &plain)?;
     progress(2, STEPS);
 
-    // Inertial parameters, with the friction and its load subtracted.
-    let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
-    let friction = coefficients(&first.friction, robot);
-    let (friction, known, inertia) = fit_links([robot, load], friction, &inputs, model)?;
-    let (gains, implausible) = check([robot, &known], &inertia, &friction, &inputs);
-    let mut description =
-        description(robot, &inertia, &friction).map_err(|error| impossible(error, &implausible))?;
-    if let Some(gravity) = first.gravity.as_ref().filter(|_| model.separate_gravity) {
-        set_gravity_moments(&mut description, &gravity.robot);
+    // Friction laws, and everything anew with the ones that were chosen.
+    let before = (plain != *model || model.warming != WarmingChoice::None)
+        .then(|| kept_back_residuals(&fitted, &inputs));
+    if model.stribeck && !inputs.friction.is_empty() {
+        fitted = Fitted::new(robot, &inputs, model)?;
     }
-    let found = Robot::from_description(&description)?;
+    let warming = fit_warming(robot, &mut inputs, model, &mut fitted)?;
+    let laws = before.map(|before| {
+        let after = kept_back_residuals(&fitted, &inputs);
+        LawGain { kept_back: inputs.validation().0, before, after }
+    });
+    let (gains, implausible) = fitted.check(robot, &inputs);
+    let mut law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
+    law_warnings.extend(laws.iter().flat_map(|laws| laws.warnings(robot)));
+    let Fitted { first, known, inertia, mut description, found, .. } = fitted;
+    for (joint, law) in description.joints.iter_mut().zip(&inputs.sampling.laws) {
+        joint.friction.warming = *law;
+    }
+    let warming_robot = Robot::from_description(&description)?;
     progress(3, STEPS);
 
     // Validation and plausibility.
     let (kept_back, tried) = inputs.validation();
-    let (validation, traces) = predict_torque(&found, &known, tried, sampling, &inertia);
-    let windows = simulate(&found, tried, &model.windows);
+    let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
+    let windows = simulate(&warming_robot, tried, &model.windows);
     let mut warnings = inputs.warnings;
     warnings.extend(first.warnings);
+    warnings.extend(law_warnings);
     warnings.extend(implausible);
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
@@ -115,6 +125,8 @@ pub fn identify(
         friction: first.friction,
         inertia,
         gains,
+        warming,
+        laws,
         validation,
         kept_back,
         windows,
@@ -137,67 +149,4 @@ fn validation_warnings(
         .chain(poor_prediction(robot, held_out))
         .chain(useless_simulation(robot, windows))
         .collect()
-}
-
-/// Returns the error for values of least squares that no robot has, with the probable cause.
-fn impossible(error: Error, implausible: &[String]) -> Error {
-    match error {
-        Error::Robot(error) => {
-            Error::ImpossibleRobot { problem: error.to_string(), causes: implausible.to_vec() }
-        }
-        other => other,
-    }
-}
-
-/// Fits the inertial parameters to motions with the friction of slow motions subtracted.
-///
-/// A joint whose torque is explained better by friction that only the exciting motions determine
-/// gets that friction: slow motions do not show all of it. Returns the known friction, one entry
-/// per joint, the robot with it, and the fit.
-///
-/// The poses at rest take part unless gravity keeps its own mass moments.
-fn fit_links(
-    [robot, load]: [&Robot; 2],
-    slow: Vec<FrictionDescription>,
-    inputs: &Inputs,
-    model: &ModelSettings,
-) -> Result<(Vec<FrictionDescription>, Robot, InertiaFit)> {
-    let none = FrictionDescription::default();
-    let known_count = slow.iter().filter(|friction| **friction != none).count();
-    let columns = FrictionColumns {
-        fitted: model.refit_friction || known_count < slow.len(),
-        cubic: model.cubic.unwrap_or(known_count > 0),
-    };
-    let rest: &[Log] = if model.separate_gravity { &[] } else { &inputs.rest };
-    let logs = [&inputs.dynamic[..], rest];
-    let fit = |friction: Vec<FrictionDescription>| {
-        let known = with_friction(load, &friction)?;
-        let fit = fit_inertia(robot, &known, logs, &inputs.sampling, model, columns)?;
-        Ok((friction, known, fit))
-    };
-    let first = fit(slow)?;
-    if known_count == 0 || !model.refit_friction {
-        return Ok(first);
-    }
-    let free = fit(vec![none; robot.joint_count()])?;
-    let better = |j: usize| free.2.joints[j].residual < first.2.joints[j].residual;
-    let chosen = first.0.iter().enumerate().map(|(j, slow)| if better(j) { none } else { *slow });
-    fit(chosen.collect())
-}
-
-/// Returns the gains of the joints and warnings about implausible results.
-fn check(
-    [robot, known]: [&Robot; 2],
-    fit: &InertiaFit,
-    friction: &[FrictionDescription],
-    inputs: &Inputs,
-) -> (Vec<Gain>, Vec<String>) {
-    let (logs, sampling) = (&inputs.dynamic, &inputs.sampling);
-    let known = KnownTorque::Friction(known);
-    let samples = &Samples::in_motion(robot, &fit.columns, logs, sampling, &known);
-    let likelihood = GainLikelihood::new(samples, &fit.joints);
-    let gains = gains(robot, samples, &likelihood);
-    let checked = Checked { robot, fit, friction, logs, samples, sampling };
-    let warnings = checked.warnings(&likelihood, &gains);
-    (gains, warnings)
 }

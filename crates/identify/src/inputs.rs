@@ -72,6 +72,7 @@ impl Inputs {
             rate: SAMPLES_PER_CUT_OFF * cut_off,
             slow: slow_speeds(&moving, robot.joint_count(), settings.model.slow),
             margin: MARGIN_PERIODS / cut_off,
+            laws: vec![],
         };
         let mut changes = prepared.changes;
         changes.push(described(&sampling, robot));

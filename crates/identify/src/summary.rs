@@ -4,9 +4,11 @@ use crate::gravity::fit::GravityFit;
 use crate::identification::Identification;
 use crate::inertia::base::BaseParameter;
 use crate::inertia::physical::PhysicalFit;
+use crate::law_gain::LawGain;
 use crate::plausibility::gain::Gain;
 use crate::validate::simulation::WindowErrors;
 use crate::validate::torque::LogValidation;
+use crate::warming::choice::WarmingFit;
 use reachtube_robot::RobotDescription;
 use serde::Serialize;
 
@@ -35,6 +37,12 @@ pub struct Summary<'a> {
     pub physical: &'a Option<PhysicalFit>,
     /// Gains of the joints' torques relative to each other.
     pub gains: &'a [Gain],
+    /// Laws by which friction falls while the joints warm up, if they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub warming: &'a Option<WarmingFit>,
+    /// Torque residuals without and with the friction laws, if some were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub laws: &'a Option<LawGain>,
     /// Errors of the predicted torque in the validation recordings.
     pub validation: &'a [LogValidation],
     /// Whether there were validation recordings, to which nothing was fitted.
@@ -61,6 +69,8 @@ impl Identification {
             condition: self.inertia.condition,
             physical: &self.inertia.physical,
             gains: &self.gains,
+            warming: &self.warming,
+            laws: &self.laws,
             validation: &self.validation,
             kept_back: self.kept_back,
             windows: &self.windows,

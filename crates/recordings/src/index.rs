@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::defect::Defect;
+use crate::order::{WrittenOrder, orders};
 use crate::text::{line_of, quoted};
 
 const REMEDY: &str =
@@ -26,6 +27,8 @@ pub struct RunEntry {
     pub temperature: Option<f64>,
     /// SHA-256 that the file should have, in hexadecimal.
     pub sha256: Option<String>,
+    /// Place in the order in which the runs of the suite were recorded, from 1.
+    pub order: u64,
     /// Line in `runs.csv`, or number of a run in memory, from 1.
     pub line: u64,
 }
@@ -38,10 +41,12 @@ struct IndexRow {
     kind: Option<String>,
     temperature: Option<f64>,
     sha256: Option<String>,
+    order: Option<String>,
+    repeat: Option<String>,
 }
 
 impl IndexRow {
-    fn entry(self, line: u64) -> RunEntry {
+    fn entry(self, line: u64, order: u64) -> RunEntry {
         let filled = |text: Option<String>| text.filter(|text| !text.is_empty());
         RunEntry {
             file: self.file,
@@ -50,6 +55,7 @@ impl IndexRow {
             kind: filled(self.kind),
             temperature: self.temperature,
             sha256: filled(self.sha256),
+            order,
             line,
         }
     }
@@ -65,14 +71,35 @@ pub(crate) fn read_index(
     index: &Path,
     bytes: &[u8],
 ) -> Result<Vec<RunEntry>, Vec<Defect>> {
-    let (runs, mut defects) = parse(index, bytes);
+    let (rows, mut defects) = parse(index, bytes);
+    let (runs, found) = ordered(index, rows);
+    defects.extend(found);
     defects.extend(missing_or_repeated(root, index, &runs));
     defects.extend(two_motions(index, &runs));
     if defects.is_empty() { Ok(runs) } else { Err(defects) }
 }
 
-/// Returns the runs and the defects of the lines.
-fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
+/// Returns the entries of these lines in the order of the file, with the defects of their order.
+fn ordered(index: &Path, rows: Vec<(u64, IndexRow)>) -> (Vec<RunEntry>, Vec<Defect>) {
+    fn filled(text: &Option<String>) -> Option<&str> {
+        text.as_deref().filter(|text| !text.is_empty())
+    }
+    let written = rows.iter().map(|(line, row)| WrittenOrder {
+        group: (filled(&row.suite), filled(&row.kind).filter(|_| filled(&row.suite).is_none())),
+        line: *line,
+        order: filled(&row.order),
+        repeat: filled(&row.repeat),
+    });
+    let (orders, defects) = match orders(index, &written.collect::<Vec<_>>()) {
+        Ok(orders) => (orders, vec![]),
+        Err(defects) => (vec![1; rows.len()], defects),
+    };
+    let entry = |((line, row), order): ((u64, IndexRow), u64)| row.entry(line, order);
+    (rows.into_iter().zip(orders).map(entry).collect(), defects)
+}
+
+/// Returns the lines with their numbers, and the defects of the lines.
+fn parse(index: &Path, bytes: &[u8]) -> (Vec<(u64, IndexRow)>, Vec<Defect>) {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut reader =
         csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
@@ -108,7 +135,7 @@ fn parse(index: &Path, bytes: &[u8]) -> (Vec<RunEntry>, Vec<Defect>) {
                 defects.push(defect(line, problem));
             }
             Ok(true) => match record.deserialize::<IndexRow>(Some(&header)) {
-                Ok(row) => runs.push(row.entry(at)),
+                Ok(row) => runs.push((at, row)),
                 Err(error) => defects.push(defect(line, line_problem(&error, &header))),
             },
             Err(error) => {

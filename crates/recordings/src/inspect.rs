@@ -9,8 +9,8 @@ use serde::Serialize;
 use crate::data_set::DataSet;
 use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
-use crate::inspect_run::RunSummary;
-use crate::notes::copies_note;
+use crate::inspect_run::{RunSummary, range};
+use crate::notes::{copies_note, temperature_notes};
 use crate::refusal::{Refusal, merge};
 use crate::source::{ReadOptions, RunSource};
 
@@ -42,6 +42,8 @@ pub struct Group {
     pub motion: Option<String>,
     /// Number of recordings.
     pub runs: usize,
+    /// Smallest and largest place in the order of recording, from 1.
+    pub order: [u64; 2],
     /// Smallest and largest number of samples of a recording.
     pub samples: [usize; 2],
     /// Duration of the longest recording, s.
@@ -72,6 +74,8 @@ pub struct JointSummary {
     /// Correlation of the last position with the order of the recordings, from -1 to 1. It is near
     /// ±1 where the robot drifts, for example while its joints warm up.
     pub drift: Option<f64>,
+    /// Lowest and highest recorded temperature, °C, where there is one.
+    pub temperature: Option<[f64; 2]>,
     /// Fraction of the samples in which the joint sticks (below 0.01 rad/s).
     pub sticking: f64,
     /// Largest difference between q and the integral of qd over a recording, rad.
@@ -169,6 +173,7 @@ fn notes(data: &DataSet, runs: &[Option<RunSummary>]) -> Vec<String> {
     let sound = || runs.iter().enumerate().filter_map(|(index, run)| Some((index, run.as_ref()?)));
     notes.extend(sound().flat_map(|(_, run)| run.notes.iter().cloned()));
     notes.extend(copies_note(data, sound().map(|(index, run)| (index, run.sha256.as_str()))));
+    notes.extend(temperature_notes(data, sound().map(|(i, run)| (i, run.has_temperatures()))));
     notes
 }
 
@@ -178,11 +183,13 @@ impl Group {
         let longest = runs.iter().map(|run| run.steps[1]).fold(0.0, f64::max);
         let first = runs[0].step;
         let samples = runs.iter().map(|run| run.samples);
+        let orders = runs.iter().map(|run| run.order);
         Self {
             name,
             suite,
             motion,
             runs: runs.len(),
+            order: [orders.clone().min().unwrap_or(1), orders.max().unwrap_or(1)],
             samples: [samples.clone().min().unwrap_or(0), samples.max().unwrap_or(0)],
             duration: runs.iter().map(|run| run.duration).fold(0.0, f64::max),
             step: first.filter(|_| runs.iter().all(|run| run.step == first)),
@@ -200,11 +207,11 @@ impl JointSummary {
         let of = || runs.iter().map(|run| &run.joints[joint]);
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let longest = runs.iter().map(|run| run.samples).max().unwrap_or(0);
-        let ends: Vec<f64> = runs
+        let (orders, ends): (Vec<f64>, Vec<f64>) = runs
             .iter()
             .filter(|run| run.samples == longest)
-            .map(|run| run.joints[joint].last)
-            .collect();
+            .map(|run| (run.order as f64, run.joints[joint].last))
+            .unzip();
         let starts: Vec<f64> = of().map(|run| run.first).collect();
         let samples: usize = runs.iter().map(|run| run.samples).sum();
         let sticking: usize = of().map(|run| run.sticking).sum();
@@ -217,7 +224,8 @@ impl JointSummary {
             torque: largest(&mut of().map(|run| run.torque)),
             start_spread: spread(&starts),
             end_spread: (ends.len() > 1).then(|| spread(&ends)),
-            drift: order_correlation(&ends),
+            drift: correlation(&orders, &ends),
+            temperature: range(of().flat_map(|run| run.temperature).flatten()),
             sticking: sticking as f64 / samples.max(1) as f64,
             integral_gap: largest(&mut of().map(|run| run.integral_gap)),
         }
@@ -231,13 +239,14 @@ fn spread(values: &[f64]) -> f64 {
     (highest - lowest).max(0.0)
 }
 
-/// Returns Pearson's correlation of values with their indices; `None` for fewer than three values
-/// or equal ones.
-fn order_correlation(values: &[f64]) -> Option<f64> {
+/// Returns Pearson's correlation of values with the places of their runs in the order of recording;
+/// `None` for fewer than three values or equal ones.
+fn correlation(orders: &[f64], values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
-    let (mean, centre) = (values.iter().sum::<f64>() / n, (n - 1.0) / 2.0);
-    let sums = values.iter().enumerate().map(|(k, v)| (v - mean, k as f64 - centre));
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / n;
+    let (mean, centre) = (mean(values), mean(orders));
+    let sums = orders.iter().zip(values).map(|(k, v)| (v - mean, k - centre));
     let (vv, kk, vk) =
         sums.fold((0.0, 0.0, 0.0), |(vv, kk, vk), (v, k)| (vv + v * v, kk + k * k, vk + v * k));
-    (values.len() >= 3 && vv > 0.0).then(|| vk / (vv * kk).sqrt())
+    (values.len() >= 3 && vv > 0.0 && kk > 0.0).then(|| vk / (vv * kk).sqrt())
 }

@@ -12,6 +12,8 @@ const STICKING: f64 = 0.01;
 
 /// The summary of one run.
 pub(crate) struct RunSummary {
+    /// Place in the order of recording, from 1.
+    pub order: u64,
     /// Number of samples.
     pub samples: usize,
     /// Duration, s.
@@ -42,6 +44,8 @@ pub(crate) struct JointOfRun {
     pub speed: f64,
     /// Largest magnitude of the torque, N m.
     pub torque: f64,
+    /// Lowest and highest temperature, °C, where recorded.
+    pub temperature: Option<[f64; 2]>,
     /// Number of samples in which the joint sticks.
     pub sticking: usize,
     /// Largest difference between q and the integral of qd, rad.
@@ -53,6 +57,7 @@ impl RunSummary {
     pub fn new(source: &dyn RunSource, index: usize, run: &Run, first: &Run) -> Self {
         let steps = run.times.windows(2).map(|pair| pair[1] - pair[0]);
         Self {
+            order: source.runs()[index].order,
             samples: run.len(),
             duration: run.duration(),
             step: TimeGrid::from_times(&run.times).ok().and_then(|grid| grid.step()),
@@ -62,6 +67,11 @@ impl RunSummary {
             notes: run_notes(source, index, run),
             sha256: run.sha256.clone(),
         }
+    }
+
+    /// Returns whether the run has recorded temperatures.
+    pub fn has_temperatures(&self) -> bool {
+        self.joints.iter().any(|joint| joint.temperature.is_some())
     }
 
     /// Returns the number of joints n.
@@ -75,7 +85,9 @@ impl JointOfRun {
         let samples = 0..run.len();
         let positions = || samples.clone().map(|k| run.q(k)[joint]);
         let speeds = || samples.clone().map(|k| run.qd(k)[joint].abs());
+        let temperatures = run.temperatures.iter().skip(joint).step_by(run.joints);
         Self {
+            temperature: range(temperatures.copied()),
             position: [
                 positions().fold(f64::INFINITY, f64::min),
                 positions().fold(f64::NEG_INFINITY, f64::max),
@@ -88,6 +100,14 @@ impl JointOfRun {
             integral_gap: integral_gap(run, joint),
         }
     }
+}
+
+/// Returns the smallest and the largest of some values; `None` for no value.
+pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    values.fold(None, |range: Option<[f64; 2]>, value| {
+        let [low, high] = range.unwrap_or([value; 2]);
+        Some([low.min(value), high.max(value)])
+    })
 }
 
 /// Returns whether two runs have equal torques at equal times, up to the end of the shorter one.

@@ -31,8 +31,19 @@ pub struct MemoryRuns {
 impl MemoryRuns {
     /// Adds a run under a name, with its suite and the motion that the suite is part of. The run's
     /// SHA-256 becomes that of its numbers.
-    pub fn push(&mut self, name: &str, suite: Option<&str>, motion: Option<&str>, mut run: Run) {
+    ///
+    /// Returns the run's entry. The run counts as the latest of its suite unless its `order` is
+    /// set there, and its `temperature` can be set likewise.
+    pub fn push(
+        &mut self,
+        name: &str,
+        suite: Option<&str>,
+        motion: Option<&str>,
+        mut run: Run,
+    ) -> &mut RunEntry {
         run.sha256 = digest(&run);
+        let before = self.entries.iter().filter(|entry| entry.suite.as_deref() == suite);
+        let latest = before.map(|entry| entry.order).max().unwrap_or(0);
         self.entries.push(RunEntry {
             file: name.into(),
             suite: suite.map(String::from),
@@ -40,9 +51,11 @@ impl MemoryRuns {
             kind: None,
             temperature: None,
             sha256: None,
+            order: latest + 1,
             line: self.entries.len() as u64 + 1,
         });
         self.runs.push(run);
+        self.entries.last_mut().expect("an entry was added")
     }
 }
 
@@ -97,7 +110,7 @@ fn gaps(name: PathBuf, run: &Run, limit: GapLimit) -> Vec<Defect> {
 /// Returns the SHA-256 of a run's numbers, in lower-case hexadecimal.
 fn digest(run: &Run) -> String {
     let mut digest = Sha256::new();
-    for value in run.times.iter().chain(&run.states).chain(&run.torques) {
+    for value in run.times.iter().chain(&run.states).chain(&run.torques).chain(&run.temperatures) {
         digest.update(value.to_le_bytes());
     }
     reachtube_files::hex(&digest.finalize())
@@ -137,6 +150,19 @@ mod tests {
         let sha256 = |times: &[f64]| runs(times).runs[0].sha256.clone();
         assert_eq!(sha256(&[0.0, 0.5]), sha256(&[1.0, 1.5]));
         assert_ne!(sha256(&[0.0, 0.5]), sha256(&[0.0, 0.25]));
+    }
+
+    #[test]
+    fn the_order_and_temperature_of_a_run_can_be_set() {
+        let mut runs = runs(&[0.0]);
+        let run = || Run::new(1, vec![0.0], vec![0.0; 2], vec![0.0]).unwrap();
+        assert_eq!(runs.push("second", Some("A"), None, run()).order, 2);
+        let entry = runs.push("ninth", Some("A"), None, run());
+        (entry.order, entry.temperature) = (9, Some(31.5));
+        runs.push("tenth", Some("A"), None, run());
+        runs.push("other", Some("B"), None, run());
+        let orders: Vec<u64> = runs.runs().iter().map(|entry| entry.order).collect();
+        assert_eq!((orders, runs.runs()[2].temperature), (vec![1, 2, 9, 10, 1], Some(31.5)));
     }
 
     #[test]

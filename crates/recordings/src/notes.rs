@@ -56,6 +56,36 @@ pub fn copies_note<'a>(
     })
 }
 
+/// Returns a note for each suite of which some runs have recorded temperatures and some have not.
+/// `read` gives the index of each recording that was read, and whether it has temperatures.
+///
+/// # Panics
+///
+/// Panics where the source has no run of an index.
+pub fn temperature_notes(
+    source: &dyn RunSource,
+    read: impl Iterator<Item = (usize, bool)>,
+) -> Vec<String> {
+    let mut suites: BTreeMap<&str, [Vec<usize>; 2]> = BTreeMap::new();
+    for (index, has_temperatures) in read {
+        let Some(suite) = &source.runs()[index].suite else { continue };
+        suites.entry(suite).or_default()[usize::from(has_temperatures)].push(index);
+    }
+    let note = |(suite, [without, with]): (&str, [Vec<usize>; 2])| {
+        let (first, missing) = (*without.first()?, without.len());
+        let all = missing + with.len();
+        (!with.is_empty()).then(|| {
+            format!(
+                "suite {suite}: {missing} of {all} recordings have no temperatures, for example \
+                 {}; models whose friction depends on temperature cannot use them: add the \
+                 columns temp1..tempn, or remove them from all recordings of the suite",
+                source.runs()[first].file
+            )
+        })
+    };
+    suites.into_iter().filter_map(note).collect()
+}
+
 /// Returns a note where the SHA-256 of a file is not the one in the index.
 fn changed_note(entry: &RunEntry, sha256: &str) -> Option<String> {
     let listed = entry.sha256.as_ref()?;
@@ -70,7 +100,7 @@ fn changed_note(entry: &RunEntry, sha256: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{copies_note, run_notes};
+    use super::{copies_note, run_notes, temperature_notes};
     use crate::memory::MemoryRuns;
     use crate::run::Run;
     use crate::source::{ReadOptions, RunSource};
@@ -95,6 +125,19 @@ mod tests {
         assert_eq!(note(2), None);
         assert!(note(3).unwrap().starts_with("c is a copy of a, so one recording counts twice"));
         assert!(note(4).unwrap().starts_with("2 recordings are copies"));
+    }
+
+    #[test]
+    fn a_suite_with_temperatures_in_some_runs_is_noted() {
+        let mut runs = MemoryRuns::default();
+        for (name, suite) in [("a", "A"), ("b", "A"), ("c", "B"), ("d", "B"), ("e", "C")] {
+            runs.push(name, Some(suite), None, run(1.0));
+        }
+        let with = [true, false, true, true, false];
+        let notes = temperature_notes(&runs, with.into_iter().enumerate());
+        assert_eq!(notes.len(), 1, "{notes:?}");
+        let expected = "suite A: 1 of 2 recordings have no temperatures, for example b; ";
+        assert!(notes[0].starts_with(expected), "{notes:?}");
     }
 
     #[test]

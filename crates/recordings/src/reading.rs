@@ -15,6 +15,12 @@ use crate::text::{line_of, quoted};
 const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m \
                       (m, m/s and N for a prismatic joint)";
 
+const TEMPERATURES: &str = "give one temperature per joint, temp1..tempn in °C, one after another, \
+                            or give the column another name";
+
+/// Temperatures that a joint can have, °C. Values in kelvin are beyond them.
+const JOINT_TEMPERATURES: std::ops::RangeInclusive<f64> = -100.0..=250.0;
+
 /// Number of defects after which a file is not read on.
 const MOST_DEFECTS: usize = 1000;
 
@@ -46,7 +52,13 @@ fn read_samples(
     joints: Option<usize>,
     gap_limit: GapLimit,
 ) -> Result<Run, Vec<Defect>> {
-    let mut reading = Reading { path, run: Run::empty(0), rows: Vec::new(), defects: Vec::new() };
+    let mut reading = Reading {
+        path,
+        run: Run::empty(0),
+        temperatures_at: None,
+        rows: Vec::new(),
+        defects: Vec::new(),
+    };
     reading.header_and_rows(bytes, joints);
     reading.gaps(gap_limit);
     reading.defects.sort_by_key(|defect| defect.line);
@@ -65,6 +77,8 @@ struct Row {
 struct Reading<'a> {
     path: &'a Path,
     run: Run,
+    /// Column of `temp1`, from 0, where there is one.
+    temperatures_at: Option<usize>,
     rows: Vec<Row>,
     defects: Vec<Defect>,
 }
@@ -99,7 +113,8 @@ impl Reading<'_> {
             return;
         }
         let mut record = csv::ByteRecord::new();
-        let mut values = vec![0.0; 1 + 3 * self.run.joints];
+        let columns: Vec<usize> = self.columns().collect();
+        let mut values = vec![0.0; columns.len()];
         loop {
             if self.defects.len() >= MOST_DEFECTS {
                 let problem = format!("reading stopped after {MOST_DEFECTS} defects");
@@ -108,7 +123,8 @@ impl Reading<'_> {
             }
             match reader.read_byte_record(&mut record) {
                 Ok(true) => {
-                    self.row(line_of(bytes, record.position()), &record, header.len(), &mut values)
+                    let line = line_of(bytes, record.position());
+                    self.row(line, &record, header.len(), &columns, &mut values)
                 }
                 Ok(false) => break,
                 Err(error) => {
@@ -125,7 +141,14 @@ impl Reading<'_> {
         }
     }
 
+    /// Returns the columns that are read: time, positions, velocities, torques, temperatures.
+    fn columns(&self) -> impl Iterator<Item = usize> + use<> {
+        let n = self.run.joints;
+        (0..=3 * n).chain(self.temperatures_at.into_iter().flat_map(move |first| first..first + n))
+    }
+
     /// Returns whether the header is `t,q1..qn,qd1..qdn,tau1..taun`, with any columns after these.
+    /// `temp1` among them is the first of n temperatures.
     fn header(&mut self, header: &[String], joints: Option<usize>) -> bool {
         let n = header.iter().skip(1).take_while(|name| is_numbered(name, "q")).count();
         if n > MOST_JOINTS {
@@ -153,11 +176,30 @@ impl Reading<'_> {
             return false;
         }
         self.run = Run::empty(n);
-        true
+        self.temperatures_at = header.iter().position(|name| name == "temp1");
+        let Some(first) = self.temperatures_at else { return true };
+        let wrong =
+            (1..=n).find(|joint| header.get(first + joint - 1) != Some(&temperature(*joint)));
+        if let Some(joint) = wrong {
+            let at = first + joint - 1;
+            let found = header.get(at).map_or("missing".into(), |found| quoted(found));
+            let name = temperature(joint);
+            let problem =
+                format!("column {} of the header is {found}, expected \"{name}\"", at + 1);
+            self.defect(DefectKind::Header, Some(1), problem, TEMPERATURES);
+        }
+        wrong.is_none()
     }
 
-    /// Reads one line, and keeps its sample where it has no defect.
-    fn row(&mut self, line: u64, record: &csv::ByteRecord, fields: usize, values: &mut [f64]) {
+    /// Reads these columns of one line, and keeps its sample where it has no defect.
+    fn row(
+        &mut self,
+        line: u64,
+        record: &csv::ByteRecord,
+        fields: usize,
+        columns: &[usize],
+        values: &mut [f64],
+    ) {
         if record.len() != fields {
             self.rows.push(Row { line, time: None });
             let problem =
@@ -167,29 +209,46 @@ impl Reading<'_> {
             return self.defect(DefectKind::Fields, Some(line), problem, remedy);
         }
         let mut sound = true;
-        for (column, value) in values.iter_mut().enumerate() {
-            let text = String::from_utf8_lossy(&record[column]);
+        for (at, value) in values.iter_mut().enumerate() {
+            let text = String::from_utf8_lossy(&record[columns[at]]);
             match text.parse::<f64>() {
                 Ok(number) if number.is_finite() => *value = number,
                 _ => {
                     sound = false;
                     *value = f64::NAN;
-                    self.bad_number(line, column, &text);
+                    self.bad_number(line, at, &text);
                 }
             }
         }
         let time = self.time(line, values[0], &String::from_utf8_lossy(&record[0]));
         if sound && let Some(time) = time {
+            self.impossible_temperatures(line, &values[1 + 3 * self.run.joints..]);
             self.sample(time, values);
         }
     }
 
-    fn bad_number(&mut self, line: u64, column: usize, text: &str) {
+    /// Adds a defect for each joint whose temperature is impossible for the first time.
+    fn impossible_temperatures(&mut self, line: u64, temperatures: &[f64]) {
+        for (joint, value) in (1..).zip(temperatures) {
+            let known =
+                |defect: &Defect| defect.kind == DefectKind::Units && defect.joint == Some(joint);
+            if JOINT_TEMPERATURES.contains(value) || self.defects.iter().any(known) {
+                continue;
+            }
+            let problem = format!("{} is {value}, which no joint has in °C", temperature(joint));
+            let remedy = "give temperatures in °C, not in K, or rename the column";
+            let defect = Defect::new(self.path, Some(line), problem, remedy);
+            self.defects.push(defect.of_kind(DefectKind::Units).of_joint(Some(joint)));
+        }
+    }
+
+    /// Adds a defect for value `at` of a line, in the order of [`Self::columns`].
+    fn bad_number(&mut self, line: u64, at: usize, text: &str) {
         let n = self.run.joints;
-        let joint = column.checked_sub(1).map(|index| index % n + 1);
-        let name = column
-            .checked_sub(1)
-            .map_or("t".into(), |index| column_names(n).nth(index).unwrap_or_default());
+        let joint = at.checked_sub(1).map(|index| index % n + 1);
+        let mut names =
+            std::iter::once("t".into()).chain(column_names(n)).chain((1..=n).map(temperature));
+        let name = names.nth(at).unwrap_or_default();
         let problem = match text {
             "" => format!("{name} is empty"),
             _ => format!("{name} is {}, not a finite number", quoted(text)),
@@ -228,7 +287,8 @@ impl Reading<'_> {
         }
         self.run.times.push(seconds(time.saturating_sub(first)));
         self.run.states.extend_from_slice(&values[1..1 + 2 * n]);
-        self.run.torques.extend_from_slice(&values[1 + 2 * n..]);
+        self.run.torques.extend_from_slice(&values[1 + 2 * n..1 + 3 * n]);
+        self.run.temperatures.extend_from_slice(&values[1 + 3 * n..]);
     }
 
     /// Finds steps that are too long. Steps to and from a line whose time is unknown are not known.
@@ -279,6 +339,11 @@ fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
         return Some(("the first line holds numbers, so the header is missing".into(), HEADER));
     }
     None
+}
+
+/// Returns the name of the column with the temperature of a joint, from 1.
+fn temperature(joint: usize) -> String {
+    format!("temp{joint}")
 }
 
 fn is_numbered(name: &str, prefix: &str) -> bool {

@@ -12,6 +12,8 @@ pub struct Run {
     pub states: Vec<f64>,
     /// Recorded torques, N m, row-major K x n.
     pub torques: Vec<f64>,
+    /// Recorded temperatures of the joints, °C, row-major K x n; empty where none were recorded.
+    pub temperatures: Vec<f64>,
     /// SHA-256 of the file, or of the numbers of a run in memory, in lower-case hexadecimal.
     pub sha256: String,
 }
@@ -60,7 +62,43 @@ impl Run {
         }
         let start = times.first().copied().ok_or("a run needs one sample at least")?;
         let times = times.iter().map(|time| time - start).collect();
-        Ok(Self { joints, start, times, states, torques, sha256: String::new() })
+        let (temperatures, sha256) = (vec![], String::new());
+        Ok(Self { joints, start, times, states, torques, temperatures, sha256 })
+    }
+
+    /// Returns the run with the temperatures of its joints, °C, row-major K x n.
+    ///
+    /// # Errors
+    ///
+    /// A message that names the sample (from 0) when their number does not fit or one is not
+    /// finite.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_recordings::Run;
+    ///
+    /// let run = Run::new(1, vec![0.0, 0.1], vec![0.0; 4], vec![0.0; 2])?;
+    /// assert_eq!(run.mean_temperature(), None);
+    /// let warm = run.with_temperatures(vec![30.0, 31.0])?;
+    /// assert_eq!(warm.mean_temperature(), Some(vec![30.5]));
+    /// # Ok::<(), String>(())
+    /// ```
+    pub fn with_temperatures(mut self, temperatures: Vec<f64>) -> Result<Self, String> {
+        let (samples, joints, length) = (self.len(), self.joints, temperatures.len());
+        if length != samples * joints {
+            return Err(format!(
+                "temperatures has {length} numbers, but {samples} samples of {joints} joints need \
+                 {}",
+                samples * joints
+            ));
+        }
+        if let Some(at) = temperatures.iter().position(|value| !value.is_finite()) {
+            let (value, sample) = (temperatures[at], at / joints);
+            return Err(format!("temperatures holds {value} at sample {sample}; drop that sample"));
+        }
+        self.temperatures = temperatures;
+        Ok(self)
     }
 
     /// Returns a run of `joints` joints without samples.
@@ -71,6 +109,7 @@ impl Run {
             times: vec![],
             states: vec![],
             torques: vec![],
+            temperatures: vec![],
             sha256: String::new(),
         }
     }
@@ -117,6 +156,27 @@ impl Run {
         &self.torques[k * self.joints..(k + 1) * self.joints]
     }
 
+    /// Returns the recorded temperatures at sample `k` (from 0), n, °C.
+    ///
+    /// # Panics
+    ///
+    /// Panics where none were recorded.
+    #[must_use]
+    pub fn temperature(&self, k: usize) -> &[f64] {
+        &self.temperatures[k * self.joints..(k + 1) * self.joints]
+    }
+
+    /// Returns the mean temperature of each joint over the samples, n, °C; `None` where none were
+    /// recorded.
+    #[must_use]
+    pub fn mean_temperature(&self) -> Option<Vec<f64>> {
+        let mean = |joint: usize| {
+            let values = self.temperatures.iter().skip(joint).step_by(self.joints);
+            values.sum::<f64>() / self.len() as f64
+        };
+        (!self.temperatures.is_empty()).then(|| (0..self.joints).map(mean).collect())
+    }
+
     /// Drops the samples later than `until` seconds after the first.
     pub(crate) fn truncate(&mut self, until: Option<f64>) {
         let Some(until) = until else { return };
@@ -126,6 +186,7 @@ impl Run {
         self.times.truncate(count);
         self.states.truncate(count * 2 * self.joints);
         self.torques.truncate(count * self.joints);
+        self.temperatures.truncate(count * self.joints);
     }
 }
 
@@ -146,6 +207,26 @@ mod tests {
         assert_eq!((run.start, &run.times[..], run.duration()), (5.0, &[0.0, 0.5][..], 0.5));
         assert_eq!((run.state(1), run.q(1), run.qd(1)), (&[3.0, 4.0][..], &[3.0][..], &[4.0][..]));
         assert_eq!((run.torque(0), run.len(), run.is_empty()), (&[5.0][..], 2, false));
+    }
+
+    #[test]
+    fn temperatures_are_one_per_sample_and_joint() {
+        let run = |joints| {
+            Run::new(joints, vec![0.0, 1.0], vec![0.0; 4 * joints], vec![0.0; 2 * joints]).unwrap()
+        };
+        let mut warm = run(2).with_temperatures(vec![20.0, 30.0, 22.0, 31.0]).unwrap();
+        assert_eq!(warm.mean_temperature(), Some(vec![21.0, 30.5]));
+        warm.truncate(Some(0.5));
+        assert_eq!(warm.mean_temperature(), Some(vec![20.0, 30.0]));
+        assert_eq!((run(2).mean_temperature(), run(2).temperatures.capacity()), (None, 0));
+        assert_eq!(
+            run(2).with_temperatures(vec![20.0; 2]).unwrap_err(),
+            "temperatures has 2 numbers, but 2 samples of 2 joints need 4"
+        );
+        assert_eq!(
+            run(1).with_temperatures(vec![20.0, f64::NAN]).unwrap_err(),
+            "temperatures holds NaN at sample 1; drop that sample"
+        );
     }
 
     #[test]

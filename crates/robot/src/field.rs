@@ -96,7 +96,7 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
     /// tau_m - tau_c - tau_v.
     fn subtract_friction(&mut self, qd: &[S], tau_motor: &[S]) {
         for (i, joint) in self.robot.joints().iter().enumerate() {
-            let mut coulomb = joint.friction.coulomb.torque(self.torque[i], qd[i]);
+            let mut coulomb = joint.friction.dry_torque(self.torque[i], qd[i]);
             if self.regularisation_speed > 0.0 {
                 coulomb *= qd[i].map(|qd| (qd.abs() / self.regularisation_speed).min(1.0));
             }

@@ -11,7 +11,7 @@ impl Robot {
     }
 
     /// Returns the Coulomb friction torque tau_c(g(q), q̇) of (6) to (9) \[N m\], with the gravity
-    /// torque as the load.
+    /// torque as the load. It contains the Stribeck effect of joints that have one.
     pub fn coulomb_torque(&self, q: &[f64], qd: &[f64]) -> DVector<f64> {
         self.coulomb_torque_under(&self.gravity_torque(q), qd)
     }
@@ -21,7 +21,7 @@ impl Robot {
         let joints = self.joints.iter().zip(load.iter().zip(qd));
         DVector::from_iterator(
             self.joint_count(),
-            joints.map(|(j, (load, qd))| j.friction.coulomb.torque(*load, *qd)),
+            joints.map(|(j, (load, qd))| j.friction.dry_torque(*load, *qd)),
         )
     }
 

@@ -38,6 +38,7 @@ mod simulate;
 mod singular_values;
 mod text_file;
 mod urdf;
+mod warmth;
 mod workspace;
 
 pub use base_parameters::base::BaseParameters;

@@ -90,6 +90,7 @@ const LEGEND: &str = "
 start, end: spread of the first and of the last positions over the runs [as q]
 drift: correlation of the last position with the order of the runs; near +1 or -1 where the robot
   changes from run to run, as it does while it warms up
+temp: lowest and highest recorded temperature, where there is one
 sticks: share of the samples slower than 0.01 rad/s or m/s
 q - int qd: largest difference between q and the integral of qd [as q]
 ";
@@ -104,8 +105,16 @@ fn heading(group: &Group) -> String {
         true => ", same torques in every run",
         false => ", torques or sample times differ between runs",
     };
+    let [first, last] = group.order;
+    let order = match group.runs as u64 {
+        runs if group.suite && last - first + 1 != runs => {
+            format!(", order {first} to {last} with gaps")
+        }
+        runs if group.suite && first != 1 => format!(", order {first} to {}", first + runs - 1),
+        _ => String::new(),
+    };
     format!(
-        "{kind} {}{motion}: {} {} of {}, {:.3} s{torque}",
+        "{kind} {}{motion}: {} {} of {}, {:.3} s{order}{torque}",
         group.name,
         group.runs,
         plural(group.runs, "run"),
@@ -133,20 +142,21 @@ fn samples(group: &Group) -> String {
 fn joint_table(group: &Group, kinds: &[JointKind]) -> String {
     let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
     let units = units.map(|unit| ColumnUnit::new(kinds, unit));
-    let header = [
-        "joint",
-        &units[0].head("q"),
-        &units[1].head("|qd|"),
-        &units[2].head("|tau|"),
-        "start",
-        "end",
-        "drift",
-        "sticks",
-        "q - int qd",
-    ];
-    let rows =
-        group.joints.iter().enumerate().map(|(index, joint)| joint_row(index, joint, &units));
+    let warm = group.joints.iter().any(|joint| joint.temperature.is_some());
+    let [q, qd, tau] = [units[0].head("q"), units[1].head("|qd|"), units[2].head("|tau|")];
+    let mut header = vec!["joint", &q, &qd, &tau, "start", "end", "drift", "sticks", "q - int qd"];
+    header.extend(warm.then_some("temp [°C]"));
+    let row = |(index, joint)| {
+        let mut row = joint_row(index, joint, &units);
+        row.extend(warm.then(|| temperature(joint)));
+        row
+    };
+    let rows = group.joints.iter().enumerate().map(row);
     table(&header, &rows.collect::<Vec<_>>())
+}
+
+fn temperature(joint: &JointSummary) -> String {
+    joint.temperature.map_or_else(|| "-".into(), |[low, high]| format!("[{low:.1}, {high:.1}]"))
 }
 
 /// Returns a table row about a joint (from 0); the units are those of q, q̇ and τ.

@@ -79,7 +79,7 @@ fn record(model: &PolynomialModel, case: &Case, start: &[f64], inputs: &[f64]) -
     );
     assert!(outcome.is_reached());
     let (times, torques) = (case.grid.times().to_vec(), vec![0.0; SAMPLES * JOINTS]);
-    Run { joints: JOINTS, start: 0.0, times, states, torques, sha256: String::new() }
+    Run::new(JOINTS, times, states, torques).unwrap()
 }
 
 /// A run whose start and inputs go `reach` times as far as the sets.

@@ -56,7 +56,7 @@ pub enum WarmthLaw {
 impl WarmthLaw {
     /// Returns the warmth of a joint in the run at `place` of its suite's order, from 1.
     #[must_use]
-    pub fn warmth(&self, place: usize) -> f64 {
+    pub fn warmth(&self, place: u64) -> f64 {
         match self {
             Self::Runs => (place as f64).ln(),
             Self::Thermal { runs } => 1.0 - (-((place - 1) as f64) / runs).exp(),

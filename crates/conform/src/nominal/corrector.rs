@@ -59,7 +59,7 @@ impl<'a> Corrector<'a> {
 
     /// Takes the correction at the state (q, q̇) off the input `u` (n, N m); `place` is that of
     /// the run in its suite, from 1.
-    pub fn take_off(&mut self, q: &[f64], qd: &[f64], place: usize, u: &mut [f64]) {
+    pub fn take_off(&mut self, q: &[f64], qd: &[f64], place: u64, u: &mut [f64]) {
         let warmth = self.correction.warmth.as_ref().map_or(0.0, |law| law.warmth(place));
         let joints = self.correction.joints.iter().enumerate();
         for (j, joint) in joints {

@@ -25,7 +25,7 @@ pub struct Case {
     /// The measured states.
     pub measured: Arc<Envelope>,
     /// The run's place in the order of its suite, from 1; 1 where the case is a suite.
-    pub place: usize,
+    pub place: u64,
 }
 
 impl Case {

@@ -73,10 +73,9 @@ impl Problem {
                 place: 1,
             })?]),
             None => {
-                let own = |(place, summary): (usize, &RunSummary)| {
-                    visit(self.case_of_run(suite, index, summary.index, place + 1)?)
-                };
-                suite.runs.par_iter().enumerate().map(own).collect()
+                let own =
+                    |summary: &RunSummary| visit(self.case_of_run(suite, index, summary.index)?);
+                suite.runs.par_iter().map(own).collect()
             }
         }
     }
@@ -87,7 +86,7 @@ impl Problem {
         self.settings().torque != Torque::Link || self.read.robot == *self.robot().description()
     }
 
-    fn case_of_run(&self, suite: &Suite, index: usize, run: usize, place: usize) -> Result<Case> {
+    fn case_of_run(&self, suite: &Suite, index: usize, run: usize) -> Result<Case> {
         let recorded = self.run(run)?;
         let path = self.read.source.run_name(run);
         let RunInput { grid, inputs } =
@@ -100,7 +99,7 @@ impl Problem {
             NominalStart::Own => recorded.state(0).to_vec(),
         };
         let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
-        let measured = Arc::new(measured);
+        let (measured, place) = (Arc::new(measured), self.entry(run).order);
         Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, place })
     }
 

@@ -1,5 +1,7 @@
 use crate::friction::form::CoulombForm;
+use crate::friction::model::FrictionModel;
 use crate::friction::sample::{FrictionSample, quadrant_counts};
+use crate::friction::stribeck::{StribeckTrial, try_stribeck};
 use crate::regression::residuals::{
     HUBER_DEVIATIONS, autocorrelation_time, huber_row_factor, robust_standard_deviation,
     root_mean_square,
@@ -21,7 +23,7 @@ const MIN_SAMPLES: usize = 50;
 pub struct JointFriction {
     /// Name of the joint.
     pub joint: String,
-    /// Coefficients a1 to a8 and v1 to v3.
+    /// Coefficients a1 to a8 and v1 to v3, and the Stribeck effect if it was accepted.
     pub coefficients: FrictionDescription,
     /// Standard errors of the coefficients, 0 for coefficients that are fixed by the form.
     pub standard_errors: FrictionDescription,
@@ -41,6 +43,9 @@ pub struct JointFriction {
     pub inertia: f64,
     /// Number of samples, and the number of independent ones among them.
     pub samples: (usize, f64),
+    /// The trial of the Stribeck effect, if it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stribeck: Option<StribeckTrial>,
 }
 
 /// A joint's friction fit with its samples and residuals.
@@ -64,59 +69,115 @@ pub fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
     if samples.len() < MIN_SAMPLES {
         return None;
     }
-    let form = CoulombForm::determined_by(samples);
-    let (solution, weights) = robust_solution(form, samples);
-    let residuals = residuals(form, samples, &solution.x);
+    let model = FrictionModel { form: CoulombForm::determined_by(samples), stribeck: None };
+    Some(fit_model(name, samples, model))
+}
+
+/// Fits friction as [`fit`] does, and tries the Stribeck effect.
+///
+/// The effect becomes part of the friction if it predicts kept-back slow motions better.
+#[must_use]
+pub fn fit_with_stribeck(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
+    let mut found = fit(name, samples)?;
+    let form = found.joint.form;
+    let (_, weights) = robust_solution(FrictionModel { form, stribeck: None }, samples);
+    let (trial, stribeck) = try_stribeck(form, samples, &weights);
+    if stribeck.is_some() {
+        found = fit_model(name, samples, FrictionModel { form, stribeck });
+    }
+    // Other weights of outliers may turn the rise into a fall.
+    let falls = found.joint.coefficients.stribeck.is_some_and(|law| law.excess <= 0.0);
+    if falls {
+        found = fit(name, samples)?;
+    }
+    let reason = falls.then(|| "friction does not rise toward standstill".into());
+    let (accepted, reason) = (trial.accepted && !falls, trial.reason.or(reason));
+    found.joint.stribeck = Some(StribeckTrial { accepted, reason, ..trial });
+    Some(found)
+}
+
+/// Fits the coefficients of a model.
+fn fit_model(name: &str, samples: &[FrictionSample], model: FrictionModel) -> FrictionFit {
+    let (solution, weights) = robust_solution(model, samples);
+    let residuals = residuals(model, samples, &solution.x);
     // Standard errors that count independent samples only.
     let time = autocorrelation_time(&[&residuals]);
     let scale = robust_standard_deviation(&residuals)
         .max(root_mean_square(residuals.iter().zip(&weights).map(|(r, w)| r * w)))
         * time.sqrt();
-    let errors: Vec<f64> = solution.standard_errors().iter().map(|e| e * scale).collect();
+    let errors = standard_errors(model, samples, &weights, &solution);
+    let errors: Vec<f64> = errors.iter().map(|e| e * scale).collect();
     // Explained variance.
     let unexplained = variation(residuals.clone());
     let joint = JointFriction {
         joint: name.into(),
-        coefficients: form.description(solution.x.as_slice()),
-        standard_errors: form.errors(&errors),
-        form,
+        coefficients: model.description(solution.x.as_slice()),
+        standard_errors: model.errors(&errors),
+        form: model.form,
         quadrants: quadrant_counts(samples),
         r2: 1.0 - unexplained / variation(samples.iter().map(|s| s.torque + s.load).collect()),
         r2_without_gravity: 1.0
             - unexplained / variation(samples.iter().map(|s| s.torque).collect()),
         residual: root_mean_square(residuals.iter().copied()),
         condition: solution.condition,
-        inertia: solution.x[form.columns() - 1],
+        inertia: solution.x[model.inertia()],
         samples: (samples.len(), samples.len() as f64 / time),
+        stribeck: None,
     };
-    Some(FrictionFit { joint, samples: samples.to_vec(), residuals })
+    FrictionFit { joint, samples: samples.to_vec(), residuals }
+}
+
+/// Returns the standard errors of the coefficients, and of the Stribeck speed as the last of them,
+/// for rows with errors of variance 1.
+fn standard_errors(
+    model: FrictionModel,
+    samples: &[FrictionSample],
+    weights: &[f64],
+    solution: &Solution,
+) -> Vec<f64> {
+    if model.stribeck.is_none() {
+        return solution.standard_errors();
+    }
+    // The speed was fitted too, so its column takes part.
+    let columns = model.columns() + 1;
+    let all: Vec<usize> = (0..samples.len()).collect();
+    let factor = TriangularFactor::from_written_rows(&all, columns, |k, out| {
+        let mut row = model.row(&samples[k]);
+        row.push(model.speed_derivative(&samples[k], solution.x.as_slice()));
+        out.iter_mut().zip(&row).for_each(|(o, v)| *o = weights[k] * v);
+    });
+    factor.solve().standard_errors()
 }
 
 /// Returns the solution by iteratively reweighted least squares, and the factors of the rows.
-fn robust_solution(form: CoulombForm, samples: &[FrictionSample]) -> (Solution, Vec<f64>) {
+fn robust_solution(model: FrictionModel, samples: &[FrictionSample]) -> (Solution, Vec<f64>) {
     let mut weights = vec![1.0; samples.len()];
     for _ in 0..ROUNDS {
-        let left = residuals(form, samples, &weighted_solution(form, samples, &weights).x);
+        let left = residuals(model, samples, &weighted_solution(model, samples, &weights).x);
         let limit = HUBER_DEVIATIONS * robust_standard_deviation(&left);
         weights = left.iter().map(|r| huber_row_factor(*r, limit)).collect();
     }
-    (weighted_solution(form, samples, &weights), weights)
+    (weighted_solution(model, samples, &weights), weights)
 }
 
-fn weighted_solution(form: CoulombForm, samples: &[FrictionSample], weights: &[f64]) -> Solution {
-    let columns = form.columns();
+fn weighted_solution(
+    model: FrictionModel,
+    samples: &[FrictionSample],
+    weights: &[f64],
+) -> Solution {
+    let columns = model.columns();
     let all: Vec<usize> = (0..samples.len()).collect();
     TriangularFactor::from_written_rows(&all, columns, |k, out| {
-        let (row, w) = (form.row(&samples[k]), weights[k]);
+        let (row, w) = (model.row(&samples[k]), weights[k]);
         out[..columns].iter_mut().zip(&row).for_each(|(o, v)| *o = w * v);
         out[columns] = w * samples[k].torque;
     })
     .solve()
 }
 
-fn residuals(form: CoulombForm, samples: &[FrictionSample], x: &DVector<f64>) -> Vec<f64> {
+fn residuals(model: FrictionModel, samples: &[FrictionSample], x: &DVector<f64>) -> Vec<f64> {
     let residual = |s: &FrictionSample| {
-        s.torque - form.row(s).iter().zip(x.iter()).map(|(a, x)| a * x).sum::<f64>()
+        s.torque - model.row(s).iter().zip(x.iter()).map(|(a, x)| a * x).sum::<f64>()
     };
     samples.iter().map(residual).collect()
 }
@@ -151,7 +212,7 @@ mod tests {
                 + viscous.torque(&qd)
                 + 1.7 * qdd
                 + noise * random() * 12f64.sqrt();
-            FrictionSample { qd, qdd, load, torque }
+            FrictionSample { qd, qdd, load, torque, factors: [1.0; 2] }
         };
         (1..12_000).map(sample).filter(|s| s.qd.abs() > 0.02).collect()
     }

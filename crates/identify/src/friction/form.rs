@@ -77,7 +77,10 @@ impl CoulombForm {
             Self::Symmetric => row.copy_from_slice(&[sign, sign * s.load.abs(), 1.0]),
             Self::Constant => row[usize::from(sign < 0.0)] = 1.0,
         }
-        row.extend([s.qd, s.qd.powi(2), s.qd.powi(3), s.qdd]);
+        let [coulomb, viscous] = s.factors;
+        row.iter_mut().for_each(|value| *value *= coulomb);
+        row.extend([s.qd, s.qd.powi(2), s.qd.powi(3)].map(|value| viscous * value));
+        row.push(s.qdd);
         row
     }
 
@@ -107,6 +110,7 @@ impl CoulombForm {
 
     fn with_viscous(self, coulomb: [f64; 8], x: &[f64]) -> FrictionDescription {
         let v = self.coulomb_columns();
-        FrictionDescription { coulomb, viscous: [x[v], x[v + 1], x[v + 2]] }
+        let viscous = [x[v], x[v + 1], x[v + 2]];
+        FrictionDescription { coulomb, viscous, ..FrictionDescription::default() }
     }
 }

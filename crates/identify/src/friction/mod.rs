@@ -6,8 +6,11 @@
 pub(crate) mod fit;
 mod form;
 pub(crate) mod joints;
+mod model;
 mod sample;
+mod stribeck;
 
-pub use fit::{FrictionFit, JointFriction, fit};
+pub use fit::{FrictionFit, JointFriction, fit, fit_with_stribeck};
 pub use form::CoulombForm;
 pub use sample::FrictionSample;
+pub use stribeck::StribeckTrial;

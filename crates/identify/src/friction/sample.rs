@@ -13,6 +13,8 @@ pub struct FrictionSample {
     pub load: f64,
     /// Recorded torque minus the gravity torque \[N m\].
     pub torque: f64,
+    /// Factors of Coulomb and viscous friction by the joint's warmth; 1 without a law.
+    pub factors: [f64; 2],
 }
 
 impl FrictionSample {
@@ -42,7 +44,7 @@ pub(super) fn isolated_samples(
     joint: usize,
     sampling: &Sampling,
 ) -> Vec<FrictionSample> {
-    let stride = (1.0 / (sampling.rate * log.step)).floor().max(1.0) as usize;
+    let stride = sampling.stride(log);
     let moving = log.moving_mask(&sampling.slow, sampling.margin);
     let at_rest = |k: usize, j: usize| log.qd(k)[j].abs() < sampling.slow[j];
     let isolated = |k: &usize| {
@@ -56,6 +58,7 @@ pub(super) fn isolated_samples(
             qdd: log.qdd(k)[joint],
             load,
             torque: log.tau(k)[joint] - load,
+            factors: sampling.factors(log, k).get(joint).copied().unwrap_or([1.0; 2]),
         }
     };
     (0..log.len()).step_by(stride).filter(isolated).map(sample).collect()

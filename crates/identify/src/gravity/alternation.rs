@@ -41,7 +41,8 @@ pub(crate) fn fit_gravity_and_friction(
     for round in 0..ROUNDS {
         let known = if round == 0 { KnownTorque::None } else { KnownTorque::Friction(&latest) };
         let gravity = fit_gravity(robot, rests, slow, sampling, model, &known)?;
-        (found.friction, found.warnings) = fit_joints(&gravity.robot, slow, sampling);
+        (found.friction, found.warnings) =
+            fit_joints(&gravity.robot, slow, sampling, model.stribeck);
         // This gravity is the load of the friction that is known in the next round.
         latest = with_friction(&gravity.robot, &coefficients(&found.friction, robot))?;
         found.gravity = Some(gravity);

@@ -34,7 +34,7 @@ pub fn description(
 
 /// Adds the value of a friction column; other columns change nothing.
 fn add_friction(friction: &mut FrictionDescription, column: &Parameter, value: f64) {
-    let FrictionDescription { coulomb, viscous } = friction;
+    let FrictionDescription { coulomb, viscous, .. } = friction;
     // Offsets of driving forward, driving backward, braking backward, braking forward.
     let mut add = |signs: [f64; 4]| (0..4).for_each(|q| coulomb[2 * q] += signs[q] * value);
     match column.kind {

@@ -18,6 +18,10 @@ pub enum LogEntry {
         /// Last time that is used \[s\].
         #[serde(default)]
         until: Option<f64>,
+        /// Number of the recording since the robot's start, from 1. Further files of a folder
+        /// follow in the order of their names.
+        #[serde(default)]
+        order: Option<u64>,
     },
 }
 
@@ -26,7 +30,15 @@ impl LogEntry {
     pub(super) fn parts(&self) -> (&Path, f64, Option<f64>) {
         match self {
             Self::Path(path) => (path, 0.0, None),
-            Self::Stretch { path, from, until } => (path, *from, *until),
+            Self::Stretch { path, from, until, .. } => (path, *from, *until),
+        }
+    }
+
+    /// Returns the number of its first recording since the robot's start, from 1.
+    pub(super) fn order(&self) -> Option<u64> {
+        match self {
+            Self::Path(_) => None,
+            Self::Stretch { order, .. } => *order,
         }
     }
 }

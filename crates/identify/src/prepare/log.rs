@@ -1,3 +1,5 @@
+use reachtube_robot::friction::WarmingBy;
+
 /// A recording prepared for regression: K evenly spaced samples of n joints, filtered without
 /// phase shift.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +20,10 @@ pub struct Log {
     pub qdd: Vec<f64>,
     /// Torques \[N m\] after the gains, row-major K x n.
     pub tau: Vec<f64>,
+    /// Temperatures of the joints \[°C\], row-major K x n; empty where none were recorded.
+    pub temperatures: Vec<f64>,
+    /// Number of the recording since the robot's start, from 1, where it is known.
+    pub order: Option<u64>,
 }
 
 impl Log {
@@ -26,7 +32,18 @@ impl Log {
     pub fn zeros(name: &str, joints: usize, samples: usize, step: f64) -> Self {
         let zeros = vec![0.0; joints * samples];
         let [q, qd, qdd, tau] = [zeros.clone(), zeros.clone(), zeros.clone(), zeros];
-        Self { name: name.into(), joints, step, start: 0.0, q, qd, qdd, tau }
+        Self {
+            name: name.into(),
+            joints,
+            step,
+            start: 0.0,
+            q,
+            qd,
+            qdd,
+            tau,
+            temperatures: vec![],
+            order: None,
+        }
     }
 
     /// Returns the number of samples K.
@@ -71,6 +88,17 @@ impl Log {
         self.start + k as f64 * self.step
     }
 
+    /// Returns the quantity that a law of warming depends on, at sample k of a joint: its
+    /// temperature \[°C\] or the number of the recording. The result is `None` where the recording
+    /// does not know it.
+    #[must_use]
+    pub fn warmth_value(&self, by: WarmingBy, joint: usize, k: usize) -> Option<f64> {
+        match by {
+            WarmingBy::Temperature => self.temperatures.get(k * self.joints + joint).copied(),
+            WarmingBy::Runs | WarmingBy::Thermal => self.order.map(|order| order as f64),
+        }
+    }
+
     /// Returns whether each joint moves at each sample, row-major K x n.
     ///
     /// A joint moves if it is at least as fast as its entry of `slow` \[rad/s\] throughout `margin`
@@ -98,9 +126,13 @@ impl Log {
     #[must_use]
     pub fn interval(&self, range: std::ops::Range<usize>) -> Self {
         let n = self.joints;
-        let rows = |values: &[f64]| values[range.start * n..range.end * n].to_vec();
-        let [q, qd, qdd, tau] =
-            [&self.q, &self.qd, &self.qdd, &self.tau].map(|values| rows(values));
+        let rows = |values: &[f64]| match values {
+            [] => vec![],
+            values => values[range.start * n..range.end * n].to_vec(),
+        };
+        let [q, qd, qdd, tau, temperatures] =
+            [&self.q, &self.qd, &self.qdd, &self.tau, &self.temperatures]
+                .map(|values| rows(values));
         Self {
             name: self.name.clone(),
             joints: n,
@@ -110,6 +142,8 @@ impl Log {
             qd,
             qdd,
             tau,
+            temperatures,
+            order: self.order,
         }
     }
 }

@@ -124,6 +124,15 @@ impl<'a> Signals<'a> {
     fn log(&self, gains: &[f64], differentiated: bool) -> Log {
         let n = self.raw.run.joints;
         let mut log = Log::zeros(&self.raw.name, n, self.even(Run::q, 0).len(), self.step);
+        log.order = self.raw.order;
+        // Temperatures change too slowly to need the low-pass.
+        if !self.raw.run.temperatures.is_empty() {
+            log.temperatures = vec![0.0; log.q.len()];
+            (0..n).for_each(|joint| {
+                let column = self.even(Run::temperature, joint);
+                set_column(&mut log.temperatures, joint, n, &column);
+            });
+        }
         for joint in 0..n {
             let q = self.filtered(self.even(Run::q, joint));
             let qd = if differentiated {
@@ -169,9 +178,10 @@ mod tests {
             states: times.iter().flat_map(states).collect(),
             torques: times.iter().map(torques).collect(),
             times,
+            temperatures: vec![],
             sha256: String::new(),
         };
-        RawLog { name: "wave".into(), file: "wave.csv".into(), run }
+        RawLog { name: "wave".into(), file: "wave.csv".into(), order: None, run }
     }
 
     #[test]

@@ -8,6 +8,8 @@ pub struct RawLog {
     pub name: String,
     /// The file.
     pub file: PathBuf,
+    /// Number of the recording since the robot's start, from 1, where it is known.
+    pub order: Option<u64>,
     /// The samples.
     pub run: Run,
 }

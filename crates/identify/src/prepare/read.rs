@@ -27,7 +27,7 @@ pub fn read(
     let mut logs = Vec::new();
     for entry in entries {
         let (path, from, until) = entry.parts();
-        for file in csv_files(&folder.join(path))? {
+        for (index, file) in (0..).zip(csv_files(&folder.join(path))?) {
             let gap_limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
             let options = ReadOptions { joints: Some(robot.joint_count()), gap_limit, until };
             let run = read_csv(&file, &options).map_err(reachtube_recordings::Error::Defects)?;
@@ -36,7 +36,8 @@ pub fn read(
             match check_limits(&file, &run, robot) {
                 defects if defects.is_empty() => {
                     check_time_unit(&file, &run)?;
-                    logs.push(RawLog { name, file, run });
+                    let order = entry.order().map(|first| first + index);
+                    logs.push(RawLog { name, file, order, run });
                 }
                 defects => return Err(reachtube_recordings::Error::Defects(defects).into()),
             }
@@ -65,7 +66,8 @@ fn reordered(run: Run, order: &[usize]) -> Run {
     let pick = |row: &[f64]| order.iter().map(|column| row[*column]).collect::<Vec<_>>();
     let states = (0..run.len()).flat_map(|k| [pick(run.q(k)), pick(run.qd(k))].concat()).collect();
     let torques = run.torques.chunks_exact(n).flat_map(pick).collect();
-    Run { states, torques, ..run }
+    let temperatures = run.temperatures.chunks_exact(n).flat_map(pick).collect();
+    Run { states, torques, temperatures, ..run }
 }
 
 /// Removes the samples before `from` \[s\].
@@ -74,6 +76,7 @@ fn starting_at(mut run: Run, from: f64) -> Run {
     run.times.drain(..first);
     run.states.drain(..2 * n * first);
     run.torques.drain(..n * first);
+    run.temperatures.drain(..run.temperatures.len().min(n * first));
     run
 }
 
@@ -98,9 +101,11 @@ mod tests {
             times: vec![0.0],
             states: vec![1.0, 2.0, 3.0, 4.0],
             torques: vec![5.0, 6.0],
+            temperatures: vec![7.0, 8.0],
             sha256: String::new(),
         };
         let swapped = reordered(run, &[1, 0]);
+        assert_eq!(swapped.temperatures, [8.0, 7.0]);
         assert_eq!((swapped.states, swapped.torques), (vec![2.0, 1.0, 4.0, 3.0], vec![6.0, 5.0]));
     }
 
@@ -113,11 +118,12 @@ mod tests {
         let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6\n";
         std::fs::write(folder.path().join("a.csv"), format!("{header}{rows}")).unwrap();
         std::fs::write(folder.path().join("runs.csv"), "file,suite\n").unwrap();
-        let entry = LogEntry::Stretch { path: ".".into(), from: 1.0, until: Some(2.0) };
+        let entry =
+            LogEntry::Stretch { path: ".".into(), from: 1.0, until: Some(2.0), order: Some(7) };
         let robot = Robot::lwa4p();
         let logs = read(&[entry], folder.path(), &robot, &PrepareSettings::default()).unwrap();
         assert_eq!((logs.len(), logs[0].name.as_str(), logs[0].run.len()), (1, "a", 11));
-        assert_eq!(logs[0].run.torque(0)[5], 10.0);
+        assert_eq!((logs[0].run.torque(0)[5], logs[0].order), (10.0, Some(7)));
         let nowhere =
             read(&[LogEntry::Path("b".into())], folder.path(), &robot, &PrepareSettings::default());
         assert!(nowhere.unwrap_err().to_string().contains("folder of them"));

@@ -4,6 +4,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use reachtube_robot::Robot;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Limit of the windows of one length in one log.
 const MAX_WINDOWS: usize = 40;
@@ -54,7 +55,7 @@ fn simulate_windows(robot: &Robot, logs: &[Log], duration: f64) -> WindowErrors 
         .collect();
     let ends: Vec<Option<DVector<f64>>> = windows
         .par_iter()
-        .map(|(log, start, length)| window_error(robot, log, *start, *length))
+        .map(|(log, start, length)| window_error(&warmed(robot, log), log, *start, *length))
         .collect();
     let moved = |joint: usize| {
         windows
@@ -72,6 +73,25 @@ fn simulate_windows(robot: &Robot, logs: &[Log], duration: f64) -> WindowErrors 
             .map(|joint| root_mean_square(moved(joint).collect::<Vec<_>>().into_iter()))
             .collect(),
     }
+}
+
+/// Returns the robot as warm as in a recording, as far as the recording knows it.
+fn warmed<'a>(robot: &'a Robot, log: &Log) -> Cow<'a, Robot> {
+    if robot.warms_by().is_empty() {
+        return Cow::Borrowed(robot);
+    }
+    let mut warm = robot.clone();
+    if let Some(run) = log.order {
+        warm = warm.at_run(run as f64);
+    }
+    if !log.temperatures.is_empty() {
+        let mean = |joint: usize| {
+            let values = log.temperatures.iter().skip(joint).step_by(log.joints);
+            values.sum::<f64>() / log.len() as f64
+        };
+        warm = warm.at_temperature(&(0..log.joints).map(mean).collect::<Vec<_>>());
+    }
+    Cow::Owned(warm)
 }
 
 /// Returns the simulated minus the recorded state at the end of a window, 2n entries.

@@ -4,6 +4,7 @@ mod faults;
 mod frames;
 mod heavy;
 mod lab;
+mod laws;
 mod messages;
 mod recorded;
 mod recovery;

@@ -8,6 +8,7 @@ use reachtube_files::write::atomically;
 use sha2::{Digest, Sha256};
 
 use super::error::DemoError;
+use super::options::DemoOptions;
 use super::plan::{RunPlan, SuitePlan};
 use super::unmodelled;
 use crate::error::Result;
@@ -56,8 +57,13 @@ pub(super) fn write_run(
 }
 
 /// Writes README and index of a folder whose runs are complete.
-pub(super) fn write_index(folder: &Path, robot: &str, seed: u64, lines: &[String]) -> Result<()> {
-    let readme = readme(robot, seed);
+pub(super) fn write_index(
+    folder: &Path,
+    robot: &str,
+    options: &DemoOptions,
+    lines: &[String],
+) -> Result<()> {
+    let readme = readme(robot, options);
     atomically(&folder.join("README.md"), |out| out.write_all(readme.as_bytes()))?;
     atomically(&folder.join("runs.csv"), |out| {
         out.write_all(INDEX_HEADER.as_bytes())?;
@@ -87,7 +93,16 @@ fn sha256(text: &str) -> String {
     Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn readme(robot: &str, seed: u64) -> String {
+fn readme(robot: &str, options: &DemoOptions) -> String {
+    let seed = options.seed;
+    let stribeck = match options.stribeck {
+        true => format!(
+            "- Dry friction rises by {:.0} % toward standstill, over {} rad/s.\n",
+            100.0 * unmodelled::STRIBECK_RATIO,
+            unmodelled::STRIBECK_SPEED
+        ),
+        false => String::new(),
+    };
     let percent = |ratio: f64| 100.0 * ratio;
     format!(
         "{TITLE}
@@ -109,7 +124,7 @@ The nominal model does not contain these effects:
 - Friction falls with temperature: Coulomb {coulomb:.1} %/K, viscous {viscous:.1} %/K, nominal at
   {reference} °C. A joint warms by {warming} K per rad of motion, from {cold} °C.
 - Joints stick: the compensation of Coulomb friction rises more slowly with speed than the friction.
-- The motor torque has a ripple of {ripple:.0} %, with a period of one motor turn.
+{stribeck}- The motor torque has a ripple of {ripple:.0} %, with a period of one motor turn.
 - Links are {links:.0} % and motors {motors:.0} % heavier than nominal.
 - Starts are scattered by ±{scatter_q} rad and ±{scatter_qd} rad/s.
 - Positions come from encoders with steps of {step:.2e} rad. Velocities are their differences after

@@ -23,12 +23,23 @@ pub struct DemoOptions {
     pub runs: usize,
     /// Duration of a motion \[s\]. Suites last 0.9 of it, or less where they start later.
     pub duration: f64,
+    /// Whether dry friction rises toward standstill (Stribeck effect), which the nominal model does
+    /// not contain.
+    pub stribeck: bool,
 }
 
 impl Default for DemoOptions {
     /// Returns 10 motions of 3 s, 2 of them held out, with 2 suites of 8 runs per motion.
     fn default() -> Self {
-        Self { seed: 1, motions: 10, held_out_motions: 2, start_points: 2, runs: 8, duration: 3.0 }
+        Self {
+            seed: 1,
+            motions: 10,
+            held_out_motions: 2,
+            start_points: 2,
+            runs: 8,
+            duration: 3.0,
+            stribeck: false,
+        }
     }
 }
 

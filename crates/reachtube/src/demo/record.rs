@@ -66,20 +66,26 @@ pub fn record(robot: &Robot, options: &DemoOptions, folder: &Path) -> Result<Rec
         .par_iter()
         .map(|&(suite, index)| {
             let run = &suite.runs[index];
-            let states = simulate(robot, suite, run)?;
+            let states = simulate(robot, suite, run, options)?;
             data_folder::write_run(folder, suite, index + 1, run, &states)
         })
         .collect::<Result<Vec<_>>>()?;
     // The index comes last, so a folder that is not finished cannot be opened.
-    data_folder::write_index(folder, robot.name(), options.seed, &lines)?;
+    data_folder::write_index(folder, robot.name(), options, &lines)?;
     let (check, training): (Vec<_>, Vec<_>) = suites.iter().partition(|suite| suite.held_out);
     let names = |suites: Vec<&SuitePlan>| suites.iter().map(|suite| suite.name.clone()).collect();
     Ok(RecordedDemo { training: names(training), check: names(check), runs: runs.len() })
 }
 
 /// Simulates a run and returns what the sensors record, row-major K x 2n, \[rad\] and \[rad/s\].
-pub(super) fn simulate(robot: &Robot, suite: &SuitePlan, run: &RunPlan) -> Result<Vec<f64>> {
-    let virtual_robot = VirtualRobot::new(robot, &run.temperatures)?;
+pub(super) fn simulate(
+    robot: &Robot,
+    suite: &SuitePlan,
+    run: &RunPlan,
+    options: &DemoOptions,
+) -> Result<Vec<f64>> {
+    let plain = VirtualRobot::new(robot, &run.temperatures)?;
+    let virtual_robot = if options.stribeck { plain.with_stribeck() } else { plain };
     let states = virtual_robot.run(run.q.clone(), run.qd.clone(), &suite.inputs);
     if states.iter().all(|x| x.is_finite()) {
         return Ok(states);

@@ -15,7 +15,8 @@ use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
 
 fn small(seed: u64) -> DemoOptions {
-    DemoOptions { seed, motions: 2, held_out_motions: 1, start_points: 2, runs: 5, duration: 2.0 }
+    let few = DemoOptions { motions: 2, held_out_motions: 1, runs: 5, ..DemoOptions::default() };
+    DemoOptions { seed, duration: 2.0, ..few }
 }
 
 fn recorded(options: &DemoOptions) -> (tempfile::TempDir, RecordedDemo) {
@@ -162,7 +163,7 @@ proptest! {
         let robot = Robot::lwa4p();
         let mut furthest = 0.0f64;
         for suite in plan::suites(&robot, &small(seed)) {
-            let start = |run| simulate(&robot, &suite, run).unwrap()[..12].to_vec();
+            let start = |run| simulate(&robot, &suite, run, &small(1)).unwrap()[..12].to_vec();
             let measured: Vec<Vec<f64>> = suite.runs.iter().map(start).collect();
             for (a, b) in measured.iter().flat_map(|a| measured.iter().map(move |b| (a, b))) {
                 for i in 0..6 {

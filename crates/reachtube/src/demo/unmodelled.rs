@@ -37,6 +37,12 @@ pub(super) const RIPPLE_RATIO: f64 = 0.05;
 /// Speed at which Coulomb friction reaches tanh(1) of its value \[rad/s\].
 pub(super) const STICKING_SPEED: f64 = 0.01;
 
+/// Rise of dry friction toward standstill over Coulomb friction \[-\], where it is asked for.
+pub(super) const STRIBECK_RATIO: f64 = 0.3;
+
+/// Stribeck speed of that rise \[rad/s\].
+pub(super) const STRIBECK_SPEED: f64 = 0.05;
+
 /// Speed at which the compensation of Coulomb friction reaches tanh(1) of its value \[rad/s\]. It
 /// exceeds [`STICKING_SPEED`], so a joint that turns or rests sticks.
 pub(super) const COMPENSATION_SPEED: f64 = 0.015;
@@ -78,7 +84,7 @@ pub(super) fn body(nominal: &Robot, temperatures: &[f64]) -> Result<Robot> {
     for (joint, temperature) in description.joints.iter_mut().zip(temperatures) {
         let ratio = friction_ratio(*temperature, VISCOUS_PER_KELVIN);
         let viscous = joint.friction.viscous.map(|v| v * ratio);
-        joint.friction = FrictionDescription { coulomb: [0.0; 8], viscous };
+        joint.friction = FrictionDescription { viscous, ..FrictionDescription::default() };
         add_weight(joint);
     }
     Ok(Robot::from_description(&description)?)

@@ -5,8 +5,8 @@ use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
 
 use super::sensors::Sensors;
 use super::unmodelled::{
-    COMPENSATION_SPEED, COULOMB_PER_KELVIN, LINK_RATIO, RIPPLE_RATIO, STICKING_SPEED, body,
-    friction_ratio,
+    COMPENSATION_SPEED, COULOMB_PER_KELVIN, LINK_RATIO, RIPPLE_RATIO, STICKING_SPEED,
+    STRIBECK_RATIO, STRIBECK_SPEED, body, friction_ratio,
 };
 use crate::error::Result;
 use crate::motion::SAMPLE_TIME;
@@ -21,6 +21,8 @@ pub(super) struct VirtualRobot<'a> {
     body: Robot,
     /// Coulomb friction of each joint over the nominal one \[-\].
     coulomb_ratio: Vec<f64>,
+    /// Rise of dry friction toward standstill over Coulomb friction \[-\].
+    stribeck_ratio: f64,
 }
 
 /// The memory in which the torque of a cycle is computed, n each.
@@ -40,7 +42,13 @@ impl<'a> VirtualRobot<'a> {
     pub fn new(nominal: &'a Robot, temperatures: &[f64]) -> Result<Self> {
         let ratio = |temperature: &f64| friction_ratio(*temperature, COULOMB_PER_KELVIN);
         let coulomb_ratio = temperatures.iter().map(ratio).collect();
-        Ok(Self { nominal, body: body(nominal, temperatures)?, coulomb_ratio })
+        let body = body(nominal, temperatures)?;
+        Ok(Self { nominal, body, coulomb_ratio, stribeck_ratio: 0.0 })
+    }
+
+    /// Returns the robot whose dry friction rises toward standstill.
+    pub fn with_stribeck(self) -> Self {
+        Self { stribeck_ratio: STRIBECK_RATIO, ..self }
     }
 
     /// Drives the robot from q \[rad\] and q̇ \[rad/s\] by `inputs` \[N m\], row-major K x n, each
@@ -76,13 +84,16 @@ impl<'a> VirtualRobot<'a> {
         self.nominal.gravity(sin, cos, ws, gravity);
         for (i, joint) in self.nominal.joints().iter().enumerate() {
             let coulomb = |load: f64, speed: f64| {
-                joint.friction.coulomb.torque(load, qd[i]) * (qd[i].abs() / speed).tanh()
+                joint.friction.dry_torque(load, qd[i]) * (qd[i].abs() / speed).tanh()
             };
             let ripple = RIPPLE_RATIO * joint.gear_ratio.map_or(0.0, |ratio| (ratio * q[i]).sin());
             let motor =
                 (input[i] + gravity[i] + coulomb(gravity[i], COMPENSATION_SPEED)) * (1.0 + ripple);
-            torque[i] =
-                motor - self.coulomb_ratio[i] * coulomb(LINK_RATIO * gravity[i], STICKING_SPEED);
+            let mut own = self.coulomb_ratio[i] * coulomb(LINK_RATIO * gravity[i], STICKING_SPEED);
+            if self.stribeck_ratio > 0.0 {
+                own *= 1.0 + self.stribeck_ratio * (-(qd[i] / STRIBECK_SPEED).powi(2)).exp();
+            }
+            torque[i] = motor - own;
         }
     }
 }
@@ -102,7 +113,9 @@ impl Scratch {
 
 #[cfg(test)]
 mod tests {
-    use super::super::unmodelled::{COLD_TEMPERATURE, ENCODER_STEP, VELOCITY_FILTER_TIME};
+    use super::super::unmodelled::{
+        COLD_TEMPERATURE, ENCODER_STEP, NOMINAL_TEMPERATURE, VELOCITY_FILTER_TIME,
+    };
     use super::*;
 
     const SAMPLES: usize = 500;
@@ -135,6 +148,26 @@ mod tests {
             );
             assert!(speed.iter().all(|v| *v > -noise), "joint {} turned round", joint - 5);
         }
+    }
+
+    #[test]
+    fn a_slow_robot_with_the_stribeck_effect_stops_earlier() {
+        let nominal = Robot::lwa4p();
+        let robot = || VirtualRobot::new(&nominal, &[NOMINAL_TEMPERATURE; 6]).unwrap();
+        let drive = |robot: VirtualRobot, qd: f64| {
+            robot.run(vec![0.4; 6], vec![qd; 6], &[0.0; 6 * SAMPLES])
+        };
+        let way = |states: &[f64], joint: usize| states[states.len() - 12 + joint] - 0.4;
+        let (plain, rising) = (drive(robot(), 0.05), drive(robot().with_stribeck(), 0.05));
+        // Joint 6 hardly moves the others.
+        assert!(way(&rising, 5) < 0.95 * way(&plain, 5), "{} {}", way(&rising, 5), way(&plain, 5));
+        // Far above the Stribeck speed nothing changes.
+        let torque = |robot: VirtualRobot| {
+            let mut scratch = Scratch::new(&nominal);
+            robot.joint_torque(&[0.4; 6], &[1.0; 6], &[1.0; 6], &mut scratch);
+            scratch.torque
+        };
+        assert_eq!(torque(robot()), torque(robot().with_stribeck()));
     }
 
     #[test]

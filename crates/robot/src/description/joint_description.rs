@@ -2,7 +2,9 @@
 
 use crate::friction::coulomb::Coulomb;
 use crate::friction::joint_friction::Friction;
+use crate::friction::stribeck::Stribeck;
 use crate::friction::viscous::Viscous;
+use crate::friction::warming::Warming;
 use crate::inertia::LinkInertia;
 use crate::joint::Joint;
 use crate::joint_geometry::JointGeometry;
@@ -89,6 +91,38 @@ pub struct FrictionDescription {
     /// \[N s²/m²\], \[N s³/m³\] for a prismatic joint.
     #[serde(default)]
     pub viscous: [f64; 3],
+    /// Rise of dry friction toward standstill; none by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stribeck: Option<Stribeck>,
+    /// Change of friction while the joint warms up; unknown by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub warming: Option<Warming>,
+}
+
+impl FrictionDescription {
+    /// Returns the friction where Coulomb and viscous friction have these factors, without the law
+    /// of warming.
+    #[must_use]
+    pub fn scaled(&self, [coulomb, viscous]: [f64; 2]) -> Self {
+        let scaled = |law: Stribeck| Stribeck { excess: coulomb * law.excess, ..law };
+        Self {
+            coulomb: self.coulomb.map(|a| coulomb * a),
+            viscous: self.viscous.map(|v| viscous * v),
+            stribeck: self.stribeck.map(scaled),
+            warming: None,
+        }
+    }
+
+    /// Returns the friction that the algorithms use.
+    pub(crate) fn friction(&self) -> Friction {
+        let [v1, v2, v3] = self.viscous;
+        Friction {
+            coulomb: Coulomb::from_coefficients(self.coulomb),
+            viscous: Viscous { v1, v2, v3 },
+            stribeck: self.stribeck,
+            warming: self.warming,
+        }
+    }
 }
 
 /// A joint and the link that it moves.
@@ -221,7 +255,6 @@ impl JointDescription {
 
     /// Returns the drive of the joint.
     pub(crate) fn joint(&self) -> Joint {
-        let [v1, v2, v3] = self.friction.viscous;
         let geared = self.gear_ratio.unwrap_or(1.0).powi(2) * self.rotor_inertia.unwrap_or(0.0);
         Joint {
             name: self.name.clone(),
@@ -230,10 +263,7 @@ impl JointDescription {
             velocity_limit: self.velocity_limit,
             gear_ratio: self.gear_ratio,
             armature: self.armature.unwrap_or(geared),
-            friction: Friction {
-                coulomb: Coulomb::from_coefficients(self.friction.coulomb),
-                viscous: Viscous { v1, v2, v3 },
-            },
+            friction: self.friction.friction(),
         }
     }
 

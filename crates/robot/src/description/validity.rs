@@ -2,6 +2,8 @@
 
 use super::joint_description::{InertiaPoint, JointDescription};
 use super::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
+use crate::friction::stribeck::Stribeck;
+use crate::friction::warming::{Warming, WarmingBy};
 use crate::inertia::LinkInertia;
 use crate::joint_kind::JointKind;
 use nalgebra::{Matrix3, Vector3};
@@ -181,7 +183,59 @@ fn check_drive(joint: &JointDescription) -> Checked {
         )?;
     }
     finite("friction", &joint.friction.coulomb)?;
-    finite("friction", &joint.friction.viscous)
+    finite("friction", &joint.friction.viscous)?;
+    check_stribeck(joint)?;
+    check_warming(joint)
+}
+
+fn check_stribeck(joint: &JointDescription) -> Checked {
+    let Some(Stribeck { excess, speed }) = joint.friction.stribeck else { return Ok(()) };
+    finite("friction", &[excess, speed])?;
+    require(
+        excess >= 0.0,
+        "friction",
+        "give breakaway minus Coulomb friction, at least 0",
+        || format!("stribeck: excess = {excess} {} is negative", joint.kind.force_unit()),
+    )?;
+    require(speed > 0.0, "friction", "give a positive speed, or remove `stribeck`", || {
+        format!("stribeck: speed = {speed} {} is not positive", joint.kind.velocity_unit())
+    })
+}
+
+fn check_warming(joint: &JointDescription) -> Checked {
+    let Some(law) = joint.friction.warming else { return Ok(()) };
+    let Warming { by, reference, time_constant, coulomb, viscous } = law;
+    finite("friction", &[reference, coulomb, viscous, time_constant.unwrap_or(1.0)])?;
+    let (largest, unit) = (most_rate(by), by.rate_unit());
+    for (name, rate) in [("coulomb", coulomb), ("viscous", viscous)] {
+        require(rate.abs() <= largest, "friction", "give the rate per unit of warmth", || {
+            format!("warming: {name} = {rate} exceeds ±{largest} {unit}")
+        })?;
+    }
+    let by_runs = by != WarmingBy::Temperature;
+    require(!by_runs || reference >= 1.0, "friction", "count runs from 1", || {
+        format!("warming: reference = {reference} is no run")
+    })?;
+    require(
+        time_constant.is_some() == (by == WarmingBy::Thermal),
+        "friction",
+        "give `time_constant` with by = \"thermal\", and only with it",
+        || "warming: `time_constant` does not suit `by`".into(),
+    )?;
+    require(time_constant.is_none_or(|tau| tau > 0.0), "friction", "give runs above 0", || {
+        format!(
+            "warming: time_constant = {} runs is not positive",
+            time_constant.unwrap_or_default()
+        )
+    })
+}
+
+/// Returns the largest rate at which friction stays finite at all temperatures and runs.
+fn most_rate(by: WarmingBy) -> f64 {
+    match by {
+        WarmingBy::Temperature => 0.5,
+        WarmingBy::Runs | WarmingBy::Thermal => 10.0,
+    }
 }
 
 fn check_limits(joint: &JointDescription) -> Checked {

@@ -1,7 +1,14 @@
 //! All friction of one joint.
 
-use super::coulomb::Coulomb;
+use super::coulomb::{Coulomb, LoadLine};
+use super::stribeck::Stribeck;
 use super::viscous::Viscous;
+use super::warming::Warming;
+use reachtube_scalar::{Interval, Lanewise};
+
+/// Parts into which a range of velocities is cut. The Stribeck effect falls with speed where
+/// viscous friction rises, and only small parts show that both do so together.
+const PARTS: usize = 16;
 
 /// Friction of one joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -10,4 +17,97 @@ pub struct Friction {
     pub coulomb: Coulomb,
     /// Viscous friction tau_v.
     pub viscous: Viscous,
+    /// Rise of dry friction toward standstill, if there is one. It is part of tau_c.
+    pub stribeck: Option<Stribeck>,
+    /// Change of friction while the joint warms up, if it is known. Torques are those at the law's
+    /// reference; [`Robot::at_temperature`](crate::Robot::at_temperature) and
+    /// [`Robot::at_run`](crate::Robot::at_run) apply the law.
+    pub warming: Option<Warming>,
+}
+
+impl Friction {
+    /// Returns dry friction \[N m\], Coulomb friction with the Stribeck effect, at a load torque
+    /// \[N m\] and a joint velocity \[rad/s\]. It is 0 at standstill.
+    pub fn dry_torque<S: Lanewise>(&self, load: S, qd: S) -> S {
+        let coulomb = self.coulomb.torque(load, qd);
+        match &self.stribeck {
+            None => coulomb,
+            Some(stribeck) => coulomb + stribeck.torque(qd),
+        }
+    }
+
+    /// Returns a range of the friction torque \[N m\], dry and viscous, over loads \[N m\] and
+    /// velocities \[rad/s\] that may cross zero.
+    ///
+    /// Friction at standstill is a set: every torque from the limit of backward motion to that of
+    /// forward motion, breakaway torques included. The range contains this set where 0 is among
+    /// the velocities.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer: the range encloses the torques of the formulas for all loads and velocities, with
+    /// directed rounding.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_robot::friction::{Coulomb, Friction, Stribeck};
+    /// use reachtube_scalar::Interval;
+    ///
+    /// let friction = Friction {
+    ///     coulomb: Coulomb::constant(2.0),
+    ///     stribeck: Some(Stribeck { excess: 0.5, speed: 0.1 }),
+    ///     ..Friction::default()
+    /// };
+    /// let no_load = Interval::point(0.0);
+    /// let range = friction.range_near_zero(no_load, Interval::new(-0.01, 0.02).unwrap());
+    /// assert!(range.contains(-2.5) && range.contains(0.0) && range.contains(2.5));
+    /// let forward = friction.range_near_zero(no_load, Interval::new(0.5, 0.6).unwrap());
+    /// assert!(!forward.contains(0.0));
+    /// ```
+    pub fn range_near_zero(&self, load: Interval, velocity: Interval) -> Interval {
+        let positive = Interval::new(0.0, f64::MAX).expect("an interval");
+        let negative = Interval::new(-f64::MAX, 0.0).expect("an interval");
+        let over_parts = |velocity: Interval, forward: bool| {
+            parts(velocity).map(|v| self.moving(load, v, forward)).reduce(Interval::hull)
+        };
+        let forward = velocity.intersection(positive).and_then(|v| over_parts(v, true));
+        let backward = velocity.intersection(negative).and_then(|v| over_parts(v, false));
+        // Standstill lies between the limits of both directions, which the hull contains.
+        match (forward, backward) {
+            (Some(forward), Some(backward)) => forward.hull(backward).hull(Interval::point(0.0)),
+            (forward, backward) => forward.or(backward).expect("a velocity has a sign or is 0"),
+        }
+    }
+
+    /// Encloses the torque \[N m\] for velocities of one direction, with its limit at standstill.
+    fn moving(&self, load: Interval, velocity: Interval, forward: bool) -> Interval {
+        let of_line = |line: LoadLine, load: Option<Interval>| {
+            load.map(|load| Interval::point(line.offset) + Interval::point(line.slope) * load)
+        };
+        let positive = Interval::new(0.0, f64::MAX).and_then(|sign| load.intersection(sign));
+        let negative = Interval::new(-f64::MAX, 0.0).and_then(|sign| load.intersection(sign));
+        let Coulomb { driving_forward, driving_backward, braking_backward, braking_forward } =
+            self.coulomb;
+        let lines = if forward {
+            [of_line(driving_forward, positive), of_line(braking_forward, negative)]
+        } else {
+            [of_line(braking_backward, positive), of_line(driving_backward, negative)]
+        };
+        let coulomb = lines.into_iter().flatten().reduce(Interval::hull);
+        let dry = coulomb.unwrap_or(Interval::point(0.0)) + self.viscous.torque(&velocity);
+        let Some(Stribeck { excess, speed }) = self.stribeck else { return dry };
+        let decay = (-(velocity / Interval::point(speed)).sqr()).exp();
+        dry + Interval::point(if forward { excess } else { -excess }) * decay
+    }
+}
+
+/// Returns consecutive parts that cover an interval: each starts where the one before ends.
+fn parts(whole: Interval) -> impl Iterator<Item = Interval> {
+    let cut = move |k: usize| match k {
+        0 => whole.lo(),
+        PARTS => whole.hi(),
+        _ => (whole.lo() + whole.width() * k as f64 / PARTS as f64).min(whole.hi()),
+    };
+    (0..PARTS).map(move |k| Interval::new(cut(k), cut(k + 1)).expect("cuts increase"))
 }

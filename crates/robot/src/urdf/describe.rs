@@ -178,7 +178,7 @@ impl<'a> Tree<'a> {
         let get = |name| Ok(self.number(dynamics, name)?.unwrap_or(0.0));
         let (damping, f) = (get("damping")?, get("friction")?);
         let coulomb = if f == 0.0 { [0.0; 8] } else { [f, 0.0, -f, 0.0, -f, 0.0, f, 0.0] };
-        Ok(FrictionDescription { coulomb, viscous: [damping, 0.0, 0.0] })
+        Ok(FrictionDescription { coulomb, viscous: [damping, 0.0, 0.0], ..Default::default() })
     }
 
     /// Returns origin and place of an invalid value in the URDF.

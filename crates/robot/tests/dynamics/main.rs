@@ -18,3 +18,4 @@ mod regressor;
 mod shared;
 mod simulation;
 mod urdf;
+mod warmth;

@@ -1,6 +1,7 @@
 //! `reachtube identify`: a robot's gravity, friction and inertia from its recordings.
 
 mod arguments;
+mod laws;
 mod run;
 mod summary;
 

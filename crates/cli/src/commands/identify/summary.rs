@@ -9,6 +9,7 @@ use reachtube::identify::friction::FrictionFit;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 
+use super::laws::laws;
 use crate::table::table;
 use reachtube::number::four_decimals;
 
@@ -19,6 +20,7 @@ pub fn summary(found: &Identification) -> String {
         gravity(found),
         friction(found),
         inertia(found),
+        laws(found),
         gains(found),
         validation(found),
         windows(found),

@@ -1,0 +1,120 @@
+//! A robot fitted to recordings, with the laws of friction that the sampling knows.
+
+use crate::error::{Error, Result};
+use crate::friction::joints::coefficients;
+use crate::gravity::alternation::{GravityAndFriction, fit_gravity_and_friction};
+use crate::inertia::columns::FrictionColumns;
+use crate::inertia::description::description;
+use crate::inertia::fit::{InertiaFit, fit_inertia};
+use crate::inputs::Inputs;
+use crate::plausibility::gain::{Gain, GainLikelihood, gains};
+use crate::plausibility::warnings::Checked;
+use crate::prepare::log::Log;
+use crate::samples::{KnownTorque, Samples};
+use crate::settings::ModelSettings;
+use crate::variant::{set_gravity_moments, with_friction};
+use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
+
+/// A fitted robot. Its friction is that at the reference of the laws of the sampling.
+pub(crate) struct Fitted {
+    /// Gravity and friction of slow motions.
+    pub first: GravityAndFriction,
+    /// The known friction of each joint, which the fit to exciting motions corrects.
+    pub friction: Vec<FrictionDescription>,
+    /// The robot with the known friction.
+    pub known: Robot,
+    /// The fit of the inertial parameters.
+    pub inertia: InertiaFit,
+    /// Description of the fitted robot.
+    pub description: RobotDescription,
+    /// The fitted robot.
+    pub found: Robot,
+}
+
+impl Fitted {
+    /// Fits gravity and friction in alternation, then the inertial parameters.
+    pub fn new(robot: &Robot, inputs: &Inputs, model: &ModelSettings) -> Result<Self> {
+        let (rest, slow, sampling) = (&inputs.rest, &inputs.friction, &inputs.sampling);
+        let first = fit_gravity_and_friction(robot, rest, slow, sampling, model)?;
+        // Inertial parameters, with the friction and its load subtracted.
+        let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
+        let friction = coefficients(&first.friction, robot);
+        let (friction, known, inertia) = fit_links([robot, load], friction, inputs, model)?;
+        let mut description = description(robot, &inertia, &friction).map_err(|error| {
+            impossible(error, &check([robot, &known], &inertia, &friction, inputs).1)
+        })?;
+        if let Some(gravity) = first.gravity.as_ref().filter(|_| model.separate_gravity) {
+            set_gravity_moments(&mut description, &gravity.robot);
+        }
+        let found = Robot::from_description(&description)?;
+        Ok(Self { first, friction, known, inertia, description, found })
+    }
+
+    /// Returns the gains of the joints and warnings about implausible results.
+    pub fn check(&self, robot: &Robot, inputs: &Inputs) -> (Vec<Gain>, Vec<String>) {
+        check([robot, &self.known], &self.inertia, &self.friction, inputs)
+    }
+}
+
+/// Returns the error for values of least squares that no robot has, with the probable cause.
+fn impossible(error: Error, implausible: &[String]) -> Error {
+    match error {
+        Error::Robot(error) => {
+            Error::ImpossibleRobot { problem: error.to_string(), causes: implausible.to_vec() }
+        }
+        other => other,
+    }
+}
+
+/// Fits the inertial parameters to motions with the friction of slow motions subtracted.
+///
+/// A joint whose torque is explained better by friction that only the exciting motions determine
+/// gets that friction: slow motions do not show all of it. Returns the known friction, one entry
+/// per joint, the robot with it, and the fit.
+///
+/// The poses at rest take part unless gravity keeps its own mass moments.
+fn fit_links(
+    [robot, load]: [&Robot; 2],
+    slow: Vec<FrictionDescription>,
+    inputs: &Inputs,
+    model: &ModelSettings,
+) -> Result<(Vec<FrictionDescription>, Robot, InertiaFit)> {
+    let none = FrictionDescription::default();
+    let known_count = slow.iter().filter(|friction| **friction != none).count();
+    let columns = FrictionColumns {
+        fitted: model.refit_friction || known_count < slow.len(),
+        cubic: model.cubic.unwrap_or(known_count > 0),
+    };
+    let rest: &[Log] = if model.separate_gravity { &[] } else { &inputs.rest };
+    let logs = [&inputs.dynamic[..], rest];
+    let fit = |friction: Vec<FrictionDescription>| {
+        let known = with_friction(load, &friction)?;
+        let fit = fit_inertia(robot, &known, logs, &inputs.sampling, model, columns)?;
+        Ok((friction, known, fit))
+    };
+    let first = fit(slow)?;
+    if known_count == 0 || !model.refit_friction {
+        return Ok(first);
+    }
+    let free = fit(vec![none; robot.joint_count()])?;
+    let better = |j: usize| free.2.joints[j].residual < first.2.joints[j].residual;
+    let chosen = first.0.iter().enumerate().map(|(j, slow)| if better(j) { none } else { *slow });
+    fit(chosen.collect())
+}
+
+/// Returns the gains of the joints and warnings about implausible results.
+fn check(
+    [robot, known]: [&Robot; 2],
+    fit: &InertiaFit,
+    friction: &[FrictionDescription],
+    inputs: &Inputs,
+) -> (Vec<Gain>, Vec<String>) {
+    let (logs, sampling) = (&inputs.dynamic, &inputs.sampling);
+    let known = KnownTorque::Friction(known);
+    let samples = &Samples::in_motion(robot, &fit.columns, logs, sampling, &known);
+    let likelihood = GainLikelihood::new(samples, &fit.joints);
+    let gains = gains(robot, samples, &likelihood);
+    let checked = Checked { robot, fit, friction, logs, samples, sampling };
+    let warnings = checked.warnings(&likelihood, &gains);
+    (gains, warnings)
+}
