@@ -129,6 +129,9 @@ pub fn conform(
             (None, Some(gap)) if gap > LARGEST_GAP => {
                 Trust::without_optimum(problem.recordings(), gap)
             }
+            _ if problem.setup().correction.is_some() => {
+                Trust::of_fitted_nominal(problem.recordings())
+            }
             _ => Trust::of_fit(problem.recordings(), &tight),
         },
         deciding_runs: DecidingRuns::new(problem, &tight, smallest_cost)?,

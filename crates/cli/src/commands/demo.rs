@@ -3,8 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::conform::{Check, Keep, Problem, Settings, Setup, conform};
+use reachtube::conform::{
+    Calibration, Check, Conformance, FitSettings, Fitted, Group, Keep, Problem, Settings, Setup,
+    conform, fit,
+};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
+use reachtube::number::{at_least, four_decimals};
 use reachtube::recordings::{DataSet, Torque};
 use reachtube::report::Sources;
 use reachtube::{Model, write};
@@ -21,12 +25,18 @@ use crate::output;
 use crate::progress::Progress;
 use crate::report_files;
 
+/// What of the nominal model is fitted.
+const GROUPS: [Group; 3] = [Group::Inertia, Group::Viscous, Group::Coulomb];
+
+/// The weight of the pull toward the nominal values.
+const PULL: f64 = 0.02;
+
 const HELP: &str = "\
 Example:
   reachtube demo --out demo
       then open demo/report/report.html in a browser";
 
-/// Run every step on a simulated arm: record, conform, check, report
+/// Run every step on a simulated arm: record, fit, conform, calibrate, check, report
 ///
 /// The folder receives the recordings, the model and two report pages: one on the recordings that
 /// the model was made from, one on motions that were held out.
@@ -60,26 +70,38 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         robot.name(),
         folder.display()
     ));
-    // Find the sets of the training motions.
-    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
+    // The sets of the nominal model, calibrated by the motions kept back.
+    let settings = Settings {
+        calibrate: recorded.calibration.clone(),
+        ..Settings::new(Torque::Compensated, robot.joint_count())
+    };
+    let setup = Setup::new(robot, settings)?;
     let bar = Progress::new();
     let source = Box::new(DataSet::open(&folder)?);
-    let problem = Problem::read(setup.clone(), source, &recorded.training, Keep::All, &bar)?;
+    let nominal = Problem::read(setup, source, &recorded.training, Keep::All, &bar)?;
+    let before = conform(&nominal, &bar, None)?;
+    // The same with a model that is fitted for small sets.
+    let settings = FitSettings { groups: GROUPS.to_vec(), pull: Some(PULL) };
+    let Fitted { problem, record } = fit(&nominal, &settings, &bar)?;
     let found = conform(&problem, &bar, None)?;
     drop(bar);
-    let model = Model::new(&problem, &found);
+    let model = Model::new(&problem, &found).with_fit(record);
     write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
     output::wrote(&path);
     let page = conform_command::report(&problem, &model, &found, &pages[0])?;
     output::wrote(&page);
     // Try them on the motions held out.
+    let setup = problem.setup().clone();
     let (model, held_out) = check_held_out(model, setup, &folder, &recorded.check, &pages[1])?;
     if json {
-        output::print_json(&json!({ "model": model, "held_out": held_out }))?;
+        output::print_json(&json!({
+            "nominal_cost": before.cost, "model": model, "held_out": held_out
+        }))?;
     } else {
         let text = format!(
-            "{}\n{}\n{}",
+            "{}\n{}\n{}\n{}",
             conform_command::summary(&model),
+            story(&before, &model),
             held_out_heading(&recorded),
             check::summary(&held_out, &model.robot.kinds())
         );
@@ -112,10 +134,21 @@ fn check_held_out(
     Ok((opened.model, check))
 }
 
-fn held_out_heading(recorded: &RecordedDemo) -> String {
+/// Says what the fit and the calibration were worth.
+fn story(before: &Conformance, model: &Model) -> String {
+    let factor = |calibration: Option<&Calibration>| calibration.map_or(1.0, |c| c.factor);
+    let cost = model.cost.unwrap_or(f64::INFINITY);
     format!(
-        "Suites {} were held out. The smallest sets that enclose some recordings need not enclose \
-         the next motion:",
-        recorded.check.join(", ")
+        "With the nominal model the calibrated sets cost {}, scaled by {}; with the fitted model {} \
+         ({:+.0} %), scaled by {}.",
+        four_decimals(before.cost),
+        at_least(factor(before.calibration.as_ref())),
+        four_decimals(cost),
+        100.0 * (cost / before.cost - 1.0),
+        at_least(factor(model.calibration.as_ref()))
     )
+}
+
+fn held_out_heading(recorded: &RecordedDemo) -> String {
+    format!("Suites {} were held out and tried last:", recorded.check.join(", "))
 }

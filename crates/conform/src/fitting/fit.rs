@@ -12,6 +12,7 @@ use crate::fitting::pull::{PullChoice, choose};
 use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fitting::search::{Effort, Search};
 use crate::fitting::torque;
+use crate::next_motion::calibration::without_kept_back;
 use crate::nominal::correction::WarmthLaw;
 use crate::problem::problem::{Problem, Setup};
 use crate::progress::Progress;
@@ -29,6 +30,8 @@ pub struct Fitted {
 
 /// Finds the parameters of the nominal model for which its sets cost least.
 ///
+/// Motions that calibrate the sets are kept back from this fit too.
+///
 /// The answer is a model, not a claim: [`conform`](crate::conform) finds and proves its sets as it
 /// does for any other. A model that is not linear is given the parameters that suit the linear
 /// model of the same robot about the same point; the costs of the record are those of the linear
@@ -43,11 +46,13 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     if settings.pull.is_some_and(|pull| !(0.0..=1.0).contains(&pull)) {
         return refused("the weight of the pull must be a number from 0 to 1");
     }
+    let kept = without_kept_back(problem)?;
+    let fit_problem = kept.as_ref().unwrap_or(problem);
     let linear;
     let steering = match problem.dynamics().linear_system() {
-        Some(_) => problem,
+        Some(_) => fit_problem,
         None => {
-            linear = problem.with_setup(linear_setup(problem.setup())?);
+            linear = fit_problem.with_setup(linear_setup(problem.setup())?);
             &linear
         }
     };

@@ -105,6 +105,21 @@ pub(crate) fn calibrate(
     Ok(Calibrated { fit, fitted, found, calibration })
 }
 
+/// Returns the problem of the motions that the settings do not keep back; nothing where they keep
+/// none back.
+///
+/// # Errors
+///
+/// As [`calibrate`].
+pub(crate) fn without_kept_back(problem: &Problem) -> Result<Option<Problem>> {
+    if problem.settings().calibrate.is_empty() {
+        return Ok(None);
+    }
+    let motions = Motions::new(problem.recordings());
+    let kept_back = kept_back(problem, &motions)?;
+    Ok(Some(problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)))))
+}
+
 /// Returns the motions that the settings keep back, or why that cannot be.
 fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
     let all = motions.distinct();

@@ -60,6 +60,15 @@ impl Trust {
         Self::unknown(motions.count(), basis)
     }
 
+    /// Returns that nothing is known, because the nominal model was chosen for these motions: the
+    /// scenario bound counts what decides the sets only.
+    #[must_use]
+    pub fn of_fitted_nominal(recordings: &Recordings) -> Self {
+        let basis = "no scenario bound: the nominal model was fitted to the same motions; \
+                     --calibrate MOTION,.. keeps motions back from both fits";
+        Self::unknown(Motions::new(recordings).count(), basis.into())
+    }
+
     /// Returns the bound for sets that were calibrated by motions that were kept back from the fit,
     /// and that enclose them where `is_proved`.
     ///

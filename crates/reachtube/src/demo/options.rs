@@ -15,6 +15,8 @@ pub struct DemoOptions {
     pub seed: u64,
     /// Number of point-to-point motions, those held out included.
     pub motions: usize,
+    /// Number of motions, taken before those held out, that calibrate the sets.
+    pub calibration_motions: usize,
     /// Number of motions, taken from the last ones, that are held out for a check of the model.
     pub held_out_motions: usize,
     /// Number of points of each motion from which the open loop starts; each gives a suite.
@@ -29,14 +31,16 @@ pub struct DemoOptions {
 }
 
 impl Default for DemoOptions {
-    /// Returns 10 motions of 3 s, 2 of them held out, with 2 suites of 8 runs per motion.
+    /// Returns 14 motions of 3 s with 2 suites of 5 runs each; 7 of them calibrate the sets, 2 are
+    /// held out.
     fn default() -> Self {
         Self {
             seed: 1,
-            motions: 10,
+            motions: 14,
+            calibration_motions: 7,
             held_out_motions: 2,
             start_points: 2,
-            runs: 8,
+            runs: 5,
             duration: 3.0,
             stribeck: false,
         }
@@ -46,8 +50,9 @@ impl Default for DemoOptions {
 impl DemoOptions {
     pub(super) fn validate(&self) -> Result<(), DemoError> {
         let [shortest, longest] = DURATIONS;
-        if self.motions <= self.held_out_motions {
-            let (motions, held_out) = (self.motions, self.held_out_motions);
+        let held_out = self.held_out_motions + self.calibration_motions;
+        if self.motions <= held_out {
+            let motions = self.motions;
             Err(DemoError::NoTrainingMotion { motions, held_out })
         } else if !(1..=MOST_START_POINTS).contains(&self.start_points) {
             Err(DemoError::StartPoints { given: self.start_points, most: MOST_START_POINTS })

@@ -18,6 +18,8 @@ pub(super) struct SuitePlan {
     pub name: String,
     /// Name of the motion: M1, M2, ...
     pub motion: String,
+    /// Whether the suite calibrates the sets.
+    pub calibrates: bool,
     /// Whether the suite is held out for the check.
     pub held_out: bool,
     /// The input of all runs \[N m\], row-major K x n.
@@ -60,10 +62,12 @@ fn suite(
     let part = STARTS[0] + (STARTS[1] - STARTS[0]) * start as f64 / options.start_points as f64;
     let first = (part * samples).round() as usize;
     let name = format!("M{}", index + 1);
+    let first_held_out = options.motions - options.held_out_motions;
     SuitePlan {
         name: format!("{name}{}", char::from(b'a' + start as u8)),
         motion: name,
-        held_out: index >= options.motions - options.held_out_motions,
+        calibrates: (first_held_out - options.calibration_motions..first_held_out).contains(&index),
+        held_out: index >= first_held_out,
         inputs: (first..=samples as usize)
             .flat_map(|k| motion.held_input(robot, k))
             .map(rounded)

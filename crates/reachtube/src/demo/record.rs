@@ -15,7 +15,9 @@ use crate::error::Result;
 /// The recorded suites by name, in the order of the index.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RecordedDemo {
-    /// Suites to identify the uncertainty sets with.
+    /// Motions of the training suites that calibrate the sets, by their names.
+    pub calibration: Vec<String>,
+    /// Suites to identify and calibrate the uncertainty sets with.
     pub training: Vec<String>,
     /// Suites of other motions, to check the model with.
     pub check: Vec<String>,
@@ -44,8 +46,8 @@ pub struct RecordedDemo {
 /// use reachtube_robot::Robot;
 ///
 /// let folder = tempfile::tempdir().unwrap();
-/// let few = DemoOptions { motions: 2, held_out_motions: 1, runs: 2, ..Default::default() };
-/// let options = DemoOptions { duration: 1.0, ..few };
+/// let options = DemoOptions { motions: 2, calibration_motions: 0, held_out_motions: 1, runs: 2,
+///     duration: 1.0, ..Default::default() };
 /// let recorded = record(&Robot::lwa4p(), &options, folder.path())?;
 /// assert_eq!(recorded.training, ["M1a", "M1b"]);
 /// assert_eq!(recorded.check, ["M2a", "M2b"]);
@@ -74,7 +76,15 @@ pub fn record(robot: &Robot, options: &DemoOptions, folder: &Path) -> Result<Rec
     data_folder::write_index(folder, robot.name(), options, &lines)?;
     let (check, training): (Vec<_>, Vec<_>) = suites.iter().partition(|suite| suite.held_out);
     let names = |suites: Vec<&SuitePlan>| suites.iter().map(|suite| suite.name.clone()).collect();
-    Ok(RecordedDemo { training: names(training), check: names(check), runs: runs.len() })
+    let calibrate = suites.iter().filter(|suite| suite.calibrates);
+    let mut calibration: Vec<String> = calibrate.map(|suite| suite.motion.clone()).collect();
+    calibration.dedup();
+    Ok(RecordedDemo {
+        calibration,
+        training: names(training),
+        check: names(check),
+        runs: runs.len(),
+    })
 }
 
 /// Simulates a run and returns what the sensors record, row-major K x 2n, \[rad\] and \[rad/s\].
