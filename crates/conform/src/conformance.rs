@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::any_run::AnyRun;
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
 use crate::found::{Found, SearchSummary};
@@ -63,6 +64,9 @@ pub struct Conformance {
     /// The part of the variance of each state that the nominal motions explain, 2n; negative where
     /// they are further away than the mean, nothing where the state hardly moves.
     pub nominal_explains: Vec<Option<f64>>,
+    /// The sets where nobody knows which run it is, for a linear model whose friction depends on
+    /// it; none for calibrated sets.
+    pub any_run: Option<AnyRun>,
     /// The reachable sets.
     pub hulls: Hulls,
 }
@@ -141,6 +145,7 @@ pub fn conform(
         search,
         tight,
         explanations,
+        any_run: if problem.settings().calibrate.is_empty() { AnyRun::new(problem)? } else { None },
         hulls,
     })
 }

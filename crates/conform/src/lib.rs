@@ -6,6 +6,7 @@
 //! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
 //! [`explain()`] searches for the motion of the model closest to each run.
 
+mod any_run;
 mod check;
 mod conformance;
 mod deviation;
@@ -39,6 +40,7 @@ mod smallest_sets;
 mod verdict;
 mod weights;
 
+pub use any_run::AnyRun;
 pub use check::{Check, check};
 pub use conformance::{Conformance, conform};
 pub use deviation::{Deviation, Nominal};
@@ -69,7 +71,9 @@ pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use nominal::correction::{InputCorrection, JointCorrection, WarmthLaw};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
-pub use problem::{Case, Keep, Marks, Problem, Recordings, RunInput, RunSummary, Setup, Suite};
+pub use problem::{
+    Case, Condition, Keep, Marks, Problem, Recordings, RunInput, RunSummary, Setup, Suite,
+};
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use rows::{Edge, Hull, HullBounds, Row, rows};

@@ -109,6 +109,7 @@ fn the_long_way(robot: &Robot, folder: &Path, names: &[&str], settings: &Setting
         settings: settings.clone(),
         nominal_starts: Default::default(),
         correction: None,
+        condition: None,
     };
     conform_all(&read_with(setup, folder, names))
 }

@@ -26,10 +26,10 @@ use crate::progress::Progress;
 use crate::report_files;
 
 /// What of the nominal model is fitted.
-const GROUPS: [Group; 3] = [Group::Inertia, Group::Viscous, Group::Coulomb];
+const GROUPS: [Group; 2] = [Group::Viscous, Group::Coulomb];
 
 /// The weight of the pull toward the nominal values.
-const PULL: f64 = 0.02;
+const PULL: f64 = 0.05;
 
 const HELP: &str = "\
 Example:

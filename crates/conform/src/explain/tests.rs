@@ -21,6 +21,7 @@ use crate::explain::closest_motion::{Behaviour, ClosestMotion};
 use crate::explain::regulate::regulate;
 use crate::linear::solver::{Triplets, solve_cone};
 use crate::problem::case::Case;
+use crate::problem::condition::Condition;
 use crate::sets::UncertaintySets;
 
 const SAMPLES: usize = 120;
@@ -56,7 +57,7 @@ fn case() -> Case {
         inputs: (0..SAMPLES * JOINTS).map(|at| dyadic(input(at))).collect(),
         start: (0..2 * JOINTS).map(|i| i as f64 / 16.0).collect(),
         measured: Arc::new(Envelope::new(2 * JOINTS)),
-        place: 1,
+        condition: Condition::first(),
     }
 }
 

@@ -84,11 +84,10 @@ impl Fit<'_> {
     }
 
     fn motions(&self, setup: &Setup, steps: &[Steps]) -> Result<Vec<Vec<f64>>> {
-        let origin = &setup.settings.expansion_point.qd;
         let none = InputCorrection::none(self.joints());
         let correction = setup.correction.as_ref().unwrap_or(&none);
         let (robot, dynamics) = (&setup.robot, &setup.dynamics);
-        let corrected = Corrected { robot, dynamics, correction, origin };
+        let corrected = Corrected { robot, dynamics, correction, settings: self.settings };
         let width = 2 * self.joints();
         let of = |track: &Track| {
             let states = corrected.motion(&track.case, Some(&steps[track.grid]))?.states;

@@ -238,7 +238,8 @@ impl<'a> Parameters<'a> {
         let robot = Robot::from_description(&description)?;
         let dynamics = Dynamics::new(&robot, settings)?;
         let (settings, nominal_starts) = (settings.clone(), nominal_starts.clone());
-        Ok(Setup { robot, dynamics, settings, nominal_starts, correction: Some(correction) })
+        let correction = Some(correction);
+        Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition: None })
     }
 
     /// The quadratic and cubic viscous friction that the order of the model leaves out, about the

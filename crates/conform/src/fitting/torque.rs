@@ -22,11 +22,11 @@ pub(super) fn residual(setup: &Setup, tracks: &[Track]) -> Result<Vec<f64>> {
     // The robot's own viscous friction is taken whole, whatever the order of the model.
     let mut correction = setup.correction.clone().unwrap_or_else(|| InputCorrection::none(n));
     correction.joints.iter_mut().for_each(|j| (j.quadratic, j.cubic) = (0.0, 0.0));
-    let origin = &setup.settings.expansion_point.qd;
-    let mut corrector = Corrector::new(&setup.robot, &correction, origin)?;
     let (mut sums, mut count) = (vec![0.0; n], 0.0f64);
     for track in tracks {
         let (case, times) = (&track.case, track.case.grid.times());
+        let condition = &case.condition;
+        let mut corrector = Corrector::new(&setup.robot, &correction, &setup.settings, condition)?;
         let middle =
             |k: usize, i: usize| 0.5 * (case.measured.upper(k, i) + case.measured.lower(k, i));
         let reach = times.partition_point(|t| *t <= SPAN).max(1);
@@ -35,7 +35,7 @@ pub(super) fn residual(setup: &Setup, tracks: &[Track]) -> Result<Vec<f64>> {
             let (q, qd) = (of(0), of(n));
             let span = times[k + reach] - times[k - reach];
             let mut u = case.inputs[k * n..(k + 1) * n].to_vec();
-            corrector.take_off(&q, &qd, case.place, &mut u);
+            corrector.take_off(&q, &qd, &mut u);
             let qdd: Vec<f64> =
                 (n..2 * n).map(|i| (middle(k + reach, i) - middle(k - reach, i)) / span).collect();
             let needed = setup.robot.mass_matrix(&q) * DVector::from_vec(qdd)

@@ -12,6 +12,7 @@ use reachtube_robot::{Robot, RobotDescription};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::any_run::AnyRun;
 use crate::conformance::Conformance;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
@@ -127,6 +128,9 @@ pub struct Model {
     /// What is taken off the recorded inputs along the nominal motions, where anything is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub correction: Option<InputCorrection>,
+    /// The sets where nobody knows which run it is, or how warm the joints are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub any_run: Option<AnyRun>,
     /// How the nominal model was fitted, where it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fit: Option<FitRecord>,
@@ -199,6 +203,7 @@ impl Model {
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),
             correction: problem.setup().correction.clone(),
+            any_run: found.any_run.clone(),
             fit: None,
             a: matrix(LinearSystem::a),
             b: matrix(LinearSystem::b),
@@ -366,6 +371,7 @@ impl Model {
             settings: self.settings.clone(),
             nominal_starts,
             correction: self.correction.clone(),
+            condition: None,
         })
     }
 

@@ -1,10 +1,13 @@
 //! The correction of the input, evaluated at one state after another without allocation.
 
+use reachtube_recordings::Torque;
 use reachtube_robot::friction::{Coulomb, LoadLine};
 use reachtube_robot::{ParameterSet, Robot, RobotDescription, Workspace};
 
 use crate::error::Result;
 use crate::nominal::correction::InputCorrection;
+use crate::problem::condition::Condition;
+use crate::settings::Settings;
 
 /// Below this speed, rad/s or m/s, Coulomb friction is taken in proportion to the speed, so that
 /// the nominal motion comes to rest instead of jumping between two signs.
@@ -17,6 +20,12 @@ pub(crate) struct Corrector<'a> {
     correction: &'a InputCorrection,
     /// The velocities of the expansion point, n.
     origin: &'a [f64],
+    /// The warmth that the correction counts in.
+    warmth: f64,
+    /// The robot as warm as it is in this run, where its own friction changes.
+    warm: Option<Robot>,
+    /// Whether the recorded input is free of the Coulomb friction of a cold robot.
+    is_compensated: bool,
     has_coulomb: bool,
     /// A robot that only has a mass of 1 kg at its tip.
     unit_payload: Option<Robot>,
@@ -27,7 +36,7 @@ pub(crate) struct Corrector<'a> {
 }
 
 impl<'a> Corrector<'a> {
-    /// Prepares the correction of `robot`; `origin` are the velocities of the expansion point.
+    /// Prepares the correction of `robot` in one condition.
     ///
     /// # Errors
     ///
@@ -35,7 +44,8 @@ impl<'a> Corrector<'a> {
     pub fn new(
         robot: &'a Robot,
         correction: &'a InputCorrection,
-        origin: &'a [f64],
+        settings: &'a Settings,
+        condition: &Condition,
     ) -> Result<Self> {
         let n = robot.joint_count();
         let has_coulomb = correction.joints.iter().any(|joint| joint.coulomb != [0.0; 4]);
@@ -47,7 +57,10 @@ impl<'a> Corrector<'a> {
         Ok(Self {
             robot,
             correction,
-            origin,
+            origin: &settings.expansion_point.qd,
+            warmth: correction.warmth.as_ref().map_or(0.0, |law| law.warmth(condition.place)),
+            warm: condition.warm(robot),
+            is_compensated: settings.torque == Torque::Compensated,
             has_coulomb,
             unit_payload,
             workspace: Workspace::new(robot),
@@ -57,29 +70,41 @@ impl<'a> Corrector<'a> {
         })
     }
 
-    /// Takes the correction at the state (q, q̇) off the input `u` (n, N m); `place` is that of
-    /// the run in its suite, from 1.
-    pub fn take_off(&mut self, q: &[f64], qd: &[f64], place: u64, u: &mut [f64]) {
-        let warmth = self.correction.warmth.as_ref().map_or(0.0, |law| law.warmth(place));
+    /// Takes the correction at the state (q, q̇) off the input `u` (n, N m).
+    pub fn take_off(&mut self, q: &[f64], qd: &[f64], u: &mut [f64]) {
         let joints = self.correction.joints.iter().enumerate();
         for (j, joint) in joints {
             let offset = qd[j] - self.origin[j];
             let viscous = (joint.quadratic + joint.cubic * offset) * offset * offset;
-            u[j] -= viscous + joint.warm_up * warmth * qd[j];
+            u[j] -= viscous + joint.warm_up * self.warmth * qd[j];
         }
-        if !self.has_coulomb && self.unit_payload.is_none() {
+        if let Some(warm) = &self.warm {
+            let joints = warm.joints().iter().zip(self.robot.joints()).enumerate();
+            for (j, (warm, cold)) in joints {
+                let [warm, cold] = [warm, cold].map(|joint| joint.friction.viscous.torque(&qd[j]));
+                u[j] -= warm - cold;
+            }
+        }
+        let changes_coulomb = self.warm.is_some() && self.is_compensated;
+        if !self.has_coulomb && !changes_coulomb && self.unit_payload.is_none() {
             return;
         }
         for (j, joint) in self.robot.joints().iter().enumerate() {
             (self.sin[j], self.cos[j]) = joint.kind.sin_cos(&q[j]);
         }
-        if self.has_coulomb {
+        if self.has_coulomb || changes_coulomb {
             self.robot.gravity(&self.sin, &self.cos, &mut self.workspace, &mut self.torque);
             let joints = self.robot.joints().iter().zip(&self.correction.joints);
             for (j, (joint, correction)) in joints.enumerate() {
                 let scaled = scaled(&joint.friction.coulomb, &correction.coulomb);
                 let part = (qd[j].abs() / SLOW).min(1.0);
                 u[j] -= part * scaled.torque(self.torque[j], qd[j]);
+                if let Some(warm) = self.warm.as_ref().filter(|_| changes_coulomb) {
+                    let of = |robot: &Robot| {
+                        robot.joints()[j].friction.coulomb.torque(self.torque[j], qd[j])
+                    };
+                    u[j] -= part * (of(warm) - of(self.robot));
+                }
             }
         }
         if let Some(payload) = &self.unit_payload {

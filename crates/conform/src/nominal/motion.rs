@@ -9,6 +9,7 @@ use crate::nominal::corrector::Corrector;
 use crate::nominal::steps::Steps;
 use crate::problem::case::Case;
 use crate::search::sensitivity::{BOUND, runs_away, substeps};
+use crate::settings::Settings;
 
 /// A nominal motion with the inputs that cause it, unrounded.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +28,8 @@ pub(crate) struct Corrected<'a> {
     pub dynamics: &'a Dynamics,
     /// The correction.
     pub correction: &'a InputCorrection,
-    /// The velocities of the expansion point, n.
-    pub origin: &'a [f64],
+    /// The settings.
+    pub settings: &'a Settings,
 }
 
 impl Corrected<'_> {
@@ -39,10 +40,11 @@ impl Corrected<'_> {
     ///
     /// [`Error::RunsAway`](crate::Error::RunsAway).
     pub fn motion(&self, case: &Case, steps: Option<&Steps>) -> Result<NominalMotion> {
-        let mut corrector = Corrector::new(self.robot, self.correction, self.origin)?;
+        let mut corrector =
+            Corrector::new(self.robot, self.correction, self.settings, &case.condition)?;
         let correct = |x: &[f64], u: &mut [f64]| {
             let (q, qd) = x.split_at(u.len());
-            corrector.take_off(q, &qd[..u.len()], case.place, u);
+            corrector.take_off(q, &qd[..u.len()], u);
         };
         match steps {
             Some(steps) => Ok(linear(case, steps, correct)),

@@ -3,6 +3,7 @@ use std::sync::Arc;
 use reachtube_reach::{IntervalVector, TimeGrid};
 
 use crate::envelope::Envelope;
+use crate::problem::condition::Condition;
 
 /// A case: what one reachable set is computed for. It is a suite whose runs share their input and
 /// nominal start, or one run that has its own.
@@ -24,8 +25,8 @@ pub struct Case {
     pub start: Vec<f64>,
     /// The measured states.
     pub measured: Arc<Envelope>,
-    /// The run's place in the order of its suite, from 1; 1 where the case is a suite.
-    pub place: u64,
+    /// What friction may depend on.
+    pub condition: Condition,
 }
 
 impl Case {

@@ -7,9 +7,11 @@ use reachtube_recordings::Torque;
 
 use crate::envelope::Envelope;
 use crate::error::Result;
+use crate::nominal::correction::InputCorrection;
 use crate::nominal::motion::Corrected;
 use crate::nominal::steps::Steps;
 use crate::problem::case::Case;
+use crate::problem::condition::Condition;
 use crate::problem::input::RunInput;
 use crate::problem::problem::Problem;
 use crate::problem::suite::{RunSummary, Suite};
@@ -61,6 +63,8 @@ impl Problem {
         by_run: bool,
         visit: impl Fn(Case) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
+        let knows_run = self.setup().condition.is_none();
+        let by_run = knows_run && (by_run || !self.robot().warms_by().is_empty());
         match suite.shared.as_ref().filter(|_| !by_run && self.inputs_are_current()) {
             Some(input) => Ok(vec![visit(Case {
                 name: format!("suite {}", suite.entry.name),
@@ -70,11 +74,10 @@ impl Problem {
                 inputs: Arc::clone(&input.inputs),
                 start: suite.nominal_start.clone(),
                 measured: Arc::clone(&suite.envelope),
-                place: 1,
+                condition: self.setup().condition.clone().unwrap_or_else(Condition::first),
             })?]),
             None => {
-                let own =
-                    |summary: &RunSummary| visit(self.case_of_run(suite, index, summary.index)?);
+                let own = |summary: &RunSummary| visit(self.case_of_run(suite, index, summary)?);
                 suite.runs.par_iter().map(own).collect()
             }
         }
@@ -86,11 +89,15 @@ impl Problem {
         self.settings().torque != Torque::Link || self.read.robot == *self.robot().description()
     }
 
-    fn case_of_run(&self, suite: &Suite, index: usize, run: usize) -> Result<Case> {
+    fn case_of_run(&self, suite: &Suite, index: usize, summary: &RunSummary) -> Result<Case> {
+        let run = summary.index;
         let recorded = self.run(run)?;
         let path = self.read.source.run_name(run);
+        let condition = self.setup().condition.as_ref().unwrap_or(&summary.condition).clone();
+        let warm = condition.warm(self.robot());
+        let robot = warm.as_ref().unwrap_or(self.robot());
         let RunInput { grid, inputs } =
-            RunInput::new(&path, &recorded, self.robot(), self.settings().torque)
+            RunInput::new(&path, &recorded, robot, self.settings().torque)
                 .map_err(reachtube_recordings::Error::Defects)?;
         let mut measured = Envelope::new(2 * recorded.joints);
         measured.include(run as u32, &recorded.states);
@@ -99,16 +106,20 @@ impl Problem {
             NominalStart::Own => recorded.state(0).to_vec(),
         };
         let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
-        let (measured, place) = (Arc::new(measured), self.entry(run).order);
-        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, place })
+        let measured = Arc::new(measured);
+        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, condition })
     }
 
     /// Takes the correction of the problem's model off the inputs of a case.
     fn corrected(&self, case: Case) -> Result<Case> {
-        let Some(correction) = &self.setup().correction else { return Ok(case) };
         let (robot, dynamics) = (self.robot(), self.dynamics());
-        let origin = &self.settings().expansion_point.qd;
-        let model = Corrected { robot, dynamics, correction, origin };
+        let none = InputCorrection::none(robot.joint_count());
+        let correction = match &self.setup().correction {
+            Some(correction) => correction,
+            None if !robot.warms_by().is_empty() => &none,
+            None => return Ok(case),
+        };
+        let model = Corrected { robot, dynamics, correction, settings: self.settings() };
         let steps = dynamics.linear_system().map(|system| Steps::new(system, case.grid.times()));
         let inputs = model.motion(&case, steps.as_ref())?.inputs.into();
         Ok(Case { inputs, ..case })

@@ -2,6 +2,7 @@
 
 pub(crate) mod case;
 mod cases;
+pub(crate) mod condition;
 pub(crate) mod input;
 mod kept;
 pub(crate) mod marks;
@@ -12,6 +13,7 @@ mod subset;
 pub(crate) mod suite;
 
 pub use case::Case;
+pub use condition::Condition;
 pub use input::RunInput;
 pub use marks::Marks;
 pub use problem::{Keep, Problem, Setup};

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use reachtube_abstraction::{OperatingBox, PolynomialModel};
 use reachtube_recordings::{ReadOptions, Run, RunEntry, RunSource, State};
+use reachtube_robot::friction::WarmingBy;
 use reachtube_robot::{Robot, RobotDescription};
 
 use crate::deviation::Deviation;
@@ -13,6 +14,7 @@ use crate::grids::Grids;
 use crate::linear::layout::Limits;
 use crate::nominal::correction::InputCorrection;
 use crate::problem::case::Case;
+use crate::problem::condition::Condition;
 use crate::problem::kept::KeptRuns;
 use crate::problem::recordings::Recordings;
 use crate::problem::suite::{Suite, SuiteReader};
@@ -41,6 +43,9 @@ pub struct Setup {
     pub nominal_starts: BTreeMap<String, Vec<f64>>,
     /// What is taken off the recorded inputs along the nominal motions, where anything is.
     pub correction: Option<InputCorrection>,
+    /// The condition that friction is taken in, whatever that of a run is; nothing where each run
+    /// has its own.
+    pub condition: Option<Condition>,
 }
 
 impl Setup {
@@ -52,7 +57,14 @@ impl Setup {
     pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
         settings.validate(robot.joint_count())?;
         let dynamics = Dynamics::new(&robot, &settings)?;
-        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new(), correction: None })
+        Ok(Self {
+            robot,
+            dynamics,
+            settings,
+            nominal_starts: BTreeMap::new(),
+            correction: None,
+            condition: None,
+        })
     }
 
     /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
@@ -67,7 +79,14 @@ impl Setup {
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
         let dynamics = Dynamics::of(model, settings.method);
-        Ok(Self { robot, dynamics, settings, nominal_starts: BTreeMap::new(), correction: None })
+        Ok(Self {
+            robot,
+            dynamics,
+            settings,
+            nominal_starts: BTreeMap::new(),
+            correction: None,
+            condition: None,
+        })
     }
 }
 
@@ -158,6 +177,7 @@ impl Problem {
         let sensor_noise = sensor_noise(&setup, &recordings);
         check_starts(&setup, source.as_ref(), &recordings)?;
         recordings.notes.extend(leaving_notes(&setup, &recordings));
+        recordings.notes.extend(unknown_temperature(&setup, &recordings));
         let (robot, source) = (setup.robot.description().clone(), source.into());
         Ok(Self::of(setup, Arc::new(Read { source, recordings, kept, sensor_noise, robot })))
     }
@@ -332,6 +352,20 @@ fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
         ))
     };
     recordings.suites.iter().filter_map(leaves).collect()
+}
+
+/// Says where friction depends on a temperature that a recording does not have.
+fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
+    let by_temperature = setup.robot.warms_by().contains(&WarmingBy::Temperature);
+    let runs = || recordings.suites.iter().flat_map(|suite| &suite.runs);
+    let without = runs().filter(|run| run.condition.temperatures.is_none()).count();
+    (by_temperature && without > 0).then(|| {
+        format!(
+            "friction of the robot depends on temperature, and {without} of the {} recordings \
+             have no columns temp1 to tempn; they are taken at the reference temperature",
+            runs().count()
+        )
+    })
 }
 
 /// The noise of the sensors, as the settings give it or these recordings show it.

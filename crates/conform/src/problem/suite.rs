@@ -11,6 +11,7 @@ use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 
 use crate::envelope::Envelope;
+use crate::problem::condition::Condition;
 use crate::problem::input::RunInput;
 use crate::problem::kept::KeptRuns;
 use crate::problem::marks::Marks;
@@ -49,6 +50,8 @@ pub struct RunSummary {
     pub start: Vec<f64>,
     /// Some of its states.
     pub marks: Marks,
+    /// What friction may depend on.
+    pub condition: Condition,
     /// SHA-256 of the recording.
     pub sha256: String,
     /// The standard deviation of the noise in each state, 2n, as
@@ -116,6 +119,7 @@ impl SuiteReader<'_> {
             grid: part.grid(&input.grid),
             start: run.state(0).to_vec(),
             marks: Marks::new(&run),
+            condition: Condition::of(self.source.runs()[index].order, &run),
             sha256: run.sha256.clone(),
             noise: noise_deviations(&run),
             notes: run_notes(self.source, index, &run),

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::Model;
-use reachtube::conform::{FitRecord, FittedParameter, Group};
+use reachtube::conform::{FitRecord, FittedParameter};
 use reachtube::number::four_decimals;
 
 use crate::table::table;
@@ -83,12 +83,22 @@ fn parameters(model: &Model, record: &FitRecord) -> String {
              the model leaves out, and only the model as a whole has a meaning"
         );
     }
-    if record.groups.iter().any(|group| group.group == Group::WarmUp) {
-        text.push_str(
-            "  to use this model one must know how many runs the robot has done since its start\n",
-        );
-    }
     text
+}
+
+/// Returns what a user of the model must know of the run, and what holds without it.
+pub fn any_run(model: &Model) -> String {
+    let Some(any) = &model.any_run else { return String::new() };
+    let radii = any.sets.input_set.radius.iter().map(|radius| format!("{radius:.3}"));
+    format!(
+        "\nfriction depends on the run: to use this model one must know the order of the run in \
+         its suite, or the temperatures; for any run the sets cost {}, around the nominal motion \
+         of run {} ({}; radii of U {}); the model file has them as any_run\n",
+        four_decimals(any.cost),
+        any.condition.place,
+        if any.verified { "proved" } else { "NOT proved" },
+        radii.collect::<Vec<_>>().join(" ")
+    )
 }
 
 fn torque(record: &FitRecord) -> String {

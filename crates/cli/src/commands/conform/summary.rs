@@ -9,7 +9,7 @@ use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 
 use super::dependence::dependence;
-use super::fit_summary::fit_summary;
+use super::fit_summary::{any_run, fit_summary};
 use super::next_motion::next_motion;
 use crate::table::{plural, table};
 use crate::verdict::lost;
@@ -29,6 +29,7 @@ pub fn summary(model: &Model) -> String {
         let _ = writeln!(text, "warning: {}", warning.text);
     }
     text.push_str(&fit_summary(model));
+    text.push_str(&any_run(model));
     text.push_str(&touching(model));
     if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
         let _ = writeln!(text, "\n{}", explained.words(tolerance, &model.robot.kinds()));

@@ -1,0 +1,60 @@
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::linear::smallest_sets::smallest_sets;
+use crate::problem::condition::Condition;
+use crate::problem::problem::{Problem, Setup};
+use crate::sets::UncertaintySets;
+use crate::verdict::Verdict;
+
+/// The smallest sets of a model whose friction depends on the run, where nobody knows which run it
+/// is: the nominal motion is that of one condition in the middle, and the sets hold every run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AnyRun {
+    /// The condition that the nominal motion is computed for.
+    pub condition: Condition,
+    /// X0, U and V.
+    pub sets: UncertaintySets,
+    /// The cost of the sets.
+    pub cost: f64,
+    /// Whether the sets were proved to enclose the recordings.
+    pub verified: bool,
+}
+
+impl AnyRun {
+    /// Finds the sets for a linear model; nothing where friction does not depend on the run.
+    ///
+    /// # Errors
+    ///
+    /// As [`conform`](crate::conform).
+    pub(crate) fn new(problem: &Problem) -> Result<Option<Self>> {
+        let setup = problem.setup();
+        let by_run = setup.correction.as_ref().is_some_and(|c| c.differs_by_run())
+            || !setup.robot.warms_by().is_empty();
+        if !by_run || setup.dynamics.linear_system().is_none() {
+            return Ok(None);
+        }
+        let condition = middle(problem);
+        let blind =
+            problem.with_setup(Setup { condition: Some(condition.clone()), ..setup.clone() });
+        let found = smallest_sets(&blind)?;
+        let verdict = Verdict::new(&blind, &found.hulls, |_, _, _| {})?;
+        let (sets, cost) = (found.hulls.sets, found.cost);
+        Ok(Some(Self { condition, sets, cost, verified: verdict.conformant }))
+    }
+}
+
+/// The condition in the middle of those recorded: the geometric mean of the first and the last
+/// place, and the mean of the temperatures.
+fn middle(problem: &Problem) -> Condition {
+    let runs = || problem.recordings().suites.iter().flat_map(|suite| &suite.runs);
+    let places = || runs().map(|run| run.condition.place);
+    let (first, last) = (places().min().unwrap_or(1), places().max().unwrap_or(1));
+    let place = ((first as f64 * last as f64).sqrt().round() as u64).max(1);
+    let known: Vec<&Vec<f64>> =
+        runs().filter_map(|run| run.condition.temperatures.as_ref()).collect();
+    let mean = |joint: usize| known.iter().map(|t| t[joint]).sum::<f64>() / known.len() as f64;
+    let temperatures = (!known.is_empty()).then(|| (0..problem.joints()).map(mean).collect());
+    Condition { place, temperatures }
+}
