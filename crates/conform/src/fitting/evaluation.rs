@@ -22,9 +22,6 @@ use crate::settings::Settings;
 /// Rows within this part of the largest deviation are kept for the next program.
 const CLOSE: f64 = 0.02;
 
-/// Tracks of a suite that are enough to compare weights of the pull by.
-const FEW: usize = 4;
-
 /// What does not change during a fit.
 #[derive(Clone)]
 pub(crate) struct Fit<'a> {
@@ -170,15 +167,16 @@ impl Fit<'_> {
         Ok(whole.smallest(&whole.model(numbers, None)?, &whole.tracks(None))?.cost)
     }
 
-    /// Returns a few tracks of each suite, from the first to the last, of all motions but `left_out`.
-    pub fn few_tracks(&self, left_out: Option<usize>) -> Vec<usize> {
+    /// Returns at most `few` tracks of each suite, from the first to the last, of all motions but
+    /// `left_out`.
+    pub fn few_tracks(&self, left_out: Option<usize>, few: usize) -> Vec<usize> {
         let suite = |t: &usize| self.data.tracks[*t].case.suite;
         let all = self.tracks(left_out);
         let of_suite = |tracks: &[usize]| {
             let last = tracks.len() - 1;
-            let mut few: Vec<usize> = (0..FEW).map(|i| tracks[i * last / (FEW - 1)]).collect();
-            few.dedup();
-            few
+            let mut chosen: Vec<usize> = (0..few).map(|i| tracks[i * last / (few - 1)]).collect();
+            chosen.dedup();
+            chosen
         };
         all.chunk_by(|a, b| suite(a) == suite(b)).flat_map(of_suite).collect()
     }

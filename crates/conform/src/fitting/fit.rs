@@ -19,6 +19,9 @@ use crate::progress::Progress;
 use crate::settings::{Method, Weights};
 use crate::weights::state_weights;
 
+/// Tracks of a suite that the search starts with.
+const FEW: usize = 8;
+
 /// What a fit found.
 #[derive(Debug)]
 pub struct Fitted {
@@ -83,7 +86,13 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     progress.finished(&format!("the weight of the pull is {}", choice.pull));
     let (start, tracks) = (vec![0.0; parameters.len()], fit.tracks(None));
     let pull = choice.pull * fit.smallest(&fit.model(&start, None)?, &tracks)?.cost;
-    let found = Search { fit: &fit, tracks, pull, effort: Effort::WHOLE }.run(&start)?;
+    // Few runs of each suite show where to go, and all of them decide the end.
+    let few = fit.few_tracks(None, FEW);
+    let is_done = few.len() == tracks.len();
+    let mut found = Search { fit: &fit, tracks: few, pull, effort: Effort::WHOLE }.run(&start)?;
+    if !is_done {
+        found = Search { fit: &fit, tracks, pull, effort: Effort::LAST }.run(&found.numbers)?;
+    }
     progress.finished(&format!("the fit took {} steps", found.steps));
     // The numbers, given to the model that was asked for.
     let own = Parameters::new(problem.setup(), &settings.groups, law);

@@ -11,6 +11,9 @@ use crate::fitting::search::{Effort, Search};
 /// first.
 const PULLS: [f64; 4] = [0.05, 0.02, 0.005, 0.001];
 
+/// Tracks of a suite that are enough to compare weights by.
+const FEW: usize = 4;
+
 /// The pull that was chosen.
 pub(crate) struct PullChoice {
     pub pull: f64,
@@ -47,7 +50,7 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
 /// Fits without a motion for each weight, each from the answer before, and returns the costs of the
 /// sets of all motions.
 fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<f64>> {
-    let tracks = fit.few_tracks(Some(motion));
+    let tracks = fit.few_tracks(Some(motion), FEW);
     let mut numbers = vec![0.0; fit.parameters.len()];
     let identified = fit.smallest(&fit.model(&numbers, None)?, &tracks)?.cost;
     let mut costs = Vec::new();

@@ -42,6 +42,8 @@ pub(crate) struct Effort {
 impl Effort {
     /// For the answer.
     pub const WHOLE: Self = Self { settled: 2e-4, steps: 40, is_physical: true };
+    /// For an answer that was found on fewer tracks.
+    pub const LAST: Self = Self { settled: 2e-4, steps: 4, is_physical: true };
     /// For comparisons.
     pub const QUICK: Self = Self { settled: 2e-3, steps: 12, is_physical: false };
 }

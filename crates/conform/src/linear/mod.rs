@@ -4,6 +4,7 @@ pub(crate) mod block;
 pub(crate) mod costs;
 pub(crate) mod layout;
 mod other_recordings;
+mod paper;
 pub(crate) mod program;
 mod repair;
 pub(crate) mod smallest_sets;

@@ -1,0 +1,136 @@
+//! Whether the parts of a model file fit together.
+
+use nalgebra::{DMatrix, DVector};
+use reachtube_abstraction::{PolynomialModel, Records};
+use reachtube_reach::{Hyperrectangle, LinearSystem};
+use reachtube_robot::Robot;
+
+use crate::dynamics::Dynamics;
+use crate::model::file::Model;
+use crate::model::records::SuiteRecord;
+use crate::problem::problem::Setup;
+use crate::settings::Settings;
+
+/// Relative difference up to which numbers that were computed twice count as the same.
+const SAME: f64 = 1e-9;
+
+impl Model {
+    /// Checks that all lists have the sizes that the robot asks for.
+    pub(super) fn check_sizes(&self) -> Result<(), String> {
+        let n = self.robot.joints.len();
+        let is = |matrix: &[Vec<f64>], columns: usize| {
+            matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
+        };
+        let set =
+            |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
+        // Sets that were calibrated are not the smallest, so nothing bounds their cost from below.
+        let lower_bound = self.cost_lower_bound.or(self.calibration.as_ref().and(Some(0.0)));
+        let costs = [self.cost, lower_bound, self.cost_paper, self.hull_volume];
+        let is_linear = self.acceleration.is_empty();
+        let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
+        let none = self.a.is_empty() && self.b.is_empty() && self.drift.is_empty();
+        let sets = set(&self.initial_set, 2 * n)
+            && set(&self.input_set, n)
+            && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
+        let point = &self.settings.expansion_point;
+        let fits_box =
+            self.settings.operating_box.as_ref().is_none_or(|sides| sides.is_valid_for(n));
+        let problem = if is_linear && costs.contains(&None) {
+            "it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model \
+             does"
+                .into()
+        } else if !(if is_linear { linear } else { none }) {
+            format!("a, b or drift has not the size for the {n} joints of its robot")
+        } else if !sets {
+            format!(
+                "initial_set, input_set or noise_set has not the size for the {n} joints of its \
+                 robot, or a negative radius"
+            )
+        } else if point.q.len() != n || point.qd.len() != n {
+            format!("its expansion point is not one of {n} joints")
+        } else if self.data.suites.iter().any(|suite| !suite.fits(n)) {
+            format!("a nominal_start is not a state of {n} joints")
+        } else if self.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
+            format!("its correction is not one of {n} joints")
+        } else if !fits_box {
+            format!("its operating box is not one of {n} joints")
+        } else {
+            return self.settings.validate(n).map_err(|error| error.to_string());
+        };
+        Err(format!("{problem}; run conform again"))
+    }
+
+    /// Checks that what is in the file twice is the same: where it is not, somebody has changed a
+    /// part. Returns the robot, its model and the settings.
+    pub(super) fn check_parts(&self) -> Result<Setup, String> {
+        if self.data.sha256 != self.data.digest() {
+            return Err(changed("data.sha256 is not that of the recordings it lists"));
+        }
+        let holds = self.proof.conformant;
+        if self.verified != holds || holds && self.proof.violations.count > 0 {
+            return Err(changed("verified does not agree with proof"));
+        }
+        let robot = Robot::from_description(&self.robot).map_err(|error| error.to_string())?;
+        let dynamics = self.dynamics(&robot)?;
+        if self.sha256 != self.digest() {
+            return Err(changed("sha256 is not that of the content"));
+        }
+        let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
+        let nominal_starts = self.data.suites.iter().filter_map(start).collect();
+        Ok(Setup {
+            robot,
+            dynamics,
+            settings: self.settings.clone(),
+            nominal_starts,
+            correction: self.correction.clone(),
+            condition: None,
+        })
+    }
+
+    /// Returns the model bit by bit as the file has it, or what speaks against it.
+    fn dynamics(&self, robot: &Robot) -> Result<Dynamics, String> {
+        let Settings { abstraction, expansion_point, method, .. } = &self.settings;
+        let mismatch =
+            || changed("it has not the matrices or polynomials that its settings ask for");
+        if !self.acceleration.is_empty() {
+            let records = Records {
+                variables: self.variables.clone(),
+                origin: self.origin.clone(),
+                acceleration: self.acceleration.clone(),
+            };
+            let model =
+                PolynomialModel::from_records(robot, *abstraction, expansion_point, records)
+                    .map_err(|error| error.to_string())?;
+            let dynamics = Dynamics::of(model, *method);
+            return match dynamics.linear_system() {
+                None => Ok(dynamics),
+                Some(_) => Err(mismatch()),
+            };
+        }
+        let made = Dynamics::new(robot, &self.settings).map_err(|error| error.to_string())?;
+        let expected = made.linear_system().ok_or_else(mismatch)?;
+        let drift = DVector::from_vec(self.drift.clone());
+        let own = LinearSystem::new(matrix(&self.a), matrix(&self.b), drift)
+            .map_err(|error| error.to_string())?;
+        if !is_near(expected, &own) {
+            return Err(changed("a, b or drift is not that of its robot at its expansion point"));
+        }
+        Ok(made.with_linear(own))
+    }
+}
+
+/// Returns the message about a file whose parts contradict each other.
+fn changed(what: &str) -> String {
+    format!("{what}: the file was changed after it was written; run conform again")
+}
+
+fn is_near(made: &LinearSystem, own: &LinearSystem) -> bool {
+    let near = |x: &DMatrix<f64>, y: &DMatrix<f64>| (x - y).amax() <= SAME * x.amax().max(y.amax());
+    let drift = (made.drift() - own.drift()).amax() <= SAME * made.drift().amax();
+    near(made.a(), own.a()) && near(made.b(), own.b()) && drift
+}
+
+fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {
+    let columns = rows.first().map_or(0, Vec::len);
+    DMatrix::from_row_iterator(rows.len(), columns, rows.iter().flatten().copied())
+}
