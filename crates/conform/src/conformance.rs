@@ -12,6 +12,7 @@ use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::left_out::{LeftOut, leave_each_out};
 use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
+use crate::nominal::input_error::InputError;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::{NominalFit, Warning, warnings};
 use crate::problem::problem::Problem;
@@ -67,6 +68,9 @@ pub struct Conformance {
     /// The sets where nobody knows which run it is, for a linear model whose friction depends on
     /// it; none for calibrated sets.
     pub any_run: Option<AnyRun>,
+    /// The root mean square of the input minus what the robot needs for the recorded motions, n,
+    /// N m, to lay beside U.
+    pub input_error: Vec<f64>,
     /// The reachable sets.
     pub hulls: Hulls,
 }
@@ -145,6 +149,7 @@ pub fn conform(
         search,
         tight,
         explanations,
+        input_error: InputError::of_problem(problem)?,
         any_run: if problem.settings().calibrate.is_empty() { AnyRun::new(problem)? } else { None },
         hulls,
     })

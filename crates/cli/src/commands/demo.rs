@@ -139,7 +139,8 @@ fn story(before: &Conformance, model: &Model) -> String {
     let factor = |calibration: Option<&Calibration>| calibration.map_or(1.0, |c| c.factor);
     let cost = model.cost.unwrap_or(f64::INFINITY);
     format!(
-        "With the nominal model the calibrated sets cost {}, scaled by {}; with the fitted model {} \
+        "With the nominal model the calibrated sets cost {}, scaled by {}; with the fitted model \
+         {} \
          ({:+.0} %), scaled by {}.",
         four_decimals(before.cost),
         at_least(factor(before.calibration.as_ref())),

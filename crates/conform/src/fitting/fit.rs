@@ -11,9 +11,9 @@ use crate::fitting::parameters::{Parameter, Parameters, Quantity};
 use crate::fitting::pull::{PullChoice, choose};
 use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fitting::search::{Effort, Search};
-use crate::fitting::torque;
 use crate::next_motion::calibration::without_kept_back;
 use crate::nominal::correction::WarmthLaw;
+use crate::nominal::input_error::InputError;
 use crate::problem::problem::{Problem, Setup};
 use crate::progress::Progress;
 use crate::settings::{Method, Weights};
@@ -133,8 +133,9 @@ fn record(
         let numbers: Vec<f64> = numbers.iter().zip(&fit.parameters.list).map(kept).collect();
         Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&numbers)? })
     };
-    let before = torque::residual(setup, &fit.data.tracks)?;
-    let after = torque::residual(&fit.parameters.apply(numbers)?, &fit.data.tracks)?;
+    let cases = || fit.data.tracks.iter().map(|track| &track.case);
+    let before = InputError::of_cases(setup, cases())?;
+    let after = InputError::of_cases(&fit.parameters.apply(numbers)?, cases())?;
     let torque = before.into_iter().zip(after).enumerate();
     Ok(FitRecord {
         pull: choice.pull,

@@ -18,7 +18,6 @@ pub(crate) mod record;
 pub(crate) mod search;
 pub(crate) mod slopes;
 pub(crate) mod step;
-mod torque;
 
 pub use fit::{Fitted, fit};
 pub use group::{FitSettings, Group};

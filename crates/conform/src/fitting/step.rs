@@ -65,7 +65,8 @@ pub(crate) struct Answer {
 }
 
 impl Step<'_> {
-    /// Solves the step by row generation; `rows` are the first rows, and take those that were added.
+    /// Solves the step by row generation. `rows` are the first rows, and become those that nearly
+    /// decide the answer.
     ///
     /// # Errors
     ///

@@ -100,6 +100,10 @@ pub struct Model {
     /// The part of the variance of each state that the nominal motions explain, 2n; nothing where
     /// the state hardly moves.
     pub nominal_explains: Vec<Option<f64>>,
+    /// The root mean square of the input minus what the robot needs for the recorded motions, n,
+    /// N m, to lay beside U.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub input_error: Vec<f64>,
     /// What was proved.
     pub proof: Verdict,
     /// What may be expected of the next motion.
@@ -190,6 +194,7 @@ impl Model {
             sensor_noise: problem.limits().is_any().then(|| problem.sensor_noise().clone()),
             warnings: found.warnings.clone(),
             nominal_explains: found.nominal_explains.clone(),
+            input_error: found.input_error.clone(),
             proof: found.verdict.clone(),
             trust: found.trust.clone(),
             calibration: found.calibration.clone(),

@@ -2,5 +2,6 @@
 
 pub(crate) mod correction;
 pub(crate) mod corrector;
+pub(crate) mod input_error;
 pub(crate) mod motion;
 pub(crate) mod steps;

@@ -46,8 +46,9 @@ impl Problem {
         visit: impl Fn(Case) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
         let suite = &self.recordings().suites[index];
-        let by_run = self.setup().correction.as_ref().is_some_and(|c| c.differs_by_run());
-        self.recorded_cases_of(suite, index, by_run, |case| visit(self.corrected(case)?))
+        self.recorded_cases_of(suite, index, self.differs_by_run(), |case| {
+            visit(self.corrected(case)?)
+        })
     }
 
     /// Hands each case of a suite with its recorded inputs to `visit`, on all cores; a case is one
@@ -81,6 +82,11 @@ impl Problem {
                 suite.runs.par_iter().map(own).collect()
             }
         }
+    }
+
+    /// Returns whether the correction of the inputs is another for each run.
+    pub(crate) fn differs_by_run(&self) -> bool {
+        self.setup().correction.as_ref().is_some_and(|c| c.differs_by_run())
     }
 
     /// Returns whether the inputs that were computed at reading are those of the problem's robot:

@@ -47,7 +47,8 @@ fn left_out(model: &Model) -> String {
     let rows: Vec<_> = all.iter().take(MOST_MOTIONS).map(row).collect();
     let header = ["without motion", "cost of the sets", "its rows outside", "growth that holds it"];
     let mut text = format!(
-        "\nsets found without a motion (a description of these motions, no bound for the next):\n{}",
+        "\nsets found without a motion (a description of these motions, no bound for the next):\n\
+         {}",
         table(&header, &rows)
     );
     if all.len() > MOST_MOTIONS {

@@ -170,7 +170,16 @@ fn explained(model: &Model) -> String {
         };
         parts.iter().map(percent).collect::<Vec<_>>().join(" ")
     };
-    format!("variance explained by the nominal motions: q {} %; qd {} %", list(q), list(qd))
+    let errors = model.input_error.iter().map(|error| format!("{error:.2}"));
+    let kinds = model.robot.kinds();
+    format!(
+        "variance explained by the nominal motions: q {} %; qd {} %\nerror of the input that the \
+         robot predicts, root mean square: {} {}",
+        list(q),
+        list(qd),
+        errors.collect::<Vec<_>>().join(" "),
+        JointKind::units(&kinds, JointKind::force_unit)
+    )
 }
 
 /// Returns the recorded values that touch the reachable sets.
