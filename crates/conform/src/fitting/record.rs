@@ -93,10 +93,11 @@ pub struct FittedParameter {
 }
 
 impl FittedParameter {
-    /// Returns the size that a change of the value is compared with.
+    /// Returns whether the fit moved the value by more than 0.05 % of it.
     #[must_use]
-    pub fn size(&self) -> f64 {
-        self.identified.abs().max(self.fitted.abs()).max(1e-6)
+    pub fn has_changed(&self) -> bool {
+        let size = self.identified.abs().max(self.fitted.abs()).max(1e-6);
+        (self.fitted - self.identified).abs() > 5e-4 * size
     }
 }
 

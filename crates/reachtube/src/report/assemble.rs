@@ -8,6 +8,7 @@ use reachtube_reach::Hyperrectangle;
 use crate::error::Result;
 use crate::number::at_least;
 use crate::report::error::ReportError;
+use crate::report::nominal::{nominal_caution, nominal_facts};
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 
@@ -45,7 +46,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
         verdict: verdict(model, check),
         suites: figures,
         sets: vec![sets_table(model)],
-        facts: facts(model),
+        facts: [nominal_facts(model), facts(model)].concat(),
         trust: vec![trust(model, check)],
         caution: caution(model),
         notes: check.notes.clone(),
@@ -236,6 +237,7 @@ fn caution(model: &Model) -> Vec<String> {
                 .into(),
         );
     }
+    words.extend(nominal_caution(model));
     words.extend(furthest_motion(model));
     words.extend(changed_robot(model));
     words

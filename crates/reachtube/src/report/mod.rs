@@ -19,6 +19,7 @@ mod identified;
 mod identified_charts;
 mod layout;
 mod legend;
+mod nominal;
 mod page;
 mod panel;
 mod skeleton;

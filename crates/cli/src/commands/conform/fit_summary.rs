@@ -56,8 +56,8 @@ fn left_out(record: &FitRecord) -> String {
 
 /// Returns the parameters that changed, with a remark where one no longer is what its name says.
 fn parameters(model: &Model, record: &FitRecord) -> String {
-    let has_changed = |p: &&FittedParameter| (p.fitted - p.identified).abs() > 5e-4 * p.size();
-    let changed: Vec<&FittedParameter> = record.parameters.iter().filter(has_changed).collect();
+    let all = record.parameters.iter();
+    let changed: Vec<&FittedParameter> = all.filter(|p| p.has_changed()).collect();
     let row = |p: &&FittedParameter| {
         vec![
             model.robot.joints[p.joint - 1].name.clone(),

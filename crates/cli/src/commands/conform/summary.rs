@@ -193,7 +193,11 @@ fn touching(model: &Model) -> String {
         MOST_TIGHT => format!("{MOST_TIGHT} or more recorded values touch"),
         count => format!("{count} recorded values touch"),
     };
-    format!("\n{count} {set} and decide X0 and U:\n{}", places(&model.tight, &model.robot.kinds()))
+    let decide = if model.tight.len() == 1 { "decides" } else { "decide" };
+    format!(
+        "\n{count} {set} and {decide} X0 and U:\n{}",
+        places(&model.tight, &model.robot.kinds())
+    )
 }
 
 fn places(places: &[Witness], kinds: &[JointKind]) -> String {
