@@ -102,7 +102,7 @@ fn bounds_hold_about_points_in_motion() {
 
 /// A million states per model. Run with `cargo test --release -- --ignored a_million`.
 #[test]
-#[ignore = "takes some minutes"]
+#[ignore = "takes long, some minutes"]
 fn bounds_hold_at_a_million_states() {
     for (robot, orders) in [(Robot::lwa4p(), [1, 3, 4]), (light_wrist(), [1, 2, 3])] {
         for (kind, order) in KINDS.into_iter().zip(orders) {
