@@ -60,7 +60,13 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let pages = [args.out.join("report"), args.out.join("held-out")];
     output::claim(&path)?;
     output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
-    let options = DemoOptions { seed: args.seed, ..DemoOptions::default() };
+    let options = DemoOptions {
+        seed: args.seed,
+        motions: 14,
+        calibration_motions: 7,
+        runs: 5,
+        ..DemoOptions::default()
+    };
     let bar = Progress::new();
     let recorded = record(&robot, &options, &folder)?;
     drop(bar);

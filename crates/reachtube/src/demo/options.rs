@@ -31,16 +31,15 @@ pub struct DemoOptions {
 }
 
 impl Default for DemoOptions {
-    /// Returns 14 motions of 3 s with 2 suites of 5 runs each; 7 of them calibrate the sets, 2 are
-    /// held out.
+    /// Returns 10 motions of 3 s, 2 of them held out, with 2 suites of 8 runs per motion.
     fn default() -> Self {
         Self {
             seed: 1,
-            motions: 14,
-            calibration_motions: 7,
+            motions: 10,
+            calibration_motions: 0,
             held_out_motions: 2,
             start_points: 2,
-            runs: 5,
+            runs: 8,
             duration: 3.0,
             stribeck: false,
         }

@@ -46,8 +46,8 @@ pub struct RecordedDemo {
 /// use reachtube_robot::Robot;
 ///
 /// let folder = tempfile::tempdir().unwrap();
-/// let options = DemoOptions { motions: 2, calibration_motions: 0, held_out_motions: 1, runs: 2,
-///     duration: 1.0, ..Default::default() };
+/// let few = DemoOptions { motions: 2, held_out_motions: 1, runs: 2, ..Default::default() };
+/// let options = DemoOptions { duration: 1.0, ..few };
 /// let recorded = record(&Robot::lwa4p(), &options, folder.path())?;
 /// assert_eq!(recorded.training, ["M1a", "M1b"]);
 /// assert_eq!(recorded.check, ["M2a", "M2b"]);

@@ -150,10 +150,7 @@ fn options_that_record_nothing_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let defaults = DemoOptions::default;
     for (options, word) in [
-        (
-            DemoOptions { motions: 2, calibration_motions: 0, held_out_motions: 2, ..defaults() },
-            "2 are held out",
-        ),
+        (DemoOptions { motions: 2, held_out_motions: 2, ..defaults() }, "2 are held out"),
         (DemoOptions { start_points: 0, ..defaults() }, "0 start points"),
         (DemoOptions { start_points: 27, ..defaults() }, "1 to 26"),
         (DemoOptions { runs: 0, ..defaults() }, "0 runs"),
