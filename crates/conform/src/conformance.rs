@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::any_run::AnyRun;
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
-use crate::found::{Found, SearchSummary};
+use crate::found::{Deciding, Found, SearchSummary};
 use crate::hulls::Hulls;
 use crate::next_motion::calibration::{Calibrated, Calibration, calibrate};
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -105,7 +105,11 @@ pub fn conform(
     };
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, deciding, .. } = found;
-    let (mut tight, mut radii) = (Vec::new(), vec![0.0f64; 2 * problem.joints()]);
+    let mut tight = match &deciding {
+        Deciding::Points(points) => points.clone(),
+        Deciding::Touching(_) | Deciding::Rows(_) => Vec::new(),
+    };
+    let mut radii = vec![0.0f64; 2 * problem.joints()];
     let verdict = Verdict::new(problem, &hulls, |suite, case, row| {
         radii[row.state] = radii[row.state].max(row.radius);
         let decide = row.edges.iter().filter(|edge| deciding.contains(case, row, edge));

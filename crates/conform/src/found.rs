@@ -3,6 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::hulls::Hulls;
 use crate::rows::{Edge, Row};
 use crate::side::Side;
+use crate::verdict::Witness;
 
 /// Sets that were found for a problem, before the verdict.
 pub(crate) struct Found {
@@ -30,6 +31,8 @@ pub(crate) enum Deciding {
     Touching(f64),
     /// Those named: case, sample, state, side.
     Rows(std::collections::HashSet<(usize, usize, usize, Side)>),
+    /// No rows, but recorded points in other directions.
+    Points(Vec<Witness>),
 }
 
 impl Deciding {
@@ -42,6 +45,7 @@ impl Deciding {
                 let named = |case| rows.contains(&(case, row.sample, row.state, edge.side));
                 edge.excess.is_finite() && case.is_some_and(named)
             }
+            Self::Points(_) => false,
         }
     }
 }

@@ -25,6 +25,7 @@ mod linear;
 mod model;
 mod next_motion;
 mod nominal;
+mod notion;
 mod optimality;
 mod plausibility;
 mod problem;
@@ -69,6 +70,7 @@ pub use next_motion::rates::{Rate, Rates};
 pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use nominal::correction::{InputCorrection, JointCorrection, WarmthLaw};
+pub use notion::verdict::{PointVerdict, PointWitness};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
 pub use problem::{
@@ -79,6 +81,8 @@ pub use reach::{SuiteReach, reach};
 pub use rows::{Edge, Hull, HullBounds, Row, rows};
 pub use sensor_noise::SensorNoise;
 pub use sets::UncertaintySets;
-pub use settings::{Centre, Method, Noise, NominalStart, Settings, States, Tolerance, Weights};
+pub use settings::{
+    Centre, Method, Noise, NominalStart, Notion, Settings, States, Tolerance, Weights,
+};
 pub use side::Side;
 pub use verdict::{SuiteVerdict, Verdict, Violations, Witness};

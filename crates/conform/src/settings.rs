@@ -56,6 +56,20 @@ impl States {
     }
 }
 
+/// In which directions recordings must lie in the reachable set of a linear model (docs/method.md,
+/// correction C).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Notion {
+    /// Each state by itself: in the interval hull of the set, the paper's notion.
+    #[default]
+    Hull,
+    /// Position and velocity of each joint together: in the set's projection on its phase plane.
+    PhasePlane,
+    /// All states together: in the set itself.
+    Exact,
+}
+
 /// Where the nominal solution of a run starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -137,6 +151,9 @@ pub struct Settings {
     pub disturbance: Disturbance,
     /// Where the centres may lie.
     pub centre: Centre,
+    /// In which directions recordings must lie in the reachable set.
+    #[serde(default)]
+    pub notion: Notion,
     /// Which states are rows.
     pub states: States,
     /// The weights of the states.
@@ -176,6 +193,7 @@ impl Settings {
             method: Method::default(),
             disturbance: Disturbance::default(),
             centre: Centre::default(),
+            notion: Notion::default(),
             states: States::default(),
             weights: Weights::default(),
             noise: Noise::default(),

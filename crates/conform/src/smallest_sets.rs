@@ -3,9 +3,11 @@ use std::path::Path;
 use crate::error::Result;
 use crate::found::Found;
 use crate::linear::smallest_sets as linear;
+use crate::notion::smallest_sets as notion;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets as search;
+use crate::settings::Notion;
 
 /// Finds the smallest sets for all recordings of a problem, by one program or by a search.
 ///
@@ -18,7 +20,8 @@ pub(crate) fn smallest_sets(
     resume: Option<&Path>,
 ) -> Result<Found> {
     match problem.dynamics().linear_system() {
-        Some(_) => linear::smallest_sets(problem),
+        Some(_) if problem.settings().notion == Notion::Hull => linear::smallest_sets(problem),
+        Some(_) => notion::smallest_sets(problem, progress),
         None => search::smallest_sets(problem, progress, resume),
     }
 }

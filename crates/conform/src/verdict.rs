@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::hulls::{Enclosure, Hulls, Lost};
+use crate::notion::verdict::{Judged, PointVerdict, judge};
 use crate::problem::problem::Problem;
 use crate::problem::suite::Suite;
 use crate::rows::{Edge, Row};
-use crate::settings::States;
+use crate::settings::{Notion, Settings, States};
 use crate::side::Side;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
@@ -29,6 +30,9 @@ pub struct Verdict {
     pub rows: usize,
     /// The rows that do not hold.
     pub violations: Violations,
+    /// The recorded points, where the notion is not the hull.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub points: Option<PointVerdict>,
     /// The largest excess of a row that has a reachable set, rad or rad/s: not above 0 when all
     /// rows hold.
     pub largest_excess: f64,
@@ -51,6 +55,9 @@ pub struct SuiteVerdict {
     pub rows: usize,
     /// Its rows that do not hold.
     pub violations: Violations,
+    /// How many of its points were not proved, where the notion is not the hull.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub points_unproved: Option<usize>,
     /// The recordings that leave the set furthest in some row.
     pub violating_runs: Vec<String>,
 }
@@ -149,15 +156,20 @@ impl Verdict {
             violations.count += suite.violations.count;
             suite.violations.worst.iter().for_each(|worst| violations.take(worst.clone()));
         }
+        let points = match problem.settings().notion {
+            Notion::Hull => None,
+            _ => Some(judge_points(problem, hulls, &mut suites)?),
+        };
         let rows = suites.iter().map(|suite| suite.rows).sum();
         let (runs, enclosure) = (problem.recordings().run_count(), hulls.enclosure());
         Ok(Self {
-            conformant: violations.count == 0 && rows > 0,
-            claim: claim(runs, problem.settings().states, enclosure),
+            conformant: rows > 0 && suites.iter().all(SuiteVerdict::holds),
+            claim: claim(runs, problem.settings(), enclosure),
             enclosure,
             runs,
             rows,
             violations,
+            points,
             largest_excess: if largest_excess.is_finite() { largest_excess } else { 0.0 },
             lost: hulls.lost(problem)?,
             suites,
@@ -173,8 +185,15 @@ impl SuiteVerdict {
             runs: suite.runs.len(),
             rows: 0,
             violations,
+            points_unproved: None,
             violating_runs: Vec::new(),
         }
+    }
+
+    /// Returns whether all rows of the suite, and its points, were proved.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.violations.count == 0 && self.points_unproved.unwrap_or(0) == 0
     }
 
     fn take(&mut self, problem: &Problem, suite: usize, row: &Row) {
@@ -190,8 +209,26 @@ impl SuiteVerdict {
     }
 }
 
-fn claim(runs: usize, states: States, enclosure: Enclosure) -> String {
-    let states = match states {
+/// Judges the recorded points and counts them for each suite.
+fn judge_points(
+    problem: &Problem,
+    hulls: &Hulls,
+    suites: &mut [SuiteVerdict],
+) -> Result<PointVerdict> {
+    let Judged { verdict, unproved } = judge(problem, &hulls.sets)?;
+    suites.iter_mut().for_each(|suite| suite.points_unproved = Some(0));
+    for (suite, run) in unproved {
+        let (suite, run) = (&mut suites[suite], &problem.entry(run).file);
+        suite.points_unproved = suite.points_unproved.map(|count| count + 1);
+        if !suite.violating_runs.contains(run) {
+            suite.violating_runs.push(run.clone());
+        }
+    }
+    Ok(verdict)
+}
+
+fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {
+    let states = match settings.states {
         States::All => "position and velocity",
         States::Positions => "position",
     };
@@ -203,9 +240,20 @@ fn claim(runs: usize, states: States, enclosure: Enclosure) -> String {
              disturbance in U"
         }
     };
+    let lies = match settings.notion {
+        Notion::Hull => format!(
+            "the recorded {states} of every joint lies in the interval hull of the model's {set}"
+        ),
+        Notion::PhasePlane => format!(
+            "the recorded {states} of every joint together lie in the projection of the model's \
+             {set} on the joint's phase plane"
+        ),
+        Notion::Exact => {
+            format!("the recorded {states} of all joints together lie in the model's {set}")
+        }
+    };
     format!(
-        "for each of the {runs} recordings, at each of its samples, the recorded {states} of \
-         every joint lies in the interval hull of the model's {set}; {how}, at samples, \
+        "for each of the {runs} recordings, at each of its samples, {lies}; {how}, at samples, \
          whose times are the recorded ones to a picosecond"
     )
 }

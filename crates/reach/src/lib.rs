@@ -10,9 +10,13 @@ mod upward;
 pub use error::ReachError;
 pub use grid::TimeGrid;
 pub use linear::{
-    Disturbance, LinearSystem, Propagation, ReachSets, Step, Trajectory, Tube, TubeRadii, step,
+    Disturbance, LinearSystem, Propagation, ReachSets, SampleGenerators, Step, Trajectory, Tube,
+    TubeRadii, step,
 };
 pub use polynomial::{
     Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,
 };
-pub use sets::{Hyperrectangle, IntervalMatrix, IntervalVector, Zonotope};
+pub use sets::{
+    GeneratorRows, Hyperrectangle, IntervalMatrix, IntervalVector, Membership, MembershipProof,
+    MembershipWorkspace, Place, Zonotope,
+};

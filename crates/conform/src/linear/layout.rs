@@ -1,5 +1,6 @@
 use reachtube_reach::Hyperrectangle;
 
+use crate::linear::cut::Cut;
 use crate::linear::solver::Triplets;
 use crate::sets::UncertaintySets;
 use crate::settings::{Centre, Noise, Settings};
@@ -77,6 +78,14 @@ impl Layout {
             row.push((noise + state, 1.0));
         }
         row
+    }
+
+    /// Returns the columns and entries of a row in any direction.
+    pub fn cut_entries(&self, cut: &Cut) -> Vec<(usize, f64)> {
+        let centre = cut.centre.iter().take(self.centres());
+        let has_noise = self.cost.len() > self.centres() + 3 * self.joints;
+        let noise = cut.noise.iter().filter(|_| has_noise);
+        centre.chain(&cut.radius).chain(noise).copied().enumerate().collect()
     }
 
     /// Returns the size of the unknown of column `j` in some sets: a radius, or the larger one of a

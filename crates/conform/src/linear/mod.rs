@@ -2,6 +2,7 @@
 
 pub(crate) mod block;
 pub(crate) mod costs;
+pub(crate) mod cut;
 pub(crate) mod layout;
 mod other_recordings;
 mod paper;

@@ -17,6 +17,7 @@ use reachtube_reach::Hyperrectangle;
 use crate::error::{Error, Result};
 use crate::linear::block::Block;
 use crate::linear::costs::{cost, shares};
+use crate::linear::cut::Cut;
 use crate::linear::layout::{Layout, Limits};
 use crate::linear::solver::{Optimum, Triplets, solve_cone};
 use crate::optimality::optimality_gap;
@@ -51,7 +52,7 @@ const NEGLIGIBLE_PART: f64 = 1e-7;
 /// The program.
 #[derive(Clone)]
 pub struct Program<'a> {
-    settings: &'a Settings,
+    pub(super) settings: &'a Settings,
     pub(super) joints: usize,
     pub(super) blocks: Vec<Block>,
     /// For each block and sample, how much its widths count.
@@ -65,6 +66,8 @@ pub struct Program<'a> {
     pub(crate) noise_cost: Vec<f64>,
     /// Largest |d| in the checked states, at least the smallest normal number.
     pub(super) scale: f64,
+    /// Rows in other directions than those of the states.
+    pub(crate) cuts: Vec<Cut>,
 }
 
 /// What the solver found.
@@ -102,6 +105,7 @@ impl<'a> Program<'a> {
             cost,
             noise_cost,
             scale: f64::MIN_POSITIVE,
+            cuts: Vec::new(),
         };
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
@@ -338,6 +342,7 @@ impl<'a> Program<'a> {
             triplets.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / scale)));
             bounds.push(-self.bound(index) / (scale * self.scale));
         }
+        self.add_cuts(layout, unit, &mut triplets, &mut bounds);
         layout.restrict(self.settings.centre, &mut triplets, &mut bounds, unit);
         let absolute: Vec<f64> = unit.iter().map(|unit| unit * self.scale).collect();
         layout.limit(&self.limits, &mut triplets, &mut bounds, &absolute);

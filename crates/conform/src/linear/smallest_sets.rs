@@ -71,7 +71,7 @@ pub(crate) fn prove(problem: &Problem, sets: UncertaintySets, scale: f64) -> Res
 }
 
 /// Returns whether every row holds.
-fn encloses(problem: &Problem, hulls: &Hulls) -> Result<bool> {
+pub(crate) fn encloses(problem: &Problem, hulls: &Hulls) -> Result<bool> {
     let mut all = true;
     hulls.for_each_row(problem, |_, _, row| all &= row.holds())?;
     Ok(all)

@@ -10,6 +10,7 @@ use crate::model::file::Model;
 use crate::model::records::SuiteRecord;
 use crate::problem::problem::Setup;
 use crate::settings::Settings;
+use crate::verdict::SuiteVerdict;
 
 /// Relative difference up to which numbers that were computed twice count as the same.
 const SAME: f64 = 1e-9;
@@ -67,7 +68,7 @@ impl Model {
             return Err(changed("data.sha256 is not that of the recordings it lists"));
         }
         let holds = self.proof.conformant;
-        if self.verified != holds || holds && self.proof.violations.count > 0 {
+        if self.verified != holds || holds && !self.proof.suites.iter().all(SuiteVerdict::holds) {
             return Err(changed("verified does not agree with proof"));
         }
         let robot = Robot::from_description(&self.robot).map_err(|error| error.to_string())?;

@@ -107,7 +107,7 @@ impl Trust {
     #[must_use]
     pub fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
         let motions = Motions::new(recordings);
-        let violating = verdict.suites.iter().filter(|suite| suite.violations.count > 0);
+        let violating = verdict.suites.iter().filter(|suite| !suite.holds());
         let violating = motions.count_of(violating.map(|suite| suite.suite.as_str()));
         let bound = clopper_pearson(motions.count(), violating, 1.0 - CONFIDENCE);
         Self::new(&motions, violating, bound, "hold-out bound (Clopper and Pearson 1934)")

@@ -8,6 +8,7 @@ mod grid;
 mod input_gains;
 mod linearisation;
 mod lwa4p;
+mod membership;
 mod outcomes;
 mod propagation;
 mod random;

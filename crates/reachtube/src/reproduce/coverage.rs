@@ -183,7 +183,7 @@ fn problem(
 fn truth(next: &Problem, hulls: &Hulls) -> Result<f64> {
     let hulls = Hulls::new(next, hulls.sets.clone())?;
     let verdict = Verdict::new(next, &hulls, |_, _, _| ())?;
-    let leaving = verdict.suites.iter().filter(|suite| suite.violations.count > 0).count();
+    let leaving = verdict.suites.iter().filter(|suite| !suite.holds()).count();
     Ok(leaving as f64 / verdict.suites.len() as f64)
 }
 

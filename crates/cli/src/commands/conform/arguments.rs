@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use reachtube::abstraction::ModelKind;
-use reachtube::conform::{Centre, Group, Method, NominalStart, States};
+use reachtube::conform::{Centre, Group, Method, NominalStart, Notion, States};
 use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;
@@ -108,6 +108,14 @@ pub struct Arguments {
         value_parser = choice::<Centre>(CENTRES)
     )]
     pub centre: Centre,
+    /// Directions in which recordings must lie in the reachable set of a linear model
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "hull",
+        value_parser = choice::<Notion>(NOTIONS)
+    )]
+    pub notion: Notion,
     /// States that the reachable set must enclose
     #[arg(
         long,
@@ -199,6 +207,12 @@ const CENTRES: Choices = &[
     ("free", "any centre"),
     ("origin", "any centre for which the set contains 0, as in the paper"),
     ("zero", "the centre is 0"),
+];
+
+const NOTIONS: Choices = &[
+    ("hull", "each state by itself: in the interval hull of the set"),
+    ("phase-plane", "position and velocity of each joint together: in the set's projections"),
+    ("exact", "all states together: in the set itself"),
 ];
 
 const STATES: Choices = &[("all", "positions and velocities"), ("positions", "positions only")];

@@ -52,6 +52,7 @@ fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
         method: args.method,
         disturbance: args.disturbance,
         centre: args.centre,
+        notion: args.notion,
         states: args.states,
         weights: match args.weights.as_str() {
             "unit" => Weights::Unit,

@@ -1,0 +1,9 @@
+//! Conformance in more directions than those of the states: every recorded point lies in the
+//! reachable set itself (exact), or in its projections on the phase planes of the joints.
+
+mod points;
+mod proof;
+pub(crate) mod smallest_sets;
+mod sweep;
+mod touching;
+pub(crate) mod verdict;

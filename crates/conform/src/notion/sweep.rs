@@ -1,0 +1,265 @@
+//! The search for recorded points outside the reachable sets.
+
+use rayon::prelude::*;
+use reachtube_reach::{Membership, MembershipWorkspace, Place, SampleGenerators};
+use reachtube_scalar::Interval;
+
+use crate::error::Result;
+use crate::grids::Grid;
+use crate::linear::cut::Cut;
+use crate::notion::points::{SamplePoints, points};
+use crate::notion::proof::Unproved;
+use crate::problem::problem::Problem;
+use crate::sets::UncertaintySets;
+use crate::settings::Notion;
+
+/// How accurately the growth of a set is known that a point outside needs, in parts of what is
+/// tolerated.
+const GAUGE: f64 = 0.1;
+
+/// How accurately points near the boundary are told from others.
+const NEAR: f64 = 1e-3;
+
+/// Equal parts of a sample over which a disturbance is held that may be any measurable function.
+const PARTS: usize = 2;
+
+/// All that the notions of enclosure need of a problem, besides the sets.
+pub(crate) struct Sweep<'a> {
+    pub grids: &'a [Grid],
+    pub generators: Vec<SampleGenerators<'a>>,
+    pub points: Vec<SamplePoints>,
+    /// The states of each projection in which points must lie in the set.
+    pub projections: Vec<Vec<usize>>,
+    pub states: usize,
+}
+
+/// How accurately a point is told to be outside.
+const EXACT: f64 = 1e-9;
+
+/// Number of disturbances, held over equally many steps, that suffice for most points.
+const HELD: usize = 24;
+
+/// A projection of the reachable set at one sample, about 0: first a smaller set of few generators,
+/// in which most points lie, then the set itself.
+pub(crate) struct SampleSet<'a> {
+    sweep: &'a Sweep<'a>,
+    at: &'a SamplePoints,
+    sets: &'a UncertaintySets,
+    projection: &'a [usize],
+    coarse: (Membership, MembershipWorkspace),
+    fine: Option<(Membership, MembershipWorkspace)>,
+}
+
+/// A point outside a reachable set, with the direction that shows it.
+#[derive(Debug, Clone)]
+pub(crate) struct Outside {
+    /// Index of its sample among those of the sweep.
+    pub at: usize,
+    /// Which of the sample's points.
+    pub point: usize,
+    /// The direction, 2n entries.
+    pub direction: Vec<f64>,
+    /// By which factor the set would have to grow at least.
+    pub ratio: f64,
+}
+
+impl<'a> SampleSet<'a> {
+    /// Returns the smaller set.
+    pub fn coarse(&mut self) -> &mut (Membership, MembershipWorkspace) {
+        &mut self.coarse
+    }
+
+    /// Returns the set itself, which is made when it is first asked for.
+    pub fn fine(&mut self) -> &mut (Membership, MembershipWorkspace) {
+        let (sweep, at, sets, projection) = (self.sweep, self.at, self.sets, self.projection);
+        self.fine.get_or_insert_with(|| sweep.members(at, sets, projection, 1))
+    }
+
+    /// Returns whether a point, in the projection and from the set's centre, lies in the set grown
+    /// by the factor 1 + `tolerance`, in floating point.
+    pub fn contains(&mut self, d: &[f64], tolerance: f64) -> bool {
+        let (set, work) = &mut self.coarse;
+        if set.locate(d, tolerance, work) == Place::Inside {
+            return true;
+        }
+        let (set, work) = self.fine();
+        set.locate(d, tolerance, work) == Place::Inside
+    }
+}
+
+impl<'a> Sweep<'a> {
+    /// Collects the points and the generators of a problem.
+    ///
+    /// # Errors
+    ///
+    /// As [`points`].
+    pub fn new(problem: &'a Problem) -> Result<Self> {
+        let (grids, settings) = (problem.grids()?.as_slice(), problem.settings());
+        let generators =
+            |grid: &'a Grid| SampleGenerators::new(&grid.propagation, settings.disturbance, PARTS);
+        let (n, rows) = (problem.joints(), settings.states.rows(problem.joints()));
+        let projections = match settings.notion {
+            Notion::Exact => vec![(0..rows).collect()],
+            _ if rows == n => (0..n).map(|i| vec![i]).collect(),
+            _ => (0..n).map(|i| vec![i, n + i]).collect(),
+        };
+        Ok(Self {
+            grids,
+            generators: grids.iter().map(generators).collect::<Result<_, _>>()?,
+            points: points(problem)?,
+            projections,
+            states: 2 * n,
+        })
+    }
+
+    /// The centre of the reachable set of the deviation, and how far it may be off, 2n each.
+    pub fn centre(&self, at: &SamplePoints, sets: &UncertaintySets) -> (Vec<f64>, Vec<f64>) {
+        let propagation = &self.grids[at.grid].propagation;
+        let (e, gamma) = (propagation.exponential(at.sample), propagation.integral(at.sample));
+        let UncertaintySets { initial_set, input_set, .. } = sets;
+        let entry = |i: usize| {
+            let start = e.row(i).into_iter().zip(&initial_set.centre);
+            let input = gamma.row(i).into_iter().zip(&input_set.centre);
+            let sum = start.chain(input).fold(Interval::ZERO, |sum, (x, c)| sum + *x * *c);
+            (sum.mid(), sum.rad())
+        };
+        (0..self.states).map(entry).unzip()
+    }
+
+    /// The radii of the set's interval hull, 2n, in floating point.
+    pub fn hull(&self, at: &SamplePoints, sets: &UncertaintySets) -> Vec<f64> {
+        let grid = &self.grids[at.grid];
+        let (e, gain) = (grid.propagation.exponential(at.sample), &grid.input_gains[at.sample]);
+        let radius = |i: usize| {
+            let start = e.row(i).into_iter().zip(&sets.initial_set.radius);
+            let input = gain.row(i).into_iter().zip(&sets.input_set.radius);
+            let sum: f64 = start.chain(input).map(|(x, r)| x.mid().abs() * r).sum();
+            sum + sets.noise_radius(i)
+        };
+        (0..self.states).map(radius).collect()
+    }
+
+    /// Returns the number of points, each counted once for each projection.
+    pub fn point_count(&self) -> usize {
+        let points: usize = self.points.iter().map(|at| at.owners.len()).sum();
+        points * self.projections.len()
+    }
+
+    /// Returns how many of some points are outside, in floating point.
+    pub fn count_outside(&self, sets: &UncertaintySets, unproved: &[Unproved]) -> usize {
+        let is_outside = |unproved: &&Unproved| {
+            let at = &self.points[unproved.at];
+            let projection = &self.projections[unproved.projection];
+            let (centre, _) = self.centre(at, sets);
+            let d = at.point(unproved.point);
+            let d: Vec<f64> = projection.iter().map(|&i| d[i] - centre[i]).collect();
+            let (set, mut work) = self.members(at, sets, projection, 1);
+            matches!(set.locate(&d, EXACT, &mut work), Place::Outside { .. })
+        };
+        unproved.par_iter().filter(is_outside).count()
+    }
+
+    /// Prepares the reachable set at a sample in one projection.
+    pub fn set<'b>(
+        &'b self,
+        at: &'b SamplePoints,
+        sets: &'b UncertaintySets,
+        projection: &'b [usize],
+    ) -> SampleSet<'b> {
+        let held = at.sample.div_ceil(HELD);
+        let coarse = self.members(at, sets, projection, held);
+        SampleSet { sweep: self, at, sets, projection, coarse, fine: None }
+    }
+
+    fn members(
+        &self,
+        at: &SamplePoints,
+        sets: &UncertaintySets,
+        projection: &[usize],
+        held: usize,
+    ) -> (Membership, MembershipWorkspace) {
+        let noise: Vec<f64> = (0..self.states).map(|i| sets.noise_radius(i)).collect();
+        let radii = [&sets.initial_set.radius[..], &sets.input_set.radius, &noise];
+        let rows = self.generators[at.grid].at(at.sample, radii, projection, held);
+        let set = Membership::new(&rows);
+        let work = set.workspace();
+        (set, work)
+    }
+
+    /// Returns, for each sample, the points that are outside the set shrunk by the factor `margin`,
+    /// or close to its boundary.
+    pub fn near(&self, sets: &UncertaintySets, margin: f64) -> Vec<Vec<usize>> {
+        let of_sample = |at: &SamplePoints| {
+            let (centre, _) = self.centre(at, sets);
+            let mut near = vec![false; at.owners.len()];
+            for projection in &self.projections {
+                let mut set = self.set(at, sets, projection);
+                for (d, near) in at.iter().zip(&mut near) {
+                    let of_state = |&i: &usize| (d[i] - centre[i]) / margin;
+                    let d: Vec<f64> = projection.iter().map(of_state).collect();
+                    *near |= !set.contains(&d, NEAR);
+                }
+            }
+            (0..near.len()).filter(|point| near[*point]).collect()
+        };
+        self.points.par_iter().map(of_sample).collect()
+    }
+
+    /// Returns, for each sample and projection, that one of the points `near` that is furthest
+    /// outside, where the set must grow by more than the factor 1 + `tolerance`.
+    pub fn outside(
+        &self,
+        sets: &UncertaintySets,
+        tolerance: f64,
+        near: &[Vec<usize>],
+    ) -> Vec<Outside> {
+        let of_sample = |index: usize| {
+            let at = &self.points[index];
+            let (centre, _) = self.centre(at, sets);
+            let worst = |projection: &Vec<usize>| {
+                let mut set = self.set(at, sets, projection);
+                let mut worst: Option<Outside> = None;
+                for &point in &near[index] {
+                    let d = at.point(point);
+                    let factor = worst.as_ref().map_or(1.0 + tolerance, |worst| worst.ratio);
+                    let of_state = |&i: &usize| (d[i] - centre[i]) / factor;
+                    let d: Vec<f64> = projection.iter().map(of_state).collect();
+                    let (coarse, work) = set.coarse();
+                    if coarse.locate(&d, GAUGE * tolerance, work) == Place::Inside {
+                        continue;
+                    }
+                    let (fine, work) = set.fine();
+                    let Some((ratio, short)) = fine.gauge(&d, GAUGE * tolerance, work) else {
+                        continue;
+                    };
+                    let mut direction = vec![0.0; self.states];
+                    projection.iter().zip(short).for_each(|(&i, l)| direction[i] = l);
+                    worst = Some(Outside { at: index, point, direction, ratio: ratio * factor });
+                }
+                worst
+            };
+            self.projections.iter().filter_map(worst).collect::<Vec<_>>()
+        };
+        let samples: Vec<usize> =
+            (0..near.len()).filter(|index| !near[*index].is_empty()).collect();
+        samples.into_par_iter().flat_map_iter(of_sample).collect()
+    }
+
+    /// Returns the row of the program that a point outside gives.
+    pub fn cut(&self, outside: &Outside) -> Cut {
+        let (at, l) = (&self.points[outside.at], &outside.direction);
+        let propagation = &self.grids[at.grid].propagation;
+        let (e, gamma) = (propagation.exponential(at.sample), propagation.integral(at.sample));
+        let along = |column: nalgebra::DVectorView<'_, Interval>| {
+            column.iter().zip(l).map(|(x, l)| x.mid() * l).sum::<f64>()
+        };
+        let centre = e.column_iter().chain(gamma.column_iter()).map(along).collect();
+        let (initial, input) = self.generators[at.grid].gains(at.sample, l);
+        Cut {
+            centre,
+            radius: [initial, input].concat(),
+            noise: l.iter().map(|l| l.abs()).collect(),
+            bound: at.furthest(l).1,
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! The recorded points that decide the sets.
+
+use std::collections::HashSet;
+
+use crate::linear::program::Program;
+use crate::notion::sweep::{Outside, Sweep};
+use crate::notion::verdict::PointWitness;
+use crate::problem::problem::Problem;
+use crate::sets::UncertaintySets;
+use crate::verdict::Witness;
+
+/// A point touches the set when it is within this part of its reach.
+const TOUCHING: f64 = 1e-4;
+
+impl Sweep<'_> {
+    /// Returns the points that touch the boundary of the reachable set in the direction of a cut,
+    /// the closest first, each once, under the state that counts most in the direction.
+    pub(super) fn touching(
+        &self,
+        problem: &Problem,
+        program: &Program,
+        sets: &UncertaintySets,
+        cuts: &[Outside],
+    ) -> Vec<Witness> {
+        let mut seen = HashSet::new();
+        let mut touching = Vec::new();
+        for (outside, cut) in cuts.iter().zip(&program.cuts) {
+            let (point, _) = self.points[outside.at].furthest(&outside.direction);
+            let (from_centre, reach) = program.reach(cut, sets);
+            let ratio = from_centre / reach;
+            if ratio < 1.0 - TOUCHING || !seen.insert((outside.at, point)) {
+                continue;
+            }
+            let touch = Outside { point, ratio, ..outside.clone() };
+            touching.push(PointWitness::new(problem, self, sets, &touch).into_witness());
+        }
+        touching.sort_by(|a, b| (b.excess / b.radius).total_cmp(&(a.excess / a.radius)));
+        touching
+    }
+}

@@ -1,0 +1,200 @@
+//! The verdict on recorded points.
+
+use std::fmt::Write;
+
+use reachtube_recordings::State;
+use serde::{Deserialize, Serialize};
+
+use crate::error::Result;
+use crate::notion::proof::Unproved;
+use crate::notion::sweep::{Outside, Sweep};
+use crate::problem::problem::Problem;
+use crate::sets::UncertaintySets;
+use crate::settings::Notion;
+use crate::side::Side;
+use crate::verdict::Witness;
+
+/// A state is named in a combination when its part is at least this of the largest.
+const NAMED: f64 = 0.02;
+
+/// A point counts as outside when the set must grow by more than this part.
+const OUTSIDE: f64 = 1e-9;
+
+/// Whether recorded points lie in the reachable set itself, or in its projections on the phase
+/// planes, and where not. A point is the measured state of one run at one sample, once for each
+/// phase plane.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointVerdict {
+    /// In which directions points must lie in the set.
+    pub notion: Notion,
+    /// Number of points after the first sample of each run. At the first one the set is a box, and
+    /// the rows say all.
+    pub points: usize,
+    /// How many of them were not proved to lie in the set.
+    pub unproved: usize,
+    /// How many of these lie outside, to rounding; the others are too close to the boundary.
+    pub outside: usize,
+    /// The point furthest outside.
+    pub worst: Option<PointWitness>,
+}
+
+/// A recorded point outside the reachable set, with the combination of states that shows it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointWitness {
+    /// The suite.
+    pub suite: String,
+    /// The recording.
+    pub run: String,
+    /// Sample, from 0.
+    pub sample: usize,
+    /// Time since the first sample, s.
+    pub time: f64,
+    /// The combination l of the states, 2n entries, that of its leading state 1.
+    pub direction: Vec<f64>,
+    /// The combination in words, such as `qd1 - 3.2 q1`, with the leading state first and without
+    /// states that hardly count.
+    pub combination: String,
+    /// The combination's value at the point, from the centre of the set, in the unit of its leading
+    /// state.
+    pub value: f64,
+    /// The largest value that the set reaches.
+    pub reach: f64,
+}
+
+/// A verdict, and the suite and run of each point that is not proved.
+pub(crate) struct Judged {
+    pub verdict: PointVerdict,
+    pub unproved: Vec<(usize, usize)>,
+}
+
+/// Judges all points of a problem whose settings ask for more than the hull.
+///
+/// # Guarantee
+///
+/// A point that is not among the unproved ones lies in the exact reachable set.
+///
+/// # Errors
+///
+/// As [`Sweep::new`].
+pub(crate) fn judge(problem: &Problem, sets: &UncertaintySets) -> Result<Judged> {
+    let sweep = Sweep::new(problem)?;
+    let all: Vec<usize> = (0..sweep.points.len()).collect();
+    let unproved = sweep.unproved(sets, &all);
+    let mut near = vec![Vec::new(); sweep.points.len()];
+    unproved.iter().for_each(|unproved| near[unproved.at].push(unproved.point));
+    let outside = sweep.outside(sets, OUTSIDE, &near);
+    let worst = outside.iter().max_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    let owner = |unproved: &Unproved| {
+        let (suite, run) = sweep.points[unproved.at].owners[unproved.point];
+        (suite as usize, run as usize)
+    };
+    let verdict = PointVerdict {
+        notion: problem.settings().notion,
+        points: sweep.point_count(),
+        unproved: unproved.len(),
+        outside: sweep.count_outside(sets, &unproved),
+        worst: worst.map(|worst| PointWitness::new(problem, &sweep, sets, worst)),
+    };
+    Ok(Judged { verdict, unproved: unproved.iter().map(owner).collect() })
+}
+
+impl PointWitness {
+    /// Names a point outside in the words of the recordings.
+    pub(crate) fn new(
+        problem: &Problem,
+        sweep: &Sweep,
+        sets: &UncertaintySets,
+        outside: &Outside,
+    ) -> Self {
+        let at = &sweep.points[outside.at];
+        let (suite, run) = at.owners[outside.point];
+        let (centre, _) = sweep.centre(at, sets);
+        let parts: Vec<f64> = sweep
+            .hull(at, sets)
+            .iter()
+            .zip(&outside.direction)
+            .map(|(radius, l)| (radius * l).abs())
+            .collect();
+        let leading = leading(&parts);
+        let unit = outside.direction[leading].abs();
+        let direction: Vec<f64> = outside.direction.iter().map(|l| l / unit).collect();
+        let d = at.point(outside.point).iter().zip(&centre).map(|(x, c)| x - c);
+        let value: f64 = d.zip(&direction).map(|(d, l)| d * l).sum();
+        Self {
+            suite: problem.recordings().suites[suite as usize].entry.name.clone(),
+            run: problem.entry(run as usize).file.clone(),
+            sample: at.sample,
+            time: sweep.grids[at.grid].propagation.grid().times()[at.sample],
+            combination: combination(&direction, &parts, problem.joints()),
+            direction,
+            value,
+            reach: value / outside.ratio,
+        }
+    }
+
+    /// Returns the point as a value of the state that counts most in the combination.
+    pub(crate) fn into_witness(self) -> Witness {
+        let is_leading = |l: &f64| l.abs() == 1.0;
+        let index = self.direction.iter().position(is_leading).unwrap_or(0);
+        let state = State::from_index(index, self.direction.len() / 2);
+        let Self { suite, run, sample, time, direction, value, reach, .. } = self;
+        Witness {
+            suite,
+            run,
+            sample,
+            time,
+            joint: state.joint + 1,
+            state,
+            side: if direction[index] > 0.0 { Side::Upper } else { Side::Lower },
+            excess: value - reach,
+            radius: reach,
+        }
+    }
+}
+
+/// The index of the largest part.
+fn leading(parts: &[f64]) -> usize {
+    (0..parts.len()).max_by(|&i, &l| parts[i].total_cmp(&parts[l])).unwrap_or(0)
+}
+
+/// The combination in words: the leading state first, then the others by their parts.
+fn combination(direction: &[f64], parts: &[f64], joints: usize) -> String {
+    let largest = parts[leading(parts)];
+    let mut named: Vec<usize> = (0..parts.len()).filter(|i| parts[*i] >= NAMED * largest).collect();
+    named.sort_by(|&i, &l| parts[l].total_cmp(&parts[i]));
+    let mut words = String::new();
+    for i in named {
+        let sign = match (words.is_empty(), direction[i] < 0.0) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        let factor = match direction[i].abs() {
+            1.0 => String::new(),
+            size => format!("{} ", three_digits(size)),
+        };
+        let _ = write!(words, "{sign}{factor}{}", State::from_index(i, joints));
+    }
+    words
+}
+
+/// A positive number with about three digits.
+fn three_digits(x: f64) -> String {
+    let digits = (2.0 - x.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{x:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::combination;
+
+    #[test]
+    fn a_combination_names_the_states_that_count_and_the_leading_one_first() {
+        let words = combination(&[-3.2, 0.0, 1.0, 0.015], &[0.5, 0.0, 1.0, 0.001], 2);
+        assert_eq!(words, "qd1 - 3.20 q1");
+        assert_eq!(combination(&[-1.0, 0.25], &[2.0, 1.0], 1), "-q1 + 0.250 qd1");
+    }
+}

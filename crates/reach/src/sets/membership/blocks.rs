@@ -1,0 +1,122 @@
+use crate::sets::membership::rows::GeneratorRows;
+
+/// Number of generators in one block.
+const LANES: usize = 8;
+
+/// One value for each generator of a block.
+pub(super) type Lanes = [f64; LANES];
+
+/// Generators in blocks, so that one pass through memory serves all states; zeros fill up the last
+/// block.
+#[derive(Debug, Clone)]
+pub(super) struct Blocks {
+    dimension: usize,
+    /// Block after block; within a block, state after state.
+    entries: Vec<Lanes>,
+}
+
+impl Blocks {
+    /// Lays out generators with each state multiplied by its `scale`, a power of two, which is
+    /// exact.
+    pub fn new(rows: &GeneratorRows, scale: &[f64]) -> Self {
+        let dimension = rows.dimension();
+        let mut entries = vec![[0.0; LANES]; rows.count().div_ceil(LANES) * dimension];
+        for (i, scale) in scale.iter().enumerate() {
+            for (j, x) in rows.row(i).iter().enumerate() {
+                entries[j / LANES * dimension + i][j % LANES] = x * scale;
+            }
+        }
+        Self { dimension, entries }
+    }
+
+    /// Returns the number of blocks.
+    pub fn len(&self) -> usize {
+        self.entries.len() / self.dimension.max(1)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &[Lanes]> {
+        self.entries.chunks_exact(self.dimension.max(1))
+    }
+
+    /// Writes z = Gᵀ y to `along`.
+    pub fn along(&self, y: &[f64], along: &mut [Lanes]) {
+        for (block, along) in self.iter().zip(along) {
+            *along = combine(block, y);
+        }
+    }
+
+    /// Writes z = Gᵀ y to `along`, the factors clip(z) to `factors` and G clip(z) to `product`, and
+    /// returns Σ |z|.
+    pub fn pass(
+        &self,
+        y: &[f64],
+        along: &mut [Lanes],
+        factors: &mut [Lanes],
+        product: &mut [Lanes],
+    ) -> f64 {
+        let mut reach = [0.0; LANES];
+        product.fill([0.0; LANES]);
+        for ((block, along), factors) in self.iter().zip(along).zip(factors) {
+            let z = combine(block, y);
+            let mut clipped = z;
+            for lane in 0..LANES {
+                reach[lane] += z[lane].abs();
+                clipped[lane] = clipped[lane].clamp(-1.0, 1.0);
+            }
+            (*along, *factors) = (z, clipped);
+            add_products(product, block, &clipped);
+        }
+        reach.iter().sum()
+    }
+
+    /// Writes G α to `product`.
+    pub fn product(&self, factors: &[Lanes], product: &mut [Lanes]) {
+        product.fill([0.0; LANES]);
+        self.iter().zip(factors).for_each(|(block, factors)| add_products(product, block, factors));
+    }
+
+    /// Adds Σ w_j g_j g_jᵀ over the generators with weights w = 1 where |z| < 1, and 0 beyond, to
+    /// the lower triangle of `sums`, row by row.
+    pub fn add_gram_of_free(&self, along: &[Lanes], sums: &mut [Lanes]) {
+        for (block, z) in self.iter().zip(along) {
+            let free = z.map(|z| if z.abs() < 1.0 { 1.0 } else { 0.0 });
+            if free == [0.0; LANES] {
+                continue;
+            }
+            let mut sums = sums.iter_mut();
+            for (i, row) in block.iter().enumerate() {
+                let mut masked = *row;
+                masked.iter_mut().zip(&free).for_each(|(x, free)| *x *= free);
+                for (other, sum) in block[..=i].iter().zip(&mut sums) {
+                    for lane in 0..LANES {
+                        sum[lane] += masked[lane] * other[lane];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Σ_i y_i x_i of a block with states x_i.
+fn combine(block: &[Lanes], y: &[f64]) -> Lanes {
+    let mut sum = [0.0; LANES];
+    for (row, y) in block.iter().zip(y) {
+        for lane in 0..LANES {
+            sum[lane] += y * row[lane];
+        }
+    }
+    sum
+}
+
+fn add_products(product: &mut [Lanes], block: &[Lanes], factors: &Lanes) {
+    for (sum, row) in product.iter_mut().zip(block) {
+        for lane in 0..LANES {
+            sum[lane] += row[lane] * factors[lane];
+        }
+    }
+}
+
+/// The sum of all lanes.
+pub(super) fn total(lanes: &Lanes) -> f64 {
+    lanes.iter().sum()
+}

@@ -1,0 +1,71 @@
+/// The generators of a zonotope about 0, laid out state by state, with what their entries may be
+/// wrong by.
+///
+/// The exact zonotope is { Σ_j β_j g_j : |β_j| <= 1 }, where the exact entries of the generators
+/// g_j differ from those that are stored by no more than [`set_error`](Self::set_error) allows.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_reach::{GeneratorRows, Membership, Place};
+///
+/// // A diamond in the plane: |x| + |y| <= 2.
+/// let mut rows = GeneratorRows::new(2, 2);
+/// rows.row_mut(0).copy_from_slice(&[1.0, 1.0]);
+/// rows.row_mut(1).copy_from_slice(&[1.0, -1.0]);
+/// let diamond = Membership::new(&rows);
+/// let mut work = diamond.workspace();
+/// assert!(matches!(diamond.locate(&[0.9, 0.9], 1e-9, &mut work), Place::Inside));
+/// // (1.5, 1.5) is in the diamond's interval hull, but not in the diamond.
+/// let (ratio, direction) = diamond.gauge(&[1.5, 1.5], 1e-9, &mut work).expect("outside");
+/// assert!((direction[0] - direction[1]).abs() < 1e-6 && (ratio - 1.5).abs() < 0.03);
+/// ```
+#[derive(Debug, Clone)]
+pub struct GeneratorRows {
+    count: usize,
+    entries: Vec<f64>,
+    errors: Vec<f64>,
+}
+
+impl GeneratorRows {
+    /// Makes `count` generators of zeros with `dimension` entries each.
+    #[must_use]
+    pub fn new(dimension: usize, count: usize) -> Self {
+        Self { count, entries: vec![0.0; dimension * count], errors: vec![0.0; dimension] }
+    }
+
+    /// Returns the number of entries of a generator.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.errors.len()
+    }
+
+    /// Returns the number of generators.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Returns entry `i` of all generators.
+    #[must_use]
+    pub fn row(&self, i: usize) -> &[f64] {
+        &self.entries[i * self.count..(i + 1) * self.count]
+    }
+
+    /// Returns entry `i` of all generators, to be written.
+    pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
+        &mut self.entries[i * self.count..(i + 1) * self.count]
+    }
+
+    /// Returns how far Σ_j β_j g_j with |β_j| <= 1 may be off in entry `i`, because the entries are
+    /// not exact.
+    #[must_use]
+    pub fn error(&self, i: usize) -> f64 {
+        self.errors[i]
+    }
+
+    /// Sets what entry `i` of all generators together may be wrong by, in sum.
+    pub fn set_error(&mut self, i: usize, error: f64) {
+        self.errors[i] = error;
+    }
+}
