@@ -1,7 +1,7 @@
 //! A model and the recordings it is compared with.
 
 use reachtube::Model;
-use reachtube::conform::{Check, Hulls, Keep, Problem, Setup, SuiteReach, check, reach};
+use reachtube::conform::{Check, Hulls, Keep, Notion, Problem, Setup, SuiteReach, check, reach};
 use reachtube::recordings::DataSet;
 
 use crate::data_arguments::{DataArguments, ModelArguments, gap_limit};
@@ -17,9 +17,11 @@ pub struct Opened {
 }
 
 impl Opened {
-    /// Opens the model file, reads the recordings and computes the reachable sets.
-    pub fn new(args: &ModelArguments, keep: Keep) -> Result<Self> {
-        let (model, setup) = Model::open(&args.model)?;
+    /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
+    /// judged by `notion`, or by that of the file.
+    pub fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {
+        let (model, mut setup) = Model::open(&args.model)?;
+        setup.settings.notion = notion.unwrap_or(setup.settings.notion);
         Self::with(model, setup, &args.data, keep)
     }
 

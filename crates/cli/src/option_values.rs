@@ -6,6 +6,13 @@ use serde::de::DeserializeOwned;
 /// The values of an option, each with its explanation.
 pub type Choices = &'static [(&'static str, &'static str)];
 
+/// The directions in which recordings must lie in the reachable set, as `--notion` names them.
+pub const NOTIONS: Choices = &[
+    ("hull", "each state by itself: in the interval hull of the set"),
+    ("phase-plane", "position and velocity of each joint together: in the set's projections"),
+    ("exact", "all states together: in the set itself"),
+];
+
 /// The models of the paper (Sec. IV-B), as `--model` names them.
 pub const MODELS: Choices = &[
     ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),

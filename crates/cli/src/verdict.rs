@@ -1,6 +1,6 @@
 //! Sentences that several commands print about a model.
 
-use reachtube::conform::Lost;
+use reachtube::conform::{Lost, Notion};
 
 /// Reports where a reachable set ended before its suite.
 pub fn lost(lost: &Lost) -> String {
@@ -9,4 +9,13 @@ pub fn lost(lost: &Lost) -> String {
          samples are not enclosed (--until {:.3} uses only the samples before)",
         lost.case, lost.time, lost.state, lost.time
     )
+}
+
+/// Says in which directions recorded points must lie in the reachable set.
+pub fn notion_words(notion: Notion) -> &'static str {
+    match notion {
+        Notion::Hull => "each state by itself",
+        Notion::PhasePlane => "position and velocity of each joint together",
+        Notion::Exact => "all states together",
+    }
 }

@@ -1,10 +1,12 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::linear::smallest_sets::smallest_sets;
+
 use crate::problem::condition::Condition;
 use crate::problem::problem::{Problem, Setup};
+use crate::progress::Silent;
 use crate::sets::UncertaintySets;
+use crate::smallest_sets::smallest_sets;
 use crate::verdict::Verdict;
 
 /// The smallest sets of a model whose friction depends on the run, where nobody knows which run it
@@ -38,7 +40,7 @@ impl AnyRun {
         let condition = middle(problem);
         let blind =
             problem.with_setup(Setup { condition: Some(condition.clone()), ..setup.clone() });
-        let found = smallest_sets(&blind)?;
+        let found = smallest_sets(&blind, &Silent, None)?;
         let verdict = Verdict::new(&blind, &found.hulls, |_, _, _| {})?;
         let (sets, cost) = (found.hulls.sets, found.cost);
         Ok(Some(Self { condition, sets, cost, verified: verdict.conformant }))

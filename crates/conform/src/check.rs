@@ -8,6 +8,7 @@ use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
 use crate::problem::problem::Problem;
 use crate::problem::suite::{RunSummary, Suite};
+use crate::settings::Notion;
 use crate::verdict::Verdict;
 
 /// The answer of a check.
@@ -22,7 +23,7 @@ pub struct Check {
     /// recording was used in the fit.
     pub rates: Option<Rates>,
     /// What would have to grow so that the recordings were enclosed; nothing where they are, or
-    /// where a reachable set was lost.
+    /// where a reachable set was lost; for the notion hull only.
     pub growth: Option<Growth>,
     /// What a user should know about the data.
     pub notes: Vec<String>,
@@ -43,7 +44,8 @@ pub fn check(model: &Model, problem: &Problem, hulls: &Hulls) -> Result<Check> {
         let largest = row.edges.iter().map(|edge| edge.excess).fold(0.0, f64::max);
         excess[row.state] = excess[row.state].max(largest);
     })?;
-    let can_grow = !verdict.conformant && excess.iter().all(|excess| excess.is_finite());
+    let is_hull = problem.settings().notion == Notion::Hull;
+    let can_grow = is_hull && !verdict.conformant && excess.iter().all(|excess| excess.is_finite());
     let growth = can_grow.then(|| Growth::new(problem, &hulls.sets, &excess)).transpose()?;
     Ok(Check { growth, ..Check::new(model, problem, verdict) })
 }

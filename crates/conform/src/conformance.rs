@@ -18,6 +18,7 @@ use crate::plausibility::{NominalFit, Warning, warnings};
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
+use crate::settings::Notion;
 use crate::smallest_sets::smallest_sets;
 use crate::verdict::{Verdict, Witness};
 
@@ -46,8 +47,8 @@ pub struct Conformance {
     pub trust: Trust,
     /// How the sets were scaled, where motions were kept back for it.
     pub calibration: Option<Calibration>,
-    /// The sets without each of the motions they were found on; none for one motion, or for a
-    /// model that is not linear.
+    /// The sets without each of the motions they were found on; none for one motion, for a model
+    /// that is not linear, and for other notions than the hull.
     pub left_out: Vec<LeftOut>,
     /// The runs that decide the sets.
     pub deciding_runs: DecidingRuns,
@@ -123,7 +124,8 @@ pub fn conform(
     let fit = NominalFit::new(problem)?;
     let warnings = warnings(problem, &hulls.sets, &radii, &fit)?;
     let is_proved = verdict.conformant;
-    let smallest_cost = calibration.is_none().then_some(cost);
+    let is_hull = problem.settings().notion == Notion::Hull;
+    let smallest_cost = (calibration.is_none() && is_hull).then_some(cost);
     Ok(Conformance {
         sets: hulls.sets.clone(),
         warnings,

@@ -71,6 +71,18 @@ pub enum Error {
     /// A step for linear models was asked of another one.
     #[error("the model is not linear; use the steps for polynomial models")]
     NotLinear,
+    /// A notion of enclosure that is for linear models was asked of another one.
+    #[error(
+        "only the notion hull is built for a model that is not linear; use --notion hull, or \
+         --model 1 --order 1"
+    )]
+    Notion,
+    /// A certificate was asked of hulls.
+    #[error(
+        "a certificate is about points in the reachable set; ask for them by --notion exact or \
+         --notion phase-plane"
+    )]
+    NotPoints,
     /// Motions cannot calibrate the sets.
     #[error("calibrate: {0}")]
     Calibration(String),

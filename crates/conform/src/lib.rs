@@ -70,6 +70,8 @@ pub use next_motion::rates::{Rate, Rates};
 pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use nominal::correction::{InputCorrection, JointCorrection, WarmthLaw};
+pub use notion::certificate::{CERTIFICATE_FORMAT, Certificate};
+pub use notion::phase_plane::PhasePlane;
 pub use notion::verdict::{PointVerdict, PointWitness};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};

@@ -3,15 +3,18 @@
 use std::fmt::Write;
 
 use clap::Args;
-use reachtube::conform::{Check, Growth, Keep, SuiteVerdict, Witness};
+use reachtube::conform::{
+    Check, Growth, Keep, Notion, PointVerdict, PointWitness, SuiteVerdict, Witness,
+};
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
 use crate::opened::Opened;
+use crate::option_values::{NOTIONS, choice};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::{plural, table};
-use crate::verdict::lost;
+use crate::verdict::{lost, notion_words};
 use reachtube::number::{at_least, four_decimals};
 use reachtube_robot::JointKind;
 
@@ -31,10 +34,14 @@ Exit codes: 0 every recorded value lies in the interval hull of the reachable se
 pub struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
+    /// Directions in which the recordings must lie in the reachable set of a linear model [default:
+    /// those of the model file]
+    #[arg(long, value_parser = choice::<Notion>(NOTIONS))]
+    pub notion: Option<Notion>,
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let opened = Opened::new(&args.model, Keep::Needed)?;
+    let opened = Opened::new(&args.model, args.notion, Keep::Needed)?;
     let check = opened.check()?;
     output::notes(&check.notes);
     for warning in &opened.model.warnings {
@@ -50,12 +57,16 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
     let set = verdict.enclosure.set_name();
     let outcome = if verdict.conformant { "conformant" } else { "not conformant" };
     let mut text = format!(
-        "{outcome}: {} {}; {} of {} rows (suite, sample, state) outside the {set}, at samples\n\n",
+        "{outcome}: {} {}; {} of {} rows (suite, sample, state) outside the {set}, at samples\n",
         verdict.runs,
         plural(verdict.runs, "recording"),
         verdict.violations.count,
         verdict.rows
     );
+    if let Some(points) = &verdict.points {
+        let _ = writeln!(text, "{}", outside_points(points, kinds));
+    }
+    text.push('\n');
     let rows: Vec<_> = verdict.suites.iter().map(|suite| suite_row(suite, kinds)).collect();
     text.push_str(&table(&["suite", "runs", "rows", "outside", "furthest outside"], &rows));
     for set in &verdict.lost {
@@ -73,6 +84,32 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
     let _ = writeln!(text, "\n{next_motion}");
     if let Some(rates) = &check.rates {
         let _ = writeln!(text, "\n{}", rates.words());
+    }
+    text
+}
+
+/// Says how many recorded points are outside the reachable set, and names the one furthest outside.
+fn outside_points(verdict: &PointVerdict, kinds: &[JointKind]) -> String {
+    let PointVerdict { points, unproved, outside, .. } = verdict;
+    let close = match unproved - outside {
+        0 => String::new(),
+        close => format!(", and {close} too close to its boundary to be proved"),
+    };
+    let mut text = format!(
+        "{outside} of {points} recorded points ({}) outside the set{close}",
+        notion_words(verdict.notion)
+    );
+    if let Some(worst) = &verdict.worst {
+        let PointWitness { run, time, combination, value, reach, .. } = worst;
+        let state = worst.leading_state();
+        let _ = write!(
+            text,
+            "\nfurthest outside: {run} at {time:.3} s, where {combination} is {} {unit} from the \
+             centre of the set, which reaches {}",
+            four_decimals(*value),
+            four_decimals(*reach),
+            unit = state.kind.unit(kinds[state.joint]),
+        );
     }
     text
 }

@@ -49,7 +49,7 @@ struct Written<'a> {
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&args.out.join("A.csv"))?;
-    let opened = Opened::new(&args.model, Keep::All)?;
+    let opened = Opened::new(&args.model, None, Keep::All)?;
     let Opened { model, problem, .. } = &opened;
     output::notes(&problem.recordings().notes);
     let (reach, check) = (opened.reach()?, opened.check()?);

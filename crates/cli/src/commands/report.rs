@@ -32,7 +32,7 @@ pub struct Arguments {
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim(&report_files::page_in(&args.out))?;
-    let opened = Opened::new(&args.model, Keep::All)?;
+    let opened = Opened::new(&args.model, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
     let page =

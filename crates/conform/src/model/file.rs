@@ -24,13 +24,13 @@ use crate::next_motion::left_out::LeftOut;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
 use crate::nominal::correction::InputCorrection;
-use crate::optimality::LARGEST_GAP;
+use crate::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::plausibility::Warning;
 use crate::problem::problem::{Problem, Setup};
 use crate::problem::recordings::Recordings;
 use crate::sensor_noise::SensorNoise;
 use crate::sets::UncertaintySets;
-use crate::settings::Settings;
+use crate::settings::{Notion, Settings};
 use crate::verdict::{Verdict, Witness};
 
 /// What the field `format` of every model file says.
@@ -296,7 +296,11 @@ impl Model {
     /// smallest.
     #[must_use]
     pub fn gap_of_not_minimal(&self) -> Option<f64> {
-        self.optimality_gap.filter(|gap| *gap > LARGEST_GAP)
+        let largest = match self.settings.notion {
+            Notion::Hull => LARGEST_GAP,
+            Notion::PhasePlane | Notion::Exact => LARGEST_GAP_OF_POINTS,
+        };
+        self.optimality_gap.filter(|gap| *gap > largest)
     }
 
     /// Returns the number of joints n.

@@ -16,6 +16,7 @@ use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets::costs;
 use crate::sets::UncertaintySets;
+use crate::settings::Notion;
 use crate::smallest_sets::smallest_sets;
 
 /// Ratio of the factors that are tried for a model that is not linear.
@@ -122,6 +123,11 @@ pub(crate) fn without_kept_back(problem: &Problem) -> Result<Option<Problem>> {
 
 /// Returns the motions that the settings keep back, or why that cannot be.
 fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
+    if problem.settings().notion != Notion::Hull {
+        return Err(Error::Calibration(
+            "sets are calibrated for the notion hull only; use --notion hull".into(),
+        ));
+    }
     let all = motions.distinct();
     let mut kept_back = BTreeSet::new();
     for name in &problem.settings().calibrate {

@@ -8,6 +8,7 @@ use crate::linear::smallest_sets::program;
 use crate::next_motion::motions::Motions;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
+use crate::settings::Notion;
 
 /// Number of motions at most for which the program is solved again.
 const MOST_PROGRAMS: usize = 60;
@@ -32,7 +33,7 @@ pub struct LeftOut {
 }
 
 /// Leaves each motion out of the program of a linear model, one after the other. Nothing with fewer
-/// than two motions, or for any other model. `sets` are the smallest for all motions: a motion that
+/// than two motions, for any other model, and for other notions than the hull. `sets` are the smallest for all motions: a motion that
 /// does not touch their reachable set decides nothing, and without it they are the smallest still.
 ///
 /// # Errors
@@ -40,7 +41,9 @@ pub struct LeftOut {
 /// As [`Problem::deviations`].
 pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<LeftOut>> {
     let motions = Motions::new(problem.recordings());
-    if motions.count() < 2 || problem.dynamics().linear_system().is_none() {
+    let is_built =
+        problem.settings().notion == Notion::Hull && problem.dynamics().linear_system().is_some();
+    if motions.count() < 2 || !is_built {
         return Ok(Vec::new());
     }
     let (program, deviations) = (program(problem)?, problem.deviations()?);

@@ -39,7 +39,7 @@ impl Sweep<'_> {
             let mut unproved = Vec::new();
             for projection in 0..self.projections.len() {
                 let points = Relative::new(self, at, projection, [&centre, &error]);
-                let left = self.unproved_in(&points, sets);
+                let left = self.unproved_in(&points, sets, |_, _| ());
                 unproved.extend(left.into_iter().map(|point| Unproved { at, point, projection }));
             }
             unproved
@@ -48,9 +48,15 @@ impl Sweep<'_> {
     }
 
     /// The points of one sample that are not proved in one projection: by the smaller set first,
-    /// then by the set itself.
-    fn unproved_in(&self, points: &Relative, sets: &UncertaintySets) -> Vec<usize> {
+    /// then by the set itself. `proved` takes how each other point was proved.
+    pub(super) fn unproved_in(
+        &self,
+        points: &Relative,
+        sets: &UncertaintySets,
+        mut proved: impl FnMut(usize, Factors),
+    ) -> Vec<usize> {
         let mut set = self.set(points.at, sets, points.projection);
+        let held = set.held;
         let mut left: Vec<usize> = (0..points.at.owners.len()).collect();
         for (step, slack) in [SLACK[0], SLACK[0], SLACK[1]].into_iter().enumerate() {
             if left.is_empty() {
@@ -58,24 +64,41 @@ impl Sweep<'_> {
             }
             let (members, work) = if step == 0 { set.coarse() } else { set.fine() };
             if let Some(proof) = MembershipProof::new(members) {
-                left.retain(|point| !points.is_proved(*point, members, &proof, slack, work));
+                left.retain(|&point| {
+                    if !points.is_proved(point, members, &proof, slack, work) {
+                        return true;
+                    }
+                    let held = if step == 0 { held } else { 1 };
+                    proved(point, Factors { held, limit: 1.0 - slack, set: members, work });
+                    false
+                });
             }
         }
         left
     }
 }
 
+/// How a point was proved: by factors of the generators.
+pub(super) struct Factors<'a> {
+    /// Number of steps over which the disturbances are held.
+    pub held: usize,
+    /// What the factors were kept to.
+    pub limit: f64,
+    pub set: &'a Membership,
+    pub work: &'a MembershipWorkspace,
+}
+
 /// The points of a sample in one projection, from the centre of the set.
-struct Relative<'a> {
-    at: &'a SamplePoints,
-    projection: &'a [usize],
+pub(super) struct Relative<'a> {
+    pub at: &'a SamplePoints,
+    pub projection: &'a [usize],
     centre: &'a [f64],
     /// How far the centre may be off.
     error: &'a [f64],
 }
 
 impl<'a> Relative<'a> {
-    fn new(
+    pub fn new(
         sweep: &'a Sweep,
         at: usize,
         projection: usize,

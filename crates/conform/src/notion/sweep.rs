@@ -1,7 +1,7 @@
 //! The search for recorded points outside the reachable sets.
 
 use rayon::prelude::*;
-use reachtube_reach::{Membership, MembershipWorkspace, Place, SampleGenerators};
+use reachtube_reach::{GeneratorRows, Membership, MembershipWorkspace, Place, SampleGenerators};
 use reachtube_scalar::Interval;
 
 use crate::error::Result;
@@ -21,7 +21,7 @@ const GAUGE: f64 = 0.1;
 const NEAR: f64 = 1e-3;
 
 /// Equal parts of a sample over which a disturbance is held that may be any measurable function.
-const PARTS: usize = 2;
+pub(super) const PARTS: usize = 2;
 
 /// All that the notions of enclosure need of a problem, besides the sets.
 pub(crate) struct Sweep<'a> {
@@ -46,6 +46,8 @@ pub(crate) struct SampleSet<'a> {
     at: &'a SamplePoints,
     sets: &'a UncertaintySets,
     projection: &'a [usize],
+    /// Number of steps over which the smaller set's disturbances are held.
+    pub held: usize,
     coarse: (Membership, MembershipWorkspace),
     fine: Option<(Membership, MembershipWorkspace)>,
 }
@@ -94,11 +96,20 @@ impl<'a> Sweep<'a> {
     ///
     /// As [`points`].
     pub fn new(problem: &'a Problem) -> Result<Self> {
+        Self::of_notion(problem, problem.settings().notion)
+    }
+
+    /// Collects the points and the generators of a problem for another notion than its own.
+    ///
+    /// # Errors
+    ///
+    /// As [`points`].
+    pub fn of_notion(problem: &'a Problem, notion: Notion) -> Result<Self> {
         let (grids, settings) = (problem.grids()?.as_slice(), problem.settings());
         let generators =
             |grid: &'a Grid| SampleGenerators::new(&grid.propagation, settings.disturbance, PARTS);
         let (n, rows) = (problem.joints(), settings.states.rows(problem.joints()));
-        let projections = match settings.notion {
+        let projections = match notion {
             Notion::Exact => vec![(0..rows).collect()],
             _ if rows == n => (0..n).map(|i| vec![i]).collect(),
             _ => (0..n).map(|i| vec![i, n + i]).collect(),
@@ -168,7 +179,7 @@ impl<'a> Sweep<'a> {
     ) -> SampleSet<'b> {
         let held = at.sample.div_ceil(HELD);
         let coarse = self.members(at, sets, projection, held);
-        SampleSet { sweep: self, at, sets, projection, coarse, fine: None }
+        SampleSet { sweep: self, at, sets, projection, held, coarse, fine: None }
     }
 
     fn members(
@@ -178,12 +189,33 @@ impl<'a> Sweep<'a> {
         projection: &[usize],
         held: usize,
     ) -> (Membership, MembershipWorkspace) {
-        let noise: Vec<f64> = (0..self.states).map(|i| sets.noise_radius(i)).collect();
-        let radii = [&sets.initial_set.radius[..], &sets.input_set.radius, &noise];
-        let rows = self.generators[at.grid].at(at.sample, radii, projection, held);
-        let set = Membership::new(&rows);
+        let set = Membership::new(&self.rows(at, sets, projection, held));
         let work = set.workspace();
         (set, work)
+    }
+
+    /// The generators of the reachable set at a sample in one projection, for disturbances that are
+    /// held over `held` steps.
+    pub fn rows(
+        &self,
+        at: &SamplePoints,
+        sets: &UncertaintySets,
+        projection: &[usize],
+        held: usize,
+    ) -> GeneratorRows {
+        let noise: Vec<f64> = (0..self.states).map(|i| sets.noise_radius(i)).collect();
+        let radii = [&sets.initial_set.radius[..], &sets.input_set.radius, &noise];
+        self.generators[at.grid].at(at.sample, radii, projection, held)
+    }
+
+    /// The generators of a smaller set, of which there are few.
+    pub fn coarse_rows(
+        &self,
+        at: &SamplePoints,
+        sets: &UncertaintySets,
+        projection: &[usize],
+    ) -> GeneratorRows {
+        self.rows(at, sets, projection, at.sample.div_ceil(HELD))
     }
 
     /// Returns, for each sample, the points that are outside the set shrunk by the factor `margin`,

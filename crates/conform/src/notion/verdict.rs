@@ -134,11 +134,19 @@ impl PointWitness {
         }
     }
 
+    /// Returns the state that counts most in the combination.
+    #[must_use]
+    pub fn leading_state(&self) -> State {
+        State::from_index(self.leading_index(), self.direction.len() / 2)
+    }
+
+    fn leading_index(&self) -> usize {
+        self.direction.iter().position(|l| l.abs() == 1.0).unwrap_or(0)
+    }
+
     /// Returns the point as a value of the state that counts most in the combination.
     pub(crate) fn into_witness(self) -> Witness {
-        let is_leading = |l: &f64| l.abs() == 1.0;
-        let index = self.direction.iter().position(is_leading).unwrap_or(0);
-        let state = State::from_index(index, self.direction.len() / 2);
+        let (index, state) = (self.leading_index(), self.leading_state());
         let Self { suite, run, sample, time, direction, value, reach, .. } = self;
         Witness {
             suite,

@@ -20,7 +20,7 @@ use crate::problem::recordings::Recordings;
 use crate::problem::suite::{Suite, SuiteReader};
 use crate::progress::Progress;
 use crate::sensor_noise::SensorNoise;
-use crate::settings::{Noise, NominalStart, Settings};
+use crate::settings::{Noise, NominalStart, Notion, Settings};
 
 /// The least limit of a set, rad or rad/s, which nobody can tell from 0. The program keeps room
 /// between its bounds.
@@ -161,6 +161,9 @@ impl Problem {
     ) -> Result<Self> {
         let Setup { robot, settings, .. } = &setup;
         settings.validate(robot.joint_count())?;
+        if settings.notion != Notion::Hull && setup.dynamics.linear_system().is_none() {
+            return Err(Error::Notion);
+        }
         let kept = KeptRuns::default();
         let reader = SuiteReader {
             source: source.as_ref(),

@@ -1,7 +1,8 @@
 //! Assembly of a page from a model and recordings.
 
 use reachtube_conform::{
-    Check, Enclosure, LeftOut, Lost, Model, Problem, States, Suite, SuiteReach, Witness,
+    self as conform, Check, Enclosure, LeftOut, Lost, Model, Notion, Problem, States, Suite,
+    SuiteReach, Witness,
 };
 use reachtube_reach::Hyperrectangle;
 
@@ -9,6 +10,7 @@ use crate::error::Result;
 use crate::number::at_least;
 use crate::report::error::ReportError;
 use crate::report::nominal::{nominal_caution, nominal_facts};
+use crate::report::notion::{outside_points, phase_planes, place, together};
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 
@@ -45,6 +47,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
         ),
         verdict: verdict(model, check),
         suites: figures,
+        phase_planes: phase_planes(problem, model)?,
         sets: vec![sets_table(model)],
         facts: [nominal_facts(model), facts(model)].concat(),
         trust: vec![trust(model, check)],
@@ -60,9 +63,12 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
     let (outside, rows) = (answer.violations.count, answer.rows);
     let words = match &answer.violations.worst {
         _ if answer.conformant => format!(
-            "All {} recordings lie in the interval hull of the {set} at every sample.",
-            answer.runs
+            "All {} recordings lie in {} at every sample{}.",
+            answer.runs,
+            place(answer),
+            together(answer)
         ),
+        _ if outside == 0 => outside_points(answer),
         None => format!("{outside} of {rows} rows have no {set}."),
         Some(worst) => format!(
             "{outside} of {rows} rows leave the {set}; the furthest is {} at {:.3} s, {} by \
@@ -74,8 +80,17 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
         States::All => "position and velocity",
         States::Positions => "position",
     };
+    let points = answer.points.as_ref().map(|points| {
+        format!(
+            "{} of {} recorded points lie in {}{}, proved with directed rounding.",
+            points.points - points.unproved,
+            points.points,
+            place(answer),
+            together(answer)
+        )
+    });
     let band = "The grey band is an outer bound of the model's reachable set at the samples";
-    let proved = vec![
+    let rows_hold = [
         format!(
             "{} of {rows} rows (suite, sample, state) hold, checked with directed rounding: the \
              recorded {states} lies in the interval hull of the {set}.",
@@ -88,27 +103,41 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
             }
         },
     ];
+    let proved = points.into_iter().chain(rows_hold).collect();
     let end = |lost: &Lost| {
         format!(
             "{}: the {set} could not be computed beyond {:.3} s ({}).",
             lost.case, lost.time, lost.state
         )
     };
-    let mut not_proved = not_proved(model, outer);
+    let mut not_proved = not_proved(model, answer, outer);
     not_proved.extend(answer.lost.iter().map(end));
     let warnings = model.warnings.iter().map(|warning| sentence(&warning.text)).collect();
     Verdict { ok: answer.conformant, words, warnings, proved, not_proved }
 }
 
 /// Returns what a reader must not take for proved.
-fn not_proved(model: &Model, outer: bool) -> Vec<String> {
+fn not_proved(model: &Model, answer: &conform::Verdict, outer: bool) -> Vec<String> {
+    let notion = match answer.points.as_ref().map_or(Notion::Hull, |points| points.notion) {
+        Notion::Hull => {
+            "The notion is the hull, which bounds each state separately. A point inside the hull \
+             need not be reachable."
+        }
+        Notion::PhasePlane => {
+            "The notion is the phase plane, which takes position and velocity of each joint \
+             together, and each joint by itself. States of several joints need not be reachable \
+             together."
+        }
+        Notion::Exact => {
+            "The notion is exact: all states at one sample are reachable together. Whether one \
+             motion of the model passes through the states of all samples is not said."
+        }
+    };
     let mut words = vec![
         "The recordings are compared with the set at samples. Between samples only the model's own \
          states are enclosed, in the tube that the command reachtube reach writes."
             .into(),
-        "The notion is the hull, which bounds each state separately. A point inside the hull need \
-         not be reachable."
-            .into(),
+        notion.into(),
     ];
     if outer {
         words.push(
@@ -179,7 +208,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("The paper's sum (21)", number(model.cost_paper)),
         ("Volume of the hull, eq. (2)", volume),
         ("Sets found by", word(settings.method)),
-        ("Notion of conformance", "hull".into()),
+        ("Notion of conformance", word(settings.notion)),
         ("Disturbance", word(settings.disturbance)),
         ("Centres of the sets", word(settings.centre)),
         ("States enclosed", word(settings.states)),

@@ -1,5 +1,6 @@
 //! The page of a model as HTML: verdict, figures, sets, tight spots, settings, and their meaning.
 
+use super::chart::{Chart, chart_svg};
 use super::error::ReportError;
 use super::figure::suite_svg;
 use super::layout::Layout;
@@ -44,6 +45,7 @@ pub fn write_html(page: &Page, out: &mut impl Write) -> Result<(), ReportError> 
         (verdict(&page.verdict))
         @if !suites.is_empty() { (figures(page, &suites)) }
         @if !page.sets.is_empty() { (sets(page)) }
+        (phase_planes(&page.phase_planes)?)
         @if !suites.is_empty() { (section("Where the sets are tight", &tables::tight(page))) }
         (meaning(page))
         @if !page.facts.is_empty() {
@@ -190,6 +192,20 @@ fn run_button(run: &RunTrace, heat: f64) -> Markup {
             @if run.touches > 0 { " " b { (run.touches) } }
         }
     }
+}
+
+/// Returns the phase planes under a sentence that says what they are.
+fn phase_planes(charts: &[Chart]) -> Result<Markup, ReportError> {
+    if charts.is_empty() {
+        return Ok(html! {});
+    }
+    let svgs: String = charts.iter().map(chart_svg).collect::<Result<_, _>>()?;
+    let words = "Each joint at the sample where a recording comes closest to the boundary of the \
+                 reachable set in the phase plane, or leaves it furthest, as deviations from the \
+                 nominal motion. Grey: the interval hull. Blue: the set. Orange: the recordings. \
+                 A point between blue and grey lies in the hull, and no motion of the model \
+                 reaches it.";
+    Ok(section("Phase planes", &html! { p { (words) } div.charts { (PreEscaped(svgs)) } }))
 }
 
 fn sets(page: &Page) -> Markup {

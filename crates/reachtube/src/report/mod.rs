@@ -20,6 +20,7 @@ mod identified_charts;
 mod layout;
 mod legend;
 mod nominal;
+mod notion;
 mod page;
 mod panel;
 mod skeleton;

@@ -1,5 +1,6 @@
 //! The contents of a page: verdict, figures, uncertainty sets, settings, and what they mean.
 
+use super::chart::Chart;
 use super::suite_figure::SuiteFigure;
 use reachtube_robot::JointKind;
 
@@ -17,6 +18,8 @@ pub struct Page {
     pub verdict: Verdict,
     /// The figures, in the order of their buttons; the first one is open.
     pub suites: Vec<SuiteFigure>,
+    /// The phase planes of the joints, where the model is linear.
+    pub phase_planes: Vec<Chart>,
     /// The uncertainty sets: one table per notion of conformance (Table II has two).
     pub sets: Vec<SetsTable>,
     /// Settings and provenance: name and value.

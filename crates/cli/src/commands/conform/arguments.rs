@@ -7,7 +7,7 @@ use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;
 use crate::lock_arguments::LockArguments;
-use crate::option_values::{Choices, MODELS, choice, numbered_choice};
+use crate::option_values::{Choices, MODELS, NOTIONS, choice, numbered_choice};
 
 const HELP: &str = "\
 Examples:
@@ -183,6 +183,10 @@ pub struct Arguments {
     /// Write the model to this JSON file
     #[arg(long, help_heading = "Output", value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Write for every recorded point what another program needs to prove that it lies in the
+    /// reachable set, for --notion exact and phase-plane: one line of JSON for each point
+    #[arg(long, help_heading = "Output", value_name = "FILE")]
+    pub certificate: Option<PathBuf>,
     /// Write an HTML page and its figures to this folder
     #[arg(long, help_heading = "Output", value_name = "FOLDER")]
     pub report: Option<PathBuf>,
@@ -207,12 +211,6 @@ const CENTRES: Choices = &[
     ("free", "any centre"),
     ("origin", "any centre for which the set contains 0, as in the paper"),
     ("zero", "the centre is 0"),
-];
-
-const NOTIONS: Choices = &[
-    ("hull", "each state by itself: in the interval hull of the set"),
-    ("phase-plane", "position and velocity of each joint together: in the set's projections"),
-    ("exact", "all states together: in the set itself"),
 ];
 
 const STATES: Choices = &[("all", "positions and velocities"), ("positions", "positions only")];

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use reachtube::conform::{
-    Check, Conformance, FitSettings, Group, Keep, Problem, conform, fit, reach,
+    Certificate, Check, Conformance, FitSettings, Group, Keep, Notion, Problem, conform, fit, reach,
 };
 use reachtube::recordings::DataSet;
 use reachtube::report::Sources;
@@ -19,8 +19,11 @@ use crate::report_files;
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let setup = setup(args)?;
     let source = Box::new(DataSet::open(&args.data.data)?);
-    if let Some(path) = &args.out {
+    for path in args.out.iter().chain(&args.certificate) {
         output::claim(path)?;
+    }
+    if args.certificate.is_some() && setup.settings.notion == Notion::Hull {
+        return Err(reachtube::conform::Error::NotPoints.into());
     }
     if let Some(folder) = &args.report {
         output::claim(&report_files::page_in(folder))?;
@@ -45,6 +48,11 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     };
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
+        output::wrote(path);
+    }
+    if let Some(path) = &args.certificate {
+        let certificate = Certificate::new(&problem, &model)?;
+        write::atomically(path, |out| certificate.write(out))?;
         output::wrote(path);
     }
     if json {

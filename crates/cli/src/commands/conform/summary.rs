@@ -12,7 +12,7 @@ use super::dependence::dependence;
 use super::fit_summary::{any_run, fit_summary};
 use super::next_motion::next_motion;
 use crate::table::{plural, table};
-use crate::verdict::lost;
+use crate::verdict::{lost, notion_words};
 use reachtube::number::{four_decimals, interval};
 
 /// Largest number of touching values in the table.
@@ -56,6 +56,15 @@ fn verdict(model: &Model) -> String {
         proof.rows - proof.violations.count,
         proof.rows
     );
+    if let Some(points) = &proof.points {
+        let _ = writeln!(
+            text,
+            "{} of {} recorded points ({}) proved to lie in the reachable set",
+            points.points - points.unproved,
+            points.points,
+            notion_words(points.notion)
+        );
+    }
     for set in &proof.lost {
         let _ = writeln!(text, "{}", lost(set));
     }

@@ -243,6 +243,13 @@ impl Membership {
 }
 
 impl MembershipWorkspace {
+    /// Returns the number y_i for each state of `set` for which the factors of the last point are
+    /// clip(gᵀ y), up to a last correction.
+    #[must_use]
+    pub fn multipliers(&self, set: &Membership) -> Vec<f64> {
+        self.y.iter().zip(&set.scale).map(|(y, scale)| y * scale).collect()
+    }
+
     /// Sets the residual e = d - G α and returns (G Gᵀ)⁻¹ e.
     fn towards_point(&mut self, factor: &Cholesky<f64, Dyn>) -> DVector<f64> {
         for (residual, (point, product)) in

@@ -1,3 +1,5 @@
+use crate::sets::zonotope::Zonotope;
+
 /// The generators of a zonotope about 0, laid out state by state, with what their entries may be
 /// wrong by.
 ///
@@ -55,6 +57,15 @@ impl GeneratorRows {
     /// Returns entry `i` of all generators, to be written.
     pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
         &mut self.entries[i * self.count..(i + 1) * self.count]
+    }
+
+    /// Returns the zonotope of the stored generators about `centre`, for figures.
+    #[must_use]
+    pub fn zonotope(&self, centre: Vec<f64>) -> Zonotope {
+        let generators = (0..self.count).flat_map(|j| {
+            (0..self.errors.len()).map(move |i| self.entries[i * self.count + j])
+        });
+        Zonotope::new(centre, generators.collect())
     }
 
     /// Returns how far Σ_j β_j g_j with |β_j| <= 1 may be off in entry `i`, because the entries are

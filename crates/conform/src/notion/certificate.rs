@@ -1,0 +1,129 @@
+//! The certificate of membership: for each recorded point, what another program needs to prove
+//! that it lies in the reachable set.
+
+use std::io::{self, Write};
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::model::file::Model;
+use crate::notion::proof::{Factors, Relative};
+use crate::notion::sweep::{PARTS, Sweep};
+use crate::problem::problem::Problem;
+use crate::sets::UncertaintySets;
+use crate::settings::Notion;
+use reachtube_reach::Disturbance;
+
+/// What the field `format` of every certificate says.
+pub const CERTIFICATE_FORMAT: &str = "reachtube-certificate";
+
+/// The first line of a certificate.
+#[derive(Debug, Serialize)]
+struct Head<'a> {
+    format: &'a str,
+    version: u32,
+    notion: Notion,
+    /// SHA-256 of the model file's content.
+    model_sha256: &'a str,
+    /// Equal parts of a sample over which a disturbance is held.
+    parts: usize,
+}
+
+/// One point.
+#[derive(Debug, Serialize)]
+struct Line<'a> {
+    suite: &'a str,
+    run: &'a str,
+    sample: usize,
+    /// The states of the projection, from 0.
+    states: &'a [usize],
+    /// Number of steps over which the disturbances of the generators are held.
+    held: usize,
+    /// What the factors are kept to.
+    limit: f64,
+    /// The factors are clip(gᵀ y), with one entry of y for each state of the projection.
+    y: Vec<f64>,
+}
+
+/// The certificate of a model's own recordings, line by line.
+#[derive(Debug)]
+pub struct Certificate {
+    lines: Vec<String>,
+}
+
+impl Certificate {
+    /// Finds the factors of every recorded point of a problem that lies in the reachable set of
+    /// `model`. Points that were not proved have no line. Some 200 bytes stay in memory for each
+    /// point.
+    ///
+    /// # Guarantee
+    ///
+    /// None: the certificate only says where to look, and the program that reads it proves.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotPoints`] for the notion hull; as [`Problem::run`].
+    pub fn new(problem: &Problem, model: &Model) -> Result<Self> {
+        let notion = problem.settings().notion;
+        if notion == Notion::Hull {
+            return Err(Error::NotPoints);
+        }
+        let (sweep, sets) = (Sweep::new(problem)?, model.sets());
+        let is_measurable = problem.settings().disturbance == Disturbance::Measurable;
+        let head = Head {
+            format: CERTIFICATE_FORMAT,
+            version: 1,
+            notion,
+            model_sha256: &model.sha256,
+            parts: if is_measurable { PARTS } else { 1 },
+        };
+        let of_sample = |at: usize| lines(problem, &sweep, &sets, at);
+        let samples: Vec<Vec<String>> =
+            (0..sweep.points.len()).into_par_iter().map(of_sample).collect();
+        Ok(Self {
+            lines: std::iter::once(json(&head)).chain(samples.into_iter().flatten()).collect(),
+        })
+    }
+
+    /// Returns the number of points.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.lines.len() - 1
+    }
+
+    /// Writes the certificate: JSON, one object a line.
+    ///
+    /// # Errors
+    ///
+    /// Those of `out`.
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.lines.iter().try_for_each(|line| writeln!(out, "{line}"))
+    }
+}
+
+fn lines(problem: &Problem, sweep: &Sweep, sets: &UncertaintySets, at: usize) -> Vec<String> {
+    let (centre, error) = sweep.centre(&sweep.points[at], sets);
+    let mut lines = Vec::new();
+    for projection in 0..sweep.projections.len() {
+        let points = Relative::new(sweep, at, projection, [&centre, &error]);
+        sweep.unproved_in(&points, sets, |point, factors| {
+            let Factors { held, limit, set, work } = factors;
+            let (suite, run) = points.at.owners[point];
+            lines.push(json(&Line {
+                suite: &problem.recordings().suites[suite as usize].entry.name,
+                run: &problem.entry(run as usize).file,
+                sample: points.at.sample,
+                states: points.projection,
+                held,
+                limit,
+                y: work.multipliers(set),
+            }));
+        });
+    }
+    lines
+}
+
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).expect("a line has string keys")
+}

@@ -1,0 +1,95 @@
+//! The phase planes of the joints, for figures.
+
+use rayon::prelude::*;
+use reachtube_recordings::State;
+
+use crate::error::Result;
+use crate::notion::points::SamplePoints;
+use crate::notion::sweep::Sweep;
+use crate::problem::problem::Problem;
+use crate::sets::UncertaintySets;
+use crate::settings::{Notion, States};
+
+/// The reachable set of one joint's position and velocity at one sample, with the recordings
+/// there. All values are deviations from the nominal solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhasePlane {
+    /// The joint, from 0.
+    pub joint: usize,
+    /// Time since the first sample, s.
+    pub time: f64,
+    /// The vertices of the set's projection, counter-clockwise: position, velocity.
+    pub polygon: Vec<[f64; 2]>,
+    /// The interval hull: the lowest and the highest position, then velocity.
+    pub hull: [[f64; 2]; 2],
+    /// The recorded points.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl PhasePlane {
+    /// Returns the phase plane of each joint at the sample where a recording comes closest to the
+    /// boundary of the set's projection, or leaves it furthest; nothing for a model that is not
+    /// linear, or where only positions count.
+    ///
+    /// # Guarantee
+    ///
+    /// None: floating point, for figures.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn of_joints(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Self>> {
+        if problem.dynamics().linear_system().is_none()
+            || problem.settings().states == States::Positions
+        {
+            return Ok(Vec::new());
+        }
+        let sweep = Sweep::of_notion(problem, Notion::PhasePlane)?;
+        let plane = |joint: usize| {
+            let ratio = |at: &SamplePoints| furthest(&sweep, at, sets, joint);
+            let ratios: Vec<f64> = sweep.points.par_iter().map(ratio).collect();
+            let at = (0..ratios.len()).max_by(|&i, &k| ratios[i].total_cmp(&ratios[k]))?;
+            Some(Self::new(&sweep, &sweep.points[at], sets, joint))
+        };
+        Ok((0..problem.joints()).filter_map(plane).collect())
+    }
+
+    fn new(sweep: &Sweep, at: &SamplePoints, sets: &UncertaintySets, joint: usize) -> Self {
+        let (centre, _) = sweep.centre(at, sets);
+        let states = &sweep.projections[joint];
+        let [q, qd] = [states[0], states[1]];
+        let rows = sweep.rows(at, sets, states, 1);
+        let hull = sweep.hull(at, sets);
+        let bounds = |i: usize| [centre[i] - hull[i], centre[i] + hull[i]];
+        Self {
+            joint: State::from_index(q, sweep.states / 2).joint,
+            time: sweep.grids[at.grid].propagation.grid().times()[at.sample],
+            polygon: rows.zonotope(vec![centre[q], centre[qd]]).polygon(0, 1),
+            hull: [bounds(q), bounds(qd)],
+            points: at.iter().map(|d| [d[q], d[qd]]).collect(),
+        }
+    }
+}
+
+/// By which factor the set would have to grow for the furthest of the points, about, from the edges
+/// of a smaller set with few generators.
+fn furthest(sweep: &Sweep, at: &SamplePoints, sets: &UncertaintySets, joint: usize) -> f64 {
+    let (centre, _) = sweep.centre(at, sets);
+    let states = &sweep.projections[joint];
+    let vertices = sweep.coarse_rows(at, sets, states).zonotope(vec![0.0, 0.0]).polygon(0, 1);
+    let next = vertices.iter().cycle().skip(1);
+    let edges: Vec<[f64; 3]> = vertices
+        .iter()
+        .zip(next)
+        .map(|(a, b)| {
+            let normal = [b[1] - a[1], a[0] - b[0]];
+            [normal[0], normal[1], normal[0] * a[0] + normal[1] * a[1]]
+        })
+        .filter(|edge| edge[2] > 0.0)
+        .collect();
+    let of_point = |d: &[f64]| {
+        let [x, y] = [states[0], states[1]].map(|i| d[i] - centre[i]);
+        edges.iter().map(|[a, b, reach]| (a * x + b * y) / reach).fold(0.0, f64::max)
+    };
+    at.iter().map(of_point).fold(0.0, f64::max)
+}
