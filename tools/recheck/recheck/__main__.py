@@ -1,0 +1,7 @@
+"""Runs the command as `python -m recheck`."""
+
+import sys
+
+from .cli import main
+
+sys.exit(main())

@@ -1,0 +1,50 @@
+"""The answer, for people and for programs."""
+
+from .verdict import Verdict
+
+ANSWERS = {
+    0: "everything holds",
+    1: "something fails",
+    2: "nothing fails, but something is undecided",
+}
+
+
+def as_text(found, code, count, seconds):
+    """Returns the answer for people."""
+    lines = []
+    for kind, tallies in found.items():
+        width = max(len(tally.name) for tally in tallies)
+        header = "".join(f"{verdict.name.lower():>11}" for verdict in Verdict)
+        lines.append(f"{kind:<{width}}{header}")
+        for tally in tallies:
+            lines.append(tally.name.ljust(width) + "".join(f"{n:>11}" for n in tally.counts))
+        for tally in tallies:
+            for finding in tally.worst(count):
+                lines.append(
+                    f"  {finding.verdict.name.lower()}: {tally.name}: {finding.place}, by up to "
+                    f"{finding.excess:.3g}"
+                )
+    lines.append(f"{ANSWERS[code]} ({seconds:.1f} s of processor time)")
+    return "\n".join(lines)
+
+
+def as_json(found, notes, code):
+    """Returns the answer for programs."""
+    return {
+        "exit_code": code,
+        "notes": notes,
+        **{
+            kind: [
+                {
+                    "name": tally.name,
+                    **{v.name.lower(): tally.counts[v] for v in Verdict},
+                    "findings": [
+                        {"verdict": f.verdict.name.lower(), "excess": f.excess, "place": f.place}
+                        for f in tally.worst(100)
+                    ],
+                }
+                for tally in tallies
+            ]
+            for kind, tallies in found.items()
+        },
+    }
