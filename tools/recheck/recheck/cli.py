@@ -6,6 +6,7 @@ import sys
 import time
 
 from . import report
+from .certificate import Certificate
 from .errors import BadInput
 from .grid import distinct
 from .hulls import HullRows
@@ -42,6 +43,9 @@ def parser():
     add("--suites", metavar="A,B", help="suites to check; by default those of the model file")
     add("--inputs", metavar="FILE", help="inputs u that define the model, as CSV: file,k,u1,...")
     add("--reach", metavar="FOLDER", help="CSV files of `reachtube reach`, to be checked too")
+    add("--certificate", metavar="FILE", help="certificate of `conform`, for points in the set")
+    add("--every", type=int, default=1, metavar="N",
+        help="check only every N-th sample of a certificate (default %(default)s)")
     add("--input-error", type=float, default=1e-10, metavar="U",
         help="how far inputs computed here may be from those that define the model, N m "
         "(default %(default)s)")
@@ -64,19 +68,22 @@ def run(arguments):
             f"the inputs u of this model were computed here, and count as known to "
             f"{arguments.input_error:g} N m only"
         )
-    hulls = HullRows(model, cases)
-    reach = ReachFiles(model, arguments.reach, cases) if arguments.reach else None
+    visitors = {"rows": HullRows(model, cases)}
+    if arguments.reach:
+        visitors["bounds"] = ReachFiles(model, arguments.reach, cases)
+    if arguments.certificate:
+        certificate = Certificate(model, system, arguments.certificate, arguments.every, cases)
+        visitors["points"] = certificate
+        notes += certificate.notes
     for grid in distinct([case.grid for case in cases]):
         here = [case for case in cases if case.grid.is_prefix_of(grid)]
         cases = [case for case in cases if not case.grid.is_prefix_of(grid)]
+        for visitor in visitors.values():
+            visitor.start(grid)
         for sample in samples(model, system, grid, here):
-            hulls.visit(sample, here)
-            if reach is not None:
-                reach.visit(sample, here)
-    found = {"rows": list(hulls.tallies.values())}
-    if reach is not None:
-        found["bounds"] = [tally for pair in reach.tallies.values() for tally in pair]
-    return found, notes
+            for visitor in visitors.values():
+                visitor.visit(sample, here)
+    return {kind: list(visitor.results()) for kind, visitor in visitors.items()}, notes
 
 
 def read_cases(model, inputs, arguments, notes):
@@ -114,6 +121,8 @@ def main(arguments=None):
     started = time.process_time()
     try:
         parsed = parser().parse_args(arguments)
+        if parsed.every < 1 or parsed.list < 0 or not parsed.input_error >= 0.0:
+            raise BadInput("--every, --list or --input-error is too small; see --help")
         found, notes = run(parsed)
     except BadInput as error:
         print(f"error: {error}", file=sys.stderr)

@@ -18,6 +18,13 @@ class HullRows:
         self.extremes = {id(case): _extremes(case) for case in cases}
         self.tallies = {}
 
+    def start(self, grid):
+        """Starts with the samples of a grid."""
+
+    def results(self):
+        """Returns the tallies, one for each suite."""
+        return self.tallies.values()
+
     def visit(self, sample, cases):
         """Judges the rows at one sample of the cases on one grid."""
         rows = {}

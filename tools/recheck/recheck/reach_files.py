@@ -34,6 +34,13 @@ class ReachFiles:
             self.files[id(case)] = at_samples, tube
             self.tallies[id(case)] = [Tally(f"{name}.csv"), Tally(f"{name}_tube.csv")]
 
+    def start(self, grid):
+        """Starts with the samples of a grid."""
+
+    def results(self):
+        """Returns the tallies, one for each file."""
+        return [tally for pair in self.tallies.values() for tally in pair]
+
     def visit(self, sample, cases):
         """Judges the bounds at one sample."""
         k = sample.k
