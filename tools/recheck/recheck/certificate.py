@@ -32,7 +32,12 @@ class Certificate:
         self._read_lines(path)
         suites = sorted({case.suite for case in cases})
         self.tallies = {suite: Tally(f"suite {suite}") for suite in suites}
-        self.generators = {}
+        self.generators = None
+        # A measurable disturbance reaches more than one that is held over samples.
+        self.is_whole = model.settings["disturbance"] != "measurable"
+        if not self.is_whole:
+            self.notes.append("points are judged for disturbances that are held over samples, "
+                              "which are some of the measurable ones")
 
     def _read_lines(self, path):
         """Reads the header, and where the groups of each sample start."""
@@ -132,7 +137,7 @@ class Certificate:
             ]
             if states not in self.projections or not points:
                 return
-            projection = Projection(parts, list(states), group["directions"])
+            projection = Projection(parts, list(states), group["directions"], self.is_whole)
             deviations = []
             for file, weights in points:
                 c, run = runs[group["suite"], file]

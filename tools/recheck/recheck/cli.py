@@ -46,7 +46,7 @@ def parser():
     add("--certificate", metavar="FILE", help="certificate of `conform`, for points in the set")
     add("--every", type=int, default=1, metavar="N",
         help="check only every N-th sample of a certificate (default %(default)s)")
-    add("--input-error", type=float, default=1e-10, metavar="U",
+    add("--input-error", type=float, default=1e-12, metavar="U",
         help="how far inputs computed here may be from those that define the model, N m "
         "(default %(default)s)")
     add("--list", type=int, default=5, metavar="N",

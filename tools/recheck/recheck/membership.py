@@ -12,17 +12,21 @@ product of the magnitudes, in any order of summation, with u = 2^-53.
 import numpy
 
 from .balls import arb
+from .generators import QUANTUM
 from .verdict import Verdict
 
 # Twice the unit of rounding, so that the bounds of rounding are rounded up with room to spare.
 UNIT = 2.0**-52
+# Bound of what the entries of generators are off besides their rounding to doubles.
+TINY = 2.0 ** (1 - QUANTUM)
 
 
 class Projection:
     """The generators of one sample in some states, with what all points share."""
 
-    def __init__(self, parts, states, directions):
-        self.parts, self.states = parts, states
+    def __init__(self, parts, states, directions, is_whole=True):
+        # Where these are not all generators, no point can be proved to be outside.
+        self.parts, self.states, self.is_whole = parts, states, is_whole
         self.g = numpy.concatenate([part.rounded(states) for part in parts], axis=1)
         self.directions = numpy.array(directions, dtype=float).reshape(-1, len(states))
         self.signs, self.vertices = self._vertices(self.directions)
@@ -56,7 +60,7 @@ class Projection:
                 missing = min(missing, self._one_by_one(weights, rest))
             if missing <= 0.0:
                 judged.append((Verdict.HOLDS, 0.0))
-            elif self._is_outside(point, rest[0]):
+            elif self.is_whole and self._is_outside(point, rest[0]):
                 judged.append((Verdict.FAILS, missing))
             else:
                 judged.append((Verdict.UNDECIDED, missing))
@@ -125,6 +129,7 @@ class _Inverse:
         terms = g.shape[1] + 8
         off = numpy.abs(scaled @ self.w - numpy.eye(len(g)))
         off += terms * UNIT * (numpy.abs(scaled) @ self.sizes)
+        off += TINY * scale[:, None] * self.sizes.sum(axis=0)
         self.defect = 1.01 * off.sum(axis=1).max()
 
     def factors(self, rests):
@@ -140,7 +145,7 @@ class _Inverse:
         beta = numpy.abs(self.w @ rounded.T)
         beta += terms * UNIT * (self.sizes @ numpy.abs(rounded).T)
         beta += self.sizes.sum(axis=1)[:, None] * spread[None, :]
-        return list((beta * (1.0 + 8.0 * UNIT)).T)
+        return list((beta * (1.0 + 64.0 * UNIT)).T)
 
 
 def _along_axes(l):
