@@ -9,11 +9,15 @@ import hashlib
 import math
 import re
 from dataclasses import dataclass, field
-from fractions import Fraction
+from decimal import ROUND_HALF_UP, Context, Decimal
 from pathlib import Path
 
 from .errors import BadInput
 from .grid import Grid, grid_of
+
+PER_SECOND = Decimal(10**12)
+# Digits enough for any number of a file; ROUND_HALF_UP takes halves away from zero.
+EXACT = Context(prec=20_000)
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?")
 
@@ -131,6 +135,4 @@ def _double(text, place):
 def picoseconds(text, place=""):
     """Returns a decimal number of seconds in whole picoseconds, halves away from zero."""
     _double(text, place)
-    exact = Fraction(text) * 10**12
-    size = (2 * abs(exact) + 1) // 2
-    return int(size if exact >= 0 else -size)
+    return int(EXACT.multiply(Decimal(text), PER_SECOND).to_integral_value(ROUND_HALF_UP, EXACT))

@@ -11,19 +11,23 @@ import math
 
 
 def _product(a, b):
-    return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+    b0, b1, b2 = b
+    return [
+        [x * p + y * q + z * r for p, q, r in zip(b0, b1, b2, strict=True)] for x, y, z in a
+    ]
 
 
 def _apply(a, x):
-    return [sum(a[i][k] * x[k] for k in range(3)) for i in range(3)]
+    x0, x1, x2 = x
+    return [p * x0 + q * x1 + r * x2 for p, q, r in a]
 
 
 def _plus(x, y):
-    return [a + b for a, b in zip(x, y, strict=True)]
+    return [x[0] + y[0], x[1] + y[1], x[2] + y[2]]
 
 
 def _dot(x, y):
-    return sum(a * b for a, b in zip(x, y, strict=True))
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 
 
 def _cross(x, y):

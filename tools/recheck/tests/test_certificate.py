@@ -74,7 +74,8 @@ def write_certificate(folder, model, h, notion, samples):
     runs = {}
     for path in sorted((folder / "data").glob("r[0-9].csv")):
         with open(path) as file:
-            runs[path.name] = numpy.array([[float(x) for x in r] for r in list(csv.reader(file))[1:]])
+            rows = list(csv.reader(file))[1:]
+        runs[path.name] = numpy.array([[float(x) for x in row] for row in rows])
     c_x, c_u = (numpy.array(model[name]["centre"]) for name in ("initial_set", "input_set"))
     phi, gamma = toy.exact_step(h)
     centre = start + c_x

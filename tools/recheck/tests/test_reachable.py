@@ -37,7 +37,7 @@ def last(model, grid):
     ("constant", 0.0, 0.0), ("measurable", 4.0, 4.0),
 ])
 def test_a_turn_of_the_oscillator(disturbance, position, velocity):
-    """q'' = u - q: the kernels are sin and cos, so that kappa over a turn is 4, and |Gamma| is 0."""
+    """q'' = u - q has the kernels sin and cos: over a turn kappa is 4, and |Gamma| is 0."""
     model = model_of([[0.0, 1.0], [-1.0, 0.0]], [[0.0], [1.0]], disturbance)
     found = last(model, Grid(tuple(2 * math.pi * k / 7 for k in range(8)), None))
     assert abs(found.radius[0, 0] - position) < 1e-14
