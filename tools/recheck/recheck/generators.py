@@ -61,6 +61,21 @@ class Columns:
             for v in range(signs.shape[1])
         ]
 
+    def combination(self, states, numerators, bits):
+        """Returns the sum of the columns times whole numbers over 2^bits, in balls."""
+        used = numpy.flatnonzero(numerators)
+        factors = [int(n) for n in numerators[used]]
+        error = (ENTRY_ERROR * sum(map(abs, factors))).upper()
+        found = []
+        for i in states:
+            wholes = (
+                sum(int(part[i, j]) << (s * self.width) for s, part in enumerate(self._slices))
+                for j in used
+            )
+            total = sum(n * whole for n, whole in zip(factors, wholes, strict=True))
+            found.append((arb(total) / arb(2) ** QUANTUM + arb(0, error)) / arb(2) ** bits)
+        return found
+
     def _value(self, digits, error):
         whole = sum(int(digit) << (s * self.width) for s, digit in enumerate(digits))
         return arb(whole) / arb(2) ** QUANTUM + arb(0, error)

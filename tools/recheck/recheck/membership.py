@@ -17,6 +17,10 @@ from .verdict import Verdict
 
 # Twice the unit of rounding, so that the bounds of rounding are rounded up with room to spare.
 UNIT = 2.0**-52
+# Generators with g'l below this part of |g|'|l| count as orthogonal to l.
+ORTHOGONAL = 1e-10
+# Digits of moved factors, and the most steps of the search for them.
+BITS, MOST_STEPS = 24, 30
 # Bound of what the entries of generators are off besides their rounding to doubles.
 TINY = 2.0 ** (1 - QUANTUM)
 
@@ -29,14 +33,19 @@ class Projection:
         self.parts, self.states, self.is_whole = parts, states, is_whole
         self.g = numpy.concatenate([part.rounded(states) for part in parts], axis=1)
         self.directions = numpy.array(directions, dtype=float).reshape(-1, len(states))
-        self.signs, self.vertices = self._vertices(self.directions)
         sizes = numpy.abs(self.g).sum(axis=1)
         self.scale = numpy.where(sizes > 0.0, 1.0 / numpy.where(sizes > 0.0, sizes, 1.0), 0.0)
         self.uniform = _Inverse(self.g, self.scale, numpy.ones(self.g.shape[1]))
+        self.strict = self._recipes(self.directions, 0.0)
+        self._loose = None
 
-    def _vertices(self, directions):
-        """Returns sign(G' l) for each direction l, and G sign(G' l) in balls."""
-        signs = numpy.where(self.g.T @ directions.T >= 0.0, 1.0, -1.0)
+    def _recipes(self, directions, least):
+        """Returns the signs of G' l for each direction l, and G times them in balls. Products
+        that are at most `least` of the product of the magnitudes have the sign 0."""
+        products = self.g.T @ directions.T
+        signs = numpy.where(products >= 0.0, 1.0, -1.0)
+        sizes = numpy.abs(self.g).T @ numpy.abs(directions).T
+        signs[numpy.abs(products) < least * sizes] = 0.0
         sums, first = None, 0
         for part in self.parts:
             own = part.sums(self.states, signs[first : first + part.count])
@@ -46,60 +55,109 @@ class Projection:
             ]
         return signs, sums
 
+    @property
+    def loose(self):
+        """The recipes in which generators next to orthogonal to a direction have no part: rounding
+        decides their signs, and the rest may need them."""
+        if self._loose is None:
+            self._loose = self._recipes(self.directions, ORTHOGONAL)
+        return self._loose
+
     def judge(self, points):
         """Judges points, each the deviation from the centre of the set in balls with its weights.
         Returns verdicts and what may be missing, in parts of a factor."""
         points = list(points)
-        rests = [self._rest(point, weights) for point, weights in points]
+        slacks = [self._slack(weights) for _, weights in points]
+        rests = [
+            point if slack is None else _rest(point, weights, self.strict[1])
+            for (point, weights), slack in zip(points, slacks, strict=True)
+        ]
         judged = []
-        for beta, (point, weights), rest in zip(
-            self.uniform.factors([rest for rest, _ in rests]), points, rests, strict=True
+        for beta, (point, weights), rest, slack in zip(
+            self.uniform.factors(rests), points, rests, slacks, strict=True
         ):
-            missing = _missing(beta.max(), rest[1])
-            if missing > 0.0:
-                missing = min(missing, self._one_by_one(weights, rest))
+            missing = numpy.inf if slack is None else float(beta.max() - slack)
+            if missing > 0.0 and slack is not None:
+                missing = min(missing, self._one_by_one(point, weights, slack))
             if missing <= 0.0:
                 judged.append((Verdict.HOLDS, 0.0))
-            elif self.is_whole and self._is_outside(point, rest[0]):
+            elif self.is_whole and self._is_outside(point, rest):
                 judged.append((Verdict.FAILS, missing))
             else:
                 judged.append((Verdict.UNDECIDED, missing))
         return judged
 
-    def _rest(self, point, weights):
-        """Returns the rest e of a point, and a lower bound of 1 - sum of weights; None where the
-        weights are not allowed."""
+    def _slack(self, weights):
+        """Returns a lower bound of 1 - sum of weights; None where weights are not allowed."""
         if len(weights) != len(self.directions) or not all(w >= 0.0 for w in weights):
-            return point, None
-        exact = [arb(w) for w in weights]
-        rest = list(point)
-        for w, vertex in zip(exact, self.vertices, strict=True):
-            if not w.is_zero():
-                rest = [x - w * v for x, v in zip(rest, vertex, strict=True)]
-        slack = (1 - sum(exact, arb(0))).lower()
-        return rest, slack if slack >= 0 else None
+            return None
+        slack = (1 - sum(map(arb, weights), arb(0))).lower()
+        return max(numpy.nextafter(float(slack), -numpy.inf), 0.0) if slack >= 0 else None
 
-    def _one_by_one(self, weights, rest):
-        """Judges each factor by itself, with the rest put where the factors have room."""
-        e, slack = rest
-        if slack is None:
-            return numpy.inf
-        alpha = self.signs @ numpy.array(weights)
-        room = 1.0 - numpy.abs(alpha) - (len(weights) + 4) * UNIT
-        room = numpy.maximum(room, _down(slack))
-        beta = _Inverse(self.g, self.scale, room).factors([e])[0]
-        return float((beta - room).max())
+    def _one_by_one(self, point, weights, slack):
+        """Judges each factor by itself, with the rest put where the factors have room. Returns
+        what is missing in the best of some ways to do so."""
+        missing = numpy.inf
+        for recipes in (lambda: self.strict, lambda: self.loose):
+            signs, vertices = recipes()
+            rest = _rest(point, weights, vertices)
+            alpha = signs @ numpy.array(weights)
+            room = 1.0 - numpy.abs(alpha) - (len(weights) + 4) * UNIT
+            missing = min(missing, self._absorb(rest, numpy.maximum(room, slack)))
+            if missing <= 0.0:
+                return missing
+        moved = self._moved(alpha, rest)
+        first = 0
+        for part in self.parts:
+            own = part.combination(self.states, moved[first : first + part.count], BITS)
+            first += part.count
+            rest = [x - y for x, y in zip(rest, own, strict=True)]
+        room = 1.0 - numpy.abs(alpha + moved / 2.0**BITS) - (len(weights) + 8) * UNIT
+        return min(missing, self._absorb(rest, numpy.where(moved == 0.0, numpy.maximum(
+            room, slack), numpy.maximum(room, 0.0))))
+
+    def _absorb(self, rest, room):
+        """Returns what is missing for the rest to go where the factors have this room."""
+        missing = numpy.inf
+        for power in (2, 1):
+            beta = _Inverse(self.g, self.scale, room**power).factors([rest])[0]
+            missing = min(missing, float((beta - room).max()))
+            if missing <= 0.0:
+                break
+        return missing
+
+    def _moved(self, alpha, rest):
+        """Returns by how much to move factors, in parts of 2^BITS, so that a large rest becomes
+        small: steps to the nearest bound, along least norms weighted by the room that is left.
+        This is a search, and proves nothing."""
+        e = numpy.array([float(x) for x in rest]) * self.scale
+        scaled = self.g * self.scale[:, None]
+        start, room = alpha.copy(), numpy.ones(len(alpha))
+        for _ in range(MOST_STEPS):
+            w = _Inverse(self.g, self.scale, room).w
+            beta = w @ e
+            if not numpy.isfinite(beta).all():
+                break
+            room = numpy.maximum(1.0 - numpy.sign(beta) * alpha, 0.0)
+            step = 0.99 * (room / numpy.maximum(numpy.abs(beta), 1e-300)).min()
+            if step >= 1.0:
+                alpha = alpha + beta
+                break
+            alpha = alpha + step * beta
+            e = e - scaled @ (step * beta)
+        moved = numpy.round((alpha - start) * 2.0**BITS)
+        return numpy.where(numpy.abs(moved) < 2.0 ** (BITS - 20), 0.0, moved)
 
     def _is_outside(self, point, rest):
         """Returns whether a direction is known in which the point is proved to be beyond the set:
         l'd > sum of |g_j' l|. That sum is l'G sign(G'l), but for signs of products so small that
         rounding decides them."""
-        found = numpy.array([float(x) for x in rest]) * self.scale
-        candidates = [*self.directions, found * self.scale, *_along_axes(found * self.scale)]
+        found = numpy.array([float(x) for x in rest]) * self.scale**2
+        candidates = [*self.directions, found, *_along_axes(found)]
         candidates = numpy.array([l for l in candidates if numpy.abs(l).max() > 0.0])
         if candidates.size == 0:
             return False
-        _, vertices = self._vertices(candidates)
+        _, vertices = self._recipes(candidates, 0.0)
         terms = len(self.states) + 4
         for l, vertex in zip(candidates, vertices, strict=True):
             doubtful = 4.0 * terms * UNIT * (numpy.abs(self.g).sum(axis=1) @ numpy.abs(l))
@@ -111,13 +169,22 @@ class Projection:
         return False
 
 
+def _rest(point, weights, vertices):
+    """Returns the point less the sum of vertices with these weights."""
+    rest = list(point)
+    for w, vertex in zip(weights, vertices, strict=True):
+        if w != 0.0:
+            rest = [x - arb(w) * v for x, v in zip(rest, vertex, strict=True)]
+    return rest
+
+
 class _Inverse:
     """W = D G' (G D G')^-1 for weights D of the generators, with rows scaled to sums of 1."""
 
     def __init__(self, g, scale, room):
         scaled = g * scale[:, None]
         self.scale = scale
-        weighted = scaled * (room / max(room.max(), 1e-300)) ** 2
+        weighted = scaled * (room / max(room.max(), 1e-300))
         try:
             gram = numpy.linalg.inv(scaled @ weighted.T)
             self.w = weighted.T @ gram
@@ -153,13 +220,5 @@ def _along_axes(l):
     return [numpy.where(numpy.arange(len(l)) == i, l, 0.0) for i in range(len(l))]
 
 
-def _missing(beta, slack):
-    return numpy.inf if slack is None else float(beta) - _down(slack)
-
-
 def _up(x):
     return numpy.nextafter(float(abs(x).upper()), numpy.inf)
-
-
-def _down(x):
-    return max(numpy.nextafter(float(x), -numpy.inf), 0.0)

@@ -1,5 +1,7 @@
 """The answer, for people and for programs."""
 
+from math import isfinite
+
 from .verdict import Verdict
 
 ANSWERS = {
@@ -20,9 +22,9 @@ def as_text(found, code, count, seconds):
             lines.append(tally.name.ljust(width) + "".join(f"{n:>11}" for n in tally.counts))
         for tally in tallies:
             for finding in tally.worst(count):
+                by = f", by up to {finding.excess:.3g}" if isfinite(finding.excess) else ""
                 lines.append(
-                    f"  {finding.verdict.name.lower()}: {tally.name}: {finding.place}, by up to "
-                    f"{finding.excess:.3g}"
+                    f"  {finding.verdict.name.lower()}: {tally.name}: {finding.place}{by}"
                 )
     lines.append(f"{ANSWERS[code]} ({seconds:.1f} s of processor time)")
     return "\n".join(lines)
@@ -39,7 +41,8 @@ def as_json(found, notes, code):
                     "name": tally.name,
                     **{v.name.lower(): tally.counts[v] for v in Verdict},
                     "findings": [
-                        {"verdict": f.verdict.name.lower(), "excess": f.excess, "place": f.place}
+                        {"verdict": f.verdict.name.lower(), "excess": f.excess if isfinite(f.excess) else None,
+                         "place": f.place}
                         for f in tally.worst(100)
                     ],
                 }
