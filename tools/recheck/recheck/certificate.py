@@ -2,12 +2,13 @@
 
 A certificate is a text file with one JSON object per line. The first is a header:
 
-    {"format": "reachtube-certificate", "version": 1, "notion": "exact", "model_digest": ".."}
+    {"format": "reachtube-certificate", "version": 1, "notion": "exact", "model_sha256": "..",
+     "limit": 0.999999999}
 
-Each further line is a group of points at one sample of a suite, in the states that are listed:
+Each further line is a point: a recorded sample in the states that are listed, with the vector y
+that names its factors (membership.py):
 
-    {"suite": "A", "sample": 7, "states": [0, 1], "directions": [[..], ..],
-     "points": [{"file": "a.csv", "weights": [..]}, ..]}
+    {"suite": "A", "run": "a.csv", "sample": 7, "states": [0, 1], "y": [.., ..]}
 
 Notion `exact` needs a point in all states for each recording and sample; `phase-plane` needs one
 for each joint in (q, qd). Points at sample 0 lie in a box and need no certificate.
@@ -28,7 +29,7 @@ class Certificate:
 
     def __init__(self, model, system, path, every, cases):
         self.model, self.system, self.path, self.every = model, system, path, every
-        self.groups, self.notes = {}, []
+        self.lines, self.notes = {}, []
         self._read_lines(path)
         suites = sorted({case.suite for case in cases})
         self.tallies = {suite: Tally(f"suite {suite}") for suite in suites}
@@ -36,19 +37,19 @@ class Certificate:
         # A measurable disturbance reaches more than one that is held over samples.
         self.is_whole = model.settings["disturbance"] != "measurable"
         if not self.is_whole:
-            self.notes.append("points are judged for disturbances that are held over samples, "
-                              "which are some of the measurable ones")
+            self.notes.append("points are judged for disturbances that are held over samples, or "
+                              "parts of them, which are some of the measurable ones")
 
     def _read_lines(self, path):
-        """Reads the header, and where the groups of each sample start."""
+        """Reads the header, and where the points of each sample are."""
         try:
             with open(path, "rb") as file:
                 self._header(json.loads(file.readline()))
                 at = file.tell()
                 for line in file:
-                    group = json.loads(line)
-                    key = group["suite"], group["sample"]
-                    self.groups.setdefault(key, []).append(at)
+                    point = json.loads(line)
+                    key = point["suite"], point["sample"]
+                    self.lines.setdefault(key, []).append(at)
                     at += len(line)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise BadInput(f"{path}: {error!r}; give a file of `conform --certificate`") from error
@@ -63,12 +64,19 @@ class Certificate:
             self.projections = [(i, n + i) for i in range(n)]
         else:
             raise BadInput(f"{self.path}:1: the notion is {notion!r}, not exact or phase-plane")
-        if header["model_digest"] != self.model.sha256:
+        self.limit, self.parts = float(header["limit"]), header.get("parts", 1)
+        if not 0.0 < self.limit <= 1.0:
+            raise BadInput(f"{self.path}:1: the limit is {self.limit}, not between 0 and 1")
+        if not (isinstance(self.parts, int) and self.parts >= 1):
+            raise BadInput(f"{self.path}:1: parts is {self.parts!r}, not a whole number from 1")
+        if self.parts != 1 and self.model.settings["disturbance"] != "measurable":
+            raise BadInput(f"{self.path}:1: only a measurable disturbance may change within a step")
+        if header["model_sha256"] != self.model.sha256:
             self.notes.append("the certificate was made for another model file")
 
     def start(self, grid):
         """Starts with the samples of a grid."""
-        self.generators = Generators(self.model, self.system, grid)
+        self.generators = Generators(self.model, self.system, grid, self.parts)
 
     def results(self):
         """Returns the tallies, one for each suite."""
@@ -77,7 +85,7 @@ class Certificate:
     def visit(self, sample, cases):
         """Judges the points at one sample of the cases on one grid."""
         if sample.k % self.every == 0:
-            found = self._box(sample, cases) if sample.k == 0 else self._groups(sample, cases)
+            found = self._box(sample, cases) if sample.k == 0 else self._points(sample, cases)
             for case in cases:
                 for run in case.runs:
                     if sample.k < len(run.grid):
@@ -112,41 +120,34 @@ class Certificate:
                     found[case.suite, run.file, states] = max(verdicts)
         return found
 
-    def _groups(self, sample, cases):
-        """Judges the points of the groups at one sample."""
+    def _points(self, sample, cases):
+        """Judges the points of the certificate at one sample."""
         runs = {
             (case.suite, run.file): (c, run)
             for c, case in enumerate(cases) for run in case.runs if sample.k < len(run.grid)
         }
-        places = {at for suite, _ in runs for at in self.groups.get((suite, sample.k), [])}
-        if not places:
-            return {}
-        found, parts = {}, self.generators.at(sample)
+        by_states = {}
         with open(self.path, "rb") as file:
-            for at in sorted(places):
-                file.seek(at)
-                self._group(sample, json.loads(file.readline()), runs, parts, found)
+            for suite in sorted({suite for suite, _ in runs}):
+                for at in self.lines.get((suite, sample.k), []):
+                    file.seek(at)
+                    self._take(sample, json.loads(file.readline()), runs, by_states)
+        found, parts = {}, self.generators.at(sample) if by_states else None
+        for states, points in by_states.items():
+            projection = Projection(parts, list(states), self.limit, self.is_whole)
+            judged = projection.judge([point for _, point in points])
+            for (key, _), verdict in zip(points, judged, strict=True):
+                found[key] = min(found.get(key, verdict), verdict)
         return found
 
-    def _group(self, sample, group, runs, parts, found):
+    def _take(self, sample, point, runs, by_states):
+        """Adds a point of these runs to those with the same states."""
         try:
-            states = tuple(group["states"])
-            points = [
-                (point["file"], point["weights"]) for point in group["points"]
-                if (group["suite"], point["file"]) in runs
-            ]
-            if states not in self.projections or not points:
-                return
-            projection = Projection(parts, list(states), group["directions"], self.is_whole)
-            deviations = []
-            for file, weights in points:
-                c, run = runs[group["suite"], file]
-                deviation = [self._deviation(sample, c, run, i) for i in states]
-                deviations.append((deviation, weights))
-            judged = projection.judge(deviations)
+            suite, file, states = point["suite"], point["run"], tuple(point["states"])
+            y = [float(x) for x in point["y"]]
         except (KeyError, TypeError, ValueError) as error:
-            place = f"{self.path}: sample {sample.k} of suite {group.get('suite')}"
-            raise BadInput(f"{place}: {error!r}") from error
-        for (file, _), verdict in zip(points, judged, strict=True):
-            key = group["suite"], file, states
-            found[key] = min(found.get(key, verdict), verdict)
+            raise BadInput(f"{self.path}: a point at sample {sample.k}: {error!r}") from error
+        if (suite, file) in runs and states in self.projections and len(y) == len(states):
+            c, run = runs[suite, file]
+            deviation = [self._deviation(sample, c, run, i) for i in states]
+            by_states.setdefault(states, []).append(((suite, file, states), (deviation, y)))

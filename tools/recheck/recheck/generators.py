@@ -4,8 +4,9 @@ At sample k they are e^{A t_k} diag(r_x), then for each earlier sample j the col
 (Gamma(t_k - t_j) - Gamma(t_k - t_{j+1})) diag(r_u), then diag(r_v).
 
 Sums of thousands of columns have to be exact to more than the digits of a double. Each entry is
-therefore rounded to a multiple of 2^-QUANTUM, and cut into slices of so few bits that doubles hold
-the sum of all columns, with any signs and in any order, without rounding.
+therefore rounded to a multiple of 2^-QUANTUM, each factor is a multiple of 2^-BITS, and both are
+cut into digits of so few bits that doubles hold the sums of their products without rounding, in
+any order.
 """
 
 import numpy
@@ -15,32 +16,35 @@ from .gains import UnevenSamples
 
 # Entries are multiples of 2^-QUANTUM, and below 2^RANGE.
 QUANTUM, RANGE = 130, 20
+# Factors are multiples of 2^-BITS, in digits of DIGIT bits.
+BITS, DIGIT = 47, 12
 # Error of an entry: half a multiple by rounding, and as much for the radius of its ball.
 ENTRY_ERROR = arb(2) ** -QUANTUM
 HALF = arb(2) ** -(QUANTUM + 1)
 
 
 class Columns:
-    """Columns of balls, kept as slices of whole numbers in doubles."""
+    """Columns of balls, kept as digits of whole numbers in doubles."""
 
     def __init__(self, rows, capacity):
-        self.width = 52 - max(capacity, 1).bit_length()
+        # A sum of `capacity` products of digits stays below 2^53.
+        self.width = 52 - DIGIT - max(capacity, 1).bit_length()
         count = -(-(QUANTUM + RANGE) // self.width)
-        self._slices = numpy.zeros((count, rows, capacity))
+        self._digits = numpy.zeros((count, rows, capacity))
         self._rounded = numpy.zeros((rows, capacity))
         self.count = 0
 
     def append(self, columns):
         """Appends columns, a matrix of balls."""
         rows, added, entries = columns.nrows(), columns.ncols(), columns.entries()
+        mask = (1 << self.width) - 1
         for at, x in enumerate(entries):
             i, j = divmod(at, added)
             whole = _whole(x)
             self._rounded[i, self.count + j] = float(x)
             sign, size = (-1.0, -whole) if whole < 0 else (1.0, whole)
-            for s in range(len(self._slices)):
-                digit = (size >> (s * self.width)) & ((1 << self.width) - 1)
-                self._slices[s, i, self.count + j] = sign * digit
+            for s in range(len(self._digits)):
+                self._digits[s, i, self.count + j] = sign * ((size >> (s * self.width)) & mask)
         self.count += added
 
     def clear(self):
@@ -48,37 +52,22 @@ class Columns:
         self.count = 0
 
     def rounded(self, states):
-        """Returns the columns in doubles, rounded to nearest, in these states."""
+        """Returns the columns in these states in doubles that are off by a last digit at most."""
         return self._rounded[states, : self.count]
 
-    def sums(self, states, signs):
-        """Returns the sums of all columns with these signs (columns x sums) as lists of balls,
-        one for each sum."""
-        slices = [part[states, : self.count] @ signs for part in self._slices]
+    def combination(self, states, factors):
+        """Returns the sum of the columns times these factors, multiples of 2^-BITS of at most 1,
+        in balls."""
+        numerators = numpy.abs(factors) * 2.0**BITS
+        signs, totals = numpy.sign(factors), [0] * len(states)
+        for t in range(-(-(BITS + 1) // DIGIT)):
+            digit = signs * numpy.floor(numpy.fmod(numerators * 2.0 ** (-t * DIGIT), 2.0**DIGIT))
+            for s, part in enumerate(self._digits):
+                sums = part[states, : self.count] @ digit
+                shift = s * self.width + t * DIGIT
+                totals = [total + (int(x) << shift) for total, x in zip(totals, sums, strict=True)]
         error = (ENTRY_ERROR * self.count).upper()
-        return [
-            [self._value([part[i, v] for part in slices], error) for i in range(len(states))]
-            for v in range(signs.shape[1])
-        ]
-
-    def combination(self, states, numerators, bits):
-        """Returns the sum of the columns times whole numbers over 2^bits, in balls."""
-        used = numpy.flatnonzero(numerators)
-        factors = [int(n) for n in numerators[used]]
-        error = (ENTRY_ERROR * sum(map(abs, factors))).upper()
-        found = []
-        for i in states:
-            wholes = (
-                sum(int(part[i, j]) << (s * self.width) for s, part in enumerate(self._slices))
-                for j in used
-            )
-            total = sum(n * whole for n, whole in zip(factors, wholes, strict=True))
-            found.append((arb(total) / arb(2) ** QUANTUM + arb(0, error)) / arb(2) ** bits)
-        return found
-
-    def _value(self, digits, error):
-        whole = sum(int(digit) << (s * self.width) for s, digit in enumerate(digits))
-        return arb(whole) / arb(2) ** QUANTUM + arb(0, error)
+        return [arb(total) / arb(2) ** (QUANTUM + BITS) + arb(0, error) for total in totals]
 
 
 def _whole(x):
@@ -104,13 +93,15 @@ def scaled(matrix, radii):
 
 
 class Generators:
-    """The generators on one grid, sample after sample."""
+    """The generators on one grid, sample after sample. The disturbance is held over each of
+    `parts` equal parts of a step."""
 
-    def __init__(self, model, system, grid):
+    def __init__(self, model, system, grid, parts=1):
         n, m = system.states, system.inputs
         self.model, self.system, self.grid = model, system, grid
         self.is_constant = model.settings["disturbance"] == "constant"
-        of_inputs = m if self.is_constant else m * len(grid)
+        self.parts = parts
+        of_inputs = m if self.is_constant else m * len(grid) * parts
         self.start, self.inputs = Columns(n, n), Columns(n, of_inputs)
         self.noise = Columns(n, n)
         self.noise.append(_diagonal(model.noise_radius))
@@ -133,12 +124,14 @@ class Generators:
         """Goes on from a sample to the next one."""
         if sample.k + 1 == len(self.grid) or self.is_constant:
             return
-        span = self.grid.span(sample.k)
-        step = self.system.step(span)
-        if self.uneven is not None:
-            self.uneven.advance(sample.e, step, span)
-        else:
-            self.inputs.append(scaled(sample.e * step.gamma, self.model.input_set.radius))
+        step = self.system.step(self.grid.span(sample.k) / self.parts)
+        e = sample.e
+        for _ in range(self.parts):
+            if self.uneven is not None:
+                self.uneven.advance(e, step, None)
+            else:
+                self.inputs.append(scaled(e * step.gamma, self.model.input_set.radius))
+            e = step.phi * e
 
 
 def _diagonal(radii):

@@ -32,22 +32,18 @@ def as_text(found, code, count, seconds):
 
 def as_json(found, notes, code):
     """Returns the answer for programs."""
-    return {
-        "exit_code": code,
-        "notes": notes,
-        **{
-            kind: [
-                {
-                    "name": tally.name,
-                    **{v.name.lower(): tally.counts[v] for v in Verdict},
-                    "findings": [
-                        {"verdict": f.verdict.name.lower(), "excess": f.excess if isfinite(f.excess) else None,
-                         "place": f.place}
-                        for f in tally.worst(100)
-                    ],
-                }
-                for tally in tallies
-            ]
-            for kind, tallies in found.items()
-        },
-    }
+    parts = {kind: [_part(tally) for tally in tallies] for kind, tallies in found.items()}
+    return {"exit_code": code, "notes": notes, **parts}
+
+
+def _part(tally):
+    counts = {verdict.name.lower(): tally.counts[verdict] for verdict in Verdict}
+    findings = [
+        {
+            "verdict": finding.verdict.name.lower(),
+            "excess": finding.excess if isfinite(finding.excess) else None,
+            "place": finding.place,
+        }
+        for finding in tally.worst(100)
+    ]
+    return {"name": tally.name, **counts, "findings": findings}

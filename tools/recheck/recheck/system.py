@@ -39,8 +39,8 @@ class System:
         self._steps = {}
 
     def step(self, span):
-        """Returns the step over an exact span: parts of the exponential of [[A, B, d], 0] h."""
-        key = span.man_exp()
+        """Returns the step over a span h: parts of the exponential of [[A, B, d], 0] h."""
+        key = span.repr()
         if key not in self._steps:
             exponential = (self.generator * span).exp()
             n, m = self.states, self.inputs

@@ -2,56 +2,53 @@
 
 import csv
 import json
+import math
 import random
 from fractions import Fraction
+from types import SimpleNamespace
 
 import numpy
 import pytest
 import toy
 from recheck.balls import arb, arb_mat
 from recheck.cli import main
-from recheck.generators import Columns
+from recheck.generators import Columns, Generators
+from recheck.grid import Grid
 from recheck.membership import Projection
+from recheck.model import Box
+from recheck.reachable import samples
+from recheck.system import System
 from recheck.verdict import Verdict
 
 
-def weights_of(g, point, rounds=200):
-    """Finds directions, and weights >= 0, whose vertices G sign(G' l) sum to about `point`: the
-    direction of the rest is added, and all weights are found anew, until the rest is small."""
-    directions, vertices = [], numpy.zeros((len(point), 0))
-    weights, rest = numpy.zeros(0), point
+LIMIT = 1.0 - 1e-9
+
+
+def factors_of(g, point, limit):
+    """Finds y such that the factors clip(g_j' y, -limit, limit) give about `point`: Newton's
+    method on a convex function whose gradient is G clip(G' y) - point, with shorter and shorter
+    steps where the value does not fall."""
     scale = 1.0 / numpy.abs(g).sum(axis=1)
-    for _ in range(rounds):
-        if numpy.abs(rest * scale).max() < 1e-13:
-            break
-        directions.append(rest * scale**2)
-        vertex = g @ numpy.where(g.T @ directions[-1] >= 0.0, 1.0, -1.0)
-        vertices = numpy.column_stack([vertices, vertex])
-        weights = not_negative(vertices * scale[:, None], point * scale)
-        rest = point - vertices @ weights
-    return [list(l) for l in directions], list(weights)
+    g, point = g * scale[:, None], point * scale
 
+    def value(y):
+        product = g.T @ y
+        alpha = numpy.clip(product, -limit, limit)
+        return (alpha * (product - 0.5 * alpha)).sum() - point @ y
 
-def not_negative(a, b):
-    """The least squares of a w = b with w >= 0, by active sets (Lawson and Hanson 1974)."""
-    w, used = numpy.zeros(a.shape[1]), numpy.zeros(a.shape[1], dtype=bool)
-    for _ in range(10 * a.shape[1]):
-        gradient = numpy.where(used, -numpy.inf, a.T @ (b - a @ w))
-        if used.all() or gradient.max() <= 1e-15:
+    y = numpy.zeros(len(point))
+    for _ in range(100):
+        product = g.T @ y
+        rest = point - g @ numpy.clip(product, -limit, limit)
+        if numpy.abs(rest).max() < 1e-14:
             break
-        used[gradient.argmax()] = True
-        while True:
-            inner = numpy.zeros_like(w)
-            inner[used] = numpy.linalg.lstsq(a[:, used], b, rcond=None)[0]
-            if (inner[used] > 0.0).all():
-                w = inner
-                break
-            below = used & (inner <= 0.0)
-            step = (w[below] / (w[below] - inner[below])).min()
-            w = w + step * (inner - w)
-            used &= w > 1e-15
-            w[~used] = 0.0
-    return w
+        free = g[:, numpy.abs(product) < limit]
+        step = numpy.linalg.solve(free @ free.T + 1e-12 * numpy.eye(len(y)), rest)
+        size = 1.0
+        while size > 1e-9 and value(y + size * step) > value(y):
+            size *= 0.5
+        y = y + size * step
+    return list(y * scale)
 
 
 def generators(model, k, h):
@@ -69,7 +66,7 @@ def write_certificate(folder, model, h, notion, samples):
     start = numpy.array(model["data"]["suites"][0]["nominal_start"])
     projections = [[0, 1, 2, 3]] if notion == "exact" else [[0, 2], [1, 3]]
     header = {"format": "reachtube-certificate", "version": 1, "notion": notion,
-              "model_digest": model["sha256"]}
+              "model_sha256": model["sha256"], "limit": LIMIT}
     lines = [json.dumps(header)]
     runs = {}
     for path in sorted((folder / "data").glob("r[0-9].csv")):
@@ -84,11 +81,9 @@ def write_certificate(folder, model, h, notion, samples):
         for states in projections if k > 0 else []:
             for file, rows in runs.items():
                 point = rows[k, 1:5][states] - centre[states]
-                directions, weights = weights_of(g[states], point)
-                points = [{"file": file, "weights": weights}]
-                group = {"suite": "S", "sample": k, "states": states, "directions": directions,
-                         "points": points}
-                lines.append(json.dumps(group))
+                y = factors_of(g[states], point, LIMIT)
+                point = {"suite": "S", "run": file, "sample": k, "states": states, "y": y}
+                lines.append(json.dumps(point))
         centre = phi @ centre + gamma @ (runs["r0.csv"][k, 5:7] + c_u)
     path = folder / "certificate.jsonl"
     path.write_text("\n".join(lines) + "\n")
@@ -129,51 +124,86 @@ def test_a_smaller_set_does_not_hold_the_same_points(tmp_path, capsys):
     assert code == 1 and found["fails"] > found["undecided"] and found["holds"] == 0
 
 
-def projection(directions):
+def projection(limit=LIMIT):
     """Some generators in the plane: the unit square's and a diagonal one."""
     columns = Columns(2, 3)
     columns.append(arb_mat([[1, 0, arb(0.5)], [0, 1, arb(0.5)]]))
-    return Projection([columns], [0, 1], directions)
+    return Projection([columns], [0, 1], limit)
 
 
 def ball(*numbers):
     return [arb(x) for x in numbers]
 
 
+def verdict(point, y, limit=LIMIT):
+    return projection(limit).judge([(point, y)])[0][0]
+
+
 def test_a_vertex_is_in_the_set_and_a_little_beyond_is_not():
-    plane, inside = projection([[1.0, 1.0]]), 1.0 - 2.0**-40
+    inside = 1.0 - 2.0**-40
     near = ball(1.5 * inside, 1.5 * inside)
-    assert plane.judge([(near, [inside])])[0][0] is Verdict.HOLDS
+    assert verdict(near, [9.0, 9.0], inside) is Verdict.HOLDS
+    # Generators are known to 2^-130, so that no room at all leaves the vertex itself undecided.
+    assert verdict(ball(1.5, 1.5), [9.0, 9.0], 1.0) is Verdict.UNDECIDED
     beyond = ball(1.5 * (1.0 + 2.0**-40), 1.5)
-    assert plane.judge([(beyond, [inside])])[0][0] is Verdict.FAILS
-    # The vertex itself is in the set, and nothing is left to absorb a rest.
-    assert plane.judge([(ball(1.5, 1.5), [inside])])[0][0] is Verdict.UNDECIDED
+    assert verdict(beyond, [9.0, 9.0], inside) is Verdict.FAILS
 
 
-def test_a_wrong_recipe_proves_nothing():
-    plane, point = projection([[1.0, 1.0], [1.0, -1.0]]), ball(0.5, 0.25)
-    for weights in ([1.5, 0.0], [0.9, -0.5], [0.5], [float("nan"), 0.0]):
-        assert plane.judge([(point, weights)])[0][0] is not Verdict.HOLDS
-    # A poor recipe is mended where the factors have room, and the point is proved all the same.
-    assert plane.judge([(point, [0.1, 0.1])])[0][0] is Verdict.HOLDS
+def test_a_poor_recipe_is_mended_or_proves_nothing():
+    for y in ([0.0, 0.0], [0.3, -0.2], [5.0, -5.0], [float("nan"), 0.0], [1e300, 1e300]):
+        assert verdict(ball(0.5, 0.25), y) is Verdict.HOLDS
+        assert verdict(ball(1.6, 0.25), y) is Verdict.FAILS
+    # A point that is known to 0.1 only may be outside.
+    assert verdict([arb(1.45, 0.1), arb(0.5)], [0.9, 0.0]) is Verdict.UNDECIDED
 
 
 def test_factors_with_room_take_what_is_left():
     """On the edge in direction (1, 0) all factors but the second are used up."""
-    plane, most = projection([[1.0, 1.0], [1.0, -1e-9]]), 1.0 - 2.0**-45
-    point = ball(1.5 * most, 0.5 * most + 1e-3)
-    assert plane.judge([(point, [most / 2, most / 2])])[0][0] is Verdict.HOLDS
+    most = 1.0 - 2.0**-45
+    for height in (0.0, -0.95, 0.95):
+        assert verdict(ball(1.5 * most, 0.5 * most + height), [9.0, 0.0], most) is Verdict.HOLDS
+    assert verdict(ball(1.5 * most, 0.5 * most - 1.01), [9.0, 0.0], most) is not Verdict.HOLDS
 
 
-def test_sums_of_columns_are_exact():
+def test_what_are_not_all_generators_cannot_prove_a_point_outside():
+    columns = Columns(2, 2)
+    columns.append(arb_mat([[1, 0], [0, 1]]))
+    some = Projection([columns], [0, 1], LIMIT, is_whole=False)
+    assert some.judge([(ball(2.0, 0.0), [9.0, 0.0])])[0][0] is Verdict.UNDECIDED
+
+
+def test_combinations_of_columns_are_exact():
     numbers = random.Random(1)
     values = [[numbers.uniform(-1.0, 1.0) * 2.0 ** numbers.randint(-60, 12) for _ in range(3000)]
               for _ in range(2)]
     columns = Columns(2, 3000)
     columns.append(arb_mat([[arb(x) for x in row] for row in values]))
-    signs = numpy.array([[numbers.choice((-1.0, 1.0))] for _ in range(3000)])
-    (found,) = columns.sums([0, 1], signs)
-    for i in range(2):
-        exact = sum(Fraction(x) * int(s) for x, s in zip(values[i], signs[:, 0], strict=True))
-        off = found[i] - arb(exact.numerator) / arb(exact.denominator)
-        assert off.contains(0) and found[i].rad() < 1e-34
+    factors = [numbers.randint(-(2**47), 2**47) * 2.0**-47 for _ in range(2998)] + [1.0, -1.0]
+    found = columns.combination([1, 0], numpy.array(factors))
+    for total, row in zip(found, (values[1], values[0]), strict=True):
+        exact = sum(Fraction(x) * Fraction(a) for x, a in zip(row, factors, strict=True))
+        assert (total - arb(exact.numerator) / arb(exact.denominator)).contains(0)
+        assert total.rad() < 1e-34
+
+
+def test_generators_of_parts_of_steps_fill_more_of_the_set():
+    """q'' = -q + u over a turn, in 7 steps: the reach in one direction grows with the parts of a
+    step toward the measurable one, which is 4."""
+    model = SimpleNamespace(
+        joints=1, a=[[0.0, 1.0], [-1.0, 0.0]], b=[[0.0], [1.0]], drift=[0.0, 0.0],
+        initial_set=Box((0.0, 0.0), (0.0, 0.0)), input_set=Box((0.0,), (1.0,)),
+        noise_radius=(0.0, 0.0), settings={"disturbance": "measurable"},
+    )
+    system, times = System(model), [2.0 * math.pi * (k + 0.3 * (k % 2)) / 7 for k in range(7)]
+    grids = [Grid((*times, 2.0 * math.pi), None), Grid(tuple(k * 0.75 for k in range(8)), 0.75)]
+    case = SimpleNamespace(start=[0.0, 0.0], doubt=[0.0], inputs=[[0.0]] * 8)
+    for grid in grids:
+        case.grid, reached = grid, []
+        for parts in (1, 3, 16):
+            made = Generators(model, system, grid, parts)
+            for sample in samples(model, system, grid, [case]):
+                columns = made.at(sample)
+                made.advance(sample)
+            reached.append(sum(numpy.abs(part.rounded([1])).sum() for part in columns))
+        assert reached[0] < reached[1] < reached[2] <= float(sample.radius[1, 0]) + 1e-12
+        assert reached[2] == pytest.approx(float(sample.radius[1, 0]), rel=2e-2)
