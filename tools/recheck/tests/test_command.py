@@ -2,14 +2,18 @@
 
 import csv
 import json
+import math
 from types import SimpleNamespace
 
+import numpy
 import pytest
 import toy
 from recheck.cli import main
 from recheck.grid import Grid
 from recheck.inputs import Inputs
 from recheck.recordings import Run
+from recheck.system import System
+from recheck.verdict import Tally, Verdict, exit_code
 
 
 def judged(folder, capsys, *options):
@@ -90,7 +94,7 @@ def test_given_inputs_settle_what_was_open(tmp_path, capsys):
 def test_motor_torque_is_the_input_with_gravity_and_friction():
     """One joint-1 state in closed form: u = tau - tau_c(g, qd) - g."""
     model = SimpleNamespace(
-        joints=2, robot=toy.ROBOT, correction=None, suites=[],
+        joints=2, robot=toy.ROBOT, correction=None,
         settings={"torque": "motor", "nominal": "mean",
                   "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]}},
     )
@@ -98,6 +102,59 @@ def test_motor_torque_is_the_input_with_gravity_and_friction():
     recorded = Inputs(model, None, 0.0)._recorded(run).inputs[0]
     load = 10.0 * (2.0 * 0.5 + 1.0) + 7.5
     assert recorded == pytest.approx([40.0 - (2.0 + 0.1 * load) - load, 8.0 - 7.5], abs=1e-13)
+
+
+def test_a_correction_is_taken_off_along_the_nominal_motion():
+    """Each term in closed form, at the start and at the sample after it."""
+    model = SimpleNamespace(
+        joints=2, robot=toy.ROBOT, nominal_start=lambda suite: [0.0, 0.0, 0.5, 0.01],
+        a=toy.CONTENT["a"], b=toy.CONTENT["b"], drift=[0.0] * 4,
+        correction={"joints": [
+            {"quadratic": 0.3, "cubic": 0.7, "coulomb": [0.5, 0.1, 0.1, 0.1]},
+            {"warm_up": 2.0},
+        ], "payload": 0.25, "warmth": "runs"},
+        settings={"torque": "compensated", "nominal": "mean",
+                  "expansion_point": {"q": [0.0, 0.0], "qd": [0.1, 0.0]}},
+    )
+    grid = Grid((0.0, 0.25, 0.5), 0.25)
+    run = Run("a.csv", "", grid, [[0.0] * 4] * 3, [[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]], 3)
+    (case,) = Inputs(model, System(model), 0.0).cases("S", [run])
+    x, expected = numpy.array([0.0, 0.0, 0.5, 0.01]), []
+    for tau in ([1.0, 2.0], [3.0, 4.0]):
+        (q1, q2), (v1, v2) = x[:2], x[2:]
+        load = 10.0 * 2.0 * math.cos(q1) + 7.5 * math.cos(q1 + q2)
+        cubic = 0.3 * (v1 - 0.1) ** 2 + 0.7 * (v1 - 0.1) ** 3
+        part = min(abs(v1) / 0.02, 1.0)
+        friction = part * (0.5 * (2.0 + 0.1 * load) if v1 > 0.0 else -0.1 * 2.0)
+        weight = [2.5 * (math.cos(q1) + math.cos(q1 + q2)), 2.5 * math.cos(q1 + q2)]
+        u = [tau[0] - cubic - friction - weight[0], tau[1] - 2.0 * math.log(3) * v2 - weight[1]]
+        expected.append(u)
+        phi, gamma = toy.exact_step(0.25)
+        x = phi @ x + gamma @ u
+    assert case.inputs == [pytest.approx(u, abs=1e-12) for u in (*expected, [5.0, 6.0])]
+    assert case.own is run and case.doubt == [0.0, 0.0]
+
+
+def test_slow_joints_have_a_part_of_coulomb_friction():
+    model = SimpleNamespace(
+        joints=2, robot=toy.ROBOT, nominal_start=lambda suite: None, drift=[0.0] * 4,
+        correction={"joints": [{"coulomb": [0.5, 0.0, 0.0, 0.5]}, {}]},
+        settings={"torque": "compensated", "nominal": "own",
+                  "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]}},
+        a=toy.CONTENT["a"], b=toy.CONTENT["b"],
+    )
+    states = [[0.0, 0.0, 0.005, 0.0]] * 2
+    run = Run("a.csv", "", Grid((0.0, 0.25), 0.25), states, [[0.0, 0.0]] * 2, 1)
+    (case,) = Inputs(model, System(model), 0.0).cases("S", [run])
+    assert case.inputs[0] == pytest.approx([-0.25 * 0.5 * (2.0 + 2.75), 0.0], abs=1e-13)
+
+
+def test_one_failure_outweighs_what_is_undecided():
+    tallies = [Tally("a", [5, 2, 0]), Tally("b", [5, 0, 0])]
+    assert exit_code(tallies) == 2
+    tallies[1].counts[Verdict.FAILS] += 1
+    assert exit_code(tallies) == 1
+    assert exit_code([Tally("c", [5, 0, 0])]) == 0
 
 
 @pytest.mark.parametrize("arguments", [

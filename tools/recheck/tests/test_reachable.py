@@ -61,6 +61,16 @@ def test_the_damped_joints_in_closed_form(step):
     assert numpy.abs(radius - numpy.abs(gamma).sum(axis=1)).max() < 1e-14
 
 
+def test_a_drift_moves_the_nominal_solution():
+    """q'' = d - v q' from rest: q' = d (1 - e^{-vt}) / v."""
+    model = model_of([[0.0, 1.0], [0.0, -2.0]], [[0.0], [1.0]], "sample")
+    model.drift = [0.0, 3.0]
+    found = last(model, Grid(tuple(k * 0.25 for k in range(5)), 0.25))
+    speed = 1.5 * -math.expm1(-2.0)
+    assert float(found.nominal[1, 0]) == pytest.approx(speed, abs=1e-15)
+    assert float(found.nominal[0, 0]) == pytest.approx(1.5 - speed / 2.0, abs=1e-15)
+
+
 def test_even_and_uneven_grids_agree():
     """The running sum of a uniform grid and the increments of any other are two ways to kappa."""
     model = model_of([[0.0, 1.0], [-9.0, -0.2]], [[0.0], [1.0]], "sample")

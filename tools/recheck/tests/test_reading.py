@@ -1,6 +1,10 @@
 """Times, decimals and files."""
 
+import json
+from fractions import Fraction
+
 import pytest
+import toy
 from recheck.errors import BadInput
 from recheck.grid import Grid, distinct, grid_of
 from recheck.model import read_model
@@ -33,9 +37,11 @@ def test_a_fixed_rate_is_found_and_shared():
 
 
 def test_spans_of_recorded_times_are_exact_differences():
-    grid = Grid((0.0, 0.1, 0.3), None)
-    exact = grid.span(1)
-    assert exact.is_exact() and exact != 0.2 and abs(exact - 0.2) < 1e-16
+    times = (0.0, 0.1, 1000.3)
+    exact = Fraction(times[2]) - Fraction(times[1])
+    assert exact != Fraction(times[2] - times[1])
+    span = Grid(times, None).span(1)
+    assert span.is_exact() and span * exact.denominator == exact.numerator
 
 
 def test_a_run_is_read_to_its_end_or_until_a_time(tmp_path):
@@ -67,6 +73,17 @@ def test_the_order_of_runs_follows_the_columns(tmp_path):
     assert places("file,suite,repeat,order\na,S,2,5\nb,S,1,3\n") == [("a", 5), ("b", 3)]
     with pytest.raises(BadInput):
         places("file,suite,order\na,S,1\nb,S,\n")
+
+
+@pytest.mark.parametrize(("key", "value"), [
+    ("a", [[0.0]]), ("drift", [0.0, 0.0, float("inf"), 0.0]), ("settings", {}),
+    ("initial_set", {"centre": [0.0] * 4, "radius": [0.1, -0.1, 0.1, 0.1]}),
+    ("noise_set", {"centre": [0.0, 0.1, 0.0, 0.0], "radius": [0.1] * 4}),
+])
+def test_a_model_whose_parts_do_not_fit_is_refused(tmp_path, key, value):
+    (tmp_path / "model.json").write_text(json.dumps({**toy.content(), key: value}))
+    with pytest.raises(BadInput, match="model.json"):
+        read_model(tmp_path / "model.json")
 
 
 def test_a_file_that_is_no_linear_model_is_refused(tmp_path):
