@@ -41,6 +41,8 @@ def parser():
     add("model", help="model file that `reachtube conform` wrote")
     add("--data", required=True, metavar="FOLDER", help="recordings with their runs.csv")
     add("--suites", metavar="A,B", help="suites to check; by default those of the model file")
+    add("--any-run", action="store_true",
+        help="check the sets any_run, for which nobody knows which run it is")
     add("--inputs", metavar="FILE", help="inputs u that define the model, as CSV: file,k,u1,...")
     add("--reach", metavar="FOLDER", help="CSV files of `reachtube reach`, to be checked too")
     add("--certificate", metavar="FILE", help="certificate of `conform`, for points in the set")
@@ -57,7 +59,7 @@ def parser():
 
 def run(arguments):
     """Judges what the arguments name. Returns the tallies, by what they are about, and notes."""
-    model = read_model(arguments.model)
+    model = read_model(arguments.model, arguments.any_run)
     notes = list(model.notes)
     given = read_inputs(arguments.inputs, model.joints) if arguments.inputs else None
     system = System(model)
@@ -92,6 +94,8 @@ def read_cases(model, inputs, arguments, notes):
     listed = {suite["name"]: suite["runs"] for suite in model.suites}
     names = arguments.suites.split(",") if arguments.suites else list(listed)
     cases = []
+    if not names:
+        raise BadInput(f"{arguments.model}: the model file lists no suite; name some with --suites")
     for name in names:
         if name not in index:
             raise BadInput(f"{arguments.data}: there is no suite {name!r} in runs.csv")

@@ -96,6 +96,8 @@ class Inputs:
         return Recorded(run, inputs, evaluation)
 
     def _differs_by_run(self):
+        if self.model.condition is not None:
+            return False
         correction = self.correction or {}
         by_warmth = correction.get("warmth") is not None and any(
             joint.get("warm_up", 0.0) != 0.0 for joint in correction["joints"]
@@ -151,9 +153,14 @@ class _Evaluation:
         self.correction = inputs.correction or {}
         self.n = inputs.model.joints
         self.origin = inputs.model.settings["expansion_point"]["qd"]
-        self.factors = [_factors(self.robot.warming(j), j, run) for j in range(self.n)]
+        condition = inputs.model.condition or {}
+        place = condition.get("place", run.place)
+        temperatures = condition.get("temperatures") if condition else run.temperatures
+        self.factors = [
+            _factors(self.robot.warming(j), j, place, temperatures) for j in range(self.n)
+        ]
         self.warms = inputs.warms
-        self.warmth = _warmth(self.correction.get("warmth"), run.place)
+        self.warmth = _warmth(self.correction.get("warmth"), place)
         self.jumps = [0.0] * self.n
         joints = self.correction.get("joints", [])
         warm_coulomb = self.warms and self.torque == "compensated"
@@ -210,18 +217,19 @@ class _Evaluation:
         return u
 
 
-def _factors(law, j, run):
-    """Factors of Coulomb and viscous friction of a joint in a run."""
+def _factors(law, j, place, temperatures):
+    """Factors of Coulomb and viscous friction of a joint at a place in the order of a suite, or at
+    the temperature of the joint where it is known."""
     if not law:
         return 1.0, 1.0
     by, reference = law.get("by", "temperature"), law["reference"]
     if by == "temperature":
-        warmth = run.temperatures[j] - reference if run.temperatures else 0.0
+        warmth = temperatures[j] - reference if temperatures else 0.0
     elif by == "runs":
-        warmth = math.log(run.place / reference)
+        warmth = math.log(place / reference)
     else:
         constant = law.get("time_constant") or 1.0
-        warmth = math.exp(-(reference - 1) / constant) - math.exp(-(run.place - 1) / constant)
+        warmth = math.exp(-(reference - 1) / constant) - math.exp(-(place - 1) / constant)
     return tuple(math.exp(-law.get(kind, 0.0) * warmth) for kind in ("coulomb", "viscous"))
 
 

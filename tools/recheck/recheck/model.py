@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .errors import BadInput
 
@@ -34,6 +34,9 @@ class Model:
     suites: list
     sha256: str
     notes: tuple
+    # The one condition that friction is taken in, whatever that of a run is: its place in the order
+    # of a suite, and temperatures. None where each run has its own.
+    condition: dict | None = None
 
     def nominal_start(self, suite):
         """Returns the nominal start that the file has for a suite, or None."""
@@ -46,8 +49,9 @@ class Model:
         return self.joints if self.settings["states"] == "positions" else 2 * self.joints
 
 
-def read_model(path):
-    """Reads the model file at `path`."""
+def read_model(path, any_run=False):
+    """Reads the model file at `path`; with `any_run`, the sets that need no knowledge of the run
+    take the place of the others."""
     try:
         with open(path, encoding="utf-8") as file:
             text = file.read()
@@ -55,7 +59,8 @@ def read_model(path):
     except (OSError, ValueError) as error:
         raise BadInput(f"{path}: {error}; give a file that `conform --out` wrote") from error
     try:
-        return _model(content, text)
+        model = _model(content, text)
+        return _of_any_run(model, content.get("any_run")) if any_run else model
     except (KeyError, TypeError, AttributeError) as error:
         raise BadInput(f"{path}: {error!r} is missing or has the wrong form") from error
     except BadInput as error:
@@ -90,6 +95,19 @@ def _model(content, text):
     )
     _check_settings(model.settings)
     return model
+
+
+def _of_any_run(model, record):
+    if record is None:
+        raise BadInput("it has no any_run: its friction does not depend on the run")
+    n, sets = model.joints, record["sets"]
+    return replace(
+        model,
+        initial_set=_box(sets["initial_set"], 2 * n, "any_run.sets.initial_set"),
+        input_set=_box(sets["input_set"], n, "any_run.sets.input_set"),
+        noise_radius=_noise(sets.get("noise_set"), n),
+        condition=record["condition"],
+    )
 
 
 def _check_settings(settings):

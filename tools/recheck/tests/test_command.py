@@ -94,7 +94,7 @@ def test_given_inputs_settle_what_was_open(tmp_path, capsys):
 def test_motor_torque_is_the_input_with_gravity_and_friction():
     """One joint-1 state in closed form: u = tau - tau_c(g, qd) - g."""
     model = SimpleNamespace(
-        joints=2, robot=toy.ROBOT, correction=None,
+        joints=2, robot=toy.ROBOT, condition=None, correction=None,
         settings={"torque": "motor", "nominal": "mean",
                   "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]}},
     )
@@ -107,7 +107,8 @@ def test_motor_torque_is_the_input_with_gravity_and_friction():
 def test_a_correction_is_taken_off_along_the_nominal_motion():
     """Each term in closed form, at the start and at the sample after it."""
     model = SimpleNamespace(
-        joints=2, robot=toy.ROBOT, nominal_start=lambda suite: [0.0, 0.0, 0.5, 0.01],
+        joints=2, robot=toy.ROBOT, condition=None,
+        nominal_start=lambda suite: [0.0, 0.0, 0.5, 0.01],
         a=toy.CONTENT["a"], b=toy.CONTENT["b"], drift=[0.0] * 4,
         correction={"joints": [
             {"quadratic": 0.3, "cubic": 0.7, "coulomb": [0.5, 0.1, 0.1, 0.1]},
@@ -137,7 +138,8 @@ def test_a_correction_is_taken_off_along_the_nominal_motion():
 
 def test_slow_joints_have_a_part_of_coulomb_friction():
     model = SimpleNamespace(
-        joints=2, robot=toy.ROBOT, nominal_start=lambda suite: None, drift=[0.0] * 4,
+        joints=2, robot=toy.ROBOT, condition=None, nominal_start=lambda suite: None,
+        drift=[0.0] * 4,
         correction={"joints": [{"coulomb": [0.5, 0.0, 0.0, 0.5]}, {}]},
         settings={"torque": "compensated", "nominal": "own",
                   "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]}},
