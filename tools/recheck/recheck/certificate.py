@@ -2,13 +2,17 @@
 
 A certificate is a text file with one JSON object per line. The first is a header:
 
-    {"format": "reachtube-certificate", "version": 1, "notion": "exact", "model_sha256": "..",
-     "limit": 0.999999999}
+    {"format": "reachtube-certificate", "version": 1, "notion": "exact", "model_sha256": ".."}
+
+For a measurable disturbance, "parts" says into how many parts each step is cut (1 by default).
 
 Each further line is a point: a recorded sample in the states that are listed, with the vector y
 that names its factors (membership.py):
 
-    {"suite": "A", "run": "a.csv", "sample": 7, "states": [0, 1], "y": [.., ..]}
+    {"suite": "A", "run": "a.csv", "sample": 7, "states": [0, 1], "y": [.., ..],
+     "limit": 0.999999999, "held": 1}
+
+"limit" may stand in the header instead, and "held" is 1 where it is missing.
 
 Notion `exact` needs a point in all states for each recording and sample; `phase-plane` needs one
 for each joint in (q, qd). Points at sample 0 lie in a box and need no certificate.
@@ -20,7 +24,7 @@ from .balls import arb, symmetric
 from .errors import BadInput
 from .generators import Generators
 from .hulls import state_name
-from .membership import Projection
+from .membership import Projection, Recipe
 from .verdict import Tally, Verdict, of_margin
 
 
@@ -34,9 +38,7 @@ class Certificate:
         suites = sorted({case.suite for case in cases})
         self.tallies = {suite: Tally(f"suite {suite}") for suite in suites}
         self.generators = None
-        # A measurable disturbance reaches more than one that is held over samples.
-        self.is_whole = model.settings["disturbance"] != "measurable"
-        if not self.is_whole:
+        if model.settings["disturbance"] == "measurable":
             self.notes.append("points are judged for disturbances that are held over samples, or "
                               "parts of them, which are some of the measurable ones")
 
@@ -64,9 +66,7 @@ class Certificate:
             self.projections = [(i, n + i) for i in range(n)]
         else:
             raise BadInput(f"{self.path}:1: the notion is {notion!r}, not exact or phase-plane")
-        self.limit, self.parts = float(header["limit"]), header.get("parts", 1)
-        if not 0.0 < self.limit <= 1.0:
-            raise BadInput(f"{self.path}:1: the limit is {self.limit}, not between 0 and 1")
+        self.limit, self.parts = header.get("limit"), header.get("parts", 1)
         if not (isinstance(self.parts, int) and self.parts >= 1):
             raise BadInput(f"{self.path}:1: parts is {self.parts!r}, not a whole number from 1")
         if self.parts != 1 and self.model.settings["disturbance"] != "measurable":
@@ -132,9 +132,9 @@ class Certificate:
                 for at in self.lines.get((suite, sample.k), []):
                     file.seek(at)
                     self._take(sample, json.loads(file.readline()), runs, by_states)
-        found, parts = {}, self.generators.at(sample) if by_states else None
+        found = {}
         for states, points in by_states.items():
-            projection = Projection(parts, list(states), self.limit, self.is_whole)
+            projection = Projection(self.generators, sample, list(states))
             judged = projection.judge([point for _, point in points])
             for (key, _), verdict in zip(points, judged, strict=True):
                 found[key] = min(found.get(key, verdict), verdict)
@@ -144,10 +144,13 @@ class Certificate:
         """Adds a point of these runs to those with the same states."""
         try:
             suite, file, states = point["suite"], point["run"], tuple(point["states"])
-            y = [float(x) for x in point["y"]]
+            y, held = [float(x) for x in point["y"]], point.get("held", 1)
+            recipe = Recipe(y, float(point.get("limit", self.limit)), held)
+            if not (0.0 < recipe.limit <= 1.0 and isinstance(held, int) and held >= 1):
+                raise ValueError("limit or held is out of range")
         except (KeyError, TypeError, ValueError) as error:
             raise BadInput(f"{self.path}: a point at sample {sample.k}: {error!r}") from error
         if (suite, file) in runs and states in self.projections and len(y) == len(states):
             c, run = runs[suite, file]
             deviation = [self._deviation(sample, c, run, i) for i in states]
-            by_states.setdefault(states, []).append(((suite, file, states), (deviation, y)))
+            by_states.setdefault(states, []).append(((suite, file, states), (deviation, recipe)))

@@ -104,11 +104,17 @@ class Generators:
         of_inputs = m if self.is_constant else m * len(grid) * parts
         self.start, self.inputs = Columns(n, n), Columns(n, of_inputs)
         self.noise = Columns(n, n)
+        self._at = None
         self.noise.append(_diagonal(model.noise_radius))
         self.uneven = UnevenSamples(system) if grid.step is None else None
+        # A measurable disturbance reaches more than one that is held over (parts of) samples.
+        self.is_whole = model.settings["disturbance"] != "measurable"
 
     def at(self, sample):
         """Returns the parts of the generators at a sample."""
+        if self._at == sample.k:
+            return [self.start, self.inputs, self.noise]
+        self._at = sample.k
         radii = self.model.input_set.radius
         self.start.clear()
         self.start.append(scaled(sample.e, self.model.initial_set.radius))
@@ -119,6 +125,14 @@ class Generators:
             self.inputs.clear()
             self.inputs.append(scaled(self.uneven.increments, radii))
         return [self.start, self.inputs, self.noise]
+
+    def ages(self):
+        """Returns the age of the step that each generator of the disturbance belongs to, steps x
+        inputs: 0 for the last one before the sample."""
+        inputs = self.system.inputs
+        steps = numpy.arange(self.inputs.count // inputs)
+        ages = steps if self.uneven is None or self.is_constant else steps[::-1]
+        return numpy.repeat(ages[:, None], inputs, axis=1)
 
     def advance(self, sample):
         """Goes on from a sample to the next one."""

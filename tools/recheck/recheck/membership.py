@@ -1,7 +1,9 @@
 """Whether a point is a combination of generators with factors in [-1, 1].
 
 A certificate names factors alpha_j = clip(g_j' y, -limit, limit) by a vector y, so that d = G alpha
-+ e with a small rest e, for the point d less the centre of the set. For any W with G W near 1,
++ e with a small rest e, for the point d less the centre of the set. Steps of the disturbance may
+share their factors: `held` steps, counted back from the sample, whose generators are then added up
+in g_j. The proof takes all generators one by one in any case. For any W with G W near 1,
 e = G delta with delta = W (G W)^-1 e. The point is in the set if |alpha_j + delta_j| <= 1 for every
 generator j.
 
@@ -10,6 +12,8 @@ p u / (1 - p u) times the product of the magnitudes, in any order of summation, 
 Where such bounds do not settle a point, its rest is computed again without rounding, and put where
 the factors have room.
 """
+
+from dataclasses import dataclass
 
 import numpy
 
@@ -25,48 +29,72 @@ TINY = 2.0 ** (1 - QUANTUM)
 CORRECTIONS = 6
 
 
+@dataclass(frozen=True)
+class Recipe:
+    """What a certificate says about the factors of a point."""
+
+    y: list
+    limit: float
+    held: int = 1
+
+
 class Projection:
     """The generators of one sample in some states, with what all points share."""
 
-    def __init__(self, parts, states, limit, is_whole=True):
-        # Where these are not all generators, no point can be proved to be outside.
-        self.parts, self.states, self.limit, self.is_whole = parts, states, limit, is_whole
-        self.g = numpy.concatenate([part.rounded(states) for part in parts], axis=1)
+    def __init__(self, generators, sample, states):
+        self.parts, self.states = generators.at(sample), states
+        self.is_whole = generators.is_whole
+        of_parts = [part.rounded(states) for part in self.parts]
+        self.start, self.ages = of_parts[0].shape[1], generators.ages()
+        self.g = numpy.concatenate(of_parts, axis=1)
         self.sizes = numpy.abs(self.g)
         sums = self.sizes.sum(axis=1)
         self.scale = numpy.where(sums > 0.0, 1.0 / numpy.where(sums > 0.0, sums, 1.0), 0.0)
         self.uniform = _Inverse(self.g, self.scale, numpy.ones(self.g.shape[1]))
 
     def judge(self, points):
-        """Judges points: each is d in balls, with its y. Returns verdicts, and what is missing, in
-        parts of a factor."""
-        alpha = self._clip(self.g.T @ numpy.array([y for _, y in points], dtype=float).T)
+        """Judges points: each is d in balls, with its recipe. Returns verdicts, and what is
+        missing, in parts of a factor."""
+        alpha = numpy.empty((self.g.shape[1], len(points)))
+        for held in {recipe.held for _, recipe in points}:
+            alike = [p for p, (_, recipe) in enumerate(points) if recipe.held == held]
+            alpha[:, alike] = self._factors([points[p][1] for p in alike], held)
         middle = numpy.array([[float(x) for x in d] for d, _ in points]).T
         radius = numpy.array([[_up(x - float(x)) for x in d] for d, _ in points]).T
-        product = self.g @ alpha
-        rest = middle - product
+        rest = middle - self.g @ alpha
         terms = self.g.shape[1] + 8
         error = terms * UNIT * (self.sizes @ numpy.abs(alpha)) + 4.0 * UNIT * numpy.abs(middle)
         error = 1.01 * (error + radius) + TINY * self.g.shape[1]
-        missing = self.uniform.factors(rest, error).max(axis=0) - (1.0 - self.limit)
+        slack = numpy.array([1.0 - recipe.limit for _, recipe in points])
+        missing = self.uniform.factors(rest, error).max(axis=0) - slack
         judged = []
-        for p, (d, y) in enumerate(points):
+        for p, (d, recipe) in enumerate(points):
             short = float(missing[p])
             if not short <= 0.0:
-                short = self._closely(d, alpha[:, p])
+                short = self._closely(d, alpha[:, p], recipe.limit)
             if short <= 0.0:
                 judged.append((Verdict.HOLDS, 0.0))
-            elif self.is_whole and self._is_outside(d, numpy.array(y, dtype=float), rest[:, p]):
+            elif self.is_whole and self._is_outside(d, numpy.array(recipe.y), rest[:, p]):
                 judged.append((Verdict.FAILS, short))
             else:
                 judged.append((Verdict.UNDECIDED, short))
         return judged
 
-    def _clip(self, factors):
-        clipped = numpy.clip(factors, -self.limit, self.limit)
-        return numpy.where(numpy.isfinite(clipped), clipped, 0.0)
+    def _factors(self, recipes, held):
+        """Returns the factors that recipes name, with `held` steps that share theirs."""
+        ys = numpy.array([recipe.y for recipe in recipes], dtype=float)
+        limits = numpy.array([recipe.limit for recipe in recipes])
+        products = self.g.T @ ys.T
+        groups = self.ages // held
+        if held > 1:
+            of_inputs = products[self.start : self.start + groups.size]
+            sums = numpy.zeros((groups.max(initial=0) + 1, groups.shape[1], len(recipes)))
+            shaped = of_inputs.reshape(*groups.shape, -1)
+            numpy.add.at(sums, groups[:, 0], shaped)
+            of_inputs[:] = sums[groups[:, 0]].reshape(of_inputs.shape)
+        return _clip(products, limits)
 
-    def _closely(self, d, alpha):
+    def _closely(self, d, alpha, limit):
         """Judges one point with rests that are known without rounding, and corrects factors in
         between."""
         missing = numpy.inf
@@ -76,7 +104,7 @@ class Projection:
             missing = min(missing, self._absorb(rest, 1.0 - numpy.abs(alpha)))
             if missing <= 0.0:
                 break
-            alpha = self._clip(alpha + self._correction(rest, alpha))
+            alpha = _clip(alpha + self._correction(rest, alpha, limit), limit)
         return missing
 
     def _product(self, alpha):
@@ -88,7 +116,7 @@ class Projection:
             total = [x + y for x, y in zip(total, own, strict=True)]
         return total
 
-    def _correction(self, rest, alpha):
+    def _correction(self, rest, alpha, limit):
         """Returns changes of least norm that give the rest, of the factors that are not at the
         limit or would leave it inward. This is a search, and proves nothing."""
         scaled, found = self.g * self.scale[:, None], numpy.zeros(len(alpha))
@@ -96,7 +124,7 @@ class Projection:
         if not (numpy.isfinite(wanted).all() and numpy.isfinite(self.uniform.w).all()):
             return found
         inward = alpha * (self.uniform.w @ wanted) < 0.0
-        is_free = inward | (numpy.abs(alpha) < self.limit)
+        is_free = inward | (numpy.abs(alpha) < limit)
         if is_free.any():
             found[is_free] = numpy.linalg.lstsq(scaled[:, is_free], wanted, rcond=None)[0]
         return found
@@ -164,6 +192,11 @@ class _Inverse:
         terms = len(self.scale) + 4
         delta = numpy.abs(self.w @ rest) + terms * UNIT * (self.sizes @ numpy.abs(rest))
         return (delta + self.sizes @ error) * (1.0 + 64.0 * UNIT)
+
+
+def _clip(factors, limit):
+    clipped = numpy.clip(factors, -limit, limit)
+    return numpy.where(numpy.isfinite(clipped), clipped, 0.0)
 
 
 def _up(x):

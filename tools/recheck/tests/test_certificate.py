@@ -14,7 +14,7 @@ from recheck.balls import arb, arb_mat
 from recheck.cli import main
 from recheck.generators import Columns, Generators
 from recheck.grid import Grid
-from recheck.membership import Projection
+from recheck.membership import Projection, Recipe
 from recheck.model import Box
 from recheck.reachable import samples
 from recheck.system import System
@@ -61,8 +61,9 @@ def generators(model, k, h):
     return numpy.concatenate(columns, axis=1)
 
 
-def write_certificate(folder, model, h, notion, samples):
-    """Writes a certificate for the toy's recordings, with generators from the closed form."""
+def write_certificate(folder, model, h, notion, samples, held=1):
+    """Writes a certificate for the toy's recordings, with generators from the closed form. The
+    disturbance is held over so many steps, counted back from the sample."""
     start = numpy.array(model["data"]["suites"][0]["nominal_start"])
     projections = [[0, 1, 2, 3]] if notion == "exact" else [[0, 2], [1, 3]]
     header = {"format": "reachtube-certificate", "version": 1, "notion": notion,
@@ -78,11 +79,15 @@ def write_certificate(folder, model, h, notion, samples):
     centre = start + c_x
     for k in range(samples):
         g = generators(model, k, h)
+        newest = [g[:, 4 + 2 * j : 6 + 2 * j] for j in reversed(range(k))]
+        groups = [sum(newest[j : j + held]) for j in range(0, k, held)]
+        g = numpy.concatenate([g[:, :4], *groups], axis=1)
         for states in projections if k > 0 else []:
             for file, rows in runs.items():
                 point = rows[k, 1:5][states] - centre[states]
                 y = factors_of(g[states], point, LIMIT)
-                point = {"suite": "S", "run": file, "sample": k, "states": states, "y": y}
+                point = {"suite": "S", "run": file, "sample": k, "states": states, "y": y,
+                         "held": held}
                 lines.append(json.dumps(point))
         centre = phi @ centre + gamma @ (runs["r0.csv"][k, 5:7] + c_u)
     path = folder / "certificate.jsonl"
@@ -90,11 +95,11 @@ def write_certificate(folder, model, h, notion, samples):
     return path
 
 
-@pytest.mark.parametrize("notion", ["exact", "phase-plane"])
-def test_points_within_the_set_hold_and_missing_ones_are_open(tmp_path, capsys, notion):
+@pytest.mark.parametrize(("notion", "held"), [("exact", 1), ("phase-plane", 1), ("exact", 5)])
+def test_points_within_the_set_hold_and_missing_ones_are_open(tmp_path, capsys, notion, held):
     model, samples, h = toy.content(), 12, 0.05
     toy.write(tmp_path, model, runs=3, samples=samples, h=h, part=0.4)
-    path = write_certificate(tmp_path, model, h, notion, samples)
+    path = write_certificate(tmp_path, model, h, notion, samples, held)
 
     def judged(*options):
         code = main([str(tmp_path / "model.json"), "--data", str(tmp_path / "data"), "--json",
@@ -124,19 +129,21 @@ def test_a_smaller_set_does_not_hold_the_same_points(tmp_path, capsys):
     assert code == 1 and found["fails"] > found["undecided"] and found["holds"] == 0
 
 
-def projection(limit=LIMIT):
+def projection(is_whole=True):
     """Some generators in the plane: the unit square's and a diagonal one."""
     columns = Columns(2, 3)
     columns.append(arb_mat([[1, 0, arb(0.5)], [0, 1, arb(0.5)]]))
-    return Projection([columns], [0, 1], limit)
+    nothing = numpy.zeros((0, 1), dtype=int)
+    made = SimpleNamespace(at=lambda sample: [columns], ages=lambda: nothing, is_whole=is_whole)
+    return Projection(made, None, [0, 1])
 
 
 def ball(*numbers):
     return [arb(x) for x in numbers]
 
 
-def verdict(point, y, limit=LIMIT):
-    return projection(limit).judge([(point, y)])[0][0]
+def verdict(point, y, limit=LIMIT, is_whole=True):
+    return projection(is_whole).judge([(point, Recipe(y, limit))])[0][0]
 
 
 def test_a_vertex_is_in_the_set_and_a_little_beyond_is_not():
@@ -166,10 +173,8 @@ def test_factors_with_room_take_what_is_left():
 
 
 def test_what_are_not_all_generators_cannot_prove_a_point_outside():
-    columns = Columns(2, 2)
-    columns.append(arb_mat([[1, 0], [0, 1]]))
-    some = Projection([columns], [0, 1], LIMIT, is_whole=False)
-    assert some.judge([(ball(2.0, 0.0), [9.0, 0.0])])[0][0] is Verdict.UNDECIDED
+    assert verdict(ball(2.0, 0.0), [9.0, 0.0]) is Verdict.FAILS
+    assert verdict(ball(2.0, 0.0), [9.0, 0.0], is_whole=False) is Verdict.UNDECIDED
 
 
 def test_combinations_of_columns_are_exact():
@@ -203,7 +208,25 @@ def test_generators_of_parts_of_steps_fill_more_of_the_set():
             made = Generators(model, system, grid, parts)
             for sample in samples(model, system, grid, [case]):
                 columns = made.at(sample)
+                ages = made.ages()
                 made.advance(sample)
+            # The youngest part of a step is the one that ends at the sample.
+            youngest = columns[1].rounded([0, 1])[:, ages[:, 0] == 0]
+            last_part = system.step(grid.span(6) / parts).gamma
+            assert youngest[:, 0] == pytest.approx([float(x) for x in last_part.entries()])
+            assert sorted(ages[:, 0]) == list(range(7 * parts))
             reached.append(sum(numpy.abs(part.rounded([1])).sum() for part in columns))
         assert reached[0] < reached[1] < reached[2] <= float(sample.radius[1, 0]) + 1e-12
         assert reached[2] == pytest.approx(float(sample.radius[1, 0]), rel=2e-2)
+
+
+def test_steps_that_share_their_factors_have_the_sum_of_their_generators():
+    """Generators 1, 2, 4, 8, 16 of one input, the newest last: counted back, three and then two
+    steps share their factors. The generators of X0 are for themselves."""
+    start, inputs = Columns(1, 1), Columns(1, 5)
+    start.append(arb_mat([[0.5]]))
+    inputs.append(arb_mat([[1, 2, 4, 8, 16]]))
+    made = SimpleNamespace(at=lambda sample: [start, inputs], is_whole=True,
+                           ages=lambda: numpy.arange(5)[::-1, None])
+    found = Projection(made, None, [0])._factors([Recipe([0.01], 0.25, 3)], 3)
+    assert found[:, 0] == pytest.approx([0.005, 0.03, 0.03, 0.25, 0.25, 0.25])
