@@ -61,6 +61,6 @@ def row_sum_norm(m):
 
 def up(x):
     """Returns a double that is at least every number of the ball, for reports."""
-    from math import nextafter, inf
+    from math import inf, nextafter
 
     return nextafter(float(x.upper()), inf)

@@ -12,8 +12,8 @@ from .grid import distinct
 from .hulls import HullRows
 from .inputs import Inputs, read_inputs
 from .model import read_model
-from .reachable import samples
 from .reach_files import ReachFiles
+from .reachable import samples
 from .recordings import read_index, read_run
 from .system import System
 from .verdict import exit_code

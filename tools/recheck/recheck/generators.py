@@ -36,7 +36,7 @@ class Columns:
 
     def append(self, columns):
         """Appends columns, a matrix of balls."""
-        rows, added, entries = columns.nrows(), columns.ncols(), columns.entries()
+        added, entries = columns.ncols(), columns.entries()
         mask = (1 << self.width) - 1
         for at, x in enumerate(entries):
             i, j = divmod(at, added)

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import numpy
 import pytest
 import toy
+
 from recheck.balls import arb, arb_mat
 from recheck.cli import main
 from recheck.generators import Columns, Generators
@@ -19,7 +20,6 @@ from recheck.model import Box
 from recheck.reachable import samples
 from recheck.system import System
 from recheck.verdict import Verdict
-
 
 LIMIT = 1.0 - 1e-9
 

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy
 import pytest
 import toy
+
 from recheck.cli import main
 from recheck.grid import Grid
 from recheck.inputs import Inputs

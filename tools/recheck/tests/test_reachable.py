@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy
 import pytest
 import toy
+
 from recheck.balls import arb
 from recheck.grid import Grid
 from recheck.model import Box

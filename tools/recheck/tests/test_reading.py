@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import pytest
 import toy
+
 from recheck.errors import BadInput
 from recheck.grid import Grid, distinct, grid_of
 from recheck.model import read_model

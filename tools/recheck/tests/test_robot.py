@@ -4,6 +4,7 @@ import math
 
 import pytest
 import toy
+
 from recheck.robot import Robot, coulomb_torque, quadrant
 
 
