@@ -6,7 +6,8 @@ use common::{Random, conform_all, grid, read, shared, step, two_joints};
 use nalgebra::DVector;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, linear_model};
 use reachtube_conform::{
-    FitSettings, Fitted, Group, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, fit,
+    Centre, FitSettings, Fitted, Group, Hulls, Keep, Model, Problem, Settings, Setup, Silent,
+    check, fit,
 };
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, Torque};
@@ -26,6 +27,8 @@ struct Truth {
     warm_up: f64,
     /// Extra friction of the shoulder against the motion, N m.
     coulomb: f64,
+    /// Mass at the tip, whose weight along -y the recorded input does not carry, kg.
+    payload: f64,
 }
 
 /// Runs of the arm in motions of their own amplitude and frequency.
@@ -51,6 +54,10 @@ fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
                 torques.extend(u.iter());
                 let mut real = u.map(|u| u + 0.02 * random.signed());
                 real[0] -= truth.coulomb * (x[2] / 0.02).clamp(-1.0, 1.0);
+                let weight = 9.81 * truth.payload;
+                let elbow = 0.25 * (x[0] + x[1]).cos();
+                real[0] -= weight * (0.3 * x[0].cos() + elbow);
+                real[1] -= weight * elbow;
                 x = step(&system, 0.01, &x, &real);
             }
             let run = Run::new(2, times.clone(), states, torques).unwrap();
@@ -73,7 +80,7 @@ fn fitted(problem: &Problem, groups: &[Group], pull: Option<f64>) -> Fitted {
     fit(problem, &FitSettings { groups: groups.to_vec(), pull }, &Silent).unwrap()
 }
 
-const PLAIN: Truth = Truth { elbow: 1.0, shoulder: 0.0, warm_up: 0.0, coulomb: 0.0 };
+const PLAIN: Truth = Truth { elbow: 1.0, shoulder: 0.0, warm_up: 0.0, coulomb: 0.0, payload: 0.0 };
 
 #[test]
 fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
@@ -141,6 +148,22 @@ fn coulomb_friction_is_taken_off_along_the_nominal_motion() {
     let [only] = &record.parameters[..] else { panic!("{record:?}") };
     assert!((only.fitted - 0.5).abs() < 0.02, "{only:?}");
     assert!(record.cost < 0.5 * record.identified_cost, "{record:?}");
+    assert!(conform_all(&better).verdict.conformant);
+}
+
+#[test]
+fn a_payload_is_found_on_links_that_are_described_by_their_centre_of_mass() {
+    let problem = problem(Truth { payload: 0.2, ..PLAIN }, 2, |s| s.centre = Centre::Zero);
+    let robot = {
+        let mut description = two_joints().description().clone();
+        description.gravity = [0.0, -9.81, 0.0];
+        Robot::from_description(&description).unwrap()
+    };
+    let setup = Setup::new(robot, problem.settings().clone()).unwrap();
+    let problem = problem.with_setup(setup);
+    let Fitted { problem: better, record } = fitted(&problem, &[Group::Payload], Some(1e-4));
+    let [only] = &record.parameters[..] else { panic!("{record:?}") };
+    assert!((only.fitted - 0.2).abs() < 0.02, "{only:?}");
     assert!(conform_all(&better).verdict.conformant);
 }
 

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Random, conform_all, grid, step, two_joints};
+use common::{Disturbed, Random, conform_all, grid, step, two_joints};
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent};
@@ -96,4 +96,38 @@ fn a_robot_that_does_not_warm_has_no_sets_for_any_run() {
     let robot = two_joints();
     let found = conform_all(&problem(&robot, record(&robot, |place| place)));
     assert!(found.any_run.is_none());
+}
+
+#[test]
+fn the_sets_for_any_run_take_all_friction_in_one_condition() {
+    let robot_with = |coulomb: f64, warming| {
+        let mut description = two_joints().description().clone();
+        for joint in &mut description.joints {
+            let f = coulomb;
+            joint.friction.coulomb = [f, 0.0, -f, 0.0, -f, 0.0, f, 0.0];
+            joint.friction.warming = warming;
+        }
+        Robot::from_description(&description).unwrap()
+    };
+    let law = Warming { by: WarmingBy::Runs, reference: 1.0, coulomb: 0.3, ..Warming::default() };
+    // Each run is a suite of its own, at the first and at the ninth place: the third is the middle.
+    let times = grid(0.01, SAMPLES);
+    let disturbed =
+        Disturbed { robot: &robot_with(0.0, None), times: &times, start: 1e-4, input: 0.01 };
+    let recorded: Vec<_> =
+        [3, 4].into_iter().map(|seed| disturbed.record(&mut Random(seed))).collect();
+    let conformed = |robot: Robot| {
+        let mut runs = MemoryRuns::default();
+        for (place, run) in [1, 9].into_iter().zip(recorded.clone()) {
+            let run = Run::new(2, run.times, run.states, run.torques).unwrap();
+            runs.push(&format!("run{place}"), Some(&format!("S{place}")), None, run).order = place;
+        }
+        let setup = Setup::new(robot, Settings::new(Torque::Motor, 2)).unwrap();
+        let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
+        conform_all(&problem)
+    };
+    let any = conformed(robot_with(1.0, Some(law))).any_run.unwrap();
+    assert_eq!(any.condition.place, 3);
+    let third = conformed(robot_with(law.factors(3.0)[0], None));
+    assert!((any.cost - third.cost).abs() < 1e-6 * third.cost, "{} {}", any.cost, third.cost);
 }

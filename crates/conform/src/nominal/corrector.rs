@@ -2,7 +2,7 @@
 
 use reachtube_recordings::Torque;
 use reachtube_robot::friction::{Coulomb, LoadLine};
-use reachtube_robot::{ParameterSet, Robot, RobotDescription, Workspace};
+use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
 use crate::error::Result;
 use crate::nominal::correction::InputCorrection;
@@ -138,6 +138,7 @@ fn only_payload(description: &RobotDescription) -> RobotDescription {
         joint.gravity_moments = None;
         joint.com = None;
         joint.first_moment = Some([0.0; 3]);
+        joint.about = InertiaPoint::Origin;
         joint.inertia = [0.0; 6];
         joint.mass = if j == last { 1.0 } else { 0.0 };
     }

@@ -89,10 +89,16 @@ impl Problem {
         self.setup().correction.as_ref().is_some_and(|c| c.differs_by_run())
     }
 
-    /// Returns whether the inputs that were computed at reading are those of the problem's robot:
-    /// its viscous friction is in the input of link torques.
+    /// Returns whether the inputs that were computed at reading are those of the problem's robot in
+    /// the problem's condition: friction is in the input of motor and link torques, and viscous
+    /// friction in that of link torques may have been fitted since.
     fn inputs_are_current(&self) -> bool {
-        self.settings().torque != Torque::Link || self.read.robot == *self.robot().description()
+        let is_warm = self.setup().condition.is_some() && !self.robot().warms_by().is_empty();
+        match self.settings().torque {
+            Torque::Compensated => true,
+            Torque::Motor => !is_warm,
+            Torque::Link => !is_warm && self.read.robot == *self.robot().description(),
+        }
     }
 
     fn case_of_run(&self, suite: &Suite, index: usize, summary: &RunSummary) -> Result<Case> {
