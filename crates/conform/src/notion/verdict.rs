@@ -15,7 +15,7 @@ use crate::side::Side;
 use crate::verdict::Witness;
 
 /// A state is named in a combination when its part is at least this of the largest.
-const NAMED: f64 = 0.02;
+const NAMED: f64 = 0.1;
 
 /// A point counts as outside when the set must grow by more than this part.
 const OUTSIDE: f64 = 1e-9;

@@ -135,7 +135,11 @@ fn dots(axes: &mut Axes, series: &Series) -> DrawResult {
 }
 
 fn line(axes: &mut Axes, series: &Series, column: f64, tolerance: f64) -> DrawResult {
-    let line = decimate(&series.points, column, tolerance);
+    // A single edge may be vertical, which is nothing to a line from left to right.
+    let line = match series.points[..] {
+        [_, _] => series.points.clone(),
+        _ => decimate(&series.points, column, tolerance),
+    };
     axes.draw_series([PathElement::new(line, colour(series).stroke_width(LINE))])?;
     Ok(())
 }

@@ -96,7 +96,8 @@ fn chart(plane: &PhasePlane, model: &Model) -> Chart {
 fn halves(polygon: &[[f64; 2]]) -> [Vec<(f64, f64)>; 2] {
     let count = polygon.len();
     let extreme = |further: fn(f64, f64) -> bool| {
-        let at = |best: usize, i: usize| if further(polygon[i][0], polygon[best][0]) { i } else { best };
+        let at =
+            |best: usize, i: usize| if further(polygon[i][0], polygon[best][0]) { i } else { best };
         (0..count).fold(0, at)
     };
     let (left, right) = (extreme(|a, b| a < b), extreme(|a, b| a > b));

@@ -76,6 +76,7 @@ pub(super) fn page() -> Page {
     Page {
         title: hostile("title"),
         subtitle: hostile("subtitle"),
+        phase_planes: Vec::new(),
         verdict: Verdict {
             ok: true,
             words: hostile("words"),

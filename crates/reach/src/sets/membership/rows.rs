@@ -62,9 +62,8 @@ impl GeneratorRows {
     /// Returns the zonotope of the stored generators about `centre`, for figures.
     #[must_use]
     pub fn zonotope(&self, centre: Vec<f64>) -> Zonotope {
-        let generators = (0..self.count).flat_map(|j| {
-            (0..self.errors.len()).map(move |i| self.entries[i * self.count + j])
-        });
+        let generators = (0..self.count)
+            .flat_map(|j| (0..self.errors.len()).map(move |i| self.entries[i * self.count + j]));
         Zonotope::new(centre, generators.collect())
     }
 
