@@ -49,8 +49,8 @@ pub use envelope::Envelope;
 pub use error::{Error, Result};
 pub use explain::{Explanation, explain};
 pub use fitting::{
-    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, PullCost, TorquePrediction,
-    UnseenMotion, fit,
+    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, MOST_ERRORS, PullCost,
+    TorquePrediction, UnseenMotion, fit,
 };
 pub use found::SearchSummary;
 pub use grids::{Grid, Grids};

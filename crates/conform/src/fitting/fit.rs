@@ -1,5 +1,6 @@
 use rayon::prelude::*;
 use reachtube_abstraction::Abstraction;
+use reachtube_recordings::Torque;
 
 use crate::dynamics::Dynamics;
 use crate::envelope::Envelope;
@@ -10,7 +11,8 @@ use crate::fitting::group::{FitSettings, Group};
 use crate::fitting::parameters::{Parameter, Parameters, Quantity};
 use crate::fitting::pull::{PullChoice, choose};
 use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fitting::search::{Effort, Search};
+use crate::fitting::search::{Effort, Optimum, Search};
+use crate::linear::smallest_sets::program;
 use crate::next_motion::calibration::without_kept_back;
 use crate::nominal::correction::WarmthLaw;
 use crate::nominal::input_error::InputError;
@@ -42,13 +44,11 @@ pub struct Fitted {
 ///
 /// # Errors
 ///
-/// [`Error::Fit`] with fewer than two motions, without any parameter, and where the fitted robot is
-/// not physical; as [`Problem::run`] and [`conform`](crate::conform).
+/// [`Error::Fit`] with fewer than two motions, without any parameter, for friction and link torques,
+/// for a model whose error was bounded, and where the fitted robot is not physical; as
+/// [`Problem::run`] and [`conform`](crate::conform).
 pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
-    let refused = |why: &str| Err(Error::Fit(why.into()));
-    if settings.pull.is_some_and(|pull| !(0.0..=1.0).contains(&pull)) {
-        return refused("the weight of the pull must be a number from 0 to 1");
-    }
+    refuse(problem, settings)?;
     let kept = without_kept_back(problem)?;
     let fit_problem = kept.as_ref().unwrap_or(problem);
     let linear;
@@ -63,15 +63,16 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let by_run = settings.groups.contains(&Group::WarmUp);
     let data = Data::new(steering, by_run)?;
     if data.motions.len() < 2 {
-        return refused(
+        return Err(Error::Fit(
             "there is only one motion, and a model that is chosen for one motion holds for no \
-             other; record a second motion, or name the motions in the column motion of runs.csv",
-        );
+             other; record a second motion, or name the motions in the column motion of runs.csv"
+                .into(),
+        ));
     }
     let law = by_run.then_some(WarmthLaw::Runs);
     let parameters = Parameters::new(setup, &settings.groups, law.clone());
     if parameters.len() == 0 {
-        return refused("the robot has none of the parameters of these groups");
+        return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
     }
     let envelopes: Vec<&Envelope> = steering.deviations()?.iter().map(|d| &d.envelope).collect();
     let fit = Fit {
@@ -84,27 +85,69 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     };
     let choice = choose(&fit, settings.pull)?;
     progress.finished(&format!("the weight of the pull is {}", choice.pull));
-    let (start, tracks) = (vec![0.0; parameters.len()], fit.tracks(None));
-    let pull = choice.pull * fit.smallest(&fit.model(&start, None)?, &tracks)?.cost;
-    // Few runs of each suite show where to go, and all of them decide the end.
+    let found = search(&fit, choice.pull)?;
+    progress.finished(&format!("the fit took {} steps", found.steps));
+    let with_numbers = |problem: &Problem| -> Result<Problem> {
+        let own = Parameters::new(problem.setup(), &settings.groups, law.clone());
+        let mut setup = own.apply(&found.numbers)?;
+        if setup.settings.weights == Weights::Spread {
+            setup.settings.weights = Weights::Given(fit.weights.clone());
+        }
+        Ok(problem.with_setup(setup))
+    };
+    let fitted = with_numbers(steering)?;
+    if let Err(error) = fitted.robot().check_physical() {
+        return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
+    }
+    let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
+    let record = record(&fit, settings, choice, &found.numbers, costs)?;
+    // The numbers go to the model that was asked for, with all motions.
+    let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
+    Ok(Fitted { problem, record })
+}
+
+/// Searches with `pull` in parts of the identified model's cost: few runs of each suite show where
+/// to go, and all of them decide the end.
+fn search(fit: &Fit, pull: f64) -> Result<Optimum> {
+    let (start, tracks) = (vec![0.0; fit.parameters.len()], fit.tracks(None));
+    let pull = pull * fit.smallest(&fit.model(&start, None)?, &tracks)?.cost;
     let few = fit.few_tracks(None, FEW);
     let is_done = few.len() == tracks.len();
-    let mut found = Search { fit: &fit, tracks: few, pull, effort: Effort::WHOLE }.run(&start)?;
-    if !is_done {
-        found = Search { fit: &fit, tracks, pull, effort: Effort::LAST }.run(&found.numbers)?;
+    let found = Search { fit, tracks: few, pull, effort: Effort::WHOLE }.run(&start)?;
+    if is_done {
+        return Ok(found);
     }
-    progress.finished(&format!("the fit took {} steps", found.steps));
-    // The numbers, given to the model that was asked for.
-    let own = Parameters::new(problem.setup(), &settings.groups, law);
-    let mut fitted = own.apply(&found.numbers)?;
-    if let Err(error) = fitted.robot.check_physical() {
-        return refused(&format!("{error}; give a larger weight to the pull"));
+    let last = Search { fit, tracks, pull, effort: Effort::LAST }.run(&found.numbers)?;
+    Ok(Optimum { steps: found.steps + last.steps, ..last })
+}
+
+/// Refuses what cannot be fitted, whatever the recordings are.
+fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
+    let refused = |why: &str| Err(Error::Fit(why.into()));
+    if settings.pull.is_some_and(|pull| !(0.0..=1.0).contains(&pull)) {
+        return refused("the weight of the pull must be a number from 0 to 1");
     }
-    if fitted.settings.weights == Weights::Spread {
-        fitted.settings.weights = Weights::Given(fit.weights.clone());
+    // The fit replaces the robot.
+    if problem.settings().operating_box.is_some() {
+        return refused(
+            "the error of the model was bounded for the identified robot, and does not hold for \
+             another one; fit without the file of the abstraction",
+        );
     }
-    let record = record(&fit, settings, choice, &found.numbers)?;
-    Ok(Fitted { problem: problem.with_setup(fitted), record })
+    let friction = [Group::Viscous, Group::Cubic, Group::Coulomb, Group::WarmUp];
+    if problem.settings().torque == Torque::Link
+        && settings.groups.iter().any(|group| friction.contains(group))
+    {
+        return refused("there is no friction in link torques; fit inertia or payload");
+    }
+    Ok(())
+}
+
+/// The cost of the smallest sets of a linear model, as [`conform`](crate::conform) finds it.
+fn smallest_cost(problem: &Problem) -> Result<f64> {
+    let program = program(problem)?;
+    let solution = program.solve()?;
+    Ok(program.cost(&program.repaired(&solution.sets)))
 }
 
 /// The linear model of the same robot about the same point.
@@ -112,7 +155,6 @@ fn linear_setup(setup: &Setup) -> Result<Setup> {
     let mut linear = setup.clone();
     linear.settings.abstraction = Abstraction::default();
     linear.settings.method = Method::Program;
-    linear.settings.operating_box = None;
     linear.dynamics = Dynamics::new(&linear.robot, &linear.settings)?;
     Ok(linear)
 }
@@ -122,9 +164,9 @@ fn record(
     settings: &FitSettings,
     choice: PullChoice,
     numbers: &[f64],
+    [identified_cost, cost]: [f64; 2],
 ) -> Result<FitRecord> {
     let setup = fit.parameters.setup();
-    let none = Parameters::new(setup, &[], None);
     let cost_without = |group: &Group| {
         let kept = |(x, parameter): (&f64, &Parameter)| match parameter.quantity.group() {
             of if of == *group => 0.0,
@@ -139,8 +181,8 @@ fn record(
     let torque = before.into_iter().zip(after).enumerate();
     Ok(FitRecord {
         pull: choice.pull,
-        identified_cost: Fit { parameters: &none, ..fit.clone() }.whole_cost(&[])?,
-        cost: fit.whole_cost(numbers)?,
+        identified_cost,
+        cost,
         groups: settings.groups.par_iter().map(cost_without).collect::<Result<_>>()?,
         leave_one_out: choice.left_out,
         pulls: choice.tried,
@@ -178,7 +220,8 @@ fn parameters_of(fit: &Fit, numbers: &[f64], setup: &Setup) -> Vec<FittedParamet
             Quantity::Payload => ("payload", "kg".into()),
         };
         let (group, joint) = (quantity.group(), joint + 1);
-        FittedParameter { group, name: name.into(), joint, unit, identified, fitted, factor }
+        let (name, standard_error) = (name.into(), fit.parameters.standard_error(p));
+        FittedParameter { group, name, joint, unit, identified, standard_error, fitted, factor }
     };
     (0..numbers.len()).map(of).collect()
 }

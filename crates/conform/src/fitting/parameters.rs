@@ -170,12 +170,25 @@ impl<'a> Parameters<'a> {
             Quantity::Cubic => times(viscous.v3, 1.0 + number),
             Quantity::Coulomb(quadrants) => {
                 let a = self.setup.robot.description().joints[joint].friction.coulomb;
-                let at = quadrants.iter().position(|is| *is).unwrap_or(0);
-                times(a[2 * at], 1.0 + number)
+                times(a[2 * first(quadrants)], 1.0 + number)
             }
             Quantity::WarmUp => (0.0, viscous.v1 * number, None),
             Quantity::Payload => (0.0, number, None),
         }
+    }
+
+    /// Returns the standard error of the identified value of parameter `p`, where the robot's
+    /// description has it.
+    pub fn standard_error(&self, p: usize) -> Option<f64> {
+        let Parameter { quantity, joint, .. } = self.list[p];
+        let errors = self.setup.robot.description().joints[joint].friction.standard_errors?;
+        let error = match quantity {
+            Quantity::Viscous => errors.viscous[0],
+            Quantity::Cubic => errors.viscous[2],
+            Quantity::Coulomb(quadrants) => errors.coulomb[2 * first(quadrants)],
+            _ => 0.0,
+        };
+        (error > 0.0).then_some(error)
     }
 
     /// Returns the model with these numbers, one per parameter.
@@ -252,6 +265,11 @@ impl<'a> Parameters<'a> {
             _ => [0.0, 0.0],
         }
     }
+}
+
+/// The first of some quadrants.
+fn first(quadrants: [bool; 4]) -> usize {
+    quadrants.iter().position(|is| *is).unwrap_or(0)
 }
 
 /// Gives the links of a description the weight they have in `robot`: what is added to them is not

@@ -2,6 +2,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fitting::group::Group;
 
+/// Number of standard errors by which a fit may move a value that is still a measurement.
+pub const MOST_ERRORS: f64 = 3.0;
+
 /// How the nominal model was fitted, for people and for the model file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -85,6 +88,9 @@ pub struct FittedParameter {
     pub unit: String,
     /// The identified value.
     pub identified: f64,
+    /// Its standard error, where the robot's description has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_error: Option<f64>,
     /// The fitted value.
     pub fitted: f64,
     /// What the identified value is multiplied by, where the parameter is a factor.
@@ -93,6 +99,14 @@ pub struct FittedParameter {
 }
 
 impl FittedParameter {
+    /// Returns whether the fit moved the value further than the recordings of the identification
+    /// allow: it covers something that the model leaves out, and measures nothing.
+    #[must_use]
+    pub fn is_beyond_error(&self) -> bool {
+        let moved = (self.fitted - self.identified).abs();
+        self.standard_error.is_some_and(|error| moved > MOST_ERRORS * error)
+    }
+
     /// Returns whether the fit moved the value by more than 0.05 % of it.
     #[must_use]
     pub fn has_changed(&self) -> bool {

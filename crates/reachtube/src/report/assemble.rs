@@ -8,7 +8,7 @@ use reachtube_reach::Hyperrectangle;
 use crate::error::Result;
 use crate::number::at_least;
 use crate::report::error::ReportError;
-use crate::report::nominal::{nominal_caution, nominal_facts};
+use crate::report::nominal::{nominal_caution, nominal_facts, nominal_tables};
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 
@@ -45,6 +45,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
         ),
         verdict: verdict(model, check),
         suites: figures,
+        nominal: nominal_tables(model),
         sets: vec![sets_table(model)],
         facts: [nominal_facts(model), facts(model)].concat(),
         trust: vec![trust(model, check)],

@@ -17,6 +17,8 @@ pub struct Page {
     pub verdict: Verdict,
     /// The figures, in the order of their buttons; the first one is open.
     pub suites: Vec<SuiteFigure>,
+    /// What was fitted of the nominal model, for a model that was.
+    pub nominal: Vec<TextTable>,
     /// The uncertainty sets: one table per notion of conformance (Table II has two).
     pub sets: Vec<SetsTable>,
     /// Settings and provenance: name and value.
@@ -27,6 +29,17 @@ pub struct Page {
     pub caution: Vec<String>,
     /// Further remarks, one paragraph each.
     pub notes: Vec<String>,
+}
+
+/// A table of texts: the first column names the row.
+#[derive(Debug, Clone, Default)]
+pub struct TextTable {
+    /// What the table shows.
+    pub title: String,
+    /// The names of the columns.
+    pub header: Vec<String>,
+    /// The rows, each as long as the header.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// The outcome in words.

@@ -84,7 +84,8 @@ pub struct Arguments {
         help_heading = "Fit",
         value_name = "GROUP,..",
         value_delimiter = ',',
-        value_parser = choice::<Group>(GROUPS)
+        value_parser = choice::<Group>(GROUPS),
+        conflicts_with = "abstraction"
     )]
     pub fit: Vec<Group>,
     /// Weight of the pull toward the identified values, from 0 to 1: part of the identified model's
