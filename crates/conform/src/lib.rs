@@ -68,7 +68,7 @@ pub use next_motion::left_out::LeftOut;
 pub use next_motion::rates::{Rate, Rates};
 pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
-pub use nominal::correction::{InputCorrection, JointCorrection, WarmthLaw};
+pub use nominal::correction::{InputCorrection, JointCorrection};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
 pub use problem::{

@@ -14,7 +14,6 @@ use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePredic
 use crate::fitting::search::{Effort, Optimum, Search};
 use crate::linear::smallest_sets::program;
 use crate::next_motion::calibration::without_kept_back;
-use crate::nominal::correction::WarmthLaw;
 use crate::nominal::input_error::InputError;
 use crate::problem::problem::{Problem, Setup};
 use crate::progress::Progress;
@@ -69,8 +68,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
                 .into(),
         ));
     }
-    let law = by_run.then_some(WarmthLaw::Runs);
-    let parameters = Parameters::new(setup, &settings.groups, law.clone());
+    let parameters = Parameters::new(setup, &settings.groups);
     if parameters.len() == 0 {
         return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
     }
@@ -88,7 +86,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let found = search(&fit, choice.pull)?;
     progress.finished(&format!("the fit took {} steps", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {
-        let own = Parameters::new(problem.setup(), &settings.groups, law.clone());
+        let own = Parameters::new(problem.setup(), &settings.groups);
         let mut setup = own.apply(&found.numbers)?;
         if setup.settings.weights == Weights::Spread {
             setup.settings.weights = Weights::Given(fit.weights.clone());
@@ -216,7 +214,7 @@ fn parameters_of(fit: &Fit, numbers: &[f64], setup: &Setup) -> Vec<FittedParamet
             Quantity::Viscous => ("viscous friction", of_velocity("")),
             Quantity::Cubic => ("cubic friction", of_velocity("³")),
             Quantity::Coulomb(quadrants) => (coulomb_name(quadrants), kind.force_unit().into()),
-            Quantity::WarmUp => ("viscous friction per unit of warmth", of_velocity("")),
+            Quantity::WarmUp => ("viscous friction per unit of ln(run)", of_velocity("")),
             Quantity::Payload => ("payload", "kg".into()),
         };
         let (group, joint) = (quantity.group(), joint + 1);

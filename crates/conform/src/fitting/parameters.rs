@@ -5,7 +5,7 @@ use reachtube_robot::{GravityMoments, ParameterKind, Robot, RobotDescription};
 use crate::dynamics::Dynamics;
 use crate::error::Result;
 use crate::fitting::group::Group;
-use crate::nominal::correction::{InputCorrection, WarmthLaw};
+use crate::nominal::correction::InputCorrection;
 use crate::problem::problem::Setup;
 
 /// The number of inertial parameters of a link.
@@ -25,7 +25,7 @@ pub(crate) enum Quantity {
     Cubic,
     /// Coulomb friction in these quadrants: a factor minus 1.
     Coulomb([bool; 4]),
-    /// The change of v1 per unit of warmth, in parts of v1.
+    /// The change of v1 with ln(run), in parts of v1.
     WarmUp,
     /// A mass, kg.
     Payload,
@@ -44,7 +44,6 @@ pub(crate) struct Parameter {
 /// The parameters of a fit, and the model that they give.
 pub(crate) struct Parameters<'a> {
     setup: &'a Setup,
-    law: Option<WarmthLaw>,
     /// The diagonal of the mass matrix at the expansion point, n, kg m².
     inertia: Vec<f64>,
     /// The inertial parameters of each link, 10 n.
@@ -76,13 +75,13 @@ impl Quantity {
 }
 
 impl<'a> Parameters<'a> {
-    /// Lists the parameters of `groups` that the robot has; `law` measures warmth.
-    pub fn new(setup: &'a Setup, groups: &[Group], law: Option<WarmthLaw>) -> Self {
+    /// Lists the parameters of `groups` that the robot has.
+    pub fn new(setup: &'a Setup, groups: &[Group]) -> Self {
         let robot = &setup.robot;
         let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
         let inertia = mass_matrix.diagonal().iter().copied().collect();
         let (links, list) = (robot.inertial_parameters(), Vec::new());
-        let mut parameters = Self { setup, law, inertia, links, list };
+        let mut parameters = Self { setup, inertia, links, list };
         for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
             for joint in 0..robot.joint_count() {
                 let of_joint = parameters.of_joint(group, joint);
@@ -199,7 +198,6 @@ impl<'a> Parameters<'a> {
     pub fn apply(&self, numbers: &[f64]) -> Result<Setup> {
         let Setup { robot, settings, nominal_starts, .. } = self.setup;
         let mut correction = InputCorrection::none(robot.joint_count());
-        correction.warmth.clone_from(&self.law);
         let (mut changed, mut values, mut links) = (Vec::new(), Vec::new(), self.links.clone());
         let mut change = |joint, kind, value| {
             changed.push(reachtube_robot::Parameter { joint, kind });

@@ -20,7 +20,7 @@ pub(crate) struct Corrector<'a> {
     correction: &'a InputCorrection,
     /// The velocities of the expansion point, n.
     origin: &'a [f64],
-    /// The warmth that the correction counts in.
+    /// The logarithm of the run's place, in which the correction counts warmth.
     warmth: f64,
     /// The robot as warm as it is in this run, where its own friction changes.
     warm: Option<Robot>,
@@ -58,7 +58,7 @@ impl<'a> Corrector<'a> {
             robot,
             correction,
             origin: &settings.expansion_point.qd,
-            warmth: correction.warmth.as_ref().map_or(0.0, |law| law.warmth(condition.place)),
+            warmth: (condition.place as f64).ln(),
             warm: condition.warm(robot),
             is_compensated: settings.torque == Torque::Compensated,
             has_coulomb,
