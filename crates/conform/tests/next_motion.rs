@@ -2,6 +2,8 @@
 
 mod common;
 
+use std::collections::BTreeSet;
+
 use common::{Disturbed, Random, Recorded, conform_all, grid, read, two_joints, write_data_set};
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::{
@@ -162,6 +164,11 @@ fn motions_of_one_run_decide_nothing_at_their_first_sample() {
     // More than 60 motions would have needed a program.
     assert!(found.left_out.len() == 70 && found.left_out.iter().all(|left| left.cost.is_some()));
     assert!(found.left_out.iter().any(|left| left.gauge.unwrap() > 1.0));
+    // All 70 touch X0, which has no width there; the scenario bound counts those that decide U.
+    let touching: BTreeSet<&str> = found.tight.iter().map(|row| row.suite.as_str()).collect();
+    let needed = found.left_out.iter().filter(|left| left.gauge.unwrap() > 1.0).count();
+    assert!(touching.len() == 70 && found.trust.violation_probability < 0.9, "{:?}", found.trust);
+    assert!((needed..40).contains(&found.trust.deciding), "{needed} {:?}", found.trust);
 }
 
 #[test]

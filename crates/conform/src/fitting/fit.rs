@@ -122,8 +122,8 @@ fn search(fit: &Fit, pull: f64) -> Result<Optimum> {
 /// Refuses what cannot be fitted, whatever the recordings are.
 fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
     let refused = |why: &str| Err(Error::Fit(why.into()));
-    if settings.pull.is_some_and(|pull| !(0.0..=1.0).contains(&pull)) {
-        return refused("the weight of the pull must be a number from 0 to 1");
+    if let Some(pull) = settings.pull.filter(|pull| !(0.0..=1.0).contains(pull)) {
+        return refused(&format!("the weight of the pull is {pull}; give a number from 0 to 1"));
     }
     // The fit replaces the robot.
     if problem.settings().operating_box.is_some() {
@@ -173,6 +173,9 @@ fn record(
         let numbers: Vec<f64> = numbers.iter().zip(&fit.parameters.list).map(kept).collect();
         Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&numbers)? })
     };
+    // Each group once, also where it was named twice.
+    let named = |group: &Group| settings.groups.contains(group);
+    let groups: Vec<Group> = Group::ALL.into_iter().filter(named).collect();
     let cases = || fit.data.tracks.iter().map(|track| &track.case);
     let before = InputError::of_cases(setup, cases())?;
     let after = InputError::of_cases(&fit.parameters.apply(numbers)?, cases())?;
@@ -181,7 +184,7 @@ fn record(
         pull: choice.pull,
         identified_cost,
         cost,
-        groups: settings.groups.par_iter().map(cost_without).collect::<Result<_>>()?,
+        groups: groups.par_iter().map(cost_without).collect::<Result<_>>()?,
         leave_one_out: choice.left_out,
         pulls: choice.tried,
         parameters: parameters_of(fit, numbers, setup),

@@ -75,7 +75,7 @@ fn parameters(model: &Model, record: &FitRecord) -> String {
         rows.iter_mut().for_each(|row| drop(row.remove(3)));
         header.remove(3);
     }
-    let mut text = table(&header, &rows);
+    let mut text = if rows.is_empty() { String::new() } else { table(&header, &rows) };
     let kept = record.parameters.len() - changed.len();
     if kept > 0 {
         let _ = writeln!(text, "  {kept} of {} keep their values", record.parameters.len());
