@@ -16,7 +16,8 @@ pub struct FitRecord {
     pub identified_cost: f64,
     /// Cost of the smallest sets of the fitted model.
     pub cost: f64,
-    /// What each group is worth.
+    /// What each group is worth. These costs, and those of the motions left out, are approximate
+    /// where the times between samples differ.
     pub groups: Vec<GroupCost>,
     /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
     /// compare with `identified_cost`.

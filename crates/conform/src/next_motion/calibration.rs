@@ -90,10 +90,10 @@ pub(crate) fn calibrate(
             .map(|s| motions.of_suite(s) == *motion)
             .collect();
         let gauge = match &linear {
-            Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only)?
-                .ok_or_else(|| Error::Calibration(no_factor(motion, input_only)))?,
-            None => outer_gauge(problem, motion, &suites, &grown)?,
-        };
+            Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
+            None => outer_gauge(problem, motion, &suites, &grown),
+        }?;
+        let gauge = gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only)))?;
         Ok(Gauge { motion: (*motion).to_string(), gauge })
     };
     let gauges = kept_back.iter().map(gauge).collect::<Result<Vec<_>>>()?;
@@ -175,7 +175,7 @@ fn outer_gauge(
     motion: &str,
     suites: &[bool],
     grown: &(impl Fn(f64) -> UncertaintySets + Sync),
-) -> Result<f64> {
+) -> Result<Option<f64>> {
     let cases: Vec<&Case> = problem.cases()?.iter().filter(|case| suites[case.suite]).collect();
     let answer = |steps: i32| {
         let sets = grown(STEP.powi(steps));
@@ -200,8 +200,8 @@ fn outer_gauge(
     }
     let factor = STEP.powi(high);
     match at_high {
-        Enclosed::Yes => Ok(factor),
-        Enclosed::No => Err(Error::Calibration(no_factor(motion, false))),
+        Enclosed::Yes => Ok(Some(factor)),
+        Enclosed::No => Ok(None),
         Enclosed::Lost => Err(Error::Calibration(format!(
             "the reachable sets of motion {motion} are lost when the sets grow {factor:.2} times, \
              and less does not enclose the motion; keep back other motions, find the sets with \
