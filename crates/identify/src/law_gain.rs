@@ -25,9 +25,9 @@ impl LawGain {
         let worse = pairs.filter(|((old, new), _)| self.kept_back && **new > WORSE * **old);
         let warning = |((before, after), joint): ((&f64, &f64), &reachtube_robot::Joint)| {
             format!(
-                "{}: the friction laws predict the validation recordings worse (residual {after:.4} \
-                 instead of {before:.4} {}), although they predict kept-back parts of the others \
-                 better; set stribeck = false or warming = \"none\"",
+                "{}: the friction laws predict the validation recordings worse (residual \
+                 {after:.4} instead of {before:.4} {}), although they predict kept-back parts of \
+                 the others better; set stribeck = false or warming = \"none\"",
                 joint.name,
                 joint.kind.force_unit()
             )

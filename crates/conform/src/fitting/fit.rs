@@ -43,8 +43,8 @@ pub struct Fitted {
 ///
 /// # Errors
 ///
-/// [`Error::Fit`] with fewer than two motions, without any parameter, for friction and link torques,
-/// for a model whose error was bounded, and where the fitted robot is not physical; as
+/// [`Error::Fit`] with fewer than two motions, without any parameter, for friction and link
+/// torques, for a model whose error was bounded, and where the fitted robot is not physical; as
 /// [`Problem::run`] and [`conform`](crate::conform).
 pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
     refuse(problem, settings)?;

@@ -168,8 +168,8 @@ fn linear_gauge(
 }
 
 /// Returns the gauge of the suites that are marked, those of `motion`, by the computed outer sets:
-/// the least power of [`STEP`] that suffices. It is assumed that larger sets have larger outer sets,
-/// and that sets larger than one whose reachable set is lost lose theirs too.
+/// the least power of [`STEP`] that suffices. It is assumed that larger sets have larger outer
+/// sets, and that sets larger than one whose reachable set is lost lose theirs too.
 fn outer_gauge(
     problem: &Problem,
     motion: &str,

@@ -11,9 +11,9 @@ impl RobotDescription {
     /// other parameters keep their values.
     ///
     /// Links that change get a first moment and an inertia about the origin of their frame. Coulomb
-    /// friction that changes loses its dependence on the load, and friction its standard errors. The new values are not checked;
-    /// [`Robot::from_description`] does that. Links that are no bodies need
-    /// [`ParameterSet::Base`](crate::ParameterSet::Base).
+    /// friction that changes loses its dependence on the load, and friction its standard errors.
+    /// The new values are not checked; [`Robot::from_description`] does that. Links that are no
+    /// bodies need [`ParameterSet::Base`](crate::ParameterSet::Base).
     ///
     /// # Errors
     ///

@@ -56,7 +56,7 @@ fn left_out(model: &Model) -> String {
     }
     if model.fit.is_some() {
         text.push_str(
-            "  only the sets were found without the motion: the nominal model was fitted to it too\n",
+            "  only the sets were found without the motion; the nominal model was fitted to all\n",
         );
     }
     text
