@@ -55,20 +55,34 @@ pub fn flowpipe(
     Ok(furthest)
 }
 
+/// How recordings lie to a computed reachable set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Enclosed {
+    /// All rows hold.
+    Yes,
+    /// The set was followed to the end, and a row does not hold.
+    No,
+    /// The set was lost before the end.
+    Lost,
+}
+
 /// Returns whether the flowpipe of a case under `sets` encloses its recordings.
 ///
 /// # Errors
 ///
 /// As [`flowpipe`].
-pub fn is_enclosed(
+pub fn enclosed(
     problem: &Problem,
     case: &Case,
     sets: &UncertaintySets,
     effort: Effort,
-) -> Result<bool> {
+) -> Result<Enclosed> {
     let flowpipe = flowpipe(problem.dynamics().polynomial_system()?, case, sets, effort)?;
+    if !flowpipe.is_reached() {
+        return Ok(Enclosed::Lost);
+    }
     let mut all = true;
     let states = problem.settings().states;
     rows(&case.measured, case.grid.times(), &flowpipe, sets, states, |row| all &= row.holds());
-    Ok(all)
+    Ok(if all { Enclosed::Yes } else { Enclosed::No })
 }

@@ -50,8 +50,8 @@ pub use envelope::Envelope;
 pub use error::{Error, Result};
 pub use explain::{Explanation, explain};
 pub use fitting::{
-    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, PullCost, TorquePrediction,
-    UnseenMotion, fit,
+    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, MOST_ERRORS, PullCost,
+    TorquePrediction, UnseenMotion, fit,
 };
 pub use found::SearchSummary;
 pub use grids::{Grid, Grids};
@@ -69,7 +69,7 @@ pub use next_motion::left_out::LeftOut;
 pub use next_motion::rates::{Rate, Rates};
 pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
-pub use nominal::correction::{InputCorrection, JointCorrection, WarmthLaw};
+pub use nominal::correction::{InputCorrection, JointCorrection};
 pub use notion::certificate::{CERTIFICATE_FORMAT, Certificate};
 pub use notion::phase_plane::PhasePlane;
 pub use notion::verdict::{PointVerdict, PointWitness};

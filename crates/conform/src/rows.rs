@@ -9,6 +9,9 @@ use crate::sets::UncertaintySets;
 use crate::settings::States;
 use crate::side::Side;
 
+/// A radius that nobody can tell from none, rad or rad/s.
+pub(crate) const NEGLIGIBLE_RADIUS: f64 = 1e-9;
+
 /// One row: the recordings of a suite (or of a run with an input of its own) at one time in one
 /// state.
 #[derive(Debug, Clone, Copy, PartialEq)]

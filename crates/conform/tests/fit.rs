@@ -4,14 +4,14 @@ mod common;
 
 use common::{Random, conform_all, grid, read, shared, step, two_joints};
 use nalgebra::DVector;
-use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, linear_model};
+use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, OperatingBox, linear_model};
 use reachtube_conform::{
     Centre, FitSettings, Fitted, Group, Hulls, Keep, Model, Problem, Settings, Setup, Silent,
     check, fit,
 };
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, Torque};
-use reachtube_robot::{Parameter, ParameterKind, Robot};
+use reachtube_robot::{FrictionErrors, Parameter, ParameterKind, Robot};
 
 const SAMPLES: usize = 120;
 const RUNS: usize = 5;
@@ -29,13 +29,18 @@ struct Truth {
     coulomb: f64,
     /// Mass at the tip, whose weight along -y the recorded input does not carry, kg.
     payload: f64,
+    /// Whether every third time between two samples is twice as long.
+    uneven: bool,
 }
 
 /// Runs of the arm in motions of their own amplitude and frequency.
 fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
     let kinds = [(1, ParameterKind::Viscous1), (0, ParameterKind::MotorInertia)];
     let parameters = kinds.map(|(joint, kind)| Parameter { joint, kind });
-    let (times, mut random) = (grid(0.01, SAMPLES), Random(7));
+    let (mut times, mut random) = (grid(0.01, SAMPLES), Random(7));
+    if truth.uneven {
+        times.iter_mut().enumerate().for_each(|(k, t)| *t += 0.01 * (k / 3) as f64);
+    }
     let mut runs = MemoryRuns::default();
     for motion in 0..motions {
         let name = format!("motion{motion}");
@@ -47,7 +52,7 @@ fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
             let system = linear_model(&real, &ExpansionPoint::zero(2)).unwrap();
             let mut x = DVector::from_fn(4, |_, _| 1e-3 * random.signed());
             let (mut states, mut torques) = (Vec::new(), Vec::new());
-            for &t in &times {
+            for (k, &t) in times.iter().enumerate() {
                 let pace = 3.0 + motion as f64;
                 let u = DVector::from_fn(2, |j, _| 2.0 * (pace * t + j as f64).sin());
                 states.extend(x.iter());
@@ -58,7 +63,7 @@ fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
                 let elbow = 0.25 * (x[0] + x[1]).cos();
                 real[0] -= weight * (0.3 * x[0].cos() + elbow);
                 real[1] -= weight * elbow;
-                x = step(&system, 0.01, &x, &real);
+                x = step(&system, times.get(k + 1).map_or(0.01, |next| next - t), &x, &real);
             }
             let run = Run::new(2, times.clone(), states, torques).unwrap();
             runs.push(&format!("{name}_{place}"), Some(&name), Some(&name), run);
@@ -80,7 +85,8 @@ fn fitted(problem: &Problem, groups: &[Group], pull: Option<f64>) -> Fitted {
     fit(problem, &FitSettings { groups: groups.to_vec(), pull }, &Silent).unwrap()
 }
 
-const PLAIN: Truth = Truth { elbow: 1.0, shoulder: 0.0, warm_up: 0.0, coulomb: 0.0, payload: 0.0 };
+const PLAIN: Truth =
+    Truth { elbow: 1.0, shoulder: 0.0, warm_up: 0.0, coulomb: 0.0, payload: 0.0, uneven: false };
 
 #[test]
 fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
@@ -92,7 +98,7 @@ fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
             fitted(&problem, &[Group::Inertia, Group::Viscous], Some(0.001));
         let after = conform_all(&better);
         assert!(after.verdict.conformant && after.cost < 0.2 * before.cost, "{}", after.cost);
-        let same = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-5;
+        let same = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
         assert!(same(record.identified_cost, before.cost) && same(record.cost, after.cost));
         let elbow = record.parameters.iter().find(|p| p.joint == 2 && p.group == Group::Viscous);
         assert!((elbow.unwrap().fitted - 1.6).abs() < 0.05, "{:?}", record.parameters);
@@ -101,6 +107,50 @@ fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
         let again = fitted(&problem, &[Group::Inertia, Group::Viscous], Some(0.001));
         assert_eq!(record, again.record);
     }
+}
+
+#[test]
+fn the_costs_are_those_of_conform_where_samples_are_uneven() {
+    let problem = problem(Truth { elbow: 1.6, uneven: true, ..PLAIN }, 2, |_| {});
+    let before = conform_all(&problem);
+    let Fitted { problem: better, record } = fitted(&problem, &[Group::Viscous; 2], Some(0.001));
+    let after = conform_all(&better);
+    let same = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
+    assert!(
+        same(record.identified_cost, before.cost),
+        "{} {}",
+        before.cost,
+        record.identified_cost
+    );
+    assert!(same(record.cost, after.cost), "{} {}", after.cost, record.cost);
+    // The group was named twice, and is fitted once.
+    assert!(record.cost < 0.5 * record.identified_cost && record.groups.len() == 1, "{record:?}");
+}
+
+#[test]
+fn standard_errors_of_the_description_stand_beside_the_values() {
+    let problem = problem(Truth { elbow: 1.6, ..PLAIN }, 2, |_| {});
+    let mut description = two_joints().description().clone();
+    for joint in &mut description.joints {
+        let errors = FrictionErrors { viscous: [0.1, 0.0, 0.0], ..FrictionErrors::default() };
+        joint.friction.standard_errors = Some(errors);
+    }
+    let robot = Robot::from_description(&description).unwrap();
+    let setup = Setup::new(robot, problem.settings().clone()).unwrap();
+    let groups = [Group::Inertia, Group::Viscous];
+    let Fitted { problem, record } = fitted(&problem.with_setup(setup), &groups, Some(0.02));
+    for parameter in &record.parameters {
+        let is_viscous = parameter.group == Group::Viscous;
+        assert_eq!(parameter.standard_error, is_viscous.then_some(0.1), "{parameter:?}");
+        assert_eq!(
+            parameter.is_beyond_error(),
+            is_viscous && parameter.joint == 2,
+            "{parameter:?}"
+        );
+    }
+    // A fitted value is no identified one, and has no error.
+    let joints = &problem.robot().description().joints;
+    assert!(joints[1].friction.standard_errors.is_none(), "{joints:?}");
 }
 
 #[test]
@@ -181,6 +231,15 @@ fn a_right_model_is_left_alone_and_bad_settings_are_refused() {
     assert!(refused(&one, &[Group::Viscous], None).contains("only one motion"));
     assert!(refused(&right, &[Group::Coulomb], None).contains("none of the parameters"));
     assert!(refused(&right, &[Group::Viscous], Some(2.0)).contains("from 0 to 1"));
+    let link = problem(PLAIN, 2, |settings| settings.torque = Torque::Link);
+    assert!(refused(&link, &[Group::Inertia, Group::WarmUp], None).contains("no friction"));
+    // An error that was bounded for one robot says nothing of another.
+    let bounded = problem(PLAIN, 2, |settings| {
+        let sides = |radius: f64| vec![[-radius, radius]; 2];
+        let operating_box = OperatingBox { q: sides(3.0), qd: sides(9.0), u: sides(9.0) };
+        settings.operating_box = Some(operating_box);
+    });
+    assert!(refused(&bounded, &[Group::Viscous], None).contains("does not hold for another"));
 }
 
 #[test]

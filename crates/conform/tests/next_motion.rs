@@ -5,8 +5,8 @@ mod common;
 use common::{Disturbed, Random, Recorded, conform_all, grid, read, two_joints, write_data_set};
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::{
-    Check, Error, Hulls, Keep, Model, NominalStart, Problem, Settings, Setup, Silent, check,
-    conform,
+    Check, Error, Hulls, Keep, Model, NominalStart, Problem, Settings, Setup, Silent, Trust,
+    Witness, check, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use tempfile::TempDir;
@@ -162,6 +162,18 @@ fn motions_of_one_run_decide_nothing_at_their_first_sample() {
     // More than 60 motions would have needed a program.
     assert!(found.left_out.len() == 70 && found.left_out.iter().all(|left| left.cost.is_some()));
     assert!(found.left_out.iter().any(|left| left.gauge.unwrap() > 1.0));
+    // Nor do such samples count for the scenario bound, unless there are no others.
+    let needed = found.left_out.iter().filter(|left| left.outside > Some(0)).count();
+    assert_eq!(found.trust.deciding, needed, "{:?}", found.trust);
+    let touches = &found.tight[0];
+    let first = |motion: usize| {
+        let suite = format!("M{motion}");
+        Witness { suite, sample: 0, excess: 0.0, radius: 1e-16, ..touches.clone() }
+    };
+    let all: Vec<Witness> = (0..70).map(first).collect();
+    let deciding = |tight: &[Witness]| Trust::of_fit(problem.recordings(), tight).deciding;
+    assert_eq!(deciding(&[found.tight.clone(), all.clone()].concat()), needed);
+    assert_eq!(deciding(&all), 70);
 }
 
 #[test]
@@ -181,6 +193,36 @@ fn the_outer_sets_of_a_model_that_is_not_linear_calibrate_it() {
     let verdict = check(&Model::new(&problem, &found), &problem, &hulls).unwrap().verdict;
     assert!(!verdict.conformant && verdict.suites[2].violations.count > 0);
     assert!(found.left_out.is_empty());
+}
+
+#[test]
+fn a_factor_is_found_below_those_under_which_the_reachable_set_is_lost() {
+    let found = |inputs: [f64; 2]| {
+        let (folder, times) = (tempfile::tempdir().unwrap(), grid(0.01, 200));
+        let suite = |index: usize| -> (&str, Vec<Recorded>) {
+            let (robot, input) = (&two_joints(), inputs[index]);
+            let arm = Disturbed { robot, times: &times, start: 0.01, input };
+            let mut random = Random(11 + index as u64);
+            (SUITES[index], (0..6).map(|_| arm.record(&mut random)).collect())
+        };
+        write_data_set(folder.path(), &[suite(0), suite(1)]);
+        let abstraction = Abstraction { model: ModelKind::Two, order: 3 };
+        let settings = Settings { abstraction, ..settings(&["b"]) };
+        let problem = read(&two_joints(), folder.path(), &[], &settings);
+        conform(&problem, &Silent, None).map(|found| (problem, found))
+    };
+    let (problem, enclosed) = found([6.0, 14.0]).unwrap();
+    let factor = enclosed.calibration.as_ref().unwrap().factor;
+    assert!(enclosed.verdict.conformant && factor > 1.9, "{factor}");
+    // Sets that are 3.5 times as large as the smallest are too large.
+    let mut larger = enclosed.sets.clone();
+    let sets = [&mut larger.initial_set, &mut larger.input_set];
+    sets.into_iter().flat_map(|set| &mut set.radius).for_each(|radius| *radius *= 3.5 / factor);
+    let hulls = Hulls::new(&problem, larger).unwrap();
+    let model = Model::new(&problem, &enclosed);
+    assert!(!check(&model, &problem, &hulls).unwrap().verdict.lost.is_empty());
+    let Err(Error::Calibration(words)) = found([10.0, 24.0]) else { panic!("a factor was found") };
+    assert!(words.contains("sets of motion b are lost when the sets grow 1."), "{words}");
 }
 
 /// Records one suite whose second joint is off by a constant torque, in the order of `torques`.

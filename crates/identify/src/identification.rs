@@ -2,6 +2,7 @@ use crate::error::Result;
 use crate::fitted::Fitted;
 use crate::friction::fit::FrictionFit;
 use crate::gravity::fit::GravityFit;
+use crate::inertia::description::friction_errors;
 use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
 use crate::law_gain::{LawGain, kept_back_residuals};
@@ -13,7 +14,7 @@ use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
 use crate::variant::with_gravity_of_links;
 use crate::warming::choice::WarmingFit;
 use crate::warming::laws::{fit_warming, law_warnings};
-use reachtube_robot::{Robot, RobotDescription};
+use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
 use std::path::Path;
 
 /// Number of steps that progress reports.
@@ -98,9 +99,15 @@ pub fn identify(
     let (gains, implausible) = fitted.check(robot, &inputs);
     let mut law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
     law_warnings.extend(laws.iter().flat_map(|laws| laws.warnings(robot)));
-    let Fitted { first, known, inertia, mut description, found, .. } = fitted;
+    let Fitted { first, friction, known, inertia, mut description, found } = fitted;
     for (joint, law) in description.joints.iter_mut().zip(&inputs.sampling.laws) {
         joint.friction.warming = *law;
+    }
+    for (j, joint) in description.joints.iter_mut().enumerate() {
+        let is_known = friction[j] != FrictionDescription::default();
+        let slow = first.friction.iter().find(|fit| fit.joint.joint == joint.name && is_known);
+        let known = slow.map(|fit| &fit.joint.standard_errors);
+        joint.friction.standard_errors = friction_errors(&inertia, j, known);
     }
     let warming_robot = Robot::from_description(&description)?;
     progress(3, STEPS);

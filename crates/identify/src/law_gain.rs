@@ -26,9 +26,8 @@ impl LawGain {
         let warning = |((before, after), joint): ((&f64, &f64), &reachtube_robot::Joint)| {
             format!(
                 "{}: the friction laws predict the validation recordings worse (residual \
-                 {after:.4} \
-                 instead of {before:.4} {}), although they predict kept-back parts of the others \
-                 better; set stribeck = false or warming = \"none\"",
+                 {after:.4} instead of {before:.4} {}), although they predict kept-back parts of \
+                 the others better; set stribeck = false or warming = \"none\"",
                 joint.name,
                 joint.kind.force_unit()
             )

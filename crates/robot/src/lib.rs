@@ -43,8 +43,8 @@ mod workspace;
 
 pub use base_parameters::base::BaseParameters;
 pub use description::joint_description::{
-    Convention, Dh, FrictionDescription, GravityMoments, InertiaPoint, JointDescription,
-    PlacementDescription,
+    Convention, Dh, FrictionDescription, FrictionErrors, GravityMoments, InertiaPoint,
+    JointDescription, PlacementDescription,
 };
 pub use description::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
 pub use error::RobotError;

@@ -99,9 +99,8 @@ class Inputs:
         if self.model.condition is not None:
             return False
         correction = self.correction or {}
-        by_warmth = correction.get("warmth") is not None and any(
-            joint.get("warm_up", 0.0) != 0.0 for joint in correction["joints"]
-        )
+        joints = correction.get("joints", [])
+        by_warmth = any(joint.get("warm_up", 0.0) != 0.0 for joint in joints)
         return by_warmth or self.warms
 
     def _finish(self, case, evaluation):
@@ -160,7 +159,7 @@ class _Evaluation:
             _factors(self.robot.warming(j), j, place, temperatures) for j in range(self.n)
         ]
         self.warms = inputs.warms
-        self.warmth = _warmth(self.correction.get("warmth"), place)
+        self.warmth = math.log(place)
         self.jumps = [0.0] * self.n
         joints = self.correction.get("joints", [])
         warm_coulomb = self.warms and self.torque == "compensated"
@@ -210,6 +209,9 @@ class _Evaluation:
                 self._note_jump(j, loads[j], qd[j], coefficients, parts)
                 slow = min(abs(qd[j]) / SLOW, 1.0)
                 u[j] -= slow * coulomb_torque(coefficients, loads[j], qd[j], parts)
+            if self.warms and self.torque == "compensated":
+                slow = min(abs(qd[j]) / SLOW, 1.0)
+                u[j] -= slow * (coulomb - 1.0) * robot.stribeck(j, qd[j])
         payload = self.correction.get("payload", 0.0)
         if payload != 0.0:
             weights = robot.payload_torque(q)
@@ -231,14 +233,6 @@ def _factors(law, j, place, temperatures):
         constant = law.get("time_constant") or 1.0
         warmth = math.exp(-(reference - 1) / constant) - math.exp(-(place - 1) / constant)
     return tuple(math.exp(-law.get(kind, 0.0) * warmth) for kind in ("coulomb", "viscous"))
-
-
-def _warmth(law, place):
-    if law is None:
-        return 0.0
-    if law == "runs":
-        return math.log(place)
-    return 1.0 - math.exp(-(place - 1) / law["thermal"]["runs"])
 
 
 def _groups(recorded):

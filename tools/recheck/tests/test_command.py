@@ -114,7 +114,7 @@ def test_a_correction_is_taken_off_along_the_nominal_motion():
         correction={"joints": [
             {"quadratic": 0.3, "cubic": 0.7, "coulomb": [0.5, 0.1, 0.1, 0.1]},
             {"warm_up": 2.0},
-        ], "payload": 0.25, "warmth": "runs"},
+        ], "payload": 0.25},
         settings={"torque": "compensated", "nominal": "mean",
                   "expansion_point": {"q": [0.0, 0.0], "qd": [0.1, 0.0]}},
     )

@@ -1,5 +1,6 @@
 use rayon::prelude::*;
 use reachtube_abstraction::Abstraction;
+use reachtube_recordings::Torque;
 
 use crate::dynamics::Dynamics;
 use crate::envelope::Envelope;
@@ -10,9 +11,9 @@ use crate::fitting::group::{FitSettings, Group};
 use crate::fitting::parameters::{Parameter, Parameters, Quantity};
 use crate::fitting::pull::{PullChoice, choose};
 use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fitting::search::{Effort, Search};
+use crate::fitting::search::{Effort, Optimum, Search};
+use crate::linear::smallest_sets::program;
 use crate::next_motion::calibration::without_kept_back;
-use crate::nominal::correction::WarmthLaw;
 use crate::nominal::input_error::InputError;
 use crate::problem::problem::{Problem, Setup};
 use crate::progress::Progress;
@@ -42,13 +43,11 @@ pub struct Fitted {
 ///
 /// # Errors
 ///
-/// [`Error::Fit`] with fewer than two motions, without any parameter, and where the fitted robot is
-/// not physical; as [`Problem::run`] and [`conform`](crate::conform).
+/// [`Error::Fit`] with fewer than two motions, without any parameter, for friction and link
+/// torques, for a model whose error was bounded, and where the fitted robot is not physical; as
+/// [`Problem::run`] and [`conform`](crate::conform).
 pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
-    let refused = |why: &str| Err(Error::Fit(why.into()));
-    if settings.pull.is_some_and(|pull| !(0.0..=1.0).contains(&pull)) {
-        return refused("the weight of the pull must be a number from 0 to 1");
-    }
+    refuse(problem, settings)?;
     let kept = without_kept_back(problem)?;
     let fit_problem = kept.as_ref().unwrap_or(problem);
     let linear;
@@ -63,15 +62,15 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let by_run = settings.groups.contains(&Group::WarmUp);
     let data = Data::new(steering, by_run)?;
     if data.motions.len() < 2 {
-        return refused(
+        return Err(Error::Fit(
             "there is only one motion, and a model that is chosen for one motion holds for no \
-             other; record a second motion, or name the motions in the column motion of runs.csv",
-        );
+             other; record a second motion, or name the motions in the column motion of runs.csv"
+                .into(),
+        ));
     }
-    let law = by_run.then_some(WarmthLaw::Runs);
-    let parameters = Parameters::new(setup, &settings.groups, law.clone());
+    let parameters = Parameters::new(setup, &settings.groups);
     if parameters.len() == 0 {
-        return refused("the robot has none of the parameters of these groups");
+        return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
     }
     let envelopes: Vec<&Envelope> = steering.deviations()?.iter().map(|d| &d.envelope).collect();
     let fit = Fit {
@@ -84,27 +83,69 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     };
     let choice = choose(&fit, settings.pull)?;
     progress.finished(&format!("the weight of the pull is {}", choice.pull));
-    let (start, tracks) = (vec![0.0; parameters.len()], fit.tracks(None));
-    let pull = choice.pull * fit.smallest(&fit.model(&start, None)?, &tracks)?.cost;
-    // Few runs of each suite show where to go, and all of them decide the end.
+    let found = search(&fit, choice.pull)?;
+    progress.finished(&format!("the fit took {} steps", found.steps));
+    let with_numbers = |problem: &Problem| -> Result<Problem> {
+        let own = Parameters::new(problem.setup(), &settings.groups);
+        let mut setup = own.apply(&found.numbers)?;
+        if setup.settings.weights == Weights::Spread {
+            setup.settings.weights = Weights::Given(fit.weights.clone());
+        }
+        Ok(problem.with_setup(setup))
+    };
+    let fitted = with_numbers(steering)?;
+    if let Err(error) = fitted.robot().check_physical() {
+        return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
+    }
+    let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
+    let record = record(&fit, settings, choice, &found.numbers, costs)?;
+    // The numbers go to the model that was asked for, with all motions.
+    let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
+    Ok(Fitted { problem, record })
+}
+
+/// Searches with `pull` in parts of the identified model's cost: few runs of each suite show where
+/// to go, and all of them decide the end.
+fn search(fit: &Fit, pull: f64) -> Result<Optimum> {
+    let (start, tracks) = (vec![0.0; fit.parameters.len()], fit.tracks(None));
+    let pull = pull * fit.smallest(&fit.model(&start, None)?, &tracks)?.cost;
     let few = fit.few_tracks(None, FEW);
     let is_done = few.len() == tracks.len();
-    let mut found = Search { fit: &fit, tracks: few, pull, effort: Effort::WHOLE }.run(&start)?;
-    if !is_done {
-        found = Search { fit: &fit, tracks, pull, effort: Effort::LAST }.run(&found.numbers)?;
+    let found = Search { fit, tracks: few, pull, effort: Effort::WHOLE }.run(&start)?;
+    if is_done {
+        return Ok(found);
     }
-    progress.finished(&format!("the fit took {} steps", found.steps));
-    // The numbers, given to the model that was asked for.
-    let own = Parameters::new(problem.setup(), &settings.groups, law);
-    let mut fitted = own.apply(&found.numbers)?;
-    if let Err(error) = fitted.robot.check_physical() {
-        return refused(&format!("{error}; give a larger weight to the pull"));
+    let last = Search { fit, tracks, pull, effort: Effort::LAST }.run(&found.numbers)?;
+    Ok(Optimum { steps: found.steps + last.steps, ..last })
+}
+
+/// Refuses what cannot be fitted, whatever the recordings are.
+fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
+    let refused = |why: &str| Err(Error::Fit(why.into()));
+    if let Some(pull) = settings.pull.filter(|pull| !(0.0..=1.0).contains(pull)) {
+        return refused(&format!("the weight of the pull is {pull}; give a number from 0 to 1"));
     }
-    if fitted.settings.weights == Weights::Spread {
-        fitted.settings.weights = Weights::Given(fit.weights.clone());
+    // The fit replaces the robot.
+    if problem.settings().operating_box.is_some() {
+        return refused(
+            "the error of the model was bounded for the identified robot, and does not hold for \
+             another one; fit without the file of the abstraction",
+        );
     }
-    let record = record(&fit, settings, choice, &found.numbers)?;
-    Ok(Fitted { problem: problem.with_setup(fitted), record })
+    let friction = [Group::Viscous, Group::Cubic, Group::Coulomb, Group::WarmUp];
+    if problem.settings().torque == Torque::Link
+        && settings.groups.iter().any(|group| friction.contains(group))
+    {
+        return refused("there is no friction in link torques; fit inertia or payload");
+    }
+    Ok(())
+}
+
+/// The cost of the smallest sets of a linear model, as [`conform`](crate::conform) finds it.
+fn smallest_cost(problem: &Problem) -> Result<f64> {
+    let program = program(problem)?;
+    let solution = program.solve()?;
+    Ok(program.cost(&program.repaired(&solution.sets)))
 }
 
 /// The linear model of the same robot about the same point.
@@ -112,7 +153,6 @@ fn linear_setup(setup: &Setup) -> Result<Setup> {
     let mut linear = setup.clone();
     linear.settings.abstraction = Abstraction::default();
     linear.settings.method = Method::Program;
-    linear.settings.operating_box = None;
     linear.dynamics = Dynamics::new(&linear.robot, &linear.settings)?;
     Ok(linear)
 }
@@ -122,9 +162,9 @@ fn record(
     settings: &FitSettings,
     choice: PullChoice,
     numbers: &[f64],
+    [identified_cost, cost]: [f64; 2],
 ) -> Result<FitRecord> {
     let setup = fit.parameters.setup();
-    let none = Parameters::new(setup, &[], None);
     let cost_without = |group: &Group| {
         let kept = |(x, parameter): (&f64, &Parameter)| match parameter.quantity.group() {
             of if of == *group => 0.0,
@@ -133,15 +173,18 @@ fn record(
         let numbers: Vec<f64> = numbers.iter().zip(&fit.parameters.list).map(kept).collect();
         Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&numbers)? })
     };
+    // Each group once, also where it was named twice.
+    let named = |group: &Group| settings.groups.contains(group);
+    let groups: Vec<Group> = Group::ALL.into_iter().filter(named).collect();
     let cases = || fit.data.tracks.iter().map(|track| &track.case);
     let before = InputError::of_cases(setup, cases())?;
     let after = InputError::of_cases(&fit.parameters.apply(numbers)?, cases())?;
     let torque = before.into_iter().zip(after).enumerate();
     Ok(FitRecord {
         pull: choice.pull,
-        identified_cost: Fit { parameters: &none, ..fit.clone() }.whole_cost(&[])?,
-        cost: fit.whole_cost(numbers)?,
-        groups: settings.groups.par_iter().map(cost_without).collect::<Result<_>>()?,
+        identified_cost,
+        cost,
+        groups: groups.par_iter().map(cost_without).collect::<Result<_>>()?,
         leave_one_out: choice.left_out,
         pulls: choice.tried,
         parameters: parameters_of(fit, numbers, setup),
@@ -174,11 +217,12 @@ fn parameters_of(fit: &Fit, numbers: &[f64], setup: &Setup) -> Vec<FittedParamet
             Quantity::Viscous => ("viscous friction", of_velocity("")),
             Quantity::Cubic => ("cubic friction", of_velocity("³")),
             Quantity::Coulomb(quadrants) => (coulomb_name(quadrants), kind.force_unit().into()),
-            Quantity::WarmUp => ("viscous friction per unit of warmth", of_velocity("")),
+            Quantity::WarmUp => ("viscous friction per unit of ln(run)", of_velocity("")),
             Quantity::Payload => ("payload", "kg".into()),
         };
         let (group, joint) = (quantity.group(), joint + 1);
-        FittedParameter { group, name: name.into(), joint, unit, identified, fitted, factor }
+        let (name, standard_error) = (name.into(), fit.parameters.standard_error(p));
+        FittedParameter { group, name, joint, unit, identified, standard_error, fitted, factor }
     };
     (0..numbers.len()).map(of).collect()
 }

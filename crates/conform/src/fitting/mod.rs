@@ -21,4 +21,6 @@ pub(crate) mod step;
 
 pub use fit::{Fitted, fit};
 pub use group::{FitSettings, Group};
-pub use record::{FitRecord, FittedParameter, GroupCost, PullCost, TorquePrediction, UnseenMotion};
+pub use record::{
+    FitRecord, FittedParameter, GroupCost, MOST_ERRORS, PullCost, TorquePrediction, UnseenMotion,
+};

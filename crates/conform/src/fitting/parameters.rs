@@ -5,7 +5,7 @@ use reachtube_robot::{GravityMoments, ParameterKind, Robot, RobotDescription};
 use crate::dynamics::Dynamics;
 use crate::error::Result;
 use crate::fitting::group::Group;
-use crate::nominal::correction::{InputCorrection, WarmthLaw};
+use crate::nominal::correction::InputCorrection;
 use crate::problem::problem::Setup;
 
 /// The number of inertial parameters of a link.
@@ -25,7 +25,7 @@ pub(crate) enum Quantity {
     Cubic,
     /// Coulomb friction in these quadrants: a factor minus 1.
     Coulomb([bool; 4]),
-    /// The change of v1 per unit of warmth, in parts of v1.
+    /// The change of v1 with ln(run), in parts of v1.
     WarmUp,
     /// A mass, kg.
     Payload,
@@ -44,7 +44,6 @@ pub(crate) struct Parameter {
 /// The parameters of a fit, and the model that they give.
 pub(crate) struct Parameters<'a> {
     setup: &'a Setup,
-    law: Option<WarmthLaw>,
     /// The diagonal of the mass matrix at the expansion point, n, kg m².
     inertia: Vec<f64>,
     /// The inertial parameters of each link, 10 n.
@@ -76,13 +75,13 @@ impl Quantity {
 }
 
 impl<'a> Parameters<'a> {
-    /// Lists the parameters of `groups` that the robot has; `law` measures warmth.
-    pub fn new(setup: &'a Setup, groups: &[Group], law: Option<WarmthLaw>) -> Self {
+    /// Lists the parameters of `groups` that the robot has.
+    pub fn new(setup: &'a Setup, groups: &[Group]) -> Self {
         let robot = &setup.robot;
         let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
         let inertia = mass_matrix.diagonal().iter().copied().collect();
         let (links, list) = (robot.inertial_parameters(), Vec::new());
-        let mut parameters = Self { setup, law, inertia, links, list };
+        let mut parameters = Self { setup, inertia, links, list };
         for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
             for joint in 0..robot.joint_count() {
                 let of_joint = parameters.of_joint(group, joint);
@@ -170,12 +169,25 @@ impl<'a> Parameters<'a> {
             Quantity::Cubic => times(viscous.v3, 1.0 + number),
             Quantity::Coulomb(quadrants) => {
                 let a = self.setup.robot.description().joints[joint].friction.coulomb;
-                let at = quadrants.iter().position(|is| *is).unwrap_or(0);
-                times(a[2 * at], 1.0 + number)
+                times(a[2 * first(quadrants)], 1.0 + number)
             }
             Quantity::WarmUp => (0.0, viscous.v1 * number, None),
             Quantity::Payload => (0.0, number, None),
         }
+    }
+
+    /// Returns the standard error of the identified value of parameter `p`, where the robot's
+    /// description has it.
+    pub fn standard_error(&self, p: usize) -> Option<f64> {
+        let Parameter { quantity, joint, .. } = self.list[p];
+        let errors = self.setup.robot.description().joints[joint].friction.standard_errors?;
+        let error = match quantity {
+            Quantity::Viscous => errors.viscous[0],
+            Quantity::Cubic => errors.viscous[2],
+            Quantity::Coulomb(quadrants) => errors.coulomb[2 * first(quadrants)],
+            _ => 0.0,
+        };
+        (error > 0.0).then_some(error)
     }
 
     /// Returns the model with these numbers, one per parameter.
@@ -186,7 +198,6 @@ impl<'a> Parameters<'a> {
     pub fn apply(&self, numbers: &[f64]) -> Result<Setup> {
         let Setup { robot, settings, nominal_starts, .. } = self.setup;
         let mut correction = InputCorrection::none(robot.joint_count());
-        correction.warmth.clone_from(&self.law);
         let (mut changed, mut values, mut links) = (Vec::new(), Vec::new(), self.links.clone());
         let mut change = |joint, kind, value| {
             changed.push(reachtube_robot::Parameter { joint, kind });
@@ -252,6 +263,11 @@ impl<'a> Parameters<'a> {
             _ => [0.0, 0.0],
         }
     }
+}
+
+/// The first of some quadrants.
+fn first(quadrants: [bool; 4]) -> usize {
+    quadrants.iter().position(|is| *is).unwrap_or(0)
 }
 
 /// Gives the links of a description the weight they have in `robot`: what is added to them is not

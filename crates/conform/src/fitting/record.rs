@@ -2,6 +2,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fitting::group::Group;
 
+/// Number of standard errors by which a fit may move a value that is still a measurement.
+pub const MOST_ERRORS: f64 = 3.0;
+
 /// How the nominal model was fitted, for people and for the model file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -13,7 +16,8 @@ pub struct FitRecord {
     pub identified_cost: f64,
     /// Cost of the smallest sets of the fitted model.
     pub cost: f64,
-    /// What each group is worth.
+    /// What each group is worth. These costs, and those of the motions left out, are approximate
+    /// where the times between samples differ.
     pub groups: Vec<GroupCost>,
     /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
     /// compare with `identified_cost`.
@@ -85,6 +89,9 @@ pub struct FittedParameter {
     pub unit: String,
     /// The identified value.
     pub identified: f64,
+    /// Its standard error, where the robot's description has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_error: Option<f64>,
     /// The fitted value.
     pub fitted: f64,
     /// What the identified value is multiplied by, where the parameter is a factor.
@@ -93,6 +100,14 @@ pub struct FittedParameter {
 }
 
 impl FittedParameter {
+    /// Returns whether the fit moved the value further than the recordings of the identification
+    /// allow: it covers something that the model leaves out, and measures nothing.
+    #[must_use]
+    pub fn is_beyond_error(&self) -> bool {
+        let moved = (self.fitted - self.identified).abs();
+        self.standard_error.is_some_and(|error| moved > MOST_ERRORS * error)
+    }
+
     /// Returns whether the fit moved the value by more than 0.05 % of it.
     #[must_use]
     pub fn has_changed(&self) -> bool {

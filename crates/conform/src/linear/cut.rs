@@ -37,8 +37,8 @@ impl Program<'_> {
         }
     }
 
-    /// Returns how far the point of a cut is from the centre of the sets' reach along its direction,
-    /// and how far they reach.
+    /// Returns how far the point of a cut is from the centre of the sets' reach, and how far they
+    /// reach, along its direction.
     pub(crate) fn reach(&self, cut: &Cut, sets: &UncertaintySets) -> (f64, f64) {
         let unknowns = self.unknowns(sets);
         let noise: f64 = (0..cut.noise.len()).map(|i| cut.noise[i] * sets.noise_radius(i)).sum();

@@ -5,10 +5,8 @@ use std::sync::Arc;
 use crate::deviation::Deviation;
 use crate::envelope::Envelope;
 use crate::linear::program::{Program, RowIndex, dot};
+use crate::rows::NEGLIGIBLE_RADIUS;
 use crate::sets::UncertaintySets;
-
-/// A radius that nobody can tell from none, rad or rad/s.
-const NEGLIGIBLE_RADIUS: f64 = 1e-9;
 
 impl Program<'_> {
     /// Returns the program with other deviations on each of its blocks: the cost is the same.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
-use crate::flowpipes::{Effort, is_enclosed};
+use crate::flowpipes::{Effort, Enclosed, enclosed};
 use crate::found::{Deciding, Found};
 use crate::hulls::Hulls;
 use crate::linear::program::{Program, TIGHT};
@@ -92,7 +92,7 @@ pub(crate) fn calibrate(
             .collect();
         let gauge = match &linear {
             Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
-            None => outer_gauge(problem, &suites, &grown),
+            None => outer_gauge(problem, motion, &suites, &grown),
         }?;
         let gauge = gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only)))?;
         Ok(Gauge { motion: (*motion).to_string(), gauge })
@@ -173,34 +173,47 @@ fn linear_gauge(
     Ok(if input_only { input } else { both })
 }
 
-/// Returns the gauge of the suites that are marked by the computed outer sets: the least power of
-/// [`STEP`] that suffices, on the assumption that larger sets have larger outer sets.
+/// Returns the gauge of the suites that are marked, those of `motion`, by the computed outer sets:
+/// the least power of [`STEP`] that suffices. It is assumed that larger sets have larger outer
+/// sets, and that sets larger than one whose reachable set is lost lose theirs too.
 fn outer_gauge(
     problem: &Problem,
+    motion: &str,
     suites: &[bool],
     grown: &(impl Fn(f64) -> UncertaintySets + Sync),
 ) -> Result<Option<f64>> {
     let cases: Vec<&Case> = problem.cases()?.iter().filter(|case| suites[case.suite]).collect();
-    let suffices = |steps: i32| {
+    let answer = |steps: i32| {
         let sets = grown(STEP.powi(steps));
-        let is_inside = |case: &&Case| is_enclosed(problem, case, &sets, Effort::Whole);
-        let outside =
-            cases.par_iter().map(is_inside).find_any(|inside| !matches!(inside, Ok(true)));
-        outside.unwrap_or(Ok(true))
+        let of_case = |case: &&Case| enclosed(problem, case, &sets, Effort::Whole);
+        let worse = |a: Enclosed, b: Enclosed| Ok(a.max(b));
+        cases.par_iter().map(of_case).try_reduce(|| Enclosed::Yes, worse)
     };
-    // Double the steps until they suffice, then halve the interval.
+    // Double the steps until they suffice or are too many, then halve the interval: `low` does not
+    // suffice, and what `high` does is known.
     let (mut low, mut high) = (-1, 0);
-    while !suffices(high)? {
-        if high >= MOST_STEPS {
-            return Ok(None);
-        }
+    let mut at_high = answer(high)?;
+    while at_high == Enclosed::No && high < MOST_STEPS {
         (low, high) = (high, (2 * high).max(8));
+        at_high = answer(high)?;
     }
-    while high - low > 1 {
+    while high - low > 1 && at_high != Enclosed::No {
         let middle = i32::midpoint(low, high);
-        if suffices(middle)? { high = middle } else { low = middle }
+        match answer(middle)? {
+            Enclosed::No => low = middle,
+            other => (high, at_high) = (middle, other),
+        }
     }
-    Ok(Some(STEP.powi(high)))
+    let factor = STEP.powi(high);
+    match at_high {
+        Enclosed::Yes => Ok(Some(factor)),
+        Enclosed::No => Ok(None),
+        Enclosed::Lost => Err(Error::Calibration(format!(
+            "the reachable sets of motion {motion} are lost when the sets grow {factor:.2} times, \
+             and less does not enclose the motion; keep back other motions, find the sets with \
+             this one, or shorten the recordings with --until"
+        ))),
+    }
 }
 
 /// Returns the scaled sets with their reachable sets over all recordings. They are not the

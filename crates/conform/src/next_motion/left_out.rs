@@ -33,8 +33,9 @@ pub struct LeftOut {
 }
 
 /// Leaves each motion out of the program of a linear model, one after the other. Nothing with fewer
-/// than two motions, for any other model, and for other notions than the hull. `sets` are the smallest for all motions: a motion that
-/// does not touch their reachable set decides nothing, and without it they are the smallest still.
+/// than two motions, for any other model, and for other notions than the hull. `sets` are the
+/// smallest for all motions: a motion that does not touch their reachable set decides nothing, and
+/// without it they are the smallest still.
 ///
 /// # Errors
 ///

@@ -9,6 +9,7 @@ use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::motions::Motions;
 use crate::problem::recordings::Recordings;
+use crate::rows::NEGLIGIBLE_RADIUS;
 use crate::verdict::{Verdict, Witness};
 
 /// Confidence of the bounds that are reported.
@@ -40,10 +41,21 @@ pub struct Trust {
 impl Trust {
     /// Returns the scenario bound for sets that were fitted to `recordings` and touch `tight`: the
     /// rows of support are among the tight ones.
+    ///
+    /// At a first sample that no recording leaves, all motions touch a set without width. Those
+    /// that also touch it elsewhere give the same sets alone, so only they count; where there are
+    /// none, all do.
     #[must_use]
     pub fn of_fit(recordings: &Recordings, tight: &[Witness]) -> Self {
         let motions = Motions::new(recordings);
-        let deciding = motions.count_of(tight.iter().map(|witness| witness.suite.as_str()));
+        let count = |least: f64| {
+            let rows = tight.iter().filter(|witness| witness.radius > least);
+            motions.count_of(rows.map(|witness| witness.suite.as_str()))
+        };
+        let deciding = match count(NEGLIGIBLE_RADIUS) {
+            0 => count(f64::NEG_INFINITY),
+            some => some,
+        };
         let bound = scenario_bound(motions.count(), deciding, 1.0 - CONFIDENCE);
         Self::new(&motions, deciding, bound, "scenario bound (Campi and Garatti 2018)")
     }

@@ -14,9 +14,6 @@ pub struct InputCorrection {
     /// carry, kg.
     #[serde(default)]
     pub payload: f64,
-    /// What the warmth of a joint is measured by, where friction depends on it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub warmth: Option<WarmthLaw>,
 }
 
 /// The friction of one joint that is taken off the input. N in place of N m, m in place of rad for
@@ -35,52 +32,23 @@ pub struct JointCorrection {
     /// braking backward, braking forward.
     #[serde(default)]
     pub coulomb: [f64; 4],
-    /// Change of viscous friction with the joint's warmth, N m s/rad per unit of warmth.
+    /// Change of viscous friction with the natural logarithm of the run's place in the order of
+    /// its suite, from 1, N m s/rad.
     #[serde(default)]
     pub warm_up: f64,
-}
-
-/// What the warmth of a joint is measured by.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WarmthLaw {
-    /// The natural logarithm of the run's place in the order of its suite, from 1.
-    Runs,
-    /// A first-order thermal state: 1 - exp(-(place - 1) / runs). Every run of a suite heats alike.
-    Thermal {
-        /// The number of runs after which 63 % of the warmth is reached.
-        runs: f64,
-    },
-}
-
-impl WarmthLaw {
-    /// Returns the warmth of a joint in the run at `place` of its suite's order, from 1.
-    #[must_use]
-    pub fn warmth(&self, place: u64) -> f64 {
-        match self {
-            Self::Runs => (place as f64).ln(),
-            Self::Thermal { runs } => 1.0 - (-((place - 1) as f64) / runs).exp(),
-        }
-    }
-
-    /// Returns what a user of the model must know to use it.
-    #[must_use]
-    pub fn needs(&self) -> &'static str {
-        "how many runs the robot has done since its start"
-    }
 }
 
 impl InputCorrection {
     /// Returns the correction that changes nothing.
     #[must_use]
     pub fn none(joints: usize) -> Self {
-        Self { joints: vec![JointCorrection::default(); joints], payload: 0.0, warmth: None }
+        Self { joints: vec![JointCorrection::default(); joints], payload: 0.0 }
     }
 
     /// Returns whether runs that share their recorded input may differ in their nominal motion.
     #[must_use]
     pub fn differs_by_run(&self) -> bool {
-        self.warmth.is_some() && self.joints.iter().any(|joint| joint.warm_up != 0.0)
+        self.joints.iter().any(|joint| joint.warm_up != 0.0)
     }
 
     /// Returns whether all numbers are finite and there is one entry per joint.
@@ -90,13 +58,6 @@ impl InputCorrection {
             let JointCorrection { quadratic, cubic, coulomb, warm_up } = joint;
             [quadratic, cubic, warm_up].into_iter().chain(coulomb).all(|x| x.is_finite())
         };
-        let law = match self.warmth {
-            Some(WarmthLaw::Thermal { runs }) => runs > 0.0 && runs.is_finite(),
-            Some(WarmthLaw::Runs) | None => true,
-        };
-        self.joints.len() == joints
-            && self.joints.iter().all(finite)
-            && self.payload.is_finite()
-            && law
+        self.joints.len() == joints && self.joints.iter().all(finite) && self.payload.is_finite()
     }
 }

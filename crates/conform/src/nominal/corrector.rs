@@ -20,11 +20,11 @@ pub(crate) struct Corrector<'a> {
     correction: &'a InputCorrection,
     /// The velocities of the expansion point, n.
     origin: &'a [f64],
-    /// The warmth that the correction counts in.
+    /// The logarithm of the run's place, in which the correction counts warmth.
     warmth: f64,
     /// The robot as warm as it is in this run, where its own friction changes.
     warm: Option<Robot>,
-    /// Whether the recorded input is free of the Coulomb friction of a cold robot.
+    /// Whether the recorded input is free of the dry friction of a cold robot.
     is_compensated: bool,
     has_coulomb: bool,
     /// A robot that only has a mass of 1 kg at its tip.
@@ -58,7 +58,7 @@ impl<'a> Corrector<'a> {
             robot,
             correction,
             origin: &settings.expansion_point.qd,
-            warmth: correction.warmth.as_ref().map_or(0.0, |law| law.warmth(condition.place)),
+            warmth: (condition.place as f64).ln(),
             warm: condition.warm(robot),
             is_compensated: settings.torque == Torque::Compensated,
             has_coulomb,
@@ -101,7 +101,7 @@ impl<'a> Corrector<'a> {
                 u[j] -= part * scaled.torque(self.torque[j], qd[j]);
                 if let Some(warm) = self.warm.as_ref().filter(|_| changes_coulomb) {
                     let of = |robot: &Robot| {
-                        robot.joints()[j].friction.coulomb.torque(self.torque[j], qd[j])
+                        robot.joints()[j].friction.dry_torque(self.torque[j], qd[j])
                     };
                     u[j] -= part * (of(warm) - of(self.robot));
                 }

@@ -8,8 +8,11 @@ use crate::nominal::corrector::Corrector;
 use crate::problem::case::Case;
 use crate::problem::problem::{Problem, Setup};
 
-/// Accelerations are differences of velocities over this time to both sides, s.
+/// Accelerations are differences of velocities over at least this time to both sides, s.
 const SPAN: f64 = 0.02;
+
+/// Samples of a case at most: they lie so close that more show nothing new.
+const MOST_SAMPLES: usize = 200;
 
 /// Sums over the samples of one case or several.
 #[derive(Debug, Clone)]
@@ -65,8 +68,9 @@ impl InputError {
         let middle =
             |k: usize, i: usize| 0.5 * (case.measured.upper(k, i) + case.measured.lower(k, i));
         let mut sums = Self::none(n);
-        let reach = times.partition_point(|t| *t <= SPAN).max(1);
-        for k in reach..case.measured.len().saturating_sub(reach) {
+        let reach = times.partition_point(|t| *t < SPAN).max(1);
+        let stride = times.len().div_ceil(MOST_SAMPLES);
+        for k in (reach..case.measured.len().saturating_sub(reach)).step_by(stride) {
             let of = |from: usize| -> Vec<f64> { (from..from + n).map(|i| middle(k, i)).collect() };
             let (q, qd) = (of(0), of(n));
             let span = times[k + reach] - times[k - reach];

@@ -57,14 +57,7 @@ impl Setup {
     pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
         settings.validate(robot.joint_count())?;
         let dynamics = Dynamics::new(&robot, &settings)?;
-        Ok(Self {
-            robot,
-            dynamics,
-            settings,
-            nominal_starts: BTreeMap::new(),
-            correction: None,
-            condition: None,
-        })
+        Ok(Self::of(robot, dynamics, settings))
     }
 
     /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
@@ -79,14 +72,12 @@ impl Setup {
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
         let dynamics = Dynamics::of(model, settings.method);
-        Ok(Self {
-            robot,
-            dynamics,
-            settings,
-            nominal_starts: BTreeMap::new(),
-            correction: None,
-            condition: None,
-        })
+        Ok(Self::of(robot, dynamics, settings))
+    }
+
+    fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Self {
+        let nominal_starts = BTreeMap::new();
+        Self { robot, dynamics, settings, nominal_starts, correction: None, condition: None }
     }
 }
 
@@ -109,7 +100,7 @@ pub enum Keep {
 /// ```
 /// use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
 /// use reachtube_recordings::{MemoryRuns, Run, Torque};
-/// use reachtube_robot::{Robot, RobotDescription};
+/// use reachtube_robot::Robot;
 ///
 /// // Two runs of the arm at rest, a little apart.
 /// let mut runs = MemoryRuns::default();

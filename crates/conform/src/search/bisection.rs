@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::flowpipes::{Effort, is_enclosed};
+use crate::flowpipes::{Effort, Enclosed, enclosed};
 use crate::found::SearchSummary;
 use crate::problem::case::Case;
 use crate::progress::Progress;
@@ -86,7 +86,8 @@ pub(super) fn run(
 
 /// Returns whether the reachable sets under `sets` enclose every recording.
 fn encloses(search: &SuccessiveLinearisation, sets: &UncertaintySets) -> Result<bool> {
-    let of_case = |case: &Case| is_enclosed(search.problem, case, sets, Effort::Quick);
+    let of_case =
+        |case: &Case| Ok(enclosed(search.problem, case, sets, Effort::Quick)? == Enclosed::Yes);
     // The first case that is not enclosed, or fails, ends the others.
     let outside = search.cases.par_iter().map(of_case).find_any(|all| !matches!(all, Ok(true)));
     outside.unwrap_or(Ok(true))

@@ -57,8 +57,8 @@ pub(super) fn try_stribeck(
     if best == 0 {
         let slowest = range[0];
         return refused(format!(
-            "the slow motions show friction down to {slowest:.4} only, and the effect would lie \
-             below; record slower ones"
+            "the slow motions show friction down to {slowest:.4} rad/s (m/s) only, and the effect \
+             would lie below; record slower ones"
         ));
     }
     let near = [scan.speeds[best - 1], scan.speeds[(best + 1).min(SPEEDS - 1)]];
@@ -69,7 +69,9 @@ pub(super) fn try_stribeck(
         samples.iter().filter(slow).count()
     };
     if slower(true).min(slower(false)) < MIN_SLOW {
-        return refused(format!("too few samples are slower than {speed:.4} in both directions"));
+        return refused(format!(
+            "too few samples are slower than {speed:.4} rad/s (m/s) in both directions; record more"
+        ));
     }
     (StribeckTrial { kept_back, accepted: true, reason: None }, Some(speed))
 }

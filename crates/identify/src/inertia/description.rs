@@ -3,7 +3,8 @@ use crate::inertia::columns::inertia_part;
 use crate::inertia::fit::InertiaFit;
 use crate::variant::with_parameters;
 use reachtube_robot::{
-    FrictionDescription, Parameter, ParameterKind, ParameterSet, Robot, RobotDescription,
+    FrictionDescription, FrictionErrors, Parameter, ParameterKind, ParameterSet, Robot,
+    RobotDescription,
 };
 
 /// Returns the description of the identified robot.
@@ -45,4 +46,34 @@ fn add_friction(friction: &mut FrictionDescription, column: &Parameter, value: f
         ParameterKind::Viscous3 => viscous[2] += value,
         _ => {}
     }
+}
+
+/// Returns the standard errors of the friction of joint `joint`, whose known friction has the
+/// standard errors `known`. A coefficient that was corrected by the fit has those of the fit.
+pub fn friction_errors(
+    found: &InertiaFit,
+    joint: usize,
+    known: Option<&FrictionDescription>,
+) -> Option<FrictionErrors> {
+    let start = |known: &FrictionDescription| FrictionErrors {
+        coulomb: known.coulomb,
+        viscous: known.viscous,
+    };
+    let mut errors = known.map(start).unwrap_or_default();
+    // Constant and offset both take part in the offsets of the quadrants.
+    let mut offset = 0.0f64;
+    for (column, error) in found.columns.iter().zip(&found.standard_errors) {
+        let Some(error) = error.filter(|_| column.joint == joint) else { continue };
+        match column.kind {
+            ParameterKind::Coulomb | ParameterKind::Offset => offset = offset.hypot(error),
+            ParameterKind::Viscous1 => errors.viscous[0] = error,
+            ParameterKind::Viscous2 => errors.viscous[1] = error,
+            ParameterKind::Viscous3 => errors.viscous[2] = error,
+            _ => {}
+        }
+    }
+    if offset > 0.0 {
+        errors.coulomb.iter_mut().step_by(2).for_each(|error| *error = offset);
+    }
+    (errors != FrictionErrors::default()).then_some(errors)
 }

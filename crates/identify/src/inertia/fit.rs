@@ -10,6 +10,9 @@ use crate::settings::ModelSettings;
 use nalgebra::DVector;
 use reachtube_robot::{BaseParameters, Parameter, ParameterSet, Robot};
 
+/// A part of a combination that is rounding.
+const NEGLIGIBLE_PART: f64 = 1e-9;
+
 /// The fit of the inertial parameters to exciting motions.
 #[derive(Debug, Clone)]
 pub struct InertiaFit {
@@ -26,6 +29,9 @@ pub struct InertiaFit {
     pub impossible: Option<String>,
     /// Quality of the fit, one entry per joint.
     pub joints: Vec<JointFit>,
+    /// Standard errors of least squares, one per column; `None` where a column is not a combination
+    /// of its own, or the recordings do not determine it.
+    pub standard_errors: Vec<Option<f64>>,
     /// The identifiable combinations of parameters.
     pub parameters: Vec<BaseParameter>,
     /// Number of combinations that the recordings determine.
@@ -95,10 +101,24 @@ pub fn fit_inertia(
         values,
         physical,
         impossible,
+        standard_errors: single_errors(&base, &base_fit.parameters),
         parameters: base_fit.parameters,
         determined: base_fit.determined,
         condition: base_fit.condition,
     })
+}
+
+/// Returns the standard error of each column that is a base parameter alone.
+fn single_errors(base: &BaseParameters, parameters: &[BaseParameter]) -> Vec<Option<f64>> {
+    let mut errors = vec![None; base.parameters().len()];
+    for (row, (&column, parameter)) in base.independent().iter().zip(parameters).enumerate() {
+        let combination = base.combinations().row(row);
+        let others = combination.iter().enumerate().filter(|(at, _)| *at != column);
+        if others.map(|(_, part)| part.abs()).fold(0.0, f64::max) < NEGLIGIBLE_PART {
+            errors[column] = Some(parameter.standard_error).filter(|error| error.is_finite());
+        }
+    }
+    errors
 }
 
 impl InertiaFit {

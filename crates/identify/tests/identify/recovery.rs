@@ -21,6 +21,22 @@ fn rates(found: &Identification, truth: &Robot) -> [f64; 2] {
     [1.0, 3.0].map(|limit| off.iter().filter(|off| **off < limit).count() as f64 / off.len() as f64)
 }
 
+/// Checks the standard errors of friction that the robot file has.
+fn friction_lies_within_its_errors(found: &Identification, truth: &Robot) {
+    let read = Robot::from_toml(&found.robot_toml(), "found").unwrap();
+    for (found, truth) in read.description().joints.iter().zip(&truth.description().joints) {
+        let (friction, truth) = (found.friction, truth.friction);
+        let errors = friction.standard_errors.unwrap();
+        for (value, truth, error) in [
+            (friction.viscous[0], truth.viscous[0], errors.viscous[0]),
+            (friction.coulomb[0], truth.coulomb[0], errors.coulomb[0]),
+        ] {
+            assert!(error > 0.0 && error < 0.2 * truth.abs(), "{friction:?} for {truth}");
+            assert!((value - truth).abs() < 4.0 * error, "{friction:?} for {truth}");
+        }
+    }
+}
+
 #[test]
 fn base_parameters_of_the_lwa_4p_lie_within_their_errors() {
     let truth = simple_friction(&lwa4p());
@@ -33,6 +49,7 @@ fn base_parameters_of_the_lwa_4p_lie_within_their_errors() {
     // Normal errors give 68.3 % and 99.7 %. With 59 parameters the share of 68 % has a standard
     // deviation of 6 %.
     assert!(three > 0.96 && (0.5..0.87).contains(&one), "{one} within one, {three} within three");
+    friction_lies_within_its_errors(&found, &truth);
     assert!(found.inertia.condition < 1e3, "{}", found.inertia.condition);
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
     assert!(
@@ -94,6 +111,10 @@ fn gravity_and_friction_quadrants_are_recovered() {
         }
         assert!((fit.coefficients.viscous[0] - true_values.viscous[0]).abs() < 0.5, "{fit:?}");
     }
+    // What exciting motions do not correct keeps the standard errors of the slow ones.
+    let slopes = found.description.joints[1].friction.standard_errors.unwrap().coulomb;
+    assert_eq!(slopes[1], found.friction[1].joint.standard_errors.coulomb[1]);
+    assert!(slopes[1] > 0.0, "{slopes:?}");
     assert!(
         found.validation[0].joints.iter().all(|joint| joint.relative.unwrap() < 0.05),
         "{:?}",

@@ -9,7 +9,7 @@ use reachtube_reach::Hyperrectangle;
 use crate::error::Result;
 use crate::number::at_least;
 use crate::report::error::ReportError;
-use crate::report::nominal::{nominal_caution, nominal_facts};
+use crate::report::nominal::{nominal_caution, nominal_facts, nominal_tables};
 use crate::report::notion::{outside_points, phase_planes, place, together};
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
@@ -48,6 +48,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
         verdict: verdict(model, check),
         suites: figures,
         phase_planes: phase_planes(problem, model)?,
+        nominal: nominal_tables(model),
         sets: vec![sets_table(model)],
         facts: [nominal_facts(model), facts(model)].concat(),
         trust: vec![trust(model, check)],

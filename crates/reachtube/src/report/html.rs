@@ -46,6 +46,7 @@ pub fn write_html(page: &Page, out: &mut impl Write) -> Result<(), ReportError> 
         @if !suites.is_empty() { (figures(page, &suites)) }
         @if !page.sets.is_empty() { (sets(page)) }
         (phase_planes(&page.phase_planes)?)
+        @if !page.nominal.is_empty() { (nominal(page)) }
         @if !suites.is_empty() { (section("Where the sets are tight", &tables::tight(page))) }
         (meaning(page))
         @if !page.facts.is_empty() {
@@ -221,6 +222,15 @@ fn sets(page: &Page) -> Markup {
     section("Uncertainty sets", &body)
 }
 
+fn nominal(page: &Page) -> Markup {
+    let body = html! {
+        div.tables {
+            @for table in &page.nominal { (tables::texts(table)) }
+        }
+    };
+    section("Nominal model, fitted for small sets", &body)
+}
+
 /// Returns what the reader may and may not conclude; nothing where the page does not say.
 fn meaning(page: &Page) -> Markup {
     if page.trust.is_empty() && page.caution.is_empty() {
@@ -266,7 +276,7 @@ mod tests {
         assert_eq!(html.matches("<script>").count(), 1);
         for what in [
             "title", "subtitle", "words", "proved", "A", "name", "value", "trust", "caution",
-            "note",
+            "note", "header", "cell",
         ] {
             assert!(html.contains(&format!("{what} &lt;script&gt;")), "{what}");
         }

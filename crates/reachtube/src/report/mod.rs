@@ -40,6 +40,6 @@ pub use error::ReportError;
 pub use figure::suite_svg;
 pub use html::write_html;
 pub use identified::write_identified_html;
-pub use page::{Bounds, JointSets, Page, SetsTable, Verdict};
+pub use page::{Bounds, JointSets, Page, SetsTable, TextTable, Verdict};
 pub use reachtube_conform::Side;
 pub use suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot, View};

@@ -1,30 +1,14 @@
 //! What a page says of a nominal model that was fitted, and of calibrated sets.
 
-use reachtube_conform::{FittedParameter, Model};
+use reachtube_conform::{FitRecord, FittedParameter, MOST_ERRORS, Model};
 
 use crate::number::{at_least, four_decimals};
+use crate::report::page::TextTable;
 
-/// Returns the facts about the nominal model and the calibration: name and value.
+/// Returns the facts about the calibration and the sets for any run: name and value.
 pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
     let mut facts = Vec::new();
     let mut add = |name: &str, value: String| facts.push((name.to_string(), value));
-    if let Some(fit) = &model.fit {
-        let groups: Vec<&str> = fit.groups.iter().map(|group| group.group.name()).collect();
-        add(
-            "Nominal model",
-            format!(
-                "fitted for small sets ({}): the smallest sets cost {} before and {} after; {} in \
-                 the mean with one motion left out of the fit",
-                groups.join(", "),
-                four_decimals(fit.identified_cost),
-                four_decimals(fit.cost),
-                four_decimals(fit.left_out_mean())
-            ),
-        );
-        let changed = fit.parameters.iter().filter(|p| p.has_changed());
-        let words: Vec<String> = changed.map(|p| parameter(model, p)).collect();
-        add("Fitted parameters", words.join("; "));
-    }
     if let Some(calibration) = &model.calibration {
         let gauge = |g: &reachtube_conform::Gauge| format!("{} {}", g.motion, at_least(g.gauge));
         let gauges: Vec<String> = calibration.gauges.iter().map(gauge).collect();
@@ -45,22 +29,71 @@ pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
     facts
 }
 
-/// Returns what must not be concluded from a fitted nominal model.
-pub(super) fn nominal_caution(model: &Model) -> Option<String> {
-    model.fit.as_ref().map(|_| {
-        "The parameters of the nominal model were chosen for small sets. They are no measurements \
-         of the robot, and predict its torque worse than the identified ones may."
-            .into()
-    })
+/// Returns the tables about a fitted nominal model: what the sets cost, and its parameters.
+pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
+    let Some(fit) = &model.fit else { return Vec::new() };
+    let changed = fit.parameters.iter().filter(|p| p.has_changed());
+    let parameters = TextTable {
+        title: "Parameters that changed".into(),
+        header: ["Parameter", "Identified", "Standard error", "Fitted", "Factor"]
+            .map(String::from)
+            .to_vec(),
+        rows: changed.map(|p| parameter(model, p)).collect(),
+    };
+    vec![costs(fit), parameters]
 }
 
-fn parameter(model: &Model, p: &FittedParameter) -> String {
-    format!(
-        "{} of {} {} in place of {} {}",
-        p.name,
-        model.robot.joints[p.joint - 1].name,
-        four_decimals(p.fitted),
+/// Returns the costs of the smallest sets for all motions, for several nominal models.
+fn costs(fit: &FitRecord) -> TextTable {
+    let row = |name: String, cost: f64| {
+        let change = 100.0 * (cost / fit.identified_cost - 1.0);
+        vec![name, four_decimals(cost), format!("{change:+.1} %")]
+    };
+    let first = [("Identified", fit.identified_cost), ("Fitted", fit.cost)];
+    let groups = fit.groups.iter().map(|group| {
+        row(format!("Fitted, {} as identified", group.group.name()), group.cost_without)
+    });
+    let left_out = fit
+        .leave_one_out
+        .iter()
+        .map(|left| row(format!("Fitted without motion {}", left.motion), left.cost));
+    let mean = row("Mean of the fits without a motion".into(), fit.left_out_mean());
+    TextTable {
+        title: "Cost of the smallest sets".into(),
+        header: ["Nominal model", "Cost", "Change"].map(String::from).to_vec(),
+        rows: first
+            .map(|(name, cost)| row(name.into(), cost))
+            .into_iter()
+            .chain(groups)
+            .chain(left_out)
+            .chain([mean])
+            .collect(),
+    }
+}
+
+/// Returns what must not be concluded from a fitted nominal model.
+pub(super) fn nominal_caution(model: &Model) -> Option<String> {
+    let fit = model.fit.as_ref()?;
+    let beyond = fit.parameters.iter().filter(|p| p.is_beyond_error()).count();
+    let beyond = match beyond {
+        0 => String::new(),
+        count => format!(
+            " Of these, {count} moved by more than {MOST_ERRORS} standard errors, and cover what \
+             the model leaves out."
+        ),
+    };
+    Some(format!(
+        "The parameters of the nominal model were chosen for small sets. They are no measurements \
+         of the robot, and predict its torque worse than the identified ones may.{beyond}"
+    ))
+}
+
+fn parameter(model: &Model, p: &FittedParameter) -> Vec<String> {
+    vec![
+        format!("{}: {} [{}]", model.robot.joints[p.joint - 1].name, p.name, p.unit),
         four_decimals(p.identified),
-        p.unit
-    )
+        p.standard_error.map_or_else(|| "-".into(), four_decimals),
+        four_decimals(p.fitted),
+        p.factor.map_or_else(|| "-".into(), |factor| format!("{factor:.3}")),
+    ]
 }

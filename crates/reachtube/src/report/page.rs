@@ -20,6 +20,8 @@ pub struct Page {
     pub suites: Vec<SuiteFigure>,
     /// The phase planes of the joints, where the model is linear.
     pub phase_planes: Vec<Chart>,
+    /// What was fitted of the nominal model, for a model that was.
+    pub nominal: Vec<TextTable>,
     /// The uncertainty sets: one table per notion of conformance (Table II has two).
     pub sets: Vec<SetsTable>,
     /// Settings and provenance: name and value.
@@ -30,6 +32,17 @@ pub struct Page {
     pub caution: Vec<String>,
     /// Further remarks, one paragraph each.
     pub notes: Vec<String>,
+}
+
+/// A table of texts: the first column names the row.
+#[derive(Debug, Clone, Default)]
+pub struct TextTable {
+    /// What the table shows.
+    pub title: String,
+    /// The names of the columns.
+    pub header: Vec<String>,
+    /// The rows, each as long as the header.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// The outcome in words.

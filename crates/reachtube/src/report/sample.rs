@@ -1,6 +1,6 @@
 //! A small invented result, for the tests of this module.
 
-use super::page::{JointSets, Page, SetsTable, Verdict};
+use super::page::{JointSets, Page, SetsTable, TextTable, Verdict};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 use reachtube_conform::Side;
 use reachtube_robot::JointKind;
@@ -85,6 +85,11 @@ pub(super) fn page() -> Page {
             not_proved: vec![hostile("not proved")],
         },
         suites: vec![suite(&hostile("A"), 2), suite("B", 7)],
+        nominal: vec![TextTable {
+            title: hostile("table"),
+            header: vec![hostile("header")],
+            rows: vec![vec![hostile("cell")]],
+        }],
         sets: vec![sets(2)],
         facts: vec![(hostile("name"), hostile("value"))],
         trust: vec![hostile("trust")],

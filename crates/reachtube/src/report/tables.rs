@@ -1,6 +1,6 @@
 //! The tables of the page: the uncertainty sets, the tight spots, the settings.
 
-use super::page::{Bounds, JointSets, Page, SetsTable};
+use super::page::{Bounds, JointSets, Page, SetsTable, TextTable};
 use super::skeleton::wide_table;
 use super::suite_figure::{SuiteFigure, TightSpot};
 use super::text::Text;
@@ -140,6 +140,26 @@ fn spot_row(suite: &SuiteFigure, spot: &TightSpot) -> Markup {
             td { (suite.state_unit(spot.state)) }
         }
     }
+}
+
+/// Returns a table of texts; all columns but the first are numbers.
+pub(super) fn texts(table: &TextTable) -> Markup {
+    let head = html! {
+        @for (column, name) in table.header.iter().enumerate() {
+            th.number[column > 0] scope="col" { (Text(name)) }
+        }
+    };
+    let rows = html! {
+        @for row in &table.rows {
+            tr {
+                @for (column, cell) in row.iter().enumerate() {
+                    @if column == 0 { th scope="row" { (Text(cell)) } }
+                    @else { td.number { (Text(cell)) } }
+                }
+            }
+        }
+    };
+    wide_table(&table.title, &head, &rows)
 }
 
 /// Returns a table of names and values.

@@ -97,6 +97,23 @@ pub struct FrictionDescription {
     /// Change of friction while the joint warms up; unknown by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub warming: Option<Warming>,
+    /// Standard errors of the identified coefficients; unknown by default. Nothing is computed from
+    /// them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_errors: Option<FrictionErrors>,
+}
+
+/// Standard errors of identified friction, in the units of the coefficients; 0 where one is
+/// unknown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FrictionErrors {
+    /// Of a1 to a8.
+    #[serde(default)]
+    pub coulomb: [f64; 8],
+    /// Of v1, v2 and v3.
+    #[serde(default)]
+    pub viscous: [f64; 3],
 }
 
 impl FrictionDescription {
@@ -109,7 +126,7 @@ impl FrictionDescription {
             coulomb: self.coulomb.map(|a| coulomb * a),
             viscous: self.viscous.map(|v| viscous * v),
             stribeck: self.stribeck.map(scaled),
-            warming: None,
+            ..Self::default()
         }
     }
 

@@ -1,6 +1,6 @@
 //! Checks of a description: the first invalid value, with its key and a remedy.
 
-use super::joint_description::{InertiaPoint, JointDescription};
+use super::joint_description::{FrictionErrors, InertiaPoint, JointDescription};
 use super::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
 use crate::friction::stribeck::Stribeck;
 use crate::friction::warming::{Warming, WarmingBy};
@@ -184,6 +184,16 @@ fn check_drive(joint: &JointDescription) -> Checked {
     }
     finite("friction", &joint.friction.coulomb)?;
     finite("friction", &joint.friction.viscous)?;
+    if let Some(FrictionErrors { coulomb, viscous }) = joint.friction.standard_errors {
+        let errors = [&coulomb[..], &viscous[..]].concat();
+        finite("friction", &errors)?;
+        require(
+            errors.iter().all(|error| *error >= 0.0),
+            "friction",
+            "give standard errors of at least 0",
+            || "a standard error is negative".into(),
+        )?;
+    }
     check_stribeck(joint)?;
     check_warming(joint)
 }

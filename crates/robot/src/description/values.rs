@@ -11,9 +11,9 @@ impl RobotDescription {
     /// other parameters keep their values.
     ///
     /// Links that change get a first moment and an inertia about the origin of their frame. Coulomb
-    /// friction that changes loses its dependence on the load. The new values are not checked;
-    /// [`Robot::from_description`] does that. Links that are no bodies need
-    /// [`ParameterSet::Base`](crate::ParameterSet::Base).
+    /// friction that changes loses its dependence on the load, and friction its standard errors.
+    /// The new values are not checked; [`Robot::from_description`] does that. Links that are no
+    /// bodies need [`ParameterSet::Base`](crate::ParameterSet::Base).
     ///
     /// # Errors
     ///
@@ -50,6 +50,9 @@ impl RobotDescription {
             } else if matches!(p.kind, ParameterKind::Coulomb | ParameterKind::Offset) {
                 let (f, o) = (coulomb[2 * p.joint], coulomb[2 * p.joint + 1]);
                 joint.friction.coulomb = [o + f, 0.0, o - f, 0.0, o - f, 0.0, o + f, 0.0];
+            }
+            if joint.friction != self.joints[p.joint].friction {
+                joint.friction.standard_errors = None;
             }
         }
         Ok(out)

@@ -84,12 +84,19 @@ pub struct Arguments {
         help_heading = "Fit",
         value_name = "GROUP,..",
         value_delimiter = ',',
-        value_parser = choice::<Group>(GROUPS)
+        value_parser = choice::<Group>(GROUPS),
+        conflicts_with = "abstraction"
     )]
     pub fit: Vec<Group>,
     /// Weight of the pull toward the identified values, from 0 to 1: part of the identified model's
     /// cost per unit of the logarithm of a factor [default: chosen by leaving one motion out]
-    #[arg(long, help_heading = "Fit", value_name = "WEIGHT", requires = "fit")]
+    #[arg(
+        long,
+        help_heading = "Fit",
+        value_name = "WEIGHT",
+        requires = "fit",
+        allow_hyphen_values = true
+    )]
     pub pull: Option<f64>,
     /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable
     /// disturbances in any case

@@ -54,6 +54,11 @@ fn left_out(model: &Model) -> String {
     if all.len() > MOST_MOTIONS {
         let _ = writeln!(text, "  and {} more; --json lists all", all.len() - MOST_MOTIONS);
     }
+    if model.fit.is_some() {
+        text.push_str(
+            "  only the sets were found without the motion; the nominal model was fitted to all\n",
+        );
+    }
     text
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::Model;
-use reachtube::conform::{FitRecord, FittedParameter};
+use reachtube::conform::{FitRecord, FittedParameter, MOST_ERRORS};
 use reachtube::number::four_decimals;
 
 use crate::table::table;
@@ -63,20 +63,34 @@ fn parameters(model: &Model, record: &FitRecord) -> String {
             model.robot.joints[p.joint - 1].name.clone(),
             p.name.clone(),
             format!("{} {}", four_decimals(p.identified), p.unit),
+            p.standard_error.map_or_else(|| "-".into(), four_decimals),
             four_decimals(p.fitted),
             p.factor.map_or_else(String::new, |factor| format!("{factor:.3}")),
+            if p.is_beyond_error() { "covers".into() } else { String::new() },
         ]
     };
-    let rows: Vec<Vec<String>> = changed.iter().map(row).collect();
-    let mut text = table(&["joint", "parameter", "identified", "fitted", "factor"], &rows);
+    let mut rows: Vec<Vec<String>> = changed.iter().map(row).collect();
+    let mut header = vec!["joint", "parameter", "identified", "±", "fitted", "factor", ""];
+    if record.parameters.iter().all(|p| p.standard_error.is_none()) {
+        rows.iter_mut().for_each(|row| drop(row.remove(3)));
+        header.remove(3);
+    }
+    let mut text = if rows.is_empty() { String::new() } else { table(&header, &rows) };
     let kept = record.parameters.len() - changed.len();
     if kept > 0 {
         let _ = writeln!(text, "  {kept} of {} keep their values", record.parameters.len());
     }
-    let is_far = |p: &&&FittedParameter| {
+    if changed.iter().any(|p| p.is_beyond_error()) {
+        let _ = writeln!(
+            text,
+            "  \"covers\": the value moved by more than {MOST_ERRORS} standard errors (±), so it \
+             covers what the model leaves out and measures nothing"
+        );
+    }
+    let is_far = |p: &&FittedParameter| {
         p.factor.is_some_and(|factor| !(1.0 / MOST_FACTOR..=MOST_FACTOR).contains(&factor))
     };
-    if changed.iter().any(|p| is_far(&p)) {
+    if changed.iter().any(is_far) {
         let _ = writeln!(
             text,
             "  a factor beyond {MOST_FACTOR} is no measurement: such a parameter stands for what \

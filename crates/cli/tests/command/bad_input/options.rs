@@ -59,6 +59,18 @@ pub const CASES: &[Case] = &[
         conform!("--explain 1"),
         &["--explain: \"1\" is neither none nor 2 numbers"],
     ),
+    case("a fit of an unknown group", conform!("--fit inertai"), &["exists: 'inertia'"]),
+    case(
+        "a pull above 1",
+        conform!("--fit viscous --pull 2"),
+        &["the weight of the pull is 2; give a number from 0 to 1"],
+    ),
+    case("a negative pull", conform!("--fit viscous --pull -1"), &["the pull is -1"]),
+    case(
+        "a fit of an abstraction",
+        "conform --abstraction a.json --data data --torque compensated --fit viscous",
+        &["'--abstraction <FILE>' cannot be used with '--fit"],
+    ),
     case("a huge order", conform!("--model 3 --order 4000000000"), &["order"]),
     case("an order of 0", conform!("--order 0"), &["order 1 at least"]),
     case(
