@@ -10,6 +10,7 @@ mod index;
 mod inspect;
 mod locks;
 mod nonlinear;
+mod notions;
 mod options;
 mod output_schema;
 mod outputs;

@@ -42,6 +42,7 @@ fn results_fit_the_schema() {
     run("inspect", "inspect --data data");
     run("check", &format!("check {with}"));
     run("check", &format!("check {with} --suites B"));
+    run("check", &format!("check {with} --suites B --notion exact"));
     run("reach", &format!("reach {with} --out sets"));
     run("report", &format!("report {with} --out page"));
     run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");

@@ -27,6 +27,8 @@ fn models_fit_the_schema() {
         "--noise 0.001,0.01 --until 0.2 --weights spread",
         "--states positions",
         "--calibrate MB",
+        "--notion phase-plane",
+        "--notion exact",
         "--fit inertia,viscous,warm-up --pull 0.02",
     ] {
         let model = lab.conform(&format!("--json {options}")).exits(0).json();

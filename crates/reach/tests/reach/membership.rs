@@ -1,7 +1,12 @@
 //! Points that are known to lie in a zonotope, or outside, against what the library finds.
 
-use reachtube_reach::{GeneratorRows, Membership, MembershipProof, Place};
+use reachtube_reach::{
+    Disturbance, GeneratorRows, IntervalVector, Membership, MembershipProof, Place, Propagation,
+    SampleGenerators, TimeGrid,
+};
+use reachtube_scalar::Interval;
 
+use crate::arm::arm;
 use crate::random::Random;
 
 const SLACK: f64 = 1e-9;
@@ -107,4 +112,94 @@ fn a_set_without_width_in_a_state_has_no_proof() {
     rows.row_mut(0).copy_from_slice(&[1.0, 1.0, 2.0]);
     let set = Membership::new(&rows);
     assert!(MembershipProof::new(&set).is_none());
+}
+
+/// Tells `count` sampled states from states that no motion reaches, at one sample of the arm's
+/// reachable set: states of random motions are proved to lie in the set, and for random states of
+/// its hull either the factors are a motion or the direction is one that no motion passes, as
+/// single steps of the system show.
+fn tell_apart(count: usize) {
+    let (system, h, k) = (arm(), 0.004, 150);
+    let (n, m) = (system.states(), system.inputs());
+    let propagation = Propagation::new(&system, &TimeGrid::uniform(h, k + 1)).unwrap();
+    let (initial, input) = (vec![0.01; n], vec![0.5; m]);
+    let generators = SampleGenerators::new(&propagation, Disturbance::Sample, 1).unwrap();
+    let states: Vec<usize> = (0..n).collect();
+    let rows = generators.at(k, [&initial, &input, &vec![0.0; n]], &states, 1);
+    let set = Membership::new(&rows);
+    let proof = MembershipProof::new(&set).unwrap();
+    let hull: Vec<f64> = (0..n).map(|i| rows.row(i).iter().map(|x| x.abs()).sum()).collect();
+    // One step of the system, from a solution of its own.
+    let unit = |size: usize, j: usize| (0..size).map(|i| f64::from(i == j)).collect::<Vec<f64>>();
+    let advance = |x: &[f64], u: &[f64]| -> Vec<f64> {
+        let start = IntervalVector::from_iterator(n, x.iter().map(|x| Interval::point(*x)));
+        let two = Propagation::new(&system, &TimeGrid::uniform(h, 2)).unwrap();
+        let inputs = [u, u].concat();
+        two.solve(&start, &inputs).state(1).iter().map(|x| x.mid()).collect()
+    };
+    let phi: Vec<Vec<f64>> = (0..n).map(|j| advance(&unit(n, j), &vec![0.0; m])).collect();
+    let gamma: Vec<Vec<f64>> = (0..m).map(|j| advance(&vec![0.0; n], &unit(m, j))).collect();
+    let combine = |columns: &[Vec<f64>], x: &[f64]| -> Vec<f64> {
+        (0..n).map(|i| columns.iter().zip(x).map(|(c, x)| c[i] * x).sum()).collect()
+    };
+    let mut random = Random::new(5);
+    let (mut work, none, slack) = (set.workspace(), vec![0.0; n], 1e-6);
+    let (mut inside, mut outside) = (0, 0);
+    for at in 0..count {
+        if at % 2 == 0 {
+            // A motion with a random input, every fourth one at the corners of the sets.
+            let mut corner = |radius: f64| {
+                let x = random.symmetric();
+                if at % 4 == 0 { radius * x.signum() } else { radius * x }
+            };
+            let mut x: Vec<f64> = initial.iter().map(|r| corner(*r)).collect();
+            for _ in 0..k {
+                let u: Vec<f64> = input.iter().map(|r| corner(*r)).collect();
+                let next = combine(&phi, &x).into_iter().zip(combine(&gamma, &u));
+                x = next.map(|(x, u)| x + u).collect();
+            }
+            x.iter_mut().for_each(|x| *x *= 1.0 - 2.0 * slack);
+            let scaled: Vec<f64> = x.iter().map(|x| x / (1.0 - slack)).collect();
+            assert_eq!(set.locate(&scaled, 1e-9, &mut work), Place::Inside, "{at}");
+            assert!(proof.holds(&x, &none, 1.0 - slack, &mut work), "{at}");
+            continue;
+        }
+        let d: Vec<f64> = hull.iter().map(|r| 0.5 * r * random.symmetric()).collect();
+        match set.locate(&d, 1e-9, &mut work) {
+            Place::Inside => {
+                let scaled: Vec<f64> = d.iter().map(|x| x / (1.0 - slack)).collect();
+                let is_well_inside = set.locate(&scaled, 1e-9, &mut work) == Place::Inside;
+                assert!(!is_well_inside || proof.holds(&d, &none, 1.0 - slack, &mut work), "{at}");
+                inside += 1;
+            }
+            Place::Outside { direction, ratio } => {
+                // The adjoint: lᵀ e^{A t} backward, step by step.
+                let mut l = direction.clone();
+                let dot = |x: &[f64], l: &[f64]| x.iter().zip(l).map(|(x, l)| x * l).sum::<f64>();
+                let mut reach = 0.0;
+                for _ in 0..k {
+                    reach +=
+                        gamma.iter().zip(&input).map(|(g, r)| dot(g, &l).abs() * r).sum::<f64>();
+                    l = phi.iter().map(|column| dot(column, &l)).collect();
+                }
+                reach += l.iter().zip(&initial).map(|(l, r)| l.abs() * r).sum::<f64>();
+                let along = dot(&d, &direction);
+                assert!(along > reach && (along / reach / ratio - 1.0).abs() < 1e-9, "{at}");
+                outside += 1;
+            }
+            Place::Unknown => panic!("{at}: no answer"),
+        }
+    }
+    assert!(inside > count / 200 && outside > count / 200, "{inside} {outside}");
+}
+
+#[test]
+fn sampled_states_are_told_apart() {
+    tell_apart(4_000);
+}
+
+#[test]
+#[ignore = "takes long: a million states"]
+fn a_million_sampled_states_are_told_apart() {
+    tell_apart(1_000_000);
 }

@@ -1,0 +1,50 @@
+//! The notions of enclosure: recorded points in the reachable set itself.
+
+use crate::fixture::{Lab, set_cell};
+
+#[test]
+fn points_are_proved_and_certified() {
+    let lab = Lab::new();
+    let run = lab.conform("--notion exact --out exact.json --certificate points.jsonl");
+    let run = run.exits(0).notes("wrote points.jsonl");
+    let points = "recorded points (all states together) proved to lie in the reachable set";
+    assert!(run.stdout.contains(points), "{}", run.stdout);
+    let certificate = lab.read("points.jsonl");
+    assert!(certificate.starts_with("{\"format\":\"reachtube-certificate\""), "{certificate}");
+    lab.run("check --model exact.json --data data --torque compensated").exits(0);
+    lab.run("report --model exact.json --data data --torque compensated --out page").exits(0);
+    let page = lab.read("page/report.html");
+    for part in ["the reachable set itself at every sample", "Phase planes", "notion is exact"] {
+        assert!(page.contains(part), "{part} is not on the page");
+    }
+}
+
+#[test]
+fn a_point_outside_is_named_with_the_states_that_show_it() {
+    let lab = Lab::new();
+    lab.conform("--out model.json").exits(0);
+    // A position that is a little off where the velocity is not: the hull may hold it.
+    lab.edit("data/a_1.csv", |lines| {
+        let middle = lines.len() / 2;
+        set_cell(&mut lines[middle], 1, "10");
+    });
+    let check = "check --model model.json --data data --torque compensated --suites A";
+    let run = lab.run(&format!("{check} --notion exact")).exits(1);
+    for part in ["recorded points (all states together) outside the set", "furthest outside", "q1"]
+    {
+        assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
+    }
+    let run = lab.run(&format!("{check} --notion phase-plane")).exits(1);
+    assert!(run.stdout.contains("position and velocity of each joint"), "{}", run.stdout);
+    // By default a model is checked in its own notion, the hull.
+    assert!(!lab.run(check).exits(1).stdout.contains("recorded points"));
+}
+
+#[test]
+fn what_is_not_built_is_refused_with_a_remedy() {
+    let lab = Lab::new();
+    lab.conform("--certificate points.jsonl").fails_with(&["certificate", "--notion exact"]);
+    lab.conform("--notion exact --model 2 --order 3").fails_with(&["--notion hull"]);
+    lab.conform("--notion nearly").fails_with(&["phase-plane", "exact"]);
+    assert!(!lab.path("points.jsonl").exists());
+}
