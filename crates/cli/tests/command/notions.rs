@@ -24,7 +24,7 @@ fn a_point_outside_is_named_with_the_states_that_show_it() {
     let lab = Lab::new();
     lab.conform("--out model.json").exits(0);
     // A position that is a little off where the velocity is not: the hull may hold it.
-    lab.edit("data/a_1.csv", |lines| {
+    lab.edit("data/A_1.csv", |lines| {
         let middle = lines.len() / 2;
         set_cell(&mut lines[middle], 1, "10");
     });

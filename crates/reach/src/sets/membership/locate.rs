@@ -8,7 +8,7 @@ use crate::sets::membership::rows::GeneratorRows;
 const SIMPLE_STEPS: usize = 8;
 
 /// Steps for one point at most.
-const STEPS: usize = 80;
+const STEPS: usize = 400;
 
 /// A direction separates when the point is further along it by this part.
 const SEPARATED: f64 = 1e-12;
