@@ -25,13 +25,16 @@ pub(crate) struct Found {
     pub deciding: Deciding,
 }
 
+/// A point touches the set when it is within this part of its reach.
+pub(crate) const TOUCHING: f64 = 1e-4;
+
 /// Which rows decide the sets.
 pub(crate) enum Deciding {
     /// Those that touch the reachable set, within a part of its radius.
     Touching(f64),
     /// Those named: case, sample, state, side.
     Rows(std::collections::HashSet<(usize, usize, usize, Side)>),
-    /// No rows, but recorded points in other directions.
+    /// Recorded points in other directions, and rows that are as close to the reachable set.
     Points(Vec<Witness>),
 }
 
@@ -45,7 +48,7 @@ impl Deciding {
                 let named = |case| rows.contains(&(case, row.sample, row.state, edge.side));
                 edge.excess.is_finite() && case.is_some_and(named)
             }
-            Self::Points(_) => false,
+            Self::Points(_) => edge.excess >= -TOUCHING * row.radius,
         }
     }
 }

@@ -44,7 +44,6 @@ fn a_point_outside_is_named_with_the_states_that_show_it() {
 fn what_is_not_built_is_refused_with_a_remedy() {
     let lab = Lab::new();
     lab.conform("--certificate points.jsonl").fails_with(&["certificate", "--notion exact"]);
-    lab.conform("--notion exact --model 2 --order 3").fails_with(&["--notion hull"]);
     lab.conform("--notion nearly").fails_with(&["phase-plane", "exact"]);
     assert!(!lab.path("points.jsonl").exists());
 }

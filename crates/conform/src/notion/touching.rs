@@ -2,15 +2,13 @@
 
 use std::collections::HashSet;
 
+use crate::found::TOUCHING;
 use crate::linear::program::Program;
 use crate::notion::sweep::{Outside, Sweep};
 use crate::notion::verdict::PointWitness;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::verdict::Witness;
-
-/// A point touches the set when it is within this part of its reach.
-const TOUCHING: f64 = 1e-4;
 
 impl Sweep<'_> {
     /// Returns the points that touch the boundary of the reachable set in the direction of a cut,
