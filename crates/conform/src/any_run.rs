@@ -1,7 +1,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-
 use crate::problem::condition::Condition;
 use crate::problem::problem::{Problem, Setup};
 use crate::progress::Silent;

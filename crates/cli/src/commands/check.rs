@@ -19,14 +19,15 @@ use reachtube::number::{at_least, four_decimals};
 use reachtube_robot::JointKind;
 
 const HELP: &str = "\
-Example:
+Examples:
   reachtube check --model model.json --data recordings --suites C,F --torque compensated
+  reachtube check --model model.json --data recordings --torque compensated --notion exact
+      also demands that all states together lie in the reachable set itself
 
 A model that is not linear is compared by its computed outer set, an enclosure of the reachable set.
 
-Exit codes: 0 every recorded value lies in the interval hull of the reachable set, at samples;
-1 some value lies outside, and the result names a witness (suite, run, time, joint, excess);
-2 error.";
+Exit codes: 0 all recordings were proved to lie in the reachable set, at samples, as --notion says;
+1 some were not, and the result names a witness (suite, run, time, joint, excess); 2 error.";
 
 /// Check whether a model encloses other recordings
 #[derive(Debug, Args)]

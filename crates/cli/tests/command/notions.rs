@@ -23,7 +23,7 @@ fn points_are_proved_and_certified() {
 fn a_point_outside_is_named_with_the_states_that_show_it() {
     let lab = Lab::new();
     lab.conform("--out model.json").exits(0);
-    // A position that is a little off where the velocity is not: the hull may hold it.
+    // A position that nothing explains.
     lab.edit("data/A_1.csv", |lines| {
         let middle = lines.len() / 2;
         set_cell(&mut lines[middle], 1, "10");

@@ -4,16 +4,16 @@
 use std::io::{self, Write};
 
 use rayon::prelude::*;
+use reachtube_reach::Disturbance;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::model::file::Model;
-use crate::notion::proof::{Factors, Relative};
+use crate::notion::proof::{Factors, ProjectedPoints};
 use crate::notion::sweep::{PARTS, Sweep};
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::settings::Notion;
-use reachtube_reach::Disturbance;
 
 /// What the field `format` of every certificate says.
 pub const CERTIFICATE_FORMAT: &str = "reachtube-certificate";
@@ -106,7 +106,7 @@ fn lines(problem: &Problem, sweep: &Sweep, sets: &UncertaintySets, at: usize) ->
     let (centre, error) = sweep.centre(&sweep.points[at], sets);
     let mut lines = Vec::new();
     for projection in 0..sweep.projections.len() {
-        let points = Relative::new(sweep, at, projection, [&centre, &error]);
+        let points = ProjectedPoints::new(sweep, at, projection, [&centre, &error]);
         sweep.unproved_in(&points, sets, |point, factors| {
             let Factors { held, limit, set, work } = factors;
             let (suite, run) = points.at.owners[point];

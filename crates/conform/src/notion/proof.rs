@@ -38,7 +38,7 @@ impl Sweep<'_> {
             let (centre, error) = self.centre(&self.points[at], sets);
             let mut unproved = Vec::new();
             for projection in 0..self.projections.len() {
-                let points = Relative::new(self, at, projection, [&centre, &error]);
+                let points = ProjectedPoints::new(self, at, projection, [&centre, &error]);
                 let left = self.unproved_in(&points, sets, |_, _| ());
                 unproved.extend(left.into_iter().map(|point| Unproved { at, point, projection }));
             }
@@ -51,7 +51,7 @@ impl Sweep<'_> {
     /// then by the set itself. `proved` takes how each other point was proved.
     pub(super) fn unproved_in(
         &self,
-        points: &Relative,
+        points: &ProjectedPoints,
         sets: &UncertaintySets,
         mut proved: impl FnMut(usize, Factors),
     ) -> Vec<usize> {
@@ -89,7 +89,7 @@ pub(super) struct Factors<'a> {
 }
 
 /// The points of a sample in one projection, from the centre of the set.
-pub(super) struct Relative<'a> {
+pub(super) struct ProjectedPoints<'a> {
     pub at: &'a SamplePoints,
     pub projection: &'a [usize],
     centre: &'a [f64],
@@ -97,7 +97,7 @@ pub(super) struct Relative<'a> {
     error: &'a [f64],
 }
 
-impl<'a> Relative<'a> {
+impl<'a> ProjectedPoints<'a> {
     pub fn new(
         sweep: &'a Sweep,
         at: usize,

@@ -76,10 +76,10 @@ fn solve(
             });
         }
         if outside.is_empty() {
-            let sweeps = sweep.points.len();
             progress.finished(&format!(
-                "{round} programs with {} directions at {sweeps} samples",
-                cuts.len()
+                "the cutting planes ended in round {round}: directions {}, samples {}",
+                cuts.len(),
+                sweep.points.len()
             ));
             return Ok((solution, cuts));
         }

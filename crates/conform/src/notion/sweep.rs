@@ -1,5 +1,6 @@
 //! The search for recorded points outside the reachable sets.
 
+use nalgebra::DVectorView;
 use rayon::prelude::*;
 use reachtube_reach::{GeneratorRows, Membership, MembershipWorkspace, Place, SampleGenerators};
 use reachtube_scalar::Interval;
@@ -20,6 +21,12 @@ const GAUGE: f64 = 0.1;
 /// How accurately points near the boundary are told from others.
 const NEAR: f64 = 1e-3;
 
+/// A point counts as outside when the set must grow by more than this part.
+pub(super) const OUTSIDE: f64 = 1e-9;
+
+/// Number of disturbances, held over equally many steps, that suffice for most points.
+const HELD: usize = 24;
+
 /// Equal parts of a sample over which a disturbance is held that may be any measurable function.
 pub(super) const PARTS: usize = 2;
 
@@ -32,12 +39,6 @@ pub(crate) struct Sweep<'a> {
     pub projections: Vec<Vec<usize>>,
     pub states: usize,
 }
-
-/// How accurately a point is told to be outside.
-const EXACT: f64 = 1e-9;
-
-/// Number of disturbances, held over equally many steps, that suffice for most points.
-const HELD: usize = 24;
 
 /// A projection of the reachable set at one sample, about 0: first a smaller set of few generators,
 /// in which most points lie, then the set itself.
@@ -158,16 +159,20 @@ impl<'a> Sweep<'a> {
 
     /// Returns how many of some points are outside, in floating point.
     pub fn count_outside(&self, sets: &UncertaintySets, unproved: &[Unproved]) -> usize {
-        let is_outside = |unproved: &&Unproved| {
-            let at = &self.points[unproved.at];
-            let projection = &self.projections[unproved.projection];
+        let in_one_set = |a: &Unproved, b: &Unproved| (a.at, a.projection) == (b.at, b.projection);
+        let of_set = |points: &[Unproved]| {
+            let (at, projection) =
+                (&self.points[points[0].at], &self.projections[points[0].projection]);
             let (centre, _) = self.centre(at, sets);
-            let d = at.point(unproved.point);
-            let d: Vec<f64> = projection.iter().map(|&i| d[i] - centre[i]).collect();
             let (set, mut work) = self.members(at, sets, projection, 1);
-            matches!(set.locate(&d, EXACT, &mut work), Place::Outside { .. })
+            let is_outside = |unproved: &&Unproved| {
+                let d = at.point(unproved.point);
+                let d: Vec<f64> = projection.iter().map(|&i| d[i] - centre[i]).collect();
+                matches!(set.locate(&d, OUTSIDE, &mut work), Place::Outside { .. })
+            };
+            points.iter().filter(is_outside).count()
         };
-        unproved.par_iter().filter(is_outside).count()
+        unproved.par_chunk_by(in_one_set).map(of_set).sum()
     }
 
     /// Prepares the reachable set at a sample in one projection.
@@ -177,7 +182,7 @@ impl<'a> Sweep<'a> {
         sets: &'b UncertaintySets,
         projection: &'b [usize],
     ) -> SampleSet<'b> {
-        let held = at.sample.div_ceil(HELD);
+        let held = held(at);
         let coarse = self.members(at, sets, projection, held);
         SampleSet { sweep: self, at, sets, projection, held, coarse, fine: None }
     }
@@ -215,7 +220,7 @@ impl<'a> Sweep<'a> {
         sets: &UncertaintySets,
         projection: &[usize],
     ) -> GeneratorRows {
-        self.rows(at, sets, projection, at.sample.div_ceil(HELD))
+        self.rows(at, sets, projection, held(at))
     }
 
     /// Returns, for each sample, the points that are outside the set shrunk by the factor `margin`,
@@ -282,7 +287,7 @@ impl<'a> Sweep<'a> {
         let (at, l) = (&self.points[outside.at], &outside.direction);
         let propagation = &self.grids[at.grid].propagation;
         let (e, gamma) = (propagation.exponential(at.sample), propagation.integral(at.sample));
-        let along = |column: nalgebra::DVectorView<'_, Interval>| {
+        let along = |column: DVectorView<'_, Interval>| {
             column.iter().zip(l).map(|(x, l)| x.mid() * l).sum::<f64>()
         };
         let centre = e.column_iter().chain(gamma.column_iter()).map(along).collect();
@@ -294,4 +299,9 @@ impl<'a> Sweep<'a> {
             bound: at.furthest(l).1,
         }
     }
+}
+
+/// The number of steps over which the disturbances of a smaller set are held.
+fn held(at: &SamplePoints) -> usize {
+    at.sample.div_ceil(HELD)
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::notion::proof::Unproved;
-use crate::notion::sweep::{Outside, Sweep};
+use crate::notion::sweep::{OUTSIDE, Outside, Sweep};
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::settings::Notion;
@@ -17,12 +17,9 @@ use crate::verdict::Witness;
 /// A state is named in a combination when its part is at least this of the largest.
 const NAMED: f64 = 0.1;
 
-/// A point counts as outside when the set must grow by more than this part.
-const OUTSIDE: f64 = 1e-9;
-
 /// Whether recorded points lie in the reachable set itself, or in its projections on the phase
-/// planes, and where not. A point is the measured state of one run at one sample, once for each
-/// phase plane.
+/// planes, and where not. A point is the measured state of one run at one sample; it counts once
+/// for each phase plane.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointVerdict {
@@ -51,7 +48,7 @@ pub struct PointWitness {
     pub sample: usize,
     /// Time since the first sample, s.
     pub time: f64,
-    /// The combination l of the states, 2n entries, that of its leading state 1.
+    /// The combination l of the states, 2n entries; that of its leading state is 1 or -1.
     pub direction: Vec<f64>,
     /// The combination in words, such as `qd1 - 3.2 q1`, with the leading state first and without
     /// states that hardly count.

@@ -164,7 +164,9 @@ impl Problem {
             nominal: settings.nominal,
             nominal_starts: &setup.nominal_starts,
             kept: &kept,
-            keep_all: keep == Keep::All || settings.explain.is_some(),
+            keep_all: keep == Keep::All
+                || settings.explain.is_some()
+                || settings.notion != Notion::Hull,
         };
         let mut recordings = Recordings::read(&reader, names, progress)?;
         let kept = Arc::new(kept.into_runs());

@@ -12,7 +12,7 @@ use crate::linear::propagation::Propagation;
 use crate::linear::step::Step;
 use crate::sets::interval_matrix::{IntervalMatrix, product};
 use crate::sets::membership::GeneratorRows;
-use crate::upward::{relative_error, round_up_sum};
+use crate::upward::{UNDERFLOW, relative_error, round_up_sum};
 
 /// The generators of the reachable set of the deviation δẋ = A δx + B δu at the samples of a grid:
 /// the columns of e^{A t_k} for the initial set, and those of Γ(t_k - t_j) - Γ(t_k - t_{j+1}) for
@@ -21,10 +21,11 @@ use crate::upward::{relative_error, round_up_sum};
 pub struct SampleGenerators<'a> {
     /// The propagation on the grid whose steps the disturbance is held over.
     propagation: Cow<'a, Propagation>,
-    /// Steps of that grid in one step of the samples'.
+    /// How many steps of that grid there are between two samples.
     parts: usize,
     is_constant: bool,
-    /// On a uniform grid, what every sample has the beginning of.
+    /// On a uniform grid, the generators at the last sample; any other sample has the first of
+    /// them.
     shared: Option<UnitGenerators>,
 }
 
@@ -37,8 +38,8 @@ struct UnitGenerators {
     count: usize,
     /// State by state: the entries of all generators of the input, step by step.
     input: Vec<f64>,
-    /// For each number of steps, what the entries of that many may be wrong by in sum: states x
-    /// inputs, column by column.
+    /// For each number of steps, bounds of the errors of the entries of the first so many steps, in
+    /// sum: states x inputs, column by column.
     error: Vec<Vec<f64>>,
 }
 
@@ -74,8 +75,7 @@ impl<'a> SampleGenerators<'a> {
 
     /// Returns the generators at sample `k` for sets of these radii: those of X0 (N), of U (m) and
     /// of a noise that is added (N), in the entries `states` of the state. `held` is the number of
-    /// steps over which the disturbance is held, from the first on: 1, or more for fewer
-    /// generators.
+    /// steps in a row over which the disturbance is held: 1, or more for fewer generators.
     ///
     /// # Guarantee
     ///
@@ -121,6 +121,7 @@ impl<'a> SampleGenerators<'a> {
             // Rounding of the products with the radii, and of the sums of held steps.
             let rounding = relative_error(held.min(used) + 1);
             error = add_up(error, mul_up(rounding, round_up_sum(size, columns * held)));
+            error = add_up(error, UNDERFLOW);
             rows.set_error(at, error);
         }
         rows

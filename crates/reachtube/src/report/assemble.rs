@@ -69,7 +69,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
             place(answer),
             together(answer)
         ),
-        _ if outside == 0 => outside_points(answer),
+        _ if outside == 0 => outside_points(answer, model),
         None => format!("{outside} of {rows} rows have no {set}."),
         Some(worst) => format!(
             "{outside} of {rows} rows leave the {set}; the furthest is {} at {:.3} s, {} by \

@@ -5,6 +5,9 @@ use reachtube_conform::{FitRecord, FittedParameter, MOST_ERRORS, Model};
 use crate::number::{at_least, four_decimals};
 use crate::report::page::TextTable;
 
+/// The column of standard errors in the table of parameters.
+const STANDARD_ERROR: usize = 2;
+
 /// Returns the facts about the calibration and the sets for any run: name and value.
 pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
     let mut facts = Vec::new();
@@ -33,13 +36,17 @@ pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
 pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
     let Some(fit) = &model.fit else { return Vec::new() };
     let changed = fit.parameters.iter().filter(|p| p.has_changed());
-    let parameters = TextTable {
+    let mut parameters = TextTable {
         title: "Parameters that changed".into(),
         header: ["Parameter", "Identified", "Standard error", "Fitted", "Factor"]
             .map(String::from)
             .to_vec(),
         rows: changed.map(|p| parameter(model, p)).collect(),
     };
+    if fit.parameters.iter().all(|p| p.standard_error.is_none()) {
+        parameters.header.remove(STANDARD_ERROR);
+        parameters.rows.iter_mut().for_each(|row| drop(row.remove(STANDARD_ERROR)));
+    }
     vec![costs(fit), parameters]
 }
 

@@ -38,7 +38,7 @@ fn notion(answer: &Verdict) -> Notion {
 }
 
 /// Says how many points are not in the set, and names the one furthest outside.
-pub(super) fn outside_points(answer: &Verdict) -> String {
+pub(super) fn outside_points(answer: &Verdict, model: &Model) -> String {
     let Some(PointVerdict { points, unproved, worst, .. }) = &answer.points else {
         return "No row could be compared.".into();
     };
@@ -48,14 +48,16 @@ pub(super) fn outside_points(answer: &Verdict) -> String {
         together(answer)
     );
     if let Some(worst) = worst {
+        let state = worst.leading_state();
         words += &format!(
-            "; the furthest is {} at {:.3} s, where {} is {} from the centre of the set, which \
-             reaches {}",
+            "; the furthest is {} at {:.3} s, where {} is {} {unit} from the centre of the set, \
+             which reaches {} {unit}",
             worst.run,
             worst.time,
             worst.combination,
             four_decimals(worst.value),
-            four_decimals(worst.reach)
+            four_decimals(worst.reach),
+            unit = state.kind.unit(model.robot.joints[state.joint].kind)
         );
     }
     words + "."

@@ -20,6 +20,9 @@ Examples:
       with the settings of Liu and Althoff (2018)
   reachtube conform --robot lwa4p --data recordings --torque compensated \\
       --fit inertia,viscous,coulomb --out model.json
+  reachtube conform --robot lwa4p --data recordings --torque compensated --notion exact \\
+      --out model.json --certificate points.jsonl
+      all states together lie in the reachable set itself
   reachtube conform --robot lwa4p --model 2 --order 5 --data recordings --torque compensated \\
       --resume search.json
   reachtube conform --robot arm.toml --data recordings --torque motor --calibrate M7,M8,M9

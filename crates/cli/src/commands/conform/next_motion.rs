@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::Model;
-use reachtube::conform::Calibration;
+use reachtube::conform::{Calibration, Notion};
 use reachtube::number::at_least;
 
 use crate::table::plural;
@@ -19,7 +19,8 @@ pub fn next_motion(model: &Model) -> String {
     }
     let set = model.proof.enclosure.set_name();
     let _ = writeln!(text, "\n{}", model.trust.words(set, "touched the set"));
-    let says_little = model.calibration.is_none() && model.trust.violation_probability > 0.5;
+    let can_calibrate = model.calibration.is_none() && model.settings.notion == Notion::Hull;
+    let says_little = can_calibrate && model.trust.violation_probability > 0.5;
     if says_little && model.data.motions() > 1 {
         text.push_str(
             "a bound that says more: --calibrate MOTION,.. keeps n motions back from the fit, and \

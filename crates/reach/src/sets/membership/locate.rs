@@ -10,6 +10,10 @@ const SIMPLE_STEPS: usize = 8;
 /// Steps for one point at most.
 const STEPS: usize = 400;
 
+/// Newton steps after which a residual that has not halved will not: the digits of Gᵀ y are used
+/// up, as happens for points on the boundary.
+const STALLED: usize = 20;
+
 /// A direction separates when the point is further along it by this part.
 const SEPARATED: f64 = 1e-12;
 
@@ -34,7 +38,8 @@ pub enum Place {
         /// lᵀ d / Σ_j |lᵀ g_j|. The set would have to grow at least by this factor.
         ratio: f64,
     },
-    /// Too close to the boundary to tell in floating point.
+    /// No answer within a number of steps: the point is too close to the boundary to tell in
+    /// floating point, or the generators do not span the states.
     Unknown,
 }
 
@@ -179,6 +184,7 @@ impl Membership {
         simple_steps: usize,
         work: &mut MembershipWorkspace,
     ) -> Place {
+        let (mut least, mut least_at) = (f64::INFINITY, simple_steps);
         for at in 0..STEPS {
             let MembershipWorkspace { y, along, factors, product, point, .. } = work;
             let reach = self.blocks.pass(y, along, factors, product);
@@ -190,6 +196,12 @@ impl Membership {
             let step = work.towards_point(factor);
             if work.is_within(&step, tolerance) {
                 return Place::Inside;
+            }
+            let residual = work.residual.dot(&step);
+            if residual <= 0.5 * least {
+                (least, least_at) = (residual, at);
+            } else if at >= least_at + STALLED {
+                return Place::Unknown;
             }
             if at < simple_steps {
                 work.y.iter_mut().zip(step.iter()).for_each(|(y, p)| *y += p);
@@ -284,7 +296,8 @@ fn gram_of_free(
 }
 
 /// The length t of a step for which the derivative along it, pᵀ d - Σ clip(z + t w) w, is small: 1
-/// where it is there, less where the derivative changed its sign, and more where it did not.
+/// where it is there, less where the derivative changed its sign, and more where it did not. The
+/// function itself never falls: its derivative does, so that a derivative above 0 shows a rise.
 fn line_search(at_step: f64, along: &[Lanes], change: &[Lanes]) -> f64 {
     let slope = |t: f64| {
         let mut sums = [0.0; 8];
@@ -297,7 +310,8 @@ fn line_search(at_step: f64, along: &[Lanes], change: &[Lanes]) -> f64 {
     };
     let (mut low, mut high) = (0.0, 1.0);
     let (start, at_one) = (slope(0.0).abs(), slope(1.0));
-    if at_one.abs() <= 0.5 * start {
+    // Below 0 at the end, the derivative is at least that before, and what it is at 1/2 before that.
+    if at_one.abs() <= 0.5 * start && (at_one >= 0.0 || slope(0.5) + at_one >= 0.0) {
         return 1.0;
     }
     let mut at_high = at_one;
@@ -311,10 +325,14 @@ fn line_search(at_step: f64, along: &[Lanes], change: &[Lanes]) -> f64 {
     for _ in 0..LINE_STEPS {
         let middle = 0.5 * (low + high);
         let at = slope(middle);
-        if at.abs() <= 0.1 * start || high - low <= 1e-3 * high {
-            return middle;
+        if at > 0.0 {
+            low = middle
+        } else {
+            high = middle
         }
-        if at > 0.0 { low = middle } else { high = middle }
+        if (0.0..=0.1 * start).contains(&at) || high - low <= 1e-3 * high {
+            return low;
+        }
     }
     low
 }

@@ -1,7 +1,7 @@
 use crate::sets::zonotope::Zonotope;
 
-/// The generators of a zonotope about 0, laid out state by state, with what their entries may be
-/// wrong by.
+/// The generators of a zonotope about 0, laid out state by state, with bounds of the errors of
+/// their entries.
 ///
 /// The exact zonotope is { Σ_j β_j g_j : |β_j| <= 1 }, where the exact entries of the generators
 /// g_j differ from those that are stored by no more than [`set_error`](Self::set_error) allows.
@@ -74,7 +74,7 @@ impl GeneratorRows {
         self.errors[i]
     }
 
-    /// Sets what entry `i` of all generators together may be wrong by, in sum.
+    /// Sets a bound of the sum of the errors of entry `i` over all generators.
     pub fn set_error(&mut self, i: usize, error: f64) {
         self.errors[i] = error;
     }
