@@ -310,7 +310,8 @@ fn line_search(at_step: f64, along: &[Lanes], change: &[Lanes]) -> f64 {
     };
     let (mut low, mut high) = (0.0, 1.0);
     let (start, at_one) = (slope(0.0).abs(), slope(1.0));
-    // Below 0 at the end, the derivative is at least that before, and what it is at 1/2 before that.
+    // The derivative falls. Where it is below 0 at the end, it is no lower in the second half, and
+    // in the first half no lower than at 1/2.
     if at_one.abs() <= 0.5 * start && (at_one >= 0.0 || slope(0.5) + at_one >= 0.0) {
         return 1.0;
     }
