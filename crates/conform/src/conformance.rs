@@ -107,8 +107,8 @@ pub fn conform(
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, deciding, .. } = found;
     let mut tight = match &deciding {
-        Deciding::Points(points) => points.clone(),
-        Deciding::Touching(_) | Deciding::Rows(_) => Vec::new(),
+        Deciding::Points(points) | Deciding::Rows(_, points) => points.clone(),
+        Deciding::Touching(_) => Vec::new(),
     };
     let mut radii = vec![0.0f64; 2 * problem.joints()];
     let verdict = Verdict::new(problem, &hulls, |suite, case, row| {

@@ -71,10 +71,10 @@ pub enum Error {
     /// A step for linear models was asked of another one.
     #[error("the model is not linear; use the steps for polynomial models")]
     NotLinear,
-    /// A notion of enclosure that is for linear models was asked of another one.
+    /// A notion of enclosure other than the hull was asked of the bisection.
     #[error(
-        "only the notion hull is built for a model that is not linear; use --notion hull, or \
-         --model 1 --order 1"
+        "the paper's bisection finds sets for the notion hull only; use --method program, or \
+         --notion hull"
     )]
     Notion,
     /// A certificate was asked of hulls.

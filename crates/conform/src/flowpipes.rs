@@ -1,12 +1,18 @@
 //! Outer enclosures of the reachable sets of models that are not linear.
 
-use reachtube_reach::{Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInput};
+use std::sync::Mutex;
+
+use reachtube_reach::{
+    Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInput, Visit, Zonotope,
+};
 
 use crate::error::Result;
+use crate::notion::outer::{Asked, CasePoints, CaseRuns};
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::rows::rows;
 use crate::sets::UncertaintySets;
+use crate::settings::Notion;
 
 /// Variables over whose vertices remainders are bounded, one number after the other while a set is
 /// lost: with 14 a step takes four times as long as with 8, with 18 a hundred times.
@@ -21,38 +27,96 @@ pub enum Effort {
     Whole,
 }
 
-/// Computes the flowpipe of a case under `sets`; of several attempts the one that comes furthest.
-///
-/// # Guarantee
-///
-/// Outer, as [`Flowpipe`], for every measurable disturbance with values in U.
-///
-/// # Errors
-///
-/// When sizes do not fit.
-pub fn flowpipe(
-    system: &PolynomialSystem,
-    case: &Case,
-    sets: &UncertaintySets,
+/// The computed outer set of a case.
+#[derive(Debug)]
+pub struct OuterSet {
+    /// The sets at samples and between them.
+    pub flowpipe: Flowpipe,
+    /// Where the recorded points of the case lie in them; nothing for the notion hull.
+    pub(crate) points: CasePoints,
+}
+
+impl OuterSet {
+    /// Computes the outer set of a case under `sets`; of several attempts the one that comes
+    /// furthest. Judges the recorded points, where the notion is not the hull, and says how far it
+    /// reaches in the directions `asked`.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, as [`Flowpipe`], for every measurable disturbance with values in U. Points as
+    /// [`CaseRuns::take`].
+    ///
+    /// # Errors
+    ///
+    /// When sizes do not fit; as [`Problem::run`].
+    pub(crate) fn new(
+        problem: &Problem,
+        case: &Case,
+        sets: &UncertaintySets,
+        asked: &[Asked],
+    ) -> Result<Self> {
+        let system = problem.dynamics().polynomial_system()?;
+        if problem.settings().notion == Notion::Hull {
+            let of = |vertices: usize| attempt(system, case, sets, vertices, None);
+            let flowpipe = furthest(Effort::Whole, of, |flowpipe| flowpipe)?;
+            return Ok(Self { flowpipe, points: CasePoints::default() });
+        }
+        let runs = CaseRuns::new(problem, case, sets, asked)?;
+        let judged = |vertices: usize| {
+            let points = Mutex::new(CasePoints::default());
+            let visit = |sample: usize, zonotope: Zonotope| {
+                let mut here = CasePoints::default();
+                runs.take(sample, &zonotope, &mut here);
+                points.lock().expect("no thread panics").add(here);
+            };
+            let flowpipe = attempt(system, case, sets, vertices, Some(&visit))?;
+            let mut points = points.into_inner().expect("no thread panics");
+            runs.finish(flowpipe.len(), &mut points);
+            Ok(Self { flowpipe, points })
+        };
+        furthest(Effort::Whole, judged, |set| &set.flowpipe)
+    }
+
+    /// Returns the radii of the interval hull at a sample with the noise set, 2n, in floating
+    /// point.
+    pub(crate) fn hull_radii(&self, sample: usize, sets: &UncertaintySets) -> Vec<f64> {
+        let hull = self.flowpipe.sample(sample).iter().enumerate();
+        hull.map(|(i, side)| side.rad() + sets.noise_radius(i)).collect()
+    }
+}
+
+/// Attempts a flowpipe with more and more variables over whose vertices remainders are bounded, and
+/// returns the attempt that came furthest.
+fn furthest<T>(
     effort: Effort,
-) -> Result<Flowpipe> {
-    let (start, input) =
-        (case.start.clone(), UncertainInput { measured: &case.inputs, set: &sets.input_set });
-    let with = |vertex_variables: usize| {
-        let settings = FlowpipeSettings { vertex_variables, ..FlowpipeSettings::default() };
-        Flowpipe::new(system, &case.grid, &start, &sets.initial_set, &input, &settings)
-    };
-    let mut furthest = with(VERTEX_VARIABLES[0])?;
+    attempt: impl Fn(usize) -> Result<T>,
+    flowpipe: impl Fn(&T) -> &Flowpipe,
+) -> Result<T> {
+    let mut furthest = attempt(VERTEX_VARIABLES[0])?;
     for vertex_variables in &VERTEX_VARIABLES[1..] {
-        if furthest.is_reached() || effort == Effort::Quick {
+        if flowpipe(&furthest).is_reached() || effort == Effort::Quick {
             break;
         }
-        let tighter = with(*vertex_variables)?;
-        if tighter.len() > furthest.len() {
+        let tighter = attempt(*vertex_variables)?;
+        if flowpipe(&tighter).len() > flowpipe(&furthest).len() {
             furthest = tighter;
         }
     }
     Ok(furthest)
+}
+
+fn attempt(
+    system: &PolynomialSystem,
+    case: &Case,
+    sets: &UncertaintySets,
+    vertex_variables: usize,
+    visit: Option<Visit>,
+) -> Result<Flowpipe> {
+    let (start, input) =
+        (&case.start, UncertainInput { measured: &case.inputs, set: &sets.input_set });
+    let settings = FlowpipeSettings { vertex_variables, ..FlowpipeSettings::default() };
+    let Case { grid, .. } = case;
+    Ok(Flowpipe::visiting(system, grid, start, &sets.initial_set, &input, &settings, visit)?)
 }
 
 /// How recordings lie to a computed reachable set.
@@ -70,14 +134,16 @@ pub enum Enclosed {
 ///
 /// # Errors
 ///
-/// As [`flowpipe`].
+/// When sizes do not fit.
 pub fn enclosed(
     problem: &Problem,
     case: &Case,
     sets: &UncertaintySets,
     effort: Effort,
 ) -> Result<Enclosed> {
-    let flowpipe = flowpipe(problem.dynamics().polynomial_system()?, case, sets, effort)?;
+    let system = problem.dynamics().polynomial_system()?;
+    let of = |vertices: usize| attempt(system, case, sets, vertices, None);
+    let flowpipe = furthest(effort, of, |flowpipe| flowpipe)?;
     if !flowpipe.is_reached() {
         return Ok(Enclosed::Lost);
     }

@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use serde::{Deserialize, Serialize};
 
 use crate::hulls::Hulls;
@@ -32,8 +34,8 @@ pub(crate) const TOUCHING: f64 = 1e-4;
 pub(crate) enum Deciding {
     /// Those that touch the reachable set, within a part of its radius.
     Touching(f64),
-    /// Those named: case, sample, state, side.
-    Rows(std::collections::HashSet<(usize, usize, usize, Side)>),
+    /// Those named (case, sample, state, side), and recorded points in other directions.
+    Rows(HashSet<(usize, usize, usize, Side)>, Vec<Witness>),
     /// Recorded points in other directions, and rows that are as close to the reachable set.
     Points(Vec<Witness>),
 }
@@ -44,7 +46,7 @@ impl Deciding {
     pub fn contains(&self, case: Option<usize>, row: &Row, edge: &Edge) -> bool {
         match self {
             Self::Touching(part) => edge.excess >= -part * row.radius,
-            Self::Rows(rows) => {
+            Self::Rows(rows, _) => {
                 let named = |case| rows.contains(&(case, row.sample, row.state, edge.side));
                 edge.excess.is_finite() && case.is_some_and(named)
             }

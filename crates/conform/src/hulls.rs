@@ -4,7 +4,7 @@ use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::flowpipes::{Effort, flowpipe};
+use crate::flowpipes::OuterSet;
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::rows::{Row, rows};
@@ -61,7 +61,7 @@ pub enum HullKind {
     /// Of the deviation of a linear model, on each of the problem's grids.
     Linear(Vec<ReachSets>),
     /// Of the state of any other model, for each of the problem's cases.
-    Outer(Vec<Flowpipe>),
+    Outer(Vec<OuterSet>),
 }
 
 impl Hulls {
@@ -81,10 +81,9 @@ impl Hulls {
             let kind = HullKind::Linear(grids.iter().map(|grid| grid.reach(&sets)).collect());
             return Ok(Self { sets, kind });
         }
-        let system = problem.dynamics().polynomial_system()?;
-        let of = |case: &Case| flowpipe(system, case, &sets, Effort::Whole);
-        let flowpipes = problem.cases()?.par_iter().map(of).collect::<Result<_>>()?;
-        Ok(Self { sets, kind: HullKind::Outer(flowpipes) })
+        let of = |case: &Case| OuterSet::new(problem, case, &sets, &[]);
+        let outer = problem.cases()?.par_iter().map(of).collect::<Result<_>>()?;
+        Ok(Self { sets, kind: HullKind::Outer(outer) })
     }
 
     /// Returns which bound of the reachable set recordings are compared with.
@@ -124,11 +123,10 @@ impl Hulls {
                     });
                 }
             }
-            HullKind::Outer(flowpipes) => {
-                for (index, (case, flowpipe)) in problem.cases()?.iter().zip(flowpipes).enumerate()
-                {
+            HullKind::Outer(outer) => {
+                for (index, (case, set)) in problem.cases()?.iter().zip(outer).enumerate() {
                     let times = case.grid.times();
-                    rows(&case.measured, times, flowpipe, &self.sets, states, |row| {
+                    rows(&case.measured, times, &set.flowpipe, &self.sets, states, |row| {
                         visit(case.suite, Some(index), row);
                     });
                 }
@@ -145,9 +143,9 @@ impl Hulls {
     pub fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
         match &self.kind {
             HullKind::Linear(_) => Ok(Vec::new()),
-            HullKind::Outer(flowpipes) => {
-                let pairs = problem.cases()?.iter().zip(flowpipes);
-                Ok(pairs.filter_map(|(case, flowpipe)| Lost::new(case, flowpipe)).collect())
+            HullKind::Outer(outer) => {
+                let pairs = problem.cases()?.iter().zip(outer);
+                Ok(pairs.filter_map(|(case, set)| Lost::new(case, &set.flowpipe)).collect())
             }
         }
     }

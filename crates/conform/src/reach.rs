@@ -8,6 +8,7 @@ use reachtube_scalar::rounding::{add_down, add_up};
 
 use crate::deviation::Nominal;
 use crate::error::Result;
+use crate::flowpipes::OuterSet;
 use crate::grids::Grid;
 use crate::hulls::{HullKind, Hulls, Lost};
 use crate::problem::case::Case;
@@ -52,12 +53,12 @@ pub struct SuiteReach {
 pub fn reach(problem: &Problem, hulls: &Hulls) -> Result<Vec<SuiteReach>> {
     match &hulls.kind {
         HullKind::Linear(reach) => linear(problem, &hulls.sets, reach),
-        HullKind::Outer(flowpipes) => {
-            let of_case = |(case, flowpipe): (&Case, &Flowpipe)| {
+        HullKind::Outer(outer) => {
+            let of_case = |(case, set): (&Case, &OuterSet)| {
                 let nominal = nominal(problem.dynamics().polynomials(), case)?;
-                Ok(SuiteReach::of_flowpipe(problem, case, nominal, flowpipe))
+                Ok(SuiteReach::of_flowpipe(problem, case, nominal, &set.flowpipe))
             };
-            problem.cases()?.iter().zip(flowpipes).map(of_case).collect()
+            problem.cases()?.iter().zip(outer).map(of_case).collect()
         }
     }
 }

@@ -215,7 +215,7 @@ fn judge_points(
     hulls: &Hulls,
     suites: &mut [SuiteVerdict],
 ) -> Result<PointVerdict> {
-    let Judged { verdict, unproved } = judge(problem, &hulls.sets)?;
+    let Judged { verdict, unproved } = judge(problem, hulls)?;
     suites.iter_mut().for_each(|suite| suite.points_unproved = Some(0));
     for (suite, run) in unproved {
         let (suite, run) = (&mut suites[suite], &problem.entry(run).file);

@@ -10,8 +10,8 @@ use std::sync::Mutex;
 use common::{Random, Recorded, check_against, conform_all, grid, read, read_with, write_data_set};
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
 use reachtube_conform::{
-    Conformance, Dynamics, Enclosure, Hulls, Method, Model, Progress, Settings, Setup, Silent,
-    UncertaintySets, check, conform,
+    Conformance, Dynamics, Enclosure, Error, Hulls, Method, Model, Notion, Progress, Settings,
+    Setup, Silent, UncertaintySets, Verdict, check, conform,
 };
 use reachtube_ode::{DormandPrince, Run, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
@@ -207,6 +207,84 @@ fn no_radius_can_be_made_smaller_alone() {
     }
 }
 
+/// In the stronger notions as well, a linear model has the sets of the one program.
+#[test]
+fn a_linear_model_has_the_sets_of_the_cutting_planes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (robot, linear) = (bent(), settings(ModelKind::One, 1));
+    two_suites(folder.path(), &model_of(&robot, &linear));
+    for notion in [Notion::PhasePlane, Notion::Exact] {
+        let settings = Settings { notion, ..linear.clone() };
+        let short = conform_all(&read(&robot, folder.path(), &[], &settings));
+        let long = the_long_way(&robot, folder.path(), &[], &settings);
+        assert!(short.verdict.conformant && long.verdict.conformant, "{:?}", long.verdict);
+        // The enclosure is for disturbances that change at any time, and a little wider, so that
+        // the sets may be smaller.
+        let ratio = long.search.as_ref().unwrap().linearised_cost.unwrap() / short.cost;
+        assert!((0.99..1.001).contains(&ratio), "{notion:?}: {ratio}");
+    }
+}
+
+#[test]
+fn stronger_notions_cost_more_and_are_proved_for_each_model() {
+    for (kind, order) in [(ModelKind::One, 3), (ModelKind::Two, 4)] {
+        let folder = tempfile::tempdir().unwrap();
+        let (robot, hull) = (bent(), settings(kind, order));
+        two_suites(folder.path(), &model_of(&robot, &hull));
+        let costs = [Notion::Hull, Notion::PhasePlane, Notion::Exact].map(|notion| {
+            let settings = Settings { notion, ..hull.clone() };
+            let problem = read(&robot, folder.path(), &[], &settings);
+            let found = conform_all(&problem);
+            assert!(found.verdict.conformant, "{kind:?} {notion:?}: {:?}", found.verdict);
+            let points = found.verdict.points.as_ref().map(|points| points.points);
+            let all = 8 * 89 + 6 * 59;
+            let expected = match notion {
+                Notion::Hull => None,
+                Notion::PhasePlane => Some(2 * all),
+                Notion::Exact => Some(all),
+            };
+            assert_eq!(points, expected);
+            let mut model = Model::new(&problem, &found);
+            model.settings.notion = Notion::Exact;
+            let exact = check_against(&model, folder.path(), &[]).verdict;
+            let points = exact.points.unwrap();
+            assert_eq!(exact.conformant, notion == Notion::Exact, "{kind:?} {notion:?}");
+            assert_eq!(points.outside > 0, notion != Notion::Exact);
+            if let Some(worst) = points.worst {
+                assert!(worst.value > worst.reach && worst.combination.contains('q'), "{worst:?}");
+            }
+            found.cost
+        });
+        assert!(costs[0] < costs[1] && costs[1] < costs[2], "{kind:?} {costs:?}");
+        assert!(costs[2] < 2.0 * costs[0], "{kind:?} {costs:?}");
+    }
+}
+
+/// Motions of the model itself lie in its computed sets, in all states together.
+#[test]
+fn points_of_motions_under_the_sets_are_proved() {
+    let folder = tempfile::tempdir().unwrap();
+    let (robot, exact) =
+        (bent(), Settings { notion: Notion::Exact, ..settings(ModelKind::Two, 4) });
+    let polynomials = model_of(&robot, &exact);
+    let runs = recorded(&polynomials, &grid(0.01, 60), 40, [0.02, 0.3], 11);
+    write_data_set(folder.path(), &[("a", runs)]);
+    let problem = read(&robot, folder.path(), &[], &exact);
+    // The nominal starts at the mean of the runs, at most 0.02 from the middle of the starts.
+    let sets = |input: f64| UncertaintySets {
+        initial_set: Hyperrectangle { centre: vec![0.0; 4], radius: vec![0.04; 4] },
+        input_set: Hyperrectangle { centre: vec![0.0; 2], radius: vec![input; 2] },
+        noise_set: None,
+    };
+    let verdict = |input: f64| {
+        let hulls = Hulls::new(&problem, sets(input)).unwrap();
+        Verdict::new(&problem, &hulls, |_, _, _| ()).unwrap()
+    };
+    let (known, less) = (verdict(0.3), verdict(0.05));
+    assert!(known.conformant && known.points.unwrap().points == 40 * 59);
+    assert!(!less.conformant && less.points.unwrap().outside > 0);
+}
+
 #[test]
 fn bisection_costs_more_than_the_programs() {
     let folder = tempfile::tempdir().unwrap();
@@ -218,6 +296,9 @@ fn bisection_costs_more_than_the_programs() {
     assert!(program.verdict.conformant && baseline.verdict.conformant);
     assert!(baseline.cost > 0.999 * program.cost, "{} for {}", baseline.cost, program.cost);
     assert!(baseline.search.unwrap().reachable_sets > 10 * program.search.unwrap().reachable_sets);
+    let exact = Settings { notion: Notion::Exact, ..bisection };
+    let refused = conform(&read(&robot, folder.path(), &[], &exact), &Silent, None);
+    assert!(matches!(refused, Err(Error::Notion)));
 }
 
 /// Collects what a search reports, and stops it by a panic after some messages.

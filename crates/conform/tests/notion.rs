@@ -9,7 +9,7 @@ use common::{
 };
 use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome, Variable};
 use nalgebra::{DMatrix, DVector};
-use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, linear_model};
+use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::{
     Centre, Certificate, Conformance, Error, Hulls, Keep, Model, Notion, Problem, Settings, Setup,
     Silent, States, check, conform,
@@ -269,11 +269,6 @@ fn positions_alone_and_noise_are_judged_too() {
 fn what_is_not_built_is_refused() {
     let folder = recorded(&grid(0.01, 20), 3);
     let data = || Box::new(DataSet::open(folder.path()).unwrap());
-    let mut nonlinear = settings(Notion::Exact);
-    nonlinear.abstraction = Abstraction { model: ModelKind::Two, order: 3 };
-    let setup = Setup::new(two_joints(), nonlinear).unwrap();
-    let refused = Problem::read(setup, data(), &[], Keep::Needed, &Silent);
-    assert!(matches!(refused, Err(Error::Notion)));
     let calibrated = Settings { calibrate: vec!["b".into()], ..settings(Notion::PhasePlane) };
     let setup = Setup::new(two_joints(), calibrated).unwrap();
     let problem = Problem::read(setup, data(), &[], Keep::Needed, &Silent).unwrap();

@@ -15,6 +15,7 @@ pub use linear::{
 };
 pub use polynomial::{
     Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,
+    Visit,
 };
 pub use sets::{
     GeneratorRows, Hyperrectangle, IntervalMatrix, IntervalVector, Membership, MembershipProof,

@@ -2,6 +2,7 @@
 //! reachable set itself (exact), or in its projections on the phase planes of the joints.
 
 pub(crate) mod certificate;
+pub(crate) mod outer;
 pub(crate) mod phase_plane;
 mod points;
 mod proof;

@@ -1,4 +1,5 @@
-//! The recorded points of a linear model: the deviations of all runs, sample by sample.
+//! The recorded points of a linear model: the deviations of all runs, sample by sample. And the
+//! projections in which points must lie in a set.
 
 use reachtube_scalar::Interval;
 
@@ -6,6 +7,7 @@ use crate::deviation::Nominal;
 use crate::error::Result;
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
+use crate::settings::{Notion, States};
 
 /// The points of all runs at one sample of one grid.
 #[derive(Debug, Clone, Default)]
@@ -38,6 +40,16 @@ impl SamplePoints {
         let along = |d: &[f64]| d.iter().zip(direction).map(|(d, l)| d * l).sum::<f64>();
         let points = self.iter().map(along).enumerate();
         points.fold((0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best })
+    }
+}
+
+/// Returns the states of each projection in which recorded points must lie in the reachable set.
+pub(crate) fn projections(notion: Notion, states: States, joints: usize) -> Vec<Vec<usize>> {
+    let rows = states.rows(joints);
+    match notion {
+        Notion::Exact => vec![(0..rows).collect()],
+        _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
+        _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
     }
 }
 

@@ -10,7 +10,7 @@ use crate::sets::UncertaintySets;
 
 /// What the factors of a point are kept below 1 by, so that the proof has room: the second where
 /// the first is too much.
-const SLACK: [f64; 2] = [1e-6, 1e-9];
+pub(super) const SLACK: [f64; 2] = [1e-6, 1e-9];
 
 /// How accurately the factors reach the point, in parts of the slack.
 const ACCURACY: f64 = 1e-3;
@@ -118,16 +118,31 @@ impl<'a> ProjectedPoints<'a> {
     ) -> bool {
         let measured = self.at.point(point);
         let d: Vec<f64> = self.projection.iter().map(|&i| measured[i] - self.centre[i]).collect();
-        let scaled: Vec<f64> = d.iter().map(|x| x / (1.0 - slack)).collect();
-        if set.locate(&scaled, ACCURACY * slack, work) != Place::Inside {
-            return false;
-        }
         // The deviation and the centre are not exact, nor is their difference.
         let radius = |(x, &i): (&f64, &usize)| {
             let given = add_up(self.at.error[i], self.error[i]);
             add_up(given, f64::EPSILON * x.abs() + f64::MIN_POSITIVE)
         };
         let radius: Vec<f64> = d.iter().zip(self.projection).map(radius).collect();
-        proof.holds(&d, &radius, 1.0 - slack, work)
+        proves(set, proof, &d, &radius, slack, work)
     }
+}
+
+/// Returns whether factors of at most 1 - `slack` were found that prove that all points within
+/// `radius` of `d` lie in the set.
+///
+/// # Guarantee
+///
+/// As [`MembershipProof::holds`].
+pub(super) fn proves(
+    set: &Membership,
+    proof: &MembershipProof,
+    d: &[f64],
+    radius: &[f64],
+    slack: f64,
+    work: &mut MembershipWorkspace,
+) -> bool {
+    let scaled: Vec<f64> = d.iter().map(|x| x / (1.0 - slack)).collect();
+    set.locate(&scaled, ACCURACY * slack, work) == Place::Inside
+        && proof.holds(d, radius, 1.0 - slack, work)
 }

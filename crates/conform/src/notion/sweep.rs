@@ -8,7 +8,7 @@ use reachtube_scalar::Interval;
 use crate::error::Result;
 use crate::grids::Grid;
 use crate::linear::cut::Cut;
-use crate::notion::points::{SamplePoints, points};
+use crate::notion::points::{SamplePoints, points, projections};
 use crate::notion::proof::Unproved;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
@@ -109,18 +109,12 @@ impl<'a> Sweep<'a> {
         let (grids, settings) = (problem.grids()?.as_slice(), problem.settings());
         let generators =
             |grid: &'a Grid| SampleGenerators::new(&grid.propagation, settings.disturbance, PARTS);
-        let (n, rows) = (problem.joints(), settings.states.rows(problem.joints()));
-        let projections = match notion {
-            Notion::Exact => vec![(0..rows).collect()],
-            _ if rows == n => (0..n).map(|i| vec![i]).collect(),
-            _ => (0..n).map(|i| vec![i, n + i]).collect(),
-        };
         Ok(Self {
             grids,
             generators: grids.iter().map(generators).collect::<Result<_, _>>()?,
             points: points(problem)?,
-            projections,
-            states: 2 * n,
+            projections: projections(notion, settings.states, problem.joints()),
+            states: 2 * problem.joints(),
         })
     }
 

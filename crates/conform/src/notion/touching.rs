@@ -30,7 +30,7 @@ impl Sweep<'_> {
                 continue;
             }
             let touch = Outside { point, ratio, ..outside.clone() };
-            touching.push(PointWitness::new(problem, self, sets, &touch).into_witness());
+            touching.push(PointWitness::of_sweep(problem, self, sets, &touch).into_witness());
         }
         touching.sort_by(|a, b| (b.excess / b.radius).total_cmp(&(a.excess / a.radius)));
         touching

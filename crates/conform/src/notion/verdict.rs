@@ -6,8 +6,12 @@ use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
+use crate::flowpipes::OuterSet;
+use crate::hulls::{HullKind, Hulls};
+use crate::notion::outer::FurthestPoint;
 use crate::notion::proof::Unproved;
 use crate::notion::sweep::{OUTSIDE, Outside, Sweep};
+use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::settings::Notion;
@@ -60,6 +64,39 @@ pub struct PointWitness {
     pub reach: f64,
 }
 
+/// What a direction shows of a point outside a set.
+pub(crate) struct SeparatedPoint<'a> {
+    pub suite: usize,
+    /// The run (index in the source).
+    pub run: usize,
+    pub sample: usize,
+    /// Time since the first sample, s.
+    pub time: f64,
+    /// The radii of the set's interval hull, 2n.
+    pub hull: &'a [f64],
+    /// The point from the centre of the set, 2n.
+    pub deviation: &'a [f64],
+    /// l, 2n.
+    pub direction: &'a [f64],
+    /// By which factor the set would have to grow at least.
+    pub ratio: f64,
+}
+
+impl<'a> SeparatedPoint<'a> {
+    fn of_outer(case: &Case, point: &'a FurthestPoint, hull: &'a [f64]) -> Self {
+        Self {
+            suite: case.suite,
+            run: point.run,
+            sample: point.sample,
+            time: case.grid.times()[point.sample],
+            hull,
+            deviation: &point.deviation,
+            direction: &point.direction,
+            ratio: point.ratio,
+        }
+    }
+}
+
 /// A verdict, and the suite and run of each point that is not proved.
 pub(crate) struct Judged {
     pub verdict: PointVerdict,
@@ -70,12 +107,48 @@ pub(crate) struct Judged {
 ///
 /// # Guarantee
 ///
-/// A point that is not among the unproved ones lies in the exact reachable set.
+/// A point that is not among the unproved ones lies in the exact reachable set of a linear model;
+/// in the computed outer set of any other.
 ///
 /// # Errors
 ///
 /// As [`Sweep::new`].
-pub(crate) fn judge(problem: &Problem, sets: &UncertaintySets) -> Result<Judged> {
+pub(crate) fn judge(problem: &Problem, hulls: &Hulls) -> Result<Judged> {
+    match &hulls.kind {
+        HullKind::Linear(_) => judge_linear(problem, &hulls.sets),
+        HullKind::Outer(outer) => judge_outer(problem, &hulls.sets, outer),
+    }
+}
+
+/// Collects what was found when the outer sets were computed.
+fn judge_outer(problem: &Problem, sets: &UncertaintySets, outer: &[OuterSet]) -> Result<Judged> {
+    let cases = problem.cases()?;
+    let unproved = || {
+        let of_case = |(case, set): (&Case, &'_ OuterSet)| {
+            let suite = case.suite;
+            set.points.unproved.iter().map(move |point| (suite, *point)).collect::<Vec<_>>()
+        };
+        cases.iter().zip(outer).flat_map(of_case)
+    };
+    let furthest = cases
+        .iter()
+        .zip(outer)
+        .flat_map(|(case, set)| set.points.furthest.iter().map(move |point| (case, set, point)));
+    let worst = furthest.max_by(|a, b| a.2.ratio.total_cmp(&b.2.ratio));
+    let verdict = PointVerdict {
+        notion: problem.settings().notion,
+        points: outer.iter().map(|set| set.points.points).sum(),
+        unproved: unproved().count(),
+        outside: unproved().filter(|(_, point)| point.is_outside).count(),
+        worst: worst.map(|(case, set, point)| {
+            let hull = set.hull_radii(point.sample, sets);
+            PointWitness::new(problem, &SeparatedPoint::of_outer(case, point, &hull))
+        }),
+    };
+    Ok(Judged { verdict, unproved: unproved().map(|(suite, point)| (suite, point.run)).collect() })
+}
+
+fn judge_linear(problem: &Problem, sets: &UncertaintySets) -> Result<Judged> {
     let sweep = Sweep::new(problem)?;
     let all: Vec<usize> = (0..sweep.points.len()).collect();
     let unproved = sweep.unproved(sets, &all);
@@ -92,14 +165,14 @@ pub(crate) fn judge(problem: &Problem, sets: &UncertaintySets) -> Result<Judged>
         points: sweep.point_count(),
         unproved: unproved.len(),
         outside: sweep.count_outside(sets, &unproved),
-        worst: worst.map(|worst| PointWitness::new(problem, &sweep, sets, worst)),
+        worst: worst.map(|worst| PointWitness::of_sweep(problem, &sweep, sets, worst)),
     };
     Ok(Judged { verdict, unproved: unproved.iter().map(owner).collect() })
 }
 
 impl PointWitness {
-    /// Names a point outside in the words of the recordings.
-    pub(crate) fn new(
+    /// Names a point outside the set of a linear model.
+    pub(crate) fn of_sweep(
         problem: &Problem,
         sweep: &Sweep,
         sets: &UncertaintySets,
@@ -108,26 +181,40 @@ impl PointWitness {
         let at = &sweep.points[outside.at];
         let (suite, run) = at.owners[outside.point];
         let (centre, _) = sweep.centre(at, sets);
-        let parts: Vec<f64> = sweep
-            .hull(at, sets)
-            .iter()
-            .zip(&outside.direction)
-            .map(|(radius, l)| (radius * l).abs())
-            .collect();
-        let leading = leading(&parts);
-        let unit = outside.direction[leading].abs();
-        let direction: Vec<f64> = outside.direction.iter().map(|l| l / unit).collect();
-        let d = at.point(outside.point).iter().zip(&centre).map(|(x, c)| x - c);
-        let value: f64 = d.zip(&direction).map(|(d, l)| d * l).sum();
-        Self {
-            suite: problem.recordings().suites[suite as usize].entry.name.clone(),
-            run: problem.entry(run as usize).file.clone(),
+        let hull = sweep.hull(at, sets);
+        let deviation: Vec<f64> =
+            at.point(outside.point).iter().zip(&centre).map(|(x, c)| x - c).collect();
+        let point = SeparatedPoint {
+            suite: suite as usize,
+            run: run as usize,
             sample: at.sample,
             time: sweep.grids[at.grid].propagation.grid().times()[at.sample],
+            hull: &hull,
+            deviation: &deviation,
+            direction: &outside.direction,
+            ratio: outside.ratio,
+        };
+        Self::new(problem, &point)
+    }
+
+    /// Names a point outside in the words of the recordings.
+    pub(crate) fn new(problem: &Problem, point: &SeparatedPoint) -> Self {
+        let SeparatedPoint { hull, deviation, direction, .. } = point;
+        let parts: Vec<f64> =
+            hull.iter().zip(*direction).map(|(radius, l)| (radius * l).abs()).collect();
+        let leading = leading(&parts);
+        let unit = direction[leading].abs();
+        let direction: Vec<f64> = direction.iter().map(|l| l / unit).collect();
+        let value: f64 = deviation.iter().zip(&direction).map(|(d, l)| d * l).sum();
+        Self {
+            suite: problem.recordings().suites[point.suite].entry.name.clone(),
+            run: problem.entry(point.run).file.clone(),
+            sample: point.sample,
+            time: point.time,
             combination: combination(&direction, &parts, problem.joints()),
             direction,
             value,
-            reach: value / outside.ratio,
+            reach: value / point.ratio,
         }
     }
 

@@ -152,9 +152,6 @@ impl Problem {
     ) -> Result<Self> {
         let Setup { robot, settings, .. } = &setup;
         settings.validate(robot.joint_count())?;
-        if settings.notion != Notion::Hull && setup.dynamics.linear_system().is_none() {
-            return Err(Error::Notion);
-        }
         let kept = KeptRuns::default();
         let reader = SuiteReader {
             source: source.as_ref(),

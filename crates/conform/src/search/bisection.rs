@@ -51,7 +51,7 @@ pub(super) fn run(
     journal: &Journal,
     progress: &dyn Progress,
 ) -> Result<SearchResult> {
-    let linearised = search.round(&SearchState::start(search.problem.joints()))?.solution.sets;
+    let linearised = search.round(&mut SearchState::start(search.problem.joints()))?.solution.sets;
     let mut state = journal.load()?.unwrap_or_else(|| BisectionState::start(&linearised));
     while !state.enclosed && state.factor < FACTORS.len() {
         let factor = FACTORS[state.factor];
@@ -154,11 +154,11 @@ impl BisectionState {
     }
 
     fn result(self, search: &SuccessiveLinearisation) -> Result<SearchResult> {
-        let flowpipes = search.flowpipes(&self.sets, Effort::Whole)?;
+        let outer = search.outer_sets(&self.sets, &[])?;
         let states = search.problem.settings().states;
         let mut deciding = Vec::new();
-        for (index, (case, flowpipe)) in search.cases.iter().zip(&flowpipes).enumerate() {
-            rows(&case.measured, case.grid.times(), flowpipe, &self.sets, states, |row| {
+        for (index, (case, set)) in search.cases.iter().zip(&outer).enumerate() {
+            rows(&case.measured, case.grid.times(), &set.flowpipe, &self.sets, states, |row| {
                 let touches = |edge: &&Edge| edge.excess >= -TOLERANCE * row.radius;
                 let sides = row.edges.iter().filter(touches).map(|edge| edge.side);
                 deciding.extend(sides.map(|side| (index, row.sample, row.state, side)));
@@ -167,6 +167,6 @@ impl BisectionState {
         let reachable_sets = self.reachable_sets + 1;
         let summary =
             SearchSummary { rounds: 1, reachable_sets, linearised_cost: None, runs_away: None };
-        Ok(SearchResult { sets: self.sets, flowpipes, deciding, summary })
+        Ok(SearchResult { sets: self.sets, outer, directions: Vec::new(), deciding, summary })
     }
 }

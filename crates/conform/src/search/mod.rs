@@ -2,6 +2,7 @@
 //! baseline.
 
 mod bisection;
+mod directions;
 mod journal;
 pub(crate) mod sensitivity;
 pub(crate) mod smallest_sets;

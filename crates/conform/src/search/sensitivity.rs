@@ -1,13 +1,15 @@
 //! A model linearised along its nominal motion: how far X0 and U move each state, to first order.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, Outcome, Run};
 use reachtube_reach::Disturbance;
 use reachtube_scalar::Lanes;
 
 use crate::error::{Error, Result};
+use crate::notion::outer::Asked;
 use crate::problem::case::Case;
+use crate::search::directions::DirectionRow;
 use crate::sets::UncertaintySets;
 
 /// Bound of h |A| for a Runge-Kutta step of length h: its error is then below 1e-7 of the change.
@@ -32,6 +34,8 @@ pub(super) struct Sensitivity {
     pub coefficients: Vec<f64>,
     /// Where worst-case motions of the model itself are simulated.
     pub nodes: Vec<Node>,
+    /// The rows in the directions that were asked, in their order.
+    pub directions: Vec<DirectionRow>,
 }
 
 /// The signs of the sensitivities of each state at one sample.
@@ -50,7 +54,8 @@ pub(super) struct Node {
 pub(crate) const BOUND: f64 = 1e4;
 
 impl Sensitivity {
-    /// Linearises the model along `case` about the centres of `sets`.
+    /// Linearises the model along `case` about the centres of `sets`, also in the directions
+    /// `asked` after the first sample.
     ///
     /// # Errors
     ///
@@ -60,6 +65,7 @@ impl Sensitivity {
         case: &Case,
         sets: &UncertaintySets,
         disturbance: Disturbance,
+        asked: &[Asked],
     ) -> Result<Self, f64> {
         let n = case.joints();
         let times = case.grid.times();
@@ -73,7 +79,13 @@ impl Sensitivity {
         let nominal = simulate(model, times, substeps, &start, &inputs)?;
         let mut grown = Sensitivities::new(n, times.len(), disturbance);
         let stride = times.len().div_ceil(NODES).max(1);
-        let mut found = Self { nominal, substeps, coefficients: Vec::new(), nodes: Vec::new() };
+        let mut found = Self {
+            nominal,
+            substeps,
+            coefficients: Vec::new(),
+            nodes: Vec::new(),
+            directions: vec![DirectionRow::default(); asked.len()],
+        };
         grown.write_into(&mut found.coefficients);
         for k in 1..times.len() {
             let (before, after) = found.nominal[(k - 1) * 2 * n..(k + 1) * 2 * n].split_at(2 * n);
@@ -81,6 +93,11 @@ impl Sensitivity {
             let (a, b) = linearisation.at(&middle, &inputs[(k - 1) * n..k * n]);
             grown.advance(a, b, times[k] - times[k - 1]);
             grown.write_into(&mut found.coefficients);
+            for (row, asked) in found.directions.iter_mut().zip(asked) {
+                if asked.sample == k {
+                    *row = grown.along(asked.direction);
+                }
+            }
             if k % stride == 0 || k + 1 == times.len() {
                 found.nodes.push(grown.node(k));
             }
@@ -203,6 +220,23 @@ impl Sensitivities {
             coefficients.extend(self.start.row(i).iter().map(|x| x.abs()));
             coefficients.extend(total.row(i).iter());
         }
+    }
+
+    /// The row in direction l.
+    fn along(&self, l: &[f64]) -> DirectionRow {
+        let l = DVector::from_column_slice(l);
+        let start = self.start.tr_mul(&l);
+        let inputs = self.inputs.columns(0, self.joints * self.samples).tr_mul(&l);
+        let (mut sum, mut total) = (vec![0.0; self.joints], vec![0.0; self.joints]);
+        for (at, x) in inputs.iter().enumerate() {
+            sum[at % self.joints] += x;
+            total[at % self.joints] += x.abs();
+        }
+        if self.disturbance == Disturbance::Constant {
+            total = sum.iter().map(|x| x.abs()).collect();
+        }
+        let radius = start.iter().map(|x| x.abs()).chain(total).collect();
+        DirectionRow { centre: start.iter().copied().chain(sum).collect(), radius }
     }
 
     fn node(&self, sample: usize) -> Node {

@@ -1,21 +1,24 @@
+use std::collections::HashSet;
 use std::path::Path;
 
-use reachtube_reach::Flowpipe;
-
 use crate::envelope::Envelope;
-use crate::error::Result;
-use crate::found::{Deciding, Found};
+use crate::error::{Error, Result};
+use crate::flowpipes::OuterSet;
+use crate::found::{Deciding, Found, TOUCHING};
 use crate::hulls::{HullKind, Hulls};
 use crate::linear::costs::shares;
+use crate::notion::verdict::{PointWitness, SeparatedPoint};
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::bisection;
+use crate::search::directions::Direction;
 use crate::search::journal::Journal;
 use crate::search::sensitivity::nominal;
 use crate::search::successive::{SearchResult, SuccessiveLinearisation};
 use crate::sets::UncertaintySets;
-use crate::settings::{Method, Weights};
+use crate::settings::{Method, Notion, Weights};
+use crate::verdict::Witness;
 use crate::weights::state_weights;
 
 /// Finds the smallest sets of a model that is not linear by the method of the settings. What is
@@ -34,22 +37,65 @@ pub(crate) fn smallest_sets(
     let weights = case_weights(problem, cases)?;
     let journal = Journal::new(resume, problem);
     let search = SuccessiveLinearisation { problem, cases, weights };
-    let SearchResult { sets, flowpipes, deciding, summary } = match problem.settings().method {
+    let settings = problem.settings();
+    let SearchResult { sets, outer, directions, deciding, summary } = match settings.method {
         Method::Program => search.run(&journal, progress)?,
+        Method::Bisection if settings.notion != Notion::Hull => return Err(Error::Notion),
         Method::Bisection => bisection::run(&search, &journal, progress)?,
     };
-    let (cost, hull_volume) = sums(cases, &flowpipes, &sets, &search.weights);
+    let points = touching(problem, &directions, &outer, &sets)?;
+    let (cost, hull_volume) = sums(cases, &outer, &sets, &search.weights);
     journal.remove();
     Ok(Found {
-        hulls: Hulls { sets, kind: HullKind::Outer(flowpipes) },
+        hulls: Hulls { sets, kind: HullKind::Outer(outer) },
         cost,
         lower_bound: None,
         optimality_gap: None,
         paper_cost: None,
         hull_volume,
         search: Some(summary),
-        deciding: Deciding::Rows(deciding.into_iter().collect()),
+        deciding: Deciding::Rows(deciding.into_iter().collect(), points),
     })
+}
+
+/// Returns the points that touch the linearised set in directions other than those of the states,
+/// the closest first, each once.
+fn touching(
+    problem: &Problem,
+    directions: &[(Direction, f64)],
+    outer: &[OuterSet],
+    sets: &UncertaintySets,
+) -> Result<Vec<Witness>> {
+    let cases = problem.cases()?;
+    let mut touching: Vec<&(Direction, f64)> =
+        directions.iter().filter(|(_, ratio)| *ratio >= 1.0 - TOUCHING).collect();
+    touching.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut seen = HashSet::new();
+    touching.retain(|(at, _)| seen.insert((at.case, at.sample, at.run)));
+    let witness = |(at, ratio): &(Direction, f64)| {
+        let (case, set) = (&cases[at.case], &outer[at.case]);
+        let hull = set.hull_radii(at.sample, sets);
+        let recorded = problem.run(at.run)?;
+        let centres = set.flowpipe.sample(at.sample).iter().map(|side| side.mid());
+        let deviation: Vec<f64> =
+            recorded.state(at.sample).iter().zip(centres).map(|(x, c)| x - c).collect();
+        let point = SeparatedPoint {
+            suite: case.suite,
+            run: at.run,
+            sample: at.sample,
+            time: case.grid.times()[at.sample],
+            hull: &hull,
+            deviation: &deviation,
+            direction: &at.direction,
+            ratio: *ratio,
+        };
+        Ok(PointWitness::new(problem, &point).into_witness())
+    };
+    touching
+        .into_iter()
+        .filter(|(at, _)| at.sample < outer[at.case].flowpipe.len())
+        .map(witness)
+        .collect()
 }
 
 /// Returns the weights of the states, s, by the deviations from the nominal motions.
@@ -78,8 +124,8 @@ pub(crate) fn costs(problem: &Problem, hulls: &Hulls) -> Result<(f64, f64)> {
     let cases = problem.cases()?;
     match &hulls.kind {
         HullKind::Linear(_) => Ok((0.0, 0.0)),
-        HullKind::Outer(flowpipes) => {
-            Ok(sums(cases, flowpipes, &hulls.sets, &case_weights(problem, cases)?))
+        HullKind::Outer(outer) => {
+            Ok(sums(cases, outer, &hulls.sets, &case_weights(problem, cases)?))
         }
     }
 }
@@ -87,16 +133,11 @@ pub(crate) fn costs(problem: &Problem, hulls: &Hulls) -> Result<(f64, f64)> {
 /// Returns Σ_k Σ_i s_i width_i(t_k) of the reachable sets with the noise set, where cases at one
 /// time count by their mean, and Σ_k Δt Π_i width_i(t_k), eq. (2) of the paper. Both are infinite
 /// where a set was lost.
-fn sums(
-    cases: &[Case],
-    flowpipes: &[Flowpipe],
-    sets: &UncertaintySets,
-    weights: &[f64],
-) -> (f64, f64) {
+fn sums(cases: &[Case], outer: &[OuterSet], sets: &UncertaintySets, weights: &[f64]) -> (f64, f64) {
     let shares = shares(cases.iter().map(|case| case.grid.times()));
     let (mut cost, mut volume) = (0.0, 0.0);
-    for ((case, flowpipe), shares) in cases.iter().zip(flowpipes).zip(&shares) {
-        let times = case.grid.times();
+    for ((case, set), shares) in cases.iter().zip(outer).zip(&shares) {
+        let (times, flowpipe) = (case.grid.times(), &set.flowpipe);
         for (k, share) in shares.iter().enumerate() {
             if k >= flowpipe.len() {
                 return (f64::INFINITY, f64::INFINITY);

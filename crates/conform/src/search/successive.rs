@@ -11,18 +11,20 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
-use reachtube_reach::{Flowpipe, Hyperrectangle};
+use reachtube_reach::Hyperrectangle;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
-use crate::flowpipes::{Effort, flowpipe};
+use crate::flowpipes::OuterSet;
 use crate::found::SearchSummary;
 use crate::linear::block::Block;
+use crate::linear::cut::Cut;
 use crate::linear::program::{Program, RowIndex, Solution};
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::rows::rows;
+use crate::search::directions::{self, Direction};
 use crate::search::journal::Journal;
 use crate::search::sensitivity::{Sensitivity, runs_away};
 use crate::search::worst_case::Correction;
@@ -32,6 +34,9 @@ use crate::side::Side;
 /// Rounds of linearisation after which the sets are taken as they are; with margins at most twice
 /// as many.
 const ROUNDS: usize = 20;
+
+/// Rounds at most where recorded points must lie in the set itself.
+const ROUNDS_OF_POINTS: usize = 100;
 
 /// Part of the largest radius or centre below which a change counts as settled.
 const SETTLED: f64 = 1e-5;
@@ -57,7 +62,10 @@ pub(super) struct SuccessiveLinearisation<'a> {
 /// The sets that a search found.
 pub(super) struct SearchResult {
     pub sets: UncertaintySets,
-    pub flowpipes: Vec<Flowpipe>,
+    pub outer: Vec<OuterSet>,
+    /// The directions, other than those of the states, in which recorded points decide the sets,
+    /// and how close the points are to what the linearised set reaches.
+    pub directions: Vec<(Direction, f64)>,
     /// The rows that decide the sets: case, sample, state, side.
     pub deciding: Vec<RowIndex>,
     pub summary: SearchSummary,
@@ -82,6 +90,9 @@ pub(super) struct SearchState {
     pub sets: UncertaintySets,
     /// The rows that must be reached with a margin, because they were not enclosed.
     pub margins: Vec<Margin>,
+    /// The directions in which points were outside the computed sets.
+    #[serde(default)]
+    pub directions: Vec<Direction>,
 }
 
 /// A row that must be reached with a margin.
@@ -119,6 +130,7 @@ impl SearchState {
             freedom: f64::MAX,
             sets,
             margins: Vec::new(),
+            directions: Vec::new(),
         }
     }
 
@@ -182,7 +194,7 @@ impl SuccessiveLinearisation<'_> {
             journal.load()?.unwrap_or_else(|| SearchState::start(self.problem.joints()));
         loop {
             // Linearise, solve, and take the answer.
-            let round = self.round(&state)?;
+            let round = self.round(&mut state)?;
             let is_settled = state.take(&round);
             journal.save(&state)?;
             let SearchState { rounds, cost, change, .. } = &state;
@@ -193,38 +205,62 @@ impl SuccessiveLinearisation<'_> {
             if !is_settled && state.rounds < ROUNDS {
                 continue;
             }
-            // Enclose the reachable sets, and ask for the rows outside with a margin.
+            // Enclose the reachable sets, and ask for what is outside with a margin.
             state.reachable_sets += 1;
-            let flowpipes = self.flowpipes(&state.sets, Effort::Whole)?;
-            let missing = self.missing(&flowpipes, &state.sets);
+            let outer = self.outer_sets(&state.sets, &state.directions)?;
+            let missing = self.missing(&outer, &state.sets);
             let is_lost = missing.iter().any(|margin| margin.margin.is_infinite());
-            if missing.is_empty() || is_lost || state.rounds >= 2 * ROUNDS {
-                return Ok(self.result(&state, round, flowpipes));
+            let rounds = if state.directions.is_empty() { 2 * ROUNDS } else { ROUNDS_OF_POINTS };
+            if is_lost || state.rounds >= rounds {
+                return Ok(self.result(&state, round, outer));
             }
-            progress.finished(&format!(
-                "{} bounds are not enclosed; the next round asks for them with a margin",
-                missing.len()
-            ));
+            let known = state.directions.len();
+            let has_new_directions = directions::take(&mut state.directions, &outer);
+            if missing.is_empty() && !has_new_directions {
+                return Ok(self.result(&state, round, outer));
+            }
+            if !missing.is_empty() {
+                progress.finished(&format!(
+                    "{} bounds are not enclosed; the next round asks for them with a margin",
+                    missing.len()
+                ));
+            }
+            if has_new_directions {
+                let points: usize = outer.iter().map(|set| set.points.unproved.len()).sum();
+                progress.finished(&format!(
+                    "{points} recorded points are not proved to lie in the set; the next round \
+                     asks for them in {} directions more",
+                    state.directions.len() - known
+                ));
+            }
             state.add(missing);
             journal.save(&state)?;
         }
     }
 
-    /// Computes the flowpipe of each case under `sets`, on all cores.
+    /// Computes the outer set of each case under `sets`, on all cores, and how far they reach in
+    /// some directions.
     ///
     /// # Guarantee
     ///
-    /// As [`flowpipe`].
+    /// As [`OuterSet::new`].
     ///
     /// # Errors
     ///
-    /// As [`flowpipe`].
-    pub fn flowpipes(&self, sets: &UncertaintySets, effort: Effort) -> Result<Vec<Flowpipe>> {
-        let system = self.problem.dynamics().polynomial_system()?;
-        self.cases.par_iter().map(|case| flowpipe(system, case, sets, effort)).collect()
+    /// As [`OuterSet::new`].
+    pub fn outer_sets(
+        &self,
+        sets: &UncertaintySets,
+        directions: &[Direction],
+    ) -> Result<Vec<OuterSet>> {
+        let of = |(index, case): (usize, &Case)| {
+            let (_, asked) = directions::of_case(directions, index);
+            OuterSet::new(self.problem, case, sets, &asked)
+        };
+        self.cases.par_iter().enumerate().map(of).collect()
     }
 
-    fn result(&self, state: &SearchState, round: Round, flowpipes: Vec<Flowpipe>) -> SearchResult {
+    fn result(&self, state: &SearchState, round: Round, outer: Vec<OuterSet>) -> SearchResult {
         let sets = state.sets.clone();
         let summary = SearchSummary {
             rounds: state.rounds,
@@ -232,7 +268,18 @@ impl SuccessiveLinearisation<'_> {
             linearised_cost: Some(round.program.cost(&sets)),
             runs_away: round.runs_away.map(|(case, time)| (self.cases[case].name.clone(), time)),
         };
-        SearchResult { deciding: round.program.tight(&sets), sets, flowpipes, summary }
+        let ratio = |cut: &Cut| {
+            let (from_centre, reach) = round.program.reach(cut, &sets);
+            from_centre / reach
+        };
+        let ratios = round.program.cuts.iter().map(ratio);
+        SearchResult {
+            deciding: round.program.tight(&sets),
+            directions: state.directions.iter().cloned().zip(ratios).collect(),
+            sets,
+            outer,
+            summary,
+        }
     }
 
     /// Linearises the model along every case, and solves the program.
@@ -240,13 +287,20 @@ impl SuccessiveLinearisation<'_> {
     /// # Errors
     ///
     /// As [`run`](Self::run).
-    pub fn round(&self, state: &SearchState) -> Result<Round<'_>> {
+    pub fn round(&self, state: &mut SearchState) -> Result<Round<'_>> {
         let sets = &state.sets;
-        let sensitivities = self.sensitivities(sets)?;
+        let sensitivities = self.sensitivities(sets, &state.directions)?;
         let corrections = self.corrections(state, &sensitivities);
         let ran_away = corrections.iter().enumerate();
         let runs_away =
             ran_away.filter_map(|(case, c)| c.runs_away.map(|time| (case, time))).next();
+        let mut cuts = Vec::with_capacity(state.directions.len());
+        let mut used = vec![0; self.cases.len()];
+        for direction in &mut state.directions {
+            let (sensitivity, at) = (&sensitivities[direction.case], &mut used[direction.case]);
+            cuts.push(direction.cut(&sensitivity.directions[*at], sensitivity, sets));
+            *at += 1;
+        }
         let parts = self.cases.iter().zip(sensitivities).zip(&corrections);
         let mut blocks: Vec<Block> = parts
             .map(|((case, sensitivity), correction)| block(case, sensitivity, correction, sets))
@@ -255,20 +309,27 @@ impl SuccessiveLinearisation<'_> {
             let envelope = &mut blocks[margin.case].envelope;
             envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
         }
-        let program = Program::new(self.problem.settings(), &self.weights, blocks)
+        let mut program = Program::new(self.problem.settings(), &self.weights, blocks)
             .with_centre_bounds(state.centre_bounds())
             .with_limits(self.problem.limits());
+        program.cuts = cuts;
         let solution = program.solve()?;
         Ok(Round { program, solution, runs_away })
     }
 
-    fn sensitivities(&self, sets: &UncertaintySets) -> Result<Vec<Sensitivity>> {
+    fn sensitivities(
+        &self,
+        sets: &UncertaintySets,
+        directions: &[Direction],
+    ) -> Result<Vec<Sensitivity>> {
         let (model, disturbance) =
             (self.problem.dynamics().polynomials(), self.problem.settings().disturbance);
-        let of = |case: &Case| {
-            Sensitivity::new(model, case, sets, disturbance).map_err(|time| runs_away(case, time))
+        let of = |(index, case): (usize, &Case)| {
+            let (_, asked) = directions::of_case(directions, index);
+            Sensitivity::new(model, case, sets, disturbance, &asked)
+                .map_err(|time| runs_away(case, time))
         };
-        self.cases.par_iter().map(of).collect()
+        self.cases.par_iter().enumerate().map(of).collect()
     }
 
     /// Corrects the linearisation by worst-case motions; not in the first round, which has no sets
@@ -283,10 +344,10 @@ impl SuccessiveLinearisation<'_> {
     }
 
     /// Returns the rows outside the reachable sets, each with what it misses and a little more.
-    fn missing(&self, flowpipes: &[Flowpipe], sets: &UncertaintySets) -> Vec<Margin> {
+    fn missing(&self, outer: &[OuterSet], sets: &UncertaintySets) -> Vec<Margin> {
         let (mut missing, states) = (Vec::new(), self.problem.settings().states);
-        for (index, (case, flowpipe)) in self.cases.iter().zip(flowpipes).enumerate() {
-            rows(&case.measured, case.grid.times(), flowpipe, sets, states, |row| {
+        for (index, (case, set)) in self.cases.iter().zip(outer).enumerate() {
+            rows(&case.measured, case.grid.times(), &set.flowpipe, sets, states, |row| {
                 for edge in row.edges.iter().filter(|edge| edge.excess > 0.0) {
                     missing.push(Margin {
                         case: index,

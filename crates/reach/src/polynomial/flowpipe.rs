@@ -13,6 +13,9 @@ use crate::polynomial::uncertain_input::UncertainInput;
 use crate::sets::hyperrectangle::Hyperrectangle;
 use crate::sets::zonotope::Zonotope;
 
+/// Takes the zonotope at a sample, given by its index.
+pub type Visit<'a> = &'a (dyn Fn(usize, Zonotope) + Sync);
+
 /// The outcome of a flowpipe. A flowpipe that stops early is a result, not an error.
 #[must_use]
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +66,6 @@ pub struct Flowpipe {
     dimension: usize,
     samples: Vec<Interval>,
     steps: Vec<Interval>,
-    zonotopes: Vec<(usize, Zonotope)>,
     generators: usize,
     outcome: FlowpipeOutcome,
 }
@@ -75,10 +77,9 @@ impl Flowpipe {
     ///
     /// Outer, directed rounding: the boxes contain every solution from an initial state in the set,
     /// under an input with values in u_m + U, at the samples and at all times of the steps, up to
-    /// the time of the outcome. The zonotopes contain them too, except for the rounding of the
-    /// lengths of their last generators. Products with generators are floating-point products; a
-    /// generator of its own covers the rounding of each step, bounded by γ_n |Φ| times the radius
-    /// of the hull (Rump).
+    /// the time of the outcome. Products with generators are floating-point products; a generator
+    /// of its own covers the rounding of each step, bounded by γ_n |Φ| times the radius of the hull
+    /// (Rump).
     ///
     /// # Errors
     ///
@@ -97,13 +98,36 @@ impl Flowpipe {
         input: &UncertainInput<'_>,
         settings: &FlowpipeSettings,
     ) -> Result<Self, ReachError> {
+        Self::visiting(system, grid, start, initial_set, input, settings, None)
+    }
+
+    /// Computes the flowpipe as [`new`](Self::new) does, and hands the zonotope at each sample k to
+    /// `visit`, once for each piece of the initial set. They are not kept: those of a long motion
+    /// take gigabytes.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`new`](Self::new); the zonotopes of all pieces together contain the solutions too.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn visiting(
+        system: &PolynomialSystem,
+        grid: &TimeGrid,
+        start: &[f64],
+        initial_set: &Hyperrectangle,
+        input: &UncertainInput<'_>,
+        settings: &FlowpipeSettings,
+        visit: Option<Visit<'_>>,
+    ) -> Result<Self, ReachError> {
         check(system, grid, start, initial_set, input, settings)?;
         // Propagate each piece of the initial set in parallel and take the hull of all flowpipes.
         let sides: Vec<Interval> =
             (0..system.states()).map(|i| side(start, initial_set, i)).collect();
         let of_piece = |piece: Vec<Interval>| {
             let mut propagator = propagator(system, &piece, settings)?;
-            Ok(Self::propagate(propagator.as_mut(), system, grid, input, settings))
+            Ok(Self::propagate(propagator.as_mut(), system, grid, input, visit))
         };
         let pieces = pieces(&sides, &settings.pieces).into_par_iter().map(of_piece);
         let whole = pieces.reduce_with(|left, right| Ok(left?.hull(right?)));
@@ -116,11 +140,11 @@ impl Flowpipe {
         system: &PolynomialSystem,
         grid: &TimeGrid,
         input: &UncertainInput<'_>,
-        settings: &FlowpipeSettings,
+        visit: Option<Visit<'_>>,
     ) -> Self {
         // Initial set.
         let mut flowpipe = Self::empty(system.states(), grid.len());
-        flowpipe.record_sample(propagator, settings);
+        flowpipe.record_sample(propagator, visit);
         let mut u = vec![Interval::ZERO; system.inputs()];
         for k in 1..grid.len() {
             // One step under all inputs of the step; stop where no enclosure is verified.
@@ -133,7 +157,7 @@ impl Flowpipe {
             }
             // Tube over the step, then the set at its end.
             propagator.tube(&mut flowpipe.steps);
-            flowpipe.record_sample(propagator, settings);
+            flowpipe.record_sample(propagator, visit);
         }
         flowpipe
     }
@@ -148,7 +172,6 @@ impl Flowpipe {
             .zip(&other.samples)
             .for_each(|(own, other)| *own = own.hull(*other));
         self.steps.iter_mut().zip(&other.steps).for_each(|(own, other)| *own = own.hull(*other));
-        self.zonotopes.extend(other.zonotopes);
         self.generators = self.generators.max(other.generators);
         self
     }
@@ -158,15 +181,14 @@ impl Flowpipe {
             dimension: n,
             samples: Vec::with_capacity(n * samples),
             steps: Vec::with_capacity(n * samples),
-            zonotopes: Vec::new(),
             generators: 0,
             outcome: FlowpipeOutcome::Reached,
         }
     }
 
-    fn record_sample(&mut self, propagator: &dyn SetPropagator, settings: &FlowpipeSettings) {
-        if settings.zonotopes.contains(&self.len()) {
-            self.zonotopes.push((self.len(), propagator.zonotope()));
+    fn record_sample(&mut self, propagator: &dyn SetPropagator, visit: Option<Visit<'_>>) {
+        if let Some(visit) = visit {
+            visit(self.len(), propagator.zonotope());
         }
         propagator.hull(&mut self.samples);
         self.generators = propagator.generators();
@@ -190,12 +212,6 @@ impl Flowpipe {
     /// Returns the hull of all states over the step from sample k to k + 1, N intervals.
     pub fn step(&self, k: usize) -> &[Interval] {
         &self.steps[k * self.dimension..(k + 1) * self.dimension]
-    }
-
-    /// Iterates over the zonotopes at sample k, one per piece of the initial set; none unless
-    /// [`FlowpipeSettings::zonotopes`] contains k.
-    pub fn zonotopes(&self, k: usize) -> impl Iterator<Item = &Zonotope> {
-        self.zonotopes.iter().filter(move |(sample, _)| *sample == k).map(|(_, zonotope)| zonotope)
     }
 
     /// Returns the largest number of stored generators at the last sample over all pieces.

@@ -11,7 +11,7 @@ pub(crate) mod system;
 pub(crate) mod taylor;
 pub(crate) mod uncertain_input;
 
-pub use flowpipe::{Flowpipe, FlowpipeOutcome};
+pub use flowpipe::{Flowpipe, FlowpipeOutcome, Visit};
 pub use settings::{FlowpipeMethod, FlowpipeSettings};
 pub use system::PolynomialSystem;
 pub use uncertain_input::UncertainInput;

@@ -41,8 +41,6 @@ pub struct FlowpipeSettings {
     ///
     /// Each piece is propagated separately, and the flowpipe is the hull of all.
     pub pieces: Vec<usize>,
-    /// Indices of the samples at which the zonotopes are stored, one per piece.
-    pub zonotopes: Vec<usize>,
 }
 
 impl Default for FlowpipeSettings {
@@ -52,7 +50,6 @@ impl Default for FlowpipeSettings {
             vertex_variables: 8,
             order: None,
             pieces: Vec::new(),
-            zonotopes: Vec::new(),
         }
     }
 }

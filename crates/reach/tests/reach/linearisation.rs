@@ -10,7 +10,7 @@ use reachtube_scalar::Interval;
 
 use crate::arm::arm;
 use crate::lwa4p;
-use crate::simulated_case::{Case, contain_ten_thousand, map, set};
+use crate::simulated_case::{Case, contain_ten_thousand, map, set, with_zonotopes};
 use crate::systems::{self, Polynomial, cubic_arm, laub_loomis, linear, van_der_pol, variables};
 
 #[test]
@@ -97,11 +97,10 @@ fn behaviours_of_the_cubic_arm_stay_inside() {
     let start = set(&[0.0; 12], &[0.01; 12]);
     let input = set(&[2.0, -2.0, 1.0, 0.5, 0.3, -0.2], &[0.5, 0.4, 0.3, 0.1, 0.05, 0.05]);
     let uncertain = UncertainInput { measured: &vec![0.0; 250 * m], set: &input };
-    let settings = FlowpipeSettings { zonotopes: vec![250], ..FlowpipeSettings::default() };
-    let flowpipe =
-        Flowpipe::new(&cubic_arm(1.0), &grid, &[0.0; 12], &start, &uncertain, &settings).unwrap();
+    let (flowpipe, zonotopes) =
+        with_zonotopes(&cubic_arm(1.0), &grid, &start, &uncertain, &FlowpipeSettings::default());
     assert!(flowpipe.is_reached());
-    let zonotope = flowpipe.zonotopes(250).next().unwrap();
+    let zonotope = &zonotopes[250];
     let polygon = zonotope.polygon(0, 6);
     for (at, i) in [(0, 0), (1, 6)] {
         let side = flowpipe.sample(250)[i];

@@ -1,10 +1,12 @@
 //! Sets, a grid and a flowpipe, with simulated behaviours that must stay inside.
 
+use std::sync::Mutex;
+
 use rayon::prelude::*;
 use reachtube_ode::{Ensemble, Run, VectorField};
 use reachtube_reach::{
     Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid,
-    UncertainInput,
+    UncertainInput, Zonotope,
 };
 use reachtube_scalar::{Interval, Lanes, Lanewise, MapWorkspace, PolynomialMap, Powers};
 
@@ -164,7 +166,6 @@ pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
         vertex_variables: seed as usize / 6 % 4 * 3,
         order: [None, Some(8)][seed as usize % 2],
         pieces: if seed.is_multiple_of(3) { vec![2; n] } else { vec![] },
-        zonotopes: vec![],
     };
     let uncertain = UncertainInput { measured: &vec![0.0; 12 * m], set: &input };
     let grid = TimeGrid::uniform(step, 13);
@@ -201,4 +202,24 @@ pub fn contain_ten_thousand(
     let case = Case { map, angles: 0, flowpipe, start, input: none, step, parts: 1, substeps: 1 };
     (0..10_u64).into_par_iter().for_each(|seed| assert!(case.simulate(1000, seed + 1) > 0.02));
     case.flowpipe
+}
+
+/// Computes a flowpipe from 0 + `start`, and its zonotopes at all samples.
+pub fn with_zonotopes(
+    system: &PolynomialSystem,
+    grid: &TimeGrid,
+    start: &Hyperrectangle,
+    input: &UncertainInput,
+    settings: &FlowpipeSettings,
+) -> (Flowpipe, Vec<Zonotope>) {
+    let zonotopes = Mutex::new(Vec::new());
+    let visit = |sample: usize, zonotope: Zonotope| {
+        let mut zonotopes = zonotopes.lock().unwrap();
+        assert_eq!(sample, zonotopes.len());
+        zonotopes.push(zonotope);
+    };
+    let rest = vec![0.0; start.dimension()];
+    let flowpipe =
+        Flowpipe::visiting(system, grid, &rest, start, input, settings, Some(&visit)).unwrap();
+    (flowpipe, zonotopes.into_inner().unwrap())
 }

@@ -8,7 +8,7 @@ use reachtube_reach::{
 use reachtube_scalar::Interval;
 
 use crate::arm::arm;
-use crate::simulated_case::{contain_ten_thousand, random_case, set};
+use crate::simulated_case::{contain_ten_thousand, random_case, set, with_zonotopes};
 use crate::systems::{self, laub_loomis, linear, van_der_pol, variables};
 
 fn of_order(order: u32) -> FlowpipeSettings {
@@ -128,9 +128,11 @@ fn a_linear_system_without_uncertain_input_has_its_exact_hull() {
 #[test]
 fn zonotopes_contain_the_hull_and_are_not_much_larger() {
     let start = set(&[1.4, 2.4], &[0.015, 0.005]);
-    let settings = FlowpipeSettings { zonotopes: vec![100], ..of_order(4) };
-    let flowpipe = propagate(&van_der_pol(), &TimeGrid::uniform(0.01, 101), &start, &settings);
-    let polygon = flowpipe.zonotopes(100).next().unwrap().polygon(0, 1);
+    let (grid, none) = (TimeGrid::uniform(0.01, 101), set(&[], &[]));
+    let no_input = UncertainInput { measured: &[], set: &none };
+    let (flowpipe, zonotopes) =
+        with_zonotopes(&van_der_pol(), &grid, &start, &no_input, &of_order(4));
+    let polygon = zonotopes[100].polygon(0, 1);
     for (at, side) in flowpipe.sample(100).iter().enumerate() {
         let ends = polygon
             .iter()

@@ -1,5 +1,7 @@
 //! The reachable set at one sample, stored so that the next step can update it.
 
+use reachtube_scalar::rounding::{add_up, mul_up};
+
 use crate::sets::generators::Generators;
 use crate::sets::square_matrix::SquareMatrix;
 use crate::sets::zonotope::Zonotope;
@@ -116,24 +118,35 @@ impl ReachableZonotope {
     }
 
     /// Returns a copy as a plain zonotope.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer: it contains this set. The rounding of the products of lengths and vectors goes along
+    /// the axes.
     pub fn zonotope(&self, directions: &[&[f64]]) -> Zonotope {
         let n = self.centre.len();
         let mut generators: Vec<f64> =
             (0..self.generators.len()).flat_map(|i| self.generators.get(i)).collect();
-        let mut push = |column: &[f64], length: f64| {
-            if length > 0.0 {
-                generators.extend(column.iter().map(|x| x * length));
-            }
-        };
-        directions
-            .iter()
-            .zip(&self.direction_lengths)
-            .for_each(|(direction, length)| push(direction, *length));
+        let along = directions.iter().copied().zip(&self.direction_lengths);
         let columns = self.columns.chunks_exact(n.max(1)).zip(&self.column_lengths);
-        columns.for_each(|(column, length)| push(column, *length));
-        for (i, length) in self.axis_lengths.iter().enumerate() {
-            let axis: Vec<f64> = (0..n).map(|row| f64::from(row == i)).collect();
-            push(&axis, *length);
+        let recent: Vec<(&[f64], &f64)> =
+            along.chain(columns).filter(|(_, length)| **length > 0.0).collect();
+        let mut sizes = vec![0.0; n];
+        for (vector, length) in &recent {
+            let image = vector.iter().map(|x| x * *length);
+            sizes.iter_mut().zip(image.clone()).for_each(|(size, x)| *size += x.abs());
+            generators.extend(image);
+        }
+        for (i, (length, size)) in self.axis_lengths.iter().zip(&sizes).enumerate() {
+            let rounding = if *size > 0.0 {
+                mul_up(f64::EPSILON, round_up_sum(*size, recent.len()))
+            } else {
+                0.0
+            };
+            let length = add_up(*length, rounding);
+            if length > 0.0 {
+                generators.extend((0..n).map(|row| if row == i { length } else { 0.0 }));
+            }
         }
         Zonotope::new(self.centre.clone(), generators)
     }

@@ -36,6 +36,24 @@ impl GeneratorRows {
         Self { count, entries: vec![0.0; dimension * count], errors: vec![0.0; dimension] }
     }
 
+    /// Takes the entries `states` of the generators of a zonotope, and adds to it a box with the
+    /// radii `noise`, one for each of these entries. Exact.
+    #[must_use]
+    pub fn of_zonotope(zonotope: &Zonotope, states: &[usize], noise: &[f64]) -> Self {
+        let given = zonotope.generators().len();
+        let sides: Vec<usize> = (0..noise.len()).filter(|i| noise[*i] > 0.0).collect();
+        let mut rows = Self::new(states.len(), given + sides.len());
+        for (j, generator) in zonotope.generators().enumerate() {
+            for (i, &state) in states.iter().enumerate() {
+                rows.entries[i * rows.count + j] = generator[state];
+            }
+        }
+        for (j, &i) in sides.iter().enumerate() {
+            rows.entries[i * rows.count + given + j] = noise[i];
+        }
+        rows
+    }
+
     /// Returns the number of entries of a generator.
     #[must_use]
     pub fn dimension(&self) -> usize {
