@@ -11,6 +11,7 @@ pub const NOTIONS: Choices = &[
     ("hull", "each state by itself: in the interval hull of the set"),
     ("phase-plane", "position and velocity of each joint together: in the set's projections"),
     ("exact", "all states together: in the set itself"),
+    ("trace", "exact, and one motion of the model through all samples, up to the noise V"),
 ];
 
 /// The models of the paper (Sec. IV-B), as `--model` names them.

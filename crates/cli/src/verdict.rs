@@ -1,6 +1,7 @@
 //! Sentences that several commands print about a model.
 
-use reachtube::conform::{Lost, Notion};
+use reachtube::conform::{Lost, Notion, TraceVerdict};
+use reachtube::number::at_least;
 
 /// Reports where a reachable set ended before its suite.
 pub fn lost(lost: &Lost) -> String {
@@ -16,6 +17,26 @@ pub fn notion_words(notion: Notion) -> &'static str {
     match notion {
         Notion::Hull => "each state by itself",
         Notion::PhasePlane => "position and velocity of each joint together",
-        Notion::Exact => "all states together",
+        Notion::Exact | Notion::Trace => "all states together",
     }
+}
+
+/// Says how many recordings are motions of the model, and what U lacks for the others.
+pub fn traces(traces: &TraceVerdict, runs: usize) -> String {
+    let mut text = format!(
+        "{} of {runs} recordings proved to be one motion of the model each, within V",
+        runs - traces.unproved
+    );
+    if let Some(worst) = &traces.worst {
+        text += &match traces.factor {
+            Some(factor) => {
+                format!("; U must be {} times as large for all, as {worst} needs", at_least(factor))
+            }
+            None => format!(
+                "; no U up to 1024 times as large suffices for {worst}: check whether its positions \
+                 and velocities agree, or give a larger V (--noise)"
+            ),
+        };
+    }
+    text
 }

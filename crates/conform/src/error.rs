@@ -77,6 +77,9 @@ pub enum Error {
          --notion hull"
     )]
     Notion,
+    /// The notion trace was asked of a problem that it is not for.
+    #[error("the notion trace {0}")]
+    Trace(&'static str),
     /// A certificate was asked of hulls.
     #[error(
         "a certificate is about points in the reachable set; ask for them by --notion exact or \

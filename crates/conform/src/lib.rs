@@ -48,6 +48,7 @@ pub use deviation::{Deviation, Nominal};
 pub use dynamics::Dynamics;
 pub use envelope::Envelope;
 pub use error::{Error, Result};
+pub use explain::trace::TraceVerdict;
 pub use explain::{Explanation, explain};
 pub use fitting::{
     FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, MOST_ERRORS, PullCost,

@@ -56,8 +56,7 @@ impl States {
     }
 }
 
-/// In which directions recordings must lie in the reachable set of a linear model (docs/method.md,
-/// correction C).
+/// In which directions recordings must lie in the reachable set (docs/method.md, correction C).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Notion {
@@ -68,6 +67,9 @@ pub enum Notion {
     PhasePlane,
     /// All states together: in the set itself.
     Exact,
+    /// All states together, and one motion of a linear model passes through all samples of a
+    /// recording, up to the noise set V.
+    Trace,
 }
 
 /// Where the nominal solution of a run starts.

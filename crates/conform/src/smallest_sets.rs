@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use crate::error::Result;
+use crate::explain::trace;
 use crate::found::Found;
 use crate::linear::smallest_sets as linear;
 use crate::notion::smallest_sets as notion;
@@ -21,6 +22,9 @@ pub(crate) fn smallest_sets(
 ) -> Result<Found> {
     match problem.dynamics().linear_system() {
         Some(_) if problem.settings().notion == Notion::Hull => linear::smallest_sets(problem),
+        Some(_) if problem.settings().notion == Notion::Trace => {
+            trace::smallest_sets(problem, progress)
+        }
         Some(_) => notion::smallest_sets(problem, progress),
         None => search::smallest_sets(problem, progress, resume),
     }

@@ -4,6 +4,7 @@ use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
+use crate::explain::trace::{TraceVerdict, trace_factors};
 use crate::hulls::{Enclosure, Hulls, Lost};
 use crate::notion::verdict::{Judged, PointVerdict, judge};
 use crate::problem::problem::Problem;
@@ -33,6 +34,9 @@ pub struct Verdict {
     /// The recorded points, where the notion is not the hull.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<PointVerdict>,
+    /// The recordings as motions of the model, for the notion trace.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub traces: Option<TraceVerdict>,
     /// The largest excess of a row that has a reachable set, rad or rad/s: not above 0 when all
     /// rows hold.
     pub largest_excess: f64,
@@ -58,6 +62,9 @@ pub struct SuiteVerdict {
     /// How many of its points were not proved, where the notion is not the hull.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points_unproved: Option<usize>,
+    /// How many of its recordings were not proved to be motions of the model, for the notion trace.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub traces_unproved: Option<usize>,
     /// The recordings that leave the set furthest in some row.
     pub violating_runs: Vec<String>,
 }
@@ -160,6 +167,10 @@ impl Verdict {
             Notion::Hull => None,
             _ => Some(judge_points(problem, hulls, &mut suites)?),
         };
+        let traces = match problem.settings().notion {
+            Notion::Trace => Some(judge_traces(problem, hulls, &mut suites)?),
+            _ => None,
+        };
         let rows = suites.iter().map(|suite| suite.rows).sum();
         let (runs, enclosure) = (problem.recordings().run_count(), hulls.enclosure());
         Ok(Self {
@@ -170,6 +181,7 @@ impl Verdict {
             rows,
             violations,
             points,
+            traces,
             largest_excess: if largest_excess.is_finite() { largest_excess } else { 0.0 },
             lost: hulls.lost(problem)?,
             suites,
@@ -186,14 +198,16 @@ impl SuiteVerdict {
             rows: 0,
             violations,
             points_unproved: None,
+            traces_unproved: None,
             violating_runs: Vec::new(),
         }
     }
 
-    /// Returns whether all rows of the suite, and its points, were proved.
+    /// Returns whether all rows of the suite, its points and its motions were proved.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.violations.count == 0 && self.points_unproved.unwrap_or(0) == 0
+        let unproved = [self.points_unproved, self.traces_unproved];
+        self.violations.count == 0 && unproved.iter().flatten().all(|count| *count == 0)
     }
 
     fn take(&mut self, problem: &Problem, suite: usize, row: &Row) {
@@ -227,6 +241,24 @@ fn judge_points(
     Ok(verdict)
 }
 
+/// Judges the recordings as motions of the model and counts them for each suite.
+fn judge_traces(
+    problem: &Problem,
+    hulls: &Hulls,
+    suites: &mut [SuiteVerdict],
+) -> Result<TraceVerdict> {
+    let factors = trace_factors(problem, &hulls.sets)?;
+    suites.iter_mut().for_each(|suite| suite.traces_unproved = Some(0));
+    for trace in factors.iter().filter(|trace| !trace.holds()) {
+        let (suite, run) = (&mut suites[trace.suite], &problem.entry(trace.run).file);
+        suite.traces_unproved = suite.traces_unproved.map(|count| count + 1);
+        if !suite.violating_runs.contains(run) {
+            suite.violating_runs.push(run.clone());
+        }
+    }
+    Ok(TraceVerdict::new(problem, &factors))
+}
+
 fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {
     let states = match settings.states {
         States::All => "position and velocity",
@@ -251,6 +283,11 @@ fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {
         Notion::Exact => {
             format!("the recorded {states} of all joints together lie in the model's {set}")
         }
+        Notion::Trace => format!(
+            "the recorded {states} of all joints together lie in the model's {set}, and one motion \
+             of the model, with its start in X0 and its input in U, passes through all samples \
+             within V"
+        ),
     };
     format!(
         "for each of the {runs} recordings, at each of its samples, {lies}; {how}, at samples, \

@@ -14,7 +14,7 @@ use crate::option_values::{NOTIONS, choice};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::{plural, table};
-use crate::verdict::{lost, notion_words};
+use crate::verdict::{lost, notion_words, traces};
 use reachtube::number::{at_least, four_decimals};
 use reachtube_robot::JointKind;
 
@@ -65,7 +65,10 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
         verdict.rows
     );
     if let Some(points) = &verdict.points {
-        let _ = writeln!(text, "{}", outside_points(points, kinds));
+        let _ = writeln!(text, "{}", outside_points(points, verdict.lost.is_empty(), kinds));
+    }
+    if let Some(found) = &verdict.traces {
+        let _ = writeln!(text, "{}", traces(found, verdict.runs));
     }
     text.push('\n');
     let rows: Vec<_> = verdict.suites.iter().map(|suite| suite_row(suite, kinds)).collect();
@@ -90,10 +93,11 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
 }
 
 /// Says how many recorded points are outside the reachable set, and names the one furthest outside.
-fn outside_points(verdict: &PointVerdict, kinds: &[JointKind]) -> String {
+fn outside_points(verdict: &PointVerdict, followed: bool, kinds: &[JointKind]) -> String {
     let PointVerdict { points, unproved, outside, .. } = verdict;
     let close = match unproved - outside {
         0 => String::new(),
+        lost if !followed => format!(", and {lost} not proved, as the set was lost before"),
         close => format!(", and {close} too close to its boundary to be proved"),
     };
     let mut text = format!(

@@ -10,13 +10,8 @@ use crate::problem::case::Case;
 use crate::search::sensitivity::{STEP_NORM, simulate};
 use crate::sets::UncertaintySets;
 
-/// One unit of position, rad, and of velocity, rad/s, in which the largest residual is minimised.
-/// They are about the uncertainty of recordings: those of the LWA 4P differ by up to 0.0003
-/// rad between q and the integral of q̇, and q̇ by up to 0.009 rad/s from a local parabola.
-const UNITS: [f64; 2] = [1e-3, 1e-2];
-
-/// Residuals below this many units are not made smaller.
-const ENOUGH: f64 = 1e-5;
+/// Linearised residuals that differ by this many units are the same.
+const SAME: f64 = 1e-5;
 
 /// How far the model's own residual may exceed that of its linearisation before it is linearised
 /// again.
@@ -36,13 +31,17 @@ pub(super) struct Behaviour {
     pub position: f64,
     /// The largest residual of a velocity, rad/s.
     pub velocity: f64,
+    /// The largest residual in units.
+    pub largest: f64,
 }
 
-impl Behaviour {
-    /// Returns the larger residual in units.
-    pub fn largest(&self) -> f64 {
-        (self.position / UNITS[0]).max(self.velocity / UNITS[1])
-    }
+/// What counts as close.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Closeness<'a> {
+    /// The unit of each state, 2n, rad and rad/s, in which the largest residual is minimised.
+    pub units: &'a [f64],
+    /// Residuals below this many units are not made smaller.
+    pub enough: f64,
 }
 
 /// The search for the motion of the model that is closest to one run: the model is linearised along
@@ -54,6 +53,7 @@ pub(super) struct ClosestMotion<'a> {
     start: Vec<[f64; 2]>,
     /// Lowest and highest input, samples but the last x n.
     inputs: Vec<[f64; 2]>,
+    closeness: Closeness<'a>,
     substeps: usize,
 }
 
@@ -63,6 +63,7 @@ impl<'a> ClosestMotion<'a> {
         case: &Case,
         sets: &UncertaintySets,
         recorded: &'a Run,
+        closeness: Closeness<'a>,
     ) -> Self {
         let n = case.joints();
         let acting = &case.inputs[..n * recorded.len().saturating_sub(1)];
@@ -77,7 +78,7 @@ impl<'a> ClosestMotion<'a> {
             norm * (recorded.times[k + 1] - recorded.times[k])
         });
         let substeps = (norms.fold(0.0, f64::max) / STEP_NORM).ceil().clamp(1.0, 1e3) as usize;
-        Self { model, recorded, start, inputs, substeps }
+        Self { model, recorded, start, inputs, closeness, substeps }
     }
 
     /// Repeats the linearisation until the model meets its residual.
@@ -85,11 +86,11 @@ impl<'a> ClosestMotion<'a> {
         let centre: Vec<f64> = self.inputs.iter().map(middle).collect();
         let (mut best, mut expected) = self.pass(&self.recorded.states, &centre);
         for _ in 1..PASSES {
-            if !best.largest().is_finite() || best.largest() <= SLACK * expected + ENOUGH {
+            if !best.largest.is_finite() || best.largest <= SLACK * expected + SAME {
                 break;
             }
             let (next, next_expected) = self.pass(&best.states, &best.inputs);
-            if next.largest() >= best.largest() {
+            if next.largest >= best.largest {
                 break;
             }
             (best, expected) = (next, next_expected);
@@ -100,7 +101,7 @@ impl<'a> ClosestMotion<'a> {
     /// Returns the motion found with the model linearised along another, and the largest residual
     /// that it would have if the linearisation were the model.
     fn pass(&self, states: &[f64], inputs: &[f64]) -> (Behaviour, f64) {
-        let found = regulate(&self.chain(states, inputs), ENOUGH);
+        let found = regulate(&self.chain(states, inputs), self.closeness.enough);
         let place = |([low, high], y): (&[f64; 2], &f64)| {
             (0.5 * (low + high + y * (high - low))).clamp(*low, *high)
         };
@@ -113,14 +114,14 @@ impl<'a> ClosestMotion<'a> {
     /// Returns the distance of the linearised model from the recorded motion in units, as a chain
     /// in the start and inputs, which move through their boxes, [-1, 1] each.
     fn chain(&self, states: &[f64], inputs: &[f64]) -> Chain {
-        let n = self.recorded.joints;
+        let (n, units) = (self.recorded.joints, self.closeness.units);
         let mut chain = Chain::new(2 * n);
         let reach =
-            &|i: usize, j: usize| if i == j { radius(&self.start[i]) / unit(n, i) } else { 0.0 };
+            &|i: usize, j: usize| if i == j { radius(&self.start[i]) / units[i] } else { 0.0 };
         let rows = (0..2 * n).flat_map(|i| (0..4 * n).map(move |j| reach(i, j))).collect();
         chain.push(
             rows,
-            (0..2 * n).map(|i| (middle(&self.start[i]) - self.recorded.states[i]) / unit(n, i)),
+            (0..2 * n).map(|i| (middle(&self.start[i]) - self.recorded.states[i]) / units[i]),
         );
         let mut steps = Steps::new(self.model, self.substeps);
         for k in 1..self.recorded.len() {
@@ -135,21 +136,21 @@ impl<'a> ClosestMotion<'a> {
     /// Appends the step to sample k, made from the state `before` under the input `held`, as a link
     /// from the recorded state and the middle of the allowed inputs.
     fn link(&self, k: usize, step: Step, before: &[f64], held: &[f64], chain: &mut Chain) {
-        let n = held.len();
+        let (n, units) = (held.len(), self.closeness.units);
         let allowed = &self.inputs[(k - 1) * n..k * n];
         let from = self.recorded.state(k - 1);
         let mut rows = Vec::with_capacity(6 * n * n);
         let mut drift = Vec::with_capacity(2 * n);
         for (i, to) in self.recorded.state(k).iter().enumerate() {
             let gains =
-                allowed.iter().enumerate().map(|(j, u)| step.gain[(i, j)] * radius(u) / unit(n, i));
+                allowed.iter().enumerate().map(|(j, u)| step.gain[(i, j)] * radius(u) / units[i]);
             rows.extend(gains);
-            rows.extend((0..2 * n).map(|j| step.transition[(i, j)] * unit(n, j) / unit(n, i)));
+            rows.extend((0..2 * n).map(|j| step.transition[(i, j)] * units[j] / units[i]));
             let moved: f64 =
                 (0..2 * n).map(|j| step.transition[(i, j)] * (from[j] - before[j])).sum();
             let pushed: f64 =
                 (0..n).map(|j| step.gain[(i, j)] * (middle(&allowed[j]) - held[j])).sum();
-            drift.push((step.reached[i] + moved + pushed - to) / unit(n, i));
+            drift.push((step.reached[i] + moved + pushed - to) / units[i]);
         }
         chain.push(rows, drift);
     }
@@ -158,21 +159,17 @@ impl<'a> ClosestMotion<'a> {
         let n = self.recorded.joints;
         let states = simulate(self.model, &self.recorded.times, self.substeps, start, &inputs)
             .unwrap_or_default();
-        let mut residuals = [0.0_f64; 2];
+        let (mut residuals, mut largest) = ([0.0_f64; 2], 0.0_f64);
         for (at, (x, recorded)) in states.iter().zip(&self.recorded.states).enumerate() {
-            let residual = &mut residuals[at / n % 2];
-            *residual = residual.max((x - recorded).abs());
+            let (residual, difference) = (&mut residuals[at / n % 2], (x - recorded).abs());
+            *residual = residual.max(difference);
+            largest = largest.max(difference / self.closeness.units[at % (2 * n)]);
         }
         if states.len() < self.recorded.states.len() {
-            residuals = [f64::INFINITY; 2];
+            (residuals, largest) = ([f64::INFINITY; 2], f64::INFINITY);
         }
-        Behaviour { inputs, states, position: residuals[0], velocity: residuals[1] }
+        Behaviour { inputs, states, position: residuals[0], velocity: residuals[1], largest }
     }
-}
-
-/// Returns the unit of state i.
-fn unit(joints: usize, i: usize) -> f64 {
-    UNITS[i / joints]
 }
 
 /// Returns the lowest and highest number of base + set in dimension i, rounded inwards; the nearest

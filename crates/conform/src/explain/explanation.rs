@@ -1,10 +1,18 @@
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::explain::closest_motion::{Behaviour, ClosestMotion};
+use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
+
+/// One unit of position, rad, and of velocity, rad/s, in which the largest residual is minimised.
+/// They are about the uncertainty of recordings: those of the LWA 4P differ by up to 0.0003
+/// rad between q and the integral of q̇, and q̇ by up to 0.009 rad/s from a local parabola.
+const UNITS: [f64; 2] = [1e-3, 1e-2];
+
+/// Residuals below this many units are not made smaller.
+const ENOUGH: f64 = 1e-5;
 
 /// How close a model comes to a recorded run: the largest |recorded - simulated| over all samples
 /// and joints of the closest motion found, whose start lies in start + X0 and whose input lies in
@@ -30,10 +38,12 @@ pub struct Explanation {
 ///
 /// As [`Problem::run`].
 pub fn explain(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Explanation>> {
-    let model = problem.dynamics().polynomials();
+    let (model, n) = (problem.dynamics().polynomials(), problem.joints());
+    let units = UNITS.map(|unit| vec![unit; n]).concat();
+    let closeness = Closeness { units: &units, enough: ENOUGH };
     let of = |case: &Case, index: usize| {
         let recorded = problem.run(index)?;
-        let found = ClosestMotion::new(model, case, sets, &recorded).run();
+        let found = ClosestMotion::new(model, case, sets, &recorded, closeness).run();
         let Behaviour { position, velocity, .. } = found;
         Ok(Explanation { run: index, position, velocity })
     };

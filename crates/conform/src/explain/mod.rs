@@ -7,5 +7,6 @@ mod regulate;
 mod steps;
 #[cfg(test)]
 mod tests;
+pub(crate) mod trace;
 
 pub use explanation::{Explanation, explain};

@@ -298,7 +298,7 @@ impl Model {
     pub fn gap_of_not_minimal(&self) -> Option<f64> {
         let largest = match self.settings.notion {
             Notion::Hull => LARGEST_GAP,
-            Notion::PhasePlane | Notion::Exact => LARGEST_GAP_OF_POINTS,
+            _ => LARGEST_GAP_OF_POINTS,
         };
         self.optimality_gap.filter(|gap| *gap > largest)
     }

@@ -47,7 +47,7 @@ impl SamplePoints {
 pub(crate) fn projections(notion: Notion, states: States, joints: usize) -> Vec<Vec<usize>> {
     let rows = states.rows(joints);
     match notion {
-        Notion::Exact => vec![(0..rows).collect()],
+        Notion::Exact | Notion::Trace => vec![(0..rows).collect()],
         _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
         _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
     }

@@ -35,10 +35,24 @@ const REPAIRS: i32 = 24;
 ///
 /// [`Error::Program`] when points are left outside after many rounds; as [`Problem::deviations`].
 pub(crate) fn smallest_sets(problem: &Problem, progress: &dyn Progress) -> Result<Found> {
+    smallest_sets_widened(problem, progress, Ok)
+}
+
+/// As [`smallest_sets`], with sets that `widen` has made larger.
+///
+/// # Errors
+///
+/// As [`smallest_sets`], and those of `widen`.
+pub(crate) fn smallest_sets_widened(
+    problem: &Problem,
+    progress: &dyn Progress,
+    widen: impl FnOnce(UncertaintySets) -> Result<UncertaintySets>,
+) -> Result<Found> {
     let sweep = Sweep::new(problem)?;
     let mut program = program(problem)?;
     let (solution, cuts) = solve(&sweep, &mut program, progress)?;
-    let hulls = prove(problem, &sweep, &solution.sets, program.scale())?;
+    let sets = widen(solution.sets)?;
+    let hulls = prove(problem, &sweep, &sets, program.scale())?;
     let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
     let (cost, lower_bound) = (program.cost(&hulls.sets), solution.lower_bound);
     let touching = sweep.touching(problem, &program, &hulls.sets, &cuts);

@@ -10,6 +10,7 @@ use reachtube_robot::{Robot, RobotDescription};
 use crate::deviation::Deviation;
 use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
+use crate::explain::trace;
 use crate::grids::Grids;
 use crate::linear::layout::Limits;
 use crate::nominal::correction::InputCorrection;
@@ -152,6 +153,7 @@ impl Problem {
     ) -> Result<Self> {
         let Setup { robot, settings, .. } = &setup;
         settings.validate(robot.joint_count())?;
+        trace::check_settings(settings, &setup.dynamics)?;
         let kept = KeptRuns::default();
         let reader = SuiteReader {
             source: source.as_ref(),

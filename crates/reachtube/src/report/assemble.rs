@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::number::at_least;
 use crate::report::error::ReportError;
 use crate::report::nominal::{nominal_caution, nominal_facts, nominal_tables};
-use crate::report::notion::{outside_points, phase_planes, place, together};
+use crate::report::notion::{outside_points, phase_planes, place, together, traces};
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 
@@ -104,7 +104,7 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
             }
         },
     ];
-    let proved = points.into_iter().chain(rows_hold).collect();
+    let proved = traces(answer).into_iter().chain(points).chain(rows_hold).collect();
     let end = |lost: &Lost| {
         format!(
             "{}: the {set} could not be computed beyond {:.3} s ({}).",
@@ -132,6 +132,10 @@ fn not_proved(model: &Model, answer: &conform::Verdict, outer: bool) -> Vec<Stri
         Notion::Exact => {
             "The notion is exact: all states at one sample are reachable together. Whether one \
              motion of the model passes through the states of all samples is not said."
+        }
+        Notion::Trace => {
+            "The notion is trace: up to V, one motion of the model passes through the states of \
+             all samples. V is what the recordings were allowed to be wrong by."
         }
     };
     let mut words = vec![

@@ -20,7 +20,7 @@ pub(super) fn place(answer: &Verdict) -> String {
     match notion(answer) {
         Notion::Hull => format!("the interval hull of the {set}"),
         Notion::PhasePlane => format!("the projections of the {set} on the phase planes"),
-        Notion::Exact => format!("the {set} itself"),
+        Notion::Exact | Notion::Trace => format!("the {set} itself"),
     }
 }
 
@@ -29,12 +29,23 @@ pub(super) fn together(answer: &Verdict) -> &'static str {
     match notion(answer) {
         Notion::Hull => "",
         Notion::PhasePlane => ", position and velocity of each joint together",
-        Notion::Exact => ", all states together",
+        Notion::Exact | Notion::Trace => ", all states together",
     }
 }
 
 fn notion(answer: &Verdict) -> Notion {
     answer.points.as_ref().map_or(Notion::Hull, |points| points.notion)
+}
+
+/// Says how many recordings are motions of the model, where that was asked.
+pub(super) fn traces(answer: &Verdict) -> Option<String> {
+    let traces = answer.traces.as_ref()?;
+    Some(format!(
+        "{} of {} recordings are, up to V, one motion of the model each, with its start in X0 and \
+         its input in U: proved with directed rounding.",
+        answer.runs - traces.unproved,
+        answer.runs
+    ))
 }
 
 /// Says how many points are not in the set, and names the one furthest outside.

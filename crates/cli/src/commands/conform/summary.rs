@@ -12,7 +12,7 @@ use super::dependence::dependence;
 use super::fit_summary::{any_run, fit_summary};
 use super::next_motion::next_motion;
 use crate::table::{plural, table};
-use crate::verdict::{lost, notion_words};
+use crate::verdict::{lost, notion_words, traces};
 use reachtube::number::{four_decimals, interval};
 
 /// Largest number of touching values in the table.
@@ -59,11 +59,15 @@ fn verdict(model: &Model) -> String {
     if let Some(points) = &proof.points {
         let _ = writeln!(
             text,
-            "{} of {} recorded points ({}) proved to lie in the reachable set",
+            "{} of {} recorded points ({}) proved to lie in the {}",
             points.points - points.unproved,
             points.points,
-            notion_words(points.notion)
+            notion_words(points.notion),
+            proof.enclosure.set_name()
         );
+    }
+    if let Some(found) = &proof.traces {
+        let _ = writeln!(text, "{}", traces(found, runs));
     }
     for set in &proof.lost {
         let _ = writeln!(text, "{}", lost(set));
