@@ -17,7 +17,7 @@ use reachtube_robot::Robot;
 
 use crate::envelope::Envelope;
 use crate::explain::chain::Chain;
-use crate::explain::closest_motion::{Behaviour, ClosestMotion};
+use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::explain::regulate::regulate;
 use crate::linear::solver::{Triplets, solve_cone};
 use crate::problem::case::Case;
@@ -132,12 +132,18 @@ fn assert_is_witness(
     assert!((largest[1] - found.velocity).abs() < 1e-7, "{} {}", largest[1], found.velocity);
 }
 
+fn closest(model: &PolynomialModel, case: &Case, sets: &UncertaintySets, run: &Run) -> Behaviour {
+    let units = [vec![1e-3; JOINTS], vec![1e-2; JOINTS]].concat();
+    let closeness = Closeness { units: &units, enough: 1e-5 };
+    ClosestMotion::new(model, case, sets, run, closeness).run()
+}
+
 #[test]
 fn runs_of_the_model_are_explained() {
     let (case, sets) = (case(), sets());
     for model in models() {
         let run = disturbed(&model, &case, &sets, 1.0);
-        let found = ClosestMotion::new(&model, &case, &sets, &run).run();
+        let found = closest(&model, &case, &sets, &run);
         assert_is_witness(&model, &case, &sets, &run, &found);
         assert!(
             found.position < 1e-7 && found.velocity < 1e-6,
@@ -155,7 +161,7 @@ fn a_start_outside_cannot_be_explained() {
         let mut start = case.start.clone();
         start[0] += sets.initial_set.bounds(0).1 + 0.0625;
         let run = record(&model, &case, &start, &case.inputs[..(SAMPLES - 1) * JOINTS]);
-        let found = ClosestMotion::new(&model, &case, &sets, &run).run();
+        let found = closest(&model, &case, &sets, &run);
         assert_is_witness(&model, &case, &sets, &run, &found);
         assert!((0.0625..0.064).contains(&found.position), "{}", found.position);
     }
@@ -166,9 +172,9 @@ fn inputs_outside_are_explained_by_larger_sets_only() {
     let (case, sets) = (case(), sets());
     for model in models() {
         let run = disturbed(&model, &case, &sets, 3.0);
-        let found = ClosestMotion::new(&model, &case, &sets, &run).run();
+        let found = closest(&model, &case, &sets, &run);
         assert_is_witness(&model, &case, &sets, &run, &found);
-        assert!(found.largest() > 0.2, "{}", found.largest());
+        assert!(found.largest > 0.2, "{}", found.largest);
         let larger = UncertaintySets {
             initial_set: Hyperrectangle {
                 radius: vec![3.0 / 128.0; 2 * JOINTS],
@@ -177,8 +183,8 @@ fn inputs_outside_are_explained_by_larger_sets_only() {
             input_set: Hyperrectangle { radius: vec![1.5; JOINTS], ..sets.input_set.clone() },
             noise_set: None,
         };
-        let found = ClosestMotion::new(&model, &case, &larger, &run).run();
-        assert!(found.largest() < 1e-4, "{}", found.largest());
+        let found = closest(&model, &case, &larger, &run);
+        assert!(found.largest < 1e-4, "{}", found.largest);
     }
 }
 
@@ -192,7 +198,7 @@ fn sets_of_one_point_leave_the_nominal_motion() {
     };
     let model = &models()[1];
     let run = disturbed(model, &case, &sets(), 1.0);
-    let found = ClosestMotion::new(model, &case, &point, &run).run();
+    let found = closest(model, &case, &point, &run);
     assert_eq!(found.states[..2 * JOINTS], case.start.clone());
     assert_eq!(found.inputs, case.inputs[..(SAMPLES - 1) * JOINTS]);
     assert_is_witness(model, &case, &point, &run, &found);
@@ -205,7 +211,7 @@ fn one_sample_is_explained_by_the_start() {
     let mut run = disturbed(model, &case, &sets, 1.0);
     run.times.truncate(1);
     run.states.truncate(2 * JOINTS);
-    let found = ClosestMotion::new(model, &case, &sets, &run).run();
+    let found = closest(model, &case, &sets, &run);
     assert!(found.position < 1e-7 && found.inputs.is_empty());
 }
 

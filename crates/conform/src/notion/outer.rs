@@ -2,9 +2,12 @@
 //! sets.
 
 use std::borrow::Cow;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
-use reachtube_reach::{GeneratorRows, Membership, MembershipProof, Place, Zonotope};
+use reachtube_reach::{
+    GeneratorRows, Membership, MembershipProof, MembershipWorkspace, Place, Zonotope,
+};
 use reachtube_recordings::Run;
 
 use crate::error::Result;
@@ -17,6 +20,10 @@ use crate::sets::UncertaintySets;
 
 /// How accurately the growth of a set is known that a point outside needs.
 const GAUGE: f64 = 1e-4;
+
+/// Numbers of parts of the time so far, within each of which generators that a step adds have one
+/// factor in common: smaller sets, in which most points lie.
+const HELD: [usize; 2] = [24, 200];
 
 /// A direction in which the computed set at a sample is asked how far it reaches.
 #[derive(Debug, Clone, Copy)]
@@ -86,6 +93,8 @@ pub(crate) struct CaseRuns<'a> {
     projections: Vec<Vec<usize>>,
     noise: Vec<f64>,
     asked: &'a [Asked<'a>],
+    /// The number of generators at the sample before.
+    generators: AtomicUsize,
 }
 
 impl<'a> CaseRuns<'a> {
@@ -108,6 +117,7 @@ impl<'a> CaseRuns<'a> {
             projections: projections(settings.notion, settings.states, problem.joints()),
             noise: (0..2 * problem.joints()).map(|i| sets.noise_radius(i)).collect(),
             asked,
+            generators: AtomicUsize::new(0),
         })
     }
 
@@ -124,9 +134,11 @@ impl<'a> CaseRuns<'a> {
         };
         let here = self.asked.iter().enumerate().filter(|(_, asked)| asked.sample == sample);
         found.reaches.extend(here.map(|(index, asked)| (index, reach(asked))));
+        let count = zonotope.generators().len();
+        let stride = count.saturating_sub(self.generators.swap(count, Ordering::Relaxed));
         if sample > 0 {
             for projection in &self.projections {
-                self.at_sample(sample, zonotope, projection, found);
+                self.at_sample(sample, zonotope, projection, stride, found);
             }
         }
     }
@@ -152,40 +164,49 @@ impl<'a> CaseRuns<'a> {
         sample: usize,
         zonotope: &Zonotope,
         projection: &[usize],
+        stride: usize,
         found: &mut CasePoints,
     ) {
         let noise: Vec<f64> = projection.iter().map(|i| self.noise[*i]).collect();
-        let set = Membership::new(&GeneratorRows::of_zonotope(zonotope, projection, &noise));
-        let proof = MembershipProof::new(&set);
+        let rows = GeneratorRows::of_zonotope(zonotope, projection, &noise);
         let recorded: Vec<(usize, &[f64])> = self
             .runs
             .iter()
             .filter(|(_, run)| sample < run.len())
             .map(|(index, run)| (*index, run.state(sample)))
             .collect();
-        let of_point = |work: &mut _, (run, x): &(usize, &[f64])| {
-            let deviation = |i: &usize| x[*i] - zonotope.centre()[*i];
-            let d: Vec<f64> = projection.iter().map(deviation).collect();
-            // The difference is not exact.
-            let error = |x: &f64| f64::EPSILON * x.abs() + f64::MIN_POSITIVE;
-            let error: Vec<f64> = d.iter().map(error).collect();
-            let holds = |slack: f64, work: &mut _| {
-                let proof = proof.as_ref();
-                proof.is_some_and(|proof| proves(&set, proof, &d, &error, slack, work))
-            };
-            if holds(SLACK[0], work) {
+        let deviation = |(_, x): &(usize, &[f64])| -> Vec<f64> {
+            projection.iter().map(|&i| x[i] - zonotope.centre()[i]).collect()
+        };
+        let mut left: Vec<(usize, Vec<f64>)> =
+            recorded.iter().map(|point| (point.0, deviation(point))).collect();
+        // Smaller sets first.
+        for parts in HELD {
+            let held = sample.div_ceil(parts);
+            if held > 1 && !left.is_empty() {
+                left = unproved(&Membership::new(&rows.merged(stride, held)), left);
+            }
+        }
+        if left.is_empty() {
+            found.points += recorded.len();
+            return;
+        }
+        let set = Membership::new(&rows);
+        let proof = MembershipProof::new(&set);
+        let of_point = |work: &mut _, (run, d): (usize, Vec<f64>)| {
+            if holds(&set, proof.as_ref(), &d, SLACK[0], work) {
                 return None;
             }
             let ratio = match set.locate(&d, OUTSIDE, work) {
                 Place::Outside { ratio, .. } => Some(ratio),
-                _ if holds(SLACK[1], work) => return None,
+                _ if holds(&set, proof.as_ref(), &d, SLACK[1], work) => return None,
                 _ => None,
             };
-            Some((UnprovedPoint { run: *run, is_outside: ratio.is_some() }, ratio, d))
+            Some((UnprovedPoint { run, is_outside: ratio.is_some() }, ratio, d))
         };
-        found.points += recorded.len();
         let unproved: Vec<_> =
-            recorded.par_iter().map_init(|| set.workspace(), of_point).flatten().collect();
+            left.into_par_iter().map_init(|| set.workspace(), of_point).flatten().collect();
+        found.points += recorded.len();
         found.unproved.extend(unproved.iter().map(|(point, ..)| *point));
         let outside = unproved.iter().filter_map(|(point, ratio, d)| Some((point, (*ratio)?, d)));
         let Some((point, _, d)) = outside.max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
@@ -212,6 +233,28 @@ impl<'a> CaseRuns<'a> {
             direction,
         });
     }
+}
+
+/// Returns the points, with their runs, that are not proved to lie in a set.
+fn unproved(set: &Membership, points: Vec<(usize, Vec<f64>)>) -> Vec<(usize, Vec<f64>)> {
+    let Some(proof) = MembershipProof::new(set) else { return points };
+    let left = |work: &mut _, point: (usize, Vec<f64>)| {
+        (!holds(set, Some(&proof), &point.1, SLACK[0], work)).then_some(point)
+    };
+    points.into_par_iter().map_init(|| set.workspace(), left).flatten().collect()
+}
+
+/// Returns whether a recorded point less the centre of a set, which is not exact, is proved to lie
+/// in the set about 0.
+fn holds(
+    set: &Membership,
+    proof: Option<&MembershipProof>,
+    d: &[f64],
+    slack: f64,
+    work: &mut MembershipWorkspace,
+) -> bool {
+    let error: Vec<f64> = d.iter().map(|x| f64::EPSILON * x.abs() + f64::MIN_POSITIVE).collect();
+    proof.is_some_and(|proof| proves(set, proof, d, &error, slack, work))
 }
 
 fn dot(x: &[f64], y: &[f64]) -> f64 {

@@ -193,6 +193,33 @@ fn tell_apart(count: usize) {
     assert!(inside > count / 200 && outside > count / 200, "{inside} {outside}");
 }
 
+/// Of generators that alternate between two vectors, those of one vector are merged; points of the
+/// merged set are proved to lie in it with the errors of its sums, and lie in the whole one.
+#[test]
+fn merged_generators_span_a_smaller_set() {
+    let mut random = Random::new(8);
+    let mut rows = GeneratorRows::new(2, 101);
+    let turn = |j: usize| 0.01 * j as f64 + if j % 2 == 0 { 0.0 } else { 1.5 };
+    rows.row_mut(0).iter_mut().enumerate().for_each(|(j, x)| *x = turn(j).cos());
+    rows.row_mut(1).iter_mut().enumerate().for_each(|(j, x)| *x = turn(j).sin());
+    let merged = rows.merged(2, 10);
+    assert_eq!(merged.count(), 11);
+    let (whole, set) = (Membership::new(&rows), Membership::new(&merged));
+    let (mut of_whole, mut work) = (whole.workspace(), set.workspace());
+    for at in 0..1_000 {
+        let factors: Vec<f64> = (0..11).map(|_| 0.999 * random.symmetric()).collect();
+        let d: Vec<f64> = (0..2)
+            .map(|i| merged.row(i).iter().zip(&factors).map(|(g, factor)| g * factor).sum())
+            .collect();
+        assert_eq!(set.locate(&d, 1e-9, &mut work), Place::Inside, "{at}");
+        assert_eq!(whole.locate(&d, 1e-9, &mut of_whole), Place::Inside, "{at}");
+    }
+    // Hardly smaller: the vectors of a group turn by 0.2 rad.
+    let size = |rows: &GeneratorRows| rows.row(0).iter().map(|x| x.abs()).sum::<f64>();
+    assert!(size(&merged) <= size(&rows) && size(&merged) > 0.95 * size(&rows));
+    assert!(merged.error(0) > 0.0 && merged.error(0) < 1e-12);
+}
+
 #[test]
 fn sampled_states_are_told_apart() {
     tell_apart(4_000);

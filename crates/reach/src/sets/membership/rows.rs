@@ -1,4 +1,7 @@
+use reachtube_scalar::rounding::{add_up, mul_up};
+
 use crate::sets::zonotope::Zonotope;
+use crate::upward::{relative_error, round_up_sum};
 
 /// The generators of a zonotope about 0, laid out state by state, with bounds of the errors of
 /// their entries.
@@ -75,6 +78,31 @@ impl GeneratorRows {
     /// Returns entry `i` of all generators, to be written.
     pub fn row_mut(&mut self, i: usize) -> &mut [f64] {
         &mut self.entries[i * self.count..(i + 1) * self.count]
+    }
+
+    /// Returns a zonotope of fewer generators in this one: of the generators whose indices are the
+    /// same modulo `stride`, `held` after each other have one factor in common. It is not much
+    /// smaller where those are alike, as images of one vector at times close together are.
+    ///
+    /// # Guarantee
+    ///
+    /// Inner: bounds of the errors cover the rounding of the sums.
+    #[must_use]
+    pub fn merged(&self, stride: usize, held: usize) -> Self {
+        let (stride, held) = (stride.max(1), held.max(1));
+        let place = |j: usize| j / (stride * held) * stride + j % stride;
+        let places = (0..self.count).map(place).max().map_or(0, |last| last + 1);
+        let mut rows = Self::new(self.dimension(), places);
+        for i in 0..self.dimension() {
+            let mut size = 0.0;
+            for (j, x) in self.row(i).iter().enumerate() {
+                rows.entries[i * rows.count + place(j)] += x;
+                size += x.abs();
+            }
+            let rounding = mul_up(relative_error(held), round_up_sum(size, self.count));
+            rows.errors[i] = add_up(self.errors[i], rounding);
+        }
+        rows
     }
 
     /// Returns the zonotope of the stored generators about `centre`, for figures.
