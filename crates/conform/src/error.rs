@@ -80,10 +80,10 @@ pub enum Error {
     /// The notion trace was asked of a problem that it is not for.
     #[error("the notion trace {0}")]
     Trace(&'static str),
-    /// A certificate was asked of hulls.
+    /// A certificate was asked of hulls, or of a model that is not linear.
     #[error(
-        "a certificate is about points in the reachable set; ask for them by --notion exact or \
-         --notion phase-plane"
+        "a certificate is about points in the reachable set of a linear model; ask for them by \
+         --notion exact or --notion phase-plane, with --model 1 --order 1"
     )]
     NotPoints,
     /// Motions cannot calibrate the sets.

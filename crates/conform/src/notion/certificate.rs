@@ -63,12 +63,16 @@ impl Certificate {
     ///
     /// # Errors
     ///
-    /// [`Error::NotPoints`] for the notion hull; as [`Problem::run`].
+    /// [`Error::NotPoints`] for the notion hull and models that are not linear; as
+    /// [`Problem::run`].
     pub fn new(problem: &Problem, model: &Model) -> Result<Self> {
-        let notion = problem.settings().notion;
-        if notion == Notion::Hull {
-            return Err(Error::NotPoints);
-        }
+        let notion = match problem.settings().notion {
+            Notion::Hull => return Err(Error::NotPoints),
+            _ if problem.dynamics().linear_system().is_none() => return Err(Error::NotPoints),
+            // The certificate is about the points, not the motions through them.
+            Notion::Exact | Notion::Trace => Notion::Exact,
+            Notion::PhasePlane => Notion::PhasePlane,
+        };
         let (sweep, sets) = (Sweep::new(problem)?, model.sets());
         let is_measurable = problem.settings().disturbance == Disturbance::Measurable;
         let head = Head {

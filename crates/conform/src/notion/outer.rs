@@ -19,7 +19,7 @@ use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 
 /// How accurately the growth of a set is known that a point outside needs.
-const GAUGE: f64 = 1e-4;
+const GAUGE: f64 = 1e-7;
 
 /// Numbers of parts of the time so far, within each of which generators that a step adds have one
 /// factor in common: smaller sets, in which most points lie.
@@ -121,19 +121,15 @@ impl<'a> CaseRuns<'a> {
         })
     }
 
-    /// Judges all points of the case after the first sample, where the set is a box, and its hull
-    /// the set.
+    /// Asks the set at a sample how far it reaches, and judges the points there. At the first sample
+    /// the set is a box, and its hull says all.
     ///
     /// # Guarantee
     ///
     /// As [`at_sample`](Self::at_sample).
     pub fn take(&self, sample: usize, zonotope: &Zonotope, found: &mut CasePoints) {
-        let reach = |asked: &Asked| {
-            let centre: f64 = dot(asked.direction, zonotope.centre());
-            centre + zonotope.generators().map(|g| dot(asked.direction, g).abs()).sum::<f64>()
-        };
         let here = self.asked.iter().enumerate().filter(|(_, asked)| asked.sample == sample);
-        found.reaches.extend(here.map(|(index, asked)| (index, reach(asked))));
+        found.reaches.extend(here.map(|(index, at)| (index, reach(zonotope, at.direction))));
         let count = zonotope.generators().len();
         let stride = count.saturating_sub(self.generators.swap(count, Ordering::Relaxed));
         if sample > 0 {
@@ -169,17 +165,14 @@ impl<'a> CaseRuns<'a> {
     ) {
         let noise: Vec<f64> = projection.iter().map(|i| self.noise[*i]).collect();
         let rows = GeneratorRows::of_zonotope(zonotope, projection, &noise);
-        let recorded: Vec<(usize, &[f64])> = self
-            .runs
-            .iter()
-            .filter(|(_, run)| sample < run.len())
-            .map(|(index, run)| (*index, run.state(sample)))
-            .collect();
-        let deviation = |(_, x): &(usize, &[f64])| -> Vec<f64> {
-            projection.iter().map(|&i| x[i] - zonotope.centre()[i]).collect()
+        let here = self.runs.iter().filter(|(_, run)| sample < run.len());
+        let recorded: Vec<(usize, &[f64])> =
+            here.map(|(index, run)| (*index, run.state(sample))).collect();
+        found.points += recorded.len();
+        let deviation = |(run, x): &(usize, &[f64])| -> (usize, Vec<f64>) {
+            (*run, projection.iter().map(|&i| x[i] - zonotope.centre()[i]).collect())
         };
-        let mut left: Vec<(usize, Vec<f64>)> =
-            recorded.iter().map(|point| (point.0, deviation(point))).collect();
+        let mut left: Vec<(usize, Vec<f64>)> = recorded.iter().map(deviation).collect();
         // Smaller sets first.
         for parts in HELD {
             let held = sample.div_ceil(parts);
@@ -188,7 +181,6 @@ impl<'a> CaseRuns<'a> {
             }
         }
         if left.is_empty() {
-            found.points += recorded.len();
             return;
         }
         let set = Membership::new(&rows);
@@ -206,33 +198,36 @@ impl<'a> CaseRuns<'a> {
         };
         let unproved: Vec<_> =
             left.into_par_iter().map_init(|| set.workspace(), of_point).flatten().collect();
-        found.points += recorded.len();
         found.unproved.extend(unproved.iter().map(|(point, ..)| *point));
         let outside = unproved.iter().filter_map(|(point, ratio, d)| Some((point, (*ratio)?, d)));
-        let Some((point, _, d)) = outside.max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
-        let Some((ratio, short)) = set.gauge(d, GAUGE, &mut set.workspace()) else { return };
-        let spread = |values: &[f64]| {
-            let mut all = vec![0.0; self.noise.len()];
-            projection.iter().zip(values).for_each(|(&i, x)| all[i] = *x);
-            all
-        };
-        let direction = spread(&short);
-        let along = recorded.iter().map(|(run, x)| (*run, dot(&direction, x)));
-        let first = (point.run, f64::NEG_INFINITY);
-        let (bound_run, bound) =
-            along.fold(first, |best, next| if next.1 > best.1 { next } else { best });
-        let generators = zonotope.generators().map(|g| dot(&direction, g).abs());
-        found.furthest.push(FurthestPoint {
-            sample,
-            run: point.run,
-            ratio,
-            deviation: spread(d),
-            bound,
-            bound_run,
-            reach: dot(&direction, zonotope.centre()) + generators.sum::<f64>(),
-            direction,
-        });
+        let worst = outside.max_by(|a, b| a.1.total_cmp(&b.1));
+        found.furthest.extend(worst.and_then(|(point, _, d)| {
+            let (ratio, short) = set.gauge(d, GAUGE, &mut set.workspace())?;
+            let spread = |values: &[f64]| {
+                let mut all = vec![0.0; self.noise.len()];
+                projection.iter().zip(values).for_each(|(&i, x)| all[i] = *x);
+                all
+            };
+            let direction = spread(&short);
+            let along = recorded.iter().map(|(run, x)| (*run, dot(&direction, x)));
+            let (bound_run, bound) = along.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some(FurthestPoint {
+                sample,
+                run: point.run,
+                ratio,
+                deviation: spread(d),
+                bound,
+                bound_run,
+                reach: reach(zonotope, &direction),
+                direction,
+            })
+        }));
     }
+}
+
+/// Returns max lᵀ x over a zonotope, in floating point.
+fn reach(zonotope: &Zonotope, l: &[f64]) -> f64 {
+    dot(l, zonotope.centre()) + zonotope.generators().map(|g| dot(l, g).abs()).sum::<f64>()
 }
 
 /// Returns the points, with their runs, that are not proved to lie in a set.

@@ -22,7 +22,9 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     for path in args.out.iter().chain(&args.certificate) {
         output::claim(path)?;
     }
-    if args.certificate.is_some() && setup.settings.notion == Notion::Hull {
+    let has_points =
+        setup.settings.notion != Notion::Hull && setup.dynamics.linear_system().is_some();
+    if args.certificate.is_some() && !has_points {
         return Err(reachtube::conform::Error::NotPoints.into());
     }
     if let Some(folder) = &args.report {
