@@ -33,8 +33,9 @@ pub fn traces(traces: &TraceVerdict, runs: usize) -> String {
                 format!("; U must be {} times as large for all, as {worst} needs", at_least(factor))
             }
             None => format!(
-                "; no U up to 1024 times as large suffices for {worst}: check whether its positions \
-                 and velocities agree, or give a larger V (--noise)"
+                "; no U up to 1024 times as large suffices for {worst}: its start may lie at the \
+                 edges of X0 and V, or its positions and velocities may not agree; a larger V \
+                 helps (--noise)"
             ),
         };
     }

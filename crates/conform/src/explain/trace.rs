@@ -20,6 +20,10 @@ use crate::settings::{Noise, Notion, Settings};
 /// What the radii of U are widened by first, N m, so that doubles lie in u + U.
 const LEAST_RADIUS: f64 = 1e-9;
 
+/// What the radii of X0 are widened by, in parts of V: the search for a motion is accurate to 2 %, so
+/// that a start at the edges of X0 and V at once would not be found.
+const START_ROOM: f64 = 0.05;
+
 /// The largest factor on U that is tried.
 const LARGEST_FACTOR: f64 = 1024.0;
 
@@ -153,6 +157,9 @@ pub(crate) fn trace_factors(problem: &Problem, sets: &UncertaintySets) -> Result
 pub(crate) fn smallest_sets(problem: &Problem, progress: &dyn Progress) -> Result<Found> {
     points::smallest_sets_widened(problem, progress, |mut sets| {
         sets.input_set.radius.iter_mut().for_each(|radius| *radius += LEAST_RADIUS);
+        for i in 0..2 * problem.joints() {
+            sets.initial_set.radius[i] += START_ROOM * sets.noise_radius(i);
+        }
         let factors = trace_factors(problem, &sets)?;
         let factor = factors.iter().filter_map(|trace| trace.factor).fold(1.0, f64::max);
         progress.finished(&format!(
