@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand};
 use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
-    r#abstract, campaign, check, completions, conform, demo, excite, identify, inspect, man, prepare,
-    reach, report,
+    r#abstract, campaign, check, completions, conform, demo, excite, identify, inspect, man,
+    prepare, reach, report,
 };
 use crate::error::Result;
 use crate::global::GlobalOptions;

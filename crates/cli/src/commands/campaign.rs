@@ -1,16 +1,16 @@
 //! `reachtube campaign`: recordings of a whole experiment on a virtual robot.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::campaign::{CampaignOptions, RecordedCampaign, record};
-use reachtube::virtual_robot::VirtualRobotParameters;
 use reachtube_robot::Robot;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
+use crate::virtual_robot_arguments::VirtualRobotArguments;
 
 const HELP: &str = "\
 Examples:
@@ -59,10 +59,8 @@ pub struct Arguments {
     /// Number of exciting motions to validate with
     #[arg(long, default_value_t = 2, value_name = "COUNT")]
     pub validation: usize,
-    /// Parameters of the virtual robot, a TOML file as docs/campaign.md describes; those that it
-    /// does not have keep their defaults
-    #[arg(long, value_name = "FILE")]
-    pub parameters: Option<PathBuf>,
+    #[command(flatten)]
+    pub robot: VirtualRobotArguments,
 }
 
 /// Runs the campaign.
@@ -76,7 +74,6 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 }
 
 fn options(args: &Arguments) -> Result<CampaignOptions> {
-    let robot = args.parameters.as_deref().map(parameters).transpose()?;
     Ok(CampaignOptions {
         seed: args.seed,
         motions: args.motions,
@@ -87,16 +84,8 @@ fn options(args: &Arguments) -> Result<CampaignOptions> {
         friction: args.friction,
         excitation: args.excitation,
         validation: args.validation,
-        robot: robot.unwrap_or_default(),
+        robot: args.robot.parameters()?,
     })
-}
-
-/// Reads the parameters of the virtual robot.
-fn parameters(path: &Path) -> Result<VirtualRobotParameters> {
-    let remedy = "give a TOML file with parameters of the virtual robot, as docs/campaign.md has";
-    let text = reachtube_files::read_text(path, remedy)?;
-    toml::from_str(&text)
-        .map_err(|error| Error::SettingsSyntax { path: path.into(), message: error.to_string() })
 }
 
 fn summary(args: &Arguments, recorded: &RecordedCampaign) -> String {

@@ -24,6 +24,7 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::report_files;
+use crate::virtual_robot_arguments::VirtualRobotArguments;
 
 /// What of the nominal model is fitted.
 const GROUPS: [Group; 2] = [Group::Viscous, Group::Coulomb];
@@ -49,6 +50,8 @@ pub struct Arguments {
     /// Seed of the random numbers; the same seed gives the same recordings
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    #[command(flatten)]
+    pub robot: VirtualRobotArguments,
 }
 
 /// Runs the demo. The outcome is the model's verdict on the recordings that it was made from;
@@ -65,6 +68,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         motions: 14,
         calibration_motions: 7,
         runs: 5,
+        robot: args.robot.parameters()?,
         ..DemoOptions::default()
     };
     let bar = Progress::new();

@@ -115,8 +115,10 @@ pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
 /// Returns what marks a campaign: its options, its robot and the version of the program, which all
 /// decide what is recorded.
 fn mark(robot: &Robot, options: &CampaignOptions) -> String {
-    let robot: String =
-        Sha256::digest(robot.description().to_toml()).iter().map(|byte| format!("{byte:02x}")).collect();
+    let robot: String = Sha256::digest(robot.description().to_toml())
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
     let value = json!({
         "campaign": "recordings of a virtual robot",
         "version": env!("CARGO_PKG_VERSION"),

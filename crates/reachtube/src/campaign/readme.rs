@@ -46,8 +46,8 @@ takes all suites.
 Computed-torque control with the nominal model drives the arm along the motion, with its joints at
 the nominal temperature, and the input u is recorded: the torque without compensated gravity and
 Coulomb friction. Each run follows the motion closed loop to the suite's starting point and goes on
-open loop from there: it applies the recorded u, and the controller adds gravity and Coulomb
-friction of the nominal model. Run 1 of a suite is cold. The joints warm up by friction work and
+open loop from there: it applies the recorded u, and the controller adds the nominal model's gravity
+at the measured position and Coulomb friction at the planned velocity. Run 1 of a suite is cold. The joints warm up by friction work and
 cool in the pause between two runs.
 
 ## Columns and numbers

@@ -51,11 +51,12 @@ impl<'a> Arm<'a> {
         })
     }
 
-    /// Applies `inputs` \[N m\] open loop, row-major cycles x n.
-    pub fn open_loop(&mut self, inputs: &[f64]) -> Recording {
+    /// Applies `inputs` \[N m\] open loop, row-major cycles x n. `planned` takes the number of the
+    /// cycle and returns the planned velocities \[rad/s\], n.
+    pub fn open_loop(&mut self, inputs: &[f64], planned: impl Fn(usize) -> Vec<f64>) -> Recording {
         let n = self.plant.q.len();
         self.record(inputs.len() / n, Logged::Input, |controller, sensors, k| {
-            controller.open_loop(&sensors.q, &sensors.qd, &inputs[k * n..(k + 1) * n]);
+            controller.open_loop(&sensors.q, &planned(k), &inputs[k * n..(k + 1) * n]);
         })
     }
 

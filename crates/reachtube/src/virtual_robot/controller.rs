@@ -72,23 +72,24 @@ impl<'a> Controller<'a> {
         self.command(&plan.qd);
     }
 
-    /// Commands an input \[N m\] with gravity and Coulomb friction at measured q \[rad\] and q̇
-    /// \[rad/s\].
-    pub fn open_loop(&mut self, q: &[f64], qd: &[f64], input: &[f64]) {
+    /// Commands an input \[N m\] with gravity at measured q \[rad\], and with Coulomb friction at
+    /// the planned velocity \[rad/s\].
+    pub fn open_loop(&mut self, q: &[f64], planned: &[f64], input: &[f64]) {
         self.input.copy_from_slice(input);
         sin_cos(self.nominal.joints(), q, &mut self.sin, &mut self.cos);
         self.nominal.gravity(&self.sin, &self.cos, &mut self.ws, &mut self.gravity);
-        self.command(qd);
+        self.command(planned);
     }
 
-    /// Adds the nominal gravity, and the nominal Coulomb friction at a velocity \[rad/s\], to the
-    /// input.
-    fn command(&mut self, velocity: &[f64]) {
+    /// Adds the nominal gravity, and the nominal Coulomb friction at the planned velocity
+    /// \[rad/s\], to the input. At the measured velocity, compensation would let a joint that
+    /// sticks stay where it is.
+    fn command(&mut self, planned: &[f64]) {
         let delay = 2 + self.parameters.delay_cycles as usize;
         let recycled = if self.commands.len() < delay { None } else { self.commands.pop_front() };
         let mut command = recycled.unwrap_or_else(|| vec![0.0; self.input.len()]);
         for (i, joint) in self.nominal.joints().iter().enumerate() {
-            let [load, qd] = [self.gravity[i], velocity[i]];
+            let [load, qd] = [self.gravity[i], planned[i]];
             let smooth = tanh(qd.abs() / self.parameters.compensation_speed);
             let coulomb = joint.friction.coulomb.torque(load, qd) * smooth;
             command[i] = rounded(self.input[i] + load + coulomb, TORQUE_DECIMALS);

@@ -1,5 +1,6 @@
 //! Friction of a joint of the virtual robot.
 
+use reachtube_robot::Joint;
 use reachtube_robot::friction::Friction;
 
 use super::elementary::exp;
@@ -8,14 +9,17 @@ use super::elementary::exp;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct JointFriction {
     law: Friction,
+    /// Speed up to which the cubic of viscous friction holds \[rad/s\].
+    limit: f64,
     /// Factors of Coulomb and viscous friction at the temperature \[-\].
     factors: [f64; 2],
 }
 
 impl JointFriction {
     /// Returns the friction at the law's reference temperature.
-    pub fn new(law: Friction) -> Self {
-        Self { law, factors: [1.0; 2] }
+    pub fn new(joint: &Joint) -> Self {
+        let limit = joint.velocity_limit.unwrap_or(f64::INFINITY);
+        Self { law: joint.friction, limit, factors: [1.0; 2] }
     }
 
     /// Takes over the temperature of the joint \[°C\].
@@ -39,7 +43,11 @@ impl JointFriction {
     }
 
     /// Returns viscous friction \[N m\] at a velocity \[rad/s\].
+    ///
+    /// Beyond the joint's speed limit, where its cubic was not identified, it goes on along the
+    /// tangent: a cubic that falls at last would drive the joint.
     pub fn viscous(&self, qd: f64) -> f64 {
-        self.factors[1] * self.law.viscous.torque(&qd)
+        let (law, inside) = (&self.law.viscous, qd.clamp(-self.limit, self.limit));
+        self.factors[1] * (law.torque(&inside) + law.slope(&inside) * (qd - inside))
     }
 }

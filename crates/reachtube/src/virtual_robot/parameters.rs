@@ -38,10 +38,10 @@ pub struct VirtualRobotParameters {
     /// Temperature of the surroundings, and of a cold arm \[°C\]. Default 22.
     pub ambient_temperature: f64,
     /// Heat capacity of what warms up at a joint, over its nominal friction torque at 1 rad/s
-    /// \[J/(K N m)\]. Default 0.7: the gear and its lubricant, not the housing, so that a run
+    /// \[J/(K N m)\]. Default 1: the gear and its lubricant, not the housing, so that a run
     /// warms a joint by some kelvin, as the drift of the real recordings suggests.
     pub heat_capacity: f64,
-    /// Time constant with which a joint cools \[s\]. Default 100.
+    /// Time constant with which a joint cools \[s\]. Default 80.
     pub cooling_time: f64,
     /// Pause between two runs, after the arm has moved back \[s\]. Default 10.
     pub pause: f64,
@@ -56,8 +56,8 @@ pub struct VirtualRobotParameters {
     /// Time from a measurement until its torque acts, in controller cycles \[-\], whole or not.
     /// Default 1: the torque of one cycle acts from the start of the next.
     pub delay_cycles: f64,
-    /// Speed at which the compensation of Coulomb friction reaches tanh(1) of its value \[rad/s\].
-    /// Default 0.015: it must be above the noise of the velocity.
+    /// Planned speed at which the compensation of Coulomb friction reaches tanh(1) of its value
+    /// \[rad/s\]. Default 0.015: below it, joints that turn or come to rest stick.
     pub compensation_speed: f64,
     /// Natural frequency of the position error under computed-torque control \[rad/s\]. Default
     /// 15: stable with the default delay and filter.
@@ -85,8 +85,8 @@ impl Default for VirtualRobotParameters {
             coulomb_rate: 0.006,
             viscous_rate: 0.012,
             ambient_temperature: 22.0,
-            heat_capacity: 0.7,
-            cooling_time: 100.0,
+            heat_capacity: 1.0,
+            cooling_time: 80.0,
             pause: 10.0,
             ripple_ratio: 0.05,
             encoder_step: std::f64::consts::TAU / 131_072.0,

@@ -62,7 +62,7 @@ impl<'a> Plant<'a> {
     /// Returns the arm at rest at `q` \[rad\] with its joints at `temperatures` \[°C\].
     pub fn at_rest(robot: &'a VirtualRobot, q: &[f64], temperatures: &[f64]) -> Self {
         let (truth, zeros) = (robot.truth(), vec![0.0; q.len()]);
-        let friction = truth.joints().iter().map(|joint| JointFriction::new(joint.friction));
+        let friction = truth.joints().iter().map(JointFriction::new);
         let mut plant = Self {
             parameters: robot.parameters(),
             robot: truth,

@@ -96,7 +96,8 @@ pub(crate) fn record_suite(
             scatter.displace(&mut plan, t, begin);
             plan
         });
-        let run = arm.open_loop(inputs);
+        let planned = |k: usize| motion.at((suite.first + k) as f64 * SAMPLE_TIME).qd;
+        let run = arm.open_loop(inputs, planned);
         if !run.is_finite() {
             let (recording, robot) = (suite.name.clone(), robot.nominal().name().into());
             return Err(VirtualRobotError::Diverged { recording, robot }.into());

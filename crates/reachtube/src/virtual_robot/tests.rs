@@ -132,12 +132,12 @@ fn friction_work_heats_and_rest_cools() {
     let (way, speed) = (plant.q[5] - POSE[5], plant.qd[5]);
     let work = 4.0 * way - 0.5 * 0.643 * speed * speed;
     plant.warm_up(1.0);
-    let heat = 0.7 * (2.33 + 3.53) * (plant.temperatures[5] - 32.0);
+    let heat = (2.33 + 3.53) * (plant.temperatures[5] - 32.0);
     assert!(way > 0.1 && (heat / work - 1.0).abs() < 0.05, "{heat} J of {work} J");
 
     let robot = VirtualRobot::new(&Robot::lwa4p(), defaults()).unwrap();
     let mut plant = Plant::at_rest(&robot, &POSE, &[42.0; 6]);
-    (0..10_000).for_each(|_| plant.warm_up(0.01));
+    (0..8_000).for_each(|_| plant.warm_up(0.01));
     let expected = 22.0 + 20.0 * (-1.0f64).exp();
     assert!((plant.temperatures[0] - expected).abs() < 0.01, "{:?}", plant.temperatures);
 }
@@ -182,7 +182,8 @@ fn the_delay_delays_by_the_stated_time() {
             ..VirtualRobotParameters::ideal()
         });
         let mut arm = Arm::at_rest(&robot, &[0.0; 6], &[32.0; 6]);
-        let recorded = arm.open_loop(&[[0.0, 0.0, 0.0, 0.0, 0.0, 9.0]; 60].concat());
+        let recorded =
+            arm.open_loop(&[[0.0, 0.0, 0.0, 0.0, 0.0, 9.0]; 60].concat(), |_| vec![0.0; 6]);
         // Position follows (τ - τ_c) t² / (2 J) soon after the step.
         let samples: Vec<f64> = recorded.q.iter().skip(5).step_by(6).copied().collect();
         let k = samples.iter().position(|q| *q > 2e-3).unwrap();
