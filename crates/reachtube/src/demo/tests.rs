@@ -119,7 +119,8 @@ fn runs_drift_apart_with_the_order_of_recording() {
         };
         let monotone = (0..6).map(ends).filter(|q| q.is_sorted() || q.iter().rev().is_sorted());
         let spread = monotone.map(|q| (q[4] - q[0]).abs()).fold(0.0, f64::max);
-        assert!((0.03..1.0).contains(&spread), "{spread} rad");
+        // Starts differ by 0.003 rad at most.
+        assert!((0.01..1.0).contains(&spread), "{spread} rad");
     }
 }
 

@@ -26,6 +26,13 @@ fn motion(seed: u64) -> Motion {
     Motion::random(&Robot::lwa4p(), 2.0, &mut SplitMix64::seed_from_u64(seed))
 }
 
+/// Returns a torque \[N m\] that moves each joint forward from `POSE`.
+fn pushing(robot: &VirtualRobot) -> Vec<f64> {
+    let truth = robot.truth();
+    let holding = truth.gravity_torque(&POSE) + truth.coulomb_torque(&POSE, &[1.0; 6]);
+    holding.iter().map(|torque| torque + 3.0).collect()
+}
+
 fn suite(robot: &VirtualRobot, motion: &Motion, seed: u64) -> Vec<Recording> {
     let mut random = SplitMix64::seed_from_u64(seed);
     let scatter = (0..4).map(|_| Scatter::random(robot, &mut random)).collect();
@@ -53,8 +60,7 @@ fn a_moving_joint_comes_to_rest_without_chatter() {
     let robot = robot(VirtualRobotParameters { ripple_ratio: 0.0, ..defaults() });
     let mut plant = Plant::at_rest(&robot, &POSE, &[32.0; 6]);
     let gravity = robot.truth().gravity_torque(&POSE);
-    let mut push: Vec<f64> = gravity.iter().map(|g| g + 9.0).collect();
-    (push[4], push[5]) = (gravity[4] + 4.0, gravity[5] + 4.0);
+    let push = pushing(&robot);
     plant.advance(&push, 0.2);
     assert!(plant.qd.iter().all(|qd| *qd > 0.02), "{:?} rad/s", plant.qd);
     let mut forward = true;
@@ -70,14 +76,15 @@ fn a_moving_joint_comes_to_rest_without_chatter() {
 fn a_motion_without_reversal_is_that_of_the_true_robot() {
     let robot =
         robot(VirtualRobotParameters { breakaway_ratio: 0.0, ..VirtualRobotParameters::ideal() });
-    let torque: Vec<f64> = robot.truth().gravity_torque(&POSE).iter().map(|g| g + 14.0).collect();
+    let torque = pushing(&robot);
     let mut plant = Plant::at_rest(&robot, &POSE, &[32.0; 6]);
     plant.advance(&torque, 0.1);
     let mut x = [&plant.q[..], &plant.qd[..]].concat();
     plant.advance(&torque, 0.4);
     let mut field = RobotField::new(robot.truth(), DrivenBy::Motor);
     let fine = Tolerance { relative: 1e-10, absolute: 1e-10 };
-    DormandPrince::new(12, fine).integrate(&mut field, [0.0, 0.4], &mut x, &torque);
+    let mut method = DormandPrince::new(12, fine);
+    assert!(method.integrate(&mut field, [0.0, 0.4], &mut x, &torque).is_reached());
     for i in 0..6 {
         let off = [plant.q[i] - x[i], plant.qd[i] - x[6 + i]];
         assert!(off.iter().all(|off| off.abs() < 2e-4), "joint {}: {off:?}", i + 1);
@@ -168,7 +175,11 @@ fn links_and_motors_have_their_ratios() {
     let robot = robot(parameters);
     let (truth, nominal) = (robot.truth(), robot.nominal());
     let gravity = truth.gravity_torque(&POSE) - nominal.gravity_torque(&POSE) * 1.02;
-    assert!(gravity.amax() < 1e-12);
+    assert!(gravity.amax() < 1e-7, "{gravity} N m");
+    // One set of bodies: the gravity torque is that of the inertial parameters.
+    assert!(truth.description().joints.iter().all(|joint| joint.gravity_moments.is_none()));
+    let mass = truth.mass_matrix(&POSE) - nominal.mass_matrix(&POSE);
+    assert!(mass.amax() < 0.12 && mass.amax() > 0.03, "{mass} kg m²");
     assert!((truth.joints()[2].armature - 1.03 * 1.78).abs() < 1e-12);
 }
 

@@ -1,7 +1,10 @@
 //! The true robot behind the recordings.
 
 use reachtube_robot::friction::{Stribeck, Warming, WarmingBy};
-use reachtube_robot::{JointDescription, Robot, RobotDescription};
+use reachtube_robot::{
+    BaseParameters, InertiaPoint, JointDescription, Parameter, ParameterKind, Robot,
+    RobotDescription,
+};
 
 use super::parameters::VirtualRobotParameters;
 use crate::error::Result;
@@ -82,26 +85,43 @@ fn unloaded(coulomb: &[f64; 8]) -> f64 {
 
 fn true_description(nominal: &Robot, parameters: &VirtualRobotParameters) -> RobotDescription {
     let mut description = nominal.description().clone();
-    description.joints.iter_mut().for_each(|joint| change_joint(joint, parameters));
-    let inertial = nominal.inertial_parameters();
-    if let Some((joint, own)) = description.joints.last_mut().zip(inertial.chunks_exact(10).last())
-    {
-        let own: Vec<f64> = own.iter().map(|x| x * parameters.link_ratio).collect();
-        add_payload(joint, &own, parameters);
+    let mut inertial = united_moments(nominal);
+    inertial.iter_mut().for_each(|x| *x *= parameters.link_ratio);
+    if let Some(last) = inertial.chunks_exact_mut(10).last() {
+        add_payload(last, parameters);
+    }
+    for (joint, inertial) in description.joints.iter_mut().zip(inertial.chunks_exact(10)) {
+        change_drive(joint, parameters);
+        set_inertial(joint, inertial);
     }
     description
 }
 
-/// Changes the weight of a link, its motor and its friction.
-fn change_joint(joint: &mut JointDescription, parameters: &VirtualRobotParameters) {
-    let ratio = parameters.link_ratio;
-    joint.mass *= ratio;
-    joint.inertia = joint.inertia.map(|i| i * ratio);
-    joint.first_moment = joint.first_moment.map(|h| h.map(|x| x * ratio));
-    if let Some(gravity) = &mut joint.gravity_moments {
-        gravity.mass *= ratio;
-        gravity.first_moment = gravity.first_moment.map(|x| x * ratio);
+/// Returns the ten inertial parameters of each link: those of the nominal robot, or, where gravity
+/// has mass moments of its own, the nearest that show its gravity torque. The true links are
+/// bodies, for which gravity and inertia cannot differ.
+fn united_moments(nominal: &Robot) -> Vec<f64> {
+    let columns = Parameter::of_joints(nominal.joint_count(), &ParameterKind::INERTIAL);
+    let inertial = nominal.parameter_values(&columns);
+    let joints = &nominal.description().joints;
+    if joints.iter().all(|joint| joint.gravity_moments.is_none()) {
+        return inertial;
     }
+    let mut gravity = inertial.clone();
+    for (values, joint) in gravity.chunks_exact_mut(10).zip(joints) {
+        if let Some(moments) = joint.gravity_moments {
+            values[0] = moments.mass;
+            values[1..4].copy_from_slice(&moments.first_moment);
+        }
+    }
+    let base = BaseParameters::at_rest(nominal, &columns);
+    let united = base.lift_near(base.reduce(&gravity).as_slice(), &inertial);
+    // The base is computed with functions of the platform, whose last bits differ.
+    united.iter().map(|x| (x * 1e9).round() / 1e9).collect()
+}
+
+/// Changes the motor and the friction of a joint.
+fn change_drive(joint: &mut JointDescription, parameters: &VirtualRobotParameters) {
     joint.armature = joint.armature.map(|a| a * parameters.motor_ratio);
     joint.rotor_inertia = joint.rotor_inertia.map(|i| i * parameters.motor_ratio);
     let excess = parameters.breakaway_ratio * unloaded(&joint.friction.coulomb);
@@ -116,29 +136,20 @@ fn change_joint(joint: &mut JointDescription, parameters: &VirtualRobotParameter
     joint.friction.standard_errors = None;
 }
 
-/// Adds the payload as a point mass to a link with the inertial parameters `own`: m, m c, and ixx,
-/// ixy, iyy, ixz, iyz, izz about the origin of its frame.
-fn add_payload(joint: &mut JointDescription, own: &[f64], parameters: &VirtualRobotParameters) {
-    let (mass, p) = (parameters.payload_mass, parameters.payload_position);
-    if mass == 0.0 {
-        return;
-    }
-    let [x, y, z] = p;
-    let moment = |i: usize| mass * p[i];
-    let first = [own[1] + moment(0), own[2] + moment(1), own[3] + moment(2)];
-    (joint.com, joint.first_moment) = (None, Some(first));
-    joint.mass = own[0] + mass;
-    joint.about = reachtube_robot::InertiaPoint::Origin;
-    joint.inertia = [
-        own[4] + mass * (y * y + z * z),
-        own[5] - mass * x * y,
-        own[7] - mass * x * z,
-        own[6] + mass * (x * x + z * z),
-        own[8] - mass * y * z,
-        own[9] + mass * (x * x + y * y),
-    ];
-    if let Some(gravity) = &mut joint.gravity_moments {
-        gravity.mass += mass;
-        gravity.first_moment = std::array::from_fn(|i| gravity.first_moment[i] + moment(i));
-    }
+/// Adds the payload as a point mass to the parameters of a link: m, m c, and ixx, ixy, iyy, ixz,
+/// iyz, izz about the origin of its frame.
+fn add_payload(link: &mut [f64], parameters: &VirtualRobotParameters) {
+    let (mass, [x, y, z]) = (parameters.payload_mass, parameters.payload_position);
+    let squares = [y * y + z * z, -x * y, x * x + z * z, -x * z, -y * z, x * x + y * y];
+    let payload = [1.0, x, y, z].into_iter().chain(squares);
+    link.iter_mut().zip(payload).for_each(|(own, more)| *own += mass * more);
+}
+
+/// Gives a link its parameters, for gravity as well.
+fn set_inertial(joint: &mut JointDescription, p: &[f64]) {
+    joint.mass = p[0];
+    (joint.com, joint.first_moment) = (None, Some([p[1], p[2], p[3]]));
+    joint.inertia = [p[4], p[5], p[7], p[6], p[8], p[9]];
+    joint.about = InertiaPoint::Origin;
+    joint.gravity_moments = None;
 }
