@@ -122,7 +122,8 @@ mod tests {
             let robot = Robot::lwa4p();
             let motion = Motion::uniform(&robot, &mut SplitMix64::seed_from_u64(seed));
             prop_assert_eq!(motion.cycles() as f64 * SAMPLE_TIME, motion.duration);
-            let peak = motion.at(0.5 * motion.duration).qd.iter().fold(0.0f64, |v, x| v.max(x.abs()));
+            let middle = motion.at(0.5 * motion.duration);
+            let peak = middle.qd.iter().fold(0.0f64, |peak, qd| peak.max(qd.abs()));
             prop_assert!((0.49..=1.0).contains(&peak), "{peak} rad/s");
             for (start, travel) in motion.start.iter().zip(&motion.travel) {
                 let half = 0.4 * std::f64::consts::PI + 1e-12;

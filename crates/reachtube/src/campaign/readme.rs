@@ -39,7 +39,8 @@ temperature; a real robot has no such file. `{MARK}` holds the options.
     reachtube conform --robot lwa4p --data . --torque compensated --out model.json --report report
 
 `--robot lwa4p` is the nominal model that the arm's controller has. Without `--suites`, `conform`
-takes all suites.
+takes all suites. With `--robot truth.toml`, `identify` prints the true combinations beside those
+that it finds, as those in the description.
 
 ## How a suite is recorded
 
@@ -47,8 +48,8 @@ Computed-torque control with the nominal model drives the arm along the motion, 
 the nominal temperature, and the input u is recorded: the torque without compensated gravity and
 Coulomb friction. Each run follows the motion closed loop to the suite's starting point and goes on
 open loop from there: it applies the recorded u, and the controller adds the nominal model's gravity
-at the measured position and Coulomb friction at the planned velocity. Run 1 of a suite is cold. The joints warm up by friction work and
-cool in the pause between two runs.
+at the measured position and Coulomb friction at the planned velocity. Run 1 of a suite is cold. The
+joints warm up by friction work and cool in the pause between two runs.
 
 ## Columns and numbers
 

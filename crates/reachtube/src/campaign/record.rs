@@ -43,8 +43,8 @@ pub struct RecordedCampaign {
 ///
 /// - [`CampaignError`](super::CampaignError) for options out of range, and for a folder with files
 ///   that this campaign has not written.
-/// - [`VirtualRobotError`](crate::virtual_robot::VirtualRobotError) for parameters out of range, and
-///   where the simulation diverges.
+/// - [`VirtualRobotError`](crate::virtual_robot::VirtualRobotError) for parameters out of range,
+///   and where the simulation diverges.
 ///
 /// # Examples
 ///

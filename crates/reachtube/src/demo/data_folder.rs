@@ -85,8 +85,9 @@ Do not take them for measurements of a robot.
 The input of each suite was recorded while computed-torque control with the nominal model drove the
 arm along a point-to-point motion. Each run follows the motion closed loop to the suite's starting
 point and goes on open loop from there: the controller applies the recorded input, and adds the
-nominal model's gravity at the measured position and Coulomb friction at the planned velocity. All runs of a suite have the same input. Run 1 of each
-suite is cold; the joints warm up from run to run.
+nominal model's gravity at the measured position and Coulomb friction at the planned velocity. All
+runs of a suite have the same input. Run 1 of each suite is cold; the joints warm up from run to
+run.
 
 Columns: `t` s, `q` rad, `qd` rad/s, `tau` N m, `temp` °C. `tau` is the input u, without gravity and
 Coulomb friction: read it with `--torque compensated`. In `runs.csv` the column `use` marks the
