@@ -63,14 +63,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let pages = [args.out.join("report"), args.out.join("held-out")];
     output::claim(&path)?;
     output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
-    let options = DemoOptions {
-        seed: args.seed,
-        motions: 14,
-        calibration_motions: 7,
-        runs: 5,
-        robot: args.robot.parameters()?,
-        ..DemoOptions::default()
-    };
+    let options = options(args)?;
     let bar = Progress::new();
     let recorded = record(&robot, &options, &folder)?;
     drop(bar);
@@ -118,6 +111,17 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print(&text)?;
     }
     Ok(Outcome::of(model.verified))
+}
+
+fn options(args: &Arguments) -> Result<DemoOptions> {
+    Ok(DemoOptions {
+        seed: args.seed,
+        motions: 14,
+        calibration_motions: 7,
+        runs: 5,
+        robot: args.robot.parameters()?,
+        ..DemoOptions::default()
+    })
 }
 
 /// Checks the model on the suites held out and writes a report page about them.

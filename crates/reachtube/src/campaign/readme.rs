@@ -6,6 +6,18 @@ use super::folder::MARK;
 use super::options::CampaignOptions;
 use crate::virtual_robot::VirtualRobot;
 
+/// How a suite is recorded.
+const HOW: &str = "\
+## How a suite is recorded
+
+Computed-torque control with the nominal model drives the arm along the motion, with its joints at
+the nominal temperature, and the input u is recorded: the torque without compensated gravity and
+Coulomb friction. Each run follows the motion closed loop to the suite's starting point and goes on
+open loop from there: it applies the recorded u, and the controller adds the nominal model's gravity
+at the measured position and Coulomb friction at the planned velocity. Run 1 of a suite is cold. The
+joints warm up by friction work and cool in the pause between two runs.
+";
+
 /// Returns the README: what each file is, and what to type.
 pub(super) fn readme(robot: &VirtualRobot, options: &CampaignOptions) -> String {
     let CampaignOptions { seed, motions, start_points, runs, longest, poses, friction, .. } =
@@ -42,15 +54,7 @@ temperature; a real robot has no such file. `{MARK}` holds the options.
 takes all suites. With `--robot truth.toml`, `identify` prints the true combinations beside those
 that it finds, as those in the description.
 
-## How a suite is recorded
-
-Computed-torque control with the nominal model drives the arm along the motion, with its joints at
-the nominal temperature, and the input u is recorded: the torque without compensated gravity and
-Coulomb friction. Each run follows the motion closed loop to the suite's starting point and goes on
-open loop from there: it applies the recorded u, and the controller adds the nominal model's gravity
-at the measured position and Coulomb friction at the planned velocity. Run 1 of a suite is cold. The
-joints warm up by friction work and cool in the pause between two runs.
-
+{HOW}
 ## Columns and numbers
 
 `t` s, `q` rad, `qd` rad/s, `tau` N m, `temp` °C. Samples are 4 ms apart, 20 ms in `poses/`, where
