@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand};
 use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
-    r#abstract, check, completions, conform, demo, excite, identify, inspect, man, prepare, reach,
-    report,
+    r#abstract, campaign, check, completions, conform, demo, excite, identify, inspect, man,
+    prepare, reach, report,
 };
 use crate::error::Result;
 use crate::global::GlobalOptions;
@@ -33,6 +33,8 @@ const HELP: &str = "\
 Examples:
   reachtube demo --out demo
       run every step on a simulated arm
+  reachtube campaign --out campaign
+      record the paper's experiment on a virtual robot
   reachtube inspect --data recordings
       summarise a data set
   reachtube identify --robot arm.urdf --dynamic a.csv b.csv --validate c.csv --out arm.toml
@@ -55,6 +57,7 @@ Results go to standard output; notes, warnings and errors go to standard error."
 #[derive(Debug, Subcommand)]
 pub enum Command {
     Demo(demo::Arguments),
+    Campaign(campaign::Arguments),
     #[command(subcommand)]
     Robot(RobotCommand),
     Inspect(inspect::Arguments),
@@ -77,6 +80,7 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
     let json = cli.global.json;
     match &cli.command {
         Command::Demo(args) => demo::run(args, json),
+        Command::Campaign(args) => campaign::run(args, json),
         Command::Robot(RobotCommand::Show(args)) => robot::show(args, json),
         Command::Identify(args) => identify::run(args, json),
         Command::Inspect(args) => inspect::run(args, json),

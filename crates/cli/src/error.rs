@@ -197,6 +197,8 @@ fn kind(error: &reachtube::Error) -> &'static str {
         E::Identify(_) => "identify",
         E::Abstraction(_) | E::Conform(Conform::Abstraction(_)) => "abstraction",
         E::Conform(_) => "conform",
+        E::Campaign(_) => "campaign",
+        E::VirtualRobot(_) => "virtual-robot",
         E::Demo(_) => "demo",
         E::Reproduce(_) => "reproduce",
         E::Report(_) => "report",

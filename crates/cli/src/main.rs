@@ -16,6 +16,7 @@ mod report_files;
 mod settings_file;
 mod table;
 mod verdict;
+mod virtual_robot_arguments;
 
 use std::process::ExitCode;
 

@@ -23,6 +23,12 @@ pub enum Error {
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+    /// A virtual robot could not move.
+    #[error(transparent)]
+    VirtualRobot(#[from] crate::virtual_robot::error::VirtualRobotError),
+    /// A campaign could not be recorded.
+    #[error(transparent)]
+    Campaign(#[from] crate::campaign::error::CampaignError),
     /// A demo could not be recorded.
     #[error(transparent)]
     Demo(#[from] crate::demo::error::DemoError),

@@ -1,14 +1,17 @@
 #![doc = include_str!("../README.md")]
 
+pub mod campaign;
 pub mod demo;
 mod error;
 mod motion;
 pub mod number;
 mod random;
+mod random_motion;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod reproduce;
 pub mod units;
+pub mod virtual_robot;
 
 pub use error::{Error, Result};
 pub use reachtube_abstraction::{

@@ -31,6 +31,17 @@ pub(crate) struct Planned {
 }
 
 impl Motion {
+    /// Returns a motion of one joint by `travel` \[rad\], with the others at rest.
+    pub fn along(start: Vec<f64>, joint: usize, travel: f64, duration: f64) -> Self {
+        let travel = (0..start.len()).map(|i| if i == joint { travel } else { 0.0 }).collect();
+        Self { start, travel, duration }
+    }
+
+    /// Returns the number of whole cycles that the motion lasts.
+    pub fn cycles(&self) -> usize {
+        (self.duration / SAMPLE_TIME).round() as usize
+    }
+
     /// Returns the plan at time `t` \[s\]: q = start + s(t / T) travel with
     /// s(x) = 10 x³ - 15 x⁴ + 6 x⁵; at rest outside \[0, T\].
     pub fn at(&self, t: f64) -> Planned {

@@ -24,6 +24,7 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::report_files;
+use crate::virtual_robot_arguments::VirtualRobotArguments;
 
 /// What of the nominal model is fitted.
 const GROUPS: [Group; 2] = [Group::Viscous, Group::Coulomb];
@@ -49,6 +50,8 @@ pub struct Arguments {
     /// Seed of the random numbers; the same seed gives the same recordings
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    #[command(flatten)]
+    pub robot: VirtualRobotArguments,
 }
 
 /// Runs the demo. The outcome is the model's verdict on the recordings that it was made from;
@@ -60,13 +63,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let pages = [args.out.join("report"), args.out.join("held-out")];
     output::claim(&path)?;
     output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
-    let options = DemoOptions {
-        seed: args.seed,
-        motions: 14,
-        calibration_motions: 7,
-        runs: 5,
-        ..DemoOptions::default()
-    };
+    let options = options(args)?;
     let bar = Progress::new();
     let recorded = record(&robot, &options, &folder)?;
     drop(bar);
@@ -114,6 +111,17 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print(&text)?;
     }
     Ok(Outcome::of(model.verified))
+}
+
+fn options(args: &Arguments) -> Result<DemoOptions> {
+    Ok(DemoOptions {
+        seed: args.seed,
+        motions: 14,
+        calibration_motions: 7,
+        runs: 5,
+        robot: args.robot.parameters()?,
+        ..DemoOptions::default()
+    })
 }
 
 /// Checks the model on the suites held out and writes a report page about them.

@@ -1,6 +1,7 @@
 //! The commands: one module holds a command's arguments, its call and the text that it prints.
 
 pub mod r#abstract;
+pub mod campaign;
 pub mod check;
 pub mod completions;
 pub mod conform;

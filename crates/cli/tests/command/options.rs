@@ -8,6 +8,7 @@ fn help_has_examples_and_exit_codes() {
     for command in [
         "",
         "demo",
+        "campaign",
         "robot show",
         "inspect",
         "abstract",

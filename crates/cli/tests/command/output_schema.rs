@@ -62,6 +62,24 @@ fn a_demo_fits_the_schema() {
 }
 
 #[test]
+fn a_campaign_fits_the_schema() {
+    let lab = Lab::new();
+    lab.write("robot.toml", "payload_mass = 0.5\n");
+    let few = "--motions 1 --start-points 1 --runs 2 --longest 0.2 --poses 0 --friction 0 \
+               --excitation 0 --validation 0 --parameters robot.toml";
+    let campaign = format!("campaign --out out {few}");
+    fits("campaign", &lab.run(&format!("{campaign} --json")).exits(0).json());
+    assert!(lab.read("out/campaign.json").contains("\"payload_mass\": 0.5"));
+    let again = lab.run(&campaign).exits(0).stdout;
+    assert!(again.contains("2 of them by an earlier start"), "{again}");
+    fits("inspect", &lab.run("inspect --data out --json").exits(0).json());
+    lab.write("robot.toml", "payload = 0.5\n");
+    lab.run(&campaign).fails_with(&["robot.toml", "unknown field `payload`"]);
+    lab.write("robot.toml", "cooling_time = -1.0\n");
+    lab.run(&campaign).fails_with(&["cooling_time = -1 is outside"]);
+}
+
+#[test]
 fn refusals_and_errors_fit_the_schema() {
     let lab = Lab::new();
     lab.conform("--out model.json").exits(0);

@@ -87,6 +87,15 @@ fn a_demo_leaves_other_folders_alone() {
 }
 
 #[test]
+fn a_campaign_leaves_other_folders_alone() {
+    let lab = Lab::new();
+    std::fs::create_dir_all(lab.path("out")).unwrap();
+    lab.write("out/README.md", MINE);
+    lab.run("campaign --out out").fails_with(&["out", "no campaign has written", "empty folder"]);
+    assert_eq!(lab.read("out/README.md"), MINE);
+}
+
+#[test]
 fn an_exciting_motion_has_a_limit() {
     let lab = Lab::new();
     let excite = |more: &str| lab.run(&format!("excite --robot arm.toml --out e.csv {more}"));

@@ -1,7 +1,6 @@
 //! The folder of a recorded demo: runs, a README, and the index last, so that a folder that is not
 //! finished cannot be opened.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use reachtube_files::write::atomically;
@@ -9,10 +8,10 @@ use sha2::{Digest, Sha256};
 
 use super::error::DemoError;
 use super::options::DemoOptions;
-use super::plan::{RunPlan, SuitePlan};
-use super::unmodelled;
+use super::plan::SuitePlan;
 use crate::error::Result;
 use crate::motion::SAMPLE_TIME;
+use crate::virtual_robot::{Recording, VirtualRobot};
 
 /// First line of the README, which marks the folder of a demo.
 const TITLE: &str = "# Recordings of a virtual robot";
@@ -32,34 +31,32 @@ pub(super) fn refuse_foreign(folder: &Path) -> Result<(), DemoError> {
     }
 }
 
-/// Writes run `repeat` (from 1) of a suite, and returns its line of the index. `states` has the
-/// shape row-major K x 2n, \[rad\] and \[rad/s\].
-pub(super) fn write_run(
+/// Writes the runs of a suite, and returns their lines of the index.
+pub(super) fn write_suite(
     folder: &Path,
     suite: &SuitePlan,
-    repeat: usize,
-    run: &RunPlan,
-    states: &[f64],
-) -> Result<String> {
-    let n = run.q.len();
-    let text = run_text(n, states, &suite.inputs);
-    let file = format!("{0}/{0}_{repeat:02}.csv", suite.name);
-    atomically(&folder.join(&file), |out| out.write_all(text.as_bytes()))?;
-    let rows = suite.inputs.len() / n;
-    let duration = (rows - 1) as f64 * SAMPLE_TIME;
-    let temperature = run.temperatures.iter().sum::<f64>() / n as f64;
+    runs: &[Recording],
+) -> Result<Vec<String>> {
+    let (name, motion) = (&suite.runs.name, &suite.motion_name);
     let use_for = if suite.held_out { "check" } else { "training" };
-    let (name, motion, hash) = (&suite.name, &suite.motion, sha256(&text));
-    Ok(format!(
-        "{file},test_suite,{name},{motion},{use_for},{repeat},{rows},{duration:.3},\
-         {temperature:.2},{hash}\n"
-    ))
+    let write = |(repeat, run): (usize, &Recording)| {
+        let (text, rows) = (run.to_csv(SAMPLE_TIME, 1), run.len());
+        let file = format!("{name}/{name}_{repeat:02}.csv");
+        atomically(&folder.join(&file), |out| out.write_all(text.as_bytes()))?;
+        let duration = (rows - 1) as f64 * SAMPLE_TIME;
+        let (temperature, hash) = (run.first_temperature(), sha256(&text));
+        Ok(format!(
+            "{file},test_suite,{name},{motion},{use_for},{repeat},{rows},{duration:.3},\
+             {temperature:.2},{hash}\n"
+        ))
+    };
+    (1..).zip(runs).map(write).collect()
 }
 
 /// Writes README and index of a folder whose runs are complete.
 pub(super) fn write_index(
     folder: &Path,
-    robot: &str,
+    robot: &VirtualRobot,
     options: &DemoOptions,
     lines: &[String],
 ) -> Result<()> {
@@ -72,75 +69,56 @@ pub(super) fn write_index(
     Ok(())
 }
 
-/// Returns a run as CSV: time, then n positions, velocities and inputs per sample.
-fn run_text(n: usize, states: &[f64], inputs: &[f64]) -> String {
-    let mut text = String::from("t");
-    for column in ["q", "qd", "tau"] {
-        (1..=n).for_each(|joint| text += &format!(",{column}{joint}"));
-    }
-    text.push('\n');
-    for (k, (state, input)) in states.chunks_exact(2 * n).zip(inputs.chunks_exact(n)).enumerate() {
-        let _ = write!(text, "{:.3}", k as f64 * SAMPLE_TIME);
-        for x in state.iter().chain(input) {
-            let _ = write!(text, ",{x}");
-        }
-        text.push('\n');
-    }
-    text
-}
-
 fn sha256(text: &str) -> String {
     Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-fn readme(robot: &str, options: &DemoOptions) -> String {
-    let seed = options.seed;
-    let stribeck = match options.stribeck {
-        true => format!(
-            "- Dry friction rises by {:.0} % toward standstill, over {} rad/s.\n",
-            100.0 * unmodelled::STRIBECK_RATIO,
-            unmodelled::STRIBECK_SPEED
-        ),
-        false => String::new(),
-    };
+fn readme(robot: &VirtualRobot, options: &DemoOptions) -> String {
+    let (name, seed, parameters) = (robot.nominal().name(), options.seed, robot.parameters());
     let percent = |ratio: f64| 100.0 * ratio;
     format!(
         "{TITLE}
 
-These recordings are synthetic: `reachtube demo` simulated {robot} with seed {seed}.
+These recordings are synthetic: `reachtube demo` simulated {name} with seed {seed}.
 Do not take them for measurements of a robot.
 
-Each run is driven open loop by an input that was computed along a point-to-point motion from the
-nominal model. The controller adds gravity and Coulomb friction of the nominal model. All runs of a
-suite have the same input. Suites of one motion start at different points of it. Run 1 of each suite
-is cold; the joints warm up from run to run.
+The input of each suite was recorded while computed-torque control with the nominal model drove the
+arm along a point-to-point motion. Each run follows the motion closed loop to the suite's starting
+point and goes on open loop from there: the controller applies the recorded input, and adds the
+nominal model's gravity at the measured position and Coulomb friction at the planned velocity. All
+runs of a suite have the same input. Run 1 of each suite is cold; the joints warm up from run to
+run.
 
-Columns: `t` s, `q` rad, `qd` rad/s, `tau` N m. `tau` is the input u, without gravity and Coulomb
-friction: read it with `--torque compensated`. In `runs.csv` the column `use` marks the suites for
-`reachtube check`, and `temperature` is the mean over the joints when the run begins, in °C.
+Columns: `t` s, `q` rad, `qd` rad/s, `tau` N m, `temp` °C. `tau` is the input u, without gravity and
+Coulomb friction: read it with `--torque compensated`. In `runs.csv` the column `use` marks the
+suites for `reachtube check`, and `temperature` is the mean over the joints when the run begins.
 
 The nominal model does not contain these effects:
 
 - Friction falls with temperature: Coulomb {coulomb:.1} %/K, viscous {viscous:.1} %/K, nominal at
-  {reference} °C. A joint warms by {warming} K per rad of motion, from {cold} °C.
-- Joints stick: the compensation of Coulomb friction rises more slowly with speed than the friction.
-{stribeck}- The motor torque has a ripple of {ripple:.0} %, with a period of one motor turn.
-- Links are {links:.0} % and motors {motors:.0} % heavier than nominal.
+  {reference} °C. Friction work warms the joints from {cold} °C.
+- Joints stick, and dry friction is {breakaway:.0} % higher at standstill (Stribeck effect).
+- The motor torque has a ripple of {ripple:.0} %, with a period of one motor turn.
+- Links are {links:.0} % and motors {motors:.0} % heavier than nominal, and the last link carries
+  {payload} kg.
 - Starts are scattered by ±{scatter_q} rad and ±{scatter_qd} rad/s.
 - Positions come from encoders with steps of {step:.2e} rad. Velocities are their differences after
   a low-pass filter with a time constant of {filter} s.
+- A torque acts {delay} cycles of 4 ms after the measurement that it answers.
 ",
-        coulomb = percent(unmodelled::COULOMB_PER_KELVIN),
-        viscous = percent(unmodelled::VISCOUS_PER_KELVIN),
-        reference = unmodelled::NOMINAL_TEMPERATURE,
-        warming = unmodelled::WARMING,
-        cold = unmodelled::COLD_TEMPERATURE,
-        ripple = percent(unmodelled::RIPPLE_RATIO),
-        links = percent(unmodelled::LINK_RATIO - 1.0),
-        motors = percent(unmodelled::MOTOR_RATIO - 1.0),
-        scatter_q = unmodelled::POSITION_SCATTER,
-        scatter_qd = unmodelled::VELOCITY_SCATTER,
-        step = unmodelled::ENCODER_STEP,
-        filter = unmodelled::VELOCITY_FILTER_TIME,
+        coulomb = percent(parameters.coulomb_rate),
+        viscous = percent(parameters.viscous_rate),
+        reference = parameters.nominal_temperature,
+        cold = parameters.ambient_temperature,
+        breakaway = percent(parameters.breakaway_ratio),
+        ripple = percent(parameters.ripple_ratio),
+        links = percent(parameters.link_ratio - 1.0),
+        motors = percent(parameters.motor_ratio - 1.0),
+        payload = parameters.payload_mass,
+        scatter_q = parameters.position_scatter,
+        scatter_qd = parameters.velocity_scatter,
+        step = parameters.encoder_step,
+        filter = parameters.velocity_filter_time,
+        delay = parameters.delay_cycles,
     )
 }

@@ -48,15 +48,4 @@ pub enum DemoError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The simulation diverged.
-    #[error(
-        "demo: the simulation of suite {suite} of {robot} diverged; the robot's inertias are too \
-         small for the demo's friction, or not physical: use lwa4p"
-    )]
-    Diverged {
-        /// The suite.
-        suite: String,
-        /// The robot's name.
-        robot: String,
-    },
 }

@@ -1,6 +1,7 @@
 //! The options of a demo.
 
 use super::error::DemoError;
+use crate::virtual_robot::VirtualRobotParameters;
 
 /// Largest number of suites per motion, which are named by letters.
 const MOST_START_POINTS: usize = 26;
@@ -25,9 +26,8 @@ pub struct DemoOptions {
     pub runs: usize,
     /// Duration of a motion \[s\]. Suites last 0.9 of it, or less where they start later.
     pub duration: f64,
-    /// Whether dry friction rises toward standstill (Stribeck effect), which the nominal model does
-    /// not contain.
-    pub stribeck: bool,
+    /// The virtual robot.
+    pub robot: VirtualRobotParameters,
 }
 
 impl Default for DemoOptions {
@@ -41,7 +41,7 @@ impl Default for DemoOptions {
             start_points: 2,
             runs: 8,
             duration: 3.0,
-            stribeck: false,
+            robot: VirtualRobotParameters::default(),
         }
     }
 }

@@ -6,11 +6,10 @@ use rayon::prelude::*;
 use reachtube_robot::Robot;
 
 use super::data_folder;
-use super::error::DemoError;
 use super::options::DemoOptions;
-use super::plan::{self, RunPlan, SuitePlan};
-use super::virtual_robot::VirtualRobot;
+use super::plan::{self, SuitePlan};
 use crate::error::Result;
+use crate::virtual_robot::{PreRecorded, VirtualRobot, record_suite};
 
 /// The recorded suites by name, in the order of the index.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,9 +33,10 @@ pub struct RecordedDemo {
 ///
 /// # Errors
 ///
-/// Fails with [`DemoError`] for options that record nothing, for a folder with recordings that no
-/// demo has written, and for a robot whose simulation diverges. Fails also where a file cannot be
-/// written.
+/// Fails with [`DemoError`](super::DemoError) for options that record nothing and for a folder with
+/// recordings that no demo has written, and with
+/// [`VirtualRobotError`](crate::virtual_robot::VirtualRobotError) for parameters out of range and
+/// for a robot whose simulation diverges. Fails also where a file cannot be written.
 ///
 /// # Examples
 ///
@@ -56,50 +56,32 @@ pub struct RecordedDemo {
 /// ```
 pub fn record(robot: &Robot, options: &DemoOptions, folder: &Path) -> Result<RecordedDemo> {
     options.validate()?;
+    let robot = VirtualRobot::new(robot, options.robot.clone())?;
     data_folder::refuse_foreign(folder)?;
     // Everything random is drawn here, so the order of simulation does not matter.
-    let suites = plan::suites(robot, options);
-    // Simulation and files of the runs.
-    let runs: Vec<(&SuitePlan, usize)> = suites
-        .iter()
-        .flat_map(|suite| (0..suite.runs.len()).map(move |run| (suite, run)))
-        .collect();
-    let lines = runs
+    let suites = plan::suites(&robot, options);
+    // Simulation and files of the suites.
+    let lines = suites
         .par_iter()
-        .map(|&(suite, index)| {
-            let run = &suite.runs[index];
-            let states = simulate(robot, suite, run, options)?;
-            data_folder::write_run(folder, suite, index + 1, run, &states)
+        .map(|suite| {
+            let recorded = PreRecorded::new(&robot, &suite.motion);
+            let runs = record_suite(&robot, &suite.motion, &recorded, &suite.runs)?;
+            data_folder::write_suite(folder, suite, &runs)
         })
-        .collect::<Result<Vec<_>>>()?;
+        .collect::<Result<Vec<_>>>()?
+        .concat();
     // The index comes last, so a folder that is not finished cannot be opened.
-    data_folder::write_index(folder, robot.name(), options, &lines)?;
+    data_folder::write_index(folder, &robot, options, &lines)?;
     let (check, training): (Vec<_>, Vec<_>) = suites.iter().partition(|suite| suite.held_out);
-    let names = |suites: Vec<&SuitePlan>| suites.iter().map(|suite| suite.name.clone()).collect();
+    let names =
+        |suites: Vec<&SuitePlan>| suites.iter().map(|suite| suite.runs.name.clone()).collect();
     let calibrate = suites.iter().filter(|suite| suite.calibrates);
-    let mut calibration: Vec<String> = calibrate.map(|suite| suite.motion.clone()).collect();
+    let mut calibration: Vec<String> = calibrate.map(|suite| suite.motion_name.clone()).collect();
     calibration.dedup();
     Ok(RecordedDemo {
         calibration,
         training: names(training),
         check: names(check),
-        runs: runs.len(),
+        runs: lines.len(),
     })
-}
-
-/// Simulates a run and returns what the sensors record, row-major K x 2n, \[rad\] and \[rad/s\].
-pub(super) fn simulate(
-    robot: &Robot,
-    suite: &SuitePlan,
-    run: &RunPlan,
-    options: &DemoOptions,
-) -> Result<Vec<f64>> {
-    let plain = VirtualRobot::new(robot, &run.temperatures)?;
-    let virtual_robot = if options.stribeck { plain.with_stribeck() } else { plain };
-    let states = virtual_robot.run(run.q.clone(), run.qd.clone(), &suite.inputs);
-    if states.iter().all(|x| x.is_finite()) {
-        return Ok(states);
-    }
-    let (suite, robot) = (suite.name.clone(), robot.name().to_string());
-    Err(DemoError::Diverged { suite, robot }.into())
 }

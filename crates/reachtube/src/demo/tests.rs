@@ -3,13 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use proptest::prelude::*;
-
 use super::options::DemoOptions;
-use super::plan;
-use super::record::{RecordedDemo, record, simulate};
-use super::unmodelled::{ENCODER_STEP, POSITION_SCATTER, VELOCITY_SCATTER};
-use crate::motion::SAMPLE_TIME;
+use super::record::{RecordedDemo, record};
+use crate::virtual_robot::VirtualRobotParameters;
 use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
 use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
@@ -72,7 +68,8 @@ fn the_folder_is_a_data_set() {
     assert_eq!(demo.check, ["M2a", "M2b"]);
     assert_eq!(demo.runs, 20);
     let text = std::fs::read_to_string(folder.path().join("M1a/M1a_01.csv")).unwrap();
-    let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6";
+    let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6,\
+                  temp1,temp2,temp3,temp4,temp5,temp6";
     assert_eq!(text.lines().next(), Some(header));
     assert_eq!(text.lines().count(), 1 + 451, "from a tenth of 2 s to their end, both included");
     let data = DataSet::open(folder.path()).unwrap();
@@ -122,7 +119,8 @@ fn runs_drift_apart_with_the_order_of_recording() {
         };
         let monotone = (0..6).map(ends).filter(|q| q.is_sorted() || q.iter().rev().is_sorted());
         let spread = monotone.map(|q| (q[4] - q[0]).abs()).fold(0.0, f64::max);
-        assert!((0.03..1.0).contains(&spread), "{spread} rad");
+        // Starts differ by 0.003 rad at most.
+        assert!((0.01..1.0).contains(&spread), "{spread} rad");
     }
 }
 
@@ -149,40 +147,18 @@ fn a_demo_may_be_repeated_in_its_folder() {
 fn options_that_record_nothing_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let defaults = DemoOptions::default;
+    let endless =
+        VirtualRobotParameters { delay_cycles: f64::INFINITY, ..VirtualRobotParameters::default() };
     for (options, word) in [
         (DemoOptions { motions: 2, held_out_motions: 2, ..defaults() }, "2 are held out"),
         (DemoOptions { start_points: 0, ..defaults() }, "0 start points"),
         (DemoOptions { start_points: 27, ..defaults() }, "1 to 26"),
         (DemoOptions { runs: 0, ..defaults() }, "0 runs"),
+        (DemoOptions { robot: endless, ..defaults() }, "delay_cycles = inf is outside"),
         (DemoOptions { duration: f64::NAN, ..defaults() }, "NaN s; give 0.5 to 60 s"),
     ] {
         let error = record(&Robot::lwa4p(), &options, folder.path()).unwrap_err().to_string();
         assert!(error.contains(word), "{error}");
     }
     assert!(files(folder.path()).is_empty());
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8))]
-    #[test]
-    fn starts_scatter_within_their_bounds(seed: u64) {
-        let robot = Robot::lwa4p();
-        let mut furthest = 0.0f64;
-        for suite in plan::suites(&robot, &small(seed)) {
-            let start = |run| simulate(&robot, &suite, run, &small(1)).unwrap()[..12].to_vec();
-            let measured: Vec<Vec<f64>> = suite.runs.iter().map(start).collect();
-            for (a, b) in measured.iter().flat_map(|a| measured.iter().map(move |b| (a, b))) {
-                for i in 0..6 {
-                    // The velocity filter passes the part 1 - e^(-0.4) < 0.33 of one encoder step
-                    // per sample.
-                    let [dq, dqd] = [i, i + 6].map(|i| (a[i] - b[i]).abs());
-                    prop_assert!(dq <= 2.0 * POSITION_SCATTER + ENCODER_STEP + 1e-6);
-                    let noise = 0.33 * ENCODER_STEP / SAMPLE_TIME;
-                    prop_assert!(dqd <= 2.0 * (VELOCITY_SCATTER + noise) + 1e-6);
-                    furthest = furthest.max(dq);
-                }
-            }
-        }
-        prop_assert!(furthest > POSITION_SCATTER);
-    }
 }

@@ -1,0 +1,33 @@
+//! The arguments that describe a virtual robot.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use reachtube::virtual_robot::VirtualRobotParameters;
+
+use crate::error::{Error, Result};
+
+/// Where a file of parameters does not open.
+const REMEDY: &str =
+    "give a TOML file with parameters of the virtual robot, as docs/campaign.md has";
+
+/// How the virtual robot differs from its nominal model.
+#[derive(Debug, Args)]
+pub struct VirtualRobotArguments {
+    /// Parameters of the virtual robot, a TOML file as docs/campaign.md describes; those that it
+    /// does not have keep their defaults
+    #[arg(long, value_name = "FILE")]
+    pub parameters: Option<PathBuf>,
+}
+
+impl VirtualRobotArguments {
+    /// Returns the parameters.
+    pub fn parameters(&self) -> Result<VirtualRobotParameters> {
+        let Some(path) = &self.parameters else { return Ok(VirtualRobotParameters::default()) };
+        let text = reachtube_files::read_text(path, REMEDY)?;
+        toml::from_str(&text).map_err(|error| Error::SettingsSyntax {
+            path: path.clone(),
+            message: error.to_string(),
+        })
+    }
+}

@@ -1,0 +1,144 @@
+//! The folder of a campaign: its mark first, then the recordings, and the index last, so that a
+//! folder that is not finished cannot be opened. No file is written twice.
+
+use std::path::{Path, PathBuf};
+
+use reachtube_files::write::atomically;
+use reachtube_robot::Robot;
+use serde_json::json;
+use sha2::{Digest, Sha256};
+
+use super::error::CampaignError;
+use super::job::Job;
+use super::options::CampaignOptions;
+use super::readme::readme;
+use crate::error::Result;
+use crate::virtual_robot::VirtualRobot;
+
+/// The file that marks the folder of a campaign and holds its options.
+pub(super) const MARK: &str = "campaign.json";
+
+/// The index of the data set.
+const INDEX: &str = "runs.csv";
+
+const INDEX_HEADER: &str = "file,kind,suite,motion,repeat,rows,duration_s,temperature,sha256\n";
+
+/// Advice where a recording of the campaign cannot be read back.
+const REMEDY: &str = "delete it, and start the campaign again";
+
+/// A folder that belongs to one campaign.
+pub(super) struct Folder<'a> {
+    root: &'a Path,
+}
+
+impl<'a> Folder<'a> {
+    /// Opens the folder of a campaign: a new one, or one in which the same campaign was stopped.
+    pub fn open(root: &'a Path, robot: &VirtualRobot, options: &CampaignOptions) -> Result<Self> {
+        let mark = mark(robot.nominal(), options);
+        let path = root.join(MARK);
+        if path.exists() {
+            let found = reachtube_files::read(&path, REMEDY)?;
+            if found != mark.as_bytes() {
+                return Err(CampaignError::OtherCampaign { folder: root.into() }.into());
+            }
+        } else if entries(root).iter().any(|path| !is_left_over(path)) {
+            return Err(CampaignError::ForeignFolder { folder: root.into() }.into());
+        }
+        let folder = Self { root };
+        folder.remove_left_over();
+        folder.write_new(MARK, &mark)?;
+        folder.write_new("README.md", &readme(robot, options))?;
+        folder.write_new("truth.toml", &robot.truth().description().to_toml())?;
+        Ok(folder)
+    }
+
+    /// Returns whether a job was done before the campaign was stopped.
+    pub fn has(&self, job: &Job) -> bool {
+        job.files.iter().all(|file| self.root.join(file).exists())
+    }
+
+    /// Returns the text of a recording.
+    pub fn read(&self, file: &str) -> Result<String> {
+        let bytes = reachtube_files::read(&self.root.join(file), REMEDY)?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
+    /// Writes a file where there is none of this name.
+    pub fn write_new(&self, file: &str, text: &str) -> Result<()> {
+        let path = self.root.join(file);
+        if !path.exists() {
+            atomically(&path, |out| out.write_all(text.as_bytes()))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the index from the lines of all recordings.
+    pub fn finish(&self, lines: &[String]) -> Result<()> {
+        self.write_new(INDEX, &(INDEX_HEADER.to_string() + &lines.concat()))
+    }
+
+    /// Removes temporary files of a campaign that was stopped while it wrote.
+    fn remove_left_over(&self) {
+        let folders = entries(self.root).into_iter().filter(|path| path.is_dir());
+        let below = folders.flat_map(|folder| {
+            let deeper = entries(&folder).into_iter().filter(|path| path.is_dir());
+            deeper.chain([folder]).collect::<Vec<_>>()
+        });
+        for folder in below.chain([self.root.to_path_buf()]) {
+            for path in entries(&folder).iter().filter(|path| is_left_over(path)) {
+                // A file that stays is only in the way.
+                let _ = std::fs::remove_file(path);
+            }
+        }
+    }
+}
+
+/// Returns the line of a recording in the index, from its text.
+pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
+    let (file, kind, repeat) = (&job.files[index], job.kind, job.first + index);
+    let [suite, motion] =
+        job.suite.as_ref().map_or(["", ""], |names| names.each_ref().map(|s| &**s));
+    let rows = text.lines().count() - 1;
+    let fields = |line: Option<&str>| -> Vec<f64> {
+        line.unwrap_or_default().split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect()
+    };
+    let duration = fields(text.lines().last())[0];
+    let first = fields(text.lines().nth(1));
+    let temperatures = &first[1 + 3 * (first.len() / 4)..];
+    let temperature = temperatures.iter().sum::<f64>() / temperatures.len() as f64;
+    let hash: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
+    format!(
+        "{file},{kind},{suite},{motion},{repeat},{rows},{duration:.3},{temperature:.2},{hash}\n"
+    )
+}
+
+/// Returns what marks a campaign: its options, its robot and the version of the program, which all
+/// decide what is recorded.
+fn mark(robot: &Robot, options: &CampaignOptions) -> String {
+    let robot: String = Sha256::digest(robot.description().to_toml())
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    let value = json!({
+        "campaign": "recordings of a virtual robot",
+        "version": env!("CARGO_PKG_VERSION"),
+        "robot_sha256": robot,
+        "options": options,
+    });
+    serde_json::to_string_pretty(&value).expect("options have string keys") + "\n"
+}
+
+/// Returns the paths in a folder; none where it does not exist.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    entries.flatten().map(|entry| entry.path()).collect()
+}
+
+/// Returns whether this is the name of a temporary file.
+fn is_left_over(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.is_file()
+        && name.strip_prefix(".tmp").is_some_and(|rest| {
+            rest.len() == 6 && rest.bytes().all(|byte| byte.is_ascii_alphanumeric())
+        })
+}
