@@ -1,7 +1,9 @@
 // The interactive figure of a suite: its panels, lines and colours, as Plotly takes them.
 
+const NARROW = 640; // Width below which one joint is shown at first, without buttons, px.
 const PANEL_WIDTH = 190; // Smallest width of a panel with its labels, px.
 const [LEFT, RIGHT, NAME, BETWEEN, BELOW] = [54, 10, 24, 12, 44]; // Room around a panel, px.
+const TOOLS = 26; // Height of the row of Plotly's buttons, px.
 
 const css = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const isDark = matchMedia("(prefers-color-scheme: dark)");
@@ -21,8 +23,7 @@ function scaleColour(place) {
 
 // Returns the colours of the runs by a quantity, and the two ends of the scale in words.
 function runColours(suite, by) {
-  const of = { order: run => run.order, temperature: run => run.temperature, gauge: run => run.gauge };
-  const values = suite.runs.map(of[by]);
+  const values = suite.runs.map(run => run[by]);
   const [low, high] = [Math.min(...values), Math.max(...values)];
   const words = {
     order: [`run ${low + 1}`, `run ${high + 1}`],
@@ -40,11 +41,13 @@ function panels(suite, joint, width) {
   const rows = Math.ceil(joints.length / most);
   const columns = Math.ceil(joints.length / rows);
   const height = joints.length === 1 ? 220 : 150;
+  const tools = width < NARROW ? 0 : TOOLS;
   const block = NAME + 2 * height + BETWEEN + BELOW;
   const cell = width / columns;
   const placed = joints.flatMap((index, place) => [0, 1].map(second => {
     const column = place % columns;
-    const top = block * Math.floor(place / columns) + NAME + second * (height + BETWEEN);
+    const above = tools + NAME + second * (height + BETWEEN);
+    const top = block * Math.floor(place / columns) + above;
     return {
       state: index + second * suite.joints.length,
       name: suite.joints[index],
@@ -56,7 +59,7 @@ function panels(suite, joint, width) {
       bottom: top + height,
     };
   }));
-  return { placed, height: block * rows };
+  return { placed, height: tools + block * rows };
 }
 
 const suffix = place => (place === 0 ? "" : String(place + 1));
@@ -72,7 +75,10 @@ function figureLayout(suite, state, width) {
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: "rgba(0,0,0,0)",
     font: { family: "inherit", size: 11, color: ink },
-    hoverlabel: { bgcolor: css("--raised"), bordercolor: soft, font: { color: ink }, align: "left" },
+    hoverlabel: {
+      bgcolor: css("--raised"), bordercolor: soft, font: { color: ink }, align: "left",
+    },
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: soft, activecolor: ink },
     showlegend: false,
     hovermode: "closest",
     hoverdistance: 12,
@@ -123,7 +129,8 @@ function panelTraces(suite, state, panel, place, colours) {
   const i = panel.state;
   const bands = suite.bands.flatMap((band, b) => [band.lower, band.upper].map((edge, side) => {
     const values = edgeLine(suite, edge, i, state.view);
-    const kept = suite.columns ? [...values.keys()] : thin(suite.times, values, state.range, columns);
+    const kept = suite.columns
+      ? [...values.keys()] : thin(suite.times, values, state.range, columns);
     return {
       ...axes, type: "scatter", mode: "lines", hoverinfo: "skip", uid: `band${b}-${side}-${i}x`,
       x: kept.map(k => suite.times[k]), y: kept.map(k => values[k]),
@@ -167,8 +174,8 @@ function spotTraces(suite, state, i, axes) {
       symbol: "circle-open", size: outside.map(is => (is ? 12 : 8)),
       color: outside.map(is => css(is ? "--bad" : "--ink")), line: { width: 1.4 },
     },
-    hovertemplate: `<b>%{customdata[0]}</b> decides here<br>%{x:.4f} s: %{y:.7~g} ${suite.units[i]}` +
-      `<br>margin %{customdata[1]:.3~g} ${suite.units[i]}<extra></extra>`,
+    hovertemplate: `<b>%{customdata[0]}</b> decides here<br>%{x:.4f} s: %{y:.7~g} ` +
+      `${suite.units[i]}<br>margin %{customdata[1]:.3~g} ${suite.units[i]}<extra></extra>`,
   }];
 }
 

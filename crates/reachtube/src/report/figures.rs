@@ -77,7 +77,7 @@ fn explorer() -> Markup {
             div #plot tabindex="0" role="application"
                 aria-label="Interactive figure: arrow keys move in time, plus and minus zoom, \
                             0 shows the whole time" {}
-            div.controls {
+            div.choice {
                 span.hint { "Runs" }
                 button #show-all type="button" { "All" }
                 button #show-none type="button" { "None" }
@@ -113,7 +113,9 @@ fn suites_table(page: &Page) -> Markup {
                             td { (Text(&suite.suite)) }
                             td.number { (suite.runs.len() + suite.undrawn) }
                             td.number {
-                                @if let Some(part) = suite.furthest { (format!("{:.1} %", 100.0 * part)) }
+                                @if let Some(part) = suite.furthest {
+                                    (format!("{:.1} %", 100.0 * part))
+                                }
                             }
                             td.number { (suite.tight.len()) }
                         }

@@ -157,19 +157,20 @@ fn notes(page: &Page) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::super::sample;
+    use super::super::suite_figure::SuiteFigure;
     use super::*;
 
     fn written(page: &Page) -> String {
         let mut html = Vec::new();
-        write_html(page, &mut html).unwrap();
+        write_html(page, Assets::Beside, &mut html).unwrap();
         String::from_utf8(html).unwrap()
     }
 
     #[test]
     fn each_view_of_each_suite_has_a_figure() {
         let html = written(&sample::page());
-        assert_eq!(html.matches("<svg").count(), 4);
-        assert_eq!(html.matches("</svg>").count(), 4);
+        assert_eq!(html.matches("<svg").count(), 5, "with one phase plane");
+        assert_eq!(html.matches("</svg>").count(), 5);
         assert_eq!(html.matches("<section").count(), html.matches("</section>").count());
         assert_eq!(html.matches("<table").count(), html.matches("</table>").count());
     }
@@ -205,6 +206,16 @@ mod tests {
     }
 
     #[test]
+    fn of_many_suites_the_first_have_static_figures_and_all_have_numbers() {
+        let mut page = sample::page();
+        let condensed = SuiteFigure { undrawn: 12, ..sample::suite("S", 1) };
+        page.suites = vec![condensed; 40];
+        let html = written(&page);
+        assert_eq!(html.matches("<svg").count(), 2 * 3 + 1);
+        assert!(html.contains("id=\"data-39\"") && html.contains("id=\"suite-search\""));
+    }
+
+    #[test]
     fn an_empty_page_is_a_page() {
         let html = written(&Page::default());
         assert!(html.ends_with("</html>\n") && !html.contains("<svg"));
@@ -218,7 +229,7 @@ mod tests {
     #[test]
     fn a_full_disk_is_an_error() {
         let mut room = [0_u8; 100];
-        let error = write_html(&sample::page(), &mut &mut room[..]).unwrap_err();
+        let error = write_html(&sample::page(), Assets::Beside, &mut &mut room[..]).unwrap_err();
         assert!(matches!(error, ReportError::Io(_)));
     }
 }

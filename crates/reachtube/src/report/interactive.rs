@@ -62,7 +62,7 @@ struct SpotData {
 
 /// Returns the numbers of a suite as JSON that can stand in a script element.
 ///
-/// Times are exact and samples rounded to 16-bit differences. Bands are single precision and
+/// Times are exact to a nanosecond and samples rounded to 16-bit differences. Bands are single precision and
 /// rounded outward. Where not all runs are drawn, bands are the lowest and highest bound of each of
 /// 80 columns of time, and only deviations are given.
 pub(super) fn suite_json(figure: &SuiteFigure) -> String {
@@ -99,7 +99,7 @@ fn whole<'a>(figure: &'a SuiteFigure) -> SuiteData<'a> {
         [edge(&band.lower, f64::next_down), edge(&band.upper, f64::next_up)]
     };
     let of_run = |run: &'a RunTrace| {
-        let own = (!figure.times.starts_with(&run.times)).then_some(&run.times[..]);
+        let own = (!run.has_times(&figure.times)).then_some(&run.times[..]);
         run_data(run, own, &run.states)
     };
     let runs = figure.runs.iter().map(of_run).collect();
@@ -208,4 +208,60 @@ fn spot(spot: &TightSpot) -> SpotData {
 /// Returns the name by which the page's buttons choose a view.
 pub(super) fn view_name(view: View) -> String {
     format!("{view:?}").to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
+    use serde_json::Value;
+
+    fn singles(text: &Value) -> Vec<f64> {
+        let bytes = STANDARD.decode(text.as_str().unwrap()).unwrap();
+        let single = |four: &[u8]| f32::from_le_bytes(four.try_into().unwrap()).into();
+        bytes.chunks_exact(4).map(single).collect()
+    }
+
+    #[test]
+    fn the_band_of_the_script_encloses_that_of_the_figure() {
+        let figure = sample::suite("S", 2);
+        let data: Value = serde_json::from_str(&suite_json(&figure)).unwrap();
+        let nominal = whole(&figure).nominal.unwrap();
+        for state in 0..4 {
+            let (low, high) = (&data["bands"][0]["lower"], &data["bands"][0]["upper"]);
+            let (low, high) = (singles(&low[state]), singles(&high[state]));
+            for (k, nominal) in nominal[state].unpacked().iter().enumerate() {
+                // The sums are exact enough to tell bounds from those rounded inward.
+                assert!(low[k] <= figure.band.lower[state][k] - nominal + 1e-16);
+                assert!(high[k] >= figure.band.upper[state][k] - nominal - 1e-16);
+                assert!(high[k] - figure.band.upper[state][k] + nominal < 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn a_column_encloses_the_deviations_over_its_time() {
+        let mut figure = sample::suite("S", 1);
+        figure.undrawn = 5;
+        figure.band.upper[0][101] = 9.0;
+        let data: Value = serde_json::from_str(&suite_json(&figure)).unwrap();
+        let Nominal::Shared(nominal) = &figure.nominal else { panic!("the sample has one") };
+        let high = singles(&data["bands"][0]["upper"][0]);
+        assert_eq!(high.len(), COLUMNS + 1);
+        let peak = 101 * COLUMNS / (figure.times.len() - 1);
+        assert!(high[peak] >= 9.0 - nominal[0][101] && high[peak] < 9.0 - nominal[0][101] + 1e-6);
+        assert!(high[peak + 2] < 1.0);
+        assert_eq!(data["views"], serde_json::json!(["deviation"]));
+        assert_eq!(data["runs"].as_array().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn names_cannot_end_the_script_element() {
+        let json = suite_json(&sample::suite("</script><b>", 1));
+        assert!(!json.contains('<') && json.contains("\\u003c/script"));
+        let data: Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(data["suite"], "</script><b>");
+    }
 }

@@ -2,7 +2,6 @@
 // the interactive figure takes their place.
 
 document.documentElement.classList.add("js");
-const NARROW = 640; // Width below which one joint is shown at first, px.
 
 const state = {
   suite: 0, view: "motion", colour: "order", joint: "", range: null, reset: 0,
@@ -113,7 +112,8 @@ function highlight(r) {
   const lit = r === null ? state.pinned : r;
   const line = `#plot g.trace[class*="tracerun${lit}-"]`;
   sheet.textContent = lit === null ? "" :
-    `#plot g.trace[class*="tracerun"] { opacity: .1; } ${line} { opacity: 1; }
+    `#plot g.trace[class*="tracerun"] { opacity: .1 !important; }
+     ${line} { opacity: 1 !important; }
      ${line} path { stroke-width: 2.2px !important; }`;
   all("#run-list button").forEach((button, k) => {
     button.classList.toggle("lit", k === lit);
@@ -139,11 +139,11 @@ function draw() {
     return entry;
   }));
   const [q, qd] = suite().rounding.map(error => error.toExponential(0));
-  element("rounding").textContent = `Values at the cursor are the recorded samples, rounded by at ` +
-    `most ${q} (positions) and ${qd} (velocities); the set's bounds are rounded outward.` +
+  element("rounding").textContent = `Values at the cursor are the recorded samples, rounded by ` +
+    `at most ${q} (positions) and ${qd} (velocities); the set's bounds are rounded outward.` +
     (suite().columns ? " Each step of a band is its extreme over that time." : "");
   const config = {
-    displaylogo: false, doubleClick: false,
+    displaylogo: false, doubleClick: false, displayModeBar: width >= NARROW,
     modeBarButtonsToRemove: ["autoScale2d", "resetScale2d", "select2d", "lasso2d"],
   };
   const data = figureTraces(suite(), state, width);
@@ -226,7 +226,7 @@ function searchSuites() {
 }
 
 function start() {
-  if (innerWidth < NARROW) state.joint = "0";
+  if (document.documentElement.clientWidth < NARROW) state.joint = "0";
   if (suite().runs.every(run => run.temperature !== null)) state.colour = "temperature";
   element("explorer").hidden = false;
   document.documentElement.dataset.ready = "yes";

@@ -10,7 +10,14 @@ function planeTraces({ series }, place) {
   }));
 }
 
-function planeLayout({ title, x, y }, width) {
+// Returns the range of values with room beyond its ends.
+function withMargin(values) {
+  const [low, high] = [Math.min(...values), Math.max(...values)];
+  const margin = 0.05 * (high - low) || 0.5;
+  return [low - margin, high + margin];
+}
+
+function planeLayout({ title, x, y, series }, width) {
   const [ink, soft, line] = ["--ink", "--soft", "--line"].map(css);
   const axis = {
     gridcolor: line, linecolor: soft, zeroline: false, showline: true, mirror: true, nticks: 6,
@@ -19,12 +26,19 @@ function planeLayout({ title, x, y }, width) {
   return {
     width, height: Math.round(0.7 * width),
     margin: { l: 62, r: 10, t: 30, b: 44 },
-    title: { text: `<b>${plain(title)}</b>`, font: { size: 12.5 }, y: 0.97 },
+    title: {
+      text: `<b>${plain(title)}</b>`, font: { size: 12.5 }, y: 0.97, x: 0, xref: "paper",
+    },
     paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
     font: { family: "inherit", size: 11, color: ink }, showlegend: false, hovermode: "closest",
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: soft, activecolor: ink },
     hoverlabel: { bgcolor: css("--raised"), bordercolor: soft, font: { color: ink } },
-    xaxis: { ...axis, title: { text: x, standoff: 4 } },
-    yaxis: { ...axis, title: { text: y, standoff: 4 } },
+    xaxis: {
+      ...axis, title: { text: x, standoff: 4 }, range: withMargin(series.flatMap(s => s.x)),
+    },
+    yaxis: {
+      ...axis, title: { text: y, standoff: 4 }, range: withMargin(series.flatMap(s => s.y)),
+    },
   };
 }
 
@@ -35,7 +49,7 @@ function watchPlanes() {
   const width = Math.min(400, section.clientWidth);
   const drawPlane = (place, at) => Plotly.react(
     place, planeTraces(charts[at], at), planeLayout(charts[at], width),
-    { displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] },
+    { displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d"] },
   );
   const places = all(":scope > svg", section).map(svg => {
     const place = document.createElement("div");

@@ -103,6 +103,18 @@ pub enum View {
     Deviation,
 }
 
+/// Difference of times that are taken for the same \[s\]; nominal times are rounded to a
+/// picosecond.
+pub(super) const SAME_TIME: f64 = 1e-9;
+
+impl RunTrace {
+    /// Tells whether the run's samples are at the first of some times.
+    pub(super) fn has_times(&self, times: &[f64]) -> bool {
+        let is_same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_TIME;
+        self.times.len() <= times.len() && self.times.iter().zip(times).all(is_same)
+    }
+}
+
 impl SuiteFigure {
     /// Returns the views of this suite that [`suite_svg`](crate::report::suite_svg) can draw.
     #[must_use]

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::report::assemble::{Sources, joint_name};
 use crate::report::error::ReportError;
 use crate::report::panel::interpolate;
-use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
+use crate::report::suite_figure::{Band, Nominal, RunTrace, SAME_TIME, SuiteFigure, TightSpot};
 
 /// Number of runs up to which all of them are drawn.
 const MOST_RUNS: usize = 200;
@@ -83,6 +83,8 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     }
     let nominal = columns(&longest.nominal, 2 * joints);
     let label = format!("all {} recordings", suite.runs.len());
+    // Where the set is longer than all runs, there is no range for all of its times.
+    let range = range.filter(|[lower, _]| lower[0].len() == longest.times.len());
     Ok(SuiteFigure {
         suite: name.clone(),
         joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
@@ -115,11 +117,11 @@ fn deciding(spots: &[TightSpot]) -> Vec<usize> {
 
 /// Returns the states of a run at the sample times of its suite, as far as it goes.
 fn at_samples(run: &RunTrace, times: &[f64]) -> Vec<Vec<f64>> {
-    let end = run.times.last().copied().unwrap_or(f64::NEG_INFINITY);
-    let known = &times[..times.partition_point(|time| *time <= end)];
-    if run.times.starts_with(known) {
-        return run.states.iter().map(|row| row[..known.len()].to_vec()).collect();
+    if run.has_times(times) {
+        return run.states.clone();
     }
+    let end = run.times.last().map_or(f64::NEG_INFINITY, |end| end + SAME_TIME);
+    let known = &times[..times.partition_point(|time| *time <= end)];
     let row = |row: &Vec<f64>| {
         let line: Vec<_> = run.times.iter().copied().zip(row.iter().copied()).collect();
         known.iter().map(|time| interpolate(&line, *time)).collect()
