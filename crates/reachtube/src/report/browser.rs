@@ -20,6 +20,8 @@ fn page(assets: Assets) -> Vec<u8> {
 fn opened(width: u32, dark: bool) -> Tab {
     let mut tab = Tab::new(width, 900, dark);
     tab.open(&page(Assets::Inside)).unwrap();
+    // The mouse needs the figure in the window.
+    tab.script("plot.scrollIntoView({ block: 'center' })");
     tab
 }
 
@@ -157,7 +159,7 @@ fn a_peak_of_one_sample_is_drawn_at_first() {
     let line = "plot.data.find(line => line.uid === 'run0-0x')";
     let drawn = tab.script(&format!("{line}.y.length")).as_u64().unwrap();
     assert!(drawn < 3_000, "{drawn}");
-    assert_eq!(tab.script(&format!("Math.max(...{line}.y)")), json!(1.0));
+    assert_eq!(tab.script(&format!("Math.max(...{line}.y)")).as_f64(), Some(1.0));
 }
 
 #[test]

@@ -99,7 +99,7 @@ function figureLayout(suite, state, width) {
       domain: [panel.left / width, panel.right / width],
       anchor: y,
       ...(place > 0 && { matches: "x" }),
-      range: state.range,
+      range: [...state.range], // Plotly changes it in place.
       showticklabels: panel.isVelocity,
       title: panel.isVelocity ? { text: "time [s]", standoff: 4 } : undefined,
     };

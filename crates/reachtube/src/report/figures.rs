@@ -54,11 +54,15 @@ pub(super) fn figures(page: &Page) -> Result<Markup, ReportError> {
     })
 }
 
-/// Returns a suite's name, with the part of the set that its runs reach where there are many.
+/// Returns a suite's name; where there are many, also the part of the set that its runs reach and
+/// the number of rows that they decide.
 fn suite_label(suite: &SuiteFigure, are_many: bool) -> String {
-    let percent = suite.furthest.filter(|_| are_many);
-    let percent = percent.map_or_else(String::new, |part| format!(" {:.0} %", 100.0 * part));
-    format!("{}{percent}", suite.suite)
+    let Some(part) = suite.furthest.filter(|_| are_many) else { return suite.suite.clone() };
+    let rows = match suite.tight.len() {
+        0 => String::new(),
+        rows => format!(", decides {rows}"),
+    };
+    format!("{} {:.0} %{rows}", suite.suite, 100.0 * part)
 }
 
 /// Returns the controls and the place of the interactive figure, which the script shows.

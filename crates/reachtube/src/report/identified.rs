@@ -120,7 +120,7 @@ fn validation_row(log: &LogValidation, kinds: &[JointKind]) -> Vec<String> {
             return format!("at rest ({})", part(error.relative_all));
         };
         format!(
-            "{} ({}), R² {}, {} {}",
+            "{} ({}), R²\u{a0}{}, {} {}",
             percent(relative),
             part(error.relative_all),
             error.r2.map_or("-".into(), |r2| format!("{r2:.4}")),

@@ -26,6 +26,8 @@ struct SuiteData<'a> {
     bands: Vec<BandData<'a>>,
     /// Whether each bound holds from its time to the next one; else at its time.
     columns: bool,
+    /// The sample times of the runs, where they are not `times`.
+    run_times: Option<String>,
     runs: Vec<RunData<'a>>,
     tight: Vec<SpotData>,
     /// Largest rounding of a position and of a velocity.
@@ -46,7 +48,7 @@ struct RunData<'a> {
     temperature: Option<f64>,
     gauge: Option<f64>,
     touches: usize,
-    /// Nothing where they are the first times of the suite.
+    /// Nothing where they are the first sample times of the suite.
     times: Option<String>,
     states: Vec<Packed>,
 }
@@ -138,13 +140,14 @@ fn condensed(figure: &SuiteFigure) -> SuiteData<'_> {
     };
     let runs = figure.runs.iter().map(|run| {
         let (times, states): (Vec<f64>, Vec<Vec<f64>>) = of_run(run);
-        run_data(run, Some(&times), &states)
+        run_data(run, (!run.has_times(&figure.times)).then_some(&times), &states)
     });
     let runs = runs.collect();
     let times: Vec<f64> = starts.iter().map(|&k| figure.times[k]).collect();
     let mut data = data(figure, packed::times(&times), None, &edges, runs);
     data.views = vec![view_name(View::Deviation)];
     data.columns = true;
+    data.run_times = (!figure.runs.is_empty()).then(|| packed::times(&figure.times));
     data
 }
 
@@ -183,6 +186,7 @@ fn data<'a>(
             .collect(),
         nominal,
         columns: false,
+        run_times: None,
         runs,
         tight: figure.tight.iter().map(spot).collect(),
     }

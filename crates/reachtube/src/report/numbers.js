@@ -35,9 +35,10 @@ function readSuite(index) {
   const bands = data.bands.map(({ label, lower, upper }) => (
     { label, lower: edge(lower), upper: edge(upper) }
   ));
+  const shared = data.run_times ? new Float64Array(bytes(data.run_times)) : times;
   const runs = data.runs.map(run => {
     const states = run.states.map(unpack);
-    const own = run.times ? new Float64Array(bytes(run.times)) : times;
+    const own = run.times ? new Float64Array(bytes(run.times)) : shared;
     return { ...run, states, times: own.subarray(0, states[0].length) };
   });
   suites[index] = { ...data, times, nominal, bands, runs };

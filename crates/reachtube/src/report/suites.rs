@@ -12,6 +12,8 @@ use crate::report::suite_figure::{Band, Nominal, RunTrace, SAME_TIME, SuiteFigur
 const MOST_RUNS: usize = 200;
 /// Number of runs that are drawn of each suite where there are more.
 const MOST_DECIDING: usize = 4;
+/// Number of runs that are drawn of all suites then, so that the page stays small.
+const MOST_DECIDING_OF_ALL: usize = 100;
 /// Radius below which a set has no width \[rad or rad/s\].
 const LEAST_RADIUS: f64 = 1e-9;
 
@@ -28,6 +30,7 @@ pub(super) fn figures(sources: &Sources) -> Result<Vec<SuiteFigure>> {
     let figures = drawn.map(|suite| figure(sources, suite, are_many));
     let mut figures = figures.collect::<Result<Vec<_>>>()?;
     if are_many {
+        keep_deciding(&mut figures, MOST_DECIDING_OF_ALL);
         figures.sort_by(|a, b| rank(b).partial_cmp(&rank(a)).expect("no rank is NaN"));
     }
     Ok(figures)
@@ -37,7 +40,9 @@ pub(super) fn figures(sources: &Sources) -> Result<Vec<SuiteFigure>> {
 fn rank(figure: &SuiteFigure) -> (f64, f64, usize) {
     let outside = figure.tight.iter().map(|spot| -spot.margin).fold(0.0, f64::max);
     let touches = figure.runs.iter().map(|run| run.touches).sum();
-    (outside.max(0.0), figure.furthest.unwrap_or(0.0), touches)
+    // Many suites touch the set, to rounding.
+    let furthest = (1e3 * figure.furthest.unwrap_or(0.0)).round();
+    (outside.max(0.0), furthest, touches)
 }
 
 /// Makes the figure of one suite.
@@ -98,6 +103,30 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
         tight: spots,
         furthest,
     })
+}
+
+/// Keeps the runs that lie outside or decide the most rows, at most `most` of all suites, and their
+/// spots.
+fn keep_deciding(figures: &mut [SuiteFigure], most: usize) {
+    let worth = |figure: &SuiteFigure, run: usize| {
+        let outside = figure.tight.iter().any(|spot| spot.run == run && spot.margin < 0.0);
+        (outside, figure.runs[run].touches)
+    };
+    let place = |(at, figure): (usize, &SuiteFigure)| {
+        (0..figure.runs.len()).map(|run| (worth(figure, run), at, run)).collect::<Vec<_>>()
+    };
+    let mut all: Vec<_> = figures.iter().enumerate().flat_map(place).collect();
+    all.sort_by_key(|(worth, ..)| std::cmp::Reverse(*worth));
+    // From the last run of a suite to its first, so that the places of the others stay.
+    let mut dropped: Vec<_> = all.drain(most.min(all.len())..).collect();
+    dropped.sort_by_key(|(_, at, run)| std::cmp::Reverse((*at, *run)));
+    for (_, at, run) in dropped {
+        let figure = &mut figures[at];
+        figure.runs.remove(run);
+        figure.undrawn += 1;
+        figure.tight.retain(|spot| spot.run != run);
+        figure.tight.iter_mut().for_each(|spot| spot.run -= usize::from(spot.run > run));
+    }
 }
 
 /// Returns the runs of the most spots, in their order.
@@ -208,4 +237,52 @@ fn trace(
 /// Turns row-major samples x states into one list per state.
 fn columns(values: &[f64], states: usize) -> Vec<Vec<f64>> {
     (0..states).map(|i| values.iter().skip(i).step_by(states).copied().collect()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn the_runs_that_decide_most_are_kept_with_their_spots() {
+        let mut figures = [sample::suite("A", 1), sample::suite("B", 1)];
+        figures[1].tight[1].margin = -0.1;
+        keep_deciding(&mut figures, 3);
+        let names = |figure: &SuiteFigure| -> Vec<String> {
+            figure.runs.iter().map(|run| run.name.clone()).collect()
+        };
+        // Run 1 of B lies outside; the runs 3 decide three rows each.
+        assert_eq!(names(&figures[0]), ["run 3"]);
+        assert_eq!(names(&figures[1]), ["run 1", "run 3"]);
+        assert_eq!(figures.each_ref().map(|figure| figure.undrawn), [2, 1]);
+        let spots = |figure: &SuiteFigure| figure.tight.iter().map(|s| s.run).collect::<Vec<_>>();
+        assert_eq!([spots(&figures[0]), spots(&figures[1])], [vec![0], vec![1, 0]]);
+    }
+
+    #[test]
+    fn the_gauge_is_the_largest_part_of_the_radius_and_ranges_widen() {
+        let figure = sample::suite("S", 1);
+        let run = &figure.runs[2];
+        let states = at_samples(run, &figure.times);
+        let part = gauge(&states, &figure.band).unwrap();
+        assert!((part - 0.04 * 2.0 / (0.01 + 0.05 * 2.0)).abs() < 1e-9, "{part}");
+        let mut range = None;
+        figure.runs.iter().for_each(|run| include(&mut range, at_samples(run, &figure.times)));
+        let [low, high] = range.unwrap();
+        assert_eq!((low[0][150], high[0][150]), {
+            let of = |run: usize| figure.runs[run].states[0][150];
+            (of(0).min(of(2)), of(0).max(of(2)))
+        });
+    }
+
+    #[test]
+    fn a_run_on_other_times_is_interpolated_to_those_of_its_suite() {
+        let run = RunTrace {
+            times: vec![0.0, 0.5, 1.0],
+            states: vec![vec![0.0, 1.0, 0.0]],
+            ..RunTrace::default()
+        };
+        assert_eq!(at_samples(&run, &[0.0, 0.25, 1.0, 1.25]), [vec![0.0, 0.5, 0.0]]);
+    }
 }
