@@ -64,9 +64,9 @@ struct SpotData {
 
 /// Returns the numbers of a suite as JSON that can stand in a script element.
 ///
-/// Times are exact to a nanosecond and samples rounded to 16-bit differences. Bands are single precision and
-/// rounded outward. Where not all runs are drawn, bands are the lowest and highest bound of each of
-/// 80 columns of time, and only deviations are given.
+/// Times are exact to a nanosecond and samples rounded to 16-bit differences. Bands are single
+/// precision and rounded outward. Where not all runs are drawn, bands are the lowest and highest
+/// bound of each of 80 columns of time, and only deviations are given.
 pub(super) fn suite_json(figure: &SuiteFigure) -> String {
     let data = if figure.undrawn > 0 { condensed(figure) } else { whole(figure) };
     let json = serde_json::to_string(&data).expect("the keys are strings and the numbers finite");

@@ -49,7 +49,10 @@ function watchPlanes() {
   const width = Math.min(400, section.clientWidth);
   const drawPlane = (place, at) => Plotly.react(
     place, planeTraces(charts[at], at), planeLayout(charts[at], width),
-    { displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d"] },
+    {
+      displaylogo: false,
+      modeBarButtonsToRemove: ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d"],
+    },
   );
   const places = all(":scope > svg", section).map(svg => {
     const place = document.createElement("div");
