@@ -4,7 +4,7 @@ use reachtube_conform::{Model, States, Weights};
 
 use crate::number::{at_least, four_decimals};
 use crate::report::page::TextTable;
-use crate::report::suite_figure::{Band, Nominal, SuiteFigure};
+use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure};
 
 /// Number of runs and of motions that are listed.
 const MOST_ROWS: usize = 20;
@@ -81,7 +81,7 @@ fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
     runs.sort_by_key(|(_, run)| std::cmp::Reverse(run.touches));
     let degrees =
         |t: Option<f64>| t.map_or_else(|| "-".into(), |degrees| format!("{degrees:.1} °C"));
-    let row = |(figure, run): &(&SuiteFigure, &crate::report::suite_figure::RunTrace)| {
+    let row = |(figure, run): &(&SuiteFigure, &RunTrace)| {
         vec![
             run.name.clone(),
             figure.suite.clone(),
@@ -99,11 +99,16 @@ fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
             four_decimals(cost)
         )
     });
-    TextTable {
+    let mut table = TextTable {
         title: format!("Runs that decide the most rows{without}"),
         header: ["Run", "Suite", "Rows", "Order", "Temperature"].map(String::from).to_vec(),
         rows: runs.iter().take(MOST_ROWS).map(row).collect(),
+    };
+    if runs.iter().all(|(_, run)| run.temperature.is_none()) {
+        table.header.truncate(4);
+        table.rows.iter_mut().for_each(|row| row.truncate(4));
     }
+    table
 }
 
 /// Returns what the sets cost without each motion, the cheapest first.

@@ -121,9 +121,11 @@ function highlight(r) {
   });
 }
 
+const figureWidth = () => Math.max(280, Math.floor(element("explorer").clientWidth));
+
 // Draws the figure anew in the space there is.
 function draw() {
-  const width = Math.max(280, Math.floor(element("explorer").clientWidth));
+  const width = figureWidth();
   const { colours, ends } = runColours(suite(), state.colour);
   all("#run-list i").forEach((swatch, r) => { swatch.style.background = colours[r]; });
   if (suite().runs.length > 0) {
@@ -245,7 +247,8 @@ function start() {
   plot.on("plotly_hover", ({ points: [{ data }] }) => data.meta && highlight(data.meta.run));
   plot.on("plotly_unhover", () => highlight(null));
   plot.on("plotly_click", ({ points: [{ data }] }) => data.meta && pin(data.meta.run));
-  addEventListener("resize", draw);
+  // A phone changes the height of the window while it scrolls.
+  addEventListener("resize", () => { if (plot.layout.width !== figureWidth()) draw(); });
   isDark.addEventListener("change", draw);
   linkSpots();
   watchPlanes();
