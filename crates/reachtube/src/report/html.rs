@@ -66,11 +66,7 @@ fn sections(page: &Page) -> Result<Vec<(&'static str, Markup)>, ReportError> {
     add(suites, "Where the sets are tight", tables::tight(page));
     add(!page.sets.is_empty(), "Uncertainty sets", sets(page));
     add(!page.cost.is_empty(), "What drives the cost", text_tables(&page.cost));
-    add(
-        !page.nominal.is_empty(),
-        "Nominal model, fitted for small sets",
-        text_tables(&page.nominal),
-    );
+    add(!page.nominal.is_empty(), "Fitted nominal model", text_tables(&page.nominal));
     add(!page.trust.is_empty() || !page.caution.is_empty(), "What may be trusted", meaning(page));
     add(!page.facts.is_empty(), "Settings and provenance", tables::facts(&page.facts));
     add(!page.notes.is_empty(), "Notes", notes(page));
