@@ -30,7 +30,8 @@ pub struct Sources<'a> {
 ///
 /// # Errors
 ///
-/// As [`Problem::run`]; [`ReportError::NoReachableSet`](super::ReportError::NoReachableSet) for a suite without one.
+/// As [`Problem::run`];
+/// [`ReportError::NoReachableSet`](super::ReportError::NoReachableSet) for a suite without one.
 pub fn page(sources: &Sources) -> Result<Page> {
     let Sources { model, problem, check, .. } = *sources;
     let figures = figures(sources)?;
