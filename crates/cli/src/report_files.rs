@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use reachtube::report::{Page, Sources, page, suite_svg, write_html};
+use reachtube::report::{
+    Assets, LIBRARY_FILE, Page, Sources, page, suite_svg, write_html, write_library,
+};
 use reachtube::write;
 
 use crate::error::Result;
@@ -14,13 +16,22 @@ pub fn page_in(folder: &Path) -> PathBuf {
 }
 
 /// Writes the page and its figures to `folder` and returns the page's path.
-pub fn write(sources: &Sources, folder: &Path) -> Result<PathBuf> {
+pub fn write(sources: &Sources, assets: Assets, folder: &Path) -> Result<PathBuf> {
     let path = page_in(folder);
+    let library = folder.join(LIBRARY_FILE);
     output::claim(&path)?;
+    if assets == Assets::Beside {
+        output::claim(&library)?;
+    }
     let page = page(sources)?;
     let mut html = Vec::new();
-    write_html(&page, &mut html)?;
+    write_html(&page, assets, &mut html)?;
     write_figures(&page, folder)?;
+    if assets == Assets::Beside {
+        let mut text = Vec::new();
+        write_library(&mut text)?;
+        write::atomically(&library, |out| out.write_all(&text))?;
+    }
     write::atomically(&path, |out| out.write_all(&html))?;
     Ok(path)
 }

@@ -1,7 +1,7 @@
 //! The report page of a virtual arm, written to the folder `reachtube-report`.
 
 use reachtube::demo::{DemoOptions, record};
-use reachtube::report::{Sources, page, write_html};
+use reachtube::report::{Assets, Sources, page, write_html};
 use reachtube::{
     Check, DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, conform, reach,
     write,
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let reach = reach(&problem, &found.hulls)?;
     let sources = Sources { model: &model, problem: &problem, reach: &reach, check: &check };
     let mut html = Vec::new();
-    write_html(&page(&sources)?, &mut html)?;
+    write_html(&page(&sources)?, Assets::Inside, &mut html)?;
     let path = std::path::Path::new("reachtube-report/report.html");
     write::atomically(path, |out| out.write_all(&html))?;
     println!("wrote {}", path.display());

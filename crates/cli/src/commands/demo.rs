@@ -10,7 +10,7 @@ use reachtube::conform::{
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::number::{at_least, four_decimals};
 use reachtube::recordings::{DataSet, Torque};
-use reachtube::report::Sources;
+use reachtube::report::{Assets, Sources};
 use reachtube::{Model, write};
 use reachtube_robot::Robot;
 use serde_json::json;
@@ -143,7 +143,7 @@ fn check_held_out(
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
     let sources = Sources { model, problem, reach: &reach, check: &check };
-    let page = report_files::write(&sources, page)?;
+    let page = report_files::write(&sources, Assets::Inside, page)?;
     output::wrote(&page);
     Ok((opened.model, check))
 }

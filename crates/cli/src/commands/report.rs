@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use reachtube::conform::Keep;
-use reachtube::report::Sources;
+use reachtube::report::{Assets, Sources};
 use serde_json::json;
 
 use crate::data_arguments::ModelArguments;
@@ -19,6 +19,24 @@ Example:
 
 Writes report.html, which works offline, and one SVG file per figure to the folder.";
 
+/// Where the page has the library of its interactive figures
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum AssetsArgument {
+    /// In the page: one file of about 5 MB more
+    Inside,
+    /// In the file plotly.js beside the page, which the pages of a folder share
+    Beside,
+}
+
+impl From<AssetsArgument> for Assets {
+    fn from(argument: AssetsArgument) -> Self {
+        match argument {
+            AssetsArgument::Inside => Assets::Inside,
+            AssetsArgument::Beside => Assets::Beside,
+        }
+    }
+}
+
 /// Write an HTML page and figures that compare a model with recordings
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
@@ -28,6 +46,9 @@ pub struct Arguments {
     /// Folder for the page and figures
     #[arg(long, value_name = "FOLDER", default_value = "report")]
     pub out: PathBuf,
+    /// Where the page has the JavaScript library of its interactive figures
+    #[arg(long, value_enum, default_value_t = AssetsArgument::Inside)]
+    pub assets: AssetsArgument,
 }
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
@@ -35,8 +56,8 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
-    let page =
-        report_files::write(&Sources { model, problem, reach: &reach, check: &check }, &args.out)?;
+    let sources = Sources { model, problem, reach: &reach, check: &check };
+    let page = report_files::write(&sources, args.assets.into(), &args.out)?;
     output::notes(&problem.recordings().notes);
     output::show(json, &json!({ "report": page.display().to_string() }), || {
         format!("wrote {}\n", page.display())

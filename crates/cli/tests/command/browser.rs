@@ -9,7 +9,7 @@ use crate::fixture::Lab;
 const BROWSERS: [&str; 4] =
     ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 const PATIENCE: Duration = Duration::from_secs(120);
-const OPTIONS: [&str; 8] = [
+const OPTIONS: [&str; 9] = [
     "--headless",
     "--no-sandbox",
     "--disable-gpu",
@@ -17,6 +17,8 @@ const OPTIONS: [&str; 8] = [
     "--disable-background-networking",
     "--enable-logging=stderr",
     "--timeout=20000",
+    // The document is dumped when the page has nothing left to do, not when it is read.
+    "--virtual-time-budget=10000",
     "--dump-dom",
 ];
 
@@ -34,6 +36,22 @@ fn the_page_and_its_figures_are_written() {
     assert!(!html.contains("http://") || !html.contains("src=\"http"), "the page works offline");
     lab.run("report --model model.json --data data --torque compensated --out again").exits(0);
     assert_eq!(lab.read("again/report.html"), html);
+}
+
+#[test]
+fn the_library_lies_beside_the_page_on_request() {
+    let lab = Lab::new();
+    lab.conform("--out model.json").exits(0);
+    let report = "report --model model.json --data data --torque compensated";
+    lab.run(&format!("{report} --out beside --assets beside")).exits(0);
+    assert!(lab.names("beside").contains(&"plotly.js".to_string()));
+    assert!(lab.read("beside/plotly.js").contains("plotly.js v3"));
+    assert!(!lab.read("beside/report.html").contains("id=\"library\""));
+    // The command replaces its own file.
+    lab.run(&format!("{report} --out beside --assets beside")).exits(0);
+    lab.run(&format!("{report} --out inside")).exits(0);
+    assert!(lab.read("inside/report.html").contains("id=\"library\""));
+    assert!(!lab.names("inside").contains(&"plotly.js".to_string()));
 }
 
 #[test]

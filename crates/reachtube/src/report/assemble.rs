@@ -1,18 +1,17 @@
 //! Assembly of a page from a model and recordings.
 
 use reachtube_conform::{
-    self as conform, Check, Enclosure, LeftOut, Lost, Model, Notion, Problem, States, Suite,
-    SuiteReach, Witness,
+    self as conform, Check, Enclosure, LeftOut, Lost, Model, Notion, Problem, States, SuiteReach,
 };
 use reachtube_reach::Hyperrectangle;
 
 use crate::error::Result;
 use crate::number::at_least;
-use crate::report::error::ReportError;
+use crate::report::cost::cost_tables;
 use crate::report::nominal::{nominal_caution, nominal_facts, nominal_tables};
 use crate::report::notion::{outside_points, phase_planes, place, together, traces};
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
-use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
+use crate::report::suites::figures;
 
 /// The sources of a page.
 #[derive(Debug, Clone, Copy)]
@@ -31,11 +30,11 @@ pub struct Sources<'a> {
 ///
 /// # Errors
 ///
-/// As [`Problem::run`]; [`ReportError::NoReachableSet`] for a suite without one.
+/// As [`Problem::run`];
+/// [`ReportError::NoReachableSet`](super::ReportError::NoReachableSet) for a suite without one.
 pub fn page(sources: &Sources) -> Result<Page> {
     let Sources { model, problem, check, .. } = *sources;
-    let drawn = problem.recordings().suites.iter().filter(|suite| suite.envelope.len() > 1);
-    let figures = drawn.map(|suite| figure(sources, suite)).collect::<Result<Vec<_>>>()?;
+    let figures = figures(sources)?;
     Ok(Page {
         title: format!("{}: reachset conformance", model.robot.name),
         subtitle: format!(
@@ -46,6 +45,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
             check.verdict.suites.len()
         ),
         verdict: verdict(model, check),
+        cost: cost_tables(model, &figures),
         suites: figures,
         phase_planes: phase_planes(problem, model)?,
         nominal: nominal_tables(model),
@@ -181,7 +181,7 @@ fn sets_table(model: &Model) -> SetsTable {
     SetsTable { notion: notion.into(), joints: (0..n).map(row).collect() }
 }
 
-fn joint_name(model: &Model, joint: usize) -> String {
+pub(super) fn joint_name(model: &Model, joint: usize) -> String {
     model
         .robot
         .joints
@@ -301,98 +301,4 @@ fn changed_robot(model: &Model) -> Option<String> {
             suites.join(", ")
         )
     })
-}
-
-/// Makes the figure of one suite.
-fn figure(sources: &Sources, suite: &Suite) -> Result<SuiteFigure> {
-    let Sources { model, problem, check, reach } = *sources;
-    let (joints, name) = (model.joints(), &suite.entry.name);
-    let own: Vec<&SuiteReach> = reach.iter().filter(|reach| reach.suite == *name).collect();
-    let longest = own.iter().max_by_key(|reach| reach.times.len()).copied();
-    let longest = longest.ok_or_else(|| ReportError::NoReachableSet { suite: name.clone() })?;
-    let shared = longest.run.is_none();
-    // Each run as a line, relative to its own nominal solution where it has one.
-    let mut runs = Vec::new();
-    for (order, summary) in suite.runs.iter().enumerate() {
-        let file = &problem.entry(summary.index).file;
-        let of_run = own.iter().find(|reach| reach.run.as_ref() == Some(file));
-        runs.push(trace(problem, summary.index, order, of_run.copied())?);
-    }
-    // The samples that decide the sets, and the worst one outside.
-    let place =
-        |file: &String| suite.runs.iter().position(|run| problem.entry(run.index).file == *file);
-    let tight = model.tight.iter().filter(|witness| witness.suite == *name);
-    let verdicts = check.verdict.suites.iter().filter(|verdict| verdict.suite == *name);
-    let worst = verdicts.filter_map(|verdict| verdict.violations.worst.as_ref());
-    let spots: Vec<TightSpot> = tight
-        .chain(worst)
-        .filter_map(|witness| Some(spot(witness, place(&witness.run)?, joints)))
-        .collect();
-    for spot in &spots {
-        runs[spot.run].touches += 1;
-    }
-    let nominal = columns(&longest.nominal, 2 * joints);
-    Ok(SuiteFigure {
-        suite: name.clone(),
-        joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
-        kinds: model.robot.kinds(),
-        times: longest.times.clone(),
-        band: band(&own, longest, joints, check.verdict.enclosure.set_name()),
-        inner: None,
-        nominal: if shared { Nominal::Shared(nominal) } else { Nominal::PerRun },
-        runs,
-        tight: spots,
-    })
-}
-
-/// Returns the band of a suite. Runs with nominal solutions of their own share the hull of their
-/// deviations.
-fn band(own: &[&SuiteReach], longest: &SuiteReach, joints: usize, set: &str) -> Band {
-    let shared = longest.run.is_none();
-    let edge = |of: fn(&SuiteReach) -> &[f64], further: fn(f64, f64) -> f64| {
-        let deviation = |reach: &&SuiteReach, at: usize| {
-            of(reach).get(at).map(|x| if shared { *x } else { x - reach.nominal[at] })
-        };
-        let hull = |at: usize| own.iter().filter_map(|reach| deviation(reach, at)).reduce(further);
-        let values: Vec<f64> = (0..longest.nominal.len()).filter_map(hull).collect();
-        columns(&values, 2 * joints)
-    };
-    Band {
-        label: set.into(),
-        lower: edge(|reach| &reach.lower, f64::min),
-        upper: edge(|reach| &reach.upper, f64::max),
-    }
-}
-
-fn spot(witness: &Witness, run: usize, joints: usize) -> TightSpot {
-    let Witness { time, state, side, excess, .. } = *witness;
-    TightSpot { run, time_s: time, state: state.index(joints), side, margin: -excess }
-}
-
-/// Returns a run as a line, relative to its own nominal solution where it has one.
-fn trace(
-    problem: &Problem,
-    index: usize,
-    order: usize,
-    own: Option<&SuiteReach>,
-) -> Result<RunTrace> {
-    let run = problem.run(index)?;
-    let mut states = run.states.clone();
-    if let Some(own) = own {
-        states.iter_mut().zip(&own.nominal).for_each(|(x, nominal)| *x -= nominal);
-    }
-    let entry = problem.entry(index);
-    Ok(RunTrace {
-        name: entry.file.clone(),
-        order,
-        temperature: entry.temperature,
-        times: run.times.clone(),
-        states: columns(&states, 2 * run.joints),
-        touches: 0,
-    })
-}
-
-/// Turns row-major samples x states into one list per state.
-fn columns(values: &[f64], states: usize) -> Vec<Vec<f64>> {
-    (0..states).map(|i| values.iter().skip(i).step_by(states).copied().collect()).collect()
 }

@@ -6,7 +6,7 @@ use plotters::style::RGBColor;
 
 /// Red, green and blue of the scale's colours, all darker than the bands: blue, indigo, violet,
 /// magenta, red.
-const ANCHORS: [[f64; 3]; 5] = [
+pub(super) const ANCHORS: [[f64; 3]; 5] = [
     [18.0, 70.0, 200.0],
     [84.0, 72.0, 214.0],
     [146.0, 58.0, 190.0],

@@ -18,8 +18,8 @@ use plotters::prelude::*;
 /// mark the tight spots.
 ///
 /// Lines are thinned to what the plot can show: in each pixel column a line passes the lowest and
-/// the highest sample within a tenth of a pixel. Between samples the edges of the bands are joined
-/// by straight lines, which claims nothing about the reachable set there.
+/// the highest sample within a quarter of a pixel. Between samples the edges of the bands are
+/// joined by straight lines, which claims nothing about the reachable set there.
 ///
 /// # Errors
 ///

@@ -47,7 +47,7 @@ pub fn write_identified_html(
     };
     let title = format!("{}: identified", found.description.name);
     let subtitle = "Gravity, friction and inertia identified from recordings";
-    out.write_all(document(&title, subtitle, &body, None).as_bytes())?;
+    out.write_all(document(&title, subtitle, &body, &Markup::default()).as_bytes())?;
     Ok(())
 }
 
@@ -64,7 +64,7 @@ fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> Markup {
             }
         }
     };
-    wide_table(caption, &head, &rows)
+    wide_table("long", caption, &head, &rows)
 }
 
 /// Returns a table with one column per joint, after a first column under `corner`.
@@ -120,7 +120,7 @@ fn validation_row(log: &LogValidation, kinds: &[JointKind]) -> Vec<String> {
             return format!("at rest ({})", part(error.relative_all));
         };
         format!(
-            "{} ({}), R² {}, {} {}",
+            "{} ({}), R²\u{a0}{}, {} {}",
             percent(relative),
             part(error.relative_all),
             error.r2.map_or("-".into(), |r2| format!("{r2:.4}")),

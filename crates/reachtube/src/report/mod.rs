@@ -11,26 +11,35 @@ mod canvas;
 mod chart;
 mod check;
 mod colour;
+mod cost;
 mod decimate;
 pub(crate) mod error;
 mod figure;
+mod figures;
 mod html;
 mod identified;
 mod identified_charts;
+mod interactive;
 mod layout;
 mod legend;
+mod library;
 mod nominal;
 mod notion;
+mod packed;
 mod page;
 mod panel;
+mod scripts;
 mod skeleton;
 mod style;
 mod suite_figure;
+mod suites;
 mod tables;
 mod text;
 
 #[cfg(test)]
 mod browser;
+#[cfg(test)]
+mod devtools;
 #[cfg(test)]
 mod sample;
 
@@ -40,6 +49,7 @@ pub use error::ReportError;
 pub use figure::suite_svg;
 pub use html::write_html;
 pub use identified::write_identified_html;
+pub use library::{Assets, LIBRARY_FILE, write_library};
 pub use page::{Bounds, JointSets, Page, SetsTable, TextTable, Verdict};
 pub use reachtube_conform::Side;
 pub use suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot, View};

@@ -24,6 +24,8 @@ pub struct Page {
     pub nominal: Vec<TextTable>,
     /// The uncertainty sets: one table per notion of conformance (Table II has two).
     pub sets: Vec<SetsTable>,
+    /// What the cost of the sets comes from.
+    pub cost: Vec<TextTable>,
     /// Settings and provenance: name and value.
     pub facts: Vec<(String, String)>,
     /// Claims that the reader may rely on.

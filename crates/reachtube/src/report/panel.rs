@@ -16,7 +16,7 @@ const EDGE_WIDTH: u32 = 7;
 /// Width of a panel per time label \[px\].
 const TIME_LABEL: f64 = 28.0;
 /// Largest distance of a thinned line from a sample \[px\].
-const TOLERANCE: f64 = 0.1;
+const TOLERANCE: f64 = 0.25;
 
 /// The lines of one state, ready to draw.
 pub(super) struct Content {
@@ -79,7 +79,12 @@ fn mark(spot: &TightSpot, line: &[Point]) -> Option<(Point, bool)> {
 
 /// Returns a line, minus the nominal solution where there is one. With a nominal solution, the line
 /// covers only the times of `grid`, at which the nominal solution is given.
-fn relative(times: &[f64], values: &[f64], grid: &[f64], nominal: Option<&[f64]>) -> Vec<Point> {
+pub(super) fn relative(
+    times: &[f64],
+    values: &[f64],
+    grid: &[f64],
+    nominal: Option<&[f64]>,
+) -> Vec<Point> {
     let points = times.iter().copied().zip(values.iter().copied());
     let Some(nominal) = nominal else {
         return points.collect();
@@ -93,7 +98,7 @@ fn relative(times: &[f64], values: &[f64], grid: &[f64], nominal: Option<&[f64]>
 }
 
 /// Returns the value of a non-empty line at a time; beyond its ends, the value at the end.
-fn interpolate(line: &[Point], time: f64) -> f64 {
+pub(super) fn interpolate(line: &[Point], time: f64) -> f64 {
     let after = line.partition_point(|point| point.0 < time);
     if after == 0 || after == line.len() {
         return line[after.min(line.len() - 1)].1;

@@ -1,5 +1,6 @@
 //! A small invented result, for the tests of this module.
 
+use super::chart::{Chart, Series};
 use super::page::{JointSets, Page, SetsTable, TextTable, Verdict};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 use reachtube_conform::Side;
@@ -23,6 +24,7 @@ pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
             name: format!("run {order}"),
             order,
             temperature: None,
+            gauge: Some(0.3 * order as f64),
             times: times.clone(),
             states: nominal.iter().map(|row| row.iter().zip(&times).map(shift).collect()).collect(),
             touches: order,
@@ -46,6 +48,8 @@ pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
             TightSpot { run: 0, time_s: 1.0, state: 0, side: Side::Lower, margin: 0.0 },
         ],
         nominal: Nominal::Shared(nominal),
+        undrawn: 0,
+        furthest: Some(0.9),
         times,
     }
 }
@@ -76,7 +80,8 @@ pub(super) fn page() -> Page {
     Page {
         title: hostile("title"),
         subtitle: hostile("subtitle"),
-        phase_planes: Vec::new(),
+        phase_planes: vec![phase_plane()],
+        cost: vec![TextTable { title: "drivers".into(), ..TextTable::default() }],
         verdict: Verdict {
             ok: true,
             words: hostile("words"),
@@ -95,5 +100,21 @@ pub(super) fn page() -> Page {
         trust: vec![hostile("trust")],
         caution: vec![hostile("caution")],
         notes: vec![hostile("note")],
+    }
+}
+
+/// Returns a phase plane with a set and two points.
+fn phase_plane() -> Chart {
+    let line = |points: Vec<(f64, f64)>| Series { points, dots: false, colour: [18, 70, 200] };
+    let dots = Series { points: vec![(0.1, 0.2), (0.3, 0.1)], dots: true, colour: [222, 110, 0] };
+    Chart {
+        title: "joint 1, 0.500 s".into(),
+        x: "position [rad]".into(),
+        y: "velocity [rad/s]".into(),
+        series: vec![
+            line(vec![(-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]),
+            line(vec![(-0.5, 0.0), (0.0, 0.5), (0.5, 0.0)]),
+            dots,
+        ],
     }
 }

@@ -4,17 +4,13 @@ use super::text::Text;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
-/// The browser enforces that the page loads nothing from anywhere.
-const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+/// The browser enforces that the page loads nothing from anywhere, but for a library that is a file
+/// beside it. Figures are saved from blobs.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+                      script-src 'unsafe-inline' 'self' file:; img-src data: blob:";
 
-/// Returns a page as one HTML document that needs no other file.
-pub(super) fn document(
-    title: &str,
-    subtitle: &str,
-    body: &Markup,
-    script: Option<&'static str>,
-) -> String {
+/// Returns a page as one HTML document. The scripts stand at its end.
+pub(super) fn document(title: &str, subtitle: &str, body: &Markup, scripts: &Markup) -> String {
     let document = html! {
         (DOCTYPE)
         html lang="en" {
@@ -36,9 +32,7 @@ pub(super) fn document(
                     }
                     (body)
                 }
-                @if let Some(script) = script {
-                    script { (PreEscaped("\n")) (PreEscaped(script)) }
-                }
+                (scripts)
             }
         }
     };
@@ -53,8 +47,13 @@ pub(super) fn own_mark() -> Markup {
 /// Returns a section under a heading.
 pub(super) fn section(title: &str, body: &Markup) -> Markup {
     html! {
-        section { h2 { (title) } (body) }
+        section id=(anchor(title)) { h2 { (title) } (body) }
     }
+}
+
+/// Returns the name by which a link finds the section of a title.
+pub(super) fn anchor(title: &str) -> String {
+    title.to_lowercase().replace(' ', "-")
 }
 
 /// Returns two lists of points side by side, each with its title and class; nothing of an empty
@@ -76,11 +75,12 @@ pub(super) fn pair_of_lists(lists: [(&str, &str, &[String]); 2]) -> Markup {
     }
 }
 
-/// Returns a table in a region that scrolls sideways on a narrow screen, named by its caption.
-pub(super) fn wide_table(caption: &str, head: &Markup, rows: &Markup) -> Markup {
+/// Returns a table in a region that scrolls sideways on a narrow screen, named by its caption. The
+/// class decides whether its cells are broken into lines: `sets` are not, `long` are.
+pub(super) fn wide_table(class: &str, caption: &str, head: &Markup, rows: &Markup) -> Markup {
     html! {
         div.wide tabindex="0" role="region" aria-label=(Text(caption)) {
-            table.sets {
+            table class=(class) {
                 caption { (Text(caption)) }
                 thead { tr { (head) } }
                 tbody { (rows) }

@@ -19,14 +19,19 @@ pub struct SuiteFigure {
     pub times: Vec<f64>,
     /// The reachable set, drawn light grey.
     pub band: Band,
-    /// A second reachable set, drawn dark grey, such as the position-conformant one of Fig. 4.
+    /// A second band, drawn dark grey, such as the position-conformant reachable set of Fig. 4, or
+    /// the lowest and highest values of all runs.
     pub inner: Option<Band>,
     /// The nominal solution, from which deviations are measured.
     pub nominal: Nominal,
-    /// The recorded runs.
+    /// The recorded runs that are drawn.
     pub runs: Vec<RunTrace>,
+    /// Number of further runs, which lie in the second band and are not drawn.
+    pub undrawn: usize,
     /// The samples that decide the sets, or lie outside the reachable set.
     pub tight: Vec<TightSpot>,
+    /// The largest [`RunTrace::gauge`] of all runs, drawn or not.
+    pub furthest: Option<f64>,
 }
 
 /// The interval hull of a reachable set over time.
@@ -67,6 +72,9 @@ pub struct RunTrace {
     pub times: Vec<f64>,
     /// Samples, shape `[2n][times]`.
     pub states: Vec<Vec<f64>>,
+    /// The part of the set's radius that the run reaches at most, over samples and states: 1 at the
+    /// boundary, more outside. `None` where it is not known.
+    pub gauge: Option<f64>,
     /// Number of support rows of the linear program that this run decides.
     pub touches: usize,
 }
@@ -93,6 +101,18 @@ pub enum View {
     Motion,
     /// The states minus the nominal solution.
     Deviation,
+}
+
+/// Difference of times that are taken for the same \[s\]; nominal times are rounded to a
+/// picosecond.
+pub(super) const SAME_TIME: f64 = 1e-9;
+
+impl RunTrace {
+    /// Tells whether the run's samples are at the first of some times.
+    pub(super) fn has_times(&self, times: &[f64]) -> bool {
+        let is_same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_TIME;
+        self.times.len() <= times.len() && self.times.iter().zip(times).all(is_same)
+    }
 }
 
 impl SuiteFigure {

@@ -37,7 +37,7 @@ pub(super) fn sets(table: &SetsTable) -> Markup {
             }
         }
     };
-    wide_table(&table.notion, &head, &rows)
+    wide_table("sets", &table.notion, &head, &rows)
 }
 
 fn columns(table: &SetsTable) -> Vec<Column> {
@@ -114,8 +114,8 @@ pub(super) fn tight(page: &Page) -> Markup {
                     }
                 }
                 tbody {
-                    @for suite in &page.suites {
-                        @for spot in &suite.tight { (spot_row(suite, spot)) }
+                    @for (index, suite) in page.suites.iter().enumerate() {
+                        @for spot in &suite.tight { (spot_row(index, suite, spot)) }
                     }
                 }
             }
@@ -123,14 +123,15 @@ pub(super) fn tight(page: &Page) -> Markup {
     }
 }
 
-fn spot_row(suite: &SuiteFigure, spot: &TightSpot) -> Markup {
+fn spot_row(index: usize, suite: &SuiteFigure, spot: &TightSpot) -> Markup {
     let side = match spot.side {
         Side::Lower => "lower",
         Side::Upper => "upper",
     };
     let outside = spot.margin < 0.0;
     html! {
-        tr class=[outside.then_some("outside")] {
+        tr class=[outside.then_some("outside")] data-suite-index=(index) data-run=(spot.run)
+            data-time=(spot.time_s) data-state=(spot.state) {
             td { (Text(&suite.suite)) }
             td { (Text(&suite.runs[spot.run].name)) }
             td.number { (significant(spot.time_s, 6)) }
@@ -159,7 +160,7 @@ pub(super) fn texts(table: &TextTable) -> Markup {
             }
         }
     };
-    wide_table(&table.title, &head, &rows)
+    wide_table("sets", &table.title, &head, &rows)
 }
 
 /// Returns a table of names and values.

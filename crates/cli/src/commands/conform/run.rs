@@ -4,7 +4,7 @@ use reachtube::conform::{
     Certificate, Check, Conformance, FitSettings, Group, Keep, Notion, Problem, conform, fit, reach,
 };
 use reachtube::recordings::DataSet;
-use reachtube::report::Sources;
+use reachtube::report::{Assets, Sources};
 use reachtube::{Model, write};
 
 use super::arguments::Arguments;
@@ -78,5 +78,6 @@ pub fn report(
 ) -> Result<PathBuf> {
     let check = Check::new(model, problem, found.verdict.clone());
     let reach = reach(problem, &found.hulls)?;
-    report_files::write(&Sources { model, problem, reach: &reach, check: &check }, folder)
+    let sources = Sources { model, problem, reach: &reach, check: &check };
+    report_files::write(&sources, Assets::Inside, folder)
 }
