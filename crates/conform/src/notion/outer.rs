@@ -121,8 +121,8 @@ impl<'a> CaseRuns<'a> {
         })
     }
 
-    /// Asks the set at a sample how far it reaches, and judges the points there. At the first sample
-    /// the set is a box, and its hull says all.
+    /// Asks the set at a sample how far it reaches, and judges the points there. At the first
+    /// sample the set is a box, and its hull says all.
     ///
     /// # Guarantee
     ///
