@@ -20,8 +20,8 @@ use crate::settings::{Noise, Notion, Settings};
 /// What the radii of U are widened by first, N m, so that doubles lie in u + U.
 const LEAST_RADIUS: f64 = 1e-9;
 
-/// What the radii of X0 are widened by, in parts of V: the search for a motion is accurate to 2 %, so
-/// that a start at the edges of X0 and V at once would not be found.
+/// What the radii of X0 are widened by, in parts of V: the search for a motion is accurate to 2 %,
+/// so that a start at the edges of X0 and V at once would not be found.
 const START_ROOM: f64 = 0.05;
 
 /// The largest factor on U that is tried.

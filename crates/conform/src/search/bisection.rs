@@ -11,7 +11,8 @@ use crate::problem::case::Case;
 use crate::progress::Progress;
 use crate::rows::{Edge, rows};
 use crate::search::journal::Journal;
-use crate::search::successive::{SearchResult, SearchState, SuccessiveLinearisation};
+use crate::search::state::SearchState;
+use crate::search::successive::{SearchResult, SuccessiveLinearisation};
 use crate::sets::UncertaintySets;
 
 /// Part of its first value to which a radius is found.

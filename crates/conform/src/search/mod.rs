@@ -6,5 +6,6 @@ mod directions;
 mod journal;
 pub(crate) mod sensitivity;
 pub(crate) mod smallest_sets;
+mod state;
 mod successive;
 mod worst_case;

@@ -7,12 +7,7 @@
 //! the sets have settled, their reachable sets are enclosed. Rows outside the enclosure are asked
 //! for with a margin, until every recording is enclosed.
 
-use std::collections::HashMap;
-use std::ops::Range;
-
 use rayon::prelude::*;
-use reachtube_reach::Hyperrectangle;
-use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
 use crate::flowpipes::OuterSet;
@@ -27,6 +22,7 @@ use crate::rows::rows;
 use crate::search::directions::{self, Direction};
 use crate::search::journal::Journal;
 use crate::search::sensitivity::{Sensitivity, runs_away};
+use crate::search::state::{Margin, SearchState};
 use crate::search::worst_case::Correction;
 use crate::sets::UncertaintySets;
 use crate::side::Side;
@@ -37,16 +33,6 @@ const ROUNDS: usize = 20;
 
 /// Rounds at most where recorded points must lie in the set itself.
 const ROUNDS_OF_POINTS: usize = 100;
-
-/// Part of the largest radius or centre below which a change counts as settled.
-const SETTLED: f64 = 1e-5;
-
-/// Part of the cost below which its change counts as settled too: where the program has several
-/// answers, the sets may wander among them.
-const SAME_COST: f64 = 1e-6;
-
-/// Centres get less freedom when a change exceeds this part of the one before.
-const SHRINKS: f64 = 0.8;
 
 /// Factor on what is missing with which rows outside the enclosure are asked for.
 const MARGIN: f64 = 1.1;
@@ -71,42 +57,6 @@ pub(super) struct SearchResult {
     pub summary: SearchSummary,
 }
 
-/// The state of the search between rounds: everything that the next round depends on.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SearchState {
-    /// Number of rounds done.
-    pub rounds: usize,
-    /// How often the reachable sets were computed.
-    pub reachable_sets: usize,
-    /// The cost of the linearised sets after the last round.
-    pub cost: f64,
-    /// The change of the sets by that round's program.
-    pub change: f64,
-    /// How far centres may move in the next round, in parts of the largest centre or radius of
-    /// their kind.
-    pub freedom: f64,
-    /// The sets after the last round.
-    pub sets: UncertaintySets,
-    /// The rows that must be reached with a margin, because they were not enclosed.
-    pub margins: Vec<Margin>,
-    /// The directions in which points were outside the computed sets.
-    #[serde(default)]
-    pub directions: Vec<Direction>,
-}
-
-/// A row that must be reached with a margin.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Margin {
-    case: usize,
-    sample: usize,
-    state: usize,
-    side: Side,
-    /// rad or rad/s.
-    margin: f64,
-}
-
 /// One linearisation and the answer of its program.
 pub(super) struct Round<'a> {
     /// The program, with one block per case.
@@ -114,72 +64,6 @@ pub(super) struct Round<'a> {
     pub solution: Solution,
     /// Where a worst-case motion under the sets of the round before ran away: case and time, s.
     pub runs_away: Option<(usize, f64)>,
-}
-
-impl SearchState {
-    /// Returns the state before the first round: no uncertainty.
-    pub fn start(joints: usize) -> Self {
-        let (initial_set, input_set) =
-            (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
-        let sets = UncertaintySets { initial_set, input_set, noise_set: None };
-        Self {
-            rounds: 0,
-            reachable_sets: 0,
-            cost: 0.0,
-            change: f64::MAX,
-            freedom: f64::MAX,
-            sets,
-            margins: Vec::new(),
-            directions: Vec::new(),
-        }
-    }
-
-    /// Takes the answer of a program and returns whether the sets have settled. Where answers jump
-    /// back and forth, as answers of the same cost may do, centres get less freedom.
-    fn take(&mut self, round: &Round) -> bool {
-        let (change, cost) =
-            (change(&self.sets, &round.solution.sets), round.program.cost(&round.solution.sets));
-        if change > SHRINKS * self.change {
-            self.freedom = 0.5 * self.freedom.min(change);
-        }
-        let is_settled = change <= SETTLED || (cost - self.cost).abs() <= SAME_COST * cost;
-        self.sets = round.solution.sets.clone();
-        (self.change, self.cost, self.rounds) = (change, cost, self.rounds + 1);
-        is_settled
-    }
-
-    /// Returns the bounds of the centres of X0 and U in the next round; none when they are free.
-    fn centre_bounds(&self) -> Vec<[f64; 2]> {
-        if self.freedom == f64::MAX {
-            return Vec::new();
-        }
-        let n = self.sets.input_set.dimension();
-        let around = |set: &Hyperrectangle, kind: Range<usize>| {
-            let reach = self.freedom * largest(set, kind.clone());
-            set.centre[kind].iter().map(|c| [c - reach, c + reach]).collect::<Vec<_>>()
-        };
-        let (x, u) = (&self.sets.initial_set, &self.sets.input_set);
-        [around(x, 0..n), around(x, n..2 * n), around(u, 0..n)].concat()
-    }
-
-    /// Adds margins; those of one row add up.
-    fn add(&mut self, missing: Vec<Margin>) {
-        self.change = f64::MAX;
-        let places = self.margins.iter().enumerate().map(|(at, margin)| (margin.row(), at));
-        let known: HashMap<_, usize> = places.collect();
-        for new in missing {
-            match known.get(&new.row()) {
-                Some(&at) => self.margins[at].margin += new.margin,
-                None => self.margins.push(new),
-            }
-        }
-    }
-}
-
-impl Margin {
-    fn row(&self) -> (usize, usize, usize, Side) {
-        (self.case, self.sample, self.state, self.side)
-    }
 }
 
 impl SuccessiveLinearisation<'_> {
@@ -195,7 +79,8 @@ impl SuccessiveLinearisation<'_> {
         loop {
             // Linearise, solve, and take the answer.
             let round = self.round(&mut state)?;
-            let is_settled = state.take(&round);
+            let found = &round.solution.sets;
+            let is_settled = state.take(found, round.program.cost(found));
             journal.save(&state)?;
             let SearchState { rounds, cost, change, .. } = &state;
             progress.finished(&format!(
@@ -386,26 +271,4 @@ fn block(
     );
     let coefficients = sensitivity.coefficients.into();
     Block { times: case.grid.times().to_vec(), coefficients, envelope }
-}
-
-/// Returns the largest change of a centre or radius, in parts of the largest of its kind:
-/// positions, velocities, inputs.
-fn change(old: &UncertaintySets, new: &UncertaintySets) -> f64 {
-    let n = new.input_set.dimension();
-    let of_kind = |old: &Hyperrectangle, new: &Hyperrectangle, kind: Range<usize>| {
-        let pairs = |x: &[f64], y: &[f64]| -> f64 {
-            kind.clone().map(|i| (x[i] - y[i]).abs()).fold(0.0, f64::max)
-        };
-        let change = pairs(&old.centre, &new.centre).max(pairs(&old.radius, &new.radius));
-        if change == 0.0 { 0.0 } else { change / largest(new, kind) }
-    };
-    let (x, u) = ((&old.initial_set, &new.initial_set), (&old.input_set, &new.input_set));
-    [of_kind(x.0, x.1, 0..n), of_kind(x.0, x.1, n..2 * n), of_kind(u.0, u.1, 0..n)]
-        .into_iter()
-        .fold(0.0, f64::max)
-}
-
-/// Returns the largest magnitude of a centre or radius.
-fn largest(set: &Hyperrectangle, kind: Range<usize>) -> f64 {
-    set.centre[kind.clone()].iter().chain(&set.radius[kind]).fold(0.0, |max, x| max.max(x.abs()))
 }

@@ -199,7 +199,7 @@ fn tell_apart(count: usize) {
 fn merged_generators_span_a_smaller_set() {
     let mut random = Random::new(8);
     let mut rows = GeneratorRows::new(2, 101);
-    let turn = |j: usize| 0.01 * j as f64 + if j % 2 == 0 { 0.0 } else { 1.5 };
+    let turn = |j: usize| 0.01 * j as f64 + if j.is_multiple_of(2) { 0.0 } else { 1.5 };
     rows.row_mut(0).iter_mut().enumerate().for_each(|(j, x)| *x = turn(j).cos());
     rows.row_mut(1).iter_mut().enumerate().for_each(|(j, x)| *x = turn(j).sin());
     let merged = rows.merged(2, 10);
