@@ -74,8 +74,9 @@ impl SearchState {
         }
     }
 
-    /// Takes the sets that a program gave, with their cost, and returns whether the sets have settled. Where answers jump
-    /// back and forth, as answers of the same cost may do, centres get less freedom.
+    /// Takes the sets that a program gave, with their cost, and returns whether they have settled.
+    /// Where answers jump back and forth, as answers of the same cost may do, centres get less
+    /// freedom.
     pub fn take(&mut self, sets: &UncertaintySets, cost: f64) -> bool {
         let change = change(&self.sets, sets);
         if change > SHRINKS * self.change {
