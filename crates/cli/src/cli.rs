@@ -92,6 +92,7 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
         Command::Reach(args) => reach::run(args, json),
         Command::Report(args) => report::run(args, json),
         Command::Reproduce(ReproduceCommand::Table1(args)) => reproduce::table1(args, json),
+        Command::Reproduce(ReproduceCommand::Table2(args)) => reproduce::table2(args, json),
         Command::Reproduce(ReproduceCommand::Coverage(args)) => reproduce::coverage(args, json),
         Command::Completions(args) => completions::run(args),
         Command::Man(args) => man::run(args),

@@ -14,6 +14,13 @@ pub const NOTIONS: Choices = &[
     ("trace", "exact, and one motion of the model through all samples, up to the noise V"),
 ];
 
+/// How the disturbance may change in time.
+pub const DISTURBANCES: Choices = &[
+    ("constant", "constant over the whole recording, as in the paper"),
+    ("sample", "constant over each sample"),
+    ("measurable", "any measurable function of time"),
+];
+
 /// The models of the paper (Sec. IV-B), as `--model` names them.
 pub const MODELS: Choices = &[
     ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),

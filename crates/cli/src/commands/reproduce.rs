@@ -5,24 +5,29 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use reachtube::abstraction::ModelKind;
+use reachtube::conform::{Notion, States};
+use reachtube::reach::Disturbance;
 use reachtube::reproduce::{
-    Cell, Coverage, CoverageOptions, CoverageRow, Paper, Speed, Table1, Table1Options,
-    coverage as simulate_coverage, table1 as make_table1,
+    Cell, Coverage, CoverageOptions, CoverageRow, Paper, Speed, Table1, Table1Options, Table2,
+    Table2Options, coverage as simulate_coverage, table1 as make_table1, table2 as make_table2,
 };
 use reachtube::write;
 
 use crate::error::Result;
 use crate::lock_arguments::LockArguments;
+use crate::option_values::{DISTURBANCES, NOTIONS, choice, trimmed};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::table::table;
-use reachtube::number::four_decimals;
+use crate::verdict::notion_words;
+use reachtube::number::{four_decimals, interval};
 
 /// Reproduce a table of the paper, or put the bounds for the next motion to the test
 #[derive(Debug, Subcommand)]
 pub enum ReproduceCommand {
     Table1(Table1Arguments),
+    Table2(Table2Arguments),
     Coverage(CoverageArguments),
 }
 
@@ -67,6 +72,87 @@ pub struct Table1Arguments {
     /// Write the error of each motion to this CSV file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+}
+
+const TABLE2_HELP: &str = "\
+Example:
+  reachtube campaign --out campaign
+  reachtube reproduce table2 --data campaign
+  reachtube reproduce table2 --data recordings --suites A,B,D,E --notions hull,exact
+
+The paper's recordings are not public but for four suites; `campaign` records as many on a virtual
+arm, so only the sizes of the sets can agree.
+
+Exit codes: 0 every set proved conformant, 1 one is not, 2 error.";
+
+/// Table II: the uncertainty sets of model 1 for the LWA 4P
+///
+/// Both halves of the table: sets that enclose positions and velocities, and sets that enclose
+/// positions. The sets contain the origin, as the paper's do. Torques are compensated.
+#[derive(Debug, Args)]
+#[command(after_help = TABLE2_HELP)]
+pub struct Table2Arguments {
+    /// Folder with runs.csv and the recordings
+    #[arg(long, value_name = "FOLDER")]
+    pub data: PathBuf,
+    /// Names of the test suites to use, separated by commas [default: all]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
+    pub suites: Vec<String>,
+    /// Notions of enclosure, separated by commas: hull, phase-plane, exact
+    #[arg(
+        long,
+        value_name = "NOTION,..",
+        value_delimiter = ',',
+        default_value = "hull",
+        value_parser = choice::<Notion>(&NOTIONS[..3])
+    )]
+    pub notions: Vec<Notion>,
+    /// How the disturbance may change in time
+    #[arg(long, default_value = "constant", value_parser = choice::<Disturbance>(DISTURBANCES))]
+    pub disturbance: Disturbance,
+}
+
+/// Runs `reproduce table2`.
+pub fn table2(args: &Table2Arguments, json: bool) -> Result<Outcome> {
+    let options = Table2Options {
+        suites: args.suites.clone(),
+        notions: args.notions.clone(),
+        disturbance: args.disturbance,
+    };
+    let bar = Progress::new();
+    let table2 = make_table2(&args.data, &options, &bar)?;
+    drop(bar);
+    output::show(json, &table2, || table2_summary(&table2))?;
+    Ok(Outcome::of(table2.cases.iter().all(|case| case.conformant)))
+}
+
+/// Returns Table II in the paper's layout, with the paper's bounds beside ours.
+fn table2_summary(table2: &Table2) -> String {
+    let mut text = format!(
+        "Table II: uncertainty sets of model 1 (p = 1) for {} recordings in {} suites\n",
+        table2.runs, table2.suites
+    );
+    for case in &table2.cases {
+        let states = match case.states {
+            States::All => "velocity conformant",
+            States::Positions => "position conformant",
+        };
+        let proved = if case.conformant { "proved" } else { "NOT PROVED" };
+        let notion = notion_words(case.notion);
+        let cost = four_decimals(case.cost);
+        let _ = writeln!(text, "\n{states}, {notion}: {proved}, cost {cost}\n");
+        let paper = case.paper;
+        let row = |joint: usize| {
+            let papers = [paper.x0_q, paper.x0_qd, paper.u].map(|sets| sets[joint]);
+            let pairs = case.bounds(joint).into_iter().zip(papers);
+            let cells = pairs
+                .flat_map(|(ours, [low, high])| [interval(ours), format!("[{low:.4}, {high:.4}]")]);
+            std::iter::once(format!("joint{}", joint + 1)).chain(cells).collect()
+        };
+        let header = ["joint", "X0 q [rad]", "paper", "X0 qd [rad/s]", "paper", "U [N m]", "paper"];
+        text.push_str(&table(&header, &(0..6).map(row).collect::<Vec<Vec<String>>>()));
+    }
+    text
 }
 
 const COVERAGE_HELP: &str = "\

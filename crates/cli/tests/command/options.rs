@@ -20,6 +20,7 @@ fn help_has_examples_and_exit_codes() {
         "reach",
         "report",
         "reproduce table1",
+        "reproduce table2",
         "reproduce coverage",
         "completions",
         "man",

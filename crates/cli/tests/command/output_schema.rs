@@ -73,6 +73,8 @@ fn a_campaign_fits_the_schema() {
     let again = lab.run(&campaign).exits(0).stdout;
     assert!(again.contains("2 of them by an earlier start"), "{again}");
     fits("inspect", &lab.run("inspect --data out --json").exits(0).json());
+    let table = lab.run("reproduce table2 --data out --notions hull,exact --json").exits(0).json();
+    fits("reproduce_table2", &table);
     lab.write("robot.toml", "payload = 0.5\n");
     lab.run(&campaign).fails_with(&["robot.toml", "unknown field `payload`"]);
     lab.write("robot.toml", "cooling_time = -1.0\n");

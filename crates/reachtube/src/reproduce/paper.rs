@@ -1,4 +1,4 @@
-//! The numbers printed in Table I of the paper.
+//! The numbers printed in Tables I and II of the paper.
 
 use reachtube_abstraction::ModelKind;
 use serde::Serialize;
@@ -32,3 +32,66 @@ impl Paper {
         Some(if error.is_finite() { Self::Error(error) } else { Self::Diverged })
     }
 }
+
+/// A half of Table II in the paper: the bounds of each joint.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PaperSets {
+    /// X0, positions \[rad\].
+    pub x0_q: [[f64; 2]; 6],
+    /// X0, velocities \[rad/s\].
+    pub x0_qd: [[f64; 2]; 6],
+    /// U \[N m\].
+    pub u: [[f64; 2]; 6],
+}
+
+/// X0 of the positions, the same in both halves.
+const X0_Q: [[f64; 2]; 6] = [
+    [-0.0030, 0.0030],
+    [-0.0017, 0.0017],
+    [-0.0025, 0.0025],
+    [-0.0027, 0.0027],
+    [-0.0075, 0.0075],
+    [-0.0063, 0.0063],
+];
+
+/// "Velocity conformant".
+pub(super) static PAPER_VELOCITIES: PaperSets = PaperSets {
+    x0_q: X0_Q,
+    x0_qd: [
+        [-0.0317, 1.2140],
+        [-0.6586, 0.2550],
+        [-0.0154, 0.0463],
+        [-0.0184, 0.0331],
+        [-0.1179, 0.0551],
+        [-0.0765, 0.0765],
+    ],
+    u: [
+        [-2.7201, 3.6017],
+        [-2.3225, 7.1559],
+        [-6.8833, 2.6287],
+        [-1.7374, 2.0317],
+        [-1.4919, 0.5486],
+        [-1.0060, 1.0060],
+    ],
+};
+
+/// "Position conformant".
+pub(super) static PAPER_POSITIONS: PaperSets = PaperSets {
+    x0_q: X0_Q,
+    x0_qd: [
+        [-0.2785, 1.1309],
+        [-2.0695, 2.3636],
+        [0.0, 0.0],
+        [0.0, 0.6020],
+        [-0.3491, 0.1180],
+        [-0.6369, 0.7051],
+    ],
+    u: [
+        [-1.9257, 1.8615],
+        [-0.8212, 1.0395],
+        [-1.8045, 1.5717],
+        [-1.2072, 1.2231],
+        [-0.6622, 0.2146],
+        [-0.5366, 0.5187],
+    ],
+};

@@ -7,7 +7,7 @@ use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;
 use crate::lock_arguments::LockArguments;
-use crate::option_values::{Choices, MODELS, NOTIONS, choice, numbered_choice};
+use crate::option_values::{Choices, DISTURBANCES, MODELS, NOTIONS, choice, numbered_choice};
 
 const HELP: &str = "\
 Examples:
@@ -201,12 +201,6 @@ pub struct Arguments {
     #[arg(long, help_heading = "Output", value_name = "FOLDER")]
     pub report: Option<PathBuf>,
 }
-
-const DISTURBANCES: Choices = &[
-    ("constant", "constant over the whole recording, as in the paper"),
-    ("sample", "constant over each sample"),
-    ("measurable", "any measurable function of time"),
-];
 
 const GROUPS: Choices = &[
     ("inertia", "motor inertia of each joint and density of each link"),
