@@ -66,8 +66,8 @@ impl Trust {
     pub fn without_optimum(recordings: &Recordings, gap: f64) -> Self {
         let motions = Motions::new(recordings);
         let basis = format!(
-            "no scenario bound: it holds for the smallest sets only, and the program was solved to \
-             a relative gap of {gap:.1e}"
+            "no scenario bound: it holds for the smallest sets only, and the cost of these is \
+             {gap:.1e} of its lower bound above it"
         );
         Self::unknown(motions.count(), basis)
     }

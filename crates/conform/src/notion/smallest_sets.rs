@@ -14,9 +14,13 @@ use crate::optimality::optimality_gap;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
+use crate::settings::Noise;
 
 /// The sets are taken when no point needs them to grow by more than this part.
 const TOLERANCE: f64 = 2e-5;
+
+/// The same with a noise set, which does not grow, so that the others have to grow more.
+const TOLERANCE_WITH_NOISE: f64 = 2e-6;
 
 /// Points this close to the boundary in the first round are tried in every round; all others when
 /// none of them is outside any more.
@@ -50,9 +54,13 @@ pub(crate) fn smallest_sets_widened(
 ) -> Result<Found> {
     let sweep = Sweep::new(problem)?;
     let mut program = program(problem)?;
-    let (solution, cuts) = solve(&sweep, &mut program, progress)?;
+    let tolerance = match problem.settings().noise {
+        Noise::None => TOLERANCE,
+        Noise::Fitted | Noise::Fixed(_) => TOLERANCE_WITH_NOISE,
+    };
+    let (solution, cuts) = solve(&sweep, &mut program, tolerance, progress)?;
     let sets = widen(solution.sets)?;
-    let hulls = prove(problem, &sweep, &sets, program.scale())?;
+    let hulls = prove(problem, &sweep, &sets, tolerance, program.scale())?;
     let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
     let (cost, lower_bound) = (program.cost(&hulls.sets), solution.lower_bound);
     let touching = sweep.touching(problem, &program, &hulls.sets, &cuts);
@@ -72,6 +80,7 @@ pub(crate) fn smallest_sets_widened(
 fn solve(
     sweep: &Sweep,
     program: &mut Program,
+    tolerance: f64,
     progress: &dyn Progress,
 ) -> Result<(Solution, Vec<Outside>)> {
     let mut rows = program.first_rows();
@@ -79,10 +88,10 @@ fn solve(
     for round in 1..=ROUNDS {
         let solution = program.solve_from(&mut rows)?;
         let near = near.get_or_insert_with(|| sweep.near(&solution.sets, MARGIN));
-        let mut outside = sweep.outside(&solution.sets, TOLERANCE, near);
+        let mut outside = sweep.outside(&solution.sets, tolerance, near);
         if outside.is_empty() {
-            let others = sweep.near(&solution.sets, 1.0 + TOLERANCE);
-            outside = sweep.outside(&solution.sets, TOLERANCE, &others);
+            let others = sweep.near(&solution.sets, 1.0 + tolerance);
+            outside = sweep.outside(&solution.sets, tolerance, &others);
             near.iter_mut().zip(others).for_each(|(near, others)| {
                 near.extend(others);
                 near.sort_unstable();
@@ -106,11 +115,17 @@ fn solve(
 }
 
 /// Inflates the sets until every row and every point is proved, or for a number of times.
-fn prove(problem: &Problem, sweep: &Sweep, sets: &UncertaintySets, scale: f64) -> Result<Hulls> {
+fn prove(
+    problem: &Problem,
+    sweep: &Sweep,
+    sets: &UncertaintySets,
+    tolerance: f64,
+    scale: f64,
+) -> Result<Hulls> {
     let mut left: Vec<usize> = (0..sweep.points.len()).collect();
     let mut attempt = 0;
     loop {
-        let factor = TOLERANCE * 2f64.powi(attempt);
+        let factor = tolerance * 2f64.powi(attempt);
         let term = f64::EPSILON * 4f64.powi(attempt) * scale;
         let hulls = Hulls::new(problem, sets.inflated(1.0 + factor, term))?;
         // Points that were proved for smaller sets lie in larger ones.

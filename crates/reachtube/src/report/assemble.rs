@@ -257,7 +257,13 @@ fn caution(model: &Model) -> Vec<String> {
          certain about motions, payloads or temperatures that were not recorded."
             .to_string(),
     ];
-    if let Some(gap) = model.gap_of_not_minimal() {
+    if let (Some(gap), Notion::Trace) = (model.gap_of_not_minimal(), model.settings.notion) {
+        words.push(format!(
+            "The sets enclose the recordings but are not the smallest: all of U was widened by \
+             one factor until motions of the model passed through the recordings, to a cost that \
+             is {gap:.1e} of its lower bound above it."
+        ));
+    } else if let Some(gap) = model.gap_of_not_minimal() {
         words.push(format!(
             "The sets enclose the recordings but are not the smallest: the solver of the linear \
              program stopped at a cost that is {gap:.1e} of its lower bound above it. Smaller sets \

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::Model;
-use reachtube::conform::{Enclosure, MOST_TIGHT, Witness};
+use reachtube::conform::{Enclosure, MOST_TIGHT, Notion, Witness};
 use reachtube::recordings::State;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
@@ -98,6 +98,10 @@ fn cost(model: &Model) -> String {
     let quality = match (model.cost_lower_bound, &model.search) {
         (Some(bound), _) => {
             let optimal = match (model.gap_of_not_minimal(), model.optimality_gap) {
+                (Some(gap), _) if model.settings.notion == Notion::Trace => format!(
+                    "NOT the smallest: all of U was widened by one factor until motions of the \
+                     model passed through the recordings; {gap:.1e} of the bound above it"
+                ),
                 (Some(gap), _) => format!(
                     "NOT the smallest: the solver stopped {gap:.1e} of the bound above it, so \
                      smaller sets may enclose the recordings"
