@@ -35,7 +35,7 @@ pub fn traces(traces: &TraceVerdict, runs: usize) -> String {
             None => format!(
                 "; no U up to 1024 times as large suffices for {worst}: its start may lie at the \
                  edges of X0 and V, or its positions and velocities may not agree; a larger V \
-                 helps (--noise)"
+                 helps (conform --noise)"
             ),
         };
     }

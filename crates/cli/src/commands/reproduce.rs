@@ -81,7 +81,8 @@ Example:
   reachtube reproduce table2 --data recordings --suites A,B,D,E --notions hull,exact
 
 The paper's recordings are not public but for four suites; `campaign` records as many on a virtual
-arm, so only the sizes of the sets can agree.
+arm, so only the sizes of the sets can agree. Where only positions have to be enclosed, X0 may take
+over what U has in the paper: both let positions spread.
 
 Exit codes: 0 every set proved conformant, 1 one is not, 2 error.";
 
@@ -151,6 +152,9 @@ fn table2_summary(table2: &Table2) -> String {
         };
         let header = ["joint", "X0 q [rad]", "paper", "X0 qd [rad/s]", "paper", "U [N m]", "paper"];
         text.push_str(&table(&header, &(0..6).map(row).collect::<Vec<Vec<String>>>()));
+        for warning in &case.warnings {
+            let _ = writeln!(text, "warning: {warning}");
+        }
     }
     text
 }

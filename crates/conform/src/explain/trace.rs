@@ -34,8 +34,8 @@ const ACCURACY: f64 = 0.01;
 const ENOUGH: f64 = 0.98;
 
 const NEEDS_NOISE: &str = "needs a measurement noise V in every state, because no motion of a \
-                           model meets measured states exactly; give radii by --noise, such as \
-                           --noise 0.001,0.01";
+                           model meets measured states exactly; a model gets V by conform \
+                           --noise, for example --noise 0.001,0.01";
 
 /// Whether each recording is, up to the measurement noise V, one motion of the model: its start
 /// lies in X0, its input in U, held from each sample to the next, and all its samples within V of
@@ -100,7 +100,8 @@ pub(crate) fn check_settings(settings: &Settings, dynamics: &Dynamics) -> Result
         ))
     } else if settings.disturbance == Disturbance::Constant {
         Err(Error::Trace(
-            "is for disturbances that may change at each sample; use --disturbance sample",
+            "is for disturbances that may change at each sample: for a model that was found with \
+             conform --disturbance sample or measurable",
         ))
     } else if settings.noise == Noise::None {
         Err(Error::Trace(NEEDS_NOISE))

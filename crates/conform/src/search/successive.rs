@@ -113,8 +113,8 @@ impl SuccessiveLinearisation<'_> {
             if has_new_directions {
                 let points: usize = outer.iter().map(|set| set.points.unproved.len()).sum();
                 progress.finished(&format!(
-                    "{points} recorded points are not proved to lie in the set; the next round \
-                     asks for them in {} directions more",
+                    "recorded points that are not proved to lie in the set: {points}; new \
+                     directions in the next round: {}",
                     state.directions.len() - known
                 ));
             }

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use reachtube_files::hex;
 use reachtube_files::write::atomically;
 use reachtube_robot::Robot;
 use serde_json::json;
@@ -106,7 +107,7 @@ pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
     let first = fields(text.lines().nth(1));
     let temperatures = &first[1 + 3 * (first.len() / 4)..];
     let temperature = temperatures.iter().sum::<f64>() / temperatures.len() as f64;
-    let hash: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
+    let hash = hex(&Sha256::digest(text));
     format!(
         "{file},{kind},{suite},{motion},{repeat},{rows},{duration:.3},{temperature:.2},{hash}\n"
     )
@@ -115,10 +116,7 @@ pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
 /// Returns what marks a campaign: its options, its robot and the version of the program, which all
 /// decide what is recorded.
 fn mark(robot: &Robot, options: &CampaignOptions) -> String {
-    let robot: String = Sha256::digest(robot.description().to_toml())
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
+    let robot = hex(&Sha256::digest(robot.description().to_toml()));
     let value = json!({
         "campaign": "recordings of a virtual robot",
         "version": env!("CARGO_PKG_VERSION"),

@@ -47,6 +47,8 @@ pub struct Table2Case {
     pub lower_bound: Option<f64>,
     /// X0 and U.
     pub sets: UncertaintySets,
+    /// What can hardly be right about them, one sentence each.
+    pub warnings: Vec<String>,
     /// The paper's.
     pub paper: &'static PaperSets,
 }
@@ -104,6 +106,7 @@ pub fn table2(
             cost: found.cost,
             lower_bound: found.lower_bound,
             sets: found.sets,
+            warnings: found.warnings.into_iter().map(|warning| warning.text).collect(),
             paper: if states == States::All { &PAPER_VELOCITIES } else { &PAPER_POSITIONS },
         })
     };

@@ -5,7 +5,7 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 use crate::sets::generators::Generators;
 use crate::sets::square_matrix::SquareMatrix;
 use crate::sets::zonotope::Zonotope;
-use crate::upward::round_up_sum;
+use crate::upward::{UNDERFLOW, round_up_sum};
 
 /// A zonotope of stored generators, which have been through a step, and recent ones.
 ///
@@ -138,10 +138,10 @@ impl ReachableZonotope {
             generators.extend(image);
         }
         for (i, (length, size)) in self.axis_lengths.iter().zip(&sizes).enumerate() {
-            let rounding = if *size > 0.0 {
-                mul_up(f64::EPSILON, round_up_sum(*size, recent.len()))
-            } else {
+            let rounding = if recent.is_empty() {
                 0.0
+            } else {
+                add_up(mul_up(f64::EPSILON, round_up_sum(*size, recent.len())), UNDERFLOW)
             };
             let length = add_up(*length, rounding);
             if length > 0.0 {

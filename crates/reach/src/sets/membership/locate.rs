@@ -199,7 +199,7 @@ impl Membership {
             }
             let residual = work.residual.dot(&step);
             if residual <= 0.5 * least {
-                (least, least_at) = (residual, at);
+                (least, least_at) = (residual, at.max(simple_steps));
             } else if at >= least_at + STALLED {
                 return Place::Unknown;
             }
