@@ -13,7 +13,7 @@ use maud::{Markup, PreEscaped, html};
 /// Title of the section.
 pub(super) const FIGURES: &str = "Recordings in the set";
 /// Number of suites up to which each has a static figure.
-const MOST_STATIC: usize = 12;
+pub(super) const MOST_STATIC: usize = 12;
 /// Number of suites with a static figure where there are more; the first are the worst.
 const STATIC_OF_MANY: usize = 3;
 

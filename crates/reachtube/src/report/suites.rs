@@ -5,6 +5,7 @@ use reachtube_conform::{Problem, Suite, SuiteReach, Witness};
 use crate::error::Result;
 use crate::report::assemble::{Sources, joint_name};
 use crate::report::error::ReportError;
+use crate::report::figures::MOST_STATIC;
 use crate::report::panel::interpolate;
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SAME_TIME, SuiteFigure, TightSpot};
 
@@ -18,7 +19,7 @@ const MOST_DECIDING_OF_ALL: usize = 100;
 const LEAST_RADIUS: f64 = 1e-9;
 
 /// Makes the figures of all suites. Up to 200 runs, all are drawn; of more, the range of all and
-/// the runs that decide, the suites in which the runs come furthest first.
+/// the runs that decide. Many suites are in the order in which their runs come furthest.
 ///
 /// # Errors
 ///
@@ -31,9 +32,16 @@ pub(super) fn figures(sources: &Sources) -> Result<Vec<SuiteFigure>> {
     let mut figures = figures.collect::<Result<Vec<_>>>()?;
     if are_many {
         keep_deciding(&mut figures, MOST_DECIDING_OF_ALL);
+    }
+    put_furthest_first(&mut figures);
+    Ok(figures)
+}
+
+/// Orders the suites where there are too many to read through.
+fn put_furthest_first(figures: &mut [SuiteFigure]) {
+    if figures.len() > MOST_STATIC {
         figures.sort_by(|a, b| rank(b).partial_cmp(&rank(a)).expect("no rank is NaN"));
     }
-    Ok(figures)
 }
 
 /// Returns by what suites are ordered: how far out the runs come, then how much they decide.
@@ -258,6 +266,19 @@ mod tests {
         assert_eq!(figures.each_ref().map(|figure| figure.undrawn), [2, 1]);
         let spots = |figure: &SuiteFigure| figure.tight.iter().map(|s| s.run).collect::<Vec<_>>();
         assert_eq!([spots(&figures[0]), spots(&figures[1])], [vec![0], vec![1, 0]]);
+    }
+
+    #[test]
+    fn many_suites_are_in_the_order_of_their_furthest_runs_and_few_as_they_are() {
+        let first_of = |count: usize| {
+            let mut figures: Vec<SuiteFigure> =
+                (0..count).map(|k| sample::suite(&k.to_string(), 1)).collect();
+            figures.iter_mut().for_each(|figure| figure.furthest = Some(0.2));
+            figures[5].furthest = Some(0.9);
+            put_furthest_first(&mut figures);
+            figures[0].suite.clone()
+        };
+        assert_eq!([first_of(MOST_STATIC), first_of(MOST_STATIC + 1)], ["0", "5"]);
     }
 
     #[test]
