@@ -115,6 +115,8 @@ fn what_the_notion_is_not_for_is_refused_with_the_remedy() {
     };
     let words = refused(|settings| settings.noise = Noise::None);
     assert!(words.contains("--noise 0.001,0.01"), "{words}");
+    let words = refused(|settings| settings.noise = Noise::Fixed(vec![1e-3, 1e-3, 1e-2, 0.0]));
+    assert!(words.contains("in every state"), "{words}");
     let words = refused(|settings| settings.disturbance = Disturbance::Constant);
     assert!(words.contains("--disturbance sample"), "{words}");
     let words = refused(|settings| {

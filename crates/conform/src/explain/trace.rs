@@ -103,10 +103,12 @@ pub(crate) fn check_settings(settings: &Settings, dynamics: &Dynamics) -> Result
             "is for disturbances that may change at each sample: for a model that was found with \
              conform --disturbance sample or measurable",
         ))
-    } else if settings.noise == Noise::None {
-        Err(Error::Trace(NEEDS_NOISE))
     } else {
-        Ok(())
+        match &settings.noise {
+            Noise::None => Err(Error::Trace(NEEDS_NOISE)),
+            Noise::Fixed(radii) if radii.contains(&0.0) => Err(Error::Trace(NEEDS_NOISE)),
+            Noise::Fixed(_) | Noise::Fitted => Ok(()),
+        }
     }
 }
 
