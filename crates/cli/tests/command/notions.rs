@@ -47,3 +47,24 @@ fn what_is_not_built_is_refused_with_a_remedy() {
     assert!(lab.conform("--notion nearly").exits(2).stderr.contains("phase-plane, exact"));
     assert!(!lab.path("points.jsonl").exists());
 }
+
+/// The cost counts velocities also where only positions have to be enclosed, and so does the page.
+#[test]
+fn the_shares_of_the_cost_are_of_all_states_and_add_up() {
+    let lab = Lab::new();
+    lab.conform("--states positions --report page").exits(0);
+    let page = lab.read("page/report.html");
+    let table = page.split("Share of the cost per joint").nth(1).unwrap();
+    let cells = table
+        .split("</table>")
+        .next()
+        .unwrap()
+        .split(" %<")
+        .map(|before| before.rsplit('>').next().unwrap().parse::<f64>().ok());
+    // Position, velocity and both of each joint; the rest after the last cell is no number.
+    let shares: Vec<f64> = cells.flatten().collect();
+    assert!(!shares.is_empty() && shares.len() % 3 == 0, "{shares:?}");
+    assert!(shares.chunks(3).all(|joint| joint[1] > 0.0), "{shares:?}");
+    let all: f64 = shares.chunks(3).map(|joint| joint[2]).sum();
+    assert!((all - 100.0).abs() < 0.1 * shares.len() as f64, "{shares:?}");
+}

@@ -1,6 +1,6 @@
 //! What the cost of the sets comes from: joints, runs and motions.
 
-use reachtube_conform::{Model, States, Weights};
+use reachtube_conform::{Model, Weights};
 
 use crate::number::{at_least, four_decimals};
 use crate::report::page::TextTable;
@@ -38,7 +38,6 @@ fn by_joint(model: &Model, figures: &[SuiteFigure]) -> TextTable {
 /// Returns the weight of a state in the cost.
 fn weight(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {
     match &model.settings.weights {
-        _ if model.settings.states == States::Positions && state >= model.joints() => 0.0,
         Weights::Unit => 1.0,
         Weights::Given(weights) => weights[state],
         Weights::Spread => {
