@@ -63,7 +63,7 @@ fn the_shares_of_the_cost_are_of_all_states_and_add_up() {
         .map(|before| before.rsplit('>').next().unwrap().parse::<f64>().ok());
     // Position, velocity and both of each joint; the rest after the last cell is no number.
     let shares: Vec<f64> = cells.flatten().collect();
-    assert!(!shares.is_empty() && shares.len() % 3 == 0, "{shares:?}");
+    assert!(!shares.is_empty() && shares.len().is_multiple_of(3), "{shares:?}");
     assert!(shares.chunks(3).all(|joint| joint[1] > 0.0), "{shares:?}");
     let all: f64 = shares.chunks(3).map(|joint| joint[2]).sum();
     assert!((all - 100.0).abs() < 0.1 * shares.len() as f64, "{shares:?}");
