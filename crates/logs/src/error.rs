@@ -1,0 +1,96 @@
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::container::Loss;
+
+/// Why a log cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A file could not be read or written.
+    #[error(transparent)]
+    File(#[from] reachtube_files::Error),
+    /// Recordings in the log have defects, all of which are listed.
+    #[error(transparent)]
+    Recordings(#[from] reachtube_recordings::Error),
+    /// The file is in no format that is read.
+    #[error("{}: {problem}", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+        /// What it is, and what to do.
+        problem: String,
+    },
+    /// A part of the file cannot be read.
+    #[error("{}; --recover keeps what is whole and prints what is lost", .0.place())]
+    Damaged(Loss),
+    /// The log has no topic of this name.
+    #[error("{}: there is no topic {topic}; {}", path.display(), match &available[..] {
+        [] => "the log has no topics".into(),
+        some => format!("give one of {}", some.join(", ")),
+    })]
+    NoTopic {
+        /// The file or folder.
+        path: PathBuf,
+        /// The name asked for.
+        topic: String,
+        /// Topics of the log, with their types.
+        available: Vec<String>,
+    },
+    /// A topic has messages of another type than its role needs.
+    #[error(
+        "{}: topic {topic} has messages of type {found}, but {expected} in the encoding cdr is \
+         needed; name another topic",
+        path.display()
+    )]
+    TopicType {
+        /// The file.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+        /// Type and encoding of its messages.
+        found: String,
+        /// The types that are read.
+        expected: &'static str,
+    },
+    /// A topic of joint states has no message.
+    #[error("{}: topic {topic} has no message; record it, or name another topic", path.display())]
+    NoMessages {
+        /// The file or folder.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+    },
+    /// All stamps of a topic are 0.
+    #[error(
+        "{}: all stamps in the headers of {topic} are 0, so they are no times; --time log takes \
+         the times at which the log received the messages",
+        path.display()
+    )]
+    ZeroStamps {
+        /// The file or folder.
+        path: PathBuf,
+        /// The topic.
+        topic: String,
+    },
+    /// Options contradict each other, or an option and the log do.
+    #[error("{0}")]
+    Setting(String),
+    /// A list of intervals has a wrong line.
+    #[error("{}:{line}: {problem}", path.display())]
+    Intervals {
+        /// The list.
+        path: PathBuf,
+        /// Line in it, from 1.
+        line: u64,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
+    /// No run was found.
+    #[error("no run is found: {0}")]
+    NoRun(String),
+}
+
+/// A result of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;

@@ -1,0 +1,43 @@
+//! Robot logs as recordings: joint states from MCAP and rosbag2 files, cut into runs.
+//!
+//! - [`Log::read`] reads `sensor_msgs/msg/JointState` from the topics of a log. Joints are matched
+//!   by name, and times are the stamps of the headers.
+//! - [`whole_logs`], [`Intervals`], [`marked_runs`] and [`motions`] cut logs into runs, and
+//!   [`find_repeats`] groups runs that repeat one motion into test suites.
+//! - [`convert`] checks the runs. [`Recorded::write`] writes them as a data set in the format of
+//!   `docs/recordings.md`; [`Recorded::into_runs`] returns them as a source of recordings.
+//!
+//! The feature `mcap` reads MCAP files and `rosbag` reads .db3 files. Without a feature, files of
+//! its format are refused. `docs/logs.md` describes what is read and what is refused.
+
+#[cfg(feature = "rosbag")]
+mod bag_file;
+#[cfg(feature = "rosbag")]
+mod bag_state;
+mod cdr;
+mod container;
+mod cut;
+mod error;
+mod files;
+mod intervals;
+mod log;
+#[cfg(feature = "mcap")]
+mod mcap_file;
+#[cfg(feature = "mcap")]
+mod mcap_records;
+mod merge;
+mod message;
+mod recorded;
+mod repeats;
+mod sample;
+mod segments;
+mod series;
+
+pub use container::Loss;
+pub use cut::{Cut, marked_runs, whole_logs};
+pub use error::{Error, Result};
+pub use intervals::Intervals;
+pub use log::{Log, LogOptions, LogTime};
+pub use recorded::{Recorded, RecordedRun, convert};
+pub use repeats::{Repeats, find_repeats};
+pub use segments::motions;

@@ -1,0 +1,340 @@
+//! A log as a source of joint states.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use reachtube_recordings::{Defect, Run};
+
+use crate::container::{Contents, Loss, Role, Topic, Wanted, decimal};
+use crate::error::{Error, Result};
+use crate::files::{files_of, scan};
+use crate::merge::{Merged, merge};
+use crate::sample::{Labels, Sample, defects};
+use crate::series::Series;
+
+/// Which times the samples have.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LogTime {
+    /// The stamps in the headers of the messages.
+    #[default]
+    Header,
+    /// The times at which the log received the messages.
+    Receipt,
+}
+
+/// What to read from a log.
+#[derive(Debug, Clone, Default)]
+pub struct LogOptions {
+    /// Topics with `sensor_msgs/msg/JointState`. Several complement each other: values with the
+    /// same stamp become one sample.
+    pub topics: Vec<String>,
+    /// Names of the robot's joints in the log, in the order of the robot.
+    pub joints: Vec<String>,
+    /// Topic that marks runs: `std_msgs/msg/String`, `Bool` or `Int32`.
+    pub marker: Option<String>,
+    /// Which times the samples have.
+    pub time: LogTime,
+    /// Whether the whole parts of a damaged log are read.
+    pub recover: bool,
+}
+
+/// A message that marks a run, or the end of one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Marker {
+    /// Time at which the log received it, ns.
+    pub(crate) received: i64,
+    /// Name of the suite (empty where none is given); `None` outside of runs.
+    pub(crate) suite: Option<String>,
+}
+
+/// The joint states of a log: an MCAP file, a .db3 file of rosbag2, or a folder with the parts of
+/// one bag.
+///
+/// # Examples
+///
+/// ```no_run
+/// use reachtube_logs::{Log, LogOptions, convert, whole_logs};
+///
+/// let options = LogOptions {
+///     topics: vec!["/joint_states".into()],
+///     joints: vec!["shoulder".into(), "elbow".into()],
+///     ..LogOptions::default()
+/// };
+/// let logs = [Log::read("run.mcap".as_ref(), &options)?];
+/// let cuts = whole_logs(&logs);
+/// let runs = convert(&logs, &cuts, Default::default())?;
+/// runs.write("recordings".as_ref())?;
+/// # Ok::<(), reachtube_logs::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Log {
+    pub(crate) path: PathBuf,
+    pub(crate) joints: Vec<String>,
+    topics: Vec<String>,
+    pub(crate) samples: Vec<Sample>,
+    /// Positions, velocities and efforts of all joints, row-major K x 3n.
+    values: Vec<f64>,
+    pub(crate) markers: Vec<Marker>,
+    notes: Vec<String>,
+    losses: Vec<Loss>,
+}
+
+/// What is collected while the files of a log are read.
+#[derive(Debug)]
+struct Collected {
+    series: Vec<Series>,
+    markers: Vec<Marker>,
+    topics: Vec<Topic>,
+    notes: Vec<String>,
+    losses: Vec<Loss>,
+}
+
+impl Log {
+    /// Reads the joint states of a log.
+    ///
+    /// A sample that cannot be used is kept with what is wrong with it, and only a run that
+    /// contains it is refused.
+    ///
+    /// # Errors
+    ///
+    /// - [`Error::File`] and [`Error::Format`] where there is no file that can be read.
+    /// - [`Error::Damaged`] where a part of it cannot be read, unless `recover` is set.
+    /// - [`Error::NoTopic`], [`Error::TopicType`], [`Error::NoMessages`], [`Error::ZeroStamps`]
+    ///   and [`Error::Setting`] where the topics do not fit the options.
+    /// - [`Error::Recordings`] where several topics are read and the stamps of one do not increase.
+    pub fn read(path: &Path, options: &LogOptions) -> Result<Self> {
+        check_options(options)?;
+        let mut collected = collect(path, options)?;
+        for (topic, series) in options.topics.iter().zip(&collected.series) {
+            check_series(path, topic, series, options)?;
+        }
+        let mut notes = std::mem::take(&mut collected.notes);
+        notes.push(time_note(path, &collected.series[0], options.time));
+        for (topic, series) in options.topics.iter().zip(&collected.series) {
+            notes.extend(series_notes(path, topic, series, options));
+        }
+        let (joints, topics) = (options.joints.clone(), options.topics.clone());
+        let labels = Labels { log: path, topics: &topics, joints: &joints };
+        let Merged { samples, values, unmatched } = merge(collected.series, &labels)?;
+        if unmatched > 0 {
+            notes.push(format!(
+                "{}: {unmatched} samples at the start and the end are not in all topics and are \
+                 not used",
+                path.display()
+            ));
+        }
+        let (markers, losses) = (collected.markers, collected.losses);
+        Ok(Self { path: path.into(), joints, topics, samples, values, markers, notes, losses })
+    }
+
+    /// Returns the path of the log.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns the number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.samples.len()
+    }
+
+    /// Returns whether there is no sample.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+
+    /// Returns notes for the user: which times were taken, and where each joint was found.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Returns the parts of the log that could not be read.
+    #[must_use]
+    pub fn losses(&self) -> &[Loss] {
+        &self.losses
+    }
+
+    /// Returns the time of a sample, s, with all digits, as a recording has it.
+    pub(crate) fn time(&self, index: usize) -> String {
+        decimal(self.samples[index].time)
+    }
+
+    /// Returns the positions (`part` 0), velocities (1) or torques (2) of a sample, n.
+    pub(crate) fn part(&self, index: usize, part: usize) -> &[f64] {
+        let n = self.joints.len();
+        &self.values[(3 * index + part) * n..][..n]
+    }
+
+    /// Returns positions, velocities and torques of a sample, 3n.
+    pub(crate) fn row(&self, index: usize) -> &[f64] {
+        let width = 3 * self.joints.len();
+        &self.values[index * width..][..width]
+    }
+
+    /// Returns the samples in `range` as a run.
+    ///
+    /// # Errors
+    ///
+    /// Every kind of defect of these samples.
+    pub(crate) fn run(&self, range: Range<usize>) -> Result<Run, Vec<Defect>> {
+        let labels = Labels { log: &self.path, topics: &self.topics, joints: &self.joints };
+        let defects = defects(&self.samples, range.clone(), &labels);
+        if !defects.is_empty() {
+            return Err(defects);
+        }
+        let n = self.joints.len();
+        let first = self.samples[range.start].time;
+        // As the reader of recordings does, which counts picoseconds.
+        let seconds =
+            |index: usize| (1000 * i128::from(self.samples[index].time - first)) as f64 / 1e12;
+        let times = range.clone().map(seconds).collect();
+        let rows = range.clone().map(|index| self.row(index));
+        let states = rows.clone().flat_map(|row| &row[..2 * n]).copied().collect();
+        let torques = rows.flat_map(|row| &row[2 * n..]).copied().collect();
+        let mut run = Run::new(n, times, states, torques).map_err(|problem| {
+            vec![Defect::new(&self.path, None, problem, "record again, or cut the log elsewhere")]
+        })?;
+        run.start = decimal(first).parse().expect("a decimal number is a number");
+        Ok(run)
+    }
+}
+
+/// Checks what the options say by themselves.
+fn check_options(options: &LogOptions) -> Result<()> {
+    let repeated = |names: &[String]| {
+        let mut before = std::collections::BTreeSet::new();
+        names.iter().find(|name| !before.insert(*name)).cloned()
+    };
+    let setting = |text: String| Err(Error::Setting(text));
+    if options.topics.is_empty() {
+        return setting("no topic is given; name one with joint states".into());
+    }
+    if let Some(topic) = repeated(&options.topics) {
+        return setting(format!("topic {topic} is given twice; give each once"));
+    }
+    if options.marker.as_ref().is_some_and(|marker| options.topics.contains(marker)) {
+        return setting("the marker's topic is one of joint states; give another".into());
+    }
+    if options.joints.is_empty() {
+        return setting("no joint is given; name the robot's joints".into());
+    }
+    if let Some(joint) = repeated(&options.joints) {
+        return setting(format!("joint {joint} is given twice; give each once"));
+    }
+    if options.topics.len() > 1 && options.time == LogTime::Receipt {
+        return setting(
+            "several topics are joined at equal stamps of their headers, which the times of \
+             receipt do not have; give one topic, or take the stamps"
+                .into(),
+        );
+    }
+    Ok(())
+}
+
+/// Reads all files of a log.
+fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
+    let wanted = Wanted { joints: &options.topics, marker: options.marker.as_deref() };
+    let mut all = Collected {
+        series: (0..options.topics.len()).map(Series::new).collect(),
+        markers: vec![],
+        topics: vec![],
+        notes: vec![],
+        losses: vec![],
+    };
+    for file in files_of(path)? {
+        let receipt = options.time == LogTime::Receipt;
+        let (series, markers) = (&mut all.series, &mut all.markers);
+        let Contents { topics, notes, losses } =
+            scan(&file, wanted, options.recover, &mut |message| match message.role {
+                Role::Joints(topic) => series[topic].add(message, &options.joints, receipt),
+                Role::Marker(kind) => {
+                    let suite = kind.decode(message.data)?;
+                    markers.push(Marker { received: message.log_time, suite });
+                    Ok(())
+                }
+            })?;
+        all.topics.extend(topics);
+        all.notes.extend(notes);
+        all.losses.extend(losses);
+    }
+    for name in wanted.names() {
+        if !all.topics.iter().any(|topic| topic.name == name) {
+            let mut available: Vec<String> =
+                all.topics.iter().map(|topic| format!("{} ({})", topic.name, topic.kind)).collect();
+            available.sort();
+            available.dedup();
+            return Err(Error::NoTopic { path: path.into(), topic: name.into(), available });
+        }
+    }
+    Ok(all)
+}
+
+/// Checks that a topic has joint states of the robot with stamps.
+fn check_series(path: &Path, topic: &str, series: &Series, options: &LogOptions) -> Result<()> {
+    if series.messages == 0 {
+        return Err(Error::NoMessages { path: path.into(), topic: topic.into() });
+    }
+    if series.samples.is_empty() {
+        return Err(Error::Setting(format!(
+            "{}: no message of {topic} names a joint of the robot ({}), but these are named: {}; \
+             give the log's names in the robot's order with --joints",
+            path.display(),
+            options.joints.join(", "),
+            series.unused.iter().cloned().collect::<Vec<_>>().join(", ")
+        )));
+    }
+    if options.time == LogTime::Header && series.samples.iter().all(|sample| sample.time == 0) {
+        return Err(Error::ZeroStamps { path: path.into(), topic: topic.into() });
+    }
+    Ok(())
+}
+
+/// Says which times were taken.
+fn time_note(path: &Path, series: &Series, time: LogTime) -> String {
+    let path = path.display();
+    match time {
+        LogTime::Receipt => {
+            format!("{path}: times are those at which the log received the messages")
+        }
+        LogTime::Header => {
+            let delay = |sample: &Sample| sample.received.saturating_sub(sample.time);
+            let delays = series.samples.iter().map(delay);
+            let (least, most) = (delays.clone().min(), delays.max());
+            format!(
+                "{path}: times are the stamps in the headers; the log received the messages {} s \
+                 to {} s later",
+                decimal(least.unwrap_or(0)),
+                decimal(most.unwrap_or(0))
+            )
+        }
+    }
+}
+
+/// Says where the joints were found.
+fn series_notes(path: &Path, topic: &str, series: &Series, options: &LogOptions) -> Vec<String> {
+    let path = path.display();
+    let place = |(joint, place): (usize, &Option<usize>)| {
+        let name = &options.joints[joint];
+        place.map(|place| format!("q{} = {name} (place {place})", joint + 1))
+    };
+    let places: Vec<String> = series.first_places.iter().enumerate().filter_map(place).collect();
+    let mut mapping =
+        format!("{path}: joints of {topic} are matched by name: {}", places.join(", "));
+    if series.changes > 0 {
+        mapping += &format!("; the order of the names changes {} times", series.changes);
+    }
+    if !series.unused.is_empty() {
+        let unused: Vec<&str> = series.unused.iter().map(String::as_str).collect();
+        mapping += &format!("; not used: {}", unused.join(", "));
+    }
+    let foreign = (series.foreign > 0).then(|| {
+        format!(
+            "{path}: {} of {} messages of {topic} name no joint of the robot and are not used",
+            series.foreign, series.messages
+        )
+    });
+    std::iter::once(mapping).chain(foreign).collect()
+}
