@@ -1,0 +1,142 @@
+//! CORA, in MATLAB. The functions without CORA's classes run in GNU Octave too.
+
+use std::fmt::Write;
+
+use reachtube_files::TOOL;
+
+use super::case::ExportCase;
+use super::meaning::Meaning;
+use super::text::{comment, number, numbers, rows, sum, terms};
+use super::{ExportFile, InputForm, Tool, tables};
+
+/// Number of terms that one statement adds: MATLAB nests each addition of a sum.
+const TERMS_PER_STATEMENT: usize = 40;
+
+/// Returns the right-hand side, the data, the script that runs CORA, and points to check the
+/// right-hand side at.
+pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
+    let header = comment("%", &Meaning::new(case, Tool::Cora, form).paragraphs);
+    vec![
+        ExportFile::new("cora_reach.m", script(case, form, &header)),
+        ExportFile::new("cora_data.m", data(case, form, &header)),
+        ExportFile::new("cora_dynamics.m", dynamics(case, form, &header)),
+        tables::check_points(case),
+    ]
+}
+
+/// Returns the function f = cora_dynamics(x, u), which CORA differentiates symbolically.
+fn dynamics(case: &ExportCase, form: InputForm, header: &str) -> String {
+    let system = &case.system;
+    let mut text = format!(
+        "function f = cora_dynamics(x, u)\n% The derivative of the state x under the input u.\n\
+         {header}% x = ({})\n% u = ({})\n",
+        system.states.join(", "),
+        system.inputs.join(", ")
+    );
+    if form == InputForm::Deviation {
+        text += "% This is the equation of the states themselves; deviations have no drift.\n";
+    }
+    let name = |variable: usize| match variable.checked_sub(system.dimension()) {
+        None => format!("x({})", variable + 1),
+        Some(input) => format!("u({})", input + 1),
+    };
+    for (i, rate) in system.rates.iter().enumerate() {
+        let (terms, row) = (terms(rate, &name), i + 1);
+        if terms.is_empty() {
+            // A product, so that a symbolic x makes f symbolic.
+            let _ = writeln!(text, "f({row},1) = 0.0*x(1);");
+        }
+        for (part, chunk) in terms.chunks(TERMS_PER_STATEMENT).enumerate() {
+            let before = if part == 0 { String::new() } else { format!("f({row},1) ") };
+            let _ = writeln!(text, "f({row},1) = {before}{};", sum(chunk, " ..."));
+        }
+    }
+    text + "end\n"
+}
+
+/// Returns the function data = cora_data(), plain numbers.
+fn data(case: &ExportCase, form: InputForm, header: &str) -> String {
+    let (initial, inputs) = (case.initial_state(form), case.input_set(form));
+    let mut text = format!(
+        "function data = cora_data()\n% The numbers of the model, without any class of CORA.\n\
+         {header}"
+    );
+    let column = |values: &[f64]| format!("[{}]", numbers(values.iter().copied(), "; "));
+    if let Some(system) = &case.system.linear {
+        let _ = write!(text, "data.A = [\n{}];\n", rows(system.a(), ["", ", ", ";"]));
+        let _ = write!(text, "data.B = [\n{}];\n", rows(system.b(), ["", ", ", ";"]));
+        let drift = match form {
+            InputForm::Deviation => vec![0.0; system.states()],
+            _ => system.drift().iter().copied().collect(),
+        };
+        let _ = writeln!(text, "data.c = {};", column(&drift));
+    }
+    let columns = [
+        ("x_start", &initial.start),
+        ("X0_centre", &initial.set.centre),
+        ("X0_radius", &initial.set.radius),
+        ("U_centre", &inputs.centre),
+        ("U_radius", &inputs.radius),
+    ];
+    for (name, values) in columns {
+        let _ = writeln!(text, "data.{name} = {};", column(values));
+    }
+    let _ = writeln!(text, "data.step = {};", number(case.step()));
+    let _ = writeln!(text, "data.steps = {};", case.steps());
+    let _ = writeln!(text, "data.horizon = {};", number(case.horizon()));
+    if form == InputForm::Recorded {
+        let row = |k: usize| format!("  {};\n", numbers(case.input(k).iter().copied(), ", "));
+        let rows: String = (0..case.steps()).map(row).collect();
+        let _ = write!(text, "% One column per step, held over it.\ndata.u = [\n{rows}]';\n");
+    }
+    text + "end\n"
+}
+
+/// Returns the script that runs CORA.
+fn script(case: &ExportCase, form: InputForm, header: &str) -> String {
+    let affine = case.system.linear.is_some();
+    let (states, inputs) = (case.system.dimension(), case.joints());
+    let system = match affine {
+        true => "sys = linearSys('reachtube', data.A, data.B, data.c);".into(),
+        false => format!("sys = nonlinearSys('reachtube', @cora_dynamics, {states}, {inputs});"),
+    };
+    // CORA takes U about the input trajectory with its centre at 0.
+    let input = match form {
+        InputForm::Recorded => {
+            "params.U = zonotope(0*data.U_centre, diag(data.U_radius));\n\
+             params.u = data.u + data.U_centre;\n"
+        }
+        _ => "params.U = zonotope(data.U_centre, diag(data.U_radius));\n",
+    };
+    let options = match affine {
+        true => "options.linAlg = 'wrapping-free';\n",
+        false => "options.alg = 'lin';\noptions.tensorOrder = 2;\n",
+    };
+    let nominal = match form {
+        InputForm::Deviation => "+ ours{k, strcat(names, '_nominal')}'",
+        _ => "",
+    };
+    format!(
+        "% Runs CORA (2024 or later) and writes cora_bounds.csv beside our bounds.csv.\n{header}\
+         data = cora_data();\n{system}\n\
+         params.tFinal = data.horizon;\n\
+         params.R0 = zonotope(data.x_start + data.X0_centre, diag(data.X0_radius));\n\
+         {input}\
+         options.timeStep = data.step;\noptions.taylorTerms = 4;\noptions.zonotopeOrder = 200;\n\
+         {options}R = reach(sys, params, options);\n\n\
+         names = {{{}}};\nours = readtable('bounds.csv');\nrows = [];\n\
+         for k = 1:numel(R(1).timePoint.set)\n  \
+         box = interval(project(R(1).timePoint.set{{k}}, 1:{}));\n  \
+         rows(k, :) = [R(1).timePoint.time{{k}}, (infimum(box) {nominal})', ...\n    \
+         (supremum(box) {nominal})'];\nend\n\
+         head = [{{'t'}}, strcat(names, '_lower'), strcat(names, '_upper')];\n\
+         writetable(array2table(rows, 'VariableNames', head), 'cora_bounds.csv');\n\
+         disp('{TOOL}: wrote cora_bounds.csv');\n",
+        case.system.states[..2 * inputs]
+            .iter()
+            .map(|name| format!("'{name}'"))
+            .collect::<Vec<_>>()
+            .join(", "),
+        2 * inputs,
+    )
+}

@@ -1,0 +1,87 @@
+//! An identified robot as simulators read it.
+//!
+//! [`mjcf`] is for MuJoCo and [`urdf`] for everything else. Both have the robot's inverse dynamics.
+//! Of friction they have the linear viscous coefficient and one Coulomb magnitude at no load, which
+//! is all that their formats express. Links that cannot exist, as those of base parameters, are
+//! replaced by bodies with the same torques, or refused where none were found.
+
+mod bodies;
+mod mjcf;
+mod urdf;
+
+use std::fmt::Write;
+
+use reachtube_robot::{Parameter, ParameterKind, Robot};
+
+pub use mjcf::mjcf;
+pub use urdf::{UrdfFiles, urdf};
+
+use super::text::{harmless, numbers};
+use super::{ExportError, ExportFile};
+use crate::random::{SeedableRng, SplitMix64, uniform};
+
+/// Number of states at which [`check_torques`] has torques.
+const CHECK_STATES: usize = 1000;
+
+/// What the files leave out.
+const LEFT_OUT: &str = "Friction is the viscous coefficient v1 and one Coulomb magnitude at no \
+load; v2, v3, the dependence on the load and the Stribeck effect are left out.";
+
+/// Returns `robot.xml` for MuJoCo and `check_torques.csv`.
+///
+/// # Errors
+///
+/// As [`mjcf`].
+pub fn mjcf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
+    Ok(vec![
+        ExportFile::new("robot.xml", mjcf(robot)?),
+        ExportFile::new("check_torques.csv", check_torques(robot)),
+    ])
+}
+
+/// Returns `robot.urdf`, `robot.toml` with what URDF cannot say, and `check_torques.csv`.
+///
+/// # Errors
+///
+/// As [`urdf`].
+pub fn urdf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
+    let UrdfFiles { urdf, companion } = urdf(robot)?;
+    Ok(vec![
+        ExportFile::new("robot.urdf", urdf),
+        ExportFile::new("robot.toml", companion),
+        ExportFile::new("check_torques.csv", check_torques(robot)),
+    ])
+}
+
+/// Returns a table of random states with the torques of the robot without friction, to check a
+/// simulator with: `q1,..,qd1,..,qdd1,..,tau1,..`, n of each.
+#[must_use]
+pub fn check_torques(robot: &Robot) -> String {
+    let n = robot.joint_count();
+    let names = ["q", "qd", "qdd", "tau"].iter();
+    let names = names.flat_map(|name| (1..=n).map(move |j| format!("{name}{j}")));
+    let mut text = names.collect::<Vec<_>>().join(",") + "\n";
+    let mut random = SplitMix64::seed_from_u64(3);
+    let mut draw = |radius: f64| -> Vec<f64> {
+        (0..n).map(|_| uniform(&mut random, -radius, radius)).collect()
+    };
+    for _ in 0..CHECK_STATES {
+        let (q, qd, qdd) = (draw(3.0), draw(2.0), draw(5.0));
+        let tau = robot.inverse_dynamics(&q, &qd, &qdd);
+        let row = [q.as_slice(), &qd, &qdd, tau.as_slice()].concat();
+        let _ = writeln!(text, "{}", numbers(row, ","));
+    }
+    text
+}
+
+/// Returns the viscous coefficient and the Coulomb magnitude of joint `j`.
+fn friction(robot: &Robot, j: usize) -> [f64; 2] {
+    let kinds = [ParameterKind::Viscous1, ParameterKind::Coulomb];
+    let values = robot.parameter_values(&kinds.map(|kind| Parameter { joint: j, kind }));
+    [values[0].max(0.0), values[1].max(0.0)]
+}
+
+/// Returns a name as an XML attribute, without quotes and control characters.
+fn attribute(name: &str) -> String {
+    harmless(name).replace('&', "&amp;").replace('<', "&lt;")
+}
