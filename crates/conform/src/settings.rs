@@ -56,6 +56,21 @@ impl States {
     }
 }
 
+/// How far X0 may reach, to the accuracy of the solver and of the repair after it. Where each run
+/// starts at its own measured state, the noise of the sensors limits X0 in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum InitialLimit {
+    /// As far as makes the sets cheapest: X0 may take over what U would have to cover later.
+    #[default]
+    None,
+    /// Positions no further than the first states of the recordings lie from their nominal start,
+    /// as the positions of X0 in Table II.
+    Positions,
+    /// Positions and velocities no further than these first states.
+    States,
+}
+
 /// In which directions recordings must lie in the reachable set (docs/method.md, correction C).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -158,6 +173,9 @@ pub struct Settings {
     pub notion: Notion,
     /// Which states are rows.
     pub states: States,
+    /// How far X0 may reach.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub initial_limit: InitialLimit,
     /// The weights of the states.
     pub weights: Weights,
     /// The measurement noise.
@@ -197,6 +215,7 @@ impl Settings {
             centre: Centre::default(),
             notion: Notion::default(),
             states: States::default(),
+            initial_limit: InitialLimit::default(),
             weights: Weights::default(),
             noise: Noise::default(),
             sensor_noise: None,
@@ -206,6 +225,11 @@ impl Settings {
             until: None,
             gap_limit: GapLimit::default(),
         }
+    }
+
+    /// Returns whether the noise of the sensors limits V or X0.
+    pub(crate) fn are_limited_by_noise(&self) -> bool {
+        self.noise == Noise::Fitted || self.nominal == NominalStart::Own
     }
 
     /// Takes model, expansion point and operating box from an abstraction.
@@ -249,6 +273,10 @@ impl Settings {
         }
         self.until.map_or(Ok(()), |until| check_range("until", 0, until, &(0.0..=f64::MAX)))
     }
+}
+
+fn is_default(limit: &InitialLimit) -> bool {
+    *limit == InitialLimit::default()
 }
 
 fn check_list(

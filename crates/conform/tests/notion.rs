@@ -11,8 +11,8 @@ use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome, Variable};
 use nalgebra::{DMatrix, DVector};
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::{
-    Centre, Certificate, Conformance, Error, Hulls, Keep, Model, Notion, Problem, Settings, Setup,
-    Silent, States, check, conform,
+    Centre, Certificate, Conformance, Error, Hulls, InitialLimit, Keep, Model, Notion, Problem,
+    Settings, Setup, Silent, States, WarningKind, check, conform,
 };
 use reachtube_reach::{Disturbance, LinearSystem};
 use reachtube_recordings::{DataSet, Torque};
@@ -263,6 +263,45 @@ fn positions_alone_and_noise_are_judged_too() {
     };
     cost(&fixed);
     cost(&|settings| settings.noise = reachtube_conform::Noise::Fitted);
+}
+
+/// Positions of runs that start within 1e-4 rad of each other and then spread by their inputs.
+#[test]
+fn an_initial_set_that_takes_over_is_warned_of_and_can_be_limited() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = two_joints();
+    let times = grid(0.01, 60);
+    let mut random = Random(5);
+    let arm = Disturbed { robot: &robot, times: &times, start: 1e-4, input: 20.0 };
+    let runs = (0..8).map(|_| arm.record(&mut random)).collect();
+    write_data_set(folder.path(), &[("a", runs)]);
+    let with = |initial_limit: InitialLimit, notion: Notion| {
+        let states = States::Positions;
+        let (problem, found) =
+            found(folder.path(), &Settings { states, initial_limit, ..settings(notion) });
+        assert!(found.verdict.conformant, "{initial_limit:?} {notion:?}");
+        let starts = WarningKind::InitialSetStarts;
+        let warned = found.warnings.iter().any(|warning| warning.kind == starts);
+        let runs = &problem.recordings().suites[0].runs;
+        let start = &problem.recordings().suites[0].nominal_start;
+        let set = &found.sets.initial_set;
+        let beyond = (0..4).map(|i| {
+            let (low, high) = set.bounds(i);
+            let furthest = runs.iter().map(|run| (run.start[i] - start[i]).abs());
+            high.max(-low) / furthest.fold(0.0, f64::max)
+        });
+        (found.cost, warned, beyond.collect::<Vec<f64>>())
+    };
+    for notion in [Notion::Hull, Notion::Exact] {
+        let (free, warned, beyond) = with(InitialLimit::None, notion);
+        assert!(warned && beyond[..2].iter().any(|part| *part > 20.0), "{beyond:?}");
+        let (positions, warned, beyond) = with(InitialLimit::Positions, notion);
+        assert!(!warned && beyond[..2].iter().all(|part| *part < 1.01), "{beyond:?}");
+        assert!(beyond[2..].iter().any(|part| *part > 20.0), "{beyond:?}");
+        let (states, _, beyond) = with(InitialLimit::States, notion);
+        assert!(beyond.iter().all(|part| *part < 1.01), "{beyond:?}");
+        assert!(free < positions && positions < states, "{free} {positions} {states}");
+    }
 }
 
 #[test]

@@ -11,16 +11,11 @@ use crate::side::Side;
 pub struct Limits {
     /// The largest radii of V.
     pub noise: Option<Vec<f64>>,
-    /// The largest |x| of X0.
+    /// The largest |x| of X0; infinite for a state that is not limited.
     pub start: Option<Vec<f64>>,
 }
 
 impl Limits {
-    /// Returns whether anything is limited.
-    pub fn is_any(&self) -> bool {
-        self.noise.is_some() || self.start.is_some()
-    }
-
     /// Makes the radii of X0 so small that X0 keeps its limit.
     pub fn shrink(&self, initial_set: &mut Hyperrectangle) {
         let Hyperrectangle { centre, radius } = initial_set;
@@ -140,7 +135,8 @@ impl Layout {
             triplets.row([(column, 1.0)]);
             bounds.push(limit / unit[column]);
         }
-        for (i, limit) in limits.start.iter().flatten().enumerate() {
+        let starts = limits.start.iter().flatten().enumerate();
+        for (i, limit) in starts.filter(|(_, limit)| limit.is_finite()) {
             let radius = i + self.centres();
             let signs: &[f64] = if self.has_centres { &[1.0, -1.0] } else { &[1.0] };
             for sign in signs {

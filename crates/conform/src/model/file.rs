@@ -191,7 +191,7 @@ impl Model {
             initial_set,
             input_set,
             noise_set,
-            sensor_noise: problem.limits().is_any().then(|| problem.sensor_noise().clone()),
+            sensor_noise: settings.are_limited_by_noise().then(|| problem.sensor_noise().clone()),
             warnings: found.warnings.clone(),
             nominal_explains: found.nominal_explains.clone(),
             input_error: found.input_error.clone(),

@@ -16,7 +16,7 @@ use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets::costs;
 use crate::sets::UncertaintySets;
-use crate::settings::Notion;
+use crate::settings::{NominalStart, Notion};
 use crate::smallest_sets::smallest_sets;
 
 /// Ratio of the factors that are tried for a model that is not linear.
@@ -81,7 +81,7 @@ pub(crate) fn calibrate(
     let fit = problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)));
     let first = smallest_sets(&fit, progress, resume)?;
     let (fitted, search) = (first.hulls.sets, first.search);
-    let input_only = problem.limits().start.is_some();
+    let input_only = problem.settings().nominal == NominalStart::Own;
     let linear = problem.dynamics().linear_system().map(|_| program(problem)).transpose()?;
     let grown = |factor: f64| {
         if input_only { fitted.with_input_scaled(factor) } else { fitted.inflated(factor, 0.0) }

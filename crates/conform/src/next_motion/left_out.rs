@@ -8,7 +8,7 @@ use crate::linear::smallest_sets::program;
 use crate::next_motion::motions::Motions;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
-use crate::settings::Notion;
+use crate::settings::{NominalStart, Notion};
 
 /// Number of motions at most for which the program is solved again.
 const MOST_PROGRAMS: usize = 60;
@@ -48,7 +48,7 @@ pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Resul
         return Ok(Vec::new());
     }
     let (program, deviations) = (program(problem)?, problem.deviations()?);
-    let input_only = problem.limits().start.is_some();
+    let input_only = problem.settings().nominal == NominalStart::Own;
     let of = |motion: &&str| -> Vec<&Deviation> {
         deviations.iter().filter(|d| motions.of_suite(d.suite) == *motion).collect()
     };

@@ -13,6 +13,8 @@ pub(crate) struct NominalFit {
     pub explained: Vec<Option<f64>>,
     /// The recorded bounds of each state, 2n, rad and rad/s.
     pub recorded: Vec<[f64; 2]>,
+    /// How far the first states lie from their nominal start at most, 2n, rad and rad/s.
+    pub farthest_starts: Vec<f64>,
     /// The largest |u| of each joint, n, N m.
     pub largest_input: Vec<f64>,
 }
@@ -48,7 +50,8 @@ impl NominalFit {
             moves.then(|| 1.0 - all.missed[i] / all.motion[i])
         };
         let explained = (0..2 * n).map(explained).collect();
-        Ok(Self { explained, recorded, largest_input: all.largest_input })
+        let farthest_starts = problem.farthest_starts();
+        Ok(Self { explained, recorded, farthest_starts, largest_input: all.largest_input })
     }
 }
 

@@ -8,6 +8,12 @@ use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::settings::NominalStart;
 
+/// X0 that reaches further than the recorded starts by more than this factor is remarked ...
+const FACTOR_OF_STARTS: f64 = 10.0;
+
+/// ... where that is also more than this part of the recorded motion.
+const PART_OF_MOTION: f64 = 0.02;
+
 /// A nominal motion that explains less than this part of a velocity's variance is remarked.
 const LEAST_EXPLAINED: f64 = 0.5;
 
@@ -31,6 +37,8 @@ pub enum WarningKind {
     ReachableSetSize,
     /// X0 is wider than the recorded motion.
     InitialSetSize,
+    /// The positions of X0 reach much further than the recorded starts.
+    InitialSetStarts,
     /// X0 leaves out 0 by more than the noise of the sensors.
     InitialSetOffset,
     /// U reaches beyond the recorded input.
@@ -45,9 +53,10 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// All kinds that are about single joints, in the order of the warnings.
-    const OF_JOINTS: [Self; 6] = [
+    const OF_JOINTS: [Self; 7] = [
         Self::ReachableSetSize,
         Self::InitialSetSize,
+        Self::InitialSetStarts,
         Self::InitialSetOffset,
         Self::InputSetSize,
         Self::NoiseSetSize,
@@ -64,6 +73,11 @@ impl WarningKind {
             Self::InitialSetSize => {
                 "X0 is wider than the recorded motion and covers what the model does not explain \
                  (width, range of the recordings)"
+            }
+            Self::InitialSetStarts => {
+                "X0 reaches much further than the recorded starts and covers what happens later; \
+                 an initial limit (--initial-limit positions) leaves that to U (reach, furthest \
+                 start)"
             }
             Self::InitialSetOffset => {
                 "X0 leaves out 0, so that no nominal motion starts in it (distance)"
@@ -118,7 +132,8 @@ pub(crate) fn warnings(
         (!of.is_empty()).then_some(Warning { kind, joints, text })
     };
     let mut found: Vec<Warning> = WarningKind::OF_JOINTS.into_iter().filter_map(of_kind).collect();
-    if !found.is_empty() {
+    // X0 takes over from U where that is cheaper, whatever the recordings are.
+    if found.iter().any(|warning| warning.kind != WarningKind::InitialSetStarts) {
         let text = likely_cause(problem)?;
         found.push(Warning { kind: WarningKind::Cause, joints: Vec::new(), text });
     }
@@ -149,6 +164,12 @@ fn of_state(
     if width > range + 2.0 * sensor && width > 1e-6 {
         remark(WarningKind::InitialSetSize, beside(width));
     }
+    let (reach, start) = (to.max(-from), fit.farthest_starts[i].max(sensor));
+    let is_position = i < problem.joints();
+    if is_position && reach > (FACTOR_OF_STARTS * start).max(PART_OF_MOTION * range) {
+        let text = format!("{state} {} {unit}, {}", short(reach), short(fit.farthest_starts[i]));
+        remark(WarningKind::InitialSetStarts, text);
+    }
     let offset = from.max(-to);
     let allowed = match problem.settings().nominal {
         NominalStart::Mean => sensor.max(0.05 * range),
@@ -160,8 +181,7 @@ fn of_state(
     if 4.0 * noise > range && noise > 1e-6 {
         remark(WarningKind::NoiseSetSize, beside(2.0 * noise));
     }
-    let is_velocity = i >= problem.joints();
-    if let Some(part) = fit.explained[i].filter(|part| is_velocity && *part < LEAST_EXPLAINED) {
+    if let Some(part) = fit.explained[i].filter(|part| !is_position && *part < LEAST_EXPLAINED) {
         let part = if part <= 0.0 { "nothing".into() } else { format!("{:.0} %", 100.0 * part) };
         remark(WarningKind::Unexplained, format!("{state} {part}"));
     }

@@ -5,6 +5,7 @@ mod cases;
 pub(crate) mod condition;
 pub(crate) mod input;
 mod kept;
+mod limits;
 pub(crate) mod marks;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod problem;

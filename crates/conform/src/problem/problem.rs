@@ -12,7 +12,6 @@ use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
 use crate::explain::trace;
 use crate::grids::Grids;
-use crate::linear::layout::Limits;
 use crate::nominal::correction::InputCorrection;
 use crate::problem::case::Case;
 use crate::problem::condition::Condition;
@@ -21,11 +20,7 @@ use crate::problem::recordings::Recordings;
 use crate::problem::suite::{Suite, SuiteReader};
 use crate::progress::Progress;
 use crate::sensor_noise::SensorNoise;
-use crate::settings::{Noise, NominalStart, Notion, Settings};
-
-/// The least limit of a set, rad or rad/s, which nobody can tell from 0. The program keeps room
-/// between its bounds.
-const LEAST_LIMIT: f64 = 1e-9;
+use crate::settings::{Notion, Settings};
 
 /// What decides a conformance besides the recordings: the robot, its model and the settings.
 ///
@@ -224,16 +219,6 @@ impl Problem {
     #[must_use]
     pub fn sensor_noise(&self) -> &SensorNoise {
         &self.read.sensor_noise
-    }
-
-    /// Returns what the sensor noise limits: a V that is fitted, and X0 where each run starts at
-    /// its own measured state.
-    pub(crate) fn limits(&self) -> Limits {
-        let radii = || self.read.sensor_noise.radius.iter().map(|r| r.max(LEAST_LIMIT)).collect();
-        Limits {
-            noise: (self.settings().noise == Noise::Fitted).then(radii),
-            start: (self.settings().nominal == NominalStart::Own).then(radii),
-        }
     }
 
     /// Returns the number of joints n.
