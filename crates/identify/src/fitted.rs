@@ -12,6 +12,7 @@ use crate::plausibility::warnings::Checked;
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples};
 use crate::settings::ModelSettings;
+use crate::stiction::KnownFriction;
 use crate::variant::{set_gravity_moments, with_friction};
 use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
 
@@ -39,7 +40,11 @@ impl Fitted {
         // Inertial parameters, with the friction and its load subtracted.
         let load = first.gravity.as_ref().map_or(robot, |gravity| &gravity.robot);
         let friction = coefficients(&first.friction, robot);
-        let (friction, known, inertia) = fit_links([robot, load], friction, inputs, model)?;
+        let slow = with_friction(load, &friction)?;
+        let kept = first.gravity.as_ref().filter(|gravity| gravity.rests > 0);
+        let kept = kept
+            .map(|gravity| KnownFriction { robot: &slow, deviations: &gravity.rest_deviations });
+        let (friction, known, inertia) = fit_links([robot, load], friction, kept, inputs, model)?;
         let mut description = description(robot, &inertia, &friction).map_err(|error| {
             impossible(error, &check([robot, &known], &inertia, &friction, inputs).1)
         })?;
@@ -72,10 +77,12 @@ fn impossible(error: Error, implausible: &[String]) -> Error {
 /// gets that friction: slow motions do not show all of it. Returns the known friction, one entry
 /// per joint, the robot with it, and the fit.
 ///
-/// The poses at rest take part unless gravity keeps its own mass moments.
+/// The poses at rest take part unless gravity keeps its own mass moments. The joints may keep a
+/// part of the friction `kept` there.
 fn fit_links(
     [robot, load]: [&Robot; 2],
     slow: Vec<FrictionDescription>,
+    kept: Option<KnownFriction>,
     inputs: &Inputs,
     model: &ModelSettings,
 ) -> Result<(Vec<FrictionDescription>, Robot, InertiaFit)> {
@@ -89,7 +96,7 @@ fn fit_links(
     let logs = [&inputs.dynamic[..], rest];
     let fit = |friction: Vec<FrictionDescription>| {
         let known = with_friction(load, &friction)?;
-        let fit = fit_inertia(robot, &known, logs, &inputs.sampling, model, columns)?;
+        let fit = fit_inertia(robot, &known, logs, kept, &inputs.sampling, model, columns)?;
         Ok((friction, known, fit))
     };
     let first = fit(slow)?;

@@ -9,6 +9,7 @@ use crate::law_gain::{LawGain, kept_back_residuals};
 use crate::plausibility::gain::Gain;
 use crate::plausibility::validation::{poor_prediction, still_recordings, useless_simulation};
 use crate::settings::{IdentifySettings, ModelSettings, WarmingChoice};
+use crate::stiction::unknown_sides;
 use crate::validate::simulation::{WindowErrors, simulate};
 use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
 use crate::variant::with_gravity_of_links;
@@ -74,10 +75,10 @@ pub fn identify(
 ) -> Result<Identification> {
     settings.validate(robot.joint_count())?;
     let model = &settings.model;
-    let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
 
     // Recordings, filtered and downsampled.
     let mut inputs = Inputs::read(robot, settings, folder)?;
+    let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
     progress(1, STEPS);
 
     // Gravity and friction in alternation, then the inertial parameters.
@@ -97,6 +98,8 @@ pub fn identify(
         LawGain { kept_back: inputs.validation().0, before, after }
     });
     let (gains, implausible) = fitted.check(robot, &inputs);
+    let sides = fitted.first.gravity.as_ref().map_or(&[][..], |gravity| &gravity.poses.sides);
+    inputs.changes.extend(unknown_sides(sides, robot.joint_count()));
     let mut law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
     law_warnings.extend(laws.iter().flat_map(|laws| laws.warnings(robot)));
     let Fitted { first, friction, known, inertia, mut description, found } = fitted;

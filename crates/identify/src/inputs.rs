@@ -1,14 +1,14 @@
-use crate::error::Result;
-use crate::held_out::check_held_out;
-use crate::prepare::cut_off::cut_off;
-use crate::prepare::entry::LogEntry;
+use crate::error::{Error, Result};
+use crate::prepare::changes::described as described_changes;
+use crate::prepare::cut_off::chosen_cut_off;
 use crate::prepare::log::Log;
-use crate::prepare::prepared::prepare;
-use crate::prepare::raw_log::RawLog;
-use crate::prepare::read::read;
+use crate::prepare::prepared::{common_step, prepare_one};
+use crate::prepare::read::{Source, sources};
+use crate::prepare::survey::{Survey, check_held_out};
 use crate::prepare::velocity::velocity_warnings;
-use crate::samples::Sampling;
+use crate::samples::{Sampling, most_samples};
 use crate::settings::IdentifySettings;
+use rayon::prelude::*;
 use reachtube_robot::{JointKind, Robot};
 use std::path::Path;
 
@@ -28,6 +28,9 @@ const HIGH_SPEED: f64 = 0.99;
 
 /// Least speed limit of slow samples \[rad/s\].
 const MIN_SLOW: f64 = 1e-4;
+
+/// Numbers of recordings of one kind that are kept in memory: 64 MB.
+const MOST_NUMBERS: usize = 8_000_000;
 
 /// The prepared recordings of an identification, and how samples are taken from them.
 pub struct Inputs {
@@ -49,33 +52,59 @@ pub struct Inputs {
 
 impl Inputs {
     /// Reads and prepares all recordings of a job; the cut-off suits the exciting motions.
+    ///
+    /// Recordings are read twice, one by one: first for what decides how all are prepared, then to
+    /// prepare them. Of many exciting motions not all samples are kept.
+    ///
+    /// The controllers of `robot` compensate, where a recording has the input u.
     pub fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {
-        let raw = |entries: &[LogEntry]| read(entries, folder, robot, &settings.prepare);
-        let groups = [
-            raw(&settings.rest)?,
-            raw(&settings.friction)?,
-            raw(&settings.dynamic)?,
-            raw(&settings.validate)?,
-        ];
-        check_held_out(&groups[3], groups[..3].iter().flatten())?;
-        let exciting: Vec<&RawLog> = groups[2].iter().collect();
-        let cut_off = cut_off(&exciting, &settings.prepare)?;
-        // All groups are prepared together, so that they get one sample time.
-        let counts = groups.each_ref().map(Vec::len);
-        let all = groups.concat();
-        let prepared = prepare(&all, &settings.prepare, cut_off)?;
-        let mut logs = prepared.logs.into_iter();
-        let [rest, friction, dynamic, validate] =
-            counts.map(|count| logs.by_ref().take(count).collect::<Vec<Log>>());
+        let IdentifySettings { rest, friction, dynamic, validate, prepare, model, .. } = settings;
+        let groups = [rest, friction, dynamic, validate];
+        let sources = groups.map(|entries| sources(entries, folder)).into_iter();
+        let sources: Vec<Vec<Source>> = sources.collect::<Result<_>>()?;
+        let survey = |source: &Source| Ok(Survey::of(&source.read(robot, prepare)?));
+        let surveys = sources.iter().map(|group| group.par_iter().map(survey).collect());
+        let surveys: Vec<Vec<Survey>> = surveys.collect::<Result<_>>()?;
+        let fitted: Vec<&Survey> = surveys[..3].iter().flatten().collect();
+        check_held_out(&surveys[3], &fitted)?;
+        let cut_off = chosen_cut_off(&surveys[2], prepare)?;
+        let margin = MARGIN_PERIODS / cut_off;
+        // All groups get one sample time.
+        let all: Vec<&Survey> = surveys.iter().flatten().collect();
+        let common = common_step(all.iter().filter_map(|survey| survey.step).collect());
+        let strides = [1, 1, stride(&surveys[2]), stride(&surveys[3])];
+        let (mut logs, mut changes) = (Vec::new(), Vec::new());
+        let [mut samples, mut short] = [0; 2];
+        for (group, stride) in sources.iter().zip(strides) {
+            let prepared = |source: &Source| {
+                let raw = source.read(robot, prepare)?;
+                let (log, change) = prepare_one(&raw, prepare, cut_off, common)?;
+                Ok((log.len(), log.thinned(stride, margin), change))
+            };
+            let done = group.par_iter().map(prepared).collect::<Vec<Result<_>>>();
+            let (done, few) = without_short(done)?;
+            short += few;
+            samples += done.iter().map(|(count, ..)| count).sum::<usize>();
+            changes.extend(done.iter().map(|(.., change)| *change));
+            logs.push(done.into_iter().map(|(_, log, _)| log).collect::<Vec<Log>>());
+        }
+        let [rest, friction, dynamic, validate] = logs.try_into().expect("four groups");
         let moving: Vec<&Log> = friction.iter().chain(&dynamic).collect();
         let sampling = Sampling {
             rate: SAMPLES_PER_CUT_OFF * cut_off,
-            slow: slow_speeds(&moving, robot.joint_count(), settings.model.slow),
-            margin: MARGIN_PERIODS / cut_off,
+            slow: slow_speeds(&moving, robot.joint_count(), model.slow),
+            margin,
             laws: vec![],
         };
-        let mut changes = prepared.changes;
+        let mut changes = described_changes(samples, &changes, prepare, cut_off);
+        if short > 0 {
+            changes.push(format!(
+                "{short} recordings were left out: they are too short for a low-pass of \
+                 {cut_off:.2} Hz"
+            ));
+        }
         changes.push(described(&sampling, robot));
+        changes.extend(thinning(&dynamic, strides[2], &sampling));
         let warnings = velocity_warnings(robot, &all);
         Ok(Self { rest, friction, dynamic, validate, sampling, changes, warnings })
     }
@@ -86,6 +115,41 @@ impl Inputs {
         let kept_back = !self.validate.is_empty();
         (kept_back, if kept_back { &self.validate } else { &self.dynamic })
     }
+}
+
+/// Returns the recordings of a group that are long enough for the low-pass, and the number of the
+/// others.
+///
+/// # Errors
+///
+/// The first error, if there is another one or all recordings are too short.
+fn without_short<T>(done: Vec<Result<T>>) -> Result<(Vec<T>, usize)> {
+    let all = done.len();
+    let is_short = |done: &Result<T>| matches!(done, Err(Error::TooShort { .. }));
+    if done.iter().all(is_short) {
+        return Ok((done.into_iter().collect::<Result<_>>()?, 0));
+    }
+    let kept = done.into_iter().filter(|done| !is_short(done)).collect::<Result<Vec<T>>>()?;
+    let short = all - kept.len();
+    Ok((kept, short))
+}
+
+/// Returns the number of samples from one that is kept of recordings to the next.
+fn stride(surveys: &[Survey]) -> usize {
+    let numbers: usize = surveys.iter().map(|survey| survey.samples * survey.width).sum();
+    numbers.div_ceil(MOST_NUMBERS).max(1)
+}
+
+/// Describes in a sentence which samples of the exciting motions are used, if not all.
+fn thinning(dynamic: &[Log], stride: usize, sampling: &Sampling) -> Option<String> {
+    let total: usize = dynamic.iter().map(|log| log.len().div_ceil(sampling.stride(log))).sum();
+    let used = total.div_ceil(most_samples(total));
+    (stride > 1 || used > 1).then(|| {
+        format!(
+            "of the samples of the exciting motions one in {stride} was kept in memory, and of \
+             {total} samples at the sampling rate one in {used} was fitted"
+        )
+    })
 }
 
 /// Describes the sampling in a sentence.

@@ -1,14 +1,24 @@
 use crate::prepare::log::Log;
 use crate::prepare::rest::rest_intervals;
 use crate::regression::triangular_factor::TriangularFactor;
-use nalgebra::DVector;
+use crate::stiction::{self, KnownFriction, Rests};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use reachtube_robot::friction::Warming;
 use reachtube_robot::{Parameter, ParameterKind, Regressor, Robot};
 use std::ops::Range;
 
+/// Samples of a group of recordings that are used: more would follow one another so closely that
+/// they tell nothing new.
+const MOST_SAMPLES: usize = 30_000;
+
 /// Shortest rest that counts as a pose \[s\].
 pub const SHORTEST_REST: f64 = 0.5;
+
+/// Returns the number of samples that are used of a group of recordings with `total` samples.
+pub fn most_samples(total: usize) -> usize {
+    total.clamp(1, MOST_SAMPLES)
+}
 
 /// Rows of the regression τ = Y θ for a group of logs: n rows per sample, one per joint.
 #[derive(Debug, Clone)]
@@ -28,6 +38,8 @@ pub struct Samples {
     pub used: Vec<bool>,
     /// Range of the rows of each log.
     pub logs: Vec<Range<usize>>,
+    /// Time of each sample in motion, counted from the first sample of its recording \[s\].
+    pub times: Vec<f64>,
 }
 
 /// Rules for taking samples from logs.
@@ -71,7 +83,14 @@ impl Samples {
         sampling: &Sampling,
         known: &KnownTorque,
     ) -> Self {
-        let parts = logs.par_iter().map(|log| Self::from_log(robot, columns, log, sampling, known));
+        let total: usize = logs.iter().map(|log| log.len().div_ceil(sampling.stride(log))).sum();
+        let stride = total.div_ceil(most_samples(total));
+        let parts = logs.par_iter().enumerate().map(|(index, log)| {
+            // Repeats of a motion are sampled at different times.
+            let stride = stride * sampling.stride(log);
+            let kept = ((index * sampling.stride(log)) % stride..log.len()).step_by(stride);
+            Self::from_log(robot, columns, log, kept, sampling, known)
+        });
         Self::joined(robot.joint_count(), columns, parts.collect())
     }
 
@@ -79,46 +98,56 @@ impl Samples {
         robot: &Robot,
         columns: &[Parameter],
         log: &Log,
+        kept: impl Iterator<Item = usize>,
         sampling: &Sampling,
         known: &KnownTorque,
     ) -> Self {
         let mut samples = Self::empty(robot.joint_count(), columns);
         let mut regressor = Regressor::new(robot, columns);
         let moves = log.moving_mask(&sampling.slow, sampling.margin);
-        let stride = sampling.stride(log);
-        for k in (0..log.len()).step_by(stride) {
+        for k in kept {
             let state = [log.q(k), log.qd(k), log.qdd(k)];
             samples.push(&mut regressor, state, log.tau(k), known, &sampling.factors(log, k));
             samples.used.extend_from_slice(&moves[k * log.joints..(k + 1) * log.joints]);
+            samples.times.push(log.time(k));
         }
         samples
     }
 
     /// Takes one sample per rest: the means of q and τ over an interval of at least 0.5 s in which
-    /// no joint moves faster than `speed` \[rad/s\].
+    /// no joint moves faster than `speed` \[rad/s\], without `margin` \[s\] at both ends.
     ///
-    /// Columns of friction are 0.
-    pub fn at_rest(robot: &Robot, columns: &[Parameter], logs: &[Log], speed: f64) -> Self {
+    /// Columns of friction are 0. What friction that the joints keep may explain is taken out of
+    /// the rows, see [`stiction`](crate::stiction). Returns the rests as well.
+    pub fn at_rest(
+        robot: &Robot,
+        columns: &[Parameter],
+        logs: &[Log],
+        [speed, margin]: [f64; 2],
+        known: Option<KnownFriction>,
+    ) -> (Self, Rests) {
         let n = robot.joint_count();
         let mut all = Self::empty(n, columns);
         let mut regressor = Regressor::new(robot, columns);
         let still = vec![0.0; n];
+        let mut rests = Rests { joints: n, ..Rests::default() };
         for log in logs {
             let first = all.torque.len();
             for rest in rest_intervals(&log.qd, n, speed, (SHORTEST_REST / log.step) as usize) {
+                // The low-pass blurs the torque of the motions before and after.
+                let blurred = ((margin / log.step) as usize).min((rest.len() - 1) / 2);
+                let quiet = rest.start + blurred..rest.end - blurred;
                 let mean = |values: &[f64]| -> Vec<f64> {
                     let sum =
-                        |joint: usize| rest.clone().map(|k| values[k * n + joint]).sum::<f64>();
-                    (0..n).map(|joint| sum(joint) / rest.len() as f64).collect()
+                        |joint: usize| quiet.clone().map(|k| values[k * n + joint]).sum::<f64>();
+                    (0..n).map(|joint| sum(joint) / quiet.len() as f64).collect()
                 };
-                all.push(
-                    &mut regressor,
-                    [&mean(&log.q), &still, &still],
-                    &mean(&log.tau),
-                    &KnownTorque::None,
-                    &[],
-                );
+                let (q, tau) = (mean(&log.q), mean(&log.tau));
+                all.push(&mut regressor, [&q, &still, &still], &tau, &KnownTorque::None, &[]);
                 all.used.extend(vec![true; n]);
+                rests.q.extend(q);
+                rests.tau.extend(tau);
+                rests.sides.extend(stiction::sides(log, rest.start, speed));
             }
             all.logs.push(first..all.torque.len());
         }
@@ -127,7 +156,31 @@ impl Samples {
         let offsets = (0..width).filter(|c| columns[*c].kind == ParameterKind::Offset);
         offsets
             .for_each(|c| all.regressor.iter_mut().skip(c).step_by(width).for_each(|y| *y = 0.0));
-        all
+        for joint in 0..n {
+            let kept = rests.kept(known, joint);
+            all.change_rows(joint, |rows| {
+                let mut torque = rows.column_mut(width);
+                torque.iter_mut().zip(&kept.mean).for_each(|(tau, kept)| *tau -= kept);
+                stiction::discount(&kept.columns, rows);
+            });
+        }
+        (all, rests)
+    }
+
+    /// Changes the rows \[y, torque\] of one joint.
+    fn change_rows(&mut self, joint: usize, change: impl Fn(&mut DMatrix<f64>)) {
+        let (n, width) = (self.joints, self.columns.len());
+        let mut rows = DMatrix::from_fn(self.len() / n, width + 1, |k, column| {
+            let r = k * n + joint;
+            if column < width { self.regressor[r * width + column] } else { self.torque[r] }
+        });
+        change(&mut rows);
+        for (k, row) in rows.row_iter().enumerate() {
+            let r = k * n + joint;
+            let own = &mut self.regressor[r * width..(r + 1) * width];
+            own.iter_mut().zip(row.iter()).for_each(|(own, value)| *own = *value);
+            self.torque[r] = row[width];
+        }
     }
 
     fn empty(joints: usize, columns: &[Parameter]) -> Self {
@@ -140,6 +193,7 @@ impl Samples {
             recorded: vec![],
             used: vec![],
             logs: vec![],
+            times: vec![],
         }
     }
 
@@ -190,6 +244,7 @@ impl Samples {
             all.torque.append(&mut part.torque);
             all.recorded.append(&mut part.recorded);
             all.used.append(&mut part.used);
+            all.times.append(&mut part.times);
             all.logs.push(first..all.torque.len());
         }
         all

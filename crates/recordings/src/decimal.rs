@@ -3,7 +3,17 @@
 ///
 /// The digits are read as written, so that differences of times since 1970 are exact. In double
 /// precision, such times are only known to about 0.2 µs.
-pub(crate) fn picoseconds(text: &str) -> Option<i128> {
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_recordings::picoseconds;
+///
+/// assert_eq!(picoseconds("0.004"), Some(4_000_000_000));
+/// assert_eq!(picoseconds("1,5"), None);
+/// ```
+#[must_use]
+pub fn picoseconds(text: &str) -> Option<i128> {
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
         None => (text, 0),

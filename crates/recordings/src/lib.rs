@@ -53,6 +53,7 @@ mod torque;
 mod units;
 
 pub use data_set::DataSet;
+pub use decimal::picoseconds;
 pub use defect::{Defect, DefectKind};
 pub use error::{Error, Result};
 pub use gap_limit::GapLimit;

@@ -58,7 +58,7 @@ impl LinkInertia {
     /// \[kg m²\].
     ///
     /// A link without mass has its centre of mass at the origin.
-    pub(crate) fn about_own_com(&self) -> (f64, [f64; 3], [f64; 6]) {
+    pub fn about_own_com(&self) -> (f64, [f64; 3], [f64; 6]) {
         let c = if self.mass == 0.0 { Vector3::zeros() } else { self.first_moment / self.mass };
         let t = self.tensor()
             - self.mass * (Matrix3::identity() * c.norm_squared() - c * c.transpose());
@@ -83,7 +83,7 @@ impl LinkInertia {
 
     /// Returns the same link about another frame, in which the present frame has the placement
     /// `to`.
-    pub(crate) fn moved(&self, to: &Placement) -> Self {
+    pub fn moved(&self, to: &Placement) -> Self {
         let (r, p) = (&to.rotation, &to.translation);
         let h = r * self.first_moment;
         let shift = p * h.transpose();

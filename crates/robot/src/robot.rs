@@ -111,6 +111,12 @@ impl Robot {
         robot
     }
 
+    /// Returns the fixed geometry between the joints, n, from base to tip.
+    pub fn geometry(&self) -> Vec<JointGeometry> {
+        let convention = self.description.convention;
+        self.description.joints.iter().map(|joint| joint.geometry(convention)).collect()
+    }
+
     /// Returns the ten inertial parameters of each link \[10 n\] in the order of
     /// [`Robot::inertial_regressor`], about the origin of the link's own frame.
     pub fn inertial_parameters(&self) -> Vec<f64> {

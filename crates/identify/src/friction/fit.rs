@@ -9,7 +9,7 @@ use crate::regression::residuals::{
 use crate::regression::solution::Solution;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::DVector;
-use reachtube_robot::FrictionDescription;
+use reachtube_robot::{FrictionDescription, Robot};
 use serde::Serialize;
 
 /// Rounds of reweighting.
@@ -57,6 +57,22 @@ pub struct FrictionFit {
     pub samples: Vec<FrictionSample>,
     /// Residual torque of each sample \[N m\].
     pub residuals: Vec<f64>,
+}
+
+impl FrictionFit {
+    /// Adds the relative standard errors of the loads, one per joint of the robot, to those of the
+    /// slopes in the load: a load that is off by a part changes torque minus load by that part of
+    /// the load.
+    pub(crate) fn add_load_error(&mut self, robot: &Robot, load_errors: &[f64]) {
+        let joints = robot.joints().iter().zip(load_errors);
+        let own = joints.into_iter().find(|(joint, _)| joint.name == self.joint.joint);
+        let Some((_, load_error)) = own else { return };
+        let slopes = self.joint.coefficients.coulomb.iter().skip(1).step_by(2);
+        let errors = self.joint.standard_errors.coulomb.iter_mut().skip(1).step_by(2);
+        for (error, slope) in errors.zip(slopes).filter(|(error, _)| **error > 0.0) {
+            *error = error.hypot(load_error * (1.0 + slope));
+        }
+    }
 }
 
 /// Fits (5) to (9) to the samples of one joint: Coulomb friction, a cubic in q̇, and the joint's

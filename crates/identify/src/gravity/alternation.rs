@@ -3,8 +3,9 @@ use crate::friction::fit::FrictionFit;
 use crate::friction::joints::{coefficients, fit_joints};
 use crate::gravity::fit::{GravityFit, fit_gravity};
 use crate::prepare::log::Log;
-use crate::samples::{KnownTorque, Sampling};
+use crate::samples::Sampling;
 use crate::settings::ModelSettings;
+use crate::stiction::{KnownFriction, one_sided};
 use crate::variant::with_friction;
 use reachtube_robot::{FrictionDescription, Robot};
 
@@ -38,14 +39,21 @@ pub(crate) fn fit_gravity_and_friction(
     }
     let frictionless = vec![FrictionDescription::default(); robot.joint_count()];
     let mut latest = with_friction(robot, &frictionless)?;
-    for round in 0..ROUNDS {
-        let known = if round == 0 { KnownTorque::None } else { KnownTorque::Friction(&latest) };
-        let gravity = fit_gravity(robot, rests, slow, sampling, model, &known)?;
+    for _ in 0..ROUNDS {
+        let known = found
+            .gravity
+            .as_ref()
+            .map(|gravity| KnownFriction { robot: &latest, deviations: &gravity.rest_deviations });
+        let gravity = fit_gravity(robot, rests, slow, sampling, model, known)?;
         (found.friction, found.warnings) =
             fit_joints(&gravity.robot, slow, sampling, model.stribeck);
         // This gravity is the load of the friction that is known in the next round.
         latest = with_friction(&gravity.robot, &coefficients(&found.friction, robot))?;
         found.gravity = Some(gravity);
+    }
+    if let Some(gravity) = &found.gravity {
+        found.friction.iter_mut().for_each(|fit| fit.add_load_error(robot, &gravity.load_errors));
+        found.warnings.extend(one_sided(robot, &gravity.poses.sides));
     }
     Ok(found)
 }

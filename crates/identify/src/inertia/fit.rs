@@ -7,6 +7,7 @@ use crate::inertia::reference::reference_factor;
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use crate::settings::ModelSettings;
+use crate::stiction::KnownFriction;
 use nalgebra::DVector;
 use reachtube_robot::{BaseParameters, Parameter, ParameterSet, Robot};
 
@@ -50,7 +51,8 @@ pub struct InertiaFit {
 
 /// Fits the inertial parameters to exciting motions and poses at rest.
 ///
-/// The friction of `known` is subtracted, with the gravity torque of `known` as its load.
+/// The friction of `known` is subtracted, with the gravity torque of `known` as its load. The
+/// joints may keep a part of the friction `kept` at rest.
 ///
 /// # Errors
 ///
@@ -59,6 +61,7 @@ pub fn fit_inertia(
     robot: &Robot,
     known: &Robot,
     [dynamic, rests]: [&[Log]; 2],
+    kept: Option<KnownFriction>,
     sampling: &Sampling,
     model: &ModelSettings,
     friction: FrictionColumns,
@@ -70,7 +73,8 @@ pub fn fit_inertia(
     if !moving.used.contains(&true) {
         return Err(Error::NoMotion);
     }
-    let still = Samples::at_rest(robot, &columns, rests, model.rest_speed);
+    let quiet = [model.rest_speed, sampling.margin];
+    let (still, _) = Samples::at_rest(robot, &columns, rests, quiet, kept);
     let groups: Vec<&Samples> =
         [&moving, &still].into_iter().filter(|samples| !samples.is_empty()).collect();
     let fit = Fit::of_groups(&groups, !model.robust);

@@ -1,5 +1,5 @@
 use crate::plausibility::fault::{Columns, Fault};
-use crate::prepare::log::Log;
+use crate::prepare::log::{Log, spread};
 use crate::regression::residuals::root_mean_square;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use rayon::prelude::*;
@@ -12,6 +12,9 @@ const REMAINING: f64 = 0.1;
 
 /// Number of samples that suffice to recognise a fault.
 const ENOUGH_SAMPLES: f64 = 300.0;
+
+/// Largest number of recordings in which a fault is searched.
+const MOST_LOGS: usize = 64;
 
 /// Offsets of a position that are tried \[rad\].
 const OFFSETS: [f64; 9] = [0.1, -0.1, 0.3, -0.3, 0.8, -0.8, FRAC_PI_2, -FRAC_PI_2, PI];
@@ -46,7 +49,8 @@ pub(super) fn find_fault(
     let thinned = ENOUGH_SAMPLES * samples.joints as f64 / samples.len().max(1) as f64;
     let sampling = Sampling { rate: sampling.rate * thinned.min(1.0), ..sampling.clone() };
     let columns = independent_columns(robot, &samples.columns);
-    let here = residual_sizes(robot, &columns, logs, &sampling)?;
+    let logs: Vec<Log> = spread(logs, MOST_LOGS).into_iter().cloned().collect();
+    let here = residual_sizes(robot, &columns, &logs, &sampling)?;
     let without = |fault: Fault| {
         let logs: Vec<Log> = logs.iter().map(|log| fault.corrected(log)).collect();
         let sizes = residual_sizes(robot, &columns, &logs, &sampling)?;

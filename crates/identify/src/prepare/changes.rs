@@ -1,4 +1,3 @@
-use crate::prepare::log::Log;
 use crate::prepare::low_pass::TRANSIENT_PERIODS;
 use crate::prepare::settings::PrepareSettings;
 
@@ -6,7 +5,8 @@ use crate::prepare::settings::PrepareSettings;
 const NEGLIGIBLE_JITTER: f64 = 1e-6;
 
 /// Facts about the preparation of one log.
-pub(super) struct LogChange {
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LogChange {
     /// Median time between the recorded samples \[s\].
     pub median_step: f64,
     /// Largest deviation of a time between samples from the median \[s\].
@@ -16,8 +16,8 @@ pub(super) struct LogChange {
 }
 
 /// Describes the changes to recordings, one sentence each.
-pub(super) fn described(
-    logs: &[Log],
+pub(crate) fn described(
+    samples: usize,
     changes: &[LogChange],
     settings: &PrepareSettings,
     cut_off: f64,
@@ -26,7 +26,7 @@ pub(super) fn described(
         joint_names(settings),
         gains(settings),
         resampling(changes),
-        Some(filtering(logs, settings.cut_off.is_some(), cut_off)),
+        Some(filtering([changes.len(), samples], settings.cut_off.is_some(), cut_off)),
         Some(velocity(changes)),
     ]
     .into_iter()
@@ -63,18 +63,16 @@ fn resampling(changes: &[LogChange]) -> Option<String> {
     })
 }
 
-fn filtering(logs: &[Log], given: bool, cut_off: f64) -> String {
-    let samples = logs.iter().map(Log::len).sum::<usize>();
+fn filtering([logs, samples]: [usize; 2], given: bool, cut_off: f64) -> String {
     let origin = if given {
         "as set"
     } else {
         "chosen as 1.5 times the bandwidth of the velocity (99.9 % of its power), at least 3 Hz"
     };
     format!(
-        "q, qd and tau of {} recordings ({samples} samples) were filtered forward and backward by \
-         a Butterworth low-pass of order 4 with a cut-off of {cut_off:.2} Hz ({origin}); qdd is \
+        "q, qd and tau of {logs} recordings ({samples} samples) were filtered forward and backward \
+         by a Butterworth low-pass of order 4 with a cut-off of {cut_off:.2} Hz ({origin}); qdd is \
          the derivative of qd; {:.2} s were cut from both ends",
-        logs.len(),
         TRANSIENT_PERIODS / cut_off
     )
 }

@@ -3,6 +3,7 @@ use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::PrepareSettings;
 use crate::prepare::spectrum::motion_bandwidth;
+use crate::prepare::survey::Survey;
 use rayon::prelude::*;
 use reachtube_recordings::Run;
 
@@ -28,7 +29,13 @@ const HIGHEST_SHARE: f64 = 0.2;
 ///
 /// [`Error::CutOff`] if the cut-off that is set is not between 0 and half the lowest sample rate.
 pub fn cut_off(logs: &[&RawLog], settings: &PrepareSettings) -> Result<f64> {
-    let step = |log: &&RawLog| median_step(&log.run.times).unwrap_or(0.0);
+    let surveys: Vec<Survey> = logs.par_iter().map(|log| Survey::of(log)).collect();
+    chosen_cut_off(&surveys, settings)
+}
+
+/// Returns the cut-off frequency \[Hz\] for recordings as [`cut_off`] does.
+pub(crate) fn chosen_cut_off(logs: &[Survey], settings: &PrepareSettings) -> Result<f64> {
+    let step = |log: &Survey| log.step.unwrap_or(0.0);
     let slowest = logs.iter().max_by(|a, b| step(a).total_cmp(&step(b)));
     let lowest_rate = slowest.map_or(0.0, step).recip();
     if let Some(given) = settings.cut_off {
@@ -39,12 +46,12 @@ pub fn cut_off(logs: &[&RawLog], settings: &PrepareSettings) -> Result<f64> {
         }
         return Ok(given);
     }
-    let bandwidths = logs.par_iter().flat_map_iter(|log| bandwidths(log)).collect();
+    let bandwidths = logs.iter().flat_map(|log| log.bandwidths.iter().copied()).collect();
     Ok(chosen(bandwidths, lowest_rate))
 }
 
 /// Returns the bandwidth \[Hz\] and the weight of each joint's motion in a log.
-fn bandwidths(log: &RawLog) -> Vec<(f64, f64)> {
+pub(super) fn bandwidths(log: &RawLog) -> Vec<(f64, f64)> {
     let Some(step) = median_step(&log.run.times) else { return Vec::new() };
     let column = |which, joint| resampled(&log.run.times, log.column(which, joint), step);
     let bandwidth = |joint: usize| {

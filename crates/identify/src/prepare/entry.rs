@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum LogEntry {
-    /// A CSV file, or a folder with all its CSV files except runs.csv, in the order of their names.
+    /// A CSV file, or a folder with all its CSV files except runs.csv, in the order of their names;
+    /// where it has none, those of its subfolders.
     Path(PathBuf),
     /// An interval of time of each of these files.
     Stretch {
@@ -22,6 +23,10 @@ pub enum LogEntry {
         /// follow in the order of their names.
         #[serde(default)]
         order: Option<u64>,
+        /// Whether `tau` is the input u, to which the robot's controllers add gravity and Coulomb
+        /// friction of the description.
+        #[serde(default)]
+        compensated: bool,
     },
 }
 
@@ -32,6 +37,11 @@ impl LogEntry {
             Self::Path(path) => (path, 0.0, None),
             Self::Stretch { path, from, until, .. } => (path, *from, *until),
         }
+    }
+
+    /// Returns whether `tau` is the input u.
+    pub(super) fn is_compensated(&self) -> bool {
+        matches!(self, Self::Stretch { compensated: true, .. })
     }
 
     /// Returns the number of its first recording since the robot's start, from 1.
@@ -49,7 +59,8 @@ impl From<PathBuf> for LogEntry {
     }
 }
 
-/// Returns the file itself, or the recordings of a folder sorted by name.
+/// Returns the file itself, or the recordings of a folder sorted by name; where it has none, those
+/// of its subfolders.
 pub(super) fn csv_files(path: &Path) -> Result<Vec<PathBuf>> {
     let unreadable = |source| reachtube_files::Error::Read {
         path: path.to_path_buf(),
@@ -59,15 +70,22 @@ pub(super) fn csv_files(path: &Path) -> Result<Vec<PathBuf>> {
     if !path.metadata().map_err(unreadable)?.is_dir() {
         return Ok(vec![path.to_path_buf()]);
     }
-    let entries = std::fs::read_dir(path).map_err(unreadable)?;
-    let mut files: Vec<PathBuf> = entries
-        .flatten()
-        .map(|entry| entry.path())
-        .filter(|path| {
+    let recordings = |folder: &Path| -> std::io::Result<[Vec<PathBuf>; 2]> {
+        let entries = std::fs::read_dir(folder)?.flatten().map(|entry| entry.path());
+        let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+        let is_recording = |path: &PathBuf| {
             path.extension().is_some_and(|e| e == "csv")
                 && path.file_name().is_some_and(|f| f != "runs.csv")
-        })
-        .collect();
+        };
+        Ok([files.into_iter().filter(is_recording).collect(), folders])
+    };
+    let [mut files, folders] = recordings(path).map_err(unreadable)?;
+    if files.is_empty() {
+        for folder in folders {
+            let [below, _] = recordings(&folder).map_err(unreadable)?;
+            files.extend(below);
+        }
+    }
     files.sort();
     if files.is_empty() {
         return Err(Error::NoCsvFile { folder: path.to_path_buf() });

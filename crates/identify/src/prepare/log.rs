@@ -24,6 +24,9 @@ pub struct Log {
     pub temperatures: Vec<f64>,
     /// Number of the recording since the robot's start, from 1, where it is known.
     pub order: Option<u64>,
+    /// Least speed of each joint about each sample \[rad/s\], row-major K x n, for a log that was
+    /// thinned; else empty.
+    pub(crate) slowest: Vec<f64>,
 }
 
 impl Log {
@@ -43,6 +46,37 @@ impl Log {
             tau,
             temperatures: vec![],
             order: None,
+            slowest: vec![],
+        }
+    }
+
+    /// Returns the log with every `stride`-th sample. It remembers the least speed within `margin`
+    /// \[s\] of each sample, so that [`Log::moving_mask`] knows the samples between.
+    #[must_use]
+    pub fn thinned(&self, stride: usize, margin: f64) -> Self {
+        if stride <= 1 {
+            return self.clone();
+        }
+        let (n, reach) = (self.joints, (margin / self.step).round() as usize);
+        let kept = || (0..self.len()).step_by(stride);
+        let slowest = |k: usize, joint: usize| {
+            let about = k.saturating_sub(reach)..(k + reach + 1).min(self.len());
+            about.map(|k| self.qd(k)[joint].abs()).fold(f64::INFINITY, f64::min)
+        };
+        let rows = |values: &[f64]| match values {
+            [] => vec![],
+            values => kept().flat_map(|k| values[k * n..(k + 1) * n].iter().copied()).collect(),
+        };
+        Self {
+            step: self.step * stride as f64,
+            q: rows(&self.q),
+            qd: rows(&self.qd),
+            qdd: rows(&self.qdd),
+            tau: rows(&self.tau),
+            temperatures: rows(&self.temperatures),
+            slowest: kept().flat_map(|k| (0..n).map(move |j| slowest(k, j))).collect(),
+            name: self.name.clone(),
+            ..*self
         }
     }
 
@@ -106,6 +140,10 @@ impl Log {
     /// of Coulomb friction at a reversal over about half a period of its cut-off.
     #[must_use]
     pub fn moving_mask(&self, slow: &[f64], margin: f64) -> Vec<bool> {
+        if !self.slowest.is_empty() {
+            let fast = |(at, slowest): (usize, &f64)| *slowest >= slow[at % self.joints];
+            return self.slowest.iter().enumerate().map(fast).collect();
+        }
         let reach = (margin / self.step).round() as usize;
         let mut moves = vec![true; self.qd.len()];
         for (joint, slow) in slow.iter().enumerate() {
@@ -130,8 +168,8 @@ impl Log {
             [] => vec![],
             values => values[range.start * n..range.end * n].to_vec(),
         };
-        let [q, qd, qdd, tau, temperatures] =
-            [&self.q, &self.qd, &self.qdd, &self.tau, &self.temperatures]
+        let [q, qd, qdd, tau, temperatures, slowest] =
+            [&self.q, &self.qd, &self.qdd, &self.tau, &self.temperatures, &self.slowest]
                 .map(|values| rows(values));
         Self {
             name: self.name.clone(),
@@ -144,8 +182,15 @@ impl Log {
             tau,
             temperatures,
             order: self.order,
+            slowest,
         }
     }
+}
+
+/// Returns at most `most` logs, evenly spread over those given.
+pub(crate) fn spread(logs: &[Log], most: usize) -> Vec<&Log> {
+    let count = logs.len().min(most);
+    (0..count).map(|k| &logs[k * logs.len() / count]).collect()
 }
 
 #[cfg(test)]
@@ -159,5 +204,10 @@ mod tests {
         let at_rest: Vec<usize> = (0..20).filter(|k| !log.moving_mask(&[0.5], 0.2)[*k]).collect();
         assert_eq!(at_rest, [8, 9, 10, 11, 12]);
         assert_eq!(log.moving_mask(&[0.5], 0.0).iter().filter(|moves| !**moves).count(), 1);
+        // A thinned log knows the samples that it has lost.
+        let thinned = log.thinned(4, 0.2);
+        assert_eq!((thinned.len(), thinned.step), (5, 0.4));
+        let at_rest = (0..5).filter(|k| !thinned.moving_mask(&[0.5], 0.2)[*k]);
+        assert_eq!(at_rest.collect::<Vec<_>>(), [2, 3]);
     }
 }

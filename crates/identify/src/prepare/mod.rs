@@ -6,7 +6,7 @@
 //! sentence.
 
 mod align;
-mod changes;
+pub(crate) mod changes;
 pub(crate) mod cut_off;
 mod derivative;
 pub(crate) mod entry;
@@ -19,6 +19,7 @@ mod resample;
 pub(crate) mod rest;
 pub(crate) mod settings;
 mod spectrum;
+pub(crate) mod survey;
 mod time_unit;
 pub(crate) mod velocity;
 mod windows;

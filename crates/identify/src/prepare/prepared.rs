@@ -37,23 +37,27 @@ pub struct Prepared {
 /// [`Error::TooShort`] and [`Error::SampledTooSlowly`] name a recording that does not suit the
 /// cut-off.
 pub fn prepare(raw: &[RawLog], settings: &PrepareSettings, cut_off: f64) -> Result<Prepared> {
-    let mut steps: Vec<f64> = raw.iter().filter_map(|log| median_step(&log.run.times)).collect();
-    steps.sort_by(f64::total_cmp);
-    let common = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+    let common = common_step(raw.iter().filter_map(|log| median_step(&log.run.times)).collect());
     let done: Vec<(Log, LogChange)> = raw
         .par_iter()
         .map(|log| prepare_one(log, settings, cut_off, common))
         .collect::<Result<_>>()?;
     let (logs, changes): (Vec<Log>, Vec<LogChange>) = done.into_iter().unzip();
-    let changes = described(&logs, &changes, settings, cut_off);
+    let changes = described(logs.iter().map(Log::len).sum(), &changes, settings, cut_off);
     Ok(Prepared { logs, cut_off, changes })
+}
+
+/// Returns the median of the median times between the samples of recordings \[s\].
+pub(crate) fn common_step(mut steps: Vec<f64>) -> f64 {
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Prepares one recording.
 ///
 /// Recordings sampled at nearly the same rate get the same sample time, `common` \[s\], so that
 /// repeats can be compared sample by sample.
-fn prepare_one(
+pub(crate) fn prepare_one(
     raw: &RawLog,
     settings: &PrepareSettings,
     cut_off: f64,

@@ -5,7 +5,7 @@ use crate::prepare::settings::PrepareSettings;
 use crate::prepare::time_unit::check_time_unit;
 use reachtube_recordings::{GapLimit, ReadOptions, Run, check_limits, read_csv};
 use reachtube_robot::Robot;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads recordings of a robot and puts their columns into the order of the robot's joints.
 ///
@@ -23,27 +23,63 @@ pub fn read(
     robot: &Robot,
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
-    let order = column_order(robot, &settings.joints)?;
-    let mut logs = Vec::new();
+    let sources = sources(entries, folder)?;
+    sources.iter().map(|source| source.read(robot, settings)).collect()
+}
+
+/// A recording to read.
+#[derive(Debug, Clone)]
+pub(crate) struct Source {
+    file: PathBuf,
+    /// Times between which samples are used \[s\].
+    from: f64,
+    until: Option<f64>,
+    order: Option<u64>,
+    /// Whether `tau` is the input u.
+    compensated: bool,
+}
+
+/// Returns the recordings of a list, without reading them.
+pub(crate) fn sources(entries: &[LogEntry], folder: &Path) -> Result<Vec<Source>> {
+    let mut found = Vec::new();
     for entry in entries {
         let (path, from, until) = entry.parts();
         for (index, file) in (0..).zip(csv_files(&folder.join(path))?) {
-            let gap_limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
-            let options = ReadOptions { joints: Some(robot.joint_count()), gap_limit, until };
-            let run = read_csv(&file, &options).map_err(reachtube_recordings::Error::Defects)?;
-            let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let run = reordered(starting_at(run, from), &order);
-            match check_limits(&file, &run, robot) {
-                defects if defects.is_empty() => {
-                    check_time_unit(&file, &run)?;
-                    let order = entry.order().map(|first| first + index);
-                    logs.push(RawLog { name, file, order, run });
-                }
-                defects => return Err(reachtube_recordings::Error::Defects(defects).into()),
-            }
+            let order = entry.order().map(|first| first + index);
+            let compensated = entry.is_compensated();
+            found.push(Source { file, from, until, order, compensated });
         }
     }
-    Ok(logs)
+    Ok(found)
+}
+
+impl Source {
+    /// Reads the recording, with its columns in the order of the robot's joints.
+    pub fn read(&self, robot: &Robot, settings: &PrepareSettings) -> Result<RawLog> {
+        let order = column_order(robot, &settings.joints)?;
+        let gap_limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
+        let options =
+            ReadOptions { joints: Some(robot.joint_count()), gap_limit, until: self.until };
+        let file = self.file.clone();
+        let run = read_csv(&file, &options).map_err(reachtube_recordings::Error::Defects)?;
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let run = reordered(starting_at(run, self.from), &order);
+        match check_limits(&file, &run, robot) {
+            defects if defects.is_empty() => {
+                check_time_unit(&file, &run)?;
+                let run = if self.compensated { with_compensation(run, robot) } else { run };
+                Ok(RawLog { name, file, order: self.order, run })
+            }
+            defects => Err(reachtube_recordings::Error::Defects(defects).into()),
+        }
+    }
+}
+
+/// Returns a run with the motor torque in place of the input u.
+fn with_compensation(mut run: Run, robot: &Robot) -> Run {
+    let motor = |k: usize| robot.motor_torque_from_input(run.q(k), run.qd(k), run.torque(k));
+    run.torques = (0..run.len()).flat_map(|k| motor(k).data.as_vec().clone()).collect();
+    run
 }
 
 /// Returns the index of the column of each of the robot's joints.
@@ -118,8 +154,13 @@ mod tests {
         let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6\n";
         std::fs::write(folder.path().join("a.csv"), format!("{header}{rows}")).unwrap();
         std::fs::write(folder.path().join("runs.csv"), "file,suite\n").unwrap();
-        let entry =
-            LogEntry::Stretch { path: ".".into(), from: 1.0, until: Some(2.0), order: Some(7) };
+        let entry = LogEntry::Stretch {
+            path: ".".into(),
+            from: 1.0,
+            until: Some(2.0),
+            order: Some(7),
+            compensated: false,
+        };
         let robot = Robot::lwa4p();
         let logs = read(&[entry], folder.path(), &robot, &PrepareSettings::default()).unwrap();
         assert_eq!((logs.len(), logs[0].name.as_str(), logs[0].run.len()), (1, "a", 11));

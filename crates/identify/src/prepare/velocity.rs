@@ -1,7 +1,6 @@
 //! Velocities that do not integrate to the positions.
 
-use crate::prepare::raw_log::RawLog;
-use reachtube_recordings::{Run, integral_gap};
+use crate::prepare::survey::Survey;
 use reachtube_robot::Robot;
 
 /// Difference of a position and the integral of its velocity that is not worth a warning \[rad\].
@@ -13,10 +12,11 @@ const MIN_SHARE: f64 = 0.03;
 /// Returns a warning for each joint whose velocity does not integrate to its position.
 ///
 /// The warning names the recording in which the two differ most.
-pub(crate) fn velocity_warnings(robot: &Robot, logs: &[RawLog]) -> Vec<String> {
+pub(crate) fn velocity_warnings(robot: &Robot, logs: &[&Survey]) -> Vec<String> {
     let worst = |joint: usize| {
-        let gap = |log: &RawLog| {
-            (log.name.clone(), integral_gap(&log.run, joint), range(&log.run, joint))
+        let gap = |log: &&Survey| {
+            let [gap, range] = log.gaps[joint];
+            (log.name.clone(), gap, range)
         };
         logs.iter()
             .map(gap)
@@ -35,10 +35,4 @@ pub(crate) fn velocity_warnings(robot: &Robot, logs: &[RawLog]) -> Vec<String> {
     };
     let names = robot.joints().iter().map(|joint| &joint.name);
     names.enumerate().filter_map(warning).collect()
-}
-
-/// Returns the range of a joint's position \[rad\].
-fn range(run: &Run, joint: usize) -> f64 {
-    let positions = (0..run.len()).map(|k| run.q(k)[joint]);
-    positions.clone().fold(f64::MIN, f64::max) - positions.fold(f64::MAX, f64::min)
 }

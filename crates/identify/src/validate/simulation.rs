@@ -1,4 +1,4 @@
-use crate::prepare::log::Log;
+use crate::prepare::log::{Log, spread};
 use crate::regression::residuals::root_mean_square;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -8,6 +8,9 @@ use std::borrow::Cow;
 
 /// Limit of the windows of one length in one log.
 const MAX_WINDOWS: usize = 40;
+
+/// Largest number of recordings that are simulated.
+const MOST_LOGS: usize = 64;
 
 /// Longest step of the simulation \[s\].
 const SIMULATION_STEP: f64 = 2e-3;
@@ -35,16 +38,19 @@ pub struct WindowErrors {
 
 /// Simulates the robot under the recorded torque over windows of each duration \[s\], and compares
 /// the final states with the recorded ones.
+///
+/// Of more than 64 recordings, that many are simulated.
 pub fn simulate(robot: &Robot, logs: &[Log], durations: &[f64]) -> Vec<WindowErrors> {
+    let logs = &spread(logs, MOST_LOGS);
     durations.iter().map(|duration| simulate_windows(robot, logs, *duration)).collect()
 }
 
-fn simulate_windows(robot: &Robot, logs: &[Log], duration: f64) -> WindowErrors {
+fn simulate_windows(robot: &Robot, logs: &[&Log], duration: f64) -> WindowErrors {
     let n = robot.joint_count();
     // Windows spread evenly over each log, as (log, start, length).
     let windows: Vec<(&Log, usize, usize)> = logs
         .iter()
-        .flat_map(|log| {
+        .flat_map(|&log| {
             let length = (duration / log.step).round().max(1.0) as usize;
             let count = (log.len().saturating_sub(1) / length).min(MAX_WINDOWS);
             let apart = (log.len() - 1 - length.min(log.len() - 1))

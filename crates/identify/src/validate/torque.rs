@@ -6,6 +6,9 @@ use reachtube_robot::Robot;
 use serde::Serialize;
 use std::ops::Range;
 
+/// Largest number of recordings whose torque over time is kept.
+const MOST_TRACES: usize = 64;
+
 /// Error of the predicted torque of one joint in one recording.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointError {
@@ -79,7 +82,8 @@ pub fn predict_torque(
     if logs.len() > 1 {
         validation.push(errors("all", 0..samples.len()));
     }
-    let traces = by_log.map(|(log, rows)| trace(&samples, &residuals, log, rows.clone()));
+    let traces = by_log.take(MOST_TRACES);
+    let traces = traces.map(|(log, rows)| trace(&samples, &residuals, log, rows.clone()));
     (validation, traces.collect())
 }
 
@@ -114,15 +118,12 @@ fn joint_error(
 
 fn trace(samples: &Samples, residuals: &[f64], log: &Log, rows: Range<usize>) -> TorqueTrace {
     let n = samples.joints;
-    let count = rows.len() / n;
-    let span = log.time(log.len().saturating_sub(1)) - log.start;
-    let step = if count > 1 { span / (count - 1) as f64 } else { 0.0 };
     let column = |joint: usize, value: &dyn Fn(usize) -> f64| {
         rows.clone().skip(joint).step_by(n).map(value).collect()
     };
     TorqueTrace {
         log: log.name.clone(),
-        times: (0..count).map(|k| log.start + step * k as f64).collect(),
+        times: samples.times[rows.start / n..rows.end / n].to_vec(),
         moves: (0..n)
             .map(|joint| rows.clone().skip(joint).step_by(n).map(|r| samples.used[r]).collect())
             .collect(),

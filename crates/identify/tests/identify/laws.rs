@@ -48,6 +48,7 @@ fn settings(warming: WarmingChoice, with_order: bool) -> IdentifySettings {
         from: 0.0,
         until: None,
         order: with_order.then_some(run * run),
+        compensated: false,
     };
     let mut settings = IdentifySettings {
         dynamic: (1..=MOTIONS).map(entry).collect(),

@@ -66,8 +66,13 @@ fn a_recording_of_the_fit_cannot_validate() {
     recorded.settings.validate = vec![entry("copy.csv")];
     assert_parts(&recorded.error(), &["copy.csv", "dynamic_2.csv, which has the same content"]);
     // Two disjoint intervals of one recording.
-    let part =
-        |from, until| LogEntry::Stretch { path: "dynamic_2.csv".into(), from, until, order: None };
+    let part = |from, until| LogEntry::Stretch {
+        path: "dynamic_2.csv".into(),
+        from,
+        until,
+        order: None,
+        compensated: false,
+    };
     recorded.settings.dynamic[1] = part(0.0, Some(16.0));
     recorded.settings.validate = vec![part(16.0, None)];
     assert!(recorded.found().kept_back);
