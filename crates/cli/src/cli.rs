@@ -5,8 +5,8 @@ use clap::{Parser, Subcommand};
 use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
-    r#abstract, campaign, check, completions, conform, demo, excite, identify, inspect, man,
-    prepare, reach, report,
+    r#abstract, campaign, check, completions, conform, convert, demo, excite, export, identify,
+    inspect, man, prepare, reach, report,
 };
 use crate::error::Result;
 use crate::global::GlobalOptions;
@@ -37,6 +37,8 @@ Examples:
       record the paper's experiment on a virtual robot
   reachtube inspect --data recordings
       summarise a data set
+  reachtube convert --robot arm.urdf --log run.mcap --marker /run --out recordings
+      cut a robot's log into recordings
   reachtube identify --robot arm.urdf --dynamic a.csv b.csv --validate c.csv --out arm.toml
       identify gravity, friction and inertia
   reachtube abstract --robot lwa4p --model 2 --order 5
@@ -65,9 +67,11 @@ pub enum Command {
     Excite(excite::Arguments),
     Identify(identify::Arguments),
     Prepare(prepare::Arguments),
+    Convert(convert::Arguments),
     Conform(conform::Arguments),
     Check(check::Arguments),
     Reach(reach::Arguments),
+    Export(export::Arguments),
     Report(report::Arguments),
     #[command(subcommand)]
     Reproduce(ReproduceCommand),
@@ -87,13 +91,13 @@ pub fn run(cli: &Cli) -> Result<Outcome> {
         Command::Abstract(args) => r#abstract::run(args, json),
         Command::Excite(args) => excite::run(args, json),
         Command::Prepare(args) => prepare::run(args, json),
+        Command::Convert(args) => convert::run(args, json),
         Command::Conform(args) => conform::run(args, json),
         Command::Check(args) => check::run(args, json),
         Command::Reach(args) => reach::run(args, json),
+        Command::Export(args) => export::run(args, json),
         Command::Report(args) => report::run(args, json),
-        Command::Reproduce(ReproduceCommand::Table1(args)) => reproduce::table1(args, json),
-        Command::Reproduce(ReproduceCommand::Table2(args)) => reproduce::table2(args, json),
-        Command::Reproduce(ReproduceCommand::Coverage(args)) => reproduce::coverage(args, json),
+        Command::Reproduce(command) => reproduce::run(command, json),
         Command::Completions(args) => completions::run(args),
         Command::Man(args) => man::run(args),
     }

@@ -158,6 +158,23 @@ pub enum Error {
         /// The model's.
         model: String,
     },
+    /// `export` has no model for a tool.
+    #[error(
+        "only mjcf and urdf take --robot; name a model that `conform --out` wrote with --model"
+    )]
+    NoModel,
+    /// `export` has no recorded input.
+    #[error(
+        "an export to {tool} needs the recorded input; name the recordings with --data and the \
+         suites with --suites"
+    )]
+    NoRecordedInput {
+        /// The tool.
+        tool: reachtube::export::Tool,
+    },
+    /// A log could not be read or cut.
+    #[error(transparent)]
+    Log(#[from] reachtube_logs::Error),
     /// The library reported an error.
     #[error(transparent)]
     Library(Box<reachtube::Error>),
@@ -170,9 +187,20 @@ impl Error {
             Self::Usage(_) => "usage",
             Self::Output(_) => "file",
             Self::Refused { .. } => "recordings",
+            Self::Log(error) => log_kind(error),
             Self::Library(error) => kind(error),
             _ => "setting",
         }
+    }
+}
+
+/// Returns what an error of a log is about.
+fn log_kind(error: &reachtube_logs::Error) -> &'static str {
+    use reachtube_logs::Error as E;
+    match error {
+        E::File(_) | E::Format { .. } | E::Damaged(_) => "file",
+        E::NoTopic { .. } | E::TopicType { .. } | E::Setting(_) | E::Intervals { .. } => "setting",
+        _ => "recordings",
     }
 }
 
@@ -202,6 +230,7 @@ fn kind(error: &reachtube::Error) -> &'static str {
         E::Demo(_) => "demo",
         E::Reproduce(_) => "reproduce",
         E::Report(_) => "report",
+        E::Export(_) => "export",
         _ => "other",
     }
 }
@@ -230,6 +259,7 @@ from_library!(
     reachtube::Error,
     reachtube::abstraction::Error,
     reachtube::conform::Error,
+    reachtube::export::ExportError,
     reachtube::identify::Error,
     reachtube::recordings::Error,
     reachtube::report::ReportError,

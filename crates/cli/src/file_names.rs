@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use reachtube::conform::SuiteReach;
+use reachtube::export::ExportCase;
 use reachtube::report::SuiteFigure;
 
 /// Returns one file name for each reachable set: the suite's name, with the run's where runs have
@@ -14,6 +15,11 @@ pub fn of_reach(reach: &[SuiteReach]) -> Vec<String> {
 /// Returns one file name for the figures of each suite.
 pub fn of_figures(figures: &[SuiteFigure]) -> Vec<String> {
     distinct(figures.iter().map(|figure| figure.suite.clone()), &["_motion", "_deviation"])
+}
+
+/// Returns one folder name for each exported case.
+pub fn of_cases(cases: &[ExportCase]) -> Vec<String> {
+    distinct(cases.iter().map(|case| case.reach.name()), &[""])
 }
 
 /// Makes names distinct, ignoring case, with each of the endings appended too.

@@ -7,6 +7,7 @@ mod error;
 mod file_names;
 mod global;
 mod lock_arguments;
+mod log_files;
 mod opened;
 mod option_values;
 mod outcome;

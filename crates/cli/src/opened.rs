@@ -2,6 +2,7 @@
 
 use reachtube::Model;
 use reachtube::conform::{Check, Hulls, Keep, Notion, Problem, Setup, SuiteReach, check, reach};
+use reachtube::export::ExportCase;
 use reachtube::recordings::DataSet;
 
 use crate::data_arguments::{DataArguments, ModelArguments, gap_limit};
@@ -46,6 +47,12 @@ impl Opened {
         let problem = Problem::read(setup, source, &args.suites, keep, &bar)?;
         let hulls = Hulls::new(&problem, model.sets())?;
         Ok(Self { model, problem, hulls })
+    }
+
+    /// Returns each suite, or run with a nominal motion of its own, as exports take it.
+    pub fn export_cases(&self) -> Result<Vec<ExportCase>> {
+        let _bar = Progress::new();
+        Ok(ExportCase::all(&self.problem, &self.hulls)?)
     }
 
     /// Compares the recordings with the reachable sets.

@@ -21,6 +21,13 @@ pub const DISTURBANCES: Choices = &[
     ("measurable", "any measurable function of time"),
 ];
 
+/// How far X0 may reach, as `--initial-limit` names it.
+pub const INITIAL_LIMITS: Choices = &[
+    ("none", "as far as makes the sets cheapest"),
+    ("positions", "positions no further than the recorded starts"),
+    ("states", "positions and velocities no further than the recorded starts"),
+];
+
 /// The models of the paper (Sec. IV-B), as `--model` names them.
 pub const MODELS: Choices = &[
     ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),
@@ -36,6 +43,11 @@ pub fn trimmed(text: &str) -> Result<String, std::convert::Infallible> {
 /// Parses a duration above 0 \[s\].
 pub fn seconds(text: &str) -> Result<f64, String> {
     positive(text).ok_or_else(|| "give a number of seconds above 0".into())
+}
+
+/// Parses a speed above 0 \[rad/s or m/s\].
+pub fn speed(text: &str) -> Result<f64, String> {
+    positive(text).ok_or_else(|| "give a speed above 0 in rad/s or m/s".into())
 }
 
 /// Parses a frequency above 0 \[Hz\].
@@ -63,7 +75,8 @@ where
     explained(numbers).try_map(|number| serde_json::from_str::<T>(&number))
 }
 
-fn explained(values: Choices) -> PossibleValuesParser {
+/// Parses one of a few names, each with its explanation.
+pub fn explained(values: Choices) -> PossibleValuesParser {
     let value = |&(name, help): &(_, _)| PossibleValue::new(name).help(help);
     PossibleValuesParser::new(values.iter().map(value).collect::<Vec<_>>())
 }

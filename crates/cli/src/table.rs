@@ -1,5 +1,7 @@
 //! Tables and plurals.
 
+use reachtube::report::TextTable;
+
 use crate::output::printable;
 
 /// Returns the word in the number that `count` asks for.
@@ -10,6 +12,17 @@ pub fn plural(count: usize, word: &str) -> String {
 /// Returns the text of a cell on one line, so that no name can pretend to be a row of its own.
 fn one_line(text: &str) -> String {
     printable(&text.replace('\n', "\\n"))
+}
+
+/// Lays out a table of the library under its title.
+pub fn titled(text: &TextTable) -> String {
+    format!("{}\n\n{}", one_line(&text.title), untitled(text))
+}
+
+/// Lays out a table of the library.
+pub fn untitled(text: &TextTable) -> String {
+    let header: Vec<&str> = text.header.iter().map(String::as_str).collect();
+    table(&header, &text.rows)
 }
 
 /// Lays out a table: the first column is left-aligned, the others are right-aligned.

@@ -33,8 +33,12 @@ pub enum Error {
     #[error(transparent)]
     Demo(#[from] crate::demo::error::DemoError),
     /// A table of the paper could not be reproduced.
+    #[cfg(feature = "report")]
     #[error(transparent)]
     Reproduce(#[from] crate::reproduce::error::ReproduceError),
+    /// A model or robot could not be exported.
+    #[error(transparent)]
+    Export(#[from] crate::export::ExportError),
     /// A figure or page could not be made.
     #[cfg(feature = "report")]
     #[error(transparent)]

@@ -3,12 +3,14 @@
 pub mod campaign;
 pub mod demo;
 mod error;
+pub mod export;
 mod motion;
 pub mod number;
 mod random;
 mod random_motion;
 #[cfg(feature = "report")]
 pub mod report;
+#[cfg(feature = "report")]
 pub mod reproduce;
 pub mod units;
 pub mod virtual_robot;

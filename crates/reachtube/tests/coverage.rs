@@ -2,8 +2,8 @@
 
 use reachtube::reproduce::{Coverage, CoverageOptions, coverage};
 
-fn simulate(campaigns: usize) -> Coverage {
-    let coverage = coverage(&CoverageOptions { campaigns, seed: 7 }, &|_, _| ()).unwrap();
+fn simulate(campaigns: usize, next: usize) -> Coverage {
+    let coverage = coverage(&CoverageOptions { campaigns, next, seed: 7 }, &|_, _| ()).unwrap();
     for row in &coverage.rows {
         println!(
             "{:45} bound {:.3} truth {:.3}: wrong nominally {:.3}, observed {:.3} ± {:.3}",
@@ -33,11 +33,11 @@ fn assert_holds(coverage: &Coverage) {
 
 #[test]
 fn bounds_for_the_next_motion_hold_in_a_few_campaigns() {
-    assert_holds(&simulate(20));
+    assert_holds(&simulate(20, 400));
 }
 
 #[test]
 #[ignore = "takes long: run it when a bound changes"]
 fn bounds_for_the_next_motion_hold_at_their_confidence() {
-    assert_holds(&simulate(1000));
+    assert_holds(&simulate(1000, 2000));
 }

@@ -47,11 +47,11 @@ pub struct Arguments {
     /// Longest duration of a run, s
     #[arg(long, default_value_t = 5.0, value_name = "SECONDS")]
     pub longest: f64,
-    /// Number of static poses, for gravity
+    /// Number of static poses, for gravity: two at each position, reached from both sides
     #[arg(long, default_value_t = 1000, value_name = "COUNT")]
     pub poses: usize,
     /// Number of recordings of slow motions for each joint, for friction
-    #[arg(long, default_value_t = 4, value_name = "COUNT")]
+    #[arg(long, default_value_t = 6, value_name = "COUNT")]
     pub friction: usize,
     /// Number of exciting motions, for the inertial parameters
     #[arg(long, default_value_t = 6, value_name = "COUNT")]

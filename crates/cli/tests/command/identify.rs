@@ -72,7 +72,9 @@ fn a_pendulum_is_found_and_its_file_is_a_robot() {
         found["parameters"].as_array().unwrap().iter().find(|p| p["name"] == "mz1").unwrap();
     assert!((moment["value"].as_f64().unwrap() + 0.8).abs() < 1e-3, "{moment}");
     let html = lab.read("report/identify.html");
-    assert!(html.contains("pendulum: identified") && html.matches("<svg").count() == 1);
+    assert!(html.contains("pendulum: identified") && html.contains("id=\"the-robot\""));
+    // Two views of the robot, torque and residual, and the parameters of three units.
+    assert_eq!(html.matches("<svg").count(), 2 + 2 + 2);
     lab.run("robot show found.toml").exits(0);
 }
 

@@ -3,7 +3,9 @@
 mod abstraction;
 mod bad_input;
 mod browser;
+mod convert;
 mod defects;
+mod export;
 mod fixture;
 mod identify;
 mod index;
@@ -18,6 +20,8 @@ mod overwrite;
 mod prismatic;
 mod reach;
 mod reproduce;
+#[path = "../../../logs/tests/support/mod.rs"]
+mod robot_logs;
 mod robots;
 mod schema;
 mod schunk;

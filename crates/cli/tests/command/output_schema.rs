@@ -47,12 +47,14 @@ fn results_fit_the_schema() {
     fits("check", &check);
     assert_eq!(check["points"]["outside"], 0);
     run("reach", &format!("reach {with} --out sets"));
+    run("export", "export --model model.json --data data --to cora --out cora");
+    run("export_robot", "export --robot arm.toml --to mjcf --out robot");
     run("report", &format!("report {with} --out page"));
     run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");
     run("robot_show", "robot show arm.toml");
     run("abstract", "abstract --robot arm.toml");
     run("abstract", "abstract --robot arm.toml --box 0.1,0.1,1");
-    run("reproduce_coverage", "reproduce coverage --campaigns 2");
+    run("reproduce_coverage", "reproduce coverage --campaigns 2 --next 20");
     run("reproduce_table1", "reproduce table1 --robot arm.toml --motions 1 --orders 1");
 }
 

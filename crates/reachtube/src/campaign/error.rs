@@ -44,4 +44,15 @@ pub enum CampaignError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The folder has no options of a campaign.
+    #[error(
+        "{}: the folder has no {} of `reachtube campaign`, from which the planned motion follows; \
+         give the folder of a campaign",
+        folder.display(),
+        super::folder::MARK
+    )]
+    NotACampaign {
+        /// The folder.
+        folder: PathBuf,
+    },
 }

@@ -8,6 +8,7 @@ use crate::virtual_robot::{
 
 use super::excitation::ExcitingMotion;
 use super::joint_motion::JointMotion;
+use super::planned::PlannedSuite;
 use super::pose_series::PoseSeries;
 
 /// Samples of a recording of poses between two that are logged: 50 Hz suffice for an arm that
@@ -58,6 +59,17 @@ impl Job {
     pub fn identification(kind: &'static str, index: usize, work: Work) -> Self {
         let files = vec![format!("{kind}/{kind}_{:03}.csv", index + 1)];
         Self { kind, suite: None, files, first: index + 1, work }
+    }
+
+    /// Returns the plan of a suite.
+    pub fn planned(self) -> Option<PlannedSuite> {
+        let [name, motion_name] = self.suite?;
+        match self.work {
+            Work::Suite(motion, SuiteRuns { first, .. }) => {
+                Some(PlannedSuite { name, motion_name, motion, first })
+            }
+            _ => None,
+        }
     }
 
     /// Simulates the robot and returns the text of each file.

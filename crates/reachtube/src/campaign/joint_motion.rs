@@ -9,8 +9,8 @@ use crate::random::{SplitMix64, uniform};
 /// fast as the paper's robot may move.
 const PEAKS: [f64; 3] = [0.2, 0.5, 1.0];
 
-/// Distance between the two ends \[rad\].
-const TRAVEL: f64 = 0.8;
+/// Distance between the two ends, over which the load changes \[rad\].
+const TRAVEL: f64 = 1.6;
 
 /// Motions of one joint about a random pose, which gives the joint a random load.
 #[derive(Debug, Clone, PartialEq)]

@@ -18,6 +18,7 @@ mod job;
 mod joint_motion;
 mod options;
 mod plan;
+mod planned;
 mod pose_series;
 mod readme;
 mod record;
@@ -26,4 +27,5 @@ mod tests;
 
 pub use error::CampaignError;
 pub use options::CampaignOptions;
+pub(crate) use planned::{PlannedSuite, planned_suites};
 pub use record::{RecordedCampaign, record};

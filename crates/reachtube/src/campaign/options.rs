@@ -1,6 +1,6 @@
 //! The options of a campaign.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::error::CampaignError;
 use crate::virtual_robot::VirtualRobotParameters;
@@ -12,7 +12,7 @@ const MOST_START_POINTS: usize = 26;
 const MOST: usize = 100_000;
 
 /// The sizes of a campaign, and the seed of everything random.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CampaignOptions {
     /// Seed; the same seed gives the same recordings.
     pub seed: u64,
@@ -24,7 +24,7 @@ pub struct CampaignOptions {
     pub runs: usize,
     /// Longest duration of a run \[s\].
     pub longest: f64,
-    /// Number of static poses.
+    /// Number of static poses: rests, two at each position, from both sides.
     pub poses: usize,
     /// Number of recordings of slow motions for each joint.
     pub friction: usize,
@@ -47,7 +47,7 @@ impl Default for CampaignOptions {
             runs: 15,
             longest: 5.0,
             poses: 1000,
-            friction: 4,
+            friction: 6,
             excitation: 6,
             validation: 2,
             robot: VirtualRobotParameters::default(),

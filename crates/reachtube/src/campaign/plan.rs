@@ -11,8 +11,8 @@ use super::joint_motion::JointMotion;
 use super::options::CampaignOptions;
 use super::pose_series::PoseSeries;
 
-/// Poses in one recording.
-const POSES_PER_FILE: usize = 25;
+/// Rests in one recording: two at each position.
+const POSES_PER_FILE: usize = 20;
 
 /// Returns all jobs in the order of the index. Each kind of recording has a stream of random
 /// numbers of its own, so that more recordings of one kind leave the others as they are.

@@ -34,7 +34,8 @@ Do not take them for measurements of a robot.
 |---|---|---|
 | `suites/` | {suites} test suites: {motions} random point-to-point motions, {start_points} starting \
 points each, {runs} runs of up to {longest} s | `compensated` |
-| `poses/` | {poses} static poses, 25 in a recording, with the way from one to the next | `motor` |
+| `poses/` | {poses} static poses, 20 in a recording: the arm rests twice at each position, and each \
+joint comes from the other side the second time | `motor` |
 | `friction/` | one joint after the other moves back and forth: {friction} poses for each of the \
 {joints} joints, with peak speeds of 0.2, 0.5 and 1 rad/s | `motor` |
 | `excitation/` | {excitation} exciting motions of all joints, 20 s each | `motor` |

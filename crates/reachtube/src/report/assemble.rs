@@ -7,7 +7,7 @@ use reachtube_reach::Hyperrectangle;
 
 use crate::error::Result;
 use crate::number::at_least;
-use crate::report::cost::cost_tables;
+use crate::report::cost::{cost_charts, cost_tables};
 use crate::report::nominal::{nominal_caution, nominal_facts, nominal_tables};
 use crate::report::notion::{outside_points, phase_planes, place, together, traces};
 use crate::report::page::{JointSets, Page, SetsTable, Verdict};
@@ -46,6 +46,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
         ),
         verdict: verdict(model, check),
         cost: cost_tables(model, &figures),
+        cost_charts: cost_charts(&figures),
         suites: figures,
         phase_planes: phase_planes(problem, model)?,
         nominal: nominal_tables(model),

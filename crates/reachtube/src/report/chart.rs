@@ -4,9 +4,11 @@ use super::canvas::{Canvas, DrawResult, svg_document};
 use super::decimate::{Point, decimate};
 use super::error::ReportError;
 use super::layout::units;
+use super::skeleton::own_mark;
 use super::style::{GRID, INK, centred, font, tick_style};
-use super::text::clean;
+use super::text::{Text, clean};
 use crate::number::tick_label;
+use maud::{PreEscaped, html};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -66,10 +68,51 @@ type Axes<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64,
 ///
 /// Fails for numbers that are not finite, and where the drawing library fails.
 pub fn chart_svg(chart: &Chart) -> Result<String, ReportError> {
+    chart_svg_of_height(chart, HEIGHT)
+}
+
+/// Draws a chart as [`chart_svg`] does, with a height \[px\].
+///
+/// # Errors
+///
+/// As [`chart_svg`].
+pub(super) fn chart_svg_of_height(chart: &Chart, height: f64) -> Result<String, ReportError> {
     check(chart)?;
-    svg_document([WIDTH, HEIGHT], &chart.title, |canvas| draw(canvas, chart)).map_err(|cause| {
-        ReportError::Draw { figure: format!("chart {}", chart.title), cause: cause.to_string() }
-    })
+    svg_document([WIDTH, height], &chart.title, |canvas| draw(canvas, chart, height)).map_err(
+        |cause| ReportError::Draw {
+            figure: format!("chart {}", chart.title),
+            cause: cause.to_string(),
+        },
+    )
+}
+
+/// Draws charts side by side, `columns` in a row, as one complete SVG document. Readers that do not
+/// see it get `label`.
+///
+/// # Errors
+///
+/// As [`chart_svg`].
+pub(crate) fn charts_svg(
+    charts: &[Chart],
+    columns: usize,
+    label: &str,
+) -> Result<String, ReportError> {
+    let svgs: Vec<String> = charts.iter().map(chart_svg).collect::<Result<_, _>>()?;
+    let (width, height) =
+        (WIDTH * columns.min(charts.len()) as f64, HEIGHT * charts.len().div_ceil(columns) as f64);
+    let at = |index: usize| (WIDTH * (index % columns) as f64, HEIGHT * (index / columns) as f64);
+    let document = html! {
+        svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(height)
+            viewBox={ "0 0 " (width) " " (height) } role="img" aria-label=(Text(label)) {
+            (own_mark())
+            @for (index, svg) in svgs.iter().enumerate() {
+                g transform={ "translate(" (at(index).0) " " (at(index).1) ")" } {
+                    (PreEscaped(svg))
+                }
+            }
+        }
+    };
+    Ok(document.into_string() + "\n")
 }
 
 fn check(chart: &Chart) -> Result<(), ReportError> {
@@ -85,12 +128,12 @@ fn check(chart: &Chart) -> Result<(), ReportError> {
     }
 }
 
-fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
-    labels(canvas, chart)?;
+fn draw(canvas: &Canvas, chart: &Chart, height: f64) -> DrawResult {
+    labels(canvas, chart, height)?;
     let [x, y] = [range(chart, |p| p.0), range(chart, |p| p.1)];
     let plot = canvas.clone().shrink(
         (units(Y_LABEL), units(TITLE)),
-        (units(WIDTH - Y_LABEL - RIGHT), units(HEIGHT - TITLE - X_LABEL)),
+        (units(WIDTH - Y_LABEL - RIGHT), units(height - TITLE - X_LABEL)),
     );
     let mut axes = ChartBuilder::on(&plot)
         .set_label_area_size(LabelAreaPosition::Left, units(LEFT - Y_LABEL))
@@ -103,11 +146,11 @@ fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
         .label_style(tick_style())
         .set_all_tick_mark_size(units(3.0))
         .x_labels(7)
-        .y_labels(6)
+        .y_labels((height / 32.0) as usize)
         .x_label_formatter(&|value| tick_label(*value, x[1] - x[0]))
         .y_label_formatter(&|value| tick_label(*value, y[1] - y[0]))
         .draw()?;
-    let (column, tolerance) = ((x[1] - x[0]) / (2.0 * WIDTH), (y[1] - y[0]) / (20.0 * HEIGHT));
+    let (column, tolerance) = ((x[1] - x[0]) / (2.0 * WIDTH), (y[1] - y[0]) / (20.0 * height));
     chart.series.iter().try_for_each(|series| match series.dots {
         true => dots(&mut axes, series),
         false => line(&mut axes, series, column, tolerance),
@@ -115,14 +158,14 @@ fn draw(canvas: &Canvas, chart: &Chart) -> DrawResult {
 }
 
 /// Writes the title and the labels of the axes.
-fn labels(canvas: &Canvas, chart: &Chart) -> DrawResult {
+fn labels(canvas: &Canvas, chart: &Chart, height: f64) -> DrawResult {
     let middle = units(LEFT + 0.5 * (WIDTH - LEFT - RIGHT));
     let title = centred(font(12.0, FontStyle::Bold));
     let label = font(11.0, FontStyle::Normal);
     let turned = centred(label.transform(FontTransform::Rotate270));
     canvas.draw_text(&clean(&chart.title), &title, (middle, units(10.0)))?;
-    canvas.draw_text(&clean(&chart.x), &centred(label), (middle, units(HEIGHT - 9.0)))?;
-    let beside = (units(9.0), units(TITLE + 0.5 * (HEIGHT - TITLE - BELOW)));
+    canvas.draw_text(&clean(&chart.x), &centred(label), (middle, units(height - 9.0)))?;
+    let beside = (units(9.0), units(TITLE + 0.5 * (height - TITLE - BELOW)));
     canvas.draw_text(&clean(&chart.y), &turned, beside)
 }
 

@@ -3,8 +3,14 @@
 use reachtube_conform::{Model, Weights};
 
 use crate::number::{at_least, four_decimals};
+use crate::report::chart::{Chart, Series};
 use crate::report::page::TextTable;
 use crate::report::suite_figure::{Band, Nominal, RunTrace, SuiteFigure};
+
+/// Blue.
+const RUN: [u8; 3] = [18, 70, 200];
+/// Grey.
+const EDGE: [u8; 3] = [140, 149, 159];
 
 /// Number of runs and of motions that are listed.
 const MOST_ROWS: usize = 20;
@@ -13,6 +19,40 @@ const MOST_ROWS: usize = 20;
 pub(super) fn cost_tables(model: &Model, figures: &[SuiteFigure]) -> Vec<TextTable> {
     let tables = [by_joint(model, figures), by_run(model, figures), by_motion(model)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
+}
+
+/// Returns charts of the part of the set that each run uses, over its order and its temperature:
+/// the runs at 1 decide the sets. There is none where nothing differs.
+pub(super) fn cost_charts(figures: &[SuiteFigure]) -> Vec<Chart> {
+    let runs = || figures.iter().flat_map(|figure| &figure.gauges);
+    let over_order = runs().map(|run| (run.order as f64 + 1.0, run.gauge));
+    let over_temperature = runs().filter_map(|run| Some((run.temperature?, run.gauge)));
+    let chart = |title: &str, x: &str, points: Vec<(f64, f64)>| Chart {
+        title: format!("Part of the set that each run uses, {title}"),
+        x: x.into(),
+        y: "part of the radius".into(),
+        series: vec![
+            Series { points: edge(&points), dots: false, colour: EDGE },
+            Series { points, dots: true, colour: RUN },
+        ],
+    };
+    let charts = [
+        chart("by order", "run of its suite", over_order.collect()),
+        chart("by temperature", "temperature [°C]", over_temperature.collect()),
+    ];
+    let differs = |chart: &Chart| {
+        let points = &chart.series[1].points;
+        points.iter().any(|point| point.0 != points[0].0)
+    };
+    charts.into_iter().filter(differs).collect()
+}
+
+/// Returns a line at 1 below some points.
+fn edge(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let ends = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
+        [low.min(point.0), high.max(point.0)]
+    });
+    if points.is_empty() { Vec::new() } else { ends.map(|end| (end, 1.0)).to_vec() }
 }
 
 /// Returns the share of each state in the weighted widths of the bands over the drawn suites.
@@ -129,5 +169,32 @@ fn by_motion(model: &Model) -> TextTable {
             .into(),
         header: ["Without", "Cost", "Change", "Factor"].map(String::from).to_vec(),
         rows: motions.iter().take(MOST_ROWS).map(row).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+    use crate::report::suite_figure::RunGauge;
+
+    #[test]
+    fn every_run_is_a_dot_over_its_order_and_its_temperature() {
+        let run = |order: usize, temperature: Option<f64>| RunGauge {
+            order,
+            temperature,
+            gauge: 0.1 * order as f64,
+        };
+        let figure = SuiteFigure {
+            gauges: vec![run(0, Some(20.0)), run(1, Some(25.0)), run(2, None)],
+            ..sample::suite("S", 1)
+        };
+        let charts = cost_charts(&[figure.clone(), figure]);
+        let dots: Vec<usize> = charts.iter().map(|chart| chart.series[1].points.len()).collect();
+        assert_eq!(dots, [6, 4]);
+        assert_eq!(charts[0].series[1].points[2], (3.0, 0.2));
+        assert_eq!(charts[1].series[0].points, [(20.0, 1.0), (25.0, 1.0)]);
+        let alone = SuiteFigure { gauges: vec![run(4, None)], ..sample::suite("S", 1) };
+        assert!(cost_charts(&[alone]).is_empty());
     }
 }

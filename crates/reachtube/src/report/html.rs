@@ -65,7 +65,7 @@ fn sections(page: &Page) -> Result<Vec<(&'static str, Markup)>, ReportError> {
     add(!page.phase_planes.is_empty(), "Phase planes", phase_planes(&page.phase_planes)?);
     add(suites, "Where the sets are tight", tables::tight(page));
     add(!page.sets.is_empty(), "Uncertainty sets", sets(page));
-    add(!page.cost.is_empty(), "What drives the cost", text_tables(&page.cost));
+    add(!page.cost.is_empty(), "What drives the cost", cost(page)?);
     add(!page.nominal.is_empty(), "Fitted nominal model", text_tables(&page.nominal));
     add(!page.trust.is_empty() || !page.caution.is_empty(), "What may be trusted", meaning(page));
     add(!page.facts.is_empty(), "Settings and provenance", tables::facts(&page.facts));
@@ -136,6 +136,15 @@ fn text_tables(all: &[TextTable]) -> Markup {
     }
 }
 
+/// Returns what drives the cost: the tables, and the runs over their order and temperature.
+fn cost(page: &Page) -> Result<Markup, ReportError> {
+    let svgs: String = page.cost_charts.iter().map(chart_svg).collect::<Result<_, _>>()?;
+    Ok(html! {
+        div.charts { (PreEscaped(svgs)) }
+        (text_tables(&page.cost))
+    })
+}
+
 /// Returns what the reader may and may not conclude.
 fn meaning(page: &Page) -> Markup {
     pair_of_lists([
@@ -165,8 +174,8 @@ mod tests {
     #[test]
     fn each_view_of_each_suite_has_a_figure() {
         let html = written(&sample::page());
-        assert_eq!(html.matches("<svg").count(), 5, "with one phase plane");
-        assert_eq!(html.matches("</svg>").count(), 5);
+        assert_eq!(html.matches("<svg").count(), 6, "with one phase plane and one of the cost");
+        assert_eq!(html.matches("</svg>").count(), 6);
         assert_eq!(html.matches("<section").count(), html.matches("</section>").count());
         assert_eq!(html.matches("<table").count(), html.matches("</table>").count());
     }
@@ -207,7 +216,7 @@ mod tests {
         let condensed = SuiteFigure { undrawn: 12, ..sample::suite("S", 1) };
         page.suites = vec![condensed; 40];
         let html = written(&page);
-        assert_eq!(html.matches("<svg").count(), 2 * 3 + 1);
+        assert_eq!(html.matches("<svg").count(), 2 * 3 + 2);
         assert!(html.contains("id=\"data-39\"") && html.contains("id=\"suite-search\""));
     }
 

@@ -1,9 +1,11 @@
-//! The page of an identified robot: its accuracy first, then the fits, the residuals, and every
-//! parameter.
+//! The page of an identified robot: the robot, its accuracy, then the fits, the residuals, and
+//! every parameter.
 
-use super::chart::{Chart, chart_svg};
+use super::chart::{Chart, chart_svg, chart_svg_of_height};
 use super::error::ReportError;
-use super::identified_charts::{load_chart, torque_chart, viscous_chart};
+use super::identified_arm::arm_svgs;
+use super::identified_charts::{RESIDUAL_HEIGHT, load_chart, torque_charts, viscous_chart};
+use super::identified_parameters::parameter_svg;
 use super::skeleton::{document, pair_of_lists, section, wide_table};
 use super::tables;
 use super::text::Text;
@@ -15,11 +17,14 @@ use reachtube_identify::{
     BaseParameter, Gain, Identification, InertiaFit, JointError, JointFit, LogValidation,
     WindowErrors,
 };
-use reachtube_robot::JointKind;
+use reachtube_robot::{FrictionDescription, JointKind, Robot};
 use std::io::Write;
 
 /// Largest number of logs whose torque is drawn.
 const MOST_LOGS: usize = 4;
+
+/// Largest number of recordings in a table.
+const MOST_ROWS: usize = 20;
 
 /// Writes the page of an identification as one HTML file that needs no other file.
 ///
@@ -34,12 +39,15 @@ pub fn write_identified_html(
     let joints: Vec<&str> =
         found.description.joints.iter().map(|joint| joint.name.as_str()).collect();
     let body = html! {
+        @if let Ok(robot) = Robot::from_description(&found.description) {
+            (section("The robot", &arm(&robot)?))
+        }
         (section("Predicted torque", &prediction(found, &joints)?))
         (section("Simulated motion", &windows(&found.windows, &joints, kinds)))
         @if !found.friction.is_empty() {
             (section("Friction", &friction(found)?))
         }
-        (section("Inertial parameters", &inertia(found, &joints, kinds)))
+        (section("Inertial parameters", &inertia(found, &joints, kinds)?))
         (section("Recordings", &pair_of_lists([
             ("Preprocessing", "yes", &found.changes),
             ("Warnings", "no", &found.warnings),
@@ -49,6 +57,15 @@ pub fn write_identified_html(
     let subtitle = "Gravity, friction and inertia identified from recordings";
     out.write_all(document(&title, subtitle, &body, &Markup::default()).as_bytes())?;
     Ok(())
+}
+
+/// Returns the drawing of the robot.
+fn arm(robot: &Robot) -> Result<Markup, ReportError> {
+    let svgs = arm_svgs(robot)?;
+    Ok(html! {
+        p { "At q = 0. Grey: links. Blue: joint axes." }
+        div.charts { (PreEscaped(svgs)) }
+    })
 }
 
 /// Returns a table with a head; the first cell of a row names it.
@@ -67,18 +84,24 @@ fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> Markup {
     wide_table("long", caption, &head, &rows)
 }
 
-/// Returns a table with one column per joint, after a first column under `corner`.
-fn table_by_joint(caption: &str, corner: &str, joints: &[&str], rows: &[Vec<String>]) -> Markup {
-    table(caption, &[&[corner], joints].concat(), rows)
-}
-
-fn charts(charts: &[Chart]) -> Result<Markup, ReportError> {
-    let svgs: String = charts.iter().map(chart_svg).collect::<Result<_, _>>()?;
-    Ok(html! { div.charts { (PreEscaped(svgs)) } })
-}
-
 fn percent(part: f64) -> String {
     format!("{:.1} %", 100.0 * part)
+}
+
+/// Returns charts in stacks of one chart over another, the lower one with a height \[px\] where it
+/// has one of its own.
+fn stacks(stacks: &[[Chart; 2]], height: Option<f64>) -> Result<Markup, ReportError> {
+    let stack = |[above, below]: &[Chart; 2]| {
+        let below = match height {
+            Some(height) => chart_svg_of_height(below, height)?,
+            None => chart_svg(below)?,
+        };
+        Ok(chart_svg(above)? + &below)
+    };
+    let svgs: Vec<String> = stacks.iter().map(stack).collect::<Result<_, ReportError>>()?;
+    Ok(html! {
+        div.charts { @for svg in &svgs { div.stack { (PreEscaped(svg)) } } }
+    })
 }
 
 fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, ReportError> {
@@ -87,21 +110,18 @@ fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, ReportE
     } else {
         "No recording was kept back: the fits used these recordings too."
     };
-    let caption = "Error of the predicted torque relative to the recorded torque where a joint \
-                   moves (at standstill too), R², and root mean square error";
     let kinds = found.description.kinds();
-    let row = |log: &LogValidation| validation_row(log, &kinds);
-    let rows: Vec<Vec<String>> = found.validation.iter().map(row).collect();
     let mut logs = Vec::new();
     for trace in found.traces.iter().take(MOST_LOGS) {
         let of_joint =
-            |(joint, name): (usize, &&str)| torque_chart(trace, joint, name, kinds[joint]);
-        let of_log: Vec<Chart> = joints.iter().enumerate().map(of_joint).collect();
-        logs.push((&trace.log, charts(&of_log)?));
+            |(joint, name): (usize, &&str)| torque_charts(trace, joint, name, kinds[joint]);
+        let of_log: Vec<[Chart; 2]> = joints.iter().enumerate().map(of_joint).collect();
+        logs.push((&trace.log, stacks(&of_log, Some(RESIDUAL_HEIGHT))?));
     }
     Ok(html! {
         p { (which) }
-        (table_by_joint(caption, "Recording", joints, &rows))
+        @if let Some(all) = found.validation.last() { (all_recordings(all, joints, &kinds)) }
+        @if found.validation.len() > 1 { (each_recording(&found.validation, joints)) }
         p {
             "Grey: recorded. Blue: predicted from the motion. Red: recorded minus predicted. \
              Friction at standstill has no unique value, so nothing is predicted there."
@@ -113,44 +133,72 @@ fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, ReportE
     })
 }
 
-fn validation_row(log: &LogValidation, kinds: &[JointKind]) -> Vec<String> {
-    let part = |part: Option<f64>| part.map_or("-".into(), percent);
-    let cell = |(error, kind): (&JointError, &JointKind)| {
-        let Some(relative) = error.relative else {
-            return format!("at rest ({})", part(error.relative_all));
-        };
-        format!(
-            "{} ({}), R²\u{a0}{}, {} {}",
-            percent(relative),
+fn part(part: Option<f64>) -> String {
+    part.map_or("-".into(), percent)
+}
+
+/// Returns the errors over all recordings, one row per joint.
+fn all_recordings(all: &LogValidation, joints: &[&str], kinds: &[JointKind]) -> Markup {
+    let force = ColumnUnit::new(kinds, JointKind::force_unit);
+    let [torque, residual] = ["Torque, rms", "Error, rms"].map(|name| force.head(name));
+    let head = ["Joint", &torque, &residual, "Error / torque", "With standstill", "R²"];
+    let row = |(i, error): (usize, &JointError)| {
+        vec![
+            joints[i].to_string(),
+            force.cell(i, significant(error.torque, 3)),
+            force.cell(i, significant(error.residual, 3)),
+            part(error.relative),
             part(error.relative_all),
             error.r2.map_or("-".into(), |r2| format!("{r2:.4}")),
-            significant(error.residual, 3),
-            kind.force_unit()
-        )
+        ]
     };
-    std::iter::once(log.log.clone()).chain(log.joints.iter().zip(kinds).map(cell)).collect()
+    let rows: Vec<Vec<String>> = all.joints.iter().enumerate().map(row).collect();
+    table("Error of the predicted torque over all recordings, where a joint moves", &head, &rows)
+}
+
+/// Returns the relative errors of the recordings, the worst first where there are many.
+fn each_recording(validation: &[LogValidation], joints: &[&str]) -> Markup {
+    let mut logs: Vec<&LogValidation> = validation[..validation.len() - 1].iter().collect();
+    let worst = |log: &LogValidation| {
+        log.joints.iter().filter_map(|joint| joint.relative).fold(0.0, f64::max)
+    };
+    let all = logs.len();
+    if all > MOST_ROWS {
+        logs.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
+        logs.truncate(MOST_ROWS);
+    }
+    let caption = match all - logs.len() {
+        0 => "Error / torque in each recording".to_string(),
+        _ => format!("Error / torque in the worst {MOST_ROWS} of {all} recordings"),
+    };
+    let row = |log: &&LogValidation| {
+        let cells = log.joints.iter().map(|joint| part(joint.relative));
+        std::iter::once(log.log.clone()).chain(cells).collect()
+    };
+    let rows: Vec<Vec<String>> = logs.iter().map(row).collect();
+    table(&caption, &[&["Recording"], joints].concat(), &rows)
 }
 
 fn windows(windows: &[WindowErrors], joints: &[&str], kinds: &[JointKind]) -> Markup {
-    let caption = "Root mean squares over windows driven by the recorded torque: position error \
-                   at the end, motion of the joint, and velocity error at the end";
-    let rows: Vec<Vec<String>> = windows.iter().map(|row| window_row(row, kinds)).collect();
-    table_by_joint(caption, "Window", joints, &rows)
-}
-
-fn window_row(row: &WindowErrors, kinds: &[JointKind]) -> Vec<String> {
-    let cell = |joint: usize| {
-        format!(
-            "{} {} of {}, {} {}",
-            significant(row.q[joint], 3),
-            kinds[joint].position_unit(),
-            significant(row.motion[joint], 3),
-            significant(row.qd[joint], 3),
-            kinds[joint].velocity_unit()
-        )
+    let caption = "Root mean squares over windows driven by the recorded torque";
+    let [position, motion] = ["Position error at the end", "Motion of the joint"]
+        .map(|name| ColumnUnit::new(kinds, JointKind::position_unit).head(name));
+    let velocity = ColumnUnit::new(kinds, JointKind::velocity_unit).head("Velocity error");
+    let head = ["Window", "Joint", &position, &motion, &velocity];
+    let row = |window: &WindowErrors, joint: usize| {
+        let name =
+            format!("{} s ({}, {} diverged)", window.duration, window.windows, window.diverged);
+        vec![
+            if joint == 0 { name } else { String::new() },
+            joints[joint].to_string(),
+            significant(window.q[joint], 3),
+            significant(window.motion[joint], 3),
+            significant(window.qd[joint], 3),
+        ]
     };
-    let name = format!("{} s ({} windows, {} diverged)", row.duration, row.windows, row.diverged);
-    std::iter::once(name).chain((0..row.q.len()).map(cell)).collect()
+    let of_window = |window| (0..joints.len()).map(move |joint| row(window, joint));
+    let rows: Vec<Vec<String>> = windows.iter().flat_map(of_window).collect();
+    table(caption, &head, &rows)
 }
 
 fn friction(found: &Identification) -> Result<Markup, ReportError> {
@@ -160,19 +208,24 @@ fn friction(found: &Identification) -> Result<Markup, ReportError> {
     let fits = || found.friction.iter().zip(&kinds);
     let force = ColumnUnit::new(&kinds, JointKind::force_unit);
     let residual = force.head("Residual");
-    let head = ["Joint", "R²", &residual, "a1 to a8", "v1, v2, v3"];
-    let row = |(i, fit): (usize, &FrictionFit)| friction_row(fit, i, &force);
-    let rows: Vec<Vec<String>> = found.friction.iter().enumerate().map(row).collect();
-    let all: Vec<Chart> = fits()
-        .flat_map(|(fit, kind)| [load_chart(fit, *kind), viscous_chart(fit, *kind)])
-        .collect();
+    let names: Vec<&str> = found.friction.iter().map(|fit| fit.joint.joint.as_str()).collect();
+    let head = [&["Coefficient"], &names[..]].concat();
+    let mut rows: Vec<Vec<String>> = (0..11).map(|k| friction_row(found, k)).collect();
+    let of_each = |name: &str, cell: &dyn Fn(usize, &FrictionFit) -> String| {
+        let cells = found.friction.iter().enumerate().map(|(i, fit)| cell(i, fit));
+        std::iter::once(name.to_string()).chain(cells).collect::<Vec<_>>()
+    };
+    rows.push(of_each("R²", &|_, fit| format!("{:.5}", fit.joint.r2)));
+    rows.push(of_each(&residual, &|i, fit| force.cell(i, significant(fit.joint.residual, 3))));
+    let all: Vec<[Chart; 2]> =
+        fits().map(|(fit, kind)| [load_chart(fit, *kind), viscous_chart(fit, *kind)]).collect();
     Ok(html! {
         (table(caption, &head, &rows))
         p {
             "Blue: recorded torque minus gravity, the joint's inertia and the other part of \
              friction. Orange: fitted friction."
         }
-        (charts(&all)?)
+        (stacks(&all, None)?)
     })
 }
 
@@ -182,23 +235,44 @@ fn kind_of(found: &Identification, fit: &FrictionFit) -> JointKind {
     own.map_or_else(JointKind::default, |joint| joint.kind)
 }
 
-fn friction_row(fit: &FrictionFit, i: usize, force: &ColumnUnit) -> Vec<String> {
-    let list = |values: &[f64], errors: &[f64]| {
-        let pairs = values.iter().zip(errors);
-        let words = pairs.map(|(v, e)| format!("{} ± {}", significant(*v, 3), significant(*e, 1)));
-        words.collect::<Vec<_>>().join(", ")
+/// Returns coefficient `k` of a1 to a8 and v1 to v3, with its standard error for each joint.
+fn friction_row(found: &Identification, k: usize) -> Vec<String> {
+    let of = |friction: &FrictionDescription| {
+        if k < 8 { friction.coulomb[k] } else { friction.viscous[k - 8] }
     };
-    let (joint, c, e) = (&fit.joint, fit.joint.coefficients, fit.joint.standard_errors);
-    vec![
-        joint.joint.clone(),
-        format!("{:.5}", joint.r2),
-        force.cell(i, significant(joint.residual, 3)),
-        list(&c.coulomb, &e.coulomb),
-        list(&c.viscous, &e.viscous),
-    ]
+    let cell = |fit: &FrictionFit| {
+        let [value, error] = [&fit.joint.coefficients, &fit.joint.standard_errors].map(of);
+        let value = significant(value, 3);
+        if error > 0.0 { format!("{value} ± {}", significant(error, 1)) } else { value }
+    };
+    let name = if k < 8 { format!("a{}", k + 1) } else { format!("v{}", k - 7) };
+    std::iter::once(name).chain(found.friction.iter().map(cell)).collect()
 }
 
-fn inertia(found: &Identification, joints: &[&str], kinds: &[JointKind]) -> Markup {
+/// Returns the charts of the combinations, those of one unit in one chart.
+fn error_bars(fit: &InertiaFit) -> Result<Markup, ReportError> {
+    let unit = |parameter: &&BaseParameter| match parameter.name.as_bytes() {
+        [b'm', b'x' | b'y' | b'z', ..] => Some("kg m"),
+        [b'm', ..] => Some("kg"),
+        [b'I' | b'J', ..] => Some("kg m²"),
+        _ => None,
+    };
+    let mut svgs = String::new();
+    for name in ["kg", "kg m", "kg m²"] {
+        let own = fit.parameters.iter().filter(|parameter| unit(parameter) == Some(name));
+        let own: Vec<&BaseParameter> = own.collect();
+        if !own.is_empty() {
+            svgs += &parameter_svg(&own, name)?;
+        }
+    }
+    Ok(html! { div.charts { (PreEscaped(svgs)) } })
+}
+
+fn inertia(
+    found: &Identification,
+    joints: &[&str],
+    kinds: &[JointKind],
+) -> Result<Markup, ReportError> {
     let (fit, gains) = (&found.inertia, &found.gains);
     let force = ColumnUnit::new(kinds, JointKind::force_unit);
     let [torque, residual] = ["Torque, rms", "Residual, rms"].map(|name| force.head(name));
@@ -215,11 +289,16 @@ fn inertia(found: &Identification, joints: &[&str], kinds: &[JointKind]) -> Mark
     let parameter_head =
         ["Combination (SI units)", "Value", "Least squares", "Standard error", "Description"];
     let parameters: Vec<Vec<String>> = fit.parameters.iter().map(parameter_row).collect();
-    html! {
+    Ok(html! {
         (tables::facts(&inertia_facts(fit, gains)))
         (table("Fit of the torque on the exciting motions", &residual_head, &residuals))
+        p {
+            "Dots with two standard errors on either side: how far least squares is from the \
+             description. Red: the description lies beyond."
+        }
+        (error_bars(fit)?)
         (table("Identifiable combinations of parameters", &parameter_head, &parameters))
-    }
+    })
 }
 
 fn residual_row(name: &str, joint: &JointFit, force: &dyn Fn(String) -> String) -> Vec<String> {

@@ -3,6 +3,7 @@
 use super::chart::Chart;
 use super::suite_figure::SuiteFigure;
 use reachtube_robot::JointKind;
+use serde::Serialize;
 
 /// A closed interval `[lower, upper]`, in the unit that the field holding it names.
 pub type Bounds = [f64; 2];
@@ -26,6 +27,8 @@ pub struct Page {
     pub sets: Vec<SetsTable>,
     /// What the cost of the sets comes from.
     pub cost: Vec<TextTable>,
+    /// The runs over what the cost may depend on.
+    pub cost_charts: Vec<Chart>,
     /// Settings and provenance: name and value.
     pub facts: Vec<(String, String)>,
     /// Claims that the reader may rely on.
@@ -37,7 +40,7 @@ pub struct Page {
 }
 
 /// A table of texts: the first column names the row.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct TextTable {
     /// What the table shows.
     pub title: String,

@@ -50,6 +50,7 @@ pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
         nominal: Nominal::Shared(nominal),
         undrawn: 0,
         furthest: Some(0.9),
+        gauges: Vec::new(),
         times,
     }
 }
@@ -82,6 +83,7 @@ pub(super) fn page() -> Page {
         subtitle: hostile("subtitle"),
         phase_planes: vec![phase_plane()],
         cost: vec![TextTable { title: "drivers".into(), ..TextTable::default() }],
+        cost_charts: vec![phase_plane()],
         verdict: Verdict {
             ok: true,
             words: hostile("words"),

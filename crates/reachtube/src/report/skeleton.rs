@@ -1,5 +1,6 @@
 //! The parts that all pages share: the document around a page, sections, and lists.
 
+use super::page::TextTable;
 use super::text::Text;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -10,7 +11,7 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
                       script-src 'unsafe-inline' 'self' file:; img-src data: blob:";
 
 /// Returns a page as one HTML document. The scripts stand at its end.
-pub(super) fn document(title: &str, subtitle: &str, body: &Markup, scripts: &Markup) -> String {
+pub(crate) fn document(title: &str, subtitle: &str, body: &Markup, scripts: &Markup) -> String {
     let document = html! {
         (DOCTYPE)
         html lang="en" {
@@ -45,7 +46,7 @@ pub(super) fn own_mark() -> Markup {
 }
 
 /// Returns a section under a heading.
-pub(super) fn section(title: &str, body: &Markup) -> Markup {
+pub(crate) fn section(title: &str, body: &Markup) -> Markup {
     html! {
         section id=(anchor(title)) { h2 { (title) } (body) }
     }
@@ -87,4 +88,20 @@ pub(super) fn wide_table(class: &str, caption: &str, head: &Markup, rows: &Marku
             }
         }
     }
+}
+
+/// Returns a table of texts whose cells are broken into lines.
+pub(crate) fn long_table(table: &TextTable) -> Markup {
+    let head = html! {
+        @for name in &table.header { th scope="col" { (Text(name)) } }
+    };
+    let rows = html! {
+        @for cells in &table.rows {
+            tr {
+                th scope="row" { (Text(&cells[0])) }
+                @for cell in &cells[1..] { td { (Text(cell)) } }
+            }
+        }
+    };
+    wide_table("long", &table.title, &head, &rows)
 }

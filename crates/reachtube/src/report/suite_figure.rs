@@ -32,6 +32,8 @@ pub struct SuiteFigure {
     pub tight: Vec<TightSpot>,
     /// The largest [`RunTrace::gauge`] of all runs, drawn or not.
     pub furthest: Option<f64>,
+    /// How far every run comes out, drawn or not.
+    pub gauges: Vec<RunGauge>,
 }
 
 /// The interval hull of a reachable set over time.
@@ -77,6 +79,17 @@ pub struct RunTrace {
     pub gauge: Option<f64>,
     /// Number of support rows of the linear program that this run decides.
     pub touches: usize,
+}
+
+/// How far out a run comes, beside what it may depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RunGauge {
+    /// [`RunTrace::order`].
+    pub order: usize,
+    /// [`RunTrace::temperature`] \[°C\].
+    pub temperature: Option<f64>,
+    /// [`RunTrace::gauge`].
+    pub gauge: f64,
 }
 
 /// A sample that touches the boundary of the reachable set, or lies outside it.

@@ -7,7 +7,9 @@ use crate::report::assemble::{Sources, joint_name};
 use crate::report::error::ReportError;
 use crate::report::figures::MOST_STATIC;
 use crate::report::panel::interpolate;
-use crate::report::suite_figure::{Band, Nominal, RunTrace, SAME_TIME, SuiteFigure, TightSpot};
+use crate::report::suite_figure::{
+    Band, Nominal, RunGauge, RunTrace, SAME_TIME, SuiteFigure, TightSpot,
+};
 
 /// Number of runs up to which all of them are drawn.
 const MOST_RUNS: usize = 200;
@@ -24,7 +26,7 @@ const LEAST_RADIUS: f64 = 1e-9;
 /// # Errors
 ///
 /// As [`Problem::run`]; [`ReportError::NoReachableSet`] for a suite without one.
-pub(super) fn figures(sources: &Sources) -> Result<Vec<SuiteFigure>> {
+pub(crate) fn figures(sources: &Sources) -> Result<Vec<SuiteFigure>> {
     let recordings = sources.problem.recordings();
     let drawn = recordings.suites.iter().filter(|suite| suite.envelope.len() > 1);
     let are_many = recordings.run_count() > MOST_RUNS;
@@ -75,7 +77,7 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     let chosen = if are_many { deciding(&spots) } else { (0..suite.runs.len()).collect() };
     spots.retain(|spot| chosen.contains(&spot.run));
     // Each run as a line, relative to its own nominal solution where it has one.
-    let (mut runs, mut range, mut furthest) = (Vec::new(), None, None);
+    let (mut runs, mut range, mut gauges) = (Vec::new(), None, Vec::new());
     for (order, summary) in suite.runs.iter().enumerate() {
         let file = &problem.entry(summary.index).file;
         let of_run = own.iter().find(|reach| reach.run.as_ref() == Some(file));
@@ -83,7 +85,10 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
         let at_samples = at_samples(&run, &longest.times);
         run.gauge = gauge(&at_samples, &band);
         run.touches = spots.iter().filter(|spot| spot.run == order).count();
-        furthest = run.gauge.into_iter().chain(furthest).reduce(f64::max);
+        gauges.extend(run.gauge.map(|gauge| {
+            let RunTrace { order, temperature, .. } = run;
+            RunGauge { order, temperature, gauge }
+        }));
         if are_many {
             include(&mut range, at_samples);
         }
@@ -109,7 +114,8 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
         undrawn: suite.runs.len() - runs.len(),
         runs,
         tight: spots,
-        furthest,
+        furthest: gauges.iter().map(|run| run.gauge).reduce(f64::max),
+        gauges,
     })
 }
 

@@ -1,18 +1,29 @@
-//! Tables of the paper, reproduced, and the bounds for the next motion put to the test.
+//! Tables and figures of the paper, reproduced, and the bounds for the next motion put to the test.
 
+mod claims;
 mod coverage;
 pub(crate) mod error;
+mod exemplary;
+mod figures;
 mod full_speed_motion;
 mod paper;
-mod random_motions;
+mod paper_page;
 mod speed;
 mod table1;
 mod table2;
+mod table3;
+mod tables;
 mod trajectories;
+mod virtual_motions;
 
+pub use claims::Claim;
 pub use coverage::{Coverage, CoverageOptions, CoverageRow, coverage};
 pub use error::ReproduceError;
+pub use exemplary::{Exemplary, table2_and_suite};
+pub use figures::{PaperFigure, fig1, fig2, fig3, fig4};
 pub use paper::{Paper, PaperSets};
+pub use paper_page::PaperPage;
 pub use speed::Speed;
 pub use table1::{Cell, Table1, Table1Options, table1};
 pub use table2::{Table2, Table2Case, Table2Options, table2};
+pub use table3::{Effect, Part, Table3, Table3Row, table3, table3_and_fig5};

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use reachtube_conform::{
-    Centre, Keep, Notion, Problem, Progress, Settings, Setup, States, UncertaintySets, conform,
+    Centre, Conformance, InitialLimit, Keep, Notion, Problem, Progress, Settings, Setup, States,
+    UncertaintySets, conform,
 };
 use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::{DataSet, Torque};
@@ -20,14 +21,24 @@ pub struct Table2Options {
     pub suites: Vec<String>,
     /// The notions of enclosure, each for both cases of the table.
     pub notions: Vec<Notion>,
-    /// How the disturbance may change in time. The paper's V is constant (Prop. 1).
-    pub disturbance: Disturbance,
+    /// How the disturbance may change in time. Where it is `None`, it is constant for the hull, as
+    /// the paper's V (Prop. 1), and constant over each sample for the other notions: under constant
+    /// disturbances the set itself is so thin that X0 has to fill it.
+    pub disturbance: Option<Disturbance>,
+    /// How far X0 may reach. The paper's X0 has the same positions in both cases, about as far as
+    /// its recordings start from their mean.
+    pub initial_limit: InitialLimit,
 }
 
 impl Default for Table2Options {
     /// Returns the paper's notion and disturbance, for all suites.
     fn default() -> Self {
-        Self { suites: Vec::new(), notions: vec![Notion::Hull], disturbance: Disturbance::Constant }
+        Self {
+            suites: Vec::new(),
+            notions: vec![Notion::Hull],
+            disturbance: None,
+            initial_limit: InitialLimit::Positions,
+        }
     }
 }
 
@@ -39,6 +50,8 @@ pub struct Table2Case {
     pub states: States,
     /// The notion.
     pub notion: Notion,
+    /// How the disturbance may change in time.
+    pub disturbance: Disturbance,
     /// Whether the recordings were proved to be enclosed.
     pub conformant: bool,
     /// Σ_k Σ_i width_i(t_k) of the reachable sets.
@@ -66,6 +79,21 @@ pub struct Table2 {
     pub cases: Vec<Table2Case>,
 }
 
+/// What was found for one half of the table in one notion.
+pub(super) struct FoundCase {
+    /// The robot and the settings.
+    pub setup: Setup,
+    /// The sets.
+    pub found: Conformance,
+}
+
+/// The recordings, and what was found for them.
+pub(super) struct Found {
+    pub problem: Problem,
+    /// Both halves of the table for each notion.
+    pub cases: Vec<FoundCase>,
+}
+
 /// Finds the sets of model 1, p = 1, of the LWA 4P for recordings of compensated torques. The sets
 /// contain the origin, as the paper's do.
 ///
@@ -77,45 +105,82 @@ pub fn table2(
     options: &Table2Options,
     progress: &(dyn Progress + Sync),
 ) -> Result<Table2> {
-    let cases: Vec<(Notion, States)> = options
-        .notions
-        .iter()
-        .flat_map(|notion| [States::All, States::Positions].map(|states| (*notion, states)))
-        .collect();
-    let setup = |(notion, states): (Notion, States)| {
-        let settings = Settings {
-            notion,
-            states,
-            disturbance: options.disturbance,
-            centre: Centre::Origin,
-            ..Settings::new(Torque::Compensated, 6)
-        };
-        Setup::new(Robot::lwa4p(), settings)
-    };
-    // Recordings are read once, and kept where one of the notions needs them again.
-    let strongest = options.notions.iter().copied().find(|notion| *notion != Notion::Hull);
-    let first = setup((strongest.unwrap_or_default(), States::All))?;
-    let source = Box::new(DataSet::open(folder)?);
-    let problem = Problem::read(first, source, &options.suites, Keep::Needed, progress)?;
-    let case = |&(notion, states): &(Notion, States)| {
-        let found = conform(&problem.with_setup(setup((notion, states))?), progress, None)?;
-        Ok(Table2Case {
-            states,
-            notion,
+    Ok(Found::new(folder, options, progress)?.table(options))
+}
+
+impl Found {
+    /// Finds the sets of [`table2`].
+    pub fn new(
+        folder: &Path,
+        options: &Table2Options,
+        progress: &(dyn Progress + Sync),
+    ) -> Result<Self> {
+        // Recordings are read once, and kept where one of the notions needs them again.
+        let strongest = options.notions.iter().copied().find(|notion| *notion != Notion::Hull);
+        let first = options.setup(strongest.unwrap_or_default(), States::All)?;
+        let source = Box::new(DataSet::open(folder)?);
+        let problem = Problem::read(first, source, &options.suites, Keep::Needed, progress)?;
+        let mut cases = Vec::new();
+        for notion in &options.notions {
+            for states in [States::All, States::Positions] {
+                let setup = options.setup(*notion, states)?;
+                let found = conform(&problem.with_setup(setup.clone()), progress, None)?;
+                cases.push(FoundCase { setup, found });
+            }
+        }
+        Ok(Self { problem, cases })
+    }
+
+    /// Returns the table.
+    pub fn table(&self, options: &Table2Options) -> Table2 {
+        Table2 {
+            options: options.clone(),
+            runs: self.problem.recordings().run_count(),
+            suites: self.problem.recordings().suites.len(),
+            cases: self.cases.iter().map(FoundCase::row).collect(),
+        }
+    }
+}
+
+impl FoundCase {
+    /// Returns which states had to be enclosed.
+    pub fn states(&self) -> States {
+        self.setup.settings.states
+    }
+
+    fn row(&self) -> Table2Case {
+        let (settings, found) = (&self.setup.settings, &self.found);
+        let all = settings.states == States::All;
+        Table2Case {
+            states: settings.states,
+            notion: settings.notion,
+            disturbance: settings.disturbance,
             conformant: found.verdict.conformant,
             cost: found.cost,
             lower_bound: found.lower_bound,
-            sets: found.sets,
-            warnings: found.warnings.into_iter().map(|warning| warning.text).collect(),
-            paper: if states == States::All { &PAPER_VELOCITIES } else { &PAPER_POSITIONS },
-        })
-    };
-    Ok(Table2 {
-        options: options.clone(),
-        runs: problem.recordings().run_count(),
-        suites: problem.recordings().suites.len(),
-        cases: cases.iter().map(case).collect::<Result<_>>()?,
-    })
+            sets: found.sets.clone(),
+            warnings: found.warnings.iter().map(|warning| warning.text.clone()).collect(),
+            paper: if all { &PAPER_VELOCITIES } else { &PAPER_POSITIONS },
+        }
+    }
+}
+
+impl Table2Options {
+    fn setup(&self, notion: Notion, states: States) -> Result<Setup> {
+        let default = match notion {
+            Notion::Hull => Disturbance::Constant,
+            _ => Disturbance::Sample,
+        };
+        let settings = Settings {
+            notion,
+            states,
+            disturbance: self.disturbance.unwrap_or(default),
+            initial_limit: self.initial_limit,
+            centre: Centre::Origin,
+            ..Settings::new(Torque::Compensated, 6)
+        };
+        Ok(Setup::new(Robot::lwa4p(), settings)?)
+    }
 }
 
 impl Table2Case {
@@ -126,5 +191,14 @@ impl Table2Case {
         let UncertaintySets { initial_set, input_set, .. } = &self.sets;
         let n = input_set.dimension();
         [bounds(initial_set, joint), bounds(initial_set, n + joint), bounds(input_set, joint)]
+    }
+
+    /// Returns the case's name in the paper.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self.states {
+            States::All => "velocity conformant",
+            States::Positions => "position conformant",
+        }
     }
 }

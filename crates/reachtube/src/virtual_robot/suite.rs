@@ -10,17 +10,23 @@ use crate::random::{SplitMix64, uniform};
 
 /// The inputs of a motion, recorded while the arm followed it closed loop.
 pub(crate) struct PreRecorded {
-    /// Inputs \[N m\], row-major K x n; the last sample is at the end of the motion.
+    /// Inputs \[N m\], row-major K x n.
     pub inputs: Vec<f64>,
 }
 
 impl PreRecorded {
-    /// Follows the motion with the joints at the nominal temperature.
+    /// Follows the whole motion with the joints at the nominal temperature; the last sample is at
+    /// its end.
     pub fn new(robot: &VirtualRobot, motion: &Motion) -> Self {
+        Self::until(robot, motion, motion.cycles() + 1)
+    }
+
+    /// Follows the first `cycles` of the motion with the joints at the nominal temperature.
+    pub fn until(robot: &VirtualRobot, motion: &Motion, cycles: usize) -> Self {
         let temperatures = vec![robot.parameters().nominal_temperature; motion.start.len()];
         let mut arm = Arm::at_rest(robot, &motion.start, &temperatures);
         let plan = |k: usize| motion.at(k as f64 * SAMPLE_TIME);
-        Self { inputs: arm.follow(motion.cycles() + 1, Logged::Input, plan).torques }
+        Self { inputs: arm.follow(cycles, Logged::Input, plan).torques }
     }
 }
 

@@ -2,12 +2,14 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use reachtube::abstraction::ModelKind;
-use reachtube::conform::{Centre, Group, Method, NominalStart, Notion, States};
+use reachtube::conform::{Centre, Group, InitialLimit, Method, NominalStart, Notion, States};
 use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;
 use crate::lock_arguments::LockArguments;
-use crate::option_values::{Choices, DISTURBANCES, MODELS, NOTIONS, choice, numbered_choice};
+use crate::option_values::{
+    Choices, DISTURBANCES, INITIAL_LIMITS, MODELS, NOTIONS, choice, numbered_choice,
+};
 
 const HELP: &str = "\
 Examples:
@@ -134,6 +136,14 @@ pub struct Arguments {
         value_parser = choice::<States>(STATES)
     )]
     pub states: States,
+    /// How far X0 may reach. Where nothing limits it, X0 may take over what U would cover later
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "none",
+        value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
+    )]
+    pub initial_limit: InitialLimit,
     /// Weights of the states in the cost: unit (1 for each state); spread (1 over the state's
     /// largest deviation in the recordings); or 2 or 2n numbers between 1e-9 and 1e9, positions
     /// first

@@ -54,6 +54,7 @@ fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
         centre: args.centre,
         notion: args.notion,
         states: args.states,
+        initial_limit: args.initial_limit,
         weights: match args.weights.as_str() {
             "unit" => Weights::Unit,
             "spread" => Weights::Spread,

@@ -10,6 +10,7 @@ Examples:
   reachtube identify --robot arm.urdf --static poses --friction slow --dynamic a.csv b.csv \\
       --validate c.csv --out arm.toml
   reachtube identify --settings arm-identify.toml --report report
+  reachtube identify --robot arm.urdf --dynamic run.mcap --topic /joint_states
   reachtube identify --robot panda.toml --dynamic excitation --link-torque --cut-off 6
 
 A settings file holds all of these options and more, see docs/identify.md. Options on the command
@@ -17,8 +18,8 @@ line override it.";
 
 /// Identify a robot's gravity, friction and inertia from its recordings
 ///
-/// Recordings are CSV files with the columns t, q1..qn, qd1..qdn, tau1..taun. A folder stands for
-/// the CSV files in it.
+/// Recordings are CSV files with the columns t, q1..qn, qd1..qdn, tau1..taun, or logs (.mcap, .db3)
+/// with joint states. A folder stands for the CSV files in it.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub struct Arguments {
@@ -43,6 +44,9 @@ pub struct Arguments {
     /// Recordings held out of every fit, for validation [default: the exciting motions]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub validate: Vec<PathBuf>,
+    /// Topics with joint states in recordings that are logs
+    #[arg(long, value_name = "NAME", num_args = 1.., default_value = "/joint_states")]
+    pub topic: Vec<String>,
     /// Cut-off frequency of the low-pass filter, above 0 and below half the sample rate, Hz
     /// [default: chosen from the recordings]
     #[arg(long, value_name = "HZ")]

@@ -5,17 +5,19 @@ use reachtube::identify::{Identification, IdentifySettings, identify};
 use reachtube::report::write_identified_html;
 use reachtube::write;
 use reachtube_files::MARK;
+use reachtube_logs::LogOptions;
 use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use super::arguments::Arguments;
 use super::summary::summary;
 use crate::error::{Error, Result};
+use crate::log_files::LogFiles;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let (settings, folder) = settings(args)?;
+    let (mut settings, folder) = settings(args)?;
     let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);
     let robot = args.lock.load(&name)?;
@@ -23,6 +25,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let options = UrdfOptions { locks: args.lock.lock.clone(), ..UrdfOptions::default() };
     let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &options)).transpose()?;
     output::claim_all(&outputs(args))?;
+    let _files = logs_as_csv(&mut settings, &folder, args, &robot)?;
     let bar = Progress::of("identifying");
     let found = identify(&robot, &settings, &folder, &|done, total| bar.show(done, total))?;
     drop(bar);
@@ -31,6 +34,23 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::show(json, &found.summary(), || summary(&found))?;
     found.warnings.iter().for_each(|warning| output::warn(warning));
     Ok(Outcome::Done)
+}
+
+/// Replaces the logs among the recordings by CSV files, which exist as long as the result does.
+fn logs_as_csv(
+    settings: &mut IdentifySettings,
+    folder: &Path,
+    args: &Arguments,
+    robot: &Robot,
+) -> Result<LogFiles> {
+    let joints = robot.joints().iter().map(|joint| joint.name.clone()).collect();
+    let topics = args.topic.clone();
+    let mut files = LogFiles::new(LogOptions { topics, joints, ..LogOptions::default() })?;
+    let IdentifySettings { rest, friction, dynamic, validate, .. } = settings;
+    for entry in [rest, friction, dynamic, validate].into_iter().flatten() {
+        files.convert(entry, folder)?;
+    }
+    Ok(files)
 }
 
 /// Returns the files that the arguments ask for.

@@ -13,6 +13,9 @@ use super::laws::laws;
 use crate::table::table;
 use reachtube::number::four_decimals;
 
+/// Largest number of recordings that are listed.
+const MOST_RECORDINGS: usize = 40;
+
 /// Returns the result of `identify`, with one section per step.
 pub fn summary(found: &Identification) -> String {
     [
@@ -239,10 +242,18 @@ fn validation(found: &Identification) -> String {
     let row = |log: &LogValidation| {
         std::iter::once(log.log.clone()).chain(log.joints.iter().map(cell)).collect()
     };
-    let rows: Vec<Vec<String>> = found.validation.iter().map(row).collect();
+    // The last row is that of all recordings.
+    let left_out = found.validation.len().saturating_sub(MOST_RECORDINGS);
+    let shown = found.validation.iter().enumerate();
+    let shown = shown.filter(|(k, _)| *k + 1 < MOST_RECORDINGS || *k + 1 == found.validation.len());
+    let rows: Vec<Vec<String>> = shown.map(|(_, log)| row(log)).collect();
+    let left_out = match left_out {
+        0 => String::new(),
+        count => format!("  ({count} more recordings are not shown; --json has all)\n"),
+    };
     format!(
         "\n4. torque predicted on {recordings}: relative error while the joint moves (of plain \
-         least squares; with standstill), R2\n{}",
+         least squares; with standstill), R2\n{}{left_out}",
         table(&joint_header("log", found), &rows)
     )
 }

@@ -1,0 +1,62 @@
+//! `reachtube reproduce coverage`: how often the bounds for the next motion are wrong.
+
+use clap::Args;
+use reachtube::reproduce::{Coverage, CoverageOptions, CoverageRow, coverage};
+
+use crate::error::Result;
+use crate::outcome::Outcome;
+use crate::output;
+use crate::progress::Progress;
+use crate::table::untitled;
+
+const HELP: &str = "\
+Example:
+  reachtube reproduce coverage --campaigns 200 --seed 1
+
+Exit codes: 0 every bound holds within three standard errors, 1 one does not, 2 error.";
+
+/// Simulate how often the bounds for the next motion are wrong
+///
+/// Each campaign records 38 random motions of the virtual robot for half a second, finds sets for
+/// them, and states bounds of the probability that the next motion leaves them. Further motions
+/// give the truth.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub struct Arguments {
+    /// Number of campaigns, 1 or more
+    #[arg(long, default_value_t = 200, value_name = "COUNT")]
+    pub campaigns: usize,
+    /// Number of further motions that measure the true probabilities, 1 or more
+    #[arg(long, default_value_t = 2000, value_name = "COUNT")]
+    pub next: usize,
+    /// Seed of the motions; the same seed gives the same motions
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+}
+
+/// Runs `reproduce coverage`.
+pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    let bar = Progress::of("simulating");
+    let options = CoverageOptions { campaigns: args.campaigns, next: args.next, seed: args.seed };
+    let coverage = coverage(&options, &|done, total| bar.show(done, total))?;
+    drop(bar);
+    output::show(json, &coverage, || summary(&coverage))?;
+    Ok(Outcome::of(coverage.rows.iter().all(CoverageRow::holds)))
+}
+
+/// Returns how often each bound was wrong, beside how often it may be.
+fn summary(coverage: &Coverage) -> String {
+    let Coverage { options, motions, held_out, calibrating, .. } = coverage;
+    format!(
+        "{} campaigns of {motions} random motions (seed {}); the hold-out bound is that of sets \
+         for {} of them, by the other {held_out}; the calibration bounds are those of sets for {}, \
+         scaled to hold the other {calibrating}; the truth is the part of {} further motions that \
+         leave the sets\n\n{}",
+        options.campaigns,
+        options.seed,
+        motions - held_out,
+        motions - calibrating,
+        options.next,
+        untitled(&coverage.table())
+    )
+}

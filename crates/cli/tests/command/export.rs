@@ -1,0 +1,131 @@
+//! Exports: the files of each tool, and what is refused.
+
+use crate::fixture::Lab;
+
+const TOOLS: [(&str, &[&str]); 6] = [
+    ("cora", &["cora_reach.m", "cora_data.m", "cora_dynamics.m", "check_points.csv"]),
+    ("spaceex", &["spaceex.xml", "spaceex.cfg"]),
+    ("flowstar", &["flowstar.model"]),
+    ("hylaa", &["hylaa_reach.py"]),
+    ("xspeed", &["xspeed.xml", "xspeed.cfg"]),
+    ("juliareach", &["juliareach.jl"]),
+];
+
+/// Returns a lab with model.json, model 1 of order 1 unless `more` says otherwise.
+fn lab(more: &str) -> Lab {
+    let lab = Lab::new();
+    lab.conform(&format!("--suites A --out model.json {more}")).exits(0);
+    lab
+}
+
+const EXPORT: &str = "export --model model.json --data data --suites A --out out";
+
+#[test]
+fn each_tool_gets_its_files_and_ours() {
+    let lab = lab("");
+    for (tool, own) in TOOLS {
+        let out = format!("export --model model.json --data data --to {tool} --out {tool}");
+        let result = lab.run(&format!("{out} --json")).exits(0).json();
+        assert_eq!(result["cases"].as_array().unwrap().len(), 2);
+        let mut expected = [own, &["bounds.csv", "inputs.csv", "tube.csv"]].concat();
+        expected.sort();
+        assert_eq!(lab.names(tool), ["A", "B"]);
+        assert_eq!(lab.names(&format!("{tool}/A")), expected);
+        for name in own.iter().filter(|name| !name.ends_with(".csv")) {
+            let text = lab.read(&format!("{tool}/A/{name}"));
+            assert!(text.contains("Written by reachtube"), "{name}");
+            assert!(text.contains("model 1 of order 1 of two axes, suite A"), "{name}");
+        }
+        // The tables carry no mark. The same ones stay, and others are kept.
+        lab.run(&out).exits(0);
+        lab.edit(&format!("{tool}/B/bounds.csv"), |lines| lines[1] += "0");
+        lab.run(&out).fails_with_last(&["B/bounds.csv", "--force"]);
+        lab.run(&format!("{out} --force")).exits(0);
+    }
+}
+
+#[test]
+fn our_bounds_are_those_of_reach() {
+    let lab = lab("");
+    lab.run(&format!("{EXPORT} --to hylaa")).exits(0);
+    lab.run("reach --model model.json --data data --suites A --torque compensated --out reach")
+        .exits(0);
+    assert_eq!(lab.read("out/A/bounds.csv"), lab.read("reach/A.csv"));
+    assert_eq!(lab.read("out/A/tube.csv"), lab.read("reach/A_tube.csv"));
+    let inputs = lab.read("out/A/inputs.csv");
+    let recorded = lab.read("data/A_1.csv");
+    for (row, recorded) in inputs.lines().zip(recorded.lines()).skip(1) {
+        let torques: Vec<&str> = recorded.split(',').skip(5).collect();
+        assert!(row.ends_with(&torques.join(",")), "{row} is not {recorded}");
+    }
+}
+
+#[test]
+fn runs_with_motions_of_their_own_get_folders_of_their_own() {
+    let lab = lab("--nominal own");
+    lab.run(&format!("{EXPORT} --to cora")).exits(0);
+    assert_eq!(lab.names("out"), ["A_A_1", "A_A_2", "A_A_3"]);
+}
+
+#[test]
+fn a_model_that_a_tool_cannot_mean_is_refused_and_writes_nothing() {
+    let lab = Lab::new();
+    let cubic = lab.read("arm.toml").replace(", 0.0, 0.0] }", ", 0.0, 0.1] }");
+    lab.write("arm.toml", cubic);
+    lab.conform("--suites A --model 1 --order 3 --until 0.05 --out model.json").exits(0);
+    let run = |more: &str| lab.run(&format!("{EXPORT} {more}"));
+    run("--to hylaa").fails_with_last(&["HyLAA takes affine systems only", "model 1 of order 3"]);
+    run("--to cora --input deviation").fails_with_last(&["--input recorded"]);
+    assert!(!lab.path("out").exists());
+    let warned = run("--to juliareach").exits(0);
+    assert!(warned.stderr.contains("warning: JuliaReach knows fewer disturbances"), "{warned:?}");
+    run("--to flowstar").exits(0);
+    assert!(lab.read("out/A/flowstar.model").contains("hybrid reachability"));
+}
+
+#[test]
+fn wrong_options_are_refused() {
+    let lab = lab("");
+    let run = |arguments: &str| lab.run(&format!("export {arguments}"));
+    run("--model model.json --to cora --out out").fails_with(&["export to CORA needs", "--data"]);
+    assert!(run("--to cora --out out").exits(2).stderr.contains("--model <FILE>"));
+    run("--robot arm.toml --to cora --out out").fails_with(&["--model"]);
+    let unknown = run("--model model.json --to ariadne --out out").exits(2).stderr;
+    assert!(["ariadne", "cora", "urdf"].iter().all(|part| unknown.contains(part)), "{unknown}");
+    run("--model arm.toml --to mjcf --out out").fails_with(&["arm.toml"]);
+    run("--robot lwa4p --to mjcf --out out").fails_with(&["Schunk LWA 4P", "physical"]);
+    run("--robot none.toml --to urdf --out out").fails_with(&["none.toml"]);
+    lab.run(&format!("{EXPORT} --to hylaa --input recorded"))
+        .fails_with_last(&["HyLAA has no input", "--input deviation"]);
+    lab.run("export --model model.json --data data --suites C --to cora --out out")
+        .fails_with(&["C"]);
+    lab.run("export --model model.json --to cora --out out --json").fails_in_json("setting", &[]);
+    assert!(!lab.path("out").exists());
+    lab.write("out", "in the way");
+    lab.run(&format!("{EXPORT} --to cora")).fails_with(&["out"]);
+}
+
+#[test]
+fn a_robot_is_written_for_simulators() {
+    let lab = lab("");
+    lab.run("export --model model.json --to mjcf --out robot").exits(0);
+    assert_eq!(lab.names("robot"), ["check_torques.csv", "robot.xml"]);
+    let again = "export --robot arm.toml --to urdf --out robot";
+    lab.run(again).exits(0);
+    lab.write("robot/check_torques.csv", "mine");
+    lab.run(again).fails_with(&["check_torques.csv", "--force"]);
+    // The links weigh nothing. Bodies with their torques are read back with the motors.
+    let shown = lab.run("robot show robot/robot.urdf --json").exits(0).json();
+    let mass_matrix = &shown["mass_matrix"];
+    assert!((mass_matrix[0][0].as_f64().unwrap() - 1.0).abs() < 1e-9, "{mass_matrix}");
+    assert!((mass_matrix[1][1].as_f64().unwrap() - 0.5).abs() < 1e-9, "{mass_matrix}");
+}
+
+#[test]
+fn help_names_each_tool_and_what_it_means() {
+    let help = Lab::new().run("export --help").exits(0).stdout;
+    for (tool, _) in TOOLS {
+        assert!(help.matches(tool).count() >= 2, "{tool}");
+    }
+    assert!(help.contains("without a recorded input") && help.contains("mjcf"), "{help}");
+}
