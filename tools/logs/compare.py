@@ -6,8 +6,8 @@
 import json
 import sys
 
-# What names recordings, and the motions that a log does not name.
-NAMES = {"sha256", "file", "run", "motion"}
+# What names recordings, and the motions that a log does not name, which `basis` mentions.
+NAMES = {"sha256", "file", "run", "motion", "basis"}
 
 
 def numbers(value):
