@@ -69,12 +69,20 @@ impl PolynomialModel {
     /// [`Error::File`] where the file cannot be read, [`Error::ModelFile`] where it is not the file
     /// of a model or was changed, and [`Error::Robot`] where its robot is wrong.
     pub fn load(path: &Path) -> Result<Self> {
-        let text = reachtube_files::read_text(path, REMEDY)?;
-        let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
-        let value = json::versioned(&text, FORMAT, VERSION, "abstract").map_err(wrong)?;
+        Self::parse(&reachtube_files::read_text(path, REMEDY)?, path)
+    }
+
+    /// Reads the text of a file as [`load`](Self::load) does; errors name it `origin`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`load`](Self::load), but for [`Error::File`].
+    pub fn parse(text: &str, origin: &Path) -> Result<Self> {
+        let wrong = |problem: String| Error::ModelFile { path: origin.into(), problem };
+        let value = json::versioned(text, FORMAT, VERSION, "abstract").map_err(wrong)?;
         let file: ModelFile =
             serde_json::from_value(value).map_err(|error| wrong(format!("{error}; {REMEDY}")))?;
-        file.model(path)
+        file.model(origin)
     }
 }
 

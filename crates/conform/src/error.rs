@@ -8,6 +8,9 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// The job was cancelled by its observer.
+    #[error("the job was cancelled")]
+    Cancelled,
     /// A nominal model that cannot be fitted.
     #[error("the nominal model cannot be fitted: {0}")]
     Fit(String),

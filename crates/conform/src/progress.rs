@@ -1,4 +1,6 @@
-/// An observer of a long job. Every method has a default that does nothing.
+use crate::error::{Error, Result};
+
+/// An observer of a long job, who may also cancel it. Every method has a default that does nothing.
 pub trait Progress: Sync {
     /// Takes how many of `total` recordings have been read.
     fn recordings_read(&self, done: usize, total: usize) {
@@ -9,6 +11,12 @@ pub trait Progress: Sync {
     fn finished(&self, what: &str) {
         let _ = what;
     }
+
+    /// Returns whether the job is no longer wanted. It is asked between recordings and between the
+    /// steps of a search, and the job then ends with [`Error::Cancelled`](crate::Error::Cancelled).
+    fn is_cancelled(&self) -> bool {
+        false
+    }
 }
 
 /// Reports no progress.
@@ -16,3 +24,10 @@ pub trait Progress: Sync {
 pub struct Silent;
 
 impl Progress for Silent {}
+
+impl dyn Progress + '_ {
+    /// Ends a job that is no longer wanted.
+    pub(crate) fn go_on(&self) -> Result<()> {
+        if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
+    }
+}

@@ -20,6 +20,7 @@ pub(crate) fn smallest_sets(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Found> {
+    progress.go_on()?;
     match problem.dynamics().linear_system() {
         Some(_) if problem.settings().notion == Notion::Hull => linear::smallest_sets(problem),
         Some(_) if problem.settings().notion == Notion::Trace => {

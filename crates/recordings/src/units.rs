@@ -7,6 +7,7 @@ use std::path::Path;
 use reachtube_robot::{JointDescription, JointKind, Robot};
 
 use crate::defect::{Defect, DefectKind};
+use crate::gap_limit::GapLimit;
 use crate::run::Run;
 
 /// Motion of a joint below which q and the integral of q̇ are not compared, rad or m.
@@ -44,18 +45,28 @@ pub fn integral_gap(run: &Run, joint: usize) -> f64 {
 }
 
 /// Returns the least-squares slope of q over ∫q̇ dt, both from the first sample; `None` for a joint
-/// that hardly moves.
+/// that hardly moves. Motion in a gap, of which nothing is known, counts on neither side.
 fn position_per_integral(run: &Run, joint: usize) -> Option<f64> {
     let (mut integral, mut cross, mut square, mut largest) = (0.0f64, 0.0, 0.0, 0.0f64);
-    for k in 1..run.len() {
-        let dt = run.times[k] - run.times[k - 1];
-        integral += 0.5 * dt * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
-        let moved = run.q(k)[joint] - run.q(0)[joint];
+    let longest = GapLimit::Usual.longest_step(steps(run).collect());
+    let mut in_gaps = 0.0;
+    for (k, dt) in (1..).zip(steps(run)) {
+        if dt > longest {
+            in_gaps += run.q(k)[joint] - run.q(k - 1)[joint];
+        } else {
+            integral += 0.5 * dt * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
+        }
+        let moved = run.q(k)[joint] - run.q(0)[joint] - in_gaps;
         cross += moved * integral;
         square += integral * integral;
         largest = largest.max(integral.abs()).max(moved.abs());
     }
     (largest > MIN_MOTION && square > 0.0).then(|| cross / square)
+}
+
+/// Returns the times between samples, s.
+fn steps(run: &Run) -> impl Iterator<Item = f64> + '_ {
+    run.times.windows(2).map(|pair| pair[1] - pair[0])
 }
 
 /// No joint of a robot has a torque or force beyond this, N m or N.

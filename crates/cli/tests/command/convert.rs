@@ -57,7 +57,7 @@ fn numbers(text: &str) -> Value {
     fn strip(value: &mut Value) {
         match value {
             Value::Object(map) => {
-                for key in ["sha256", "file", "run", "motion"] {
+                for key in ["sha256", "file", "run", "motion", "basis"] {
                     map.remove(key);
                 }
                 map.values_mut().for_each(strip);

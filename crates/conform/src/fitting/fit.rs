@@ -83,6 +83,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     };
     let choice = choose(&fit, settings.pull)?;
     progress.finished(&format!("the weight of the pull is {}", choice.pull));
+    progress.go_on()?;
     let found = search(&fit, choice.pull)?;
     progress.finished(&format!("the fit took {} steps", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {

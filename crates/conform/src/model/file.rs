@@ -236,9 +236,17 @@ impl Model {
     ///
     /// [`Error::File`], or [`Error::ModelFile`], which says what is wrong.
     pub fn open(path: &Path) -> Result<(Self, Setup)> {
-        let text = reachtube_files::read_text(path, REMEDY)?;
-        let wrong = |problem: String| Error::ModelFile { path: path.into(), problem };
-        let value = json::versioned(&text, FORMAT, VERSION, "conform").map_err(wrong)?;
+        Self::parse(&reachtube_files::read_text(path, REMEDY)?, path)
+    }
+
+    /// Reads the text of a model file as [`open`](Self::open) does; errors name it `origin`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::ModelFile`], which says what is wrong.
+    pub fn parse(text: &str, origin: &Path) -> Result<(Self, Setup)> {
+        let wrong = |problem: String| Error::ModelFile { path: origin.into(), problem };
+        let value = json::versioned(text, FORMAT, VERSION, "conform").map_err(wrong)?;
         let model: Self = serde_json::from_value(value).map_err(|error| {
             wrong(format!(
                 "{error}; give the file as `conform --out` wrote it, or run conform again"

@@ -86,6 +86,7 @@ fn solve(
     let mut rows = program.first_rows();
     let (mut near, mut cuts): (Option<Vec<Vec<usize>>>, Vec<Outside>) = (None, Vec::new());
     for round in 1..=ROUNDS {
+        progress.go_on()?;
         let solution = program.solve_from(&mut rows)?;
         let near = near.get_or_insert_with(|| sweep.near(&solution.sets, MARGIN));
         let mut outside = sweep.outside(&solution.sets, tolerance, near);

@@ -31,6 +31,7 @@ impl Recordings {
         let mut notes = index_notes(source, &entries);
         let (mut suites, mut defects, mut done) = (Vec::new(), Vec::<Defect>::new(), 0);
         for entry in entries {
+            progress.go_on()?;
             let counted = |within: usize| progress.recordings_read(done + within, total);
             match reader.read(&entry, &counted) {
                 Ok(suite) => {

@@ -55,6 +55,7 @@ pub(super) fn run(
     let linearised = search.round(&mut SearchState::start(search.problem.joints()))?.solution.sets;
     let mut state = journal.load()?.unwrap_or_else(|| BisectionState::start(&linearised));
     while !state.enclosed && state.factor < FACTORS.len() {
+        progress.go_on()?;
         let factor = FACTORS[state.factor];
         state.sets = linearised.inflated(factor, 0.0);
         search.problem.limits().shrink(&mut state.sets.initial_set);
@@ -71,6 +72,7 @@ pub(super) fn run(
     }
     while state.enclosed && state.radius < state.count() {
         while !state.is_narrow() {
+            progress.go_on()?;
             state.halve(search)?;
             journal.save(&state)?;
         }

@@ -77,6 +77,7 @@ impl SuccessiveLinearisation<'_> {
         let mut state =
             journal.load()?.unwrap_or_else(|| SearchState::start(self.problem.joints()));
         loop {
+            progress.go_on()?;
             // Linearise, solve, and take the answer.
             let round = self.round(&mut state)?;
             let found = &round.solution.sets;

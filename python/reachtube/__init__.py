@@ -1,0 +1,64 @@
+"""Robot models that provably cover recordings.
+
+Load a robot (`Robot`), open recordings (`Recordings`), find the smallest uncertainty sets for which
+a model encloses them (`conform`), check other recordings (`check`), compute reachable sets
+(`reach`), and draw a page (`report`). `identify` makes the robot from recordings, `excite` the
+motions for it, `abstract` models of any order, and `flowpipe` reachable sets of your own system.
+"""
+
+from . import errors, io
+from ._abstraction import Abstraction, abstract
+from ._box import Box
+from ._excite import Excitation, excite
+from ._flowpipe import Flowpipe, flowpipe
+from ._identify import Identification, identify
+from ._model import Check, Model, check, conform
+from ._polynomial import Polynomial, cos, sin, variables
+from ._reach import ReachableSet, reach, report
+from ._reachtube import version as _version
+from ._recordings import Recordings, Run
+from ._robot import Robot
+from .errors import (
+    Defect,
+    DefectsError,
+    ModelFileError,
+    ReachtubeError,
+    ReachtubeWarning,
+    SettingError,
+)
+
+__version__ = _version()
+
+__all__ = [
+    "Abstraction",
+    "Box",
+    "Check",
+    "Defect",
+    "DefectsError",
+    "Excitation",
+    "Flowpipe",
+    "Identification",
+    "Model",
+    "ModelFileError",
+    "Polynomial",
+    "ReachableSet",
+    "ReachtubeError",
+    "ReachtubeWarning",
+    "Recordings",
+    "Robot",
+    "Run",
+    "SettingError",
+    "abstract",
+    "check",
+    "conform",
+    "cos",
+    "errors",
+    "excite",
+    "flowpipe",
+    "identify",
+    "io",
+    "reach",
+    "report",
+    "sin",
+    "variables",
+]

@@ -1,0 +1,165 @@
+"""Models 1, 2 and 3 of a robot's forward dynamics."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy.typing as npt
+
+from . import _reachtube
+from ._arrays import Array, batch, numbers
+from ._files import write_new
+from ._progress import Progress, shown
+from ._robot import Robot
+from .errors import ReachtubeError, SettingError
+
+
+class Abstraction:
+    """A polynomial model of a robot's forward dynamics ẋ = f(x, u)."""
+
+    __slots__ = ("_content", "_native")
+
+    def __init__(self, native: _reachtube.Abstraction) -> None:
+        self._native = native
+        self._content: dict[str, Any] = json.loads(native.to_json())
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Abstraction:
+        """Read a file that `save` or ``reachtube abstract --out`` wrote.
+
+        Raises
+        ------
+        ModelFileError
+            For another file, one of another version, or one that was changed.
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ReachtubeError(f"{path}: {error}; give a file that `abstract` wrote") from None
+        return cls(_reachtube.Abstraction.parse(text, fspath(path)))
+
+    def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
+        """Write the model's file. A file that exists is replaced with ``force=True`` only."""
+        write_new(Path(path), self._native.to_json(), force=force)
+
+    @property
+    def model(self) -> int:
+        """Model 1, 2 or 3 of the paper."""
+        return int(self._content["model"])
+
+    @property
+    def order(self) -> int:
+        """The order of its Taylor polynomials."""
+        return int(self._content["order"])
+
+    @property
+    def joints(self) -> int:
+        """The number of joints n."""
+        return len(self._content["robot"]["joints"])
+
+    @property
+    def variables(self) -> list[str]:
+        """The names of the polynomials' variables."""
+        return [str(name) for name in self._content["variables"]]
+
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+        return Robot.from_dict(self._content["robot"])
+
+    @property
+    def error_bounds(self) -> list[list[float] | None] | None:
+        """For each joint the proved bounds of (forward dynamics minus model), rad/s², in the
+        operating box; ``None`` where none was asked for or found."""
+        remainder = self._content.get("remainder")
+        return None if remainder is None else list(remainder["bounds"])
+
+    def formulas(self) -> str:
+        """Return the model as formulas, one for each joint."""
+        return self._native.formulas()
+
+    def state(self, q: npt.ArrayLike, qd: npt.ArrayLike) -> Array:
+        """Return the model's state, shape (..., N), at q and qd of shape (..., n).
+
+        N is 2n, or 4n where the model has sines and cosines among its states.
+        """
+        shape, [q, qd] = batch(self.joints, q=q, qd=qd)
+        found = self._native.states(q, qd)
+        return found.reshape((*shape, found.shape[1]))
+
+    def rate(self, x: npt.ArrayLike, u: npt.ArrayLike) -> Array:
+        """Return ẋ, shape (..., N), at states of shape (..., N) and inputs of shape (..., n).
+
+        States and inputs must have the same leading axes.
+        """
+        states, inputs = numbers("x", x), numbers("u", u)
+        if states.ndim == 0 or states.shape[:-1] != inputs.shape[:-1]:
+            raise SettingError(
+                f"x has the shape {states.shape} and u {inputs.shape}; all axes but the last must "
+                "be the same"
+            )
+        flat = states.reshape(-1, states.shape[-1])
+        found = self._native.rate(flat, inputs.reshape(len(flat), inputs.shape[-1]))
+        return found.reshape(states.shape)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Abstraction) and other._content == self._content
+
+    def __hash__(self) -> int:
+        return hash(self._native.to_json())
+
+    def __repr__(self) -> str:
+        name = self._content["robot"]["name"]
+        terms = sum(len(terms) for terms in self._content["acceleration"])
+        return f"<Abstraction of {name}: model {self.model}, order {self.order}, {terms} terms>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _parsed, (self._native.to_json(),)
+
+
+def _parsed(text: str) -> Abstraction:
+    return Abstraction(_reachtube.Abstraction.parse(text, "bytes"))
+
+
+def abstract(
+    robot: Robot,
+    *,
+    model: Literal[1, 2, 3] = 1,
+    order: int = 1,
+    expansion: npt.ArrayLike | None = None,
+    box: npt.ArrayLike | None = None,
+    most_boxes: int | None = None,
+    progress: Progress = None,
+) -> Abstraction:
+    """Make model 1, 2 or 3 of a robot's forward dynamics, of any order.
+
+    Parameters
+    ----------
+    robot
+        The robot.
+    model, order
+        Which of the paper's models, and the order of its Taylor polynomials.
+    expansion : n or 2n numbers, optional
+        Where the model is expanded: positions, or also velocities; 0 where not given.
+    box : 3 or 3n numbers, optional
+        Radii of the box about the expansion point over which the model's error is bounded:
+        positions, velocities and inputs.
+    most_boxes
+        Largest number of parts that the box is cut into.
+    progress
+        As for `conform`.
+
+    Raises
+    ------
+    ReachtubeError
+        Where the mass matrix is singular, or polynomials of this order do not fit.
+    """
+    given = [] if expansion is None else numbers("expansion", expansion).ravel().tolist()
+    radii = [] if box is None else numbers("box", box).ravel().tolist()
+    with shown(progress, "abstract") as tell:
+        return Abstraction(
+            _reachtube.Abstraction(robot._native, model, order, given, radii, most_boxes, tell)
+        )

@@ -1,0 +1,86 @@
+"""Arrays as users have them, as arrays of the product: float64, with checked shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import SettingError
+
+Array = npt.NDArray[np.float64]
+
+
+def numbers(name: str, values: npt.ArrayLike) -> Array:
+    """Return an array of float64 in C order, whatever order, type and library it has."""
+    try:
+        given = np.asarray(values)
+    except ValueError as error:
+        raise SettingError(f"{name} is no array of numbers: {error}") from None
+    if given.dtype.kind not in "fiub":
+        raise SettingError(f"{name} has the type {given.dtype}; give real numbers")
+    return np.ascontiguousarray(given, dtype=np.float64)
+
+
+def samples(name: str, values: npt.ArrayLike, shape: tuple[int, int]) -> Array:
+    """Return an array with one row for each sample and one column for each joint."""
+    array = numbers(name, values)
+    if array.shape != shape:
+        raise SettingError(
+            f"{name} has the shape {array.shape}, but {shape} is needed: one row for each sample, "
+            "one column for each joint"
+        )
+    return array
+
+
+def batch(n: int, **arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Array]]:
+    """Broadcast arguments of shape (..., n) against each other.
+
+    Returns the leading shape, and each argument with one row for each state.
+    """
+    arrays = []
+    for name, values in arguments.items():
+        array = numbers(name, values)
+        if array.ndim == 0 or array.shape[-1] != n:
+            raise SettingError(
+                f"{name} has the shape {array.shape}; its last axis needs {n} entries, one for "
+                "each joint"
+            )
+        arrays.append(array)
+    try:
+        leading = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
+    except ValueError:
+        shapes = ", ".join(f"{name} {np.shape(values)}" for name, values in arguments.items())
+        raise SettingError(f"these shapes do not fit together: {shapes}") from None
+    return leading, [
+        np.ascontiguousarray(np.broadcast_to(array, (*leading, n))).reshape(-1, n)
+        for array in arrays
+    ]
+
+
+def vector(name: str, values: npt.ArrayLike, size: int) -> list[float]:
+    """Return one number for each of `size` entries."""
+    array = numbers(name, values)
+    if array.shape != (size,):
+        raise SettingError(f"{name} has the shape {array.shape}, but ({size},) is needed")
+    return [float(value) for value in array]
+
+
+def frozen(array: Array) -> Array:
+    """Return the array, which can no longer be written to."""
+    array.flags.writeable = False
+    return array
+
+
+def names(values: str | Sequence[str] | None) -> list[str]:
+    """Return a list of names; one name may stand alone."""
+    if values is None:
+        return []
+    return [values] if isinstance(values, str) else [str(value) for value in values]
+
+
+def array_of(values: Any) -> Array:
+    """Return numbers of a file as an array that cannot be written to."""
+    return frozen(np.array(values, dtype=np.float64))

@@ -1,0 +1,47 @@
+"""Boxes: the uncertainty sets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ._arrays import Array, array_of
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A box: all points between ``centre - radius`` and ``centre + radius``.
+
+    Attributes
+    ----------
+    centre, radius : array of shape (n,)
+        rad and rad/s for states, q then q̇; N m for inputs. They cannot be written to.
+    """
+
+    centre: Array
+    radius: Array
+
+    @property
+    def lower(self) -> Array:
+        """Lower bounds, to rounding: the box is defined by centre and radius."""
+        return self.centre - self.radius
+
+    @property
+    def upper(self) -> Array:
+        """Upper bounds, to rounding: the box is defined by centre and radius."""
+        return self.centre + self.radius
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Box):
+            return NotImplemented
+        return bool(
+            self.centre.tobytes() == other.centre.tobytes()
+            and self.radius.tobytes() == other.radius.tobytes()
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.centre.tobytes(), self.radius.tobytes()))
+
+    @classmethod
+    def _of(cls, record: dict[str, Any]) -> Box:
+        return cls(array_of(record["centre"]), array_of(record["radius"]))

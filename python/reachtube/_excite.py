@@ -1,0 +1,109 @@
+"""Exciting motions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy.typing as npt
+
+from . import _reachtube
+from ._arrays import Array, frozen, numbers
+from ._robot import Robot
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Excitation:
+    """A periodic motion that excites a robot's parameters, within its joint limits.
+
+    Attributes
+    ----------
+    t : array of shape (K,)
+        Times over one period, s.
+    q, qd, qdd : array of shape (K, n)
+        Positions, velocities and accelerations.
+    condition, random_condition
+        Condition numbers of the base regressor, of this motion and of a random one.
+    """
+
+    t: Array
+    q: Array
+    qd: Array
+    qdd: Array
+    condition: float
+    random_condition: float
+
+    def to_pandas(self) -> Any:
+        """Return one row for each sample: t, q1.., qd1.., qdd1..."""
+        import pandas
+
+        columns = {"t": self.t}
+        for prefix, values in {"q": self.q, "qd": self.qd, "qdd": self.qdd}.items():
+            columns.update({f"{prefix}{j + 1}": column for j, column in enumerate(values.T)})
+        return pandas.DataFrame(columns)
+
+    def __repr__(self) -> str:
+        return (
+            f"<Excitation {self.t[-1]:g} s, {self.q.shape[1]} joints: condition number "
+            f"{self.condition:.4g}, of a random motion {self.random_condition:.4g}>"
+        )
+
+
+def excite(
+    robot: Robot,
+    *,
+    period: float = 10.0,
+    harmonics: int = 5,
+    criterion: Literal["determinant", "condition"] = "determinant",
+    margin: float = 0.9,
+    speed: float = 1.0,
+    acceleration: npt.ArrayLike = (),
+    torque_noise: npt.ArrayLike = (),
+    starts: int = 4,
+    trials: int = 1500,
+    seed: int = 1,
+    rate: float = 100.0,
+) -> Excitation:
+    """Design a motion that excites a robot's parameters, within its joint limits.
+
+    The motion keeps within the joint limits only: check that the arm hits neither itself nor its
+    surroundings before you run it.
+
+    Parameters
+    ----------
+    robot
+        The robot.
+    period, harmonics
+        Period, s, and the number of harmonics of each joint's Fourier series.
+    criterion
+        The determinant of the information matrix (D-optimal), or the condition number.
+    margin
+        The part of the limits that the motion may use.
+    speed
+        Largest speed of joints without a limit, rad/s.
+    acceleration, torque_noise
+        Largest accelerations, rad/s², and standard deviations of the torque, N m: none, one, or n
+        numbers.
+    starts, trials, seed
+        Number of searches, of motions in each, and the seed.
+    rate
+        Samples per second.
+    """
+    limits = numbers("acceleration", acceleration).ravel().tolist()
+    noise = numbers("torque_noise", torque_noise).ravel().tolist()
+    t, motion, condition, random = _reachtube.excite(
+        robot._native,
+        period,
+        harmonics,
+        criterion == "condition",
+        margin,
+        speed,
+        limits,
+        noise,
+        starts,
+        trials,
+        seed,
+        rate,
+    )
+    q, qd, qdd = (frozen(values) for values in motion)
+    return Excitation(frozen(t), q, qd, qdd, condition, random)

@@ -1,0 +1,245 @@
+"""Reachable sets of polynomial systems."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _reachtube
+from ._arrays import Array, frozen, numbers
+from ._polynomial import Number, Polynomial, variable_name
+from .errors import SettingError
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Flowpipe:
+    """The reachable set of a polynomial system: a box at each sample and over each step.
+
+    Outer, with directed rounding: every solution from a state in the initial set, under any input
+    in the input set, is within the bounds, at samples and between them.
+
+    Attributes
+    ----------
+    states
+        Names of the states, N.
+    t : array of shape (K,)
+        Times, s; they end early where ``ended`` says so.
+    lower, upper : array of shape (K, N)
+        Bounds at samples.
+    step_lower, step_upper : array of shape (K - 1, N)
+        Bounds over steps.
+    ended
+        The time, and the state whose bounds grew the most, where no enclosure could be verified
+        further; ``None`` where the flowpipe reached the last sample.
+    """
+
+    states: tuple[str, ...]
+    t: Array
+    lower: Array
+    upper: Array
+    step_lower: Array
+    step_upper: Array
+    ended: tuple[float, str] | None
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether the flowpipe reached the last sample."""
+        return self.ended is None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as a new dictionary."""
+        return dict(vars(self))
+
+    def to_pandas(self) -> Any:
+        """Return one row for each sample: t, then lower and upper bound of each state."""
+        import pandas
+
+        columns = {"t": self.t}
+        for i, name in enumerate(self.states):
+            columns[f"{name}_lower"] = self.lower[:, i]
+            columns[f"{name}_upper"] = self.upper[:, i]
+        return pandas.DataFrame(columns)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Flowpipe):
+            return NotImplemented
+        return all(
+            np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
+            for a, b in zip(vars(self).values(), vars(other).values(), strict=True)
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.states, self.lower.tobytes(), self.upper.tobytes()))
+
+    def __repr__(self) -> str:
+        end = "" if self.ended is None else f", ended at {self.ended[0]:g} s"
+        return f"<Flowpipe of {', '.join(self.states)}: {len(self.t)} samples{end}>"
+
+
+def _terms(
+    rates: Mapping[str, Polynomial | Number], inputs: Sequence[str]
+) -> tuple[list[int], list[list[tuple[list[int], float]]]]:
+    """Return the states that have sines or cosines, and the terms of each rate."""
+    states = list(rates)
+    polynomials = [Polynomial.of(rate) for rate in rates.values()]
+    factors = {
+        factor for rate in polynomials for monomial in rate.terms for factor, _ in monomial
+    }
+    known = {*states, *inputs}
+    if unknown := sorted({name for name, _ in factors} - known):
+        raise SettingError(
+            f"{', '.join(unknown)}: neither a state ({', '.join(states)}) nor an input; give its "
+            "rate, or its set in inputs"
+        )
+    turning = {name for name, kind in factors if kind != "x"}
+    if wrong := sorted(turning - set(states)):
+        raise SettingError(f"{', '.join(wrong)}: only states have sines and cosines")
+    angles = [states.index(name) for name in states if name in turning]
+    order = [(name, "x") for name in (*states, *inputs)]
+    order += [(states[i], kind) for kind in ("sin", "cos") for i in angles]
+    place = {factor: k for k, factor in enumerate(order)}
+
+    def exponents(monomial: Any) -> list[int]:
+        powers = [0] * len(order)
+        for factor, exponent in monomial:
+            powers[place[factor]] = exponent
+        return powers
+
+    terms = [
+        [(exponents(monomial), value) for monomial, value in rate.terms.items()]
+        for rate in polynomials
+    ]
+    return angles, terms
+
+
+def _names(mapping: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return a mapping whose keys are names of variables."""
+    named = {}
+    for key, value in mapping.items():
+        name = key if isinstance(key, str) else variable_name(key)
+        if name is None:
+            raise SettingError(f"{key} is no variable")
+        named[name] = value
+    return named
+
+
+def _sides(sets: Mapping[str, Any], names: Sequence[str]) -> tuple[list[float], list[float]]:
+    """Return middles and radii whose boxes hold the intervals, given as numbers or pairs."""
+    centres, radii = [], []
+    for name in names:
+        if name not in sets:
+            raise SettingError(f"{name} has no initial value; give a number or an interval")
+        low, high = np.broadcast_to(numbers(name, sets[name]).ravel(), 2)
+        if not low <= high:
+            raise SettingError(f"{name} is in [{low}, {high}]; the lower bound comes first")
+        centre = float(low + (high - low) / 2)
+        radius = max(float(high) - centre, centre - float(low))
+        # Differences are rounded to nearest: the next number is an upper bound of each.
+        centres.append(centre)
+        radii.append(0.0 if low == high else float(np.nextafter(radius, np.inf)))
+    return centres, radii
+
+
+def flowpipe(
+    rates: Mapping[Any, Polynomial | Number],
+    initial: Mapping[Any, npt.ArrayLike],
+    t: npt.ArrayLike,
+    *,
+    inputs: Mapping[Any, npt.ArrayLike] | None = None,
+    measured: Mapping[Any, npt.ArrayLike] | None = None,
+    method: Literal["linearisation", "taylor"] = "linearisation",
+    taylor_order: int = 4,
+    vertex_variables: int | None = None,
+    order: int | None = None,
+    pieces: Mapping[Any, int] | None = None,
+) -> Flowpipe:
+    """Compute the reachable set of a polynomial system ẋ = f(x, u).
+
+    Parameters
+    ----------
+    rates
+        The rate of each state, as a polynomial in states and inputs, and in sines and cosines of
+        states.
+    initial
+        The initial set: an interval ``(low, high)`` or a number for each state.
+    t : array of shape (K,)
+        Sample times, s, which increase.
+    inputs
+        The set of each input: any measurable function with values in it.
+    measured : arrays of shape (K,)
+        Measured inputs, held from sample to sample, about which the sets are; 0 where not given.
+    method, taylor_order
+        Conservative linearisation of zonotopes, for large inputs, or Taylor models of some order
+        in the initial state, for large initial sets.
+    vertex_variables, order
+        Number of variables over whose vertices linearisation errors are bounded, and the most
+        generators in multiples of the states.
+    pieces
+        Number of pieces of the initial set along a state; 1 where not given.
+
+    Returns
+    -------
+    Flowpipe
+        Where no enclosure could be verified to the end, it ends early and says so in ``ended``.
+
+    Examples
+    --------
+    The Van der Pol oscillator:
+
+    >>> import numpy as np, reachtube as rt
+    >>> x, y = rt.variables("x y")
+    >>> pipe = rt.flowpipe(
+    ...     {x: y, y: (1 - x**2) * y - x},
+    ...     {x: (1.39, 1.41), y: 2.4},
+    ...     np.linspace(0.0, 1.0, 101),
+    ... )
+    >>> pipe.is_reached
+    True
+    """
+    named, sets = _names(rates), _names(inputs or {})
+    angles, terms = _terms(named, list(sets))
+    times = numbers("t", t)
+    if times.ndim != 1 or len(times) == 0:
+        raise SettingError(f"t has the shape {times.shape}; give one axis of times")
+    centre, radius = _sides(_names(initial), list(named))
+    input_centre, input_radius = _sides(sets, list(sets))
+    along = _names(measured or {})
+    if unknown := sorted(set(along) - set(sets)):
+        raise SettingError(f"measured: {', '.join(unknown)} is no input; give its set in inputs")
+    columns = [
+        np.broadcast_to(numbers(f"measured {name}", along.get(name, 0.0)), times.shape)
+        for name in sets
+    ]
+    rows = np.array(columns, dtype=np.float64).T.reshape(len(times), len(sets))
+    parts = _names(pieces or {})
+    samples, steps, ended = _reachtube.flowpipe(
+        len(sets),
+        angles,
+        terms,
+        times.tolist(),
+        centre,
+        radius,
+        np.ascontiguousarray(rows),
+        input_centre,
+        input_radius,
+        taylor_order if method == "taylor" else None,
+        vertex_variables,
+        order,
+        [int(parts.get(name, 1)) for name in named] if parts else [],
+    )
+    lower, upper = (frozen(values) for values in samples)
+    step_lower, step_upper = (frozen(values) for values in steps)
+    states = tuple(named)
+    return Flowpipe(
+        states,
+        frozen(times[: len(lower)] - times[0]),
+        lower,
+        upper,
+        step_lower,
+        step_upper,
+        None if ended is None else (ended[0], states[ended[1]]),
+    )

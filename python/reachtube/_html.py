@@ -1,0 +1,88 @@
+"""Results as HTML, for notebooks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from html import escape
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ._model import Check, Model
+
+GOOD, BAD = "#1a7f4b", "#b3261e"
+
+
+def table(header: list[str], rows: list[list[str]]) -> str:
+    """Return a table whose first column is text."""
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
+    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+def verdict(is_good: bool, words: str) -> str:
+    """Return a verdict, green or red."""
+    return f'<p style="color:{GOOD if is_good else BAD};font-weight:600">{escape(words)}</p>'
+
+
+def rows_of_sets(model: Model) -> Iterator[tuple[str, str, str, float, float]]:
+    """Yield set, entry, unit, centre and radius of all entries."""
+    n = model.joints
+    kinds = [joint.get("type", "revolute") for joint in model._content["robot"]["joints"]]
+    lengths = ["m" if kind == "prismatic" else "rad" for kind in kinds]
+    units = lengths + [f"{unit}/s" for unit in lengths]
+    states = [f"q{j + 1}" for j in range(n)] + [f"qd{j + 1}" for j in range(n)]
+    forces = ["N" if kind == "prismatic" else "N m" for kind in kinds]
+    inputs = [f"u{j + 1}" for j in range(n)]
+    boxes = [("X0", states, units, model.initial_set), ("U", inputs, forces, model.input_set)]
+    if model.noise_set is not None:
+        boxes.append(("V", states, units, model.noise_set))
+    for name, entries, own, box in boxes:
+        for k, entry in enumerate(entries):
+            yield name, entry, own[k], float(box.centre[k]), float(box.radius[k])
+
+
+def bar(radius: float, largest: float) -> str:
+    """Return a small bar as SVG."""
+    width = 120 * radius / largest if largest > 0 else 0.0
+    return (
+        '<svg width="120" height="10" role="img" '
+        f'aria-label="{radius:.3g}"><rect width="{width:.1f}" height="10" fill="#4878a8"/></svg>'
+    )
+
+
+def model(found: Model) -> str:
+    """Return verdict, sets and their radii as bars."""
+    words = "conformant, proved at samples" if found.verified else "not proved conformant"
+    cost = "a reachable set was lost" if found.cost is None else f"cost {found.cost:.6g}"
+    proof = found.proof
+    text = verdict(found.verified, f"{words}: {proof['runs']} recordings, {cost}")
+    text += "".join(f"<p>{escape(warning)}</p>" for warning in found.warnings)
+    rows = list(rows_of_sets(found))
+    largest: dict[tuple[str, str], float] = {}
+    for name, _, unit, _, radius in rows:
+        largest[name, unit] = max(radius, largest.get((name, unit), 0.0))
+    cells = [
+        [name, entry, f"{centre:.4g}", f"{radius:.4g}", escape(unit),
+         bar(radius, largest[name, unit])]
+        for name, entry, unit, centre, radius in rows
+    ]
+    text += table(["set", "entry", "centre", "radius", "unit", ""], cells)
+    bound = found.violation_probability
+    return text + (
+        f"<p>The next motion leaves the set with probability at most {bound:.3g} "
+        f"({escape(found.trust['basis'])}).</p>"
+    )
+
+
+def check(found: Check) -> str:
+    """Return verdict and one row for each suite."""
+    words = "conformant" if found.conformant else "not conformant"
+    text = verdict(found.conformant, f"{words}: {found.violations} of {found.rows} rows outside")
+    rows = []
+    for suite in found.suites:
+        worst = suite["violations"]["worst"] or {}
+        place = f"{worst['state']} at {worst['time']:.3f} s in {worst['run']}" if worst else ""
+        excess = f"{worst['excess']:.3g}" if worst else ""
+        count = str(suite["violations"]["count"])
+        rows.append([escape(suite["name"]), str(suite["runs"]), count, excess, escape(place)])
+    return text + table(["suite", "runs", "outside", "furthest", "where"], rows)

@@ -1,0 +1,169 @@
+"""Identification of robots."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Sequence
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from . import _reachtube
+from ._files import write_new
+from ._progress import Progress, shown
+from ._recordings import Run
+from ._robot import Robot
+from .errors import ReachtubeError, ReachtubeWarning
+
+Logs: TypeAlias = "Sequence[Run | str | PathLike[str]] | Run | str | PathLike[str]"
+
+
+class Identification:
+    """A robot identified from recordings, with the quality of its fits and its validation."""
+
+    __slots__ = ("_content", "_native")
+
+    def __init__(self, native: _reachtube.Identification) -> None:
+        self._native = native
+        self._content: dict[str, Any] = json.loads(native.summary())
+
+    @property
+    def robot(self) -> Robot:
+        """The identified robot."""
+        return Robot(self._native.robot())
+
+    @property
+    def warnings(self) -> list[str]:
+        """Implausible results, and steps that were not possible."""
+        return [str(warning) for warning in self._content["warnings"]]
+
+    @property
+    def parameters(self) -> list[dict[str, Any]]:
+        """The identifiable combinations: name, value, standard error, ..."""
+        return list(self._content["parameters"])
+
+    @property
+    def validation(self) -> list[dict[str, Any]]:
+        """Errors of the predicted torque, for each recording that was kept back."""
+        return list(self._content["validation"])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as a new dictionary, with the keys of the command's JSON."""
+        content: dict[str, Any] = json.loads(self._native.summary())
+        return content
+
+    def to_pandas(self) -> Any:
+        """Return one row for each identifiable combination of parameters."""
+        import pandas
+
+        return pandas.DataFrame(self.parameters)
+
+    def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
+        """Write the robot file, with standard errors. A file that exists is replaced with
+        ``force=True`` only."""
+        write_new(Path(path), self._native.robot_toml(), force=force)
+
+    def report(self, path: str | PathLike[str], *, force: bool = False) -> Path:
+        """Write the page about the identification, and return its path."""
+        write_new(Path(path), self._native.page(), force=force)
+        return Path(path)
+
+    def save_urdf(
+        self, original: Robot, path: str | PathLike[str], *, force: bool = False
+    ) -> None:
+        """Write the URDF that `original` was read from, with the identified values, and the TOML
+        file with what a URDF has no elements for beside it.
+
+        Raises
+        ------
+        ReachtubeError
+            Where `original` was not read from a URDF.
+        """
+        texts = original._native.updated_urdf(self._native.robot())
+        if texts is None:
+            raise ReachtubeError(f"{original.name} was not read from a URDF; use save()")
+        target = Path(path)
+        write_new(target, texts[0], force=force)
+        write_new(target.with_suffix(".toml"), texts[1], force=force)
+
+    def __repr__(self) -> str:
+        count, determined = len(self.parameters), self._content["determined"]
+        name = self._content["robot"]["name"]
+        return f"<Identification of {name}: {determined} of {count} combinations determined>"
+
+
+def _recorded(logs: Logs) -> tuple[list[str], list[_reachtube.Run]]:
+    """Return paths and runs."""
+    items = [logs] if isinstance(logs, (Run, str, PathLike)) else list(logs)
+    paths = [fspath(item) for item in items if not isinstance(item, Run)]
+    return paths, [item._native for item in items if isinstance(item, Run)]
+
+
+def identify(
+    robot: Robot,
+    *,
+    dynamic: Logs = (),
+    rest: Logs = (),
+    friction: Logs = (),
+    validate: Logs = (),
+    settings: str | PathLike[str] | None = None,
+    prepare: dict[str, Any] | None = None,
+    model: dict[str, Any] | None = None,
+    link_torque: bool = False,
+    progress: Progress = None,
+) -> Identification:
+    """Identify gravity, friction and inertia of a robot from recordings of motor torques.
+
+    Parameters
+    ----------
+    robot
+        Its geometry, and the prior of its links.
+    dynamic, rest, friction, validate
+        Recordings of exciting motions, of poses at rest, of slow motions of single joints, and of
+        motions that are kept back: runs, or paths of CSV files or folders of them.
+    settings
+        A TOML file with recordings and settings, whose paths are relative to its folder.
+    prepare, model
+        Settings of the preparation and of the model, by the names of the TOML file's sections, for
+        example ``prepare={"cut_off": 5.0}``, ``model={"stribeck": True}``.
+    link_torque
+        Whether the torque was measured behind the gear, so that motors are not part of it.
+    progress
+        As for `conform`.
+
+    Returns
+    -------
+    Identification
+        What is implausible is also warned of, as `ReachtubeWarning`.
+
+    Raises
+    ------
+    DefectsError
+        Recordings with defects, all of them.
+    ReachtubeError
+        Settings that do not suit the recordings, and fits that are not possible.
+    """
+    toml, folder = None, Path()
+    if settings is not None:
+        folder = Path(settings).parent
+        try:
+            toml = Path(settings).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ReachtubeError(f"{settings}: {error}") from None
+    own = dict(model or {})
+    if link_torque:
+        own["motor_inertia"] = False
+    given = json.dumps({"prepare": dict(prepare or {}), "model": own})
+    here = Path.cwd()
+    recorded = []
+    for logs in (rest, friction, dynamic, validate):
+        paths, runs = _recorded(logs)
+        recorded.append(([str(here / path) for path in paths], runs))
+    with shown(progress, "identify") as tell:
+        found = Identification(
+            _reachtube.identify(robot._native, recorded, toml, given, str(folder), tell)
+        )
+    for warning in found.warnings:
+        warnings.warn(warning, ReachtubeWarning, 2)
+    return found

@@ -1,0 +1,179 @@
+"""Reachable sets along recordings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from . import _reachtube
+from ._arrays import Array, frozen, names
+from ._files import check_new
+from ._model import Data, Model, differing
+from ._progress import Progress, shown
+from ._recordings import source
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ReachableSet:
+    """The reachable set along a suite, or along one run with a nominal motion of its own.
+
+    Outer: at each sample and over each step between samples, the bounds enclose every state that
+    the model can reach, with directed rounding. The noise set V is not part of them.
+
+    Attributes
+    ----------
+    suite, run
+        The suite, and the run where it has a nominal motion of its own.
+    t : array of shape (K,)
+        Times since the first sample, s.
+    nominal, lower, upper : array of shape (K, 2n)
+        The nominal motion, and the bounds at samples; rad and rad/s, q then q̇.
+    step_lower, step_upper : array of shape (K - 1, 2n)
+        The bounds over the steps from one sample to the next.
+    lost
+        Where and why the set ended before its suite; ``None`` where it did not.
+    """
+
+    suite: str
+    run: str | None
+    t: Array
+    nominal: Array
+    lower: Array
+    upper: Array
+    step_lower: Array
+    step_upper: Array
+    lost: dict[str, Any] | None
+
+    @property
+    def joints(self) -> int:
+        """The number of joints n."""
+        return self.nominal.shape[1] // 2
+
+    def contains(self, states: Array) -> Array:
+        """Return for states of shape (K, 2n) at the samples whether each is within the bounds.
+
+        It compares numbers as they are; `check` is what proves enclosure.
+        """
+        return (self.lower <= states) & (states <= self.upper)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as a new dictionary."""
+        return dict(vars(self))
+
+    def to_pandas(self) -> Any:
+        """Return one row for each sample: t, then lower, nominal and upper of each state."""
+        import pandas
+
+        n = self.joints
+        columns = {"t": self.t}
+        for i in range(2 * n):
+            state = f"q{i + 1}" if i < n else f"qd{i - n + 1}"
+            parts = {"lower": self.lower, "nominal": self.nominal, "upper": self.upper}
+            columns.update({f"{state}_{kind}": part[:, i] for kind, part in parts.items()})
+        return pandas.DataFrame(columns)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, ReachableSet):
+            return NotImplemented
+        return all(
+            np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
+            for a, b in zip(vars(self).values(), vars(other).values(), strict=True)
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.suite, self.run, self.lower.tobytes(), self.upper.tobytes()))
+
+    def __repr__(self) -> str:
+        name = self.suite if self.run is None else f"{self.suite}, {self.run}"
+        end = f"lost after {self.t[-1]:g} s" if self.lost else f"{self.t[-1]:g} s"
+        return f"<ReachableSet {name}: {len(self.t)} samples, {end}>"
+
+
+def reach(
+    model: Model,
+    data: Data,
+    *,
+    suites: str | Sequence[str] | None = None,
+    until: float | None = None,
+    max_gap: float | None = None,
+    progress: Progress = None,
+) -> list[ReachableSet]:
+    """Compute the reachable sets of a model along recordings, at samples and between them.
+
+    Parameters
+    ----------
+    model, data, suites, until, max_gap, progress
+        As for `check`.
+
+    Returns
+    -------
+    list of ReachableSet
+        One for each suite whose runs share their input, and for each other run.
+    """
+    with shown(progress, "reach") as tell:
+        found = _reachtube.reach(
+            model._text, source(data), names(suites), differing(None, until, max_gap), tell
+        )
+    return [
+        ReachableSet(
+            suite,
+            run,
+            frozen(t),
+            *(frozen(array) for array in (*samples, *steps)),
+            lost=None if lost is None else json.loads(lost),
+        )
+        for suite, run, t, samples, steps, lost in found
+    ]
+
+
+def report(
+    model: Model,
+    data: Data,
+    folder: str | PathLike[str],
+    *,
+    suites: str | Sequence[str] | None = None,
+    until: float | None = None,
+    max_gap: float | None = None,
+    assets: Literal["inside", "beside"] = "inside",
+    force: bool = False,
+    progress: Progress = None,
+) -> Path:
+    """Write the page that compares a model with recordings.
+
+    Parameters
+    ----------
+    model, data, suites, until, max_gap, progress
+        As for `check`.
+    folder
+        Where ``report.html`` is written; it works offline.
+    assets
+        Whether the library of the figures (5 MB) is in the page or beside it.
+    force
+        Whether a page that exists is replaced.
+
+    Returns
+    -------
+    Path
+        The page.
+    """
+    check_new(Path(folder) / "report.html", force=force)
+    settings = differing(None, until, max_gap)
+    with shown(progress, "report") as tell:
+        return Path(
+            _reachtube.report(
+                model._text,
+                source(data),
+                names(suites),
+                settings,
+                fspath(folder),
+                assets == "beside",
+                tell,
+            )
+        )
+

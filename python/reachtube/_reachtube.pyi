@@ -1,0 +1,159 @@
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+_Array: TypeAlias = npt.NDArray[np.float64]
+_Progress: TypeAlias = Callable[[int, int, list[str]], object] | None
+
+def version() -> str: ...
+
+class Robot:
+    @staticmethod
+    def load(
+        path: str, base: str | None = None, tip: str | None = None, lock: list[str] = ...
+    ) -> Robot: ...
+    @staticmethod
+    def from_toml(text: str, origin: str) -> Robot: ...
+    @staticmethod
+    def from_description(text: str) -> Robot: ...
+    def to_toml(self) -> str: ...
+    def updated_urdf(self, robot: Robot) -> tuple[str, str] | None: ...
+    def description(self) -> str: ...
+    def rnea(self, q: _Array, qd: _Array, qdd: _Array) -> _Array: ...
+    def aba(self, q: _Array, qd: _Array, tau: _Array) -> _Array: ...
+    def mass_matrix(self, q: _Array) -> _Array: ...
+    def gravity(self, q: _Array) -> _Array: ...
+    def coriolis(self, q: _Array, qd: _Array) -> _Array: ...
+    def friction(self, q: _Array, qd: _Array) -> tuple[_Array, _Array]: ...
+    def regressor(self, q: _Array, qd: _Array, qdd: _Array) -> _Array: ...
+    def parameters(self) -> tuple[list[str], list[float]]: ...
+
+class Run:
+    def __new__(
+        cls,
+        start: float | None,
+        t: _Array,
+        q: _Array,
+        qd: _Array,
+        tau: _Array,
+        temperature: _Array | None = None,
+    ) -> Run: ...
+    def arrays(self) -> tuple[_Array, _Array, _Array, _Array, _Array | None]: ...
+    def start(self) -> float: ...
+    def samples(self) -> int: ...
+    def joints(self) -> int: ...
+    def duration(self) -> float: ...
+
+class Source:
+    @staticmethod
+    def open(folder: str) -> Source: ...
+    @staticmethod
+    def of_runs(
+        runs: list[tuple[Run, str, str | None, str | None, int | None, float | None]],
+    ) -> Source: ...
+    def index(
+        self,
+    ) -> list[tuple[str, str | None, str | None, str | None, int, float | None]]: ...
+    def read(self, index: int) -> Run: ...
+    def inspection(self, max_gap: float | None = None) -> str | None: ...
+
+class Abstraction:
+    def __new__(
+        cls,
+        robot: Robot,
+        model: int,
+        order: int,
+        expansion: list[float],
+        radii: list[float],
+        most_boxes: int | None = None,
+        progress: _Progress = None,
+    ) -> Abstraction: ...
+    @staticmethod
+    def parse(text: str, origin: str) -> Abstraction: ...
+    def to_json(self) -> str: ...
+    def formulas(self) -> str: ...
+    def states(self, q: _Array, qd: _Array) -> _Array: ...
+    def rate(self, x: _Array, u: _Array) -> _Array: ...
+
+class Identification:
+    def robot(self) -> Robot: ...
+    def robot_toml(self) -> str: ...
+    def summary(self) -> str: ...
+    def page(self) -> str: ...
+
+def conform(
+    robot: Robot | None,
+    abstraction: Abstraction | None,
+    source: Source,
+    suites: list[str],
+    settings: str,
+    fit: list[str],
+    pull: float | None = None,
+    resume: str | None = None,
+    progress: _Progress = None,
+) -> tuple[str, list[str]]: ...
+def check_model(text: str, origin: str) -> None: ...
+def check(
+    model: str, source: Source, suites: list[str], settings: str, progress: _Progress = None
+) -> str: ...
+def reach(
+    model: str, source: Source, suites: list[str], settings: str, progress: _Progress = None
+) -> list[
+    tuple[str, str | None, _Array, tuple[_Array, _Array, _Array], tuple[_Array, _Array], str | None]
+]: ...
+def report(
+    model: str,
+    source: Source,
+    suites: list[str],
+    settings: str,
+    folder: str,
+    beside: bool,
+    progress: _Progress = None,
+) -> str: ...
+def identify(
+    robot: Robot,
+    recorded: list[tuple[list[str], list[Run]]],
+    toml: str | None,
+    given: str,
+    folder: str,
+    progress: _Progress = None,
+) -> Identification: ...
+def excite(
+    robot: Robot,
+    period: float,
+    harmonics: int,
+    condition: bool,
+    margin: float,
+    speed: float,
+    acceleration: list[float],
+    torque_noise: list[float],
+    starts: int,
+    trials: int,
+    seed: int,
+    rate: float,
+) -> tuple[_Array, tuple[_Array, _Array, _Array], float, float]: ...
+def flowpipe(
+    inputs: int,
+    angles: list[int],
+    terms: list[list[tuple[list[int], float]]],
+    times: list[float],
+    centre: list[float],
+    radius: list[float],
+    measured: _Array,
+    input_centre: list[float],
+    input_radius: list[float],
+    taylor: int | None,
+    vertex_variables: int | None,
+    order: int | None,
+    pieces: list[int],
+) -> tuple[tuple[_Array, _Array], tuple[_Array, _Array], tuple[float, int] | None]: ...
+def read_log(
+    paths: list[str],
+    topics: list[str],
+    joints: list[str],
+    receipt_time: bool,
+    recover: bool,
+    cutting: tuple[str | None, bool, float, float | None],
+) -> tuple[list[tuple[Run, str, str | None, str | None]], list[str], list[str]]: ...

@@ -1,0 +1,290 @@
+"""Runs and data sets."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from os import PathLike, fspath
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _reachtube
+from ._arrays import Array, frozen, numbers, samples
+from .errors import SettingError
+
+
+class Run:
+    """A recording: K samples of n joints.
+
+    Parameters
+    ----------
+    t : array of shape (K,)
+        Times, s, which increase.
+    q, qd : array of shape (K, n)
+        Positions and velocities, rad and rad/s (m and m/s for prismatic joints).
+    tau : array of shape (K, n)
+        Torques, N m; what they mean is said where the run is used.
+    suite
+        The test suite: runs that start from one state under one input.
+    motion
+        The motion that the suite is part of; suites of one motion are not independent.
+    name
+        A name for messages; the number of the run in its data set where there is none.
+    temperature : array of shape (K, n), optional
+        Temperatures of the joints, °C.
+    order
+        Place in the order in which the suite's runs were recorded, from 1.
+
+    Raises
+    ------
+    SettingError
+        For shapes that do not fit, numbers that are not finite, and times that do not increase.
+
+    Examples
+    --------
+    >>> import numpy as np, reachtube as rt
+    >>> run = rt.Run([0.0, 0.1], np.zeros((2, 6)), np.zeros((2, 6)), np.zeros((2, 6)), suite="A")
+    >>> len(run), run.joints, run.suite
+    (2, 6, 'A')
+    """
+
+    __slots__ = ("_arrays", "_native", "motion", "name", "order", "suite")
+
+    def __init__(
+        self,
+        t: npt.ArrayLike,
+        q: npt.ArrayLike,
+        qd: npt.ArrayLike,
+        tau: npt.ArrayLike,
+        *,
+        suite: str | None = None,
+        motion: str | None = None,
+        name: str | None = None,
+        temperature: npt.ArrayLike | None = None,
+        order: int | None = None,
+    ) -> None:
+        times, positions = numbers("t", t), numbers("q", q)
+        if times.ndim != 1:
+            raise SettingError(f"t has the shape {times.shape}, but one axis is needed")
+        if positions.ndim != 2:
+            raise SettingError(
+                f"q has the shape {positions.shape}, but two axes are needed: one row for each "
+                "sample, one column for each joint"
+            )
+        shape = (len(times), positions.shape[1])
+        warm = None if temperature is None else samples("temperature", temperature, shape)
+        native = _reachtube.Run(
+            None,
+            times,
+            samples("q", positions, shape),
+            samples("qd", qd, shape),
+            samples("tau", tau, shape),
+            warm,
+        )
+        self._set(native, suite, motion, name, order)
+
+    def _set(
+        self,
+        native: _reachtube.Run,
+        suite: str | None,
+        motion: str | None,
+        name: str | None,
+        order: int | None,
+    ) -> None:
+        self._native = native
+        self._arrays: list[Array | None] | None = None
+        self.suite, self.motion, self.name, self.order = suite, motion, name, order
+
+    @classmethod
+    def _of(
+        cls,
+        native: _reachtube.Run,
+        suite: str | None,
+        motion: str | None,
+        name: str | None,
+        order: int | None = None,
+    ) -> Run:
+        run = cls.__new__(cls)
+        run._set(native, suite, motion, name, order)
+        return run
+
+    def _array(self, index: int) -> Array | None:
+        if self._arrays is None:
+            arrays = self._native.arrays()
+            self._arrays = [None if array is None else frozen(array) for array in arrays]
+        return self._arrays[index]
+
+    def _values(self, index: int) -> Array:
+        array = self._array(index)
+        assert array is not None
+        return array
+
+    @property
+    def t(self) -> Array:
+        """Times, K, s, to rounding."""
+        return self.start + self._values(0)
+
+    @property
+    def start(self) -> float:
+        """Time of the first sample, s."""
+        return self._native.start()
+
+    @property
+    def q(self) -> Array:
+        """Positions, K x n, rad."""
+        return self._values(1)
+
+    @property
+    def qd(self) -> Array:
+        """Velocities, K x n, rad/s."""
+        return self._values(2)
+
+    @property
+    def tau(self) -> Array:
+        """Torques, K x n, N m."""
+        return self._values(3)
+
+    @property
+    def temperature(self) -> Array | None:
+        """Temperatures, K x n, °C, where they were recorded."""
+        return self._array(4)
+
+    @property
+    def joints(self) -> int:
+        """The number of joints n."""
+        return self._native.joints()
+
+    @property
+    def duration(self) -> float:
+        """Time from the first sample to the last, s."""
+        return self._native.duration()
+
+    def to_pandas(self) -> Any:
+        """Return a pandas DataFrame with the columns t, q1.., qd1.., tau1.. of the CSV format."""
+        import pandas
+
+        columns: dict[str, Array] = {"t": self.t}
+        parts = {"q": self.q, "qd": self.qd, "tau": self.tau, "temp": self.temperature}
+        for prefix, values in parts.items():
+            if values is not None:
+                columns.update({f"{prefix}{j + 1}": values[:, j] for j in range(self.joints)})
+        return pandas.DataFrame(columns)
+
+    def __len__(self) -> int:
+        return self._native.samples()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Run):
+            return NotImplemented
+        return self.__reduce__() == other.__reduce__()
+
+    def __hash__(self) -> int:
+        return hash(self.__reduce__())
+
+    def __repr__(self) -> str:
+        name = f"{self.name}: " if self.name else ""
+        suite = f", suite {self.suite}" if self.suite else ""
+        return f"<Run {name}{len(self)} samples of {self.joints} joints, {self.duration:g} s{suite}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        warm = self.temperature
+        arrays = [self._values(0), self.q, self.qd, self.tau, warm]
+        data = tuple(None if a is None else a.tobytes() for a in arrays)
+        labels = (self.suite, self.motion, self.name, self.order)
+        return _restored, (self.joints, self.start, data, labels)
+
+
+def _restored(
+    joints: int,
+    start: float,
+    data: tuple[bytes | None, ...],
+    labels: tuple[str | None, str | None, str | None, int | None],
+) -> Run:
+    """Return the run that was pickled, to the last bit."""
+    flat = [np.frombuffer(part or b"", dtype=np.float64) for part in data]
+    q, qd, tau, warm = (values.reshape(-1, joints) for values in flat[1:])
+    given = None if data[4] is None else warm
+    return Run._of(_reachtube.Run(start, flat[0], q, qd, tau, given), *labels)
+
+
+class Recordings:
+    """A data set: runs in memory, or a folder of CSV files with an index.
+
+    Parameters
+    ----------
+    runs
+        The runs.
+
+    Examples
+    --------
+    >>> import numpy as np, reachtube as rt
+    >>> still = np.zeros((2, 6))
+    >>> data = rt.Recordings([rt.Run([0.0, 0.1], still, still, still, suite="A")])
+    >>> len(data), data.suites
+    (1, ['A'])
+    """
+
+    __slots__ = ("_folder", "_index", "_native")
+
+    def __init__(self, runs: Iterable[Run]) -> None:
+        named = [
+            (run._native, run.name or f"run {k}", run.suite, run.motion, run.order, None)
+            for k, run in enumerate(runs, 1)
+        ]
+        self._set(_reachtube.Source.of_runs(named), None)
+
+    @classmethod
+    def open(cls, folder: str | PathLike[str]) -> Recordings:
+        """Open a folder with ``runs.csv`` and its recordings, which are read when they are used.
+
+        Raises
+        ------
+        DefectsError
+            Where the index has defects.
+        """
+        data = cls.__new__(cls)
+        data._set(_reachtube.Source.open(fspath(folder)), fspath(folder))
+        return data
+
+    def _set(self, native: _reachtube.Source, folder: str | None) -> None:
+        self._native, self._folder, self._index = native, folder, native.index()
+
+    @property
+    def suites(self) -> list[str]:
+        """The names of the test suites, in the order of their first runs."""
+        return list(dict.fromkeys(row[1] for row in self._index if row[1] is not None))
+
+    def inspect(self, *, max_gap: float | None = None) -> dict[str, Any] | None:
+        """Read all recordings of a folder and return a summary; ``None`` for runs in memory."""
+        text = self._native.inspection(max_gap)
+        return None if text is None else dict(json.loads(text))
+
+    def __len__(self) -> int:
+        return len(self._index)
+
+    def __getitem__(self, index: int) -> Run:
+        place = range(len(self))[index]
+        file, suite, motion, _, order, _ = self._index[place]
+        return Run._of(self._native.read(place), suite, motion, file, order)
+
+    def __iter__(self) -> Iterator[Run]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        where = self._folder or "in memory"
+        return f"<Recordings {where}: {len(self)} runs, {len(self.suites)} suites>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        if self._folder is not None:
+            return Recordings.open, (self._folder,)
+        return Recordings, (list(self),)
+
+
+def source(data: Recordings | Run | Iterable[Run]) -> _reachtube.Source:
+    """Return the native source of what a user gives as recordings."""
+    if isinstance(data, Recordings):
+        return data._native
+    runs = [data] if isinstance(data, Run) else list(data)
+    return Recordings(runs)._native

@@ -1,0 +1,83 @@
+"""Figures with matplotlib, which the extra ``reachtube[plot]`` installs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._reach import ReachableSet
+from ._recordings import Recordings, Run
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["flowpipe", "reachable_set"]
+
+
+def reachable_set(
+    found: ReachableSet,
+    data: Recordings | Sequence[Run] = (),
+    *,
+    deviation: bool = False,
+    figure: Figure | None = None,
+) -> Figure:
+    """Draw a reachable set over time, one panel for each state, with recordings of its suite.
+
+    Parameters
+    ----------
+    found
+        What `reach` returned.
+    data
+        Recordings; those of other suites, and of other runs where the set is that of one, are
+        left out.
+    deviation
+        Whether the nominal motion is taken off.
+    figure
+        The figure to draw in; a new one where none is given.
+    """
+    import matplotlib.pyplot as plt
+
+    n = found.joints
+    drawing: Any = figure or plt.figure(figsize=(2.6 * n, 4.4), layout="constrained")
+    axes = drawing.subplots(2, n, sharex=True, squeeze=False)
+    base = found.nominal if deviation else np.zeros_like(found.nominal)
+    runs = [
+        run
+        for run in data
+        if run.suite == found.suite and found.run in (None, run.name)
+    ]
+    for i in range(2 * n):
+        axis = axes[i // n, i % n]
+        low, high = found.lower[:, i] - base[:, i], found.upper[:, i] - base[:, i]
+        axis.fill_between(found.t, low, high, color="0.82", linewidth=0, label="reachable set")
+        for run in runs:
+            count = min(len(run), len(found.t))
+            values = (run.q if i < n else run.qd)[:count, i % n] - base[:count, i]
+            axis.plot(found.t[:count], values, color="tab:blue", alpha=0.6, linewidth=0.8)
+        axis.set_title(f"joint {i % n + 1}" if i < n else "")
+        axis.margins(x=0)
+    axes[0, 0].set_ylabel("q [rad]")
+    axes[1, 0].set_ylabel("qd [rad/s]")
+    drawing.supxlabel("t [s]")
+    return drawing
+
+
+def flowpipe(
+    lower: Any, upper: Any, x: int = 0, y: int = 1, *, axis: Axes | None = None
+) -> Axes:
+    """Draw boxes of a flowpipe, bounds of shape (K, N), in the plane of two states."""
+    import matplotlib.pyplot as plt
+    from matplotlib.collections import PatchCollection
+    from matplotlib.patches import Rectangle
+
+    drawing: Any = axis or plt.subplots(layout="constrained")[1]
+    boxes = [
+        Rectangle((low[x], low[y]), high[x] - low[x], high[y] - low[y])
+        for low, high in zip(lower, upper, strict=True)
+    ]
+    drawing.add_collection(PatchCollection(boxes, facecolor="tab:blue", alpha=0.35))
+    drawing.autoscale_view()
+    return drawing

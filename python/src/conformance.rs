@@ -1,0 +1,282 @@
+//! Sets, verdicts and reachable sets.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use reachtube::abstraction::ExpansionPoint;
+use reachtube::conform::{
+    self as product, Check, FitSettings, Group, Hulls, Keep, Model, Problem, Settings, Setup,
+    SuiteReach, Tolerance,
+};
+use reachtube::recordings::GapLimit;
+use reachtube::report::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
+use reachtube::{Progress, Robot, Torque, write};
+use serde_json::{Map, Value};
+
+use crate::abstraction::NativeAbstraction;
+use crate::arrays::{Output, array};
+use crate::failure::{Failure, Result};
+use crate::recordings::{NativeSource, SharedSource};
+use crate::robot::NativeRobot;
+use crate::watched::watched;
+
+/// Returns settings from the defaults and a JSON object with those that differ.
+fn settings(text: &str, joints: usize) -> Result<Settings> {
+    let mut given: Map<String, Value> = serde_json::from_str(text).map_err(Failure::setting)?;
+    let torque = given.remove("torque").unwrap_or_default();
+    let torque: Torque = serde_json::from_value(torque)
+        .map_err(|error| Failure::Setting(format!("torque: {error}")))?;
+    let expansion = take::<Vec<f64>>(&mut given, "expansion")?.unwrap_or_default();
+    let max_gap = take::<f64>(&mut given, "max_gap")?;
+    let defaults = Settings {
+        expansion_point: ExpansionPoint::from_values(&expansion, joints)?,
+        ..Settings::new(torque, joints)
+    };
+    let mut all = serde_json::to_value(defaults).map_err(Failure::setting)?;
+    for (name, value) in given {
+        all[&name] = value;
+        // Each by itself, so that an error names the setting.
+        let tried = serde_json::from_value::<Settings>(all.clone());
+        tried.map_err(|error| Failure::Setting(format!("{name}: {error}")))?;
+    }
+    let settings: Settings = serde_json::from_value(all).map_err(Failure::setting)?;
+    let settings = Settings { gap_limit: gap_limit(max_gap), ..settings };
+    settings.validate(joints)?;
+    Ok(settings)
+}
+
+fn take<T: serde::de::DeserializeOwned>(
+    given: &mut Map<String, Value>,
+    name: &str,
+) -> Result<Option<T>> {
+    let Some(value) = given.remove(name) else { return Ok(None) };
+    let wrong = |error| Failure::Setting(format!("{name}: {error}"));
+    serde_json::from_value(value).map(Some).map_err(wrong)
+}
+
+fn gap_limit(max_gap: Option<f64>) -> GapLimit {
+    max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+}
+
+/// What a nominal model is made of.
+enum Basis {
+    Robot(Arc<Robot>),
+    Abstraction(Box<reachtube::PolynomialModel>),
+}
+
+fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
+    let mut setup = match basis {
+        Basis::Robot(robot) => {
+            robot.check_physical()?;
+            let settings = settings(settings_text, robot.joint_count())?;
+            Setup::new((*robot).clone(), settings)?
+        }
+        Basis::Abstraction(model) => {
+            let settings = settings(settings_text, model.joints())?;
+            let setup = Setup::with_abstraction(*model, settings)?;
+            setup.robot.check_physical()?;
+            setup
+        }
+    };
+    // As the command does: the verdict on an outer enclosure needs explanations more.
+    if setup.dynamics.linear_system().is_none() && !settings_text.contains("\"explain\"") {
+        setup.settings.explain = Some(Tolerance::default());
+    }
+    Ok(setup)
+}
+
+/// Finds the smallest sets, and returns the model file's text and notes about the recordings.
+#[pyfunction]
+#[pyo3(signature = (
+    robot, abstraction, source, suites, settings, fit, pull=None, resume=None, progress=None
+))]
+#[allow(clippy::too_many_arguments)]
+pub fn conform(
+    py: Python<'_>,
+    robot: Option<PyRef<'_, NativeRobot>>,
+    abstraction: Option<PyRef<'_, NativeAbstraction>>,
+    source: PyRef<'_, NativeSource>,
+    suites: Vec<String>,
+    settings: String,
+    fit: Vec<String>,
+    pull: Option<f64>,
+    resume: Option<PathBuf>,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(String, Vec<String>)> {
+    let basis = match (robot, abstraction) {
+        (_, Some(model)) => Basis::Abstraction(Box::new((*model.model).clone())),
+        (Some(robot), None) => Basis::Robot(Arc::clone(&robot.robot)),
+        (None, None) => return Err(Failure::Setting("give a robot".into()).raised(py)),
+    };
+    let source = source.source.clone();
+    watched(py, progress.as_ref(), move |watch| {
+        let groups = serde_json::to_value(&fit).and_then(serde_json::from_value);
+        let groups: Vec<Group> =
+            groups.map_err(|error| Failure::Setting(format!("fit: {error}")))?;
+        let setup = setup(basis, &settings)?;
+        let keep = if groups.contains(&Group::WarmUp) { Keep::All } else { Keep::Needed };
+        let mut problem = Problem::read(setup, Box::new(source), &suites, keep, watch)?;
+        let mut record = None;
+        if !groups.is_empty() {
+            let fitted = product::fit(&problem, &FitSettings { groups, pull }, watch)?;
+            (problem, record) = (fitted.problem, Some(fitted.record));
+        }
+        let found = product::conform(&problem, watch, resume.as_deref())?;
+        let model = Model::new(&problem, &found);
+        let model = match record {
+            Some(record) => model.with_fit(record),
+            None => model,
+        };
+        Ok((model.to_json(), problem.recordings().notes.clone()))
+    })
+}
+
+/// Checks the text of a model file; errors name it `origin`.
+#[pyfunction]
+pub fn check_model(py: Python<'_>, text: String, origin: String) -> PyResult<()> {
+    watched(py, None, move |_| Ok(Model::parse(&text, Path::new(&origin)).map(|_| ())?))
+}
+
+/// A model, and recordings read for it.
+struct Opened {
+    model: Model,
+    problem: Problem,
+    hulls: Hulls,
+}
+
+/// What is read for a model: the recordings, and what differs from the model's settings.
+struct Wanted {
+    model: String,
+    source: SharedSource,
+    suites: Vec<String>,
+    settings: String,
+    keep: Keep,
+}
+
+impl Wanted {
+    fn open(self, watch: &dyn Progress) -> Result<Opened> {
+        let (model, mut setup) = Model::parse(&self.model, Path::new("model"))?;
+        let mut given: Map<String, Value> =
+            serde_json::from_str(&self.settings).map_err(Failure::setting)?;
+        let settings = &mut setup.settings;
+        settings.notion = take(&mut given, "notion")?.unwrap_or(settings.notion);
+        settings.until = take(&mut given, "until")?.or(settings.until);
+        settings.gap_limit = gap_limit(take(&mut given, "max_gap")?);
+        let problem = Problem::read(setup, Box::new(self.source), &self.suites, self.keep, watch)?;
+        let hulls = Hulls::new(&problem, model.sets())?;
+        Ok(Opened { model, problem, hulls })
+    }
+}
+
+impl Opened {
+    fn check(&self) -> Result<Check> {
+        Ok(product::check(&self.model, &self.problem, &self.hulls)?)
+    }
+
+    fn reach(&self) -> Result<Vec<SuiteReach>> {
+        Ok(product::reach(&self.problem, &self.hulls)?)
+    }
+}
+
+/// Compares recordings with a model's reachable sets, and returns the answer as JSON.
+#[pyfunction]
+#[pyo3(signature = (model, source, suites, settings, progress=None))]
+pub fn check(
+    py: Python<'_>,
+    model: String,
+    source: PyRef<'_, NativeSource>,
+    suites: Vec<String>,
+    settings: String,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let source = source.source.clone();
+    let wanted = Wanted { model, source, suites, settings, keep: Keep::Needed };
+    watched(py, progress.as_ref(), move |watch| {
+        let check = wanted.open(watch)?.check()?;
+        Ok(serde_json::to_string(&check).expect("a check has string keys"))
+    })
+}
+
+/// A reachable set: suite, run, times (K), nominal, lower and upper bounds at the samples (K x 2n
+/// each), lower and upper bounds over the steps (K - 1 x 2n each), and why it ended early as JSON.
+type NativeReach<'py> =
+    (String, Option<String>, Output<'py>, Vec<Output<'py>>, Vec<Output<'py>>, Option<String>);
+
+/// Computes a model's reachable sets along recordings.
+#[pyfunction]
+#[pyo3(signature = (model, source, suites, settings, progress=None))]
+pub fn reach<'py>(
+    py: Python<'py>,
+    model: String,
+    source: PyRef<'_, NativeSource>,
+    suites: Vec<String>,
+    settings: String,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<Vec<NativeReach<'py>>> {
+    let source = source.source.clone();
+    let wanted = Wanted { model, source, suites, settings, keep: Keep::Needed };
+    let found = watched(py, progress.as_ref(), move |watch| wanted.open(watch)?.reach())?;
+    Ok(found.into_iter().map(|reach| arrays_of(py, reach)).collect())
+}
+
+fn arrays_of(py: Python<'_>, reach: SuiteReach) -> NativeReach<'_> {
+    let SuiteReach { suite, run, times, nominal, lower, upper, tube, dimension, lost } = reach;
+    let samples = [times.len(), dimension];
+    let steps = [tube.len(), dimension];
+    let bounds = || (0..tube.len()).flat_map(|k| tube.bounds(k));
+    let low = bounds().map(|bound| bound.lo()).collect();
+    let high = bounds().map(|bound| bound.hi()).collect();
+    (
+        suite,
+        run,
+        array(py, times, &samples[..1]),
+        [nominal, lower, upper].map(|values| array(py, values, &samples)).into(),
+        [low, high].map(|values| array(py, values, &steps)).into(),
+        lost.map(|lost| serde_json::to_string(&lost).expect("it has string keys")),
+    )
+}
+
+/// Writes the report page, and the library of its figures beside it if `beside`; returns the
+/// page's path.
+#[pyfunction]
+#[pyo3(signature = (model, source, suites, settings, folder, beside, progress=None))]
+#[allow(clippy::too_many_arguments)]
+pub fn report(
+    py: Python<'_>,
+    model: String,
+    source: PyRef<'_, NativeSource>,
+    suites: Vec<String>,
+    settings: String,
+    folder: PathBuf,
+    beside: bool,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let source = source.source.clone();
+    let wanted = Wanted { model, source, suites, settings, keep: Keep::All };
+    let (html, library) = watched(py, progress.as_ref(), move |watch| {
+        let opened = wanted.open(watch)?;
+        let (check, reach) = (opened.check()?, opened.reach()?);
+        let Opened { model, problem, .. } = &opened;
+        let sources = Sources { model, problem, reach: &reach, check: &check };
+        let (mut html, mut library) = (Vec::new(), Vec::new());
+        let assets = if beside { Assets::Beside } else { Assets::Inside };
+        let page = page(&sources).map_err(reachtube::Error::from)?;
+        write_html(&page, assets, &mut html).map_err(reachtube::Error::from)?;
+        if beside {
+            write_library(&mut library).map_err(reachtube::Error::from)?;
+        }
+        Ok((html, library))
+    })?;
+    // Nothing is written before everything is known.
+    let path = folder.join("report.html");
+    let save = |path: &Path, content: &[u8]| {
+        write::atomically(path, |out| out.write_all(content))
+            .map_err(|error| Failure::from(error).raised(py))
+    };
+    if beside {
+        save(&folder.join(LIBRARY_FILE), &library)?;
+    }
+    save(&path, &html)?;
+    Ok(path.display().to_string())
+}

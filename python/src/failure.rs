@@ -1,0 +1,130 @@
+//! Errors of the product as exceptions.
+
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use reachtube::conform;
+use reachtube::recordings::{self, Defect};
+
+/// Why a job failed, before it becomes an exception. The kinds are the classes of
+/// `reachtube.errors`.
+#[derive(Debug)]
+pub enum Failure {
+    /// Recordings with defects, and the list of them for people.
+    Defects(Vec<Defect>, String),
+    /// A wrong argument.
+    Setting(String),
+    /// A file that is not that of a model.
+    ModelFile(String),
+    /// Anything else.
+    Other(String),
+}
+
+pub type Result<T, E = Failure> = std::result::Result<T, E>;
+
+impl Failure {
+    /// Returns a failure about an argument.
+    pub fn setting(error: impl ToString) -> Self {
+        Self::Setting(error.to_string())
+    }
+
+    /// Returns the exception.
+    pub fn raised(self, py: Python<'_>) -> PyErr {
+        self.exception(py).map_or_else(|error| error, PyErr::from_value)
+    }
+
+    fn exception(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let errors = py.import("reachtube.errors")?;
+        match self {
+            Self::Defects(defects, text) => {
+                let class = errors.getattr("Defect")?;
+                let make = |defect: &Defect| {
+                    class.call1((
+                        defect.file.display().to_string(),
+                        defect.line,
+                        defect.joint,
+                        defect.kind.name(),
+                        &defect.problem,
+                        &defect.remedy,
+                    ))
+                };
+                let defects = defects.iter().map(make).collect::<PyResult<Vec<_>>>()?;
+                errors.getattr("DefectsError")?.call1((text, PyTuple::new(py, defects)?))
+            }
+            Self::Setting(text) => errors.getattr("SettingError")?.call1((text,)),
+            Self::ModelFile(text) => errors.getattr("ModelFileError")?.call1((text,)),
+            Self::Other(text) => errors.getattr("ReachtubeError")?.call1((text,)),
+        }
+    }
+}
+
+impl From<recordings::Error> for Failure {
+    fn from(error: recordings::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            recordings::Error::Defects(defects) => Self::Defects(defects, text),
+            recordings::Error::UnknownSuite { .. } | recordings::Error::RepeatedSuite { .. } => {
+                Self::Setting(text)
+            }
+            _ => Self::Other(text),
+        }
+    }
+}
+
+impl From<conform::Error> for Failure {
+    fn from(error: conform::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            conform::Error::Recordings(error) => error.into(),
+            conform::Error::ModelFile { .. } => Self::ModelFile(text),
+            conform::Error::SettingCount { .. }
+            | conform::Error::SettingRange { .. }
+            | conform::Error::Notion
+            | conform::Error::Trace(_)
+            | conform::Error::NotPoints
+            | conform::Error::Calibration(_) => Self::Setting(text),
+            conform::Error::Abstraction(error) => error.into(),
+            _ => Self::Other(text),
+        }
+    }
+}
+
+impl From<reachtube::abstraction::Error> for Failure {
+    fn from(error: reachtube::abstraction::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            reachtube::abstraction::Error::ModelFile { .. } => Self::ModelFile(text),
+            reachtube::abstraction::Error::OrderZero
+            | reachtube::abstraction::Error::UnknownModel { .. } => Self::Setting(text),
+            _ => Self::Other(text),
+        }
+    }
+}
+
+impl From<reachtube::identify::Error> for Failure {
+    fn from(error: reachtube::identify::Error) -> Self {
+        let text = error.to_string();
+        match error {
+            reachtube::identify::Error::Recordings(error) => error.into(),
+            _ => Self::Other(text),
+        }
+    }
+}
+
+/// Errors that have no class of their own in Python.
+macro_rules! others {
+    ($($error:ty),* $(,)?) => {
+        $(impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::Other(error.to_string())
+            }
+        })*
+    };
+}
+
+others!(
+    reachtube::Error,
+    reachtube::reach::ReachError,
+    reachtube::robot::RobotError,
+    reachtube_files::Error,
+    reachtube_logs::Error,
+);

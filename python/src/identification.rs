@@ -1,0 +1,130 @@
+//! Identification of a robot.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use reachtube::identify::prepare::LogEntry;
+use reachtube::identify::{Identification, IdentifySettings};
+use reachtube::recordings::column_names;
+use reachtube::report::write_identified_html;
+use reachtube::{Robot, Run};
+use serde_json::{Map, Value};
+
+use crate::failure::{Failure, Result};
+use crate::recordings::NativeRun;
+use crate::robot::NativeRobot;
+use crate::watched::watched;
+
+#[pyclass(frozen, name = "Identification", module = "reachtube._reachtube")]
+pub struct NativeIdentification {
+    found: Arc<Identification>,
+}
+
+/// Recordings of one use: paths, and runs in memory.
+type Recorded<'py> = (Vec<PathBuf>, Vec<PyRef<'py, NativeRun>>);
+
+/// Writes runs in memory as CSV files, whose numbers are read back to the last bit.
+fn entries(
+    paths: Vec<PathBuf>,
+    runs: &[Arc<Run>],
+    folder: &std::path::Path,
+    name: &str,
+) -> Result<Vec<LogEntry>> {
+    let mut entries: Vec<LogEntry> = paths.into_iter().map(LogEntry::Path).collect();
+    for (number, run) in runs.iter().enumerate() {
+        let path = folder.join(format!("{name}_{}.csv", number + 1));
+        let mut text = String::from("t");
+        column_names(run.joints).for_each(|column| text += &format!(",{column}"));
+        for k in 0..run.len() {
+            text += &format!("\n{}", run.times[k]);
+            let numbers = run.state(k).iter().chain(run.torque(k));
+            numbers.for_each(|number| text += &format!(",{number}"));
+        }
+        reachtube::write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
+        entries.push(LogEntry::Path(path));
+    }
+    Ok(entries)
+}
+
+/// Returns the settings of a JSON object, over those that `basis` has as TOML.
+fn settings(basis: Option<&str>, given: &str) -> Result<IdentifySettings> {
+    let basis = basis.map_or(Ok(IdentifySettings::default()), |text| {
+        IdentifySettings::from_toml(text, "settings")
+    })?;
+    let mut all = serde_json::to_value(basis).map_err(Failure::setting)?;
+    let given: Map<String, Value> = serde_json::from_str(given).map_err(Failure::setting)?;
+    for (section, values) in given {
+        let Value::Object(values) = values else { continue };
+        for (name, value) in values {
+            all[&section][&name] = value;
+            let tried = serde_json::from_value::<IdentifySettings>(all.clone());
+            tried.map_err(|error| Failure::Setting(format!("{name}: {error}")))?;
+        }
+    }
+    serde_json::from_value(all).map_err(Failure::setting)
+}
+
+/// Identifies a robot from recordings at rest, of slow motions, of exciting motions, and of motions
+/// that validate it.
+#[pyfunction]
+#[pyo3(signature = (robot, recorded, toml, given, folder, progress=None))]
+pub fn identify(
+    py: Python<'_>,
+    robot: PyRef<'_, NativeRobot>,
+    recorded: [Recorded<'_>; 4],
+    toml: Option<String>,
+    given: String,
+    folder: PathBuf,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<NativeIdentification> {
+    let robot: Arc<Robot> = Arc::clone(&robot.robot);
+    let recorded = recorded.map(|(paths, runs)| {
+        (paths, runs.iter().map(|run| Arc::clone(&run.run)).collect::<Vec<_>>())
+    });
+    let found = watched(py, progress.as_ref(), move |watch| {
+        let mut settings = settings(toml.as_deref(), &given)?;
+        let files = tempfile::tempdir()
+            .map_err(|error| Failure::Other(format!("no temporary folder: {error}")))?;
+        let IdentifySettings { rest, friction, dynamic, validate, .. } = &mut settings;
+        let uses = [
+            (rest, "static"),
+            (friction, "friction"),
+            (dynamic, "dynamic"),
+            (validate, "validate"),
+        ];
+        for ((wanted, name), (paths, runs)) in uses.into_iter().zip(recorded) {
+            if !paths.is_empty() || !runs.is_empty() {
+                *wanted = entries(paths, &runs, files.path(), name)?;
+            }
+        }
+        let step = |done, total| watch.count(done, total);
+        Ok(reachtube::identify::identify(&robot, &settings, &folder, &step)?)
+    })?;
+    Ok(NativeIdentification { found: Arc::new(found) })
+}
+
+#[pymethods]
+impl NativeIdentification {
+    fn robot(&self, py: Python<'_>) -> PyResult<NativeRobot> {
+        let robot = Robot::from_description(&self.found.description);
+        robot.map(NativeRobot::new).map_err(|error| Failure::from(error).raised(py))
+    }
+
+    fn robot_toml(&self) -> String {
+        self.found.robot_toml()
+    }
+
+    /// Returns what `reachtube identify --json` prints.
+    fn summary(&self) -> String {
+        serde_json::to_string(&self.found.summary()).expect("a summary has string keys")
+    }
+
+    /// Returns the report page.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let mut page = Vec::new();
+        write_identified_html(&self.found, &mut page)
+            .map_err(|error| Failure::Other(error.to_string()).raised(py))?;
+        Ok(String::from_utf8_lossy(&page).into_owned())
+    }
+}

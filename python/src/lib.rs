@@ -1,0 +1,45 @@
+//! The native part of the Python package `reachtube`. It converts arrays and text and calls the
+//! product; the classes that users see are in Python, in `python/reachtube`.
+
+mod abstraction;
+mod arrays;
+mod conformance;
+mod dynamics;
+mod excitation;
+mod failure;
+mod flowpipe;
+mod identification;
+mod logs;
+mod recordings;
+mod robot;
+mod watched;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _reachtube {
+    #[pymodule_export]
+    use crate::abstraction::NativeAbstraction;
+    #[pymodule_export]
+    use crate::conformance::{check, check_model, conform, reach, report};
+    #[pymodule_export]
+    use crate::excitation::excite;
+    #[pymodule_export]
+    use crate::flowpipe::flowpipe;
+    #[pymodule_export]
+    use crate::identification::{NativeIdentification, identify};
+    #[pymodule_export]
+    use crate::logs::read_log;
+    #[pymodule_export]
+    use crate::recordings::{NativeRun, NativeSource};
+    #[pymodule_export]
+    use crate::robot::NativeRobot;
+    #[pymodule_export]
+    use crate::version;
+}
+
+/// Returns the version of the library.
+#[pyfunction]
+fn version() -> &'static str {
+    env!("CARGO_PKG_VERSION")
+}

@@ -1,0 +1,70 @@
+"""Recordings of a small virtual arm, made of the robot's own dynamics."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reachtube as rt
+
+SHARED = Path(os.environ.get("REACHTUBE_SHARED", Path(__file__).parents[3] / "shared"))
+
+SCHUNK = SHARED / "data" / "schunk_lwa4p"
+
+
+def runs(robot: rt.Robot, count: int = 3, samples: int = 60) -> list[rt.Run]:
+    """Return runs of two suites near a smooth motion, with torques of the robot's own dynamics."""
+    n = robot.joints
+    random = np.random.default_rng(1)
+    found = []
+    for suite in range(2):
+        t = 0.004 * np.arange(samples)
+        phase = random.uniform(0, 1, n)
+        q = 0.3 * np.sin(2 * t[:, None] + phase)
+        qd = 0.6 * np.cos(2 * t[:, None] + phase)
+        qdd = -1.2 * np.sin(2 * t[:, None] + phase)
+        tau = robot.rnea(q, qd, qdd) + robot.viscous_friction(qd) + robot.coulomb_friction(q, qd)
+        for k in range(count):
+            noise = 1e-4 * random.standard_normal((2, samples, n))
+            name = "AB"[suite]
+            run = rt.Run(t, q + noise[0], qd + 10 * noise[1], tau, suite=name, motion=f"m{suite}")
+            found.append(run)
+    return found
+
+
+@pytest.fixture(scope="session")
+def robot() -> rt.Robot:
+    return rt.Robot.lwa4p()
+
+
+@pytest.fixture(scope="session")
+def data(robot: rt.Robot) -> rt.Recordings:
+    return rt.Recordings(runs(robot))
+
+
+@pytest.fixture(scope="session")
+def model(robot: rt.Robot, data: rt.Recordings) -> rt.Model:
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rt.ReachtubeWarning)
+        return rt.conform(robot, data, torque="motor")
+
+
+def write_csv(folder: Path, recordings: list[rt.Run]) -> rt.Recordings:
+    """Write runs as a data set of CSV files, with all digits."""
+    lines = ["file,suite,motion"]
+    for number, run in enumerate(recordings, 1):
+        n = run.joints
+        head = [f"{part}{j + 1}" for part in ("q", "qd", "tau") for j in range(n)]
+        rows = [",".join(["t", *head])]
+        for k in range(len(run)):
+            numbers = [run.t[k], *run.q[k], *run.qd[k], *run.tau[k]]
+            rows.append(",".join(repr(float(number)) for number in numbers))
+        (folder / f"{number}.csv").write_text("\n".join(rows) + "\n")
+        lines.append(f"{number}.csv,{run.suite},{run.motion}")
+    (folder / "runs.csv").write_text("\n".join(lines) + "\n")
+    return rt.Recordings.open(folder)

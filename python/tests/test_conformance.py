@@ -1,0 +1,193 @@
+"""Sets, checks and reachable sets, against the command's file and each other."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reachtube as rt
+
+from conftest import SCHUNK, runs, write_csv
+
+
+def test_every_recording_lies_in_the_reachable_set(
+    model: rt.Model, data: rt.Recordings
+) -> None:
+    assert model.verified and model.cost is not None and model.cost > 0
+    verdict = rt.check(model, data)
+    assert verdict and verdict.violations == 0 and verdict.trust is None
+    sets = {found.suite: found for found in rt.reach(model, data)}
+    for run in data:
+        states = np.hstack([run.q, run.qd])
+        assert sets[str(run.suite)].contains(states).all()
+    for found in sets.values():
+        assert (found.step_lower <= found.lower[:-1]).all()
+        assert (found.step_upper >= found.upper[1:]).all()
+
+
+def test_not_conformant_is_a_value_with_a_witness(model: rt.Model, robot: rt.Robot) -> None:
+    moved = []
+    for run in runs(robot):
+        qd = run.qd.copy()
+        qd[30, 2] += 0.5
+        moved.append(rt.Run(run.t, run.q, qd, run.tau, suite=run.suite, name="moved"))
+    verdict = rt.check(model, moved)
+    assert not verdict and verdict.violations == 6 - 4 or verdict.violations > 0
+    worst = verdict.worst
+    assert worst is not None
+    assert (worst["state"], worst["sample"], worst["side"]) == ("qd3", 30, "upper")
+    assert 0.3 < worst["excess"] < 0.6
+
+
+def test_arrays_and_csv_files_give_the_same_model(
+    robot: rt.Robot, data: rt.Recordings, model: rt.Model, tmp_path: Path
+) -> None:
+    from_files = write_csv(tmp_path, list(data))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        other = rt.conform(robot, from_files, torque="motor")
+
+    def numbers(value: object) -> object:
+        """Return a value without names and digests of files."""
+        if isinstance(value, dict):
+            names = {"sha256", "file", "run"}
+            return {key: numbers(inner) for key, inner in value.items() if key not in names}
+        if isinstance(value, list):
+            return [numbers(inner) for inner in value]
+        return value
+
+    assert numbers(model.to_dict()) == numbers(other.to_dict())
+
+
+def test_models_are_frozen_values(model: rt.Model, tmp_path: Path) -> None:
+    path = tmp_path / "model.json"
+    model.save(path)
+    assert rt.Model.load(path) == model == pickle.loads(pickle.dumps(model))
+    assert hash(rt.Model.load(path)) == hash(model)
+    with pytest.raises(AttributeError, match="cannot be changed"):
+        model._text = ""
+    with pytest.raises(rt.ReachtubeError, match="force=True"):
+        model.save(path)
+    changed = json.loads(path.read_text())
+    changed["input_set"]["radius"][0] *= 0.5
+    (tmp_path / "changed.json").write_text(json.dumps(changed))
+    with pytest.raises(rt.ModelFileError, match="changed.json"):
+        rt.Model.load(tmp_path / "changed.json")
+    with pytest.raises(rt.ModelFileError):
+        rt.Model.from_bytes(b"nonsense")
+    with pytest.raises(rt.ReachtubeError, match="no such|No such"):
+        rt.Model.load(tmp_path / "none.json")
+
+
+def test_results_show_themselves(model: rt.Model, data: rt.Recordings) -> None:
+    assert "conformant" in repr(model) and "<svg" in model._repr_html_()
+    frame = model.to_pandas()
+    assert list(frame.columns) == ["set", "entry", "unit", "centre", "radius"]
+    assert len(frame) == 18 and frame["unit"].iloc[-1] == "N m"
+    verdict = rt.check(model, data)
+    assert "0 of" in repr(verdict) and "<table" in verdict._repr_html_()
+    assert pickle.loads(pickle.dumps(verdict)) == verdict
+    assert verdict.to_pandas()["outside"].sum() == 0
+    [first, second] = rt.reach(model, data)
+    assert first == pickle.loads(pickle.dumps(first)) != second
+    assert first.to_pandas().shape == (60, 1 + 3 * 12)
+
+
+def test_settings_reach_the_product(robot: rt.Robot, data: rt.Recordings) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = rt.conform(
+            robot,
+            data,
+            torque="motor",
+            suites="A",
+            centre="zero",
+            disturbance="constant",
+            noise=[1e-4, 1e-3],
+            weights="spread",
+            until=0.1,
+        )
+    settings = found.settings
+    assert settings["centre"] == "zero" and settings["disturbance"] == "constant"
+    assert settings["noise"] == {"fixed": [1e-4] * 6 + [1e-3] * 6}
+    assert settings["until"] == 0.1 and not found.input_set.centre.any()
+    assert found.noise_set is not None and found.noise_set.radius[7] == 1e-3
+    assert [suite["name"] for suite in found.proof["suites"]] == ["A"]
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"torque": "motr"}, "torque: unknown variant `motr`"),
+        ({"centre": "middle"}, "centre: unknown variant `middle`"),
+        ({"noise": [1.0, 2.0, 3.0]}, "noise has 3 numbers; give 2 or 12"),
+        ({"until": -1.0}, "until is -1.0 s"),
+        ({"suites": ["Z"]}, 'no suite "Z"'),
+        ({"fit": ["mass"]}, "fit: unknown variant `mass`"),
+        ({"model": 4}, "abstraction: "),
+        ({"order": 0}, "order"),
+        ({"weights": [0.0, 1.0]}, "weight 1 is 0"),
+    ],
+)
+def test_a_wrong_setting_is_named(
+    robot: rt.Robot, data: rt.Recordings, setting: dict[str, object], words: str
+) -> None:
+    arguments = {"torque": "motor", **setting}
+    with pytest.raises(rt.SettingError, match=words):
+        rt.conform(robot, data, **arguments)  # type: ignore[arg-type]
+
+
+def test_torque_has_no_default(robot: rt.Robot, data: rt.Recordings) -> None:
+    with pytest.raises(TypeError, match="torque"):
+        rt.conform(robot, data)  # type: ignore[call-arg]
+
+
+def test_defects_name_file_line_and_joint(tmp_path: Path, robot: rt.Robot) -> None:
+    (tmp_path / "runs.csv").write_text("file,suite\none.csv,A\n")
+    (tmp_path / "one.csv").write_text("t,q1,qd1,tau1\n0.0,0,0,0\n0.1,nan,0,0\n")
+    with pytest.raises(rt.DefectsError) as error:
+        rt.conform(robot, rt.Recordings.open(tmp_path), torque="motor")
+    defects = error.value.defects
+    assert defects and all(defect.file.endswith("one.csv") for defect in defects)
+    assert pickle.loads(pickle.dumps(error.value)).defects == defects
+    with pytest.raises(rt.DefectsError) as error:
+        rt.Recordings.open(tmp_path)[0]
+    assert (error.value.defects[0].line, error.value.defects[0].joint) == (3, 1)
+
+
+def test_a_robot_with_other_joints_is_refused(data: rt.Recordings) -> None:
+    pendulum = rt.Robot.from_dict(
+        {**rt.Robot.lwa4p().to_dict(), "joints": rt.Robot.lwa4p().to_dict()["joints"][:2]}
+    )
+    with pytest.raises(rt.DefectsError, match="6 joints, but the robot has 2"):
+        rt.conform(pendulum, data, torque="motor")
+
+
+def test_the_report_is_written_once(
+    model: rt.Model, data: rt.Recordings, tmp_path: Path
+) -> None:
+    page = rt.report(model, data, tmp_path, assets="beside")
+    assert page.read_text(encoding="utf-8").lstrip().lower().startswith("<!doctype html>")
+    with pytest.raises(rt.ReachtubeError, match="exists"):
+        rt.report(model, data, tmp_path)
+
+
+def test_implausible_answers_are_warned_of(robot: rt.Robot) -> None:
+    turned = [
+        rt.Run(run.t, run.q, run.qd, -run.tau, suite=run.suite, motion=run.motion)
+        for run in runs(robot)
+    ]
+    with pytest.warns(rt.ReachtubeWarning):
+        rt.conform(robot, turned, torque="motor")
+
+
+@pytest.mark.skipif(not SCHUNK.is_dir(), reason="needs the paper's recordings, ../shared/data")
+def test_the_papers_recordings_cost_what_the_command_finds(robot: rt.Robot) -> None:
+    data = rt.Recordings.open(SCHUNK)
+    found = rt.conform(robot, data, torque="compensated", suites=["A", "B", "D", "E"])
+    assert found.verified and round(float(found.cost or 0), 3) == 6048.048

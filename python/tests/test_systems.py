@@ -1,0 +1,142 @@
+"""Abstractions, flowpipes of own systems, exciting motions and identification."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reachtube as rt
+
+
+def test_an_abstraction_is_evaluated_over_arrays(robot: rt.Robot, tmp_path: Path) -> None:
+    made = rt.abstract(robot, model=2, order=3)
+    random = np.random.default_rng(2)
+    q, qd, u = random.uniform(-0.1, 0.1, (3, 5, 4, 6))
+    x = made.state(q, qd)
+    assert x.shape == (5, 4, 24)
+    rate = made.rate(x, u)
+    assert rate.shape == x.shape and np.array_equal(rate[..., :6], qd)
+    tau = u - robot.viscous_friction(qd) + robot.gravity(q)
+    exact = robot.aba(q, qd, tau)
+    assert np.abs(rate[..., 6:12] - exact).max() < 0.05 * np.abs(exact).max()
+    assert np.array_equal(made.rate(x[2, 3], u[2, 3]), rate[2, 3])
+    made.save(tmp_path / "model.json")
+    assert rt.Abstraction.load(tmp_path / "model.json") == made == pickle.loads(pickle.dumps(made))
+    with pytest.raises(rt.SettingError, match="same"):
+        made.rate(x, u[0])
+    with pytest.raises(rt.SettingError, match="x has the shape"):
+        made.rate(x[..., :12], u)
+
+
+def test_the_error_of_an_abstraction_is_bounded(robot: rt.Robot) -> None:
+    made = rt.abstract(robot, model=1, order=1, box=[0.05, 0.1, 1.0], most_boxes=4)
+    bounds = made.error_bounds
+    assert bounds is not None and len(bounds) == 6
+    random = np.random.default_rng(5)
+    q, qd, u = (size * random.uniform(-1, 1, (2000, 6)) for size in (0.05, 0.1, 1.0))
+    exact = robot.aba(q, qd, u - robot.viscous_friction(qd) + robot.gravity(q))
+    error = exact - made.rate(made.state(q, qd), u)[:, 6:12]
+    for joint, bound in enumerate(bounds):
+        assert bound is not None
+        assert bound[0] <= error[:, joint].min() and error[:, joint].max() <= bound[1]
+
+
+def test_a_flowpipe_holds_sampled_trajectories() -> None:
+    q, qd, u = rt.variables("q qd u")
+    t = np.linspace(0.0, 1.0, 201)
+    found = rt.flowpipe(
+        {q: qd, qd: u - rt.sin(q) - 0.1 * qd}, {q: (0.9, 1.1), qd: 0.0}, t, inputs={u: (-0.1, 0.1)}
+    )
+    assert found.is_reached and found.states == ("q", "qd")
+    random = np.random.default_rng(11)
+    x = np.array([random.uniform(0.9, 1.1, 500), np.zeros(500)])
+    for k, (now, later) in enumerate(zip(t, t[1:], strict=False)):
+        inputs = random.choice([-0.1, 0.1], 500)
+        for _ in range(20):
+            h = (later - now) / 20
+
+            def rate(x: np.ndarray, held: np.ndarray = inputs) -> np.ndarray:
+                return np.array([x[1], held - np.sin(x[0]) - 0.1 * x[1]])
+
+            middle = x + h / 2 * rate(x)
+            x = x + h * rate(middle)
+        assert (x.T >= found.lower[k + 1] - 1e-6).all() and (x.T <= found.upper[k + 1] + 1e-6).all()
+    assert pickle.loads(pickle.dumps(found)) == found
+
+
+def test_taylor_models_and_pieces_are_tighter() -> None:
+    x, y = rt.variables("x y")
+    system = {x: y, y: (1 - x**2) * y - x}
+    t = np.linspace(0.0, 2.0, 201)
+    start = {x: (1.3, 1.5), y: (2.35, 2.45)}
+    widths = {}
+    for name, options in {
+        "plain": {},
+        "taylor": {"method": "taylor", "taylor_order": 6},
+        "pieces": {"pieces": {x: 4, y: 2}},
+    }.items():
+        found = rt.flowpipe(system, start, t, **options)  # type: ignore[arg-type]
+        widths[name] = float((found.upper - found.lower)[-1].sum()) if found.is_reached else np.inf
+    assert widths["taylor"] < widths["plain"] and widths["pieces"] < widths["plain"]
+
+
+@pytest.mark.parametrize(
+    ("rates", "initial", "words"),
+    [
+        ("x", {"x": 1.0}, "y: neither a state"),
+        ("x y", {"x": 1.0}, "y has no initial value"),
+        ("x y", {"x": (2.0, 1.0), "y": 0.0}, "lower bound comes first"),
+    ],
+)
+def test_systems_that_are_incomplete_are_refused(
+    rates: str, initial: dict[str, object], words: str
+) -> None:
+    x, y = rt.variables("x y")
+    own = {name: rate for name, rate in {"x": y, "y": -x}.items() if name in rates.split()}
+    with pytest.raises(rt.SettingError, match=words):
+        rt.flowpipe(own, initial, [0.0, 0.1])  # type: ignore[arg-type]
+
+
+def test_polynomials_are_computed_with() -> None:
+    x, y = rt.variables("x y")
+    assert (x + y) * (x - y) == x**2 - y**2 and (x - x) == 0 and 2 * x / 4 == 0.5 * x
+    assert str(rt.sin(x) * y) in ("sin x y", "y sin x")
+    with pytest.raises(rt.SettingError, match="single variable"):
+        rt.sin(x + y)
+
+
+def test_an_exciting_motion_stays_within_limits(robot: rt.Robot) -> None:
+    found = rt.excite(robot, period=8.0, trials=100, starts=1)
+    assert found.q.shape == (801, 6) and found.condition > 1
+    limits = [joint.get("velocity") for joint in robot.to_dict()["joints"]]
+    for joint, limit in enumerate(limits):
+        if isinstance(limit, (int, float)):
+            assert np.abs(found.qd[:, joint]).max() <= limit
+
+
+def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path: Path) -> None:
+    found = rt.excite(robot, period=10.0, trials=100, starts=1, rate=250.0)
+    t = np.concatenate([found.t, found.t[-1] + found.t[1:]])
+    q, qd, qdd = (np.concatenate([part, part[1:]]) for part in (found.q, found.qd, found.qdd))
+    tau = robot.rnea(q, qd, qdd) + robot.viscous_friction(qd) + robot.coulomb_friction(q, qd)
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        result = rt.identify(robot, dynamic=rt.Run(t, q, qd, tau), model={"windows": [0.5]})
+    other = result.robot
+    states = np.random.default_rng(0).uniform(-1, 1, (3, 100, 6))
+    expected, predicted = robot.rnea(*states), other.rnea(*states)
+    assert np.abs(expected - predicted).max() < 0.1 * np.abs(expected).max()
+    assert result.to_pandas().shape[0] == len(result.parameters)
+    page = result.report(tmp_path / "identify.html")
+    assert "<svg" in page.read_text(encoding="utf-8")
+    result.save(tmp_path / "arm.toml")
+    assert rt.Robot.load(tmp_path / "arm.toml") == other
+    with pytest.raises(rt.ReachtubeError, match="not read from a URDF"):
+        result.save_urdf(robot, tmp_path / "arm.urdf")
+    with pytest.raises(rt.SettingError, match="cutoff"):
+        rt.identify(robot, dynamic=rt.Run(t, q, qd, tau), prepare={"cutoff": 5.0})

@@ -1,0 +1,29 @@
+"""A script of a user, whose types mypy checks strictly."""
+
+import numpy as np
+
+import reachtube as rt
+
+
+def main() -> None:
+    robot = rt.Robot.lwa4p()
+    t = np.linspace(0.0, 0.1, 26)
+    still = np.zeros((26, robot.joints), dtype=np.float32)
+    data = rt.Recordings([rt.Run(t, still, still, robot.gravity(still), suite="A")])
+    model: rt.Model = rt.conform(robot, data, torque="motor", notion="hull")
+    radius: float = float(model.initial_set.radius.max())
+    verdict: rt.Check = rt.check(model, data)
+    sets: list[rt.ReachableSet] = rt.reach(model, data)
+    q, qd = rt.variables("q qd")
+    pipe: rt.Flowpipe = rt.flowpipe({q: qd, qd: -rt.sin(q)}, {q: 1.0, qd: (0.0, 0.1)}, t)
+    print(verdict.conformant, radius, sets[0].upper.shape, pipe.is_reached)
+    try:
+        rt.Model.load("none.json")
+    except rt.DefectsError as error:
+        print([defect.line for defect in error.defects])
+    except rt.ReachtubeError as error:
+        print(error)
+
+
+if __name__ == "__main__":
+    main()
