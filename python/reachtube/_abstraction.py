@@ -58,7 +58,7 @@ class Abstraction:
     @property
     def joints(self) -> int:
         """The number of joints n."""
-        return len(self._content["robot"]["joints"])
+        return len(self._content["robot"]["joint"])
 
     @property
     def variables(self) -> list[str]:

@@ -27,7 +27,7 @@ def verdict(is_good: bool, words: str) -> str:
 def rows_of_sets(model: Model) -> Iterator[tuple[str, str, str, float, float]]:
     """Yield set, entry, unit, centre and radius of all entries."""
     n = model.joints
-    kinds = [joint.get("type", "revolute") for joint in model._content["robot"]["joints"]]
+    kinds = [joint.get("type", "revolute") for joint in model._content["robot"]["joint"]]
     lengths = ["m" if kind == "prismatic" else "rad" for kind in kinds]
     units = lengths + [f"{unit}/s" for unit in lengths]
     states = [f"q{j + 1}" for j in range(n)] + [f"qd{j + 1}" for j in range(n)]
@@ -84,5 +84,5 @@ def check(found: Check) -> str:
         place = f"{worst['state']} at {worst['time']:.3f} s in {worst['run']}" if worst else ""
         excess = f"{worst['excess']:.3g}" if worst else ""
         count = str(suite["violations"]["count"])
-        rows.append([escape(suite["name"]), str(suite["runs"]), count, excess, escape(place)])
+        rows.append([escape(suite["suite"]), str(suite["runs"]), count, excess, escape(place)])
     return text + table(["suite", "runs", "outside", "furthest", "where"], rows)

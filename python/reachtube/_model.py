@@ -230,7 +230,7 @@ class Check(Record):
 
         rows = [
             {
-                "suite": suite["name"],
+                "suite": suite["suite"],
                 "runs": suite["runs"],
                 "rows": suite["rows"],
                 "outside": suite["violations"]["count"],

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _reachtube
 from ._arrays import Array, frozen, names
@@ -53,9 +54,9 @@ class ReachableSet:
     @property
     def joints(self) -> int:
         """The number of joints n."""
-        return self.nominal.shape[1] // 2
+        return int(self.nominal.shape[1]) // 2
 
-    def contains(self, states: Array) -> Array:
+    def contains(self, states: Array) -> npt.NDArray[np.bool_]:
         """Return for states of shape (K, 2n) at the samples whether each is within the bounds.
 
         It compares numbers as they are; `check` is what proves enclosure.
@@ -125,8 +126,12 @@ def reach(
             suite,
             run,
             frozen(t),
-            *(frozen(array) for array in (*samples, *steps)),
-            lost=None if lost is None else json.loads(lost),
+            frozen(samples[0]),
+            frozen(samples[1]),
+            frozen(samples[2]),
+            frozen(steps[0]),
+            frozen(steps[1]),
+            None if lost is None else json.loads(lost),
         )
         for suite, run, t, samples, steps, lost in found
     ]

@@ -1,5 +1,5 @@
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Sequence
+from typing import TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -7,8 +7,27 @@ import numpy.typing as npt
 _Array: TypeAlias = npt.NDArray[np.float64]
 _Progress: TypeAlias = Callable[[int, int, list[str]], object] | None
 
+__all__ = [
+    "Abstraction",
+    "Identification",
+    "Robot",
+    "Run",
+    "Source",
+    "check",
+    "check_model",
+    "conform",
+    "excite",
+    "flowpipe",
+    "identify",
+    "reach",
+    "read_log",
+    "report",
+    "version",
+]
+
 def version() -> str: ...
 
+@final
 class Robot:
     @staticmethod
     def load(
@@ -30,6 +49,7 @@ class Robot:
     def regressor(self, q: _Array, qd: _Array, qdd: _Array) -> _Array: ...
     def parameters(self) -> tuple[list[str], list[float]]: ...
 
+@final
 class Run:
     def __new__(
         cls,
@@ -46,12 +66,13 @@ class Run:
     def joints(self) -> int: ...
     def duration(self) -> float: ...
 
+@final
 class Source:
     @staticmethod
     def open(folder: str) -> Source: ...
     @staticmethod
     def of_runs(
-        runs: list[tuple[Run, str, str | None, str | None, int | None, float | None]],
+        runs: Sequence[tuple[Run, str, str | None, str | None, int | None, float | None]],
     ) -> Source: ...
     def index(
         self,
@@ -59,6 +80,7 @@ class Source:
     def read(self, index: int) -> Run: ...
     def inspection(self, max_gap: float | None = None) -> str | None: ...
 
+@final
 class Abstraction:
     def __new__(
         cls,
@@ -77,6 +99,7 @@ class Abstraction:
     def states(self, q: _Array, qd: _Array) -> _Array: ...
     def rate(self, x: _Array, u: _Array) -> _Array: ...
 
+@final
 class Identification:
     def robot(self) -> Robot: ...
     def robot_toml(self) -> str: ...

@@ -122,12 +122,12 @@ class Robot:
     @property
     def joints(self) -> int:
         """The number of joints n."""
-        return len(self._description["joints"])
+        return len(self._description["joint"])
 
     @property
     def joint_names(self) -> list[str]:
         """The names of the joints, n."""
-        return [str(joint["name"]) for joint in self._description["joints"]]
+        return [str(joint["name"]) for joint in self._description["joint"]]
 
     def rnea(self, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike) -> Array:
         """Return the link-side torque of a motion, by recursive Newton-Euler.

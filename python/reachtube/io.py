@@ -96,7 +96,8 @@ def _run_of_columns(
     origin: str,
     columns: Mapping[str, Any],
     joints: Sequence[str] | None,
-    labels: dict[str, str | None],
+    suite: str | None,
+    motion: str | None,
 ) -> Run:
     """Return the run of columns t, q1.., qd1.., tau1.. or, with `joints`, position.NAME, ..."""
     if joints is None:
@@ -129,7 +130,8 @@ def _run_of_columns(
     }
     times = numbers("t", columns["t"])
     _check_finite(origin, {"t": times[:, None], **parts})
-    return Run(times, parts["q"], parts["qd"], parts["tau"], name=Path(origin).name, **labels)
+    return Run(times, parts["q"], parts["qd"], parts["tau"], name=Path(origin).name, suite=suite,
+               motion=motion)
 
 
 def _check_finite(origin: str, parts: Mapping[str, Array]) -> None:
@@ -173,11 +175,11 @@ def parquet(
     suite, motion
         Those of the run.
     """
-    from pyarrow import parquet as files
+    from pyarrow import parquet as files  # type: ignore[import-untyped]
 
     found = files.read_table(fspath(path))
     columns = {name: found.column(name).to_numpy() for name in found.column_names}
-    return _run_of_columns(fspath(path), columns, joints, {"suite": suite, "motion": motion})
+    return _run_of_columns(fspath(path), columns, joints, suite, motion)
 
 
 def npz(
@@ -200,7 +202,7 @@ def npz(
     """
     with np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
-    return _run_of_arrays(fspath(path), arrays, joints, {"suite": suite, "motion": motion})
+    return _run_of_arrays(fspath(path), arrays, joints, suite, motion)
 
 
 def hdf5(
@@ -220,7 +222,7 @@ def hdf5(
     joints, suite, motion
         As for `npz`; the file may have the joints' names as a data set or an attribute.
     """
-    import h5py
+    import h5py  # type: ignore[import-untyped]
 
     with h5py.File(path, "r") as file:
         if group not in file:
@@ -229,14 +231,15 @@ def hdf5(
         arrays = {name: found[name][()] for name in found if hasattr(found[name], "dtype")}
         if "joints" in found.attrs:
             arrays.setdefault("joints", found.attrs["joints"])
-    return _run_of_arrays(fspath(path), arrays, joints, {"suite": suite, "motion": motion})
+    return _run_of_arrays(fspath(path), arrays, joints, suite, motion)
 
 
 def _run_of_arrays(
     origin: str,
     arrays: Mapping[str, Any],
     joints: Sequence[str] | None,
-    labels: dict[str, str | None],
+    suite: str | None,
+    motion: str | None,
 ) -> Run:
     missing = [name for name in ("t", "q", "qd", "tau") if name not in arrays]
     if missing:
@@ -257,7 +260,8 @@ def _run_of_arrays(
     if times.ndim != 1:
         raise SettingError(f"{origin}: t has the shape {times.shape}; give one axis")
     _check_finite(origin, {"t": times[:, None], **parts})
-    return Run(times, parts["q"], parts["qd"], parts["tau"], name=Path(origin).name, **labels)
+    return Run(times, parts["q"], parts["qd"], parts["tau"], name=Path(origin).name, suite=suite,
+               motion=motion)
 
 
 def _order(origin: str, found: Any, joints: Sequence[str]) -> list[int]:

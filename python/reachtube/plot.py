@@ -41,8 +41,8 @@ def reachable_set(
     import matplotlib.pyplot as plt
 
     n = found.joints
-    drawing: Any = figure or plt.figure(figsize=(2.6 * n, 4.4), layout="constrained")
-    axes = drawing.subplots(2, n, sharex=True, squeeze=False)
+    drawing = figure or plt.figure(figsize=(2.6 * n, 4.4), layout="constrained")
+    axes: Any = drawing.subplots(2, n, sharex=True, squeeze=False)
     base = found.nominal if deviation else np.zeros_like(found.nominal)
     runs = [
         run
@@ -73,7 +73,7 @@ def flowpipe(
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Rectangle
 
-    drawing: Any = axis or plt.subplots(layout="constrained")[1]
+    drawing = axis or plt.figure(layout="constrained").add_subplot()
     boxes = [
         Rectangle((low[x], low[y]), high[x] - low[x], high[y] - low[y])
         for low, high in zip(lower, upper, strict=True)

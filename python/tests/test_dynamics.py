@@ -29,7 +29,7 @@ def test_algorithms_agree_with_each_other(robot: rt.Robot, shape: tuple[int, ...
     by_parts = np.einsum("...ij,...j->...i", mass, qdd) + robot.coriolis(q, qd) + robot.gravity(q)
     assert np.allclose(tau, by_parts, rtol=0, atol=1e-10)
     parameters = robot.regressor(q, qd, qdd) @ robot.parameter_values
-    gravity_apart = robot.to_dict()["joints"][0].get("gravity") is not None
+    gravity_apart = robot.to_dict()["joint"][0].get("gravity") is not None
     if not gravity_apart:
         expected = tau - robot.gravity(q)
         still = robot.regressor(q, 0 * qd, 0 * qdd) @ robot.parameter_values
