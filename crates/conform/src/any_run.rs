@@ -1,3 +1,4 @@
+use reachtube_scalar::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
@@ -55,7 +56,7 @@ fn middle(problem: &Problem) -> Condition {
     let place = ((first as f64 * last as f64).sqrt().round() as u64).max(1);
     let known: Vec<&Vec<f64>> =
         runs().filter_map(|run| run.condition.temperatures.as_ref()).collect();
-    let mean = |joint: usize| known.iter().map(|t| t[joint]).sum::<f64>() / known.len() as f64;
+    let mean = |joint: usize| known.iter().map(|t| t[joint]).collect::<ExactSum>().mean();
     let temperatures = (!known.is_empty()).then(|| (0..problem.joints()).map(mean).collect());
     Condition { place, temperatures }
 }

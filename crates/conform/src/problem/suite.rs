@@ -8,11 +8,11 @@ use reachtube_recordings::{
     Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque, noise_deviations, run_notes,
 };
 use reachtube_robot::Robot;
-use reachtube_scalar::Interval;
+use reachtube_scalar::ExactSum;
 
 use crate::envelope::Envelope;
 use crate::problem::condition::Condition;
-use crate::problem::input::RunInput;
+use crate::problem::input::{RunInput, SharedInput};
 use crate::problem::kept::KeptRuns;
 use crate::problem::marks::Marks;
 use crate::settings::NominalStart;
@@ -126,7 +126,7 @@ impl SuiteReader<'_> {
         };
         part.runs.push((place, summary));
         let is_first = part.is_empty;
-        part.share(Some(input), n);
+        part.share(Some(SharedInput { run: index as u32, input }), n);
         if self.keep_all || self.nominal == NominalStart::Own || part.shared.is_none() {
             self.kept.keep(index, run);
         } else if is_first {
@@ -152,7 +152,7 @@ impl SuiteReader<'_> {
                 None => mean_start(&runs, self.robot.joint_count()),
             },
             runs,
-            shared: whole.shared.filter(|_| !own_start),
+            shared: whole.shared.filter(|_| !own_start).map(|shared| shared.input),
             envelope: Arc::new(whole.envelope),
         })
     }
@@ -162,7 +162,7 @@ impl SuiteReader<'_> {
 struct Part {
     runs: Vec<(usize, RunSummary)>,
     /// The input that all runs so far share, if they do.
-    shared: Option<RunInput>,
+    shared: Option<SharedInput>,
     /// Whether no run has been taken in yet, so that `shared` is not yet known.
     is_empty: bool,
     /// The first run, while it is the only one.
@@ -193,7 +193,7 @@ impl Part {
         Arc::clone(grid)
     }
 
-    fn share(&mut self, other: Option<RunInput>, joints: usize) {
+    fn share(&mut self, other: Option<SharedInput>, joints: usize) {
         self.shared = if self.is_empty {
             other
         } else {
@@ -229,8 +229,6 @@ impl Part {
 
 /// The mean of the first states, 2n, rounded to nearest.
 fn mean_start(runs: &[RunSummary], joints: usize) -> Vec<f64> {
-    let count = Interval::point(runs.len() as f64);
-    let sum =
-        |i: usize| runs.iter().fold(Interval::ZERO, |sum, run| sum + Interval::point(run.start[i]));
-    (0..2 * joints).map(|i| (sum(i) / count).mid()).collect()
+    let mean = |i: usize| runs.iter().map(|run| run.start[i]).collect::<ExactSum>().mean();
+    (0..2 * joints).map(mean).collect()
 }
