@@ -1,3 +1,5 @@
+use serde::{Deserialize, Serialize};
+
 use crate::side::Side;
 
 /// An envelope: the highest and lowest value over many runs, for each sample and state, and the run
@@ -15,7 +17,7 @@ use crate::side::Side;
 /// assert_eq!((envelope.upper(0, 0), envelope.upper(1, 0)), (2.0, 5.0));
 /// assert_eq!((envelope.upper_run(0, 0), envelope.upper_run(1, 0)), (8, 7));
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Envelope {
     dimension: usize,
     upper: Vec<f64>,
@@ -99,6 +101,18 @@ impl Envelope {
         self.lower_run[k * self.dimension + i]
     }
 
+    /// Returns the runs that have a bound, some of them more than once.
+    pub(crate) fn owners(&self) -> impl Iterator<Item = u32> {
+        self.upper_run.iter().chain(&self.lower_run).copied()
+    }
+
+    /// Returns whether its parts fit together and are those of states of `dimension` entries.
+    pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
+        let entries = self.upper.len();
+        let lengths = [self.lower.len(), self.upper_run.len(), self.lower_run.len()];
+        self.dimension == dimension && entries.is_multiple_of(dimension) && lengths == [entries; 3]
+    }
+
     /// Returns the envelope with each bound replaced by a function of (k, i, bound).
     pub(crate) fn map(
         &self,
@@ -136,7 +150,7 @@ impl Envelope {
 }
 
 /// Moves bounds outward where `values` lie beyond them, and hands bounds that `values` reach to the
-/// run of the smaller number: 0 and -0 are equal, so that the bits of a bound belong to its run. The
+/// run of the smaller number: 0 and -0 are equal, and the bits of a bound are those of its run. The
 /// pass has no branch, so that the compiler can use vector registers.
 fn extend_bounds(
     bounds: &mut [f64],
