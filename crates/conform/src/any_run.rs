@@ -1,3 +1,4 @@
+use reachtube_scalar::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
@@ -49,13 +50,12 @@ impl AnyRun {
 /// The condition in the middle of those recorded: the geometric mean of the first and the last
 /// place, and the mean of the temperatures.
 fn middle(problem: &Problem) -> Condition {
-    let runs = || problem.recordings().suites.iter().flat_map(|suite| &suite.runs);
-    let places = || runs().map(|run| run.condition.place);
-    let (first, last) = (places().min().unwrap_or(1), places().max().unwrap_or(1));
+    let mut totals = problem.recordings().suites.iter().map(|suite| &suite.totals);
+    let Some(mut all) = totals.next().cloned() else { return Condition::first() };
+    totals.cloned().for_each(|other| all.merge(other));
+    let [first, last] = all.places;
     let place = ((first as f64 * last as f64).sqrt().round() as u64).max(1);
-    let known: Vec<&Vec<f64>> =
-        runs().filter_map(|run| run.condition.temperatures.as_ref()).collect();
-    let mean = |joint: usize| known.iter().map(|t| t[joint]).sum::<f64>() / known.len() as f64;
-    let temperatures = (!known.is_empty()).then(|| (0..problem.joints()).map(mean).collect());
+    let means = || all.temperatures.iter().map(ExactSum::mean).collect();
+    let temperatures = (all.with_temperature() > 0).then(means);
     Condition { place, temperatures }
 }

@@ -1,3 +1,5 @@
+use serde::{Deserialize, Serialize};
+
 use crate::side::Side;
 
 /// An envelope: the highest and lowest value over many runs, for each sample and state, and the run
@@ -15,7 +17,7 @@ use crate::side::Side;
 /// assert_eq!((envelope.upper(0, 0), envelope.upper(1, 0)), (2.0, 5.0));
 /// assert_eq!((envelope.upper_run(0, 0), envelope.upper_run(1, 0)), (8, 7));
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Envelope {
     dimension: usize,
     upper: Vec<f64>,
@@ -45,7 +47,8 @@ impl Envelope {
         self.dimension
     }
 
-    /// Includes run number `run` with the values `states`, row-major, samples x dimension.
+    /// Includes run number `run` with the values `states`, row-major, samples x dimension. Ties
+    /// keep the run of the smaller number, whatever the order of the runs.
     pub fn include(&mut self, run: u32, states: &[f64]) {
         self.include_bounds(run, states, states);
     }
@@ -58,8 +61,8 @@ impl Envelope {
     /// Outer: exact comparisons, no rounding.
     pub fn include_bounds(&mut self, run: u32, lower: &[f64], upper: &[f64]) {
         self.extend(upper.len());
-        extend_bounds(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new > old);
-        extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new < old);
+        extend_bounds(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new >= old);
+        extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new <= old);
     }
 
     /// Merges another envelope of the same states. Ties keep the run of the smaller number,
@@ -98,6 +101,18 @@ impl Envelope {
         self.lower_run[k * self.dimension + i]
     }
 
+    /// Returns the runs that have a bound, some of them more than once.
+    pub(crate) fn owners(&self) -> impl Iterator<Item = u32> {
+        self.upper_run.iter().chain(&self.lower_run).copied()
+    }
+
+    /// Returns whether its parts fit together and are those of states of `dimension` entries.
+    pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
+        let entries = self.upper.len();
+        let lengths = [self.lower.len(), self.upper_run.len(), self.lower_run.len()];
+        self.dimension == dimension && entries.is_multiple_of(dimension) && lengths == [entries; 3]
+    }
+
     /// Returns the envelope with each bound replaced by a function of (k, i, bound).
     pub(crate) fn map(
         &self,
@@ -134,19 +149,20 @@ impl Envelope {
     }
 }
 
-/// Moves bounds outward where `values` lie beyond them. The pass has no branch, so that the
-/// compiler can use vector registers.
+/// Moves bounds outward where `values` lie beyond them, and hands bounds that `values` reach to the
+/// run of the smaller number: 0 and -0 are equal, and the bits of a bound are those of its run. The
+/// pass has no branch, so that the compiler can use vector registers.
 fn extend_bounds(
     bounds: &mut [f64],
     runs: &mut [u32],
     values: &[f64],
     run: u32,
-    beyond: impl Fn(f64, f64) -> bool,
+    reaches: impl Fn(f64, f64) -> bool,
 ) {
     for ((bound, owner), &value) in bounds.iter_mut().zip(runs.iter_mut()).zip(values) {
-        let further = beyond(value, *bound);
-        *bound = if further { value } else { *bound };
-        *owner = if further { run } else { *owner };
+        let takes = reaches(value, *bound) & ((value != *bound) | (run < *owner));
+        *bound = if takes { value } else { *bound };
+        *owner = if takes { run } else { *owner };
     }
 }
 
@@ -166,6 +182,7 @@ mod tests {
         fn merging_parts_in_any_order_is_the_whole(
             values in prop::collection::vec(prop::collection::vec(-3i8..3, 2..20), 1..8),
             cut in 0usize..8,
+            order in Just((0..8).collect::<Vec<usize>>()).prop_shuffle(),
         ) {
             let runs: Vec<(u32, Vec<f64>)> = values
                 .iter()
@@ -181,7 +198,24 @@ mod tests {
             a.merge(&second);
             b.merge(&first);
             prop_assert_eq!(&a, &envelope_of(&runs));
-            prop_assert_eq!(a, b);
+            prop_assert_eq!(&a, &b);
+            let shuffled = order.iter().filter_map(|&run| runs.get(run)).cloned();
+            prop_assert_eq!(a, envelope_of(&shuffled.collect::<Vec<_>>()));
+        }
+    }
+
+    /// 0 and -0 are equal, but a file of the envelope shows which it was.
+    #[test]
+    fn the_bits_of_a_tie_are_those_of_the_run_of_the_smaller_number() {
+        let runs = [(3, vec![-0.0, 0.0]), (1, vec![0.0, -0.0])];
+        let mut merged = envelope_of(&runs[..1]);
+        merged.merge(&envelope_of(&runs[1..]));
+        for envelope in
+            [envelope_of(&runs), envelope_of(&[runs[1].clone(), runs[0].clone()]), merged]
+        {
+            assert_eq!((envelope.upper_run(0, 0), envelope.lower_run(0, 1)), (1, 1));
+            assert!(envelope.upper(0, 0).is_sign_positive());
+            assert!(envelope.lower(0, 1).is_sign_negative());
         }
     }
 

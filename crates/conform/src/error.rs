@@ -92,6 +92,9 @@ pub enum Error {
     /// Motions cannot calibrate the sets.
     #[error("calibrate: {0}")]
     Calibration(String),
+    /// A fold cannot be made, merged or solved.
+    #[error("fold: {0}")]
+    Fold(String),
     /// A model file is not one, or of another version.
     #[error("{}: {problem}", path.display())]
     ModelFile {

@@ -35,8 +35,7 @@ pub struct Grids {
 }
 
 impl Grids {
-    /// Computes e^{At}, Γ(t) and κ(t) over the distinct ones of the grids `times`, the longest
-    /// first, on all cores.
+    /// Computes e^{At}, Γ(t) and κ(t) over the distinct ones of the grids `times`, on all cores.
     ///
     /// # Errors
     ///
@@ -46,15 +45,7 @@ impl Grids {
         system: &LinearSystem,
         disturbance: Disturbance,
     ) -> Result<Self> {
-        let end = |grid: &TimeGrid| grid.times().last().copied().unwrap_or(0.0);
-        let mut all: Vec<&TimeGrid> = times.collect();
-        all.sort_by(|a, b| b.len().cmp(&a.len()).then(end(b).total_cmp(&end(a))));
-        let mut distinct: Vec<&TimeGrid> = Vec::new();
-        for grid in all {
-            if !distinct.iter().any(|longer| grid.is_prefix_of(longer)) {
-                distinct.push(grid);
-            }
-        }
+        let distinct = distinct(times);
         let build = |grid: &&TimeGrid| {
             let propagation = Propagation::new(system, grid)?;
             let input_gains = disturbance.input_gains(&propagation);
@@ -80,4 +71,26 @@ impl Grids {
         let fits = |candidate: &Grid| grid.is_prefix_of(candidate.propagation.grid());
         self.grids.iter().position(fits).expect("every grid of the recordings is in the list")
     }
+}
+
+/// Returns the grids that are not the beginning of another one: the longest first, those that end
+/// last first of these, and then by their times, so that the order of the runs makes no difference.
+pub(crate) fn distinct<'a>(grids: impl Iterator<Item = &'a TimeGrid>) -> Vec<&'a TimeGrid> {
+    let end = |grid: &TimeGrid| grid.times().last().copied().unwrap_or(0.0);
+    let by_times = |a: &TimeGrid, b: &TimeGrid| {
+        let mut pairs = a.times().iter().zip(b.times()).map(|(a, b)| a.total_cmp(b));
+        pairs.find(|order| order.is_ne()).unwrap_or(a.step().is_some().cmp(&b.step().is_some()))
+    };
+    let mut all: Vec<&TimeGrid> = grids.collect();
+    all.sort_by(|a, b| {
+        let longest = b.len().cmp(&a.len()).then(end(b).total_cmp(&end(a)));
+        longest.then_with(|| by_times(a, b))
+    });
+    let mut distinct: Vec<&TimeGrid> = Vec::new();
+    for grid in all {
+        if !distinct.iter().any(|longer| grid.is_prefix_of(longer)) {
+            distinct.push(grid);
+        }
+    }
+    distinct
 }

@@ -17,6 +17,7 @@ mod explain;
 
 mod fitting;
 mod flowpipes;
+mod fold;
 mod found;
 mod grids;
 mod growth;
@@ -54,6 +55,7 @@ pub use fitting::{
     FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, MOST_ERRORS, PullCost,
     TorquePrediction, UnseenMotion, fit,
 };
+pub use fold::{Fold, OnDefect};
 pub use found::SearchSummary;
 pub use grids::{Grid, Grids};
 pub use growth::Growth;
@@ -77,7 +79,7 @@ pub use notion::verdict::{PointVerdict, PointWitness};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
 pub use problem::{
-    Case, Condition, Keep, Marks, Problem, Recordings, RunInput, RunSummary, Setup, Suite,
+    Case, Condition, Keep, Marks, Problem, Recordings, RunInput, RunSummary, Setup, Suite, Totals,
 };
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::problem::recordings::Recordings;
+use crate::problem::suite::Suite;
 
 /// Standard deviations within which noise is taken to lie: of two million normal samples, one is
 /// expected outside.
@@ -15,7 +16,8 @@ pub struct SensorNoise {
     /// Its radius in each state, 2n, rad and rad/s.
     pub radius: Vec<f64>,
     /// Whether it was estimated from the recordings: 5 standard deviations of what they hold at the
-    /// highest frequencies, the median over the runs. Otherwise it was given.
+    /// highest frequencies, the median over the runs, of which 256 of each suite count. Otherwise
+    /// it was given.
     pub estimated: bool,
 }
 
@@ -30,7 +32,7 @@ impl SensorNoise {
     /// count; without any other the radii are 0.
     #[must_use]
     pub fn estimate(recordings: &Recordings, joints: usize) -> Self {
-        let runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
+        let runs = recordings.suites.iter().flat_map(Suite::sample);
         let of_runs: Vec<&Vec<f64>> = runs.filter_map(|run| run.noise.as_ref()).collect();
         let median = |i: usize| {
             let mut deviations: Vec<f64> = of_runs.iter().map(|noise| noise[i]).collect();

@@ -194,7 +194,7 @@ impl SuiteVerdict {
         let violations = Violations::default();
         Self {
             suite: suite.entry.name.clone(),
-            runs: suite.runs.len(),
+            runs: suite.run_count(),
             rows: 0,
             violations,
             points_unproved: None,

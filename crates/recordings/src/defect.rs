@@ -2,11 +2,13 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 /// Number of defects of one file that are listed in full; the rest are counted.
 const LISTED_PER_FILE: usize = 20;
 
 /// What kind of defect a recording has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum DefectKind {
     /// The file cannot be read, or it is not comma-separated text.
     File,
@@ -62,7 +64,7 @@ impl DefectKind {
 }
 
 /// A defect of a recording: where it is, what is wrong, and what to do.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Defect {
     /// The file.
     pub file: PathBuf,

@@ -172,7 +172,9 @@ fn notes(data: &DataSet, runs: &[Option<RunSummary>]) -> Vec<String> {
     let mut notes = data.notes();
     let sound = || runs.iter().enumerate().filter_map(|(index, run)| Some((index, run.as_ref()?)));
     notes.extend(sound().flat_map(|(_, run)| run.notes.iter().cloned()));
-    notes.extend(copies_note(data, sound().map(|(index, run)| (index, run.sha256.as_str()))));
+    notes.extend(copies_note(
+        sound().map(|(i, run)| (data.runs()[i].file.as_str(), run.sha256.as_str())),
+    ));
     notes.extend(temperature_notes(data, sound().map(|(i, run)| (i, run.has_temperatures()))));
     notes
 }

@@ -64,7 +64,7 @@ impl RunSummary {
             steps: steps.fold([f64::INFINITY, 0.0], |[a, b], h| [a.min(h), b.max(h)]),
             same_torque: same_torque(first, run),
             joints: (0..run.joints).map(|joint| JointOfRun::new(run, joint)).collect(),
-            notes: run_notes(source, index, run),
+            notes: run_notes(&source.runs()[index], run),
             sha256: run.sha256.clone(),
         }
     }

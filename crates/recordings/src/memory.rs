@@ -1,9 +1,6 @@
 use std::path::PathBuf;
 
-use sha2::{Digest, Sha256};
-
-use crate::defect::{Defect, DefectKind};
-use crate::gap_limit::GapLimit;
+use crate::defect::Defect;
 use crate::index::RunEntry;
 use crate::run::Run;
 use crate::source::{ReadOptions, RunSource};
@@ -39,9 +36,8 @@ impl MemoryRuns {
         name: &str,
         suite: Option<&str>,
         motion: Option<&str>,
-        mut run: Run,
+        run: Run,
     ) -> &mut RunEntry {
-        run.sha256 = digest(&run);
         let before = self.entries.iter().filter(|entry| entry.suite.as_deref() == suite);
         let latest = before.map(|entry| entry.order).max().unwrap_or(0);
         self.entries.push(RunEntry {
@@ -54,7 +50,7 @@ impl MemoryRuns {
             order: latest + 1,
             line: self.entries.len() as u64 + 1,
         });
-        self.runs.push(run);
+        self.runs.push(Run { sha256: String::new(), ..run }.with_digest());
         self.entries.last_mut().expect("an entry was added")
     }
 }
@@ -73,52 +69,14 @@ impl RunSource for MemoryRuns {
     }
 
     fn read(&self, index: usize, options: &ReadOptions) -> Result<Run, Vec<Defect>> {
-        let mut run = self.runs[index].clone();
-        let expected = options.joints.unwrap_or(run.joints);
-        if run.joints != expected {
-            let problem =
-                format!("the run has {} joints, but the robot has {expected}", run.joints);
-            let remedy = "give the robot of the recordings";
-            let defect = Defect::new(self.run_name(index), None, problem, remedy);
-            return Err(vec![defect.of_kind(DefectKind::Joints)]);
-        }
-        let gaps = gaps(self.run_name(index), &run, options.gap_limit);
-        if !gaps.is_empty() {
-            return Err(gaps);
-        }
-        run.truncate(options.until);
-        Ok(run)
+        self.runs[index].clone().checked(&self.run_name(index), options)
     }
-}
-
-/// Returns a defect for each step of `run` that is longer than `limit` allows.
-fn gaps(name: PathBuf, run: &Run, limit: GapLimit) -> Vec<Defect> {
-    let steps: Vec<f64> = run.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let longest = limit.longest_step(steps.clone());
-    let defect = |(k, step): (usize, &f64)| {
-        let problem = format!(
-            "there is a gap of {step:.6} s before sample {}, but the limit is {longest:.6} s",
-            k + 1
-        );
-        let remedy = "samples are missing and the input there is unknown: record again, cut the \
-                      run, or raise the gap limit";
-        Defect::new(&name, None, problem, remedy).of_kind(DefectKind::gap(*step))
-    };
-    steps.iter().enumerate().filter(|(_, step)| **step > longest).map(defect).collect()
-}
-
-/// Returns the SHA-256 of a run's numbers, in lower-case hexadecimal.
-fn digest(run: &Run) -> String {
-    let mut digest = Sha256::new();
-    for value in run.times.iter().chain(&run.states).chain(&run.torques).chain(&run.temperatures) {
-        digest.update(value.to_le_bytes());
-    }
-    reachtube_files::hex(&digest.finalize())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gap_limit::GapLimit;
 
     fn runs(times: &[f64]) -> MemoryRuns {
         let run = Run::new(1, times.to_vec(), vec![0.5; 2 * times.len()], vec![0.0; times.len()]);

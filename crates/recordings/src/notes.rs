@@ -7,15 +7,10 @@ use crate::run::Run;
 use crate::source::RunSource;
 use crate::units::velocity_mismatch;
 
-/// Returns the notes about run `index` of `source`, which was read as `run`: a file that has
-/// changed since it was listed, and joints whose velocities do not integrate to their positions.
-///
-/// # Panics
-///
-/// Panics where the source has no run `index`.
+/// Returns the notes about the run of an entry, which was read as `run`: a file that has changed
+/// since it was listed, and joints whose velocities do not integrate to their positions.
 #[must_use]
-pub fn run_notes(source: &dyn RunSource, index: usize, run: &Run) -> Vec<String> {
-    let entry = &source.runs()[index];
+pub fn run_notes(entry: &RunEntry, run: &Run) -> Vec<String> {
     let mismatches = velocity_mismatch(run).into_iter().map(|(joint, slope)| {
         format!(
             "{}: joint {}: q moves {slope:.3} times as far as the integral of qd; check both units",
@@ -26,24 +21,18 @@ pub fn run_notes(source: &dyn RunSource, index: usize, run: &Run) -> Vec<String>
     changed_note(entry, &run.sha256).into_iter().chain(mismatches).collect()
 }
 
-/// Returns a note about recordings that are equal to the last byte. `read` gives the index and the
+/// Returns a note about recordings that are equal to the last byte. `read` gives the name and the
 /// SHA-256 of each recording that was read, in any order.
-///
-/// # Panics
-///
-/// Panics where the source has no run of an index.
-pub fn copies_note<'a>(
-    source: &dyn RunSource,
-    read: impl Iterator<Item = (usize, &'a str)>,
-) -> Option<String> {
-    let mut first: BTreeMap<&str, usize> = BTreeMap::new();
-    let pair = |(index, sha256): (usize, &'a str)| {
-        let original = *first.entry(sha256).or_insert(index);
-        (original != index).then_some((index, original))
+pub fn copies_note<'a>(read: impl Iterator<Item = (&'a str, &'a str)>) -> Option<String> {
+    let mut first: BTreeMap<&str, &str> = BTreeMap::new();
+    let pair = |(file, sha256): (&'a str, &'a str)| {
+        first.insert(sha256, file).map(|original| {
+            first.insert(sha256, original);
+            (file, original)
+        })
     };
-    let copies: Vec<(usize, usize)> = read.filter_map(pair).collect();
+    let copies: Vec<(&str, &str)> = read.filter_map(pair).collect();
     let &(copy, original) = copies.first()?;
-    let (copy, original) = (&source.runs()[copy].file, &source.runs()[original].file);
     Some(match copies.len() {
         1 => format!(
             "{copy} is a copy of {original}, so one recording counts twice; list each recording \
@@ -119,9 +108,9 @@ mod tests {
             runs.push(name, None, None, run(speed));
         }
         let read = |index| runs.read(index, &ReadOptions::default()).unwrap().sha256;
-        let digests: Vec<String> = (0..4).map(read).collect();
-        let note =
-            |count| copies_note(&runs, digests.iter().map(String::as_str).enumerate().take(count));
+        let read: Vec<String> = (0..4).map(read).collect();
+        let digests = || read.iter().map(String::as_str);
+        let note = |count| copies_note(["a", "b", "c", "d"].into_iter().zip(digests()).take(count));
         assert_eq!(note(2), None);
         assert!(note(3).unwrap().starts_with("c is a copy of a, so one recording counts twice"));
         assert!(note(4).unwrap().starts_with("2 recordings are copies"));
@@ -144,8 +133,8 @@ mod tests {
     fn velocities_that_do_not_integrate_to_the_positions_are_noted() {
         let mut runs = MemoryRuns::default();
         runs.push("fast", None, None, run(3.0));
-        assert_eq!(run_notes(&runs, 0, &run(1.0)), [""; 0]);
-        let notes = run_notes(&runs, 0, &run(3.0));
+        assert_eq!(run_notes(&runs.runs()[0], &run(1.0)), [""; 0]);
+        let notes = run_notes(&runs.runs()[0], &run(3.0));
         assert_eq!(notes.len(), 1);
         assert!(notes[0].starts_with("fast: joint 1: q moves 3.000 times as far"), "{notes:?}");
     }

@@ -2,6 +2,7 @@
 #![doc = include_str!("../README.md")]
 
 mod elementary;
+mod exact_sum;
 mod interval;
 mod lanes;
 mod powers;
@@ -11,6 +12,7 @@ mod taylor;
 mod taylor_model;
 
 pub use elementary::Elementary;
+pub use exact_sum::ExactSum;
 pub use interval::{DecimalError, Interval};
 pub use lanes::{Lanes, Lanewise};
 pub use powers::Powers;

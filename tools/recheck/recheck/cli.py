@@ -11,10 +11,11 @@ from .errors import BadInput
 from .grid import distinct
 from .hulls import HullRows
 from .inputs import Inputs, read_inputs
+from .manifest import root
 from .model import read_model
 from .reach_files import ReachFiles
 from .reachable import samples
-from .recordings import read_index, read_run
+from .recordings import read_index, read_places, read_run
 from .system import System
 from .verdict import exit_code
 
@@ -91,9 +92,9 @@ def run(arguments):
 def read_cases(model, inputs, arguments, notes):
     """Reads the suites and returns their cases; notes what differs from the model file."""
     index = read_index(arguments.data)
-    listed = {suite["name"]: suite["runs"] for suite in model.suites}
+    listed = {suite["name"]: suite.get("runs", []) for suite in model.suites}
     names = arguments.suites.split(",") if arguments.suites else list(listed)
-    cases = []
+    cases, entries = [], []
     if not names:
         raise BadInput(f"{arguments.model}: the model file lists no suite; name some with --suites")
     for name in names:
@@ -104,6 +105,7 @@ def read_cases(model, inputs, arguments, notes):
             read_run(arguments.data, file, place, model.joints, until)
             for file, place in index[name]
         ]
+        entries += [(run.file, name, run.sha256) for run in runs]
         hashes = {run.file: run.sha256 for run in runs}
         changed = [r["file"] for r in listed.get(name, []) if hashes.get(r["file"]) != r["sha256"]]
         if changed:
@@ -117,6 +119,14 @@ def read_cases(model, inputs, arguments, notes):
                 f"first states here"
             )
         cases += inputs.cases(name, runs)
+    if model.root is not None and set(listed) <= set(names):
+        places = read_places(arguments.data)
+        here = [(places[file], file, *rest) for file, *rest in entries if rest[0] in listed]
+        if root(here) != model.root:
+            notes.append(
+                "the recordings are not those of the model file, which does not list them: the "
+                "root over their entries is another one"
+            )
     return cases
 
 

@@ -32,6 +32,8 @@ class Model:
     correction: dict | None
     robot: dict
     suites: list
+    # The root over the recordings' entries, where the file does not list them.
+    root: str | None
     sha256: str
     notes: tuple
     # The one condition that friction is taken in, whatever that of a run is: its place in the order
@@ -90,6 +92,7 @@ def _model(content, text):
         correction=content.get("correction"),
         robot=content["robot"],
         suites=content["data"]["suites"],
+        root=content["data"].get("root"),
         sha256=content["sha256"],
         notes=_seal_notes(content, text),
     )

@@ -50,6 +50,13 @@ def read_index(folder):
     return {suite: _ordered(path, entries) for suite, entries in suites.items()}
 
 
+def read_places(folder):
+    """Returns the place of each file among the lines of the index, from 0."""
+    header, lines = _table(Path(folder) / "runs.csv")
+    column = header.index("file")
+    return {cells[column]: place for place, (_, cells) in enumerate(lines)}
+
+
 def _ordered(path, entries):
     """Places of the runs: the column `order`, else `repeat` where it numbers all runs, else the
     order of the lines."""

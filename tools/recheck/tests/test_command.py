@@ -1,6 +1,7 @@
 """The command on recordings that its model can have made, and on altered ones."""
 
 import csv
+import hashlib
 import json
 import math
 from types import SimpleNamespace
@@ -12,6 +13,7 @@ import toy
 from recheck.cli import main
 from recheck.grid import Grid
 from recheck.inputs import Inputs
+from recheck.manifest import root
 from recheck.recordings import Run
 from recheck.system import System
 from recheck.verdict import Tally, Verdict, exit_code
@@ -203,3 +205,27 @@ def test_bounds_of_reach_must_be_outside(tmp_path, capsys):
     (tmp_path / "reach" / "S.csv").write_text(text.replace(f"{ends[1][0][1]:.9f}"[:8], "0.000000"))
     code, found = judged(tmp_path, capsys, *options)
     assert code == 1 and found["bounds"][0]["fails"] == 1
+
+
+def test_the_root_of_three_leaves_is_that_of_the_library():
+    entries = [(0, "a.csv", "A", "00ff"), (5, "b.csv", "A", "00ff"), (1, "b.csv", "A", "00ff")]
+    expected = "06053100f0a52edfd68bf7e71262e0c32cb4960e373e313193b0613710f66f04"
+    assert root(entries) == expected
+
+
+def test_recordings_that_are_counted_are_compared_by_their_root(tmp_path, capsys):
+    model = toy.content()
+    toy.write(tmp_path, model)
+    suite = model["data"]["suites"][0]
+    places = range(len(suite["runs"]))
+    digest = {
+        run["file"]: hashlib.sha256((tmp_path / "data" / run["file"]).read_bytes()).hexdigest()
+        for run in suite["runs"]
+    }
+    suite["run_count"] = len(suite.pop("runs"))
+    leaves = [(place, file, "S", digest[file]) for place, file in zip(places, digest, strict=True)]
+    for last, is_noted in ((digest["r3.csv"], False), ("0" * 64, True)):
+        model["data"]["root"] = root([*leaves[:-1], (3, "r3.csv", "S", last)])
+        (tmp_path / "model.json").write_text(json.dumps(model))
+        assert main([str(tmp_path / "model.json"), "--data", str(tmp_path / "data")]) == 0
+        assert ("are not those of the model file" in capsys.readouterr().err) == is_noted

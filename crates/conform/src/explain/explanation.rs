@@ -51,7 +51,7 @@ pub fn explain(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Explanat
         match case.run {
             Some(index) => Ok(vec![of(case, index)?]),
             None => {
-                let runs = &problem.recordings().suites[case.suite].runs;
+                let runs = problem.recordings().suites[case.suite].every_run()?;
                 runs.par_iter().map(|run| of(case, run.index)).collect()
             }
         }

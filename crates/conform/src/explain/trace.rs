@@ -140,7 +140,7 @@ pub(crate) fn trace_factors(problem: &Problem, sets: &UncertaintySets) -> Result
         match case.run {
             Some(run) => Ok(vec![of(run)?]),
             None => {
-                let runs = &problem.recordings().suites[case.suite].runs;
+                let runs = problem.recordings().suites[case.suite].every_run()?;
                 runs.par_iter().map(|summary| of(summary.index)).collect::<Result<Vec<_>>>()
             }
         }

@@ -291,13 +291,33 @@ impl Model {
     }
 
     /// Returns whether one of these recordings, by its SHA-256, is among those that the model was
-    /// fitted to.
+    /// fitted to, or may be: where it [cannot be known](Self::knows_of), they count as used in the
+    /// fit.
     #[must_use]
     pub fn was_fitted_to(&self, recordings: &Recordings) -> bool {
+        self.knows_of(recordings).unwrap_or(true)
+    }
+
+    /// Returns whether one of these recordings is among those that the model was fitted to; nothing
+    /// where that cannot be known, because the file lists no recordings, or because a fold that was
+    /// not made to check this model has not kept the SHA-256 of each recording.
+    #[must_use]
+    pub fn knows_of(&self, recordings: &Recordings) -> Option<bool> {
+        if !self.data.are_listed() {
+            return None;
+        }
         let suites = self.data.suites.iter().flat_map(|suite| &suite.runs);
         let fitted: HashSet<&str> = suites.map(|run| run.sha256.as_str()).collect();
         let mut runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
-        runs.any(|run| fitted.contains(run.sha256.as_str()))
+        if runs.any(|run| fitted.contains(run.sha256.as_str())) {
+            return Some(true);
+        }
+        let are_complete = recordings.suites.iter().all(|suite| suite.every_run().is_ok());
+        match &recordings.compared {
+            _ if are_complete => Some(false),
+            Some((digest, count)) if *digest == self.data.sha256 => Some(*count > 0),
+            _ => None,
+        }
     }
 
     /// Returns the optimality gap where it is so large that the sets must not be called the

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::explain::explanation::Explanation;
 use crate::problem::problem::Problem;
+use crate::problem::recordings::Recordings;
 use crate::problem::suite::{RunSummary, Suite};
 use crate::settings::{NominalStart, Tolerance};
 
@@ -39,8 +40,15 @@ pub struct Residual {
 #[serde(deny_unknown_fields)]
 pub struct DataRecord {
     /// SHA-256 over the lines `sha256  file` of all runs, as in the output of sha256sum, in this
-    /// order.
+    /// order; over the line `root` and a line `run_count  name` for each suite where they are not
+    /// listed.
     pub sha256: String,
+    /// The root of the Merkle tree over the manifest's entries, where the runs are not listed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub root: Option<String>,
+    /// Number of recordings of the manifest that were left out because they have defects.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub skipped: usize,
     /// The suites.
     pub suites: Vec<SuiteRecord>,
 }
@@ -58,8 +66,12 @@ pub struct SuiteRecord {
     /// starts at its own first state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub nominal_start: Option<Vec<f64>>,
-    /// Its runs.
+    /// Its runs, where they are listed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub runs: Vec<RunRecord>,
+    /// Number of its runs, where they are not listed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub run_count: Option<usize>,
 }
 
 /// A run in a model file.
@@ -141,12 +153,20 @@ impl Residual {
 }
 
 impl SuiteRecord {
-    /// Returns whether the nominal initial state is one of `joints` joints.
+    /// Returns the number of runs.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.run_count.unwrap_or(self.runs.len())
+    }
+
+    /// Returns whether the nominal initial state is one of `joints` joints, and the runs are either
+    /// listed or counted.
     pub(super) fn fits(&self, joints: usize) -> bool {
         let fits = |start: &Vec<f64>| {
             start.len() == 2 * joints && start.iter().all(|value| value.is_finite())
         };
-        self.nominal_start.as_ref().is_none_or(fits)
+        let counted = self.runs.is_empty() == self.run_count.is_some();
+        counted && self.nominal_start.as_ref().is_none_or(fits)
     }
 }
 
@@ -159,15 +179,30 @@ impl DataRecord {
             duration: run.duration,
         };
         let has_start = problem.settings().nominal == NominalStart::Mean;
+        let Recordings { suites, root, are_listed, skipped, .. } = problem.recordings();
         let suite = |suite: &Suite| SuiteRecord {
             name: suite.entry.name.clone(),
             motion: suite.entry.motion.clone(),
             nominal_start: has_start.then(|| suite.nominal_start.clone()),
-            runs: suite.runs.iter().map(run).collect(),
+            runs: suite.runs.iter().filter(|_| *are_listed).map(run).collect(),
+            run_count: (!are_listed).then(|| suite.run_count()),
         };
-        let suites = problem.recordings().suites.iter().map(suite).collect();
-        let record = Self { sha256: String::new(), suites };
+        let suites = suites.iter().map(suite).collect();
+        let root = (!are_listed).then(|| root.clone());
+        let record = Self { sha256: String::new(), root, skipped: *skipped, suites };
         Self { sha256: record.digest(), ..record }
+    }
+
+    /// Returns whether the recordings are listed one by one.
+    #[must_use]
+    pub fn are_listed(&self) -> bool {
+        self.root.is_none()
+    }
+
+    /// Returns the number of runs.
+    #[must_use]
+    pub fn run_count(&self) -> usize {
+        self.suites.iter().map(SuiteRecord::count).sum()
     }
 
     /// Returns the number of distinct motions; a suite without a motion counts as one.
@@ -180,9 +215,18 @@ impl DataRecord {
     /// Returns the SHA-256 that the record must have.
     pub(super) fn digest(&self) -> String {
         let mut digest = Sha256::new();
+        if let Some(root) = &self.root {
+            digest.update(format!("{root}\n"));
+            let line = |suite: &SuiteRecord| format!("{}  {}\n", suite.count(), suite.name);
+            self.suites.iter().for_each(|suite| digest.update(line(suite)));
+        }
         for run in self.suites.iter().flat_map(|suite| &suite.runs) {
             digest.update(format!("{}  {}\n", run.sha256, run.file));
         }
         reachtube_files::hex(&digest.finalize())
     }
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }

@@ -50,7 +50,10 @@ impl Model {
         } else if point.q.len() != n || point.qd.len() != n {
             format!("its expansion point is not one of {n} joints")
         } else if self.data.suites.iter().any(|suite| !suite.fits(n)) {
-            format!("a nominal_start is not a state of {n} joints")
+            format!(
+                "a nominal_start is not a state of {n} joints, or the runs of a suite are neither \
+                 listed nor counted"
+            )
         } else if self.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
             format!("its correction is not one of {n} joints")
         } else if !fits_box {

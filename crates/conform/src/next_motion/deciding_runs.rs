@@ -24,7 +24,7 @@ pub struct DecidingRuns {
     pub most: Vec<DecidingRun>,
     /// About what the smallest sets would cost without those ten, by programs over the samples
     /// that stay in memory of each run. Nothing for a model that is not linear, for calibrated
-    /// sets, or where the ten are half of all runs or more.
+    /// sets, where the ten are half of all runs or more, or where a suite has more than 256 runs.
     pub cost_without: Option<f64>,
 }
 
@@ -56,7 +56,10 @@ impl DecidingRuns {
         let runs = problem.recordings().suites.iter().flat_map(|suite| &suite.runs);
         let is_named = |index: &usize| named.contains(problem.entry(*index).file.as_str());
         let dropped: BTreeSet<usize> = runs.map(|run| run.index).filter(is_named).collect();
-        let few = !dropped.is_empty() && 2 * dropped.len() < problem.recordings().run_count();
+        let are_known = problem.recordings().suites.iter().all(Suite::is_small);
+        let few = are_known
+            && !dropped.is_empty()
+            && 2 * dropped.len() < problem.recordings().run_count();
         let cost_without = match cost.filter(|_| few) {
             Some(cost) => cost_without(problem, &dropped)?.map(|part| part * cost),
             None => None,

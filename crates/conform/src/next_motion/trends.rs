@@ -17,7 +17,7 @@ const DEVIATIONS: f64 = 2.6;
 pub struct Trend {
     /// The suite.
     pub suite: String,
-    /// Number of its runs.
+    /// Number of its runs that were compared: all, or 256 of more.
     pub runs: usize,
     /// The joint, from 1.
     pub joint: usize,
@@ -35,16 +35,17 @@ pub(crate) fn trends(problem: &Problem) -> Vec<Trend> {
 }
 
 fn of_suite(suite: &Suite, joints: usize) -> Vec<Trend> {
-    let count = suite.runs.len();
-    let stride = suite.runs.iter().map(|run| run.marks.stride).max().unwrap_or(1);
-    let last = suite.runs.iter().map(|run| run.marks.last(stride)).min().unwrap_or(0);
+    let runs: Vec<&RunSummary> = suite.sample().collect();
+    let count = runs.len();
+    let stride = runs.iter().map(|run| run.marks.stride).max().unwrap_or(1);
+    let last = runs.iter().map(|run| run.marks.last(stride)).min().unwrap_or(0);
     if last == 0 || count < 2 {
         return Vec::new();
     }
     let least = LEAST_CORRELATION.max(DEVIATIONS / ((count - 1) as f64).sqrt());
     let of_joint = |joint: usize| {
-        let position = |run: &RunSummary| run.marks.state(last)[joint];
-        let positions: Vec<f64> = suite.runs.iter().map(position).collect();
+        let position = |run: &&RunSummary| run.marks.state(last)[joint];
+        let positions: Vec<f64> = runs.iter().map(position).collect();
         let correlation = rank_correlation(&positions);
         let extreme = |pick: fn(f64, f64) -> f64| positions.iter().copied().reduce(pick);
         let range = extreme(f64::max).unwrap_or(0.0) - extreme(f64::min).unwrap_or(0.0);

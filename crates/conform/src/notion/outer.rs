@@ -110,7 +110,7 @@ impl<'a> CaseRuns<'a> {
         asked: &'a [Asked<'a>],
     ) -> Result<Self> {
         let (suite, settings) = (&problem.recordings().suites[case.suite], problem.settings());
-        let mine = suite.runs.iter().map(|summary| summary.index);
+        let mine = suite.every_run()?.iter().map(|summary| summary.index);
         let mine = mine.filter(|index| case.run.is_none_or(|run| run == *index));
         Ok(Self {
             runs: mine.map(|index| Ok((index, problem.run(index)?))).collect::<Result<_>>()?,

@@ -80,7 +80,8 @@ pub(crate) fn points(problem: &Problem) -> Result<Vec<SamplePoints>> {
     for (index, suite) in problem.recordings().suites.iter().enumerate() {
         let of_case = |case: Case| Ok((Nominal::new(grids, &case), case.run));
         for (nominal, run) in problem.cases_of(index, of_case)? {
-            let mine = suite.runs.iter().filter(|summary| run.is_none_or(|r| r == summary.index));
+            let mine =
+                suite.every_run()?.iter().filter(|summary| run.is_none_or(|r| r == summary.index));
             for summary in mine {
                 let recorded = problem.run(summary.index)?;
                 let samples = all[nominal.grid].iter_mut().take(recorded.len().saturating_sub(1));

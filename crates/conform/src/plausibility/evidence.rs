@@ -50,8 +50,8 @@ impl<'a> Evidence<'a> {
     pub fn new(problem: &'a Problem) -> Result<Self> {
         let suites = &problem.recordings().suites;
         let stride = suites.len().div_ceil(RUNS).max(1);
-        let firsts = suites.iter().step_by(stride).filter_map(|suite| suite.runs.first());
-        let runs = firsts.map(|run| Ok(problem.run(run.index)?.into_owned()));
+        let firsts = suites.iter().step_by(stride).map(|suite| suite.totals.first);
+        let runs = firsts.map(|run| Ok(problem.run(run)?.into_owned()));
         Ok(Self { robot: problem.robot(), runs: runs.collect::<Result<_>>()? })
     }
 

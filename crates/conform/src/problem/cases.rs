@@ -79,7 +79,7 @@ impl Problem {
             })?]),
             None => {
                 let own = |summary: &RunSummary| visit(self.case_of_run(suite, index, summary)?);
-                suite.runs.par_iter().map(own).collect()
+                suite.every_run()?.par_iter().map(own).collect()
             }
         }
     }
@@ -104,7 +104,7 @@ impl Problem {
     fn case_of_run(&self, suite: &Suite, index: usize, summary: &RunSummary) -> Result<Case> {
         let run = summary.index;
         let recorded = self.run(run)?;
-        let path = self.read.source.run_name(run);
+        let path = self.read.origin.run_name(run);
         let condition = self.setup().condition.as_ref().unwrap_or(&summary.condition).clone();
         let warm = condition.warm(self.robot());
         let robot = warm.as_ref().unwrap_or(self.robot());

@@ -20,7 +20,7 @@ impl RunInput {
     /// # Errors
     ///
     /// Defects of units and times, under the name `path`.
-    pub(super) fn new(
+    pub(crate) fn new(
         path: &Path,
         run: &Run,
         robot: &Robot,
@@ -41,14 +41,33 @@ impl RunInput {
         Ok(Self { grid: Arc::new(grid), inputs: inputs.into() })
     }
 
-    /// Returns the longer of two inputs when the other is its beginning, and nothing otherwise.
-    /// The input of a run's last sample acts on nothing and is not compared.
-    pub(super) fn merge(self, other: Self, joints: usize) -> Option<Self> {
+    /// Returns whether one of two inputs is the beginning of the other. The input of a run's last
+    /// sample acts on nothing and is not compared.
+    pub(crate) fn shares(&self, other: &Self, joints: usize) -> bool {
         let (short, long) =
             if self.grid.len() <= other.grid.len() { (self, other) } else { (other, self) };
         let acting = short.grid.len().saturating_sub(1) * joints;
-        let same =
-            short.grid.is_prefix_of(&long.grid) && short.inputs[..acting] == long.inputs[..acting];
-        same.then_some(long)
+        short.inputs[..acting] == long.inputs[..acting] && short.grid.is_prefix_of(&long.grid)
+    }
+}
+
+/// The input that some runs share: that of the longest, of which the others' are the beginning.
+/// Where several are as long, it is that of the run of the smallest number, because their last
+/// samples may differ.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SharedInput {
+    /// The run whose input it is.
+    pub run: u32,
+    /// The input.
+    pub input: RunInput,
+}
+
+impl SharedInput {
+    /// Returns the input that both have in common; nothing where neither is the beginning of the
+    /// other. The order of merging makes no difference.
+    pub fn merge(self, other: Self, joints: usize) -> Option<Self> {
+        let shares = self.input.shares(&other.input, joints);
+        let key = |of: &Self| (std::cmp::Reverse(of.input.grid.len()), of.run);
+        shares.then(|| if key(&self) <= key(&other) { self } else { other })
     }
 }

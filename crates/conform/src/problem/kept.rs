@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 use reachtube_recordings::Run;
 
 /// Bytes of samples that are kept at most; runs beyond them are read again when they are needed.
-const MOST_BYTES: usize = 256 << 20;
+pub(crate) const MOST_BYTES: usize = 256 << 20;
 
 /// Runs that stay in memory because a later step needs them one by one.
 #[derive(Debug, Default)]

@@ -45,12 +45,10 @@ impl Problem {
     pub(crate) fn farthest_starts(&self) -> Vec<f64> {
         let mut farthest = vec![0.0_f64; 2 * self.joints()];
         for suite in &self.read.recordings.suites {
-            for run in &suite.runs {
-                for (far, (x, nominal)) in
-                    farthest.iter_mut().zip(run.start.iter().zip(&suite.nominal_start))
-                {
-                    *far = far.max((x - nominal).abs());
-                }
+            let bounds = suite.totals.start_bounds.iter().zip(&suite.nominal_start);
+            for (far, (bounds, nominal)) in farthest.iter_mut().zip(bounds) {
+                // Rounding keeps the order, so that no run lies further than one of the bounds.
+                *far = bounds.iter().map(|x| (x - nominal).abs()).fold(*far, f64::max);
             }
         }
         farthest

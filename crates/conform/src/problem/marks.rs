@@ -1,11 +1,12 @@
 use reachtube_recordings::Run;
+use serde::{Deserialize, Serialize};
 
 /// Number of states that are kept of a run at most.
 const MOST_MARKS: usize = 64;
 
 /// Some states of a run: those at the multiples of a power of two of samples. They stay in memory
-/// for every run, so that runs can be compared without reading them again.
-#[derive(Debug, Clone, PartialEq)]
+/// for some runs of every suite, so that runs can be compared without reading them again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Marks {
     /// Samples from one to the next, a power of two.
     pub stride: usize,
@@ -20,6 +21,23 @@ impl Marks {
         let stride = run.len().div_ceil(MOST_MARKS).next_power_of_two();
         let states = (0..run.len()).step_by(stride).flat_map(|k| run.state(k).iter().copied());
         Self { stride, states: states.collect(), dimension: 2 * run.joints }
+    }
+
+    /// Returns whether the states were let go.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// Lets go of the states.
+    pub(crate) fn clear(&mut self) {
+        self.states = Vec::new();
+    }
+
+    /// Returns whether its parts are those of states of `dimension` entries.
+    pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
+        self.dimension == dimension
+            && self.stride.is_power_of_two()
+            && self.states.len().is_multiple_of(dimension)
     }
 
     /// Returns the last sample that is a multiple of `stride`, which is one of this run's or a

@@ -1,9 +1,8 @@
-use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, OnceLock};
 
 use reachtube_abstraction::{OperatingBox, PolynomialModel};
-use reachtube_recordings::{ReadOptions, Run, RunEntry, RunSource, State};
+use reachtube_recordings::{ReadOptions, Run, RunSource, State};
 use reachtube_robot::friction::WarmingBy;
 use reachtube_robot::{Robot, RobotDescription};
 
@@ -16,6 +15,7 @@ use crate::nominal::correction::InputCorrection;
 use crate::problem::case::Case;
 use crate::problem::condition::Condition;
 use crate::problem::kept::KeptRuns;
+use crate::problem::origin::Origin;
 use crate::problem::recordings::Recordings;
 use crate::problem::suite::{Suite, SuiteReader};
 use crate::progress::Progress;
@@ -124,7 +124,7 @@ pub struct Problem {
 /// What was read of the recordings. It does not depend on the model.
 #[derive(Debug)]
 pub(super) struct Read {
-    pub source: Arc<dyn RunSource>,
+    pub origin: Origin,
     pub recordings: Recordings,
     pub kept: Arc<HashMap<usize, Run>>,
     pub sensor_noise: SensorNoise,
@@ -162,14 +162,25 @@ impl Problem {
                 || settings.explain.is_some()
                 || settings.notion != Notion::Hull,
         };
-        let mut recordings = Recordings::read(&reader, names, progress)?;
-        let kept = Arc::new(kept.into_runs());
-        let sensor_noise = sensor_noise(&setup, &recordings);
+        let recordings = Recordings::read(&reader, names, progress)?;
         check_starts(&setup, source.as_ref(), &recordings)?;
+        Ok(Self::of_recordings(setup, Origin::Source(source.into()), recordings, kept.into_runs()))
+    }
+
+    /// Makes the problem of recordings that were read, and notes what a user should know of them.
+    pub(crate) fn of_recordings(
+        setup: Setup,
+        origin: Origin,
+        mut recordings: Recordings,
+        kept: HashMap<usize, Run>,
+    ) -> Self {
+        let notes = recordings.data_notes(&setup, &origin);
+        recordings.notes.extend(notes);
         recordings.notes.extend(leaving_notes(&setup, &recordings));
         recordings.notes.extend(unknown_temperature(&setup, &recordings));
-        let (robot, source) = (setup.robot.description().clone(), source.into());
-        Ok(Self::of(setup, Arc::new(Read { source, recordings, kept, sensor_noise, robot })))
+        let sensor_noise = sensor_noise(&setup, &recordings);
+        let (robot, kept) = (setup.robot.description().clone(), Arc::new(kept));
+        Self::of(setup, Arc::new(Read { origin, recordings, kept, sensor_noise, robot }))
     }
 
     /// Returns the problem of another model and other settings with the same recordings, which are
@@ -225,35 +236,6 @@ impl Problem {
     #[must_use]
     pub fn joints(&self) -> usize {
         self.setup.robot.joint_count()
-    }
-
-    /// Returns the source's entry of run `index`.
-    #[must_use]
-    pub fn entry(&self, index: usize) -> &RunEntry {
-        &self.read.source.runs()[index]
-    }
-
-    /// Returns the samples of run `index`: those in memory, or read once more where they were not
-    /// kept.
-    ///
-    /// # Errors
-    ///
-    /// Defects, or [`Error::Changed`] when the recording is not the one that was read first.
-    pub fn run(&self, index: usize) -> Result<Cow<'_, Run>> {
-        if let Some(run) = self.read.kept.get(&index) {
-            return Ok(Cow::Borrowed(run));
-        }
-        let run = self
-            .read
-            .source
-            .read(index, &read_options(&self.setup))
-            .map_err(reachtube_recordings::Error::Defects)?;
-        let summaries = self.read.recordings.suites.iter().flat_map(|suite| &suite.runs);
-        let read_first = summaries.into_iter().find(|summary| summary.index == index);
-        if read_first.is_some_and(|summary| summary.sha256 != run.sha256) {
-            return Err(Error::Changed { path: self.read.source.run_name(index) });
-        }
-        Ok(Cow::Owned(run))
     }
 
     /// Returns the sample grids of the recordings, with e^{At}, Γ(t) and κ(t) of the linear model.
@@ -337,13 +319,13 @@ fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
 /// Says where friction depends on a temperature that a recording does not have.
 fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
     let by_temperature = setup.robot.warms_by().contains(&WarmingBy::Temperature);
-    let runs = || recordings.suites.iter().flat_map(|suite| &suite.runs);
-    let without = runs().filter(|run| run.condition.temperatures.is_none()).count();
+    let with: usize = recordings.suites.iter().map(|s| s.totals.with_temperature()).sum();
+    let without = recordings.run_count() - with;
     (by_temperature && without > 0).then(|| {
         format!(
             "friction of the robot depends on temperature, and {without} of the {} recordings \
              have no columns temp1 to tempn; they are taken at the reference temperature",
-            runs().count()
+            recordings.run_count()
         )
     })
 }
@@ -356,13 +338,13 @@ pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNois
     }
 }
 
-fn read_options(setup: &Setup) -> ReadOptions {
+pub(crate) fn read_options(setup: &Setup) -> ReadOptions {
     let Settings { gap_limit, until, .. } = setup.settings;
     ReadOptions { joints: Some(setup.robot.joint_count()), gap_limit, until }
 }
 
 /// The side of the box for state `i`, q then q̇.
-fn side(operating_box: &OperatingBox, i: usize) -> [f64; 2] {
+pub(crate) fn side(operating_box: &OperatingBox, i: usize) -> [f64; 2] {
     let n = operating_box.q.len();
     if i < n { operating_box.q[i] } else { operating_box.qd[i - n] }
 }

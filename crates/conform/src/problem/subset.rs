@@ -10,9 +10,13 @@ impl Problem {
     pub(crate) fn with_suites(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
         let suites = self.recordings().suites.iter().enumerate();
         let wanted = suites.filter(|(index, _)| is_wanted(*index)).map(|(_, suite)| suite.clone());
-        let recordings = Recordings { suites: wanted.collect(), notes: Vec::new() };
+        let Recordings { root, are_listed, compared, skipped, .. } = self.recordings();
+        let (root, are_listed, skipped) = (root.clone(), *are_listed, *skipped);
+        let compared = compared.clone();
+        let (suites, notes) = (wanted.collect(), Vec::new());
+        let recordings = Recordings { suites, notes, root, are_listed, compared, skipped };
         let read = Read {
-            source: Arc::clone(&self.read.source),
+            origin: self.read.origin.clone(),
             kept: Arc::clone(&self.read.kept),
             sensor_noise: sensor_noise(self.setup(), &recordings),
             robot: self.read.robot.clone(),

@@ -1,29 +1,37 @@
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
 use reachtube_recordings::{
-    Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque, noise_deviations, run_notes,
+    Defect, ReadOptions, Run, RunEntry, RunSource, SuiteEntry, Torque, noise_deviations, run_notes,
 };
 use reachtube_robot::Robot;
-use reachtube_scalar::Interval;
 
 use crate::envelope::Envelope;
+use crate::error::{Error, Result as AnyResult};
 use crate::problem::condition::Condition;
-use crate::problem::input::RunInput;
+use crate::problem::input::{RunInput, SharedInput};
 use crate::problem::kept::KeptRuns;
 use crate::problem::marks::Marks;
+use crate::problem::totals::Totals;
 use crate::settings::NominalStart;
+
+/// Number of runs of a suite whose marks are kept and which its statistics are of: that many are
+/// drawn from a larger suite.
+pub(crate) const SAMPLE: usize = 256;
 
 /// One test suite after reading.
 #[derive(Debug, Clone)]
 pub struct Suite {
     /// The suite's name and runs.
     pub entry: SuiteEntry,
-    /// What was read of each run, in the order of `entry.runs`.
+    /// What was read of each run, in the order of `entry.runs`: of all runs of a source. A fold of
+    /// many runs keeps 256 of them, as random as their SHA-256.
     pub runs: Vec<RunSummary>,
+    /// What is known of all runs together.
+    pub totals: Totals,
     /// The nominal initial state, 2n: the one that was given for the suite's name, or the mean of
     /// the runs' first states, rounded to nearest.
     pub nominal_start: Vec<f64>,
@@ -48,7 +56,7 @@ pub struct RunSummary {
     pub grid: Arc<TimeGrid>,
     /// The first state, 2n.
     pub start: Vec<f64>,
-    /// Some of its states.
+    /// Some of its states; none where the run is not drawn from a suite of more than 256.
     pub marks: Marks,
     /// What friction may depend on.
     pub condition: Condition,
@@ -59,6 +67,75 @@ pub struct RunSummary {
     pub noise: Option<Vec<f64>>,
     /// What a user should know about the run.
     pub notes: Vec<String>,
+}
+
+impl Suite {
+    /// Returns the number of runs.
+    #[must_use]
+    pub fn run_count(&self) -> usize {
+        self.totals.count
+    }
+
+    /// Returns what was read of each run.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fold`] where a fold has not kept it.
+    pub(crate) fn every_run(&self) -> AnyResult<&[RunSummary]> {
+        if self.runs.len() == self.totals.count {
+            return Ok(&self.runs);
+        }
+        Err(Error::Fold(format!(
+            "suite {}: this step needs each of its {} recordings, of which it has kept {}; read \
+             them on one machine for it",
+            self.entry.name,
+            self.totals.count,
+            self.runs.len()
+        )))
+    }
+
+    /// Returns the runs that statistics are of, in their order: all, or 256 of more.
+    pub(crate) fn sample(&self) -> impl Iterator<Item = &RunSummary> {
+        sampled(&self.runs)
+    }
+
+    /// Returns whether the sample is all runs.
+    pub(crate) fn is_small(&self) -> bool {
+        self.totals.count <= SAMPLE
+    }
+}
+
+/// Returns the 256 runs with the lowest SHA-256, or all of fewer, in the order of their indices. A
+/// sample of the samples of parts is that of the whole, and copies of a run are drawn with it.
+pub(crate) fn sampled<'a>(
+    runs: impl IntoIterator<Item = &'a RunSummary>,
+) -> impl Iterator<Item = &'a RunSummary> {
+    let mut sample: Vec<&RunSummary> = runs.into_iter().collect();
+    if sample.len() > SAMPLE {
+        sample.sort_unstable_by_key(|run| (&run.sha256, run.index));
+        sample.truncate(SAMPLE);
+        sample.sort_unstable_by_key(|run| run.index);
+    }
+    sample.into_iter()
+}
+
+impl RunSummary {
+    /// Sums up run `index` of a source, whose entry there is `entry`.
+    pub(crate) fn new(index: usize, entry: &RunEntry, run: &Run, grid: Arc<TimeGrid>) -> Self {
+        let end = run.len().saturating_sub(1);
+        Self {
+            index,
+            samples: run.len(),
+            duration: grid.times().get(end).copied().unwrap_or(0.0),
+            grid,
+            start: run.state(0).to_vec(),
+            marks: Marks::new(run),
+            condition: Condition::of(entry.order, run),
+            sha256: run.sha256.clone(),
+            noise: noise_deviations(run),
+            notes: run_notes(entry, run),
+        }
+    }
 }
 
 /// What reading a suite depends on.
@@ -112,21 +189,11 @@ impl SuiteReader<'_> {
     fn take(&self, part: &mut Part, place: usize, index: usize, run: Run, input: RunInput) {
         let n = run.joints;
         part.envelope.include(index as u32, &run.states);
-        let summary = RunSummary {
-            index,
-            samples: run.len(),
-            duration: input.grid.times().last().copied().unwrap_or(0.0),
-            grid: part.grid(&input.grid),
-            start: run.state(0).to_vec(),
-            marks: Marks::new(&run),
-            condition: Condition::of(self.source.runs()[index].order, &run),
-            sha256: run.sha256.clone(),
-            noise: noise_deviations(&run),
-            notes: run_notes(self.source, index, &run),
-        };
+        let entry = &self.source.runs()[index];
+        let summary = RunSummary::new(index, entry, &run, part.grid(&input.grid));
         part.runs.push((place, summary));
         let is_first = part.is_empty;
-        part.share(Some(input), n);
+        part.share(Some(SharedInput { run: index as u32, input }), n);
         if self.keep_all || self.nominal == NominalStart::Own || part.shared.is_none() {
             self.kept.keep(index, run);
         } else if is_first {
@@ -143,16 +210,21 @@ impl SuiteReader<'_> {
             return Err(whole.defects.into_iter().flat_map(|(_, defects)| defects).collect());
         }
         whole.runs.sort_by_key(|(place, _)| *place);
-        let runs: Vec<RunSummary> = whole.runs.into_iter().map(|(_, run)| run).collect();
+        let mut runs: Vec<RunSummary> = whole.runs.into_iter().map(|(_, run)| run).collect();
+        let totals = Totals::of_all(&runs).expect("a suite has one run at least");
+        let sample: BTreeSet<usize> = sampled(&runs).map(|run| run.index).collect();
+        let others = runs.iter_mut().filter(|run| !sample.contains(&run.index));
+        others.for_each(|run| run.marks.clear());
         let own_start = self.nominal == NominalStart::Own;
         Ok(Suite {
             entry: entry.clone(),
             nominal_start: match self.nominal_starts.get(&entry.name) {
                 Some(given) => given.clone(),
-                None => mean_start(&runs, self.robot.joint_count()),
+                None => totals.mean_start(),
             },
             runs,
-            shared: whole.shared.filter(|_| !own_start),
+            totals,
+            shared: whole.shared.filter(|_| !own_start).map(|shared| shared.input),
             envelope: Arc::new(whole.envelope),
         })
     }
@@ -162,7 +234,7 @@ impl SuiteReader<'_> {
 struct Part {
     runs: Vec<(usize, RunSummary)>,
     /// The input that all runs so far share, if they do.
-    shared: Option<RunInput>,
+    shared: Option<SharedInput>,
     /// Whether no run has been taken in yet, so that `shared` is not yet known.
     is_empty: bool,
     /// The first run, while it is the only one.
@@ -193,7 +265,7 @@ impl Part {
         Arc::clone(grid)
     }
 
-    fn share(&mut self, other: Option<RunInput>, joints: usize) {
+    fn share(&mut self, other: Option<SharedInput>, joints: usize) {
         self.shared = if self.is_empty {
             other
         } else {
@@ -225,12 +297,4 @@ impl Part {
         self.envelope.merge(&other.envelope);
         self
     }
-}
-
-/// The mean of the first states, 2n, rounded to nearest.
-fn mean_start(runs: &[RunSummary], joints: usize) -> Vec<f64> {
-    let count = Interval::point(runs.len() as f64);
-    let sum =
-        |i: usize| runs.iter().fold(Interval::ZERO, |sum, run| sum + Interval::point(run.start[i]));
-    (0..2 * joints).map(|i| (sum(i) / count).mid()).collect()
 }

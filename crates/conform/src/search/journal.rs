@@ -38,9 +38,9 @@ impl<'a> Journal<'a> {
         let mut digest = Sha256::new();
         let decides = serde_json::to_string(&(problem.settings(), problem.robot().description()));
         digest.update(decides.expect("settings have only finite numbers and string keys"));
+        digest.update(&problem.recordings().root);
         for suite in &problem.recordings().suites {
             digest.update(&suite.entry.name);
-            suite.runs.iter().for_each(|run| digest.update(&run.sha256));
         }
         Self { path, job: reachtube_files::hex(&digest.finalize()) }
     }

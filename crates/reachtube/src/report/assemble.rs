@@ -193,7 +193,7 @@ pub(super) fn joint_name(model: &Model, joint: usize) -> String {
 fn facts(model: &Model) -> Vec<(String, String)> {
     let settings = &model.settings;
     let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
-    let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
+    let runs: usize = model.data.run_count();
     let number =
         |value: Option<f64>| value.map_or_else(|| "none".into(), |value| format!("{value:.6}"));
     let cost = match (

@@ -66,7 +66,7 @@ fn left_out(model: &Model) -> String {
 fn deciding_runs(model: &Model) -> String {
     let runs = &model.deciding_runs;
     let Some(first) = runs.most.first() else { return String::new() };
-    let all: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
+    let all: usize = model.data.run_count();
     let decide = if runs.count == 1 { "decides" } else { "decide" };
     let mut text = format!(
         "\n{} of {all} {} {decide} the sets, most of all {} with {} {}",

@@ -42,7 +42,7 @@ pub fn summary(model: &Model) -> String {
 /// Returns the verdict, and the sets and motions that speak against it.
 fn verdict(model: &Model) -> String {
     let (suites, proof) = (model.data.suites.len(), &model.proof);
-    let runs: usize = model.data.suites.iter().map(|suite| suite.runs.len()).sum();
+    let runs: usize = model.data.run_count();
     let how = match proof.enclosure {
         Enclosure::Inner => "proved with directed rounding",
         Enclosure::Outer => "lie in the computed outer set, an enclosure with directed rounding",

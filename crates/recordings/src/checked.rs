@@ -1,0 +1,76 @@
+//! Runs in memory, checked as files are.
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use crate::defect::{Defect, DefectKind};
+use crate::gap_limit::GapLimit;
+use crate::run::Run;
+use crate::source::ReadOptions;
+
+impl Run {
+    /// Returns the run as it is used under `options`, without the samples after their end; `name`
+    /// names it in messages.
+    ///
+    /// # Errors
+    ///
+    /// A defect where the number of joints differs, or one for each gap.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_recordings::{ReadOptions, Run};
+    ///
+    /// let run = Run::new(1, vec![0.0, 0.1, 0.2], vec![0.0; 6], vec![0.0; 3])?;
+    /// let options = ReadOptions { until: Some(0.1), ..ReadOptions::default() };
+    /// assert_eq!(run.clone().checked("run".as_ref(), &options).unwrap().len(), 2);
+    /// let other = ReadOptions { joints: Some(2), ..options };
+    /// assert!(run.checked("run".as_ref(), &other).is_err());
+    /// # Ok::<(), String>(())
+    /// ```
+    pub fn checked(mut self, name: &Path, options: &ReadOptions) -> Result<Self, Vec<Defect>> {
+        let expected = options.joints.unwrap_or(self.joints);
+        if self.joints != expected {
+            let problem =
+                format!("the run has {} joints, but the robot has {expected}", self.joints);
+            let remedy = "give the robot of the recordings";
+            let defect = Defect::new(name, None, problem, remedy);
+            return Err(vec![defect.of_kind(DefectKind::Joints)]);
+        }
+        let gaps = gaps(name, &self, options.gap_limit);
+        if !gaps.is_empty() {
+            return Err(gaps);
+        }
+        self.truncate(options.until);
+        Ok(self)
+    }
+
+    /// Returns the run with the SHA-256 of its numbers, where it has none yet.
+    #[must_use]
+    pub fn with_digest(mut self) -> Self {
+        if self.sha256.is_empty() {
+            let mut digest = Sha256::new();
+            let numbers = [&self.times, &self.states, &self.torques, &self.temperatures];
+            numbers.into_iter().flatten().for_each(|value| digest.update(value.to_le_bytes()));
+            self.sha256 = reachtube_files::hex(&digest.finalize());
+        }
+        self
+    }
+}
+
+/// Returns a defect for each step of `run` that is longer than `limit` allows.
+fn gaps(name: &Path, run: &Run, limit: GapLimit) -> Vec<Defect> {
+    let steps: Vec<f64> = run.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let longest = limit.longest_step(steps.clone());
+    let defect = |(k, step): (usize, &f64)| {
+        let problem = format!(
+            "there is a gap of {step:.6} s before sample {}, but the limit is {longest:.6} s",
+            k + 1
+        );
+        let remedy = "samples are missing and the input there is unknown: record again, cut the \
+                      run, or raise the gap limit";
+        Defect::new(name, None, problem, remedy).of_kind(DefectKind::gap(*step))
+    };
+    steps.iter().enumerate().filter(|(_, step)| **step > longest).map(defect).collect()
+}
