@@ -6,13 +6,14 @@ a model encloses them (`conform`), check other recordings (`check`), compute rea
 motions for it, `abstract` models of any order, and `flowpipe` reachable sets of your own system.
 """
 
-from . import errors, io
+from . import errors, fleet, io
 from ._abstraction import Abstraction, abstract
 from ._box import Box
+from ._conform import check, conform
 from ._excite import Excitation, excite
 from ._flowpipe import Flowpipe, flowpipe
 from ._identify import Identification, identify
-from ._model import Check, Model, check, conform
+from ._model import Check, Model
 from ._polynomial import Polynomial, cos, sin, variables
 from ._reach import ReachableSet, reach, report
 from ._reachtube import version as _version
@@ -54,6 +55,7 @@ __all__ = [
     "cos",
     "errors",
     "excite",
+    "fleet",
     "flowpipe",
     "identify",
     "io",

@@ -15,9 +15,10 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, frozen, names
 from ._files import check_new
-from ._model import Data, Model, differing
+from ._model import Model
 from ._progress import Progress, shown
 from ._recordings import source
+from ._settings import Data, differing
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -186,7 +186,8 @@ class Run:
     def __repr__(self) -> str:
         name = f"{self.name}: " if self.name else ""
         suite = f", suite {self.suite}" if self.suite else ""
-        return f"<Run {name}{len(self)} samples of {self.joints} joints, {self.duration:g} s{suite}>"
+        samples = f"{len(self)} samples of {self.joints} joints"
+        return f"<Run {name}{samples}, {self.duration:g} s{suite}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         warm = self.temperature

@@ -60,12 +60,26 @@ fn gap_limit(max_gap: Option<f64>) -> GapLimit {
 }
 
 /// What a nominal model is made of.
-enum Basis {
+pub enum Basis {
     Robot(Arc<Robot>),
     Abstraction(Box<reachtube::PolynomialModel>),
 }
 
-fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
+impl Basis {
+    pub fn new(
+        robot: Option<PyRef<'_, NativeRobot>>,
+        abstraction: Option<PyRef<'_, NativeAbstraction>>,
+    ) -> Result<Self> {
+        match (robot, abstraction) {
+            (_, Some(model)) => Ok(Self::Abstraction(Box::new((*model.model).clone()))),
+            (Some(robot), None) => Ok(Self::Robot(Arc::clone(&robot.robot))),
+            (None, None) => Err(Failure::Setting("give a robot".into())),
+        }
+    }
+}
+
+/// Returns the setup of a conformance, whose settings are the defaults but for those given.
+pub fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
     let mut setup = match basis {
         Basis::Robot(robot) => {
             robot.check_physical()?;
@@ -104,11 +118,7 @@ pub fn conform(
     resume: Option<PathBuf>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(String, Vec<String>)> {
-    let basis = match (robot, abstraction) {
-        (_, Some(model)) => Basis::Abstraction(Box::new((*model.model).clone())),
-        (Some(robot), None) => Basis::Robot(Arc::clone(&robot.robot)),
-        (None, None) => return Err(Failure::Setting("give a robot".into()).raised(py)),
-    };
+    let basis = Basis::new(robot, abstraction).map_err(|failure| failure.raised(py))?;
     let source = source.source.clone();
     watched(py, progress.as_ref(), move |watch| {
         let groups = serde_json::to_value(&fit).and_then(serde_json::from_value);
@@ -145,6 +155,14 @@ struct Opened {
     hulls: Hulls,
 }
 
+/// Sets what differs from a model's settings.
+pub fn differing(settings: &mut Settings, mut given: Map<String, Value>) -> Result<()> {
+    settings.notion = take(&mut given, "notion")?.unwrap_or(settings.notion);
+    settings.until = take(&mut given, "until")?.or(settings.until);
+    settings.gap_limit = gap_limit(take(&mut given, "max_gap")?);
+    Ok(())
+}
+
 /// What is read for a model: the recordings, and what differs from the model's settings.
 struct Wanted {
     model: String,
@@ -157,12 +175,9 @@ struct Wanted {
 impl Wanted {
     fn open(self, watch: &dyn Progress) -> Result<Opened> {
         let (model, mut setup) = Model::parse(&self.model, Path::new("model"))?;
-        let mut given: Map<String, Value> =
+        let given: Map<String, Value> =
             serde_json::from_str(&self.settings).map_err(Failure::setting)?;
-        let settings = &mut setup.settings;
-        settings.notion = take(&mut given, "notion")?.unwrap_or(settings.notion);
-        settings.until = take(&mut given, "until")?.or(settings.until);
-        settings.gap_limit = gap_limit(take(&mut given, "max_gap")?);
+        differing(&mut setup.settings, given)?;
         let problem = Problem::read(setup, Box::new(self.source), &self.suites, self.keep, watch)?;
         let hulls = Hulls::new(&problem, model.sets())?;
         Ok(Opened { model, problem, hulls })

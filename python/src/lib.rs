@@ -7,6 +7,7 @@ mod conformance;
 mod dynamics;
 mod excitation;
 mod failure;
+mod fleet;
 mod flowpipe;
 mod identification;
 mod logs;
@@ -24,6 +25,8 @@ mod _reachtube {
     use crate::conformance::{check, check_model, conform, reach, report};
     #[pymodule_export]
     use crate::excitation::excite;
+    #[pymodule_export]
+    use crate::fleet::{NativeFleet, NativeFold};
     #[pymodule_export]
     use crate::flowpipe::flowpipe;
     #[pymodule_export]

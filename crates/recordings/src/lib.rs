@@ -62,7 +62,7 @@ pub use index::RunEntry;
 pub use inspect::{Group, Inspection, JointSummary, inspect};
 pub use memory::MemoryRuns;
 pub use notes::{copies_note, run_notes, temperature_notes};
-pub use reading::read_csv;
+pub use reading::{parse_csv, read_csv};
 pub use refusal::{Place, Refusal};
 pub use run::{Run, column_names};
 pub use sensor_noise::noise_deviations;

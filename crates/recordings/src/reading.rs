@@ -38,8 +38,27 @@ pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> 
         let defect = Defect::new(path, None, problem, "check the path and its permissions");
         vec![defect.of_kind(DefectKind::File)]
     })?;
-    let mut run = read_samples(path, &bytes, options.joints, options.gap_limit)?;
-    run.sha256 = hex(&Sha256::digest(&bytes));
+    parse_csv(path, &bytes, options)
+}
+
+/// Reads the recording in the content of a CSV file, which messages call `name`.
+///
+/// # Errors
+///
+/// Every defect of the content, with its line and joint.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_recordings::{ReadOptions, parse_csv};
+///
+/// let content = b"t,q1,qd1,tau1\n0.0,0.1,0.0,2.0\n0.1,0.1,0.0,2.0\n";
+/// let run = parse_csv("run.csv".as_ref(), content, &ReadOptions::default()).unwrap();
+/// assert_eq!((run.joints, run.len()), (1, 2));
+/// ```
+pub fn parse_csv(name: &Path, content: &[u8], options: &ReadOptions) -> Result<Run, Vec<Defect>> {
+    let mut run = read_samples(name, content, options.joints, options.gap_limit)?;
+    run.sha256 = hex(&Sha256::digest(content));
     run.truncate(options.until);
     Ok(run)
 }

@@ -1,0 +1,203 @@
+"""The smallest sets, and their check on other recordings."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Sequence
+from os import PathLike, fspath
+from typing import Literal
+
+import numpy.typing as npt
+
+from . import _reachtube
+from ._abstraction import Abstraction
+from ._arrays import names
+from ._model import Check, Model
+from ._progress import Progress, shown
+from ._recordings import source
+from ._robot import Robot
+from ._settings import Data, Group, Notion, Torque, differing, of_conformance
+from .errors import ReachtubeWarning
+
+log = logging.getLogger("reachtube")
+
+
+def conform(
+    robot: Robot | Abstraction,
+    data: Data,
+    *,
+    torque: Torque,
+    suites: str | Sequence[str] | None = None,
+    model: Literal[1, 2, 3] = 1,
+    order: int = 1,
+    expansion: npt.ArrayLike | None = None,
+    fit: Sequence[Group] = (),
+    pull: float | None = None,
+    disturbance: Literal["sample", "constant", "measurable"] = "sample",
+    centre: Literal["free", "origin", "zero"] = "free",
+    notion: Notion = "hull",
+    states: Literal["all", "positions"] = "all",
+    initial_limit: Literal["none", "positions", "states"] = "none",
+    weights: Literal["unit", "spread"] | npt.ArrayLike = "unit",
+    noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
+    sensor_noise: npt.ArrayLike | None = None,
+    nominal: Literal["mean", "own"] = "mean",
+    calibrate: Sequence[str] = (),
+    method: Literal["program", "bisection"] = "program",
+    explain: Literal["default"] | tuple[float, float] | None = "default",
+    until: float | None = None,
+    max_gap: float | None = None,
+    resume: str | PathLike[str] | None = None,
+    progress: Progress = None,
+) -> Model:
+    """Find the smallest uncertainty sets for which a model encloses every recording.
+
+    Parameters
+    ----------
+    robot
+        A robot, or an abstraction of one made by `abstract`.
+    data
+        The recordings.
+    torque
+        What the recorded torques are: ``"compensated"`` (the model's input: gravity and Coulomb
+        friction are already subtracted), ``"motor"`` (motor torque at the output side of the
+        gear) or ``"link"`` (link-side torque of a joint torque sensor). It is never guessed.
+    suites
+        Names of the suites to use; all where none are given.
+    model, order, expansion
+        Model 1, 2 or 3 of the paper, the order of its Taylor polynomials, and where it is
+        expanded: n positions, or also n velocities. Not for an abstraction, which has its own.
+    fit, pull
+        Groups of parameters of the nominal model that are chosen for the smallest sets, and the
+        weight of the pull toward the identified values, from 0 to 1; chosen by leaving one motion
+        out where it is not given.
+    disturbance
+        How the disturbance may change: from sample to sample, not at all, or at any time.
+    centre
+        Centres of X0 and U: anywhere, where the set contains the origin, or at the origin.
+    notion
+        Directions in which recordings must lie in the reachable set.
+    states
+        States that must be enclosed.
+    initial_limit
+        How far X0 may reach: positions or states no further than the recorded starts.
+    weights
+        Weights of the states in the cost: 1, the reciprocal of the spread, or 2 or 2n numbers.
+    noise, sensor_noise
+        Measurement noise V, or its radii, 2 or 2n numbers; and those of the sensors, which limit
+        it, estimated from the recordings where they are not given.
+    nominal
+        Where nominal motions start: at the mean of a suite's first states, or at each run's own.
+    calibrate
+        Motions that are kept back from the fit, to which the sets are then scaled.
+    method
+        Programs, or the paper's bisection.
+    explain
+        Tolerances, rad and rad/s, within which a motion of the model itself is searched for near
+        each recording. The default is not to, but for models that are not linear.
+    until
+        Samples later than this many seconds after the first are not used.
+    max_gap
+        Longest time between two samples, s.
+    resume
+        A file that keeps the progress of a long search, and from which it goes on.
+    progress
+        ``True`` for a bar; a function is called with what is done, all, and sentences.
+
+    Returns
+    -------
+    Model
+        With ``verified`` false where it could not be proved: that is no error. What can hardly
+        be right is also warned of, as `ReachtubeWarning`.
+
+    Raises
+    ------
+    DefectsError
+        Recordings with defects, all of them.
+    SettingError
+        An argument that is not possible.
+    KeyboardInterrupt
+        Within 0.2 s, with nothing written.
+    """
+    settings = of_conformance(
+        robot,
+        torque=torque,
+        model=model,
+        order=order,
+        expansion=expansion,
+        disturbance=disturbance,
+        centre=centre,
+        notion=notion,
+        states=states,
+        initial_limit=initial_limit,
+        weights=weights,
+        noise=noise,
+        sensor_noise=sensor_noise,
+        nominal=nominal,
+        calibrate=calibrate,
+        method=method,
+        explain=explain,
+        until=until,
+        max_gap=max_gap,
+    )
+    with shown(progress, "conform") as tell:
+        text, notes = _reachtube.conform(
+            robot._native if isinstance(robot, Robot) else None,
+            robot._native if isinstance(robot, Abstraction) else None,
+            source(data),
+            names(suites),
+            settings,
+            names(fit),
+            pull,
+            None if resume is None else fspath(resume),
+            tell,
+        )
+    return told(text, notes, 3)
+
+
+def told(text: str, notes: list[str], level: int) -> Model:
+    """Return the model, and say what is to be said of it to the caller `level` frames above."""
+    for note in notes:
+        log.info(note)
+    found = Model(text)
+    if not found.verified:
+        words = "the sets are NOT PROVED to enclose the recordings"
+        warnings.warn(words, ReachtubeWarning, level)
+    for warning in found.warnings:
+        warnings.warn(warning, ReachtubeWarning, level)
+    return found
+
+
+def check(
+    model: Model,
+    data: Data,
+    *,
+    suites: str | Sequence[str] | None = None,
+    notion: Notion | None = None,
+    until: float | None = None,
+    max_gap: float | None = None,
+    progress: Progress = None,
+) -> Check:
+    """Check whether a model encloses other recordings, whose torques are of the model's kind.
+
+    Parameters
+    ----------
+    model, data
+        The model, and the recordings.
+    suites, until, max_gap, progress
+        As for `conform`; ``until`` is that of the model where it is not given.
+    notion
+        Directions in which recordings must lie in the set; the model's own where not given.
+
+    Returns
+    -------
+    Check
+        Not conformant is a value, with witnesses.
+    """
+    with shown(progress, "check") as tell:
+        return Check(
+            _reachtube.check(
+                model._text, source(data), names(suites), differing(notion, until, max_gap), tell
+            )
+        )

@@ -1,0 +1,103 @@
+"""Settings of a conformance, as the native part takes them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from typing import Any, Literal, TypeAlias
+
+import numpy.typing as npt
+
+from ._abstraction import Abstraction
+from ._arrays import names, numbers
+from ._recordings import Recordings, Run
+from ._robot import Robot
+from .errors import SettingError
+
+Torque: TypeAlias = Literal["compensated", "motor", "link"]
+Notion: TypeAlias = Literal["hull", "phase-plane", "exact", "trace"]
+Group: TypeAlias = Literal["inertia", "viscous", "cubic", "coulomb", "warm-up", "payload"]
+Data: TypeAlias = "Recordings | Run | Iterable[Run]"
+
+
+def _radii(name: str, values: npt.ArrayLike, joints: int) -> list[float]:
+    """Return 2n numbers; two stand for all positions and all velocities."""
+    given = numbers(name, values).ravel()
+    if given.size == 2:
+        return [float(given[0])] * joints + [float(given[1])] * joints
+    if given.size != 2 * joints:
+        raise SettingError(f"{name} has {given.size} numbers; give 2 or {2 * joints}")
+    return [float(value) for value in given]
+
+
+def _limits(until: float | None, max_gap: float | None) -> dict[str, float]:
+    """Return the limits of time that are given."""
+    limits = {"until": until, "max_gap": max_gap}
+    for name, value in limits.items():
+        if value is not None and not 0 < value < float("inf"):
+            raise SettingError(f"{name} is {value} s; it must be above 0")
+    return {name: value for name, value in limits.items() if value is not None}
+
+
+def differing(notion: Notion | None, until: float | None, max_gap: float | None) -> str:
+    """Return the settings that differ from a model's."""
+    settings: dict[str, Any] = dict(_limits(until, max_gap))
+    if notion is not None:
+        settings["notion"] = notion
+    return json.dumps(settings)
+
+
+def of_conformance(
+    robot: Robot | Abstraction,
+    *,
+    torque: Torque,
+    model: Literal[1, 2, 3] = 1,
+    order: int = 1,
+    expansion: npt.ArrayLike | None = None,
+    disturbance: Literal["sample", "constant", "measurable"] = "sample",
+    centre: Literal["free", "origin", "zero"] = "free",
+    notion: Notion = "hull",
+    states: Literal["all", "positions"] = "all",
+    initial_limit: Literal["none", "positions", "states"] = "none",
+    weights: Literal["unit", "spread"] | npt.ArrayLike = "unit",
+    noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
+    sensor_noise: npt.ArrayLike | None = None,
+    nominal: Literal["mean", "own"] = "mean",
+    calibrate: Sequence[str] = (),
+    method: Literal["program", "bisection"] = "program",
+    explain: Literal["default"] | tuple[float, float] | None = "default",
+    until: float | None = None,
+    max_gap: float | None = None,
+) -> str:
+    """Return the settings of `conform`."""
+    settings: dict[str, Any] = {
+        "torque": torque,
+        "disturbance": disturbance,
+        "centre": centre,
+        "notion": notion,
+        "states": states,
+        "initial_limit": initial_limit,
+        "nominal": nominal,
+        "calibrate": names(calibrate),
+        "method": method,
+    }
+    if isinstance(robot, Abstraction):
+        if (model, order, expansion) != (1, 1, None):
+            raise SettingError("model, order and expansion are those of the abstraction")
+    else:
+        settings["abstraction"] = {"model": model, "order": order}
+        if expansion is not None:
+            settings["expansion"] = numbers("expansion", expansion).ravel().tolist()
+    for name, value, key in [("weights", weights, "given"), ("noise", noise, "fixed")]:
+        if isinstance(value, str):
+            settings[name] = value
+        else:
+            settings[name] = {key: _radii(name, value, robot.joints)}
+    if sensor_noise is not None:
+        settings["sensor_noise"] = _radii("sensor_noise", sensor_noise, robot.joints)
+    if explain is None:
+        settings["explain"] = None
+    elif explain != "default":
+        settings["explain"] = {"position": explain[0], "velocity": explain[1]}
+    settings.update(_limits(until, max_gap))
+    return json.dumps(settings)

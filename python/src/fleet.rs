@@ -1,0 +1,234 @@
+//! Recordings of a fleet, folded in parts.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+use pyo3::prelude::*;
+use reachtube::conform::{self as product, Fold, Hulls, Model, OnDefect, Problem, Setup};
+use reachtube::recordings::{Defect, DefectKind, RunEntry, parse_csv};
+use serde_json::{Map, Value};
+
+use crate::abstraction::NativeAbstraction;
+use crate::conformance::{Basis, differing, setup};
+use crate::failure::{Failure, Result};
+use crate::recordings::NativeRun;
+use crate::robot::NativeRobot;
+use crate::watched::watched;
+
+/// How the recordings of a fleet are folded: to find sets, or to check a model.
+#[pyclass(frozen, name = "Fleet", module = "reachtube._reachtube")]
+pub struct NativeFleet {
+    setup: Arc<Setup>,
+    model: Option<Arc<Model>>,
+}
+
+/// A part of a fleet's recordings. It holds what is needed of them, and not the recordings.
+#[pyclass(frozen, name = "Fold", module = "reachtube._reachtube")]
+pub struct NativeFold {
+    fold: Mutex<Fold>,
+}
+
+/// An entry of a manifest: its place, file, suite, motion, order, and the SHA-256 that the file
+/// should have.
+type Entry = (u64, String, String, Option<String>, u64, Option<String>);
+
+/// SHA-256, number of samples and duration of a recording; or its defects.
+type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
+
+/// The same as Python has it.
+type Taken = (Option<(String, usize, f64)>, Vec<String>);
+
+fn entry(row: &Entry) -> RunEntry {
+    let (index, file, suite, motion, order, sha256) = row.clone();
+    RunEntry {
+        file,
+        suite: Some(suite),
+        motion,
+        kind: None,
+        temperature: None,
+        sha256,
+        order,
+        line: index + 1,
+    }
+}
+
+#[pymethods]
+impl NativeFleet {
+    /// Prepares a conformance.
+    #[staticmethod]
+    #[pyo3(signature = (robot, abstraction, settings))]
+    fn to_conform(
+        py: Python<'_>,
+        robot: Option<PyRef<'_, NativeRobot>>,
+        abstraction: Option<PyRef<'_, NativeAbstraction>>,
+        settings: String,
+    ) -> PyResult<Self> {
+        let basis = Basis::new(robot, abstraction).map_err(|failure| failure.raised(py))?;
+        let setup = watched(py, None, move |_| {
+            let mut setup = setup(basis, &settings)?;
+            // No single recording is there for it.
+            setup.settings.explain = None;
+            Ok(setup)
+        })?;
+        Ok(Self { setup: Arc::new(setup), model: None })
+    }
+
+    /// Prepares a check of a model.
+    #[staticmethod]
+    fn to_check(py: Python<'_>, model: String, settings: String) -> PyResult<Self> {
+        watched(py, None, move |_| {
+            let (model, mut setup) = Model::parse(&model, Path::new("model"))?;
+            let given: Map<String, Value> =
+                serde_json::from_str(&settings).map_err(Failure::setting)?;
+            differing(&mut setup.settings, given)?;
+            setup.settings.explain = None;
+            Ok(Self { setup: Arc::new(setup), model: Some(Arc::new(model)) })
+        })
+    }
+
+    /// Returns the fold of no recording.
+    fn fold(&self, py: Python<'_>) -> PyResult<NativeFold> {
+        let fold = match &self.model {
+            None => Fold::new(&self.setup),
+            Some(model) => Fold::to_check(&self.setup, model),
+        };
+        let fold = fold.map_err(|error| Failure::from(error).raised(py))?;
+        Ok(NativeFold { fold: Mutex::new(fold) })
+    }
+
+    /// Merges folds in any order.
+    fn merge(&self, py: Python<'_>, parts: Vec<Vec<u8>>) -> PyResult<Vec<u8>> {
+        let setup = Arc::clone(&self.setup);
+        watched(py, None, move |_| Ok(merged(&setup, &parts)?.to_bytes()))
+    }
+
+    /// Returns how many recordings have no defect, how many have some, and their list for people.
+    fn count(&self, py: Python<'_>, fold: Vec<u8>) -> PyResult<(u64, u64, Vec<String>)> {
+        let setup = Arc::clone(&self.setup);
+        watched(py, None, move |_| {
+            let fold = Fold::from_bytes(&setup, &fold)?;
+            let defects = fold.defects().iter().map(ToString::to_string).collect();
+            Ok((fold.run_count(), fold.defect_count(), defects))
+        })
+    }
+
+    /// Finds the smallest sets, and returns the model file's text and notes.
+    #[pyo3(signature = (fold, report, resume=None, progress=None))]
+    fn conform(
+        &self,
+        py: Python<'_>,
+        fold: Vec<u8>,
+        report: bool,
+        resume: Option<PathBuf>,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<(String, Vec<String>)> {
+        let setup = Arc::clone(&self.setup);
+        watched(py, progress.as_ref(), move |watch| {
+            let problem = problem(&setup, &fold, report)?;
+            let found = product::conform(&problem, watch, resume.as_deref())?;
+            Ok((Model::new(&problem, &found).to_json(), problem.recordings().notes.clone()))
+        })
+    }
+
+    /// Compares the recordings with the model's reachable sets, and returns the answer as JSON.
+    fn check(&self, py: Python<'_>, fold: Vec<u8>, report: bool) -> PyResult<String> {
+        let (setup, model) = (Arc::clone(&self.setup), self.model.clone());
+        watched(py, None, move |_| {
+            let model = model.ok_or_else(|| Failure::Setting("there is no model".into()))?;
+            let problem = problem(&setup, &fold, report)?;
+            let hulls = Hulls::new(&problem, model.sets())?;
+            let check = product::check(&model, &problem, &hulls)?;
+            Ok(serde_json::to_string(&check).expect("a check has string keys"))
+        })
+    }
+}
+
+fn merged(setup: &Setup, parts: &[Vec<u8>]) -> Result<Fold> {
+    let mut parts = parts.iter().map(|part| Fold::from_bytes(setup, part));
+    let first = parts.next().ok_or_else(|| Failure::Setting("there is no fold".into()))??;
+    parts.try_fold(first, |mut all, part| {
+        all.merge(part?)?;
+        Ok(all)
+    })
+}
+
+fn problem(setup: &Setup, fold: &[u8], report: bool) -> Result<Problem> {
+    let fold = Fold::from_bytes(setup, fold)?;
+    let on_defect = if report { OnDefect::Report } else { OnDefect::Refuse };
+    Ok(Problem::of_fold(setup.clone(), fold, on_defect)?)
+}
+
+impl NativeFold {
+    fn lock(&self) -> MutexGuard<'_, Fold> {
+        self.fold.lock().unwrap_or_else(|lock| lock.into_inner())
+    }
+
+    fn take(
+        &self,
+        py: Python<'_>,
+        row: &Entry,
+        read: impl FnOnce(&Fold) -> Result<reachtube::Run, Vec<Defect>> + Send,
+    ) -> PyResult<Taken> {
+        let entry = entry(row);
+        let taken = py.detach(|| {
+            let mut fold = self.lock();
+            let read = read(&fold).map(reachtube::Run::with_digest);
+            let summary = match &read {
+                Ok(run) => Ok((run.sha256.clone(), run.len(), run.duration())),
+                Err(defects) => Err(defects.iter().map(ToString::to_string).collect()),
+            };
+            fold.take(row.0, &entry, read)?;
+            Ok(summary)
+        });
+        let taken: product::Result<Summary> = taken;
+        let (summary, defects) = match taken.map_err(|e| Failure::from(e).raised(py))? {
+            Ok(summary) => (Some(summary), vec![]),
+            Err(defects) => (None, defects),
+        };
+        Ok((summary, defects))
+    }
+}
+
+#[pymethods]
+impl NativeFold {
+    /// Takes the recording in the content of a CSV file.
+    fn take_csv(&self, py: Python<'_>, row: Entry, content: &[u8]) -> PyResult<Taken> {
+        let name = PathBuf::from(&row.1);
+        self.take(py, &row, |fold| {
+            let run = parse_csv(&name, content, &fold.read_options())?;
+            match &row.5 {
+                Some(expected) if !expected.eq_ignore_ascii_case(&run.sha256) => {
+                    let problem =
+                        format!("its SHA-256 is {}, but the manifest says {expected}", run.sha256);
+                    let remedy = "the file was changed or damaged: restore it, or write the \
+                                  manifest again";
+                    Err(vec![Defect::new(&name, None, problem, remedy).of_kind(DefectKind::File)])
+                }
+                _ => Ok(run),
+            }
+        })
+    }
+
+    /// Takes a recording in memory.
+    fn take_run(&self, py: Python<'_>, row: Entry, run: PyRef<'_, NativeRun>) -> PyResult<Taken> {
+        let run = Arc::clone(&run.run);
+        let name = PathBuf::from(&row.1);
+        self.take(py, &row, |fold| (*run).clone().checked(&name, &fold.read_options()))
+    }
+
+    /// Takes a recording that could not be read.
+    fn take_defect(
+        &self,
+        py: Python<'_>,
+        row: Entry,
+        problem: String,
+        remedy: String,
+    ) -> PyResult<Taken> {
+        let defect = Defect::new(&row.1, None, problem, remedy).of_kind(DefectKind::File);
+        self.take(py, &row, |_| Err(vec![defect]))
+    }
+
+    fn to_bytes(&self, py: Python<'_>) -> Vec<u8> {
+        py.detach(|| self.lock().to_bytes())
+    }
+}
