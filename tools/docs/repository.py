@@ -19,21 +19,19 @@ LOG = get_plugin_logger("repository")
 # Files outside of docs/ that are pages, and the names of their pages.
 PAGES = {
     "README.md": "index.md",
-    **{
-        path: f"repository/{path}"
-        for path in (
-            "ARCHITECTURE.md",
-            "CHANGELOG.md",
-            "CONTRIBUTING.md",
-            "PAPER.md",
-            "tools/recheck/README.md",
-        )
-    },
+    "ARCHITECTURE.md": "repository/architecture.md",
+    "CHANGELOG.md": "repository/changelog.md",
+    "CONTRIBUTING.md": "repository/contributing.md",
+    "PAPER.md": "repository/paper.md",
+    "tools/recheck/README.md": "repository/recheck.md",
 }
 SOURCES = {page: path for path, page in PAGES.items()}
 
 # The words and the target of a link or an image, outside of code in one line.
 LINK = re.compile(r"(`[^`\n]*`)|(!?)\[([^\]]*)\]\(([^)\s]+)\)")
+
+# Blocks of code.
+BLOCKS = re.compile(r"(^```[\s\S]*?^```|^(?: {4}.*\n)+)", flags=re.M)
 
 
 def on_files(files, config):
@@ -47,7 +45,7 @@ def on_page_markdown(markdown, page, config, files):
     """Turns links, outside of blocks of code, to the pages of the site."""
     uri = page.file.src_uri
     source = SOURCES.get(uri, f"docs/{uri}")
-    blocks = re.split(r"(^```.*?^```|^(?:    .*\n)+)", markdown, flags=re.M | re.S)
+    blocks = BLOCKS.split(markdown)
     for i, block in enumerate(blocks):
         if not block.startswith(("```", "    ")):
             blocks[i] = LINK.sub(lambda link: turned(link, source, uri), block)
