@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Checks what `cargo package --workspace` wrote: a package must stand on its own.
 
 Each package needs a description, keywords, categories, both licences and a README of its own. A

@@ -125,7 +125,8 @@ fn bash_completes_commands_and_options() {
     let complete = |words: &str, last: usize| {
         let script = format!(
             "source share/bash-completion/completions/reachtube; COMP_WORDS=({words}); \
-             COMP_CWORD={last}; _reachtube reachtube \"${{COMP_WORDS[{last}]}}\" \"\"; \
+             COMP_CWORD={last}; _reachtube reachtube \"${{COMP_WORDS[{last}]}}\" \
+             \"${{COMP_WORDS[{last}-1]}}\"; \
              echo \"${{COMPREPLY[@]}}\""
         );
         let mut bash = std::process::Command::new("bash");
