@@ -226,3 +226,28 @@ fn wrap(text: &str, first: &str, next: &str) -> String {
     }
     page + "\n"
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{after, escape, sentence, wrap};
+
+    #[test]
+    fn help_becomes_markdown() {
+        assert_eq!(sentence("Positions [default: 0]"), "Positions. Default: 0.");
+        assert_eq!(sentence("Runs, e.g.:"), "Runs, e.g.:");
+        assert_eq!(escape("see docs/logs.md, <x> `<y>`"), "see [logs.md](logs.md), \\<x> `<y>`");
+        let help = "Example:\n  reachtube demo\n      a note\n\nExit codes: 0 done,\n1 not.";
+        let page = "Example:\n\n    reachtube demo\n        a note\n\nExit codes: 0 done, 1 not.\n";
+        assert_eq!(after(help), page);
+    }
+
+    #[test]
+    fn lines_are_broken_between_words_and_outside_of_code() {
+        let text = format!("{} `a b c`: {}", "x".repeat(92), "y ".repeat(60).trim_end());
+        let page = wrap(&text, "- ", "  ");
+        assert!(page.lines().all(|line| line.chars().count() <= 100), "{page}");
+        assert!(page.contains("\n  `a b c`: y"), "{page}");
+        let words: Vec<_> = page.trim_start_matches("- ").split_whitespace().collect();
+        assert_eq!(words, text.split_whitespace().collect::<Vec<_>>());
+    }
+}
