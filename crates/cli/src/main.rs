@@ -13,6 +13,7 @@ mod option_values;
 mod outcome;
 mod output;
 mod progress;
+mod reference;
 mod report_files;
 mod settings_file;
 mod table;

@@ -20,6 +20,7 @@ Examples:
       record a smaller one, with parameters of the virtual robot such as payload_mass = 0.5
 
 Then, in the folder: reachtube conform --robot lwa4p --data . --torque compensated
+
 Its README.md has all commands. A campaign that was stopped goes on when it is started again.";
 
 /// Record a whole experiment on a virtual robot, as in the paper

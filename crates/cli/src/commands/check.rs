@@ -35,8 +35,8 @@ Exit codes: 0 all recordings were proved to lie in the reachable set, at samples
 pub struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Directions in which the recordings must lie in the reachable set of a linear model [default:
-    /// those of the model file]
+    /// Directions in which the recordings must lie in the reachable set [default: those of the
+    /// model file]
     #[arg(long, value_parser = choice::<Notion>(NOTIONS))]
     pub notion: Option<Notion>,
 }

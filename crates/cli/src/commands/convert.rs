@@ -33,6 +33,7 @@ Examples:
       what is whole in a damaged log
 
 Then: reachtube inspect --data recordings
+
 docs/logs.md describes what is read and what is refused.";
 
 /// Which times samples have.

@@ -1,4 +1,4 @@
-//! `reachtube man`: manual pages.
+//! `reachtube man`: manual pages, and the same as one page of Markdown.
 
 use std::path::PathBuf;
 
@@ -9,12 +9,14 @@ use reachtube::write;
 use crate::cli::Cli;
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
-use crate::output;
+use crate::{output, reference};
 
 const HELP: &str = "\
 Examples:
   reachtube man | man -l -
-  reachtube man --out ~/.local/share/man/man1";
+  reachtube man --out ~/.local/share/man/man1
+  reachtube man --markdown > docs/cli.md
+      the reference of the documentation";
 
 /// Print the manual page, or write one page for each command
 #[derive(Debug, Args)]
@@ -23,29 +25,43 @@ pub struct Arguments {
     /// Write the pages of all commands to this folder: reachtube.1, reachtube-conform.1, ...
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
+    /// Print all commands and their options as one page of Markdown
+    #[arg(long, conflicts_with = "out")]
+    pub markdown: bool,
 }
 
 pub fn run(args: &Arguments) -> Result<Outcome> {
-    // Building gives each command below the first its name in full, as in "reachtube-conform".
+    if args.markdown {
+        output::write_out(reference::markdown(built()).as_bytes())?;
+    } else if let Some(folder) = &args.out {
+        let pages = pages().map_err(Error::Output)?;
+        let paths: Vec<PathBuf> = pages.iter().map(|(name, _)| folder.join(name)).collect();
+        output::claim_all(&paths)?;
+        for ((_, page), path) in pages.iter().zip(&paths) {
+            write::atomically(path, |out| out.write_all(page))?;
+        }
+        output::note(&format!("wrote {} pages to {}", paths.len(), folder.display()));
+    } else {
+        output::write_out(&page(built()).map_err(Error::Output)?)?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// Returns the manual page of each command under its file's name.
+pub fn pages() -> std::io::Result<Vec<(String, Vec<u8>)>> {
+    let named = |command: Command| {
+        let name = format!("{}.1", command.get_display_name().unwrap_or(command.get_name()));
+        Ok((name, page(command)?))
+    };
+    all(built()).into_iter().map(named).collect()
+}
+
+/// Returns the command line. Building gives each command below the first its name in full, as in
+/// "reachtube-conform".
+fn built() -> Command {
     let mut command = Cli::command().disable_help_subcommand(true);
     command.build();
-    let Some(folder) = &args.out else {
-        output::write_out(&page(command).map_err(Error::Output)?)?;
-        return Ok(Outcome::Done);
-    };
-    let commands = all(command);
-    let path = |command: &Command| {
-        let name = command.get_display_name().unwrap_or(command.get_name());
-        folder.join(format!("{name}.1"))
-    };
-    let paths: Vec<PathBuf> = commands.iter().map(path).collect();
-    output::claim_all(&paths)?;
-    for (command, path) in commands.into_iter().zip(&paths) {
-        let page = page(command).map_err(Error::Output)?;
-        write::atomically(path, |out| out.write_all(&page))?;
-    }
-    output::note(&format!("wrote {} pages to {}", paths.len(), folder.display()));
-    Ok(Outcome::Done)
+    command
 }
 
 /// Returns a command and the commands below it.

@@ -84,6 +84,78 @@ fn completions_and_manual_pages_name_every_command() {
     assert!(lab.read("pages/reachtube-conform.1").contains("max\\-gap"));
 }
 
+/// The folder is laid out as /usr/share, and a second run may replace what the first one wrote.
+#[test]
+fn a_package_gets_all_scripts_and_pages_by_one_command() {
+    let lab = Lab::new();
+    for _ in 0..2 {
+        lab.run("completions --out share").exits(0).notes("5 completion scripts and");
+    }
+    for (shell, place) in [
+        ("bash", "bash-completion/completions/reachtube"),
+        ("elvish", "elvish/lib/reachtube.elv"),
+        ("fish", "fish/vendor_completions.d/reachtube.fish"),
+        ("powershell", "powershell/reachtube.ps1"),
+        ("zsh", "zsh/site-functions/_reachtube"),
+    ] {
+        let script = lab.run(&format!("completions {shell}")).exits(0).stdout;
+        assert_eq!(lab.read(&format!("share/{place}")), script);
+    }
+    assert!(lab.read("share/zsh/site-functions/_reachtube").starts_with("#compdef reachtube\n"));
+    lab.run("man --out pages").exits(0);
+    let pages = lab.names("pages");
+    assert_eq!(pages, lab.names("share/man/man1"));
+    // One page for each section of the reference, and one for the whole.
+    let reference = lab.run("man --markdown").exits(0).stdout;
+    let sections = reference.lines().filter(|line| line.starts_with("## reachtube")).count();
+    assert_eq!(pages.len(), sections + 1, "{pages:?}");
+    lab.run("completions").exits(2);
+    lab.run("completions bash --out share").exits(2);
+}
+
+/// A shell that loads the script offers the commands, and the options of a command.
+#[test]
+fn bash_completes_commands_and_options() {
+    let lab = Lab::new();
+    let has_bash = std::process::Command::new("bash").arg("--version").output().is_ok();
+    if !has_bash {
+        return;
+    }
+    lab.run("completions --out share").exits(0);
+    let complete = |words: &str, last: usize| {
+        let script = format!(
+            "source share/bash-completion/completions/reachtube; COMP_WORDS=({words}); \
+             COMP_CWORD={last}; _reachtube reachtube \"${{COMP_WORDS[{last}]}}\" \
+             \"${{COMP_WORDS[{last}-1]}}\"; \
+             echo \"${{COMPREPLY[@]}}\""
+        );
+        let mut bash = std::process::Command::new("bash");
+        let output = bash.args(["-c", &script]).current_dir(lab.path(".")).output().unwrap();
+        assert!(output.stderr.is_empty(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert_eq!(complete("reachtube con", 1), "convert conform\n");
+    assert_eq!(complete("reachtube conform --calib", 2), "--calibrate\n");
+    assert_eq!(complete("reachtube conform --notion ph", 3), "phase-plane\n");
+}
+
+/// The page is made from the definitions of the options, so that it cannot go stale.
+#[test]
+fn the_reference_in_docs_is_up_to_date() {
+    let reference = Lab::new().run("man --markdown").exits(0).stdout;
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/cli.md");
+    assert!(
+        std::fs::read_to_string(path).unwrap() == reference,
+        "docs/cli.md is stale: run `cargo run -p reachtube-cli -- man --markdown > docs/cli.md`"
+    );
+    let long =
+        reference.lines().find(|line| line.chars().count() > 100 && !line.starts_with("    "));
+    assert_eq!(long, None);
+    for option in ["--calibrate <MOTION,..>", "--lock <JOINT=VALUE>", "Exit codes: 0 done, 1 a"] {
+        assert!(reference.contains(option), "{option}");
+    }
+}
+
 #[test]
 fn another_torque_than_the_models_is_refused() {
     let lab = Lab::new();

@@ -120,7 +120,7 @@ pub struct Arguments {
         value_parser = choice::<Centre>(CENTRES)
     )]
     pub centre: Centre,
-    /// Directions in which recordings must lie in the reachable set of a linear model
+    /// Directions in which recordings must lie in the reachable set
     #[arg(
         long,
         help_heading = "Sets",

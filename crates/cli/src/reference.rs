@@ -1,0 +1,253 @@
+//! The reference of all commands as one page of Markdown, from the definitions that clap parses by.
+
+use std::fmt::Write;
+
+use clap::{Arg, Command};
+
+/// Columns of the page.
+const WIDTH: usize = 100;
+
+const OPENING: &str = "\
+# Command reference
+
+This page is made from the command's own definitions by `reachtube man --markdown`; a test compares
+the two. [Commands](commands.md) describes what all commands have in common: output, JSON, files
+that exist, settings files and limits.
+
+The exit code of every command is 0 for done, 1 for not conformant and 2 for an error. Where a
+command means something else by them, its section says so.
+";
+
+const GLOBAL: &str = "Global options";
+
+/// Returns the page for a command line that was built.
+pub fn markdown(command: Command) -> String {
+    let mut page = OPENING.to_string();
+    let _ = writeln!(page, "\n## {GLOBAL}\n\nEvery command has these options.\n");
+    for arg in command.get_arguments().filter(|arg| arg.get_help_heading() == Some(GLOBAL)) {
+        page += &item(arg);
+    }
+    for below in command.get_subcommands() {
+        section(&mut page, below, "reachtube");
+    }
+    page
+}
+
+/// Appends the sections of a command and of the commands below it.
+fn section(page: &mut String, command: &Command, parent: &str) {
+    let name = format!("{parent} {}", command.get_name());
+    let _ = writeln!(page, "\n## {name}\n");
+    let about = command.get_long_about().or(command.get_about());
+    let about = about.map(ToString::to_string).unwrap_or_default();
+    for paragraph in about.split("\n\n") {
+        page.push_str(&wrap(&sentence(&escape(&joined(paragraph))), "", ""));
+        page.push('\n');
+    }
+    if command.has_subcommands() {
+        let names = command.get_subcommands().map(|below| format!("`{}`", below.get_name()));
+        let names = names.collect::<Vec<_>>().join(", ");
+        page.push_str(&wrap(&format!("Its commands are {names}."), "", ""));
+        for below in command.get_subcommands() {
+            section(page, below, &name);
+        }
+        return;
+    }
+    let _ = writeln!(page, "{}", usage(&name, command));
+    options(page, command);
+    if let Some(help) = command.get_after_help() {
+        page.push('\n');
+        page.push_str(&after(&help.to_string()));
+    }
+}
+
+/// Returns the call with what it requires, as a block of code.
+fn usage(name: &str, command: &Command) -> String {
+    let required = command.get_arguments().filter(|arg| arg.is_required_set());
+    let words = required.map(|arg| if arg.is_positional() { values(arg) } else { call(arg) });
+    let words: Vec<String> = std::iter::once(name.to_string()).chain(words).collect();
+    let mut text = format!("    {} [OPTIONS]\n", words.join(" "));
+    let either =
+        command.get_arguments().filter(|arg| arg.is_positional() && !arg.is_required_set());
+    for arg in either {
+        let _ = writeln!(text, "    {name} {} [OPTIONS]", values(arg));
+    }
+    text
+}
+
+/// Appends the options, by their headings, in the order of their definition.
+fn options(page: &mut String, command: &Command) {
+    let shown = |arg: &&Arg| {
+        let is_help = matches!(arg.get_id().as_str(), "help" | "version");
+        !arg.is_hide_set() && !is_help && arg.get_help_heading() != Some(GLOBAL)
+    };
+    let args: Vec<&Arg> = command.get_arguments().filter(shown).collect();
+    let mut headings: Vec<Option<&str>> = Vec::new();
+    for arg in &args {
+        if !headings.contains(&arg.get_help_heading()) {
+            headings.push(arg.get_help_heading());
+        }
+    }
+    headings.sort_by_key(Option::is_some);
+    for heading in headings {
+        if let Some(heading) = heading {
+            let _ = writeln!(page, "\n**{heading}**\n");
+        }
+        for arg in args.iter().filter(|arg| arg.get_help_heading() == heading) {
+            page.push_str(&item(arg));
+        }
+    }
+}
+
+/// Returns one option as an item of a list: call, help, values and default.
+fn item(arg: &Arg) -> String {
+    let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
+    let mut text = format!("`{}`: {}", call(arg), sentence(&escape(&joined(&help))));
+    let possible = arg.get_possible_values();
+    let possible: Vec<_> = possible.iter().filter(|value| !value.is_hide_set()).collect();
+    if arg.get_action().takes_values() && !possible.is_empty() {
+        let named = possible.iter().map(|value| match value.get_help() {
+            Some(help) => format!("`{}` ({})", value.get_name(), escape(&help.to_string())),
+            None => format!("`{}`", value.get_name()),
+        });
+        let _ = write!(text, " Values: {}.", named.collect::<Vec<_>>().join(", "));
+    }
+    let defaults = arg.get_default_values();
+    if arg.get_action().takes_values() && !defaults.is_empty() {
+        let values: Vec<_> = defaults.iter().map(|value| value.to_string_lossy()).collect();
+        let _ = write!(text, " Default: `{}`.", values.join(","));
+    }
+    if arg.is_required_set() {
+        text.push_str(" Required.");
+    }
+    wrap(&text, "- ", "  ")
+}
+
+/// Returns what to type for an option, for example `-q, --quiet` or `--out <FILE>`.
+fn call(arg: &Arg) -> String {
+    let names =
+        [arg.get_short().map(|c| format!("-{c}")), arg.get_long().map(|l| format!("--{l}"))];
+    let mut words = names.into_iter().flatten().collect::<Vec<_>>().join(", ");
+    if arg.get_action().takes_values() {
+        if !words.is_empty() {
+            words.push(' ');
+        }
+        words.push_str(&values(arg));
+    }
+    words
+}
+
+/// Returns the names of an option's values.
+fn values(arg: &Arg) -> String {
+    let names = arg.get_value_names().unwrap_or_default().iter();
+    let names: Vec<_> = names.map(|name| format!("<{name}>")).collect();
+    let more = arg.get_num_args().is_some_and(|range| range.max_values() > names.len().max(1));
+    names.join(" ") + if more { "..." } else { "" }
+}
+
+/// Returns the text after the options: indented lines become code, others paragraphs.
+fn after(text: &str) -> String {
+    let mut page = String::new();
+    let lines: Vec<&str> = text.lines().collect();
+    let is_code = |line: &str| line.starts_with("  ");
+    for block in lines.chunk_by(|a, b| is_code(a) == is_code(b) && !a.is_empty() && !b.is_empty()) {
+        if block[0].is_empty() {
+            continue;
+        }
+        if is_code(block[0]) {
+            block.iter().for_each(|line| page += &format!("  {line}\n"));
+        } else {
+            page.push_str(&wrap(&escape(&block.join(" ")), "", ""));
+        }
+        page.push('\n');
+    }
+    page.trim_end().to_string() + "\n"
+}
+
+/// Joins the lines of a paragraph.
+fn joined(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Ends a help text with a full stop, also before a default in words.
+fn sentence(text: &str) -> String {
+    let default = text
+        .split_once(" [default: ")
+        .and_then(|(help, rest)| rest.strip_suffix(']').map(|default| (sentence(help), default)));
+    match default {
+        Some((help, default)) => format!("{help} Default: {default}."),
+        None if text.is_empty() || text.ends_with(['.', ':']) => text.into(),
+        None => format!("{text}."),
+    }
+}
+
+/// Escapes what Markdown would not print, outside of code, and links pages of the documentation.
+fn escape(text: &str) -> String {
+    let mut in_code = false;
+    let mut escaped = String::new();
+    for c in text.chars() {
+        in_code ^= c == '`';
+        if !in_code && matches!(c, '*' | '<' | '|') {
+            escaped.push('\\');
+        }
+        escaped.push(c);
+    }
+    let link = |word: &str| match word.strip_prefix("docs/").and_then(|w| w.split_once(".md")) {
+        Some((page, rest)) => format!("[{page}.md]({page}.md){rest}"),
+        None => word.to_string(),
+    };
+    escaped.split(' ').map(link).collect::<Vec<_>>().join(" ")
+}
+
+/// Breaks a text into lines of at most [`WIDTH`] columns. Code between backquotes stays whole.
+fn wrap(text: &str, first: &str, next: &str) -> String {
+    let mut page = first.to_string();
+    let mut column = first.chars().count();
+    let mut words = text.split(' ').peekable();
+    let mut is_first = true;
+    while let Some(word) = words.next() {
+        let mut word = word.to_string();
+        while word.matches('`').count() % 2 == 1
+            && let Some(rest) = words.next()
+        {
+            word = format!("{word} {rest}");
+        }
+        let length = word.chars().count();
+        if !is_first && column + 1 + length > WIDTH {
+            page.push('\n');
+            page.push_str(next);
+            column = next.chars().count();
+        } else if !is_first {
+            page.push(' ');
+            column += 1;
+        }
+        page.push_str(&word);
+        column += length;
+        is_first = false;
+    }
+    page + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{after, escape, sentence, wrap};
+
+    #[test]
+    fn help_becomes_markdown() {
+        assert_eq!(sentence("Positions [default: 0]"), "Positions. Default: 0.");
+        assert_eq!(sentence("Runs, e.g.:"), "Runs, e.g.:");
+        assert_eq!(escape("see docs/logs.md, <x> `<y>`"), "see [logs.md](logs.md), \\<x> `<y>`");
+        let help = "Example:\n  reachtube demo\n      a note\n\nExit codes: 0 done,\n1 not.";
+        let page = "Example:\n\n    reachtube demo\n        a note\n\nExit codes: 0 done, 1 not.\n";
+        assert_eq!(after(help), page);
+    }
+
+    #[test]
+    fn lines_are_broken_between_words_and_outside_of_code() {
+        let text = format!("{} `a b c`: {}", "x".repeat(92), "y ".repeat(60).trim_end());
+        let page = wrap(&text, "- ", "  ");
+        assert!(page.lines().all(|line| line.chars().count() <= 100), "{page}");
+        assert!(page.contains("\n  `a b c`: y"), "{page}");
+        let words: Vec<_> = page.trim_start_matches("- ").split_whitespace().collect();
+        assert_eq!(words, text.split_whitespace().collect::<Vec<_>>());
+    }
+}
