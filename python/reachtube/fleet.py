@@ -193,11 +193,11 @@ def _folded(
         return whole
 
 
-def _on_dask(job: _Job, parts: list[_Part], client: Client, count: Any) -> bytes:
+def _on_dask(job: _Job, parts: list[_Part], client: Any, count: Any) -> bytes:
     """Fold the parts on workers, and merge them as a tree."""
     from distributed import as_completed
 
-    shared: Any = client.scatter(job, broadcast=True, hash=False)
+    shared = client.scatter(job, broadcast=True, hash=False)
     # Workers that end are replaced, and what they held is folded again.
     folds = [client.submit(_fold, shared, part, pure=False, retries=3) for part in parts]
     every = list(folds)
@@ -210,7 +210,7 @@ def _on_dask(job: _Job, parts: list[_Part], client: Client, count: Any) -> bytes
     [last] = level
     done = 0
     try:
-        waiting = as_completed(folds)
+        waiting: Any = as_completed(folds)  # type: ignore[no-untyped-call]
         del folds, every[:-1]
         for _ in waiting:
             done += 1

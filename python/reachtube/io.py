@@ -175,7 +175,7 @@ def parquet(
     suite, motion
         Those of the run.
     """
-    from pyarrow import parquet as files  # type: ignore[import-untyped]
+    from pyarrow import parquet as files
 
     found = files.read_table(fspath(path))
     columns = {name: found.column(name).to_numpy() for name in found.column_names}
@@ -222,7 +222,7 @@ def hdf5(
     joints, suite, motion
         As for `npz`; the file may have the joints' names as a data set or an attribute.
     """
-    import h5py  # type: ignore[import-untyped]
+    import h5py
 
     with h5py.File(path, "r") as file:
         if group not in file:

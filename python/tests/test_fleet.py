@@ -1,0 +1,282 @@
+"""Fleets: the bits of one machine, whatever the workers do."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import reachtube as rt
+from reachtube import fleet
+
+pytest.importorskip("pyarrow")
+pytest.importorskip("fsspec")
+distributed = pytest.importorskip("distributed")
+
+SUITES, RUNS, SAMPLES = 2, 20, 30
+
+
+def recordings(folder: Path) -> list[fleet.Recording]:
+    """Write runs that share their input, as CSV and Parquet files in turn."""
+    from pyarrow import Table, parquet
+
+    robot, random = rt.Robot.lwa4p(), np.random.default_rng(4)
+    t = 0.004 * np.arange(SAMPLES)
+    rows = []
+    for suite in range(SUITES):
+        q = 0.2 * np.sin(3 * t[:, None] + random.uniform(0, 1, 6))
+        qd = np.gradient(q, t, axis=0)
+        tau = robot.viscous_friction(qd) + robot.crba(np.zeros(6)).diagonal() * 0.3
+        for number in range(RUNS):
+            noise = 1e-3 * random.standard_normal((2, SAMPLES, 6))
+            run = rt.Run(t, q + noise[0], qd + noise[1], tau)
+            name = f"{suite}_{number}.{'parquet' if number % 5 == 0 else 'csv'}"
+            if name.endswith(".parquet"):
+                parquet.write_table(Table.from_pandas(run.to_pandas()), folder / name)
+            else:
+                lines = run.to_pandas().to_csv(index=False)
+                (folder / name).write_text(lines)
+            rows.append(fleet.Recording(name, f"S{suite}", f"m{suite}"))
+    return rows
+
+
+@pytest.fixture(scope="module")
+def manifest(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("fleet")
+    fleet.write_manifest(folder / "manifest.parquet", recordings(folder))
+    return folder / "manifest.parquet"
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    """Two workers, each a process of its own."""
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+        ) as cluster,
+        distributed.Client(cluster) as found,
+    ):
+        yield found
+
+
+@pytest.fixture(scope="module")
+def alone(manifest: Path) -> rt.Model:
+    return fleet.conform(rt.Robot.lwa4p(), manifest, torque="compensated")
+
+
+pytestmark = pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+
+
+def names_left_out(model: rt.Model) -> dict[str, Any]:
+    content = model.to_dict()
+    for key in ("sha256", "data"):
+        content.pop(key)
+    return content
+
+
+def test_one_task_and_many_give_the_same_bits(manifest: Path, alone: rt.Model) -> None:
+    assert alone.verified
+    for size in (1, 7, 1000):
+        found = fleet.conform(
+            rt.Robot.lwa4p(), manifest, torque="compensated", runs_per_task=size
+        )
+        assert found == alone
+
+
+def test_a_fleet_is_the_data_set(manifest: Path, alone: rt.Model) -> None:
+    from pyarrow import parquet
+
+    runs = []
+    for row in fleet.read_manifest(manifest):
+        path = manifest.parent / row.file
+        if row.file.endswith(".parquet"):
+            run = rt.io.parquet(path, suite=row.suite, motion=row.motion)
+        else:
+            numbers = np.loadtxt(path, delimiter=",", skiprows=1)
+            parts = np.split(numbers[:, 1:], 3, axis=1)
+            labels = {"suite": row.suite, "motion": row.motion, "name": row.file}
+            run = rt.Run(numbers[:, 0], *parts, **labels)
+        runs.append(run)
+    assert parquet.read_metadata(manifest).num_rows == len(runs) == SUITES * RUNS
+    found = rt.conform(rt.Robot.lwa4p(), runs, torque="compensated")
+    assert names_left_out(found) == names_left_out(alone)
+
+
+def test_workers_give_the_same_bits(manifest: Path, alone: rt.Model, client: Any) -> None:
+    found = fleet.conform(
+        rt.Robot.lwa4p(), manifest, torque="compensated", client=client, runs_per_task=3
+    )
+    assert found == alone
+    verdict = fleet.check(alone, manifest, client=client, runs_per_task=3)
+    assert verdict and verdict == fleet.check(alone, manifest)
+
+
+def test_a_worker_that_is_killed_changes_nothing(
+    manifest: Path, alone: rt.Model, client: Any
+) -> None:
+    workers = client.run(os.getpid)
+    victim = next(iter(workers.values()))
+    killed = threading.Event()
+
+    def kill() -> None:
+        time.sleep(0.3)
+        os.kill(victim, signal.SIGKILL)
+        killed.set()
+
+    threading.Thread(target=kill).start()
+    found = fleet.conform(
+        rt.Robot.lwa4p(), manifest, torque="compensated", client=client, runs_per_task=1
+    )
+    assert killed.wait(5) and found == alone
+
+
+def test_defects_are_named_or_left_out(manifest: Path, tmp_path: Path, client: Any) -> None:
+    rows = [row._replace(file=str(manifest.parent / row.file))
+            for row in fleet.read_manifest(manifest)]
+    (tmp_path / "broken.csv").write_text("t,q1\n0,nonsense\n")
+    good = rows[3]
+    bad = [
+        fleet.Recording("broken.csv", "S0", "m0"),
+        fleet.Recording("none.csv", "S0", "m0"),
+        good._replace(sha256="00" * 32),
+        fleet.Recording(str(tmp_path / "text.parquet"), "S0", "m0"),
+    ]
+    (tmp_path / "text.parquet").write_text("no Parquet file")
+    path = tmp_path / "manifest.parquet"
+    fleet.write_manifest(path, [*rows, *bad])
+    arguments: dict[str, Any] = {"torque": "compensated", "client": client, "runs_per_task": 5}
+    with pytest.raises(rt.DefectsError) as error:
+        fleet.conform(rt.Robot.lwa4p(), path, **arguments)
+    files = {Path(defect.file).name for defect in error.value.defects}
+    assert files == {"broken.csv", "none.csv", Path(good.file).name, "text.parquet"}
+    assert "SHA-256" in str(error.value) and "no such file" in str(error.value)
+    found = fleet.conform(rt.Robot.lwa4p(), path, on_defect="report", **arguments)
+    assert found.verified and found.to_dict()["data"]["skipped"] == 4
+    clean = tmp_path / "clean.parquet"
+    fleet.write_manifest(clean, rows)
+    other = fleet.conform(rt.Robot.lwa4p(), clean, **arguments)
+    assert found.cost == other.cost and found.initial_set == other.initial_set
+
+
+def test_a_stopped_job_goes_on(manifest: Path, alone: rt.Model, tmp_path: Path) -> None:
+    arguments: dict[str, Any] = {
+        "torque": "compensated", "runs_per_task": 10, "resume": tmp_path / "tasks"
+    }
+
+    def stop(done: int, total: int, words: list[str]) -> None:
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        fleet.conform(rt.Robot.lwa4p(), manifest, progress=stop, **arguments)
+    finished = sorted((tmp_path / "tasks").iterdir())
+    assert len(finished) == 2
+    times = [path.stat().st_mtime_ns for path in finished]
+    # One of them is damaged; it is folded again.
+    finished[0].write_bytes(finished[0].read_bytes()[:-1])
+    assert fleet.conform(rt.Robot.lwa4p(), manifest, **arguments) == alone
+    assert len(list((tmp_path / "tasks").iterdir())) == 4
+    assert finished[1].stat().st_mtime_ns == times[1]
+
+
+def test_summaries_are_a_table(manifest: Path, tmp_path: Path) -> None:
+    from pyarrow import parquet
+
+    fleet.conform(
+        rt.Robot.lwa4p(), manifest, torque="compensated", runs_per_task=15,
+        summaries=tmp_path / "runs",
+    )
+    table = parquet.read_table(tmp_path / "runs").to_pandas()
+    assert list(table["place"]) == list(range(SUITES * RUNS))
+    assert set(table["samples"]) == {SAMPLES} and (table["defects"] == "").all()
+    assert (table["sha256"].str.len() == 64).all()
+
+
+def test_wrong_manifests_are_refused(tmp_path: Path) -> None:
+    import pyarrow
+    from pyarrow import parquet
+
+    robot = rt.Robot.lwa4p()
+    with pytest.raises(rt.ReachtubeError, match="no such file"):
+        fleet.conform(robot, tmp_path / "none.parquet", torque="motor")
+    (tmp_path / "text.parquet").write_text("text")
+    with pytest.raises(rt.ReachtubeError, match="no Parquet file"):
+        fleet.conform(robot, tmp_path / "text.parquet", torque="motor")
+    parquet.write_table(pyarrow.table({"file": ["a.csv"]}), tmp_path / "short.parquet")
+    with pytest.raises(rt.ReachtubeError, match="missing: suite"):
+        fleet.conform(robot, tmp_path / "short.parquet", torque="motor")
+    parquet.write_table(
+        pyarrow.table({"file": ["a.csv"], "suite": [None]}), tmp_path / "empty.parquet"
+    )
+    with pytest.raises(rt.ReachtubeError, match="row 0"):
+        fleet.conform(robot, tmp_path / "empty.parquet", torque="motor")
+    with pytest.raises(rt.ReachtubeError, match="hull only"):
+        fleet.conform(robot, tmp_path / "empty.parquet", torque="motor", notion="exact")
+
+
+@pytest.fixture
+def store(manifest: Path) -> Iterator[dict[str, Any]]:
+    """A store on loopback, with the fleet's files."""
+    server = pytest.importorskip("moto.server")
+    s3fs = pytest.importorskip("s3fs")
+    running = server.ThreadedMotoServer(port=0, verbose=False)
+    running.start()
+    host, port = running.get_host_and_port()
+    options = {
+        "key": "a",
+        "secret": "b",
+        "client_kwargs": {"endpoint_url": f"http://{host}:{port}", "region_name": "us-east-1"},
+    }
+    files = s3fs.S3FileSystem(**options, skip_instance_cache=True)
+    files.mkdir("fleet")
+    files.put([str(path) for path in manifest.parent.iterdir()], "fleet/")
+    yield options
+    running.stop()
+
+
+def test_a_store_of_objects_gives_the_same_bits(
+    store: dict[str, Any], alone: rt.Model, client: Any
+) -> None:
+    found = fleet.conform(
+        rt.Robot.lwa4p(),
+        "s3://fleet/manifest.parquet",
+        torque="compensated",
+        client=client,
+        runs_per_task=8,
+        storage_options=store,
+        resume="s3://fleet/tasks",
+    )
+    assert found == alone
+
+
+def test_a_store_that_fails_is_asked_again(
+    manifest: Path, alone: rt.Model, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import fsspec
+
+    from reachtube import _store
+
+    asked: dict[str, int] = {}
+    opened = fsspec.open
+
+    def unsure(address: str, *arguments: Any, **options: Any) -> Any:
+        asked[address] = asked.get(address, 0) + 1
+        if asked[address] <= 2:
+            raise OSError(f"503 of {address}")
+        return opened(address, *arguments, **options)
+
+    monkeypatch.setattr(fsspec, "open", unsure)
+    monkeypatch.setattr(_store, "WAIT", 1e-4)
+    found = fleet.conform(rt.Robot.lwa4p(), manifest, torque="compensated")
+    assert found == alone and set(asked.values()) == {3}
+    monkeypatch.setattr(_store, "TRIES", 2)
+    asked.clear()
+    with pytest.raises(rt.ReachtubeError, match="in 2 tries: 503"):
+        fleet.conform(rt.Robot.lwa4p(), manifest, torque="compensated")
