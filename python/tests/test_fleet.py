@@ -232,7 +232,7 @@ def store(manifest: Path) -> Iterator[dict[str, Any]]:
     options = {
         "key": "a",
         "secret": "b",
-        "client_kwargs": {"endpoint_url": f"http://{host}:{port}", "region_name": "us-east-1"},
+        "client_kwargs": {"endpoint_url": f"http://{host}:{port}"},
     }
     files = s3fs.S3FileSystem(**options, skip_instance_cache=True)
     files.mkdir("fleet")
