@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use reachtube_recordings::{Defect, ReadOptions, Run, RunEntry, RunSource};
 
+use crate::envelope::Envelope;
 use crate::error::{Error, Result};
 use crate::fold::context::Context;
 use crate::fold::defects::Defects;
@@ -219,7 +220,10 @@ impl Fold {
                 if let Some((_, count)) = &mut self.state.compared {
                     *count += u64::from(is_fitted);
                 }
-                let one = SuiteFold::of(place, entry, run, input, &self.context);
+                let mut own = Envelope::new(2 * run.joints);
+                let known = self.state.suites.get_mut(suite).map(|known| &mut known.envelope);
+                known.unwrap_or(&mut own).include(place, &run.states);
+                let one = SuiteFold::of(place, entry, run, input, &self.context, own);
                 self.state.runs += 1;
                 self.take_suite(suite, one);
             }
