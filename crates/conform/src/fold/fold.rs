@@ -98,6 +98,11 @@ impl Fold {
     ///
     /// As [`new`](Self::new).
     pub fn with_most_bytes(setup: &Setup, most_bytes: usize) -> Result<Self> {
+        Context::refuse_explanations(&setup.settings)?;
+        Self::with_context(setup, most_bytes)
+    }
+
+    fn with_context(setup: &Setup, most_bytes: usize) -> Result<Self> {
         let (tree, suites, defects) = Default::default();
         let state = State { most_bytes, runs: 0, tree, suites, defects, compared: None };
         Ok(Self { context: Arc::new(Context::new(setup)?), state, fitted: None })
@@ -109,14 +114,12 @@ impl Fold {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// As [`new`](Self::new), but a model may have explanations.
     pub fn to_check(setup: &Setup, model: &Model) -> Result<Self> {
-        let mut fold = Self::new(setup)?;
-        if model.data.are_listed() {
-            let runs = model.data.suites.iter().flat_map(|suite| &suite.runs);
-            fold.fitted = Some(Arc::new(runs.map(|run| run.sha256.clone()).collect()));
-            fold.state.compared = Some((model.data.sha256.clone(), 0));
-        }
+        let mut fold = Self::with_context(setup, MOST_BYTES)?;
+        let runs = model.data.suites.iter().flat_map(|suite| &suite.runs);
+        fold.fitted = Some(Arc::new(runs.map(|run| run.sha256.clone()).collect()));
+        fold.state.compared = Some((model.data.sha256.clone(), 0));
         Ok(fold)
     }
 
