@@ -185,12 +185,11 @@ def _folded(
 
         if client is not None:
             return _on_dask(job, parts, client, count)
-        whole = _fold(job, parts[0])
-        count(1)
-        for done, part in enumerate(parts[1:], 2):
-            whole = _merge(job, [whole, _fold(job, part)])
+        whole = _fleet(job).fold()
+        for done, part in enumerate(parts, 1):
+            whole.merge(_fleet(job), _fold(job, part))
             count(done)
-        return whole
+        return whole.to_bytes()
 
 
 def _on_dask(job: _Job, parts: list[_Part], client: Any, count: Any) -> bytes:

@@ -228,6 +228,13 @@ impl NativeFold {
         self.take(py, &row, |_| Err(vec![defect]))
     }
 
+    /// Merges the bytes of another fold of the same job.
+    fn merge(&self, py: Python<'_>, fleet: PyRef<'_, NativeFleet>, part: &[u8]) -> PyResult<()> {
+        let setup = &fleet.setup;
+        let merged = py.detach(|| self.lock().merge(Fold::from_bytes(setup, part)?));
+        merged.map_err(|error| Failure::from(error).raised(py))
+    }
+
     fn to_bytes(&self, py: Python<'_>) -> Vec<u8> {
         py.detach(|| self.lock().to_bytes())
     }

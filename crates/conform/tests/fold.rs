@@ -5,13 +5,14 @@ mod common;
 
 use common::{Disturbed, Random, grid, two_joints};
 use proptest::prelude::*;
-use reachtube_abstraction::{Abstraction, ModelKind};
+use reachtube_abstraction::{Abstraction, ModelKind, OperatingBox};
 use reachtube_conform::{
     Error, Fold, Hulls, Keep, Model, NominalStart, Notion, OnDefect, Problem, Settings, Setup,
     Silent, Tolerance, check, conform,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
+use reachtube_robot::friction::{Warming, WarmingBy};
 
 /// Suites of virtual recordings whose input is the suite's own; runs of B are of different lengths,
 /// and those of D have an input each.
@@ -135,6 +136,55 @@ fn models_that_are_not_linear_and_starts_of_their_own_give_the_same_files() {
     }
 }
 
+/// Friction that depends on the run: each run is a case of its own although all share their input,
+/// and the sets where nobody knows the run need the mean of the temperatures.
+#[test]
+fn robots_that_warm_up_give_the_same_files_and_need_every_run() {
+    let runs = campaign(&two_joints(), &[("A", 6)]);
+    let mut warm = MemoryRuns::default();
+    for (index, entry) in runs.runs().iter().enumerate() {
+        let run = runs.read(index, &Default::default()).unwrap();
+        let temperatures = vec![20.1 + index as f64 / 3.0; run.len() * 2];
+        let run = run.with_temperatures(temperatures).unwrap();
+        warm.push(&entry.file, Some("A"), None, run);
+    }
+    for by in [WarmingBy::Temperature, WarmingBy::Runs] {
+        let mut description = two_joints().description().clone();
+        let law = Warming { by, reference: 20.0, viscous: 0.01, ..Warming::default() };
+        description.joints.iter_mut().for_each(|joint| joint.friction.warming = Some(law));
+        let robot = Robot::from_description(&description).unwrap();
+        let setup = setup(&robot, |_| {});
+        let fold = grouped(&setup, &warm, &[5, 1, 0, 2, 4, 3], &[0, 1, 0, 2, 2, 1], &[0, 1]);
+        let problem = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
+        let model = model_of(&problem);
+        assert!(model.contains("any_run"));
+        assert_eq!(model, model_of(&read(&setup, &warm)));
+        let mut small = Fold::with_most_bytes(&setup, 5_000).unwrap();
+        small.take_source(&warm, 0).unwrap();
+        let Err(Error::Fold(why)) = Problem::of_fold(setup, small, OnDefect::Refuse) else {
+            panic!("the fold has not kept every run")
+        };
+        assert!(why.contains("friction depends on it"), "{why}");
+    }
+}
+
+/// The first of the runs that start outside is named, as by reading.
+#[test]
+fn a_run_that_starts_outside_the_operating_box_is_refused_as_by_reading() {
+    let robot = two_joints();
+    let runs = campaign(&robot, &SUITES);
+    let setup = setup(&robot, |settings| {
+        let [q, qd, u] = [0.008, 1.0, 5.0].map(|radius| vec![[-radius, radius]; 2]);
+        settings.operating_box = Some(OperatingBox { q, qd, u });
+    });
+    let once = Problem::read(setup.clone(), Box::new(runs.clone()), &[], Keep::Needed, &Silent);
+    let parts: Vec<usize> = (0..24).map(|index| index % 3).collect();
+    let fold = grouped(&setup, &runs, &(0..24).rev().collect::<Vec<_>>(), &parts, &[1, 0]);
+    let by_fold = Problem::of_fold(setup, fold, OnDefect::Refuse);
+    let words = [once.unwrap_err().to_string(), by_fold.unwrap_err().to_string()];
+    assert!(words[0].contains("outside the box") && words[0] == words[1], "{words:?}");
+}
+
 /// Everything that is drawn from large suites is drawn alike, and only the list of the recordings
 /// is missing.
 #[test]
@@ -203,7 +253,9 @@ fn recordings_are_checked_by_fold_as_by_reading() {
     (0..12).for_each(|index| take(&mut fold, &runs, index));
     let problem = Problem::of_fold(setup_of_fit, fold, OnDefect::Refuse).unwrap();
     std::fs::write(&path, model_of(&problem)).unwrap();
-    let (model, setup) = Model::open(&path).unwrap();
+    let (model, mut setup) = Model::open(&path).unwrap();
+    // What a model was asked for besides its sets is no matter.
+    setup.settings.explain = Some(Tolerance::default());
     let checked = |problem: &Problem| {
         let hulls = Hulls::new(problem, model.sets()).unwrap();
         check(&model, problem, &hulls).unwrap()

@@ -82,6 +82,9 @@ impl Fold {
         }
         let stored: Stored =
             postcard::from_bytes(body).map_err(|_| wrong("of a fold were damaged"))?;
+        if !stored.tree.is_valid() {
+            return Err(wrong("of a fold contradict themselves"));
+        }
         if stored.context != context.digest {
             return Err(other_setup());
         }

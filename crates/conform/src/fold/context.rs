@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use crate::error::{Error, Result};
 use crate::problem::input::RunInput;
 use crate::problem::problem::{Setup, read_options, side};
-use crate::settings::{NominalStart, Notion};
+use crate::settings::{NominalStart, Notion, Settings};
 
 /// What the reading of recordings depends on.
 #[derive(Debug)]
@@ -40,13 +40,6 @@ impl Context {
                     .into(),
             ));
         }
-        if settings.explain.is_some() {
-            return Err(Error::Fold(
-                "an explanation needs every recording sample by sample; leave out --explain, or \
-                 read the recordings on one machine"
-                    .into(),
-            ));
-        }
         let is_own = settings.nominal == NominalStart::Own
             || setup.condition.is_none()
                 && (!robot.warms_by().is_empty()
@@ -61,6 +54,22 @@ impl Context {
         let digest = Sha256::digest(text).into();
         let (robot, torque) = (robot.clone(), settings.torque);
         Ok(Self { robot, torque, options, is_own, start_box, digest })
+    }
+
+    /// Refuses settings that ask for explanations.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fold`].
+    pub fn refuse_explanations(settings: &Settings) -> Result<()> {
+        let refused = || {
+            Error::Fold(
+                "an explanation needs every recording sample by sample; leave out --explain, or \
+                 read the recordings on one machine"
+                    .into(),
+            )
+        };
+        if settings.explain.is_some() { Err(refused()) } else { Ok(()) }
     }
 
     /// Returns the input along a run.

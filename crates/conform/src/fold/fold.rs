@@ -5,6 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use reachtube_recordings::{Defect, ReadOptions, Run, RunEntry, RunSource};
 
+use crate::envelope::Envelope;
 use crate::error::{Error, Result};
 use crate::fold::context::Context;
 use crate::fold::defects::Defects;
@@ -97,6 +98,11 @@ impl Fold {
     ///
     /// As [`new`](Self::new).
     pub fn with_most_bytes(setup: &Setup, most_bytes: usize) -> Result<Self> {
+        Context::refuse_explanations(&setup.settings)?;
+        Self::with_context(setup, most_bytes)
+    }
+
+    fn with_context(setup: &Setup, most_bytes: usize) -> Result<Self> {
         let (tree, suites, defects) = Default::default();
         let state = State { most_bytes, runs: 0, tree, suites, defects, compared: None };
         Ok(Self { context: Arc::new(Context::new(setup)?), state, fitted: None })
@@ -108,14 +114,12 @@ impl Fold {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new).
+    /// As [`new`](Self::new), but a model may have explanations.
     pub fn to_check(setup: &Setup, model: &Model) -> Result<Self> {
-        let mut fold = Self::new(setup)?;
-        if model.data.are_listed() {
-            let runs = model.data.suites.iter().flat_map(|suite| &suite.runs);
-            fold.fitted = Some(Arc::new(runs.map(|run| run.sha256.clone()).collect()));
-            fold.state.compared = Some((model.data.sha256.clone(), 0));
-        }
+        let mut fold = Self::with_context(setup, MOST_BYTES)?;
+        let runs = model.data.suites.iter().flat_map(|suite| &suite.runs);
+        fold.fitted = Some(Arc::new(runs.map(|run| run.sha256.clone()).collect()));
+        fold.state.compared = Some((model.data.sha256.clone(), 0));
         Ok(fold)
     }
 
@@ -219,7 +223,10 @@ impl Fold {
                 if let Some((_, count)) = &mut self.state.compared {
                     *count += u64::from(is_fitted);
                 }
-                let one = SuiteFold::of(place, entry, run, input, &self.context);
+                let mut own = Envelope::new(2 * run.joints);
+                let known = self.state.suites.get_mut(suite).map(|known| &mut known.envelope);
+                known.unwrap_or(&mut own).include(place, &run.states);
+                let one = SuiteFold::of(place, entry, run, input, &self.context, own);
                 self.state.runs += 1;
                 self.take_suite(suite, one);
             }

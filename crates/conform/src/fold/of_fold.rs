@@ -39,6 +39,9 @@ impl Problem {
         if Context::new(&setup)?.digest != context.digest {
             return Err(other_setup());
         }
+        if state.compared.is_none() {
+            Context::refuse_explanations(&setup.settings)?;
+        }
         if state.defects.recordings > 0 && on_defect == OnDefect::Refuse {
             return Err(reachtube_recordings::Error::Defects(state.defects.list()).into());
         }

@@ -125,13 +125,17 @@ impl StoredSuite {
             let grid = own.map_or(&any_grid, |(_, run)| &run.input.grid);
             Some((place, stored.into_summary(place, states, grid)?))
         };
-        let runs = self.runs.into_iter().map(summary).collect::<Option<_>>()?;
+        let runs: BTreeMap<u32, RunSummary> =
+            self.runs.into_iter().map(summary).collect::<Option<_>>()?;
         let names = self.names.into_iter().map(|(place, file, order)| (place, (file, order)));
         let names: BTreeMap<_, _> = names.collect();
+        let places = whole.iter().map(|(place, _)| *place).chain(runs.keys().copied());
+        let are_named =
+            places.chain(self.envelope.owners()).all(|place| names.contains_key(&place));
         let fits = self.envelope.is_valid_for(states)
-            && self.envelope.owners().all(|owner| names.contains_key(&owner))
+            && are_named
             && self.outside.is_none_or(|(at, i, _)| names.contains_key(&at) && i < states)
-            && (self.all_whole || whole.len() == 1);
+            && if self.all_whole { !whole.is_empty() } else { whole.len() == 1 };
         fits.then_some(())?;
         Some(SuiteFold {
             motion: self.motion,

@@ -39,11 +39,17 @@ pub(super) struct SuiteFold {
 }
 
 impl SuiteFold {
-    /// Folds one run.
-    pub fn of(place: u32, entry: &RunEntry, run: Run, input: RunInput, context: &Context) -> Self {
+    /// Folds one run, whose measured states `envelope` has already, or the envelope of the suite
+    /// that it will be merged with.
+    pub fn of(
+        place: u32,
+        entry: &RunEntry,
+        run: Run,
+        input: RunInput,
+        context: &Context,
+        envelope: Envelope,
+    ) -> Self {
         let summary = RunSummary::new(place as usize, entry, &run, Arc::clone(&input.grid));
-        let mut envelope = Envelope::new(2 * run.joints);
-        envelope.include(place, &run.states);
         let outside = context.start_box.iter().flatten().zip(run.state(0)).enumerate();
         let mut outside = outside.filter(|(_, ([low, high], x))| !(low..=high).contains(x));
         Self {

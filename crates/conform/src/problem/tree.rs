@@ -78,6 +78,17 @@ impl Tree {
         reachtube_files::hex(&root)
     }
 
+    /// Returns whether its subtrees are those of places, none of them of two subtrees, and joined.
+    pub fn is_valid(&self) -> bool {
+        let is_place = |(first, (level, _)): (&u64, &(u8, Hash))| {
+            *level <= 32 && first >> level << level == *first && *first < 1 << 32
+        };
+        self.filled.iter().all(is_place) && {
+            let mut same = Self::default();
+            same.merge(self.clone()) && same == *self
+        }
+    }
+
     /// Adds a subtree and joins siblings; returns whether its places were free.
     fn insert_subtree(&mut self, mut first: u64, mut level: u8, mut hash: Hash) -> bool {
         let end = first + (1 << level);
@@ -168,7 +179,12 @@ mod tests {
     #[test]
     fn a_place_is_taken_once_and_every_leaf_decides_the_root() {
         let mut whole = tree(0..1000);
-        assert!(whole.filled.len() < 10);
+        assert!(whole.filled.len() < 10 && whole.is_valid());
+        let (_, forged) = whole.filled.first_key_value().unwrap();
+        for level in [forged.0 + 1, 200] {
+            let filled = [(0, (9, forged.1)), (512, (level, forged.1))].into();
+            assert!(!Tree { filled }.is_valid());
+        }
         assert!(!whole.insert(7, leaf(7)) && !whole.clone().merge(tree(999..1001)));
         assert!(!tree(4..5).merge(tree(0..8)));
         let mut other = tree(0..999);
