@@ -29,14 +29,16 @@ HEADER = ",".join(["t", *(f"{part}{j}" for part in ("q", "qd", "tau") for j in r
 
 def record(folder: Path, count: int) -> Path:
     """Write runs of half a second at 250 Hz, and their manifest."""
-    manifest = folder / f"manifest_{count}.parquet"
+    folder = folder / str(count)
+    manifest = folder / "manifest.parquet"
     if manifest.exists():
         return manifest
     folder.mkdir(parents=True, exist_ok=True)
-    robot, random, rows = rt.Robot.lwa4p(), np.random.default_rng(6), []
+    robot, rows = rt.Robot.lwa4p(), []
     t = 0.004 * np.arange(SAMPLES)
     for suite in range(SUITES):
         (folder / f"S{suite}").mkdir(exist_ok=True)
+        random = np.random.default_rng(suite)
         amplitude, phase = random.uniform(0.1, 0.6, 6), random.uniform(0, 6, 6)
         q = amplitude * np.sin(4 * t[:, None] + phase)
         qd = 4 * amplitude * np.cos(4 * t[:, None] + phase)
@@ -96,14 +98,14 @@ def main() -> None:
     for manifest in (small, large):
         start = time.perf_counter()
         alone = conform(manifest)
-        print(f"{manifest.stem}: one process {time.perf_counter() - start:.1f} s, "
+        print(f"{manifest.parent.name} runs: one process {time.perf_counter() - start:.1f} s, "
               f"peak {peak():.0f} MB, cost {alone.cost:.3f}", flush=True)
         for workers, kill in [(1, False), (2, False), (4, False), (2, True)]:
             model, seconds, memory = on_workers(manifest, workers, kill)
             same = "same bits" if model == alone else "OTHER BITS"
             words = ", ".join(f"{size:.0f}" for size in memory)
             killed = ", one killed" if kill else ""
-            print(f"{manifest.stem}: {workers} workers{killed} {seconds:.1f} s, peak of each "
+            print(f"{manifest.parent.name} runs: {workers} workers{killed} {seconds:.1f} s, peak of each "
                   f"{words} MB, {same}", flush=True)
 
 
