@@ -161,6 +161,8 @@ def _parts(
         raise SettingError(f"runs_per_task is {size}; give 1 or more")
     address, options = fspath(manifest), dict(storage or {})
     all_rows = in_order(read_manifest(address, storage_options=options))
+    # A fold is as large as its suites: a task takes few of them, and its neighbours the same.
+    all_rows.sort(key=lambda numbered: numbered[1].suite)
     if not all_rows:
         raise ReachtubeError(f"{address}: it lists no recording")
     head, slash, _ = address.replace("\\", "/").rpartition("/")
