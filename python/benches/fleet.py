@@ -105,8 +105,8 @@ def main() -> None:
             same = "same bits" if model == alone else "OTHER BITS"
             words = ", ".join(f"{size:.0f}" for size in memory)
             killed = ", one killed" if kill else ""
-            print(f"{manifest.parent.name} runs: {workers} workers{killed} {seconds:.1f} s, peak of each "
-                  f"{words} MB, {same}", flush=True)
+            print(f"{manifest.parent.name} runs: {workers} workers{killed} {seconds:.1f} s, "
+                  f"peak of each {words} MB, {same}", flush=True)
 
 
 if __name__ == "__main__":
