@@ -276,7 +276,7 @@ pub fn report(
         let sources = Sources { model, problem, reach: &reach, check: &check };
         let (mut html, mut library) = (Vec::new(), Vec::new());
         let assets = if beside { Assets::Beside } else { Assets::Inside };
-        let page = page(&sources).map_err(reachtube::Error::from)?;
+        let page = page(&sources)?;
         write_html(&page, assets, &mut html).map_err(reachtube::Error::from)?;
         if beside {
             write_library(&mut library).map_err(reachtube::Error::from)?;
