@@ -1,5 +1,6 @@
 //! Sentences that several commands print about a model.
 
+use reachtube::Disturbance;
 use reachtube::conform::{Lost, Notion, TraceVerdict};
 use reachtube::number::at_least;
 
@@ -22,7 +23,7 @@ pub fn notion_words(notion: Notion) -> &'static str {
 }
 
 /// Says how many recordings are motions of the model, and what U lacks for the others.
-pub fn traces(traces: &TraceVerdict, runs: usize) -> String {
+pub fn traces(traces: &TraceVerdict, runs: usize, disturbance: Disturbance) -> String {
     let mut text = format!(
         "{} of {runs} recordings proved to be one motion of the model each, within V",
         runs - traces.unproved
@@ -33,9 +34,16 @@ pub fn traces(traces: &TraceVerdict, runs: usize) -> String {
                 format!("; U must be {} times as large for all, as {worst} needs", at_least(factor))
             }
             None => format!(
-                "; no U up to 1024 times as large suffices for {worst}: its start may lie at the \
+                "; no U up to 1024 times as large suffices for {worst}: {}its start may lie at the \
                  edges of X0 and V, or its positions and velocities may not agree; a larger V \
-                 helps (conform --noise)"
+                 helps (conform --noise)",
+                match disturbance {
+                    Disturbance::Constant => {
+                        "a disturbance that never changes cannot follow what changes during the \
+                         motion (conform --disturbance sample can); or "
+                    }
+                    Disturbance::Sample | Disturbance::Measurable => "",
+                }
             ),
         };
     }

@@ -82,8 +82,8 @@ pub enum Notion {
     PhasePlane,
     /// All states together: in the set itself.
     Exact,
-    /// All states together, and one motion of a linear model passes through all samples of a
-    /// recording, up to the noise set V.
+    /// All states together, and one motion of the model passes through all samples of a recording,
+    /// up to the noise set V.
     Trace,
 }
 

@@ -27,6 +27,9 @@ pub(crate) fn smallest_sets(
             trace::smallest_sets(problem, progress)
         }
         Some(_) => notion::smallest_sets(problem, progress),
+        None if problem.settings().notion == Notion::Trace => {
+            trace::smallest_outer_sets(problem, progress, resume)
+        }
         None => search::smallest_sets(problem, progress, resume),
     }
 }

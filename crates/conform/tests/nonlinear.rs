@@ -7,7 +7,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Mutex;
 
-use common::{Random, Recorded, check_against, conform_all, grid, read, read_with, write_data_set};
+use common::{
+    Random, Recorded, bent, check_against, conform_all, grid, read, read_with, write_data_set,
+};
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
 use reachtube_conform::{
     Conformance, Dynamics, Enclosure, Error, Hulls, Method, Model, Notion, Progress, Settings,
@@ -17,25 +19,6 @@ use reachtube_ode::{DormandPrince, Run, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
-
-/// Friction that bends and joints that move each other.
-fn bent() -> Robot {
-    let joint = |name: &str, mass: f64, viscous: &str| {
-        format!(
-            "[[joint]]\nname = \"{name}\"\n\
-             dh = {{ a = 0.3, alpha = 0.0, theta = 0.0, d = 0.0 }}\n\
-             mass = {mass}\ncom = [-0.15, 0.0, 0.0]\n\
-             inertia = [0.01, 0.0, 0.0, 0.02, 0.0, 0.02]\narmature = 0.3\n\
-             friction = {{ viscous = {viscous} }}\n"
-        )
-    };
-    let text = format!(
-        "schema_version = 1\nname = \"bent\"\n{}{}",
-        joint("shoulder", 2.0, "[2.0, 0.2, -0.3]"),
-        joint("elbow", 1.5, "[1.0, 0.0, 0.4]")
-    );
-    Robot::from_toml(&text, "bent").unwrap()
-}
 
 fn settings(kind: ModelKind, order: u32) -> Settings {
     Settings {

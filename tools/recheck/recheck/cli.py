@@ -5,7 +5,7 @@ import json
 import sys
 import time
 
-from . import report
+from . import outer, report
 from .certificate import Certificate
 from .errors import BadInput
 from .grid import distinct
@@ -63,6 +63,8 @@ def run(arguments):
     model = read_model(arguments.model, arguments.any_run)
     notes = list(model.notes)
     given = read_inputs(arguments.inputs, model.joints) if arguments.inputs else None
+    if model.polynomials is not None:
+        return run_of_outer_sets(arguments, model, given, notes)
     system = System(model)
     inputs = Inputs(model, system, arguments.input_error, given)
     cases = read_cases(model, inputs, arguments, notes)
@@ -87,6 +89,24 @@ def run(arguments):
             for visitor in visitors.values():
                 visitor.visit(sample, here)
     return {kind: list(visitor.results()) for kind, visitor in visitors.items()}, notes
+
+
+def run_of_outer_sets(arguments, model, given, notes):
+    """Judges a model that is not linear, as `run` does, by the bounds that `reach` printed."""
+    if not arguments.reach:
+        raise BadInput(
+            f"{arguments.model}: the model is not linear, and its outer sets are not computed "
+            f"here: give the folder that `reachtube reach` wrote with --reach"
+        )
+    if arguments.certificate or arguments.any_run or model.correction is not None:
+        raise BadInput(
+            f"{arguments.model}: the model is not linear: certificates, any_run and corrections "
+            f"of inputs are judged for linear models only"
+        )
+    inputs = Inputs(model, None, arguments.input_error, given)
+    cases = read_cases(model, inputs, arguments, notes)
+    notes.append("motions of a model that is not linear are sampled, which proves nothing")
+    return outer.judge(model, arguments.reach, cases), notes
 
 
 def read_cases(model, inputs, arguments, notes):

@@ -15,7 +15,7 @@ class HullRows:
 
     def __init__(self, model, cases):
         self.model = model
-        self.extremes = {id(case): _extremes(case) for case in cases}
+        self.extremes = {id(case): extremes(case) for case in cases}
         self.tallies = {}
 
     def start(self, grid):
@@ -58,7 +58,7 @@ class HullRows:
         return verdict, margin, f"{run}, sample {k} at {case.grid.times[k]:.6g} s, {name} {side}"
 
 
-def _extremes(case):
+def extremes(case):
     """Returns the lowest and highest value of a case's runs, with their files, by sample and
     state."""
     longest = len(case.grid)

@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass, replace
 
 from .errors import BadInput
+from .polynomials import Polynomials
 
 
 @dataclass(frozen=True)
@@ -19,12 +20,14 @@ class Box:
 
 @dataclass(frozen=True)
 class Model:
-    """A linear model x' = A x + B (u + du) + d with its uncertainty sets."""
+    """A model with its uncertainty sets: x' = A x + B (u + du) + d where it is linear, polynomials
+    of the accelerations where it is not."""
 
     joints: int
-    a: list
-    b: list
-    drift: list
+    a: list | None
+    b: list | None
+    drift: list | None
+    polynomials: Polynomials | None
     initial_set: Box
     input_set: Box
     noise_radius: tuple
@@ -76,15 +79,15 @@ def _refuse_constant(name):
 def _model(content, text):
     if content["format"] != "reachtube-model" or content["version"] != 3:
         raise BadInput("it is no model file of version 3")
-    if content.get("acceleration") or "a" not in content:
-        raise BadInput("the model is not linear; only linear models are judged")
+    is_linear = "a" in content and not content.get("acceleration")
     n = len(content["robot"]["joint"])
     noise = content.get("noise_set")
     model = Model(
         joints=n,
-        a=_rows(content["a"], 2 * n, 2 * n, "a"),
-        b=_rows(content["b"], 2 * n, n, "b"),
-        drift=_numbers(content["drift"], 2 * n, "drift"),
+        a=_rows(content["a"], 2 * n, 2 * n, "a") if is_linear else None,
+        b=_rows(content["b"], 2 * n, n, "b") if is_linear else None,
+        drift=_numbers(content["drift"], 2 * n, "drift") if is_linear else None,
+        polynomials=None if is_linear else Polynomials.of_file(content, n),
         initial_set=_box(content["initial_set"], 2 * n, "initial_set"),
         input_set=_box(content["input_set"], n, "input_set"),
         noise_radius=_noise(noise, n),

@@ -20,17 +20,7 @@ class ReachFiles:
         self.model = model
         self.files, self.tallies = {}, {}
         for case in cases:
-            name = _name(case)
-            path = Path(folder) / f"{name}.csv"
-            columns = [f"{state_name(i, model.joints)}_{kind}"
-                       for i in range(2 * model.joints) for kind in ("lower", "nominal", "upper")]
-            at_samples = _read(path, ["t", *columns], len(case.grid))
-            for k, row in enumerate(at_samples):
-                if row[0] != case.grid.times[k]:
-                    raise BadInput(f"{path}:{k + 2}: t is {row[0]}, not {case.grid.times[k]}")
-            columns = [name for name in columns if not name.endswith("nominal")]
-            path = Path(folder) / f"{name}_tube.csv"
-            tube = _read(path, ["t_from", "t_to", *columns], len(case.grid) - 1)
+            name, at_samples, tube = read_bounds(model, folder, case)
             self.files[id(case)] = at_samples, tube
             self.tallies[id(case)] = [Tally(f"{name}.csv"), Tally(f"{name}_tube.csv")]
 
@@ -69,6 +59,22 @@ class ReachFiles:
         name = state_name(i, self.model.joints)
         for side, margin in (("lower", exact[0] - arb(lower)), ("upper", arb(upper) - exact[1])):
             tally.add(of_margin(margin), margin, f"{place}, {name}_{side}")
+
+
+def read_bounds(model, folder, case):
+    """Returns the name of a case's files, and their rows: those at samples and those of the tube.
+    """
+    name = _name(case)
+    path = Path(folder) / f"{name}.csv"
+    columns = [f"{state_name(i, model.joints)}_{kind}"
+               for i in range(2 * model.joints) for kind in ("lower", "nominal", "upper")]
+    at_samples = _read(path, ["t", *columns], len(case.grid))
+    for k, row in enumerate(at_samples):
+        if row[0] != case.grid.times[k]:
+            raise BadInput(f"{path}:{k + 2}: t is {row[0]}, not {case.grid.times[k]}")
+    columns = [name for name in columns if not name.endswith("nominal")]
+    path = Path(folder) / f"{name}_tube.csv"
+    return name, at_samples, _read(path, ["t_from", "t_to", *columns], len(case.grid) - 1)
 
 
 def _name(case):

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use clap::Args;
 use reachtube::conform::{
-    Check, Growth, Keep, Notion, PointVerdict, PointWitness, SuiteVerdict, Witness,
+    Check, Growth, Keep, Model, Notion, PointVerdict, PointWitness, SuiteVerdict, Witness,
 };
 
 use crate::data_arguments::ModelArguments;
@@ -48,13 +48,13 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     for warning in &opened.model.warnings {
         output::warn(&format!("of the model itself: {}", warning.text));
     }
-    output::show(json, &check, || summary(&check, &opened.model.robot.kinds()))?;
+    output::show(json, &check, || summary(&check, &opened.model))?;
     Ok(Outcome::of(check.verdict.conformant))
 }
 
-/// Returns the result of `check` of a model with joints of these kinds, with one line per suite.
-pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
-    let verdict = &check.verdict;
+/// Returns the result of `check` of a model, with one line per suite.
+pub fn summary(check: &Check, model: &Model) -> String {
+    let (verdict, kinds) = (&check.verdict, &model.robot.kinds());
     let set = verdict.enclosure.set_name();
     let outcome = if verdict.conformant { "conformant" } else { "not conformant" };
     let mut text = format!(
@@ -68,7 +68,7 @@ pub fn summary(check: &Check, kinds: &[JointKind]) -> String {
         let _ = writeln!(text, "{}", outside_points(points, verdict.lost.is_empty(), kinds));
     }
     if let Some(found) = &verdict.traces {
-        let _ = writeln!(text, "{}", traces(found, verdict.runs));
+        let _ = writeln!(text, "{}", traces(found, verdict.runs, model.settings.disturbance));
     }
     text.push('\n');
     let rows: Vec<_> = verdict.suites.iter().map(|suite| suite_row(suite, kinds)).collect();

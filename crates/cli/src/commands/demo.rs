@@ -106,7 +106,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
             conform_command::summary(&model),
             story(&before, &model),
             held_out_heading(&recorded),
-            check::summary(&held_out, &model.robot.kinds())
+            check::summary(&held_out, &model)
         );
         output::print(&text)?;
     }

@@ -36,6 +36,17 @@ impl Chain {
         self.drift.extend(drift);
     }
 
+    /// Appends the first link: each state has a move of its own.
+    pub fn push_diagonal(
+        &mut self,
+        gains: impl Iterator<Item = f64>,
+        drift: impl IntoIterator<Item = f64>,
+    ) {
+        let mut rows = vec![0.0; self.states * 2 * self.states];
+        gains.enumerate().for_each(|(i, gain)| rows[i * (2 * self.states + 1)] = gain);
+        self.push(rows, drift);
+    }
+
     /// Returns the number of all moves.
     pub fn moves(&self) -> usize {
         self.moves

@@ -1,5 +1,7 @@
+use std::iter::repeat_n;
+
 use reachtube_abstraction::{Linearisation, PolynomialModel};
-use reachtube_reach::Hyperrectangle;
+use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::Run;
 use reachtube_scalar::rounding::{add_down, add_up, sub_up};
 
@@ -20,11 +22,18 @@ const SLACK: f64 = 1.02;
 /// Linearisations of one run.
 const PASSES: usize = 4;
 
+/// A disturbance that is held for the whole motion is a state of the chain, in this many units at
+/// the edge of its set: so few that it never decides how close the motion is.
+const CONSTANT_UNITS: f64 = 1e-6;
+
 /// A motion of the model, and its residuals from the recorded one.
 #[derive(Debug)]
 pub(super) struct Behaviour {
     /// Samples but the last x n.
     pub inputs: Vec<f64>,
+    /// The disturbance that was held for the whole motion, n; nothing where it may change at each
+    /// sample.
+    pub constant: Option<Vec<f64>>,
     /// Samples x 2n from the start on, as far as it could be followed.
     pub states: Vec<f64>,
     /// The largest residual of a position, rad.
@@ -53,6 +62,10 @@ pub(super) struct ClosestMotion<'a> {
     start: Vec<[f64; 2]>,
     /// Lowest and highest input, samples but the last x n.
     inputs: Vec<[f64; 2]>,
+    /// The input that is given, samples but the last x n.
+    given: &'a [f64],
+    /// Lowest and highest disturbance, n, where one is held for the whole motion.
+    constant: Option<Vec<[f64; 2]>>,
     closeness: Closeness<'a>,
     substeps: usize,
 }
@@ -60,8 +73,9 @@ pub(super) struct ClosestMotion<'a> {
 impl<'a> ClosestMotion<'a> {
     pub fn new(
         model: &'a PolynomialModel,
-        case: &Case,
+        case: &'a Case,
         sets: &UncertaintySets,
+        disturbance: Disturbance,
         recorded: &'a Run,
         closeness: Closeness<'a>,
     ) -> Self {
@@ -78,7 +92,9 @@ impl<'a> ClosestMotion<'a> {
             norm * (recorded.times[k + 1] - recorded.times[k])
         });
         let substeps = (norms.fold(0.0, f64::max) / STEP_NORM).ceil().clamp(1.0, 1e3) as usize;
-        Self { model, recorded, start, inputs, closeness, substeps }
+        let constant = (disturbance == Disturbance::Constant)
+            .then(|| (0..n).map(|j| bounds(0.0, &sets.input_set, j)).collect());
+        Self { model, recorded, start, inputs, given: acting, constant, closeness, substeps }
     }
 
     /// Repeats the linearisation until the model meets its residual.
@@ -107,21 +123,30 @@ impl<'a> ClosestMotion<'a> {
         };
         let mut moves = found.moves.iter();
         let start: Vec<f64> = self.start.iter().zip(moves.by_ref()).map(place).collect();
-        let inputs = self.inputs.iter().zip(moves).map(place).collect();
-        (self.behaviour(&start, inputs), found.largest)
+        let (constant, inputs) = match &self.constant {
+            None => (None, self.inputs.iter().zip(moves).map(place).collect()),
+            Some(allowed) => {
+                let constant: Vec<f64> = allowed.iter().zip(moves).map(place).collect();
+                let inputs = self.given.iter().zip(constant.iter().cycle()).map(|(u, d)| u + d);
+                (Some(constant.clone()), inputs.collect())
+            }
+        };
+        (self.behaviour(&start, inputs, constant), found.largest)
     }
 
     /// Returns the distance of the linearised model from the recorded motion in units, as a chain
-    /// in the start and inputs, which move through their boxes, [-1, 1] each.
+    /// in the start and inputs, which move through their boxes, [-1, 1] each. A disturbance that is
+    /// held for the whole motion moves in the first link, and is a part of the chain's state.
     fn chain(&self, states: &[f64], inputs: &[f64]) -> Chain {
         let (n, units) = (self.recorded.joints, self.closeness.units);
-        let mut chain = Chain::new(2 * n);
-        let reach =
-            &|i: usize, j: usize| if i == j { radius(&self.start[i]) / units[i] } else { 0.0 };
-        let rows = (0..2 * n).flat_map(|i| (0..4 * n).map(move |j| reach(i, j))).collect();
-        chain.push(
-            rows,
-            (0..2 * n).map(|i| (middle(&self.start[i]) - self.recorded.states[i]) / units[i]),
+        let radii = self.start.iter().zip(units).map(|(start, unit)| radius(start) / unit);
+        let distances =
+            (0..2 * n).map(|i| (middle(&self.start[i]) - self.recorded.states[i]) / units[i]);
+        let constant = self.chain_states() - 2 * n;
+        let mut chain = Chain::new(self.chain_states());
+        chain.push_diagonal(
+            radii.chain(repeat_n(CONSTANT_UNITS, constant)),
+            distances.chain(repeat_n(0.0, constant)),
         );
         let mut steps = Steps::new(self.model, self.substeps);
         for k in 1..self.recorded.len() {
@@ -133,29 +158,49 @@ impl<'a> ClosestMotion<'a> {
         chain
     }
 
+    /// The number of states of the chain: 2n, and n where a disturbance is held.
+    fn chain_states(&self) -> usize {
+        2 * self.recorded.joints + self.constant.as_ref().map_or(0, Vec::len)
+    }
+
     /// Appends the step to sample k, made from the state `before` under the input `held`, as a link
     /// from the recorded state and the middle of the allowed inputs.
     fn link(&self, k: usize, step: Step, before: &[f64], held: &[f64], chain: &mut Chain) {
         let (n, units) = (held.len(), self.closeness.units);
         let allowed = &self.inputs[(k - 1) * n..k * n];
         let from = self.recorded.state(k - 1);
-        let mut rows = Vec::with_capacity(6 * n * n);
-        let mut drift = Vec::with_capacity(2 * n);
+        let all = self.chain_states();
+        let mut rows = Vec::with_capacity(all * (all + n));
+        let mut drift = Vec::with_capacity(all);
         for (i, to) in self.recorded.state(k).iter().enumerate() {
-            let gains =
-                allowed.iter().enumerate().map(|(j, u)| step.gain[(i, j)] * radius(u) / units[i]);
-            rows.extend(gains);
-            rows.extend((0..2 * n).map(|j| step.transition[(i, j)] * units[j] / units[i]));
+            let mut push = |of: &mut dyn Iterator<Item = f64>| rows.extend(of);
+            let moved = |j: usize| step.transition[(i, j)] * units[j] / units[i];
+            match &self.constant {
+                None => {
+                    let gain = |(j, u)| step.gain[(i, j)] * radius(u) / units[i];
+                    push(&mut allowed.iter().enumerate().map(gain));
+                    push(&mut (0..2 * n).map(moved));
+                }
+                Some(constant) => {
+                    let gain = |(j, d)| step.gain[(i, j)] * radius(d) / (units[i] * CONSTANT_UNITS);
+                    push(&mut (0..2 * n).map(moved));
+                    push(&mut constant.iter().enumerate().map(gain));
+                }
+            }
             let moved: f64 =
                 (0..2 * n).map(|j| step.transition[(i, j)] * (from[j] - before[j])).sum();
             let pushed: f64 =
                 (0..n).map(|j| step.gain[(i, j)] * (middle(&allowed[j]) - held[j])).sum();
             drift.push((step.reached[i] + moved + pushed - to) / units[i]);
         }
+        for i in 2 * n..all {
+            rows.extend((0..all).map(|j| f64::from(u8::from(i == j))));
+            drift.push(0.0);
+        }
         chain.push(rows, drift);
     }
 
-    fn behaviour(&self, start: &[f64], inputs: Vec<f64>) -> Behaviour {
+    fn behaviour(&self, start: &[f64], inputs: Vec<f64>, constant: Option<Vec<f64>>) -> Behaviour {
         let n = self.recorded.joints;
         let states = simulate(self.model, &self.recorded.times, self.substeps, start, &inputs)
             .unwrap_or_default();
@@ -168,7 +213,14 @@ impl<'a> ClosestMotion<'a> {
         if states.len() < self.recorded.states.len() {
             (residuals, largest) = ([f64::INFINITY; 2], f64::INFINITY);
         }
-        Behaviour { inputs, states, position: residuals[0], velocity: residuals[1], largest }
+        Behaviour {
+            inputs,
+            constant,
+            states,
+            position: residuals[0],
+            velocity: residuals[1],
+            largest,
+        }
     }
 }
 

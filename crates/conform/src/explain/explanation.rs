@@ -16,8 +16,8 @@ const ENOUGH: f64 = 1e-5;
 
 /// How close a model comes to a recorded run: the largest |recorded - simulated| over all samples
 /// and joints of the closest motion found, whose start lies in start + X0 and whose input lies in
-/// u_m + U and is held from each sample to the next. The residuals are infinite where the
-/// simulation ran away.
+/// u_m + U and is held from each sample to the next; for a constant disturbance it is u_m and one
+/// disturbance in U, held throughout. The residuals are infinite where the simulation ran away.
 ///
 /// That motion is a witness: the run is explained within these residuals. Nothing is claimed about
 /// closer motions.
@@ -39,11 +39,12 @@ pub struct Explanation {
 /// As [`Problem::run`].
 pub fn explain(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Explanation>> {
     let (model, n) = (problem.dynamics().polynomials(), problem.joints());
+    let disturbance = problem.settings().disturbance;
     let units = UNITS.map(|unit| vec![unit; n]).concat();
     let closeness = Closeness { units: &units, enough: ENOUGH };
     let of = |case: &Case, index: usize| {
         let recorded = problem.run(index)?;
-        let found = ClosestMotion::new(model, case, sets, &recorded, closeness).run();
+        let found = ClosestMotion::new(model, case, sets, disturbance, &recorded, closeness).run();
         let Behaviour { position, velocity, .. } = found;
         Ok(Explanation { run: index, position, velocity })
     };

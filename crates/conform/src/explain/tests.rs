@@ -11,7 +11,7 @@ use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::SeedableRng;
 use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
 use reachtube_ode::{DormandPrince, Run as Motion, Tolerance};
-use reachtube_reach::{Hyperrectangle, TimeGrid};
+use reachtube_reach::{Disturbance, Hyperrectangle, TimeGrid};
 use reachtube_recordings::Run;
 use reachtube_robot::Robot;
 
@@ -135,7 +135,7 @@ fn assert_is_witness(
 fn closest(model: &PolynomialModel, case: &Case, sets: &UncertaintySets, run: &Run) -> Behaviour {
     let units = [vec![1e-3; JOINTS], vec![1e-2; JOINTS]].concat();
     let closeness = Closeness { units: &units, enough: 1e-5 };
-    ClosestMotion::new(model, case, sets, run, closeness).run()
+    ClosestMotion::new(model, case, sets, Disturbance::Sample, run, closeness).run()
 }
 
 #[test]

@@ -1,34 +1,46 @@
-//! Trace conformance: one motion of a linear model through all samples of a recording.
+//! Trace conformance: one motion of the model through all samples of a recording.
+
+use std::iter::repeat_n;
+use std::path::Path;
 
 use rayon::prelude::*;
-use reachtube_reach::{Disturbance, Hyperrectangle, IntervalVector};
+use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, UncertainInput};
+use reachtube_recordings::Run;
 use reachtube_scalar::rounding::{add_down, sub_down, sub_up};
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::Dynamics;
 use crate::error::{Error, Result};
-use crate::explain::closest_motion::{Closeness, ClosestMotion};
+use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::found::Found;
-use crate::grids::Grid;
+use crate::hulls::Hulls;
 use crate::notion::smallest_sets as points;
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
+use crate::search::smallest_sets as search;
 use crate::sets::UncertaintySets;
 use crate::settings::{Noise, Notion, Settings};
 
 /// What the radii of U are widened by first, N m, so that doubles lie in u + U.
 const LEAST_RADIUS: f64 = 1e-9;
 
-/// What the radii of X0 are widened by, in parts of V: the search for a motion is accurate to 2 %,
-/// so that a start at the edges of X0 and V at once would not be found.
-const START_ROOM: f64 = 0.05;
+/// What the radii of X0 are widened by, in parts of V, one number after the other while there is a
+/// recording through which no motion passes. The first is the accuracy of the search. The last is
+/// what covers the true start: the measured one lies in X0 + V, and is off by V itself.
+const START_ROOMS: [f64; 3] = [0.05, 1.0, 2.05];
 
 /// The largest factor on U that is tried.
 const LARGEST_FACTOR: f64 = 1024.0;
 
 /// How accurately the least factor is found.
 const ACCURACY: f64 = 0.01;
+
+/// Largest number of generators of the flowpipe that proves one motion, in multiples of the number
+/// of states. Its sets are rounding and remainders, so more gain nothing.
+const ORDER: usize = 4;
+
+/// Into how many parts each step is divided to prove a motion, one number after the other.
+const PARTS: [usize; 3] = [1, 8, 64];
 
 /// A motion that comes as close as this part of V is close enough.
 const ENOUGH: f64 = 0.98;
@@ -38,8 +50,8 @@ const NEEDS_NOISE: &str = "needs a measurement noise V in every state, because n
                            --noise, for example --noise 0.001,0.01";
 
 /// Whether each recording is, up to the measurement noise V, one motion of the model: its start
-/// lies in X0, its input in U, held from each sample to the next, and all its samples within V of
-/// the recorded ones.
+/// lies in X0, its disturbance in U, held from each sample to the next, or throughout where the
+/// model's is constant, and all its samples within V of the recorded ones.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraceVerdict {
@@ -85,30 +97,17 @@ impl TraceVerdict {
     }
 }
 
-/// Checks that traces can be asked of a model under some settings.
+/// Checks that traces can be asked for under some settings.
 ///
 /// # Errors
 ///
 /// [`Error::Trace`] with the remedy.
-pub(crate) fn check_settings(settings: &Settings, dynamics: &Dynamics) -> Result<()> {
-    if settings.notion != Notion::Trace {
-        Ok(())
-    } else if dynamics.linear_system().is_none() {
-        Err(Error::Trace(
-            "is proved for linear models only; for others --explain searches for the closest \
-             motion",
-        ))
-    } else if settings.disturbance == Disturbance::Constant {
-        Err(Error::Trace(
-            "is for disturbances that may change at each sample: for a model that was found with \
-             conform --disturbance sample or measurable",
-        ))
-    } else {
-        match &settings.noise {
-            Noise::None => Err(Error::Trace(NEEDS_NOISE)),
-            Noise::Fixed(radii) if radii.contains(&0.0) => Err(Error::Trace(NEEDS_NOISE)),
-            Noise::Fixed(_) | Noise::Fitted => Ok(()),
-        }
+pub(crate) fn check_settings(settings: &Settings) -> Result<()> {
+    match &settings.noise {
+        _ if settings.notion != Notion::Trace => Ok(()),
+        Noise::None => Err(Error::Trace(NEEDS_NOISE)),
+        Noise::Fixed(radii) if radii.contains(&0.0) => Err(Error::Trace(NEEDS_NOISE)),
+        Noise::Fixed(_) | Noise::Fitted => Ok(()),
     }
 }
 
@@ -125,16 +124,14 @@ pub(crate) fn check_settings(settings: &Settings, dynamics: &Dynamics) -> Result
 ///
 /// [`Error::Trace`] where V is 0 in a state; as [`Problem::run`].
 pub(crate) fn trace_factors(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<TraceFactor>> {
-    let grids = problem.grids()?;
     let states = 2 * problem.joints();
     let noise: Vec<f64> = (0..states).map(|i| sets.noise_radius(i)).collect();
     if noise.contains(&0.0) {
         return Err(Error::Trace(NEEDS_NOISE));
     }
     let of_case = |case: Case| {
-        let grid = &grids.as_slice()[grids.find(&case.grid)];
         let of = |run: usize| {
-            let trace = Trace { problem, case: &case, grid, sets, noise: &noise, run };
+            let trace = Trace { problem, case: &case, sets, noise: &noise, run };
             Ok(TraceFactor { suite: case.suite, run, factor: trace.factor()? })
         };
         match case.run {
@@ -150,35 +147,66 @@ pub(crate) fn trace_factors(problem: &Problem, sets: &UncertaintySets) -> Result
     Ok(parts.into_iter().flatten().flatten().collect())
 }
 
-/// Finds the smallest sets in which every recorded point lies, and widens U until one motion of the
-/// model passes through all samples of each recording. A recording through which none passes,
+/// Finds the smallest sets of a linear model in which every recorded point lies, and widens U until
+/// one motion of the model passes through all samples of each recording. A recording through which none passes,
 /// however wide U is, does not count.
 ///
 /// # Errors
 ///
 /// As [`trace_factors`].
 pub(crate) fn smallest_sets(problem: &Problem, progress: &dyn Progress) -> Result<Found> {
-    points::smallest_sets_widened(problem, progress, |mut sets| {
-        sets.input_set.radius.iter_mut().for_each(|radius| *radius += LEAST_RADIUS);
-        for i in 0..2 * problem.joints() {
-            sets.initial_set.radius[i] += START_ROOM * sets.noise_radius(i);
+    points::smallest_sets_widened(problem, progress, |sets| widened(problem, sets, progress))
+}
+
+/// Finds sets as [`smallest_sets`] does, for a model that is not linear.
+///
+/// # Errors
+///
+/// As [`search::smallest_sets`] and [`trace_factors`].
+pub(crate) fn smallest_outer_sets(
+    problem: &Problem,
+    progress: &dyn Progress,
+    resume: Option<&Path>,
+) -> Result<Found> {
+    let found = search::smallest_sets(problem, progress, resume)?;
+    let hulls = Hulls::new(problem, widened(problem, found.hulls.sets, progress)?)?;
+    let (cost, hull_volume) = search::costs(problem, &hulls)?;
+    Ok(Found { hulls, cost, hull_volume, ..found })
+}
+
+/// Widens X0 until a motion passes through each recording, however wide U is, and then U until it
+/// does so within U.
+fn widened(
+    problem: &Problem,
+    mut sets: UncertaintySets,
+    progress: &dyn Progress,
+) -> Result<UncertaintySets> {
+    sets.input_set.radius.iter_mut().for_each(|radius| *radius += LEAST_RADIUS);
+    let least = sets.initial_set.radius.clone();
+    let mut factors = Vec::new();
+    for room in START_ROOMS {
+        progress.go_on()?;
+        for (i, radius) in sets.initial_set.radius.iter_mut().enumerate() {
+            *radius = least[i] + room * sets.noise_set.as_ref().map_or(0.0, |set| set.radius[i]);
         }
-        let factors = trace_factors(problem, &sets)?;
-        let factor = factors.iter().filter_map(|trace| trace.factor).fold(1.0, f64::max);
-        progress.finished(&format!(
-            "{} of {} recordings are motions of the model within V; U is widened by {factor:.3}",
-            factors.iter().filter(|trace| trace.holds()).count(),
-            factors.len()
-        ));
-        Ok(sets.with_input_scaled(factor))
-    })
+        factors = trace_factors(problem, &sets)?;
+        if factors.iter().all(|trace| trace.factor.is_some()) {
+            break;
+        }
+    }
+    let factor = factors.iter().filter_map(|trace| trace.factor).fold(1.0, f64::max);
+    progress.finished(&format!(
+        "{} of {} recordings are motions of the model within V; U is widened by {factor:.3}",
+        factors.iter().filter(|trace| trace.holds()).count(),
+        factors.len()
+    ));
+    Ok(sets.with_input_scaled(factor))
 }
 
 /// One run, and the sets of the model.
 struct Trace<'a> {
     problem: &'a Problem,
     case: &'a Case,
-    grid: &'a Grid,
     sets: &'a UncertaintySets,
     noise: &'a [f64],
     run: usize,
@@ -206,29 +234,73 @@ impl Trace<'_> {
     fn holds(&self, factor: f64) -> Result<bool> {
         let recorded = self.problem.run(self.run)?;
         let sets = self.sets.with_input_scaled(factor);
-        let (model, n) = (self.problem.dynamics().polynomials(), self.case.joints());
+        let (dynamics, n) = (self.problem.dynamics(), self.case.joints());
+        let disturbance = self.problem.settings().disturbance;
         let closeness = Closeness { units: self.noise, enough: ENOUGH };
-        let found = ClosestMotion::new(model, self.case, &sets, &recorded, closeness).run();
+        let model = dynamics.polynomials();
+        let found =
+            ClosestMotion::new(model, self.case, &sets, disturbance, &recorded, closeness).run();
         let Some(start) = found.states.get(..2 * n) else { return Ok(false) };
-        let in_start =
-            (0..2 * n).all(|i| lies_in(start[i], self.case.start[i], &sets.initial_set, i));
-        let inputs = found.inputs.iter().zip(&*self.case.inputs).enumerate();
-        let mut in_input =
-            inputs.map(|(at, (u, given))| lies_in(*u, *given, &sets.input_set, at % n));
-        if !in_start || !in_input.all(|lies| lies) {
-            return Ok(false);
+        let starts = start.iter().zip(&self.case.start).enumerate();
+        let mut in_start = starts.map(|(i, (x, base))| lies_in(*x, *base, &sets.initial_set, i));
+        let is_in_input = match &found.constant {
+            Some(constant) => (0..n).all(|j| lies_in(constant[j], 0.0, &sets.input_set, j)),
+            None => {
+                let mut inputs = found.inputs.iter().zip(&*self.case.inputs).enumerate();
+                inputs.all(|(at, (u, given))| lies_in(*u, *given, &sets.input_set, at % n))
+            }
+        };
+        Ok(found.largest <= 1.0
+            && in_start.all(|lies| lies)
+            && is_in_input
+            && self.stays_close(&found, &recorded)?)
+    }
+
+    /// Returns whether the exact solution from the start and under the input that were found is
+    /// proved to stay within V of the recording at all samples: its flowpipe does, whose sets have
+    /// no width but that of rounding and remainders. Shorter steps make the remainders smaller.
+    fn stays_close(&self, found: &Behaviour, recorded: &Run) -> Result<bool> {
+        for parts in PARTS {
+            if self.flowpipe_stays_close(found, recorded, parts)? {
+                return Ok(true);
+            }
         }
-        let start = IntervalVector::from_iterator(2 * n, start.iter().map(|x| (*x).into()));
-        // The input of the last sample has no effect.
-        let inputs = [&found.inputs[..], &vec![0.0; n]].concat();
-        let solution = self.grid.propagation.solve(&start, &inputs);
+        Ok(false)
+    }
+
+    /// As [`stays_close`](Self::stays_close), with every step divided into `parts`.
+    fn flowpipe_stays_close(
+        &self,
+        found: &Behaviour,
+        recorded: &Run,
+        parts: usize,
+    ) -> Result<bool> {
+        let n = self.case.joints();
+        let point = Hyperrectangle::zero;
+        // The sum of a given input and a constant disturbance is not a double: it is enclosed.
+        let (given, set) = match &found.constant {
+            Some(constant) => {
+                let set = Hyperrectangle { centre: constant.clone(), ..point(n) };
+                (&self.case.inputs[..n * (recorded.len() - 1)], set)
+            }
+            None => (&found.inputs[..], point(n)),
+        };
+        let held = given.chunks_exact(n).flat_map(|u| repeat_n(u, parts));
+        let flowpipe = Flowpipe::new(
+            self.problem.dynamics().polynomial_system()?,
+            &self.case.grid.prefix(recorded.len()).refined(parts),
+            &found.states[..2 * n],
+            &point(2 * n),
+            &UncertainInput { measured: &held.flatten().copied().collect::<Vec<f64>>(), set: &set },
+            &FlowpipeSettings { vertex_variables: 0, order: Some(ORDER), ..Default::default() },
+        )?;
         let is_close = |k: usize| {
-            let mut states = solution.state(k).iter().zip(recorded.state(k)).zip(self.noise);
-            states.all(|((x, measured), noise)| {
+            let states = flowpipe.sample(k * parts).iter();
+            states.zip(recorded.state(k)).zip(self.noise).all(|((x, measured), noise)| {
                 sub_up(x.hi(), *measured) <= *noise && sub_up(*measured, x.lo()) <= *noise
             })
         };
-        Ok(solution.len() >= recorded.len() && (0..recorded.len()).all(is_close))
+        Ok(flowpipe.is_reached() && (0..recorded.len()).all(is_close))
     }
 }
 

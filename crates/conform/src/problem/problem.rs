@@ -148,7 +148,7 @@ impl Problem {
     ) -> Result<Self> {
         let Setup { robot, settings, .. } = &setup;
         settings.validate(robot.joint_count())?;
-        trace::check_settings(settings, &setup.dynamics)?;
+        trace::check_settings(settings)?;
         let kept = KeptRuns::default();
         let reader = SuiteReader {
             source: source.as_ref(),

@@ -64,6 +64,25 @@ pub struct Recorded {
     pub torques: Vec<f64>,
 }
 
+/// Friction that bends and joints that move each other.
+pub fn bent() -> Robot {
+    let joint = |name: &str, mass: f64, viscous: &str| {
+        format!(
+            "[[joint]]\nname = \"{name}\"\n\
+             dh = {{ a = 0.3, alpha = 0.0, theta = 0.0, d = 0.0 }}\n\
+             mass = {mass}\ncom = [-0.15, 0.0, 0.0]\n\
+             inertia = [0.01, 0.0, 0.0, 0.02, 0.0, 0.02]\narmature = 0.3\n\
+             friction = {{ viscous = {viscous} }}\n"
+        )
+    };
+    let text = format!(
+        "schema_version = 1\nname = \"bent\"\n{}{}",
+        joint("shoulder", 2.0, "[2.0, 0.2, -0.3]"),
+        joint("elbow", 1.5, "[1.0, 0.0, 0.4]")
+    );
+    Robot::from_toml(&text, "bent").unwrap()
+}
+
 /// What moves the virtual arm.
 pub struct Disturbed<'a> {
     pub robot: &'a Robot,

@@ -67,7 +67,7 @@ fn verdict(model: &Model) -> String {
         );
     }
     if let Some(found) = &proof.traces {
-        let _ = writeln!(text, "{}", traces(found, runs));
+        let _ = writeln!(text, "{}", traces(found, runs, model.settings.disturbance));
     }
     for set in &proof.lost {
         let _ = writeln!(text, "{}", lost(set));
