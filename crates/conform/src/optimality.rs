@@ -9,7 +9,8 @@ pub const LARGEST_GAP_OF_POINTS: f64 = 1e-4;
 
 /// Returns how far `cost` may be above the least cost, relative to the `lower_bound` of the
 /// program. Costs that differ by less than `negligible` are equal: sets of rounding only have no
-/// meaningful bound.
+/// meaningful bound. A cost below the bound is no better than one above it: either the bound is
+/// wrong by as much, or the sets break a limit of the program.
 ///
 /// # Examples
 ///
@@ -19,10 +20,11 @@ pub const LARGEST_GAP_OF_POINTS: f64 = 1e-4;
 /// // The gap counts from the bound, so it has no upper limit.
 /// assert_eq!(optimality_gap(30.0, 1.0, 1e-9), 29.0);
 /// assert_eq!(optimality_gap(2.0, 2.0 + 1e-12, 1e-9), 0.0);
+/// assert_eq!(optimality_gap(1.5, 2.0, 1e-9), 0.25);
 /// assert!(optimality_gap(1e-12, -1e-13, 1e-9) < 1.0);
 /// ```
 #[must_use]
 pub fn optimality_gap(cost: f64, lower_bound: f64, negligible: f64) -> f64 {
-    let above = cost - lower_bound;
-    if above <= negligible { 0.0 } else { above / lower_bound.max(negligible) }
+    let apart = (cost - lower_bound).abs();
+    if apart <= negligible { 0.0 } else { apart / lower_bound.max(negligible) }
 }

@@ -75,6 +75,14 @@ fn sets_of_an_arm_with_tiny_inertias_are_the_smallest() {
             let gap = found.optimality_gap.unwrap();
             assert!(found.verdict.conformant);
             assert!(gap < 1e-8, "noise {noise}, {nominal:?}: gap {gap:e}");
+            if nominal == NominalStart::Own {
+                // The repair keeps the limits of X0.
+                for (i, limit) in problem.sensor_noise().radius.iter().enumerate() {
+                    let (low, high) = found.sets.initial_set.bounds(i);
+                    let reach = high.max(-low);
+                    assert!(reach < limit.max(1e-9) * (1.0 + 1e-4), "{i}: {reach} {limit}");
+                }
+            }
         }
     }
 }

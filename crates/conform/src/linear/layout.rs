@@ -16,6 +16,11 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Returns the limit of radius `j` of (X0, U); infinite where there is none.
+    pub fn of_start(&self, j: usize) -> f64 {
+        self.start.as_ref().and_then(|start| start.get(j)).copied().unwrap_or(f64::INFINITY)
+    }
+
     /// Makes the radii of X0 so small that X0 keeps its limit.
     pub fn shrink(&self, initial_set: &mut Hyperrectangle) {
         let Hyperrectangle { centre, radius } = initial_set;
@@ -95,6 +100,15 @@ impl Layout {
             i if i < 2 * n => of(&sets.initial_set, i),
             i if i < 3 * n => of(&sets.input_set, i - 2 * n),
             i => sets.noise_radius(i - 3 * n),
+        }
+    }
+
+    /// Returns the largest that the unknown of column `j` may be; infinite where it has no limit.
+    pub fn limit_of(&self, limits: &Limits, j: usize) -> f64 {
+        let (width, centres) = (3 * self.joints, self.centres());
+        match if j < centres { j } else { j - centres } {
+            i if i < width => limits.of_start(i),
+            i => limits.noise.as_ref().map_or(f64::INFINITY, |noise| noise[i - width]),
         }
     }
 

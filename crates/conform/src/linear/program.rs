@@ -59,7 +59,7 @@ pub struct Program<'a> {
     pub(crate) shares: Vec<Vec<f64>>,
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
     centre_bounds: Vec<[f64; 2]>,
-    limits: Limits,
+    pub(super) limits: Limits,
     /// Cost of each radius (r_x, r_u).
     pub(crate) cost: Vec<f64>,
     /// Cost of each noise radius.
@@ -313,15 +313,21 @@ impl<'a> Program<'a> {
     }
 
     /// The unit of each unknown: such that all cost the same, or about its value in the sets
-    /// `near`, where an earlier solution is known. With units of the first kind the solver may miss
-    /// what small unknowns do to small rows; with the second, every row that decides has terms of
-    /// about its own size.
+    /// `near`, where an earlier solution is known, but never more than its limit. With units of the
+    /// first kind the solver may miss what small unknowns do to small rows; with the second, every
+    /// row that decides has terms of about its own size.
     fn units(&self, layout: &Layout, near: Option<&UncertaintySets>) -> Vec<f64> {
         let largest = layout.cost.iter().copied().fold(0.0, f64::max);
-        let Some(sets) = near else { return layout.cost.iter().map(|w| largest / w).collect() };
-        let cheapest = NEGLIGIBLE_PART * self.cost(sets).max(self.negligible_cost());
-        let value = |j: usize| layout.value(sets, j) / self.scale;
-        let unit = |(j, w): (usize, &f64)| value(j).max(cheapest / w / self.scale);
+        let cheapest = |sets: &UncertaintySets| {
+            NEGLIGIBLE_PART * self.cost(sets).max(self.negligible_cost()) / self.scale
+        };
+        let unit = |(j, w): (usize, &f64)| {
+            let unit = match near {
+                None => largest / w,
+                Some(sets) => (layout.value(sets, j) / self.scale).max(cheapest(sets) / w),
+            };
+            unit.min(layout.limit_of(&self.limits, j) / self.scale)
+        };
         layout.cost.iter().enumerate().map(unit).collect()
     }
 

@@ -10,8 +10,9 @@ impl Program<'_> {
     }
 
     /// Returns the sets with radii that are larger, so that every row holds up to rounding: all by
-    /// the worst ratio, or each by a term of the same cost, whichever costs less. The solver meets
-    /// a row to a part of the largest row, so a small one may miss most of its reach.
+    /// the worst ratio, or each that has no limit by a term of the same cost, whichever costs less.
+    /// The solver meets a row to a part of the largest row, so a small one may miss most of its
+    /// reach.
     #[must_use]
     pub fn repaired(&self, sets: &UncertaintySets) -> UncertaintySets {
         let scaled = sets.inflated(self.worst_ratio(sets), 0.0);
@@ -19,12 +20,15 @@ impl Program<'_> {
         if self.cost(&widened) < self.cost(&scaled) { widened } else { scaled }
     }
 
-    /// The sets with radii that are larger by terms of the same cost, so that every row holds.
+    /// The sets with radii that are larger by terms of the same cost, but for those that have a
+    /// limit, so that every row holds; infinite where those without a limit are in no row.
     fn widened(&self, sets: &UncertaintySets) -> UncertaintySets {
         let unknowns = self.unknowns(sets);
         let largest = self.cost.iter().copied().fold(0.0, f64::max);
-        let terms: Vec<f64> =
-            self.cost.iter().map(|w| if *w > 0.0 { largest / w } else { 0.0 }).collect();
+        let is_limited = |j: usize| self.limits.of_start(j).is_finite();
+        let term =
+            |(j, w): (usize, &f64)| if *w > 0.0 && !is_limited(j) { largest / w } else { 0.0 };
+        let terms: Vec<f64> = self.cost.iter().enumerate().map(term).collect();
         let needed = |index: RowIndex| {
             let gain = dot(self.row(index.0, index.1, index.2).1, &terms);
             let excess = self.excess(index, &unknowns);
@@ -34,7 +38,8 @@ impl Program<'_> {
         let mut widened = sets.clone();
         let UncertaintySets { initial_set, input_set, .. } = &mut widened;
         let radii = initial_set.radius.iter_mut().chain(&mut input_set.radius);
-        radii.zip(&terms).for_each(|(radius, term)| *radius += factor * term);
+        let widening = radii.zip(&terms).filter(|(_, term)| **term > 0.0);
+        widening.for_each(|(radius, term)| *radius += factor * term);
         widened
     }
 
@@ -52,5 +57,44 @@ impl Program<'_> {
             }
         };
         self.indices(1).map(ratio).fold(1.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use reachtube_reach::Hyperrectangle;
+    use reachtube_recordings::Torque;
+
+    use crate::envelope::Envelope;
+    use crate::linear::block::Block;
+    use crate::linear::layout::Limits;
+    use crate::linear::program::Program;
+    use crate::sets::UncertaintySets;
+    use crate::settings::Settings;
+
+    /// A mass that is pushed for one second from rest, and comes 1 m and 1 m/s further than the
+    /// nominal one. X0 may hardly be larger than nothing, so U has to cover it.
+    #[test]
+    fn a_repair_keeps_the_limits_of_the_initial_set() {
+        let row = |entries: [f64; 3]| [entries, entries].concat();
+        let coefficients =
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.5], [0.0, 1.0, 1.0]].map(row).concat();
+        let mut envelope = Envelope::new(2);
+        envelope.include(0, &[0.0, 0.0, 1.0, 1.0]);
+        let block = Block { times: vec![0.0, 1.0], coefficients: Arc::new(coefficients), envelope };
+        let settings = Settings::new(Torque::Compensated, 1);
+        let limits = Limits { noise: None, start: Some(vec![1e-9; 2]) };
+        let program = Program::new(&settings, &[1.0; 2], vec![block]).with_limits(limits);
+        let set = |radius: Vec<f64>| Hyperrectangle { centre: vec![0.0; radius.len()], radius };
+        let sets = UncertaintySets {
+            initial_set: set(vec![0.0; 2]),
+            input_set: set(vec![1.5]),
+            noise_set: None,
+        };
+        let repaired = program.repaired(&sets);
+        assert_eq!(repaired.initial_set, sets.initial_set);
+        assert!((repaired.input_set.radius[0] - 2.0).abs() < 1e-12, "{repaired:?}");
     }
 }
