@@ -1,11 +1,12 @@
-use crate::bodies::program::BodyProgram;
+use crate::bodies::program::{BodyProgram, PositiveColumn};
 use crate::error::{Error, Result};
 use crate::fit::Fit;
 use crate::inertia::columns::inertia_part;
 use crate::inertia::prior::LinkPrior;
 use crate::regression::residuals::root_mean_square;
+use crate::regression::solution::Solution;
 use crate::samples::Samples;
-use crate::settings::ModelSettings;
+use crate::settings::{ModelSettings, Prior};
 use crate::variant::with_parameters;
 use nalgebra::DVector;
 use reachtube_robot::{FrictionDescription, Parameter, ParameterKind, Robot, RobotError};
@@ -13,6 +14,9 @@ use serde::Serialize;
 
 /// Limit of the rounds in which the size of the balls is adapted.
 const SIZE_ROUNDS: usize = 30;
+
+/// Prior of a positive parameter relative to the mean torque, if no joint determines one.
+const FIRST_SHARE: f64 = 0.1;
 
 /// Growth of a joint's residual by physical links beyond which a warning names the joint.
 const MAX_GROWTH: f64 = 1.3;
@@ -72,7 +76,7 @@ pub fn nearest_bodies(
     moving: &Samples,
     model: &ModelSettings,
 ) -> Result<(DVector<f64>, PhysicalFit)> {
-    let positive = positive_columns(known, columns);
+    let positive = positive_columns([robot, known], columns, fit, model.prior);
     let solve = |prior: &LinkPrior| {
         let (prior, strength) = (prior.inertias(), model.prior_strength);
         BodyProgram { data: &fit.whitened, prior: &prior, strength, positive: &positive }
@@ -101,19 +105,42 @@ pub fn nearest_bodies(
     Ok((solution.x, physical))
 }
 
-/// Returns the indices of columns that must be positive: motor inertias, and friction that only
-/// this fit determines, because it must dissipate.
+/// Returns the columns that must be positive, with their priors: motor inertias, and friction that
+/// only this fit determines, because it must dissipate.
 ///
-/// A correction of known friction may have either sign.
-fn positive_columns(known: &Robot, columns: &[Parameter]) -> Vec<usize> {
+/// A correction of known friction may have either sign. The prior is the value of the description,
+/// or else the mean over the joints with a determined value of the same kind. Where there is none
+/// it is a tenth of the mean torque, per 1 rad/s or 1 rad/s².
+fn positive_columns(
+    [robot, known]: [&Robot; 2],
+    columns: &[Parameter],
+    fit: &Fit,
+    prior: Prior,
+) -> Vec<PositiveColumn> {
     let frictionless =
         |joint: usize| known.description().joints[joint].friction == FrictionDescription::default();
-    let positive = |column: &Parameter| match column.kind {
+    let is_positive = |column: &Parameter| match column.kind {
         ParameterKind::MotorInertia => true,
         ParameterKind::Coulomb | ParameterKind::Viscous1 => frictionless(column.joint),
         _ => false,
     };
-    (0..columns.len()).filter(|c| positive(&columns[*c])).collect()
+    let described = robot.parameter_values(columns);
+    let Solution { x, undetermined, .. } = &fit.solution;
+    let of_kind = |kind: ParameterKind| {
+        let usable = |c: &usize| columns[*c].kind == kind && x[*c] > 0.0;
+        let values = (0..columns.len()).filter(|c| usable(c) && !undetermined.contains(c));
+        let values: Vec<f64> = values.map(|c| x[c]).collect();
+        let torques = fit.joints[0].iter().map(|joint| joint.torque).collect();
+        let [own, torque] = [values, torques].map(|v| v.iter().sum::<f64>() / v.len() as f64);
+        if own.is_finite() { own } else { FIRST_SHARE * torque }
+    };
+    let column = |index: usize| {
+        let given = (prior == Prior::Description).then_some(described[index]);
+        let given = given.filter(|given| *given > 0.0);
+        let prior = given.unwrap_or_else(|| of_kind(columns[index].kind));
+        PositiveColumn { index, prior: prior.max(f64::MIN_POSITIVE) }
+    };
+    (0..columns.len()).filter(|c| is_positive(&columns[*c])).map(column).collect()
 }
 
 /// Returns the root mean square of each joint's residuals \[N m\].
