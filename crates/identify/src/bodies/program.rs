@@ -10,9 +10,10 @@ const POSITIVE_STRENGTH: f64 = 0.01;
 /// Ratio of consecutive barrier weights.
 const SHRINK: f64 = 0.1;
 
-/// Last barrier weight.
+/// Last barrier weight, relative to the weight of the prior where that is below 1.
 ///
-/// The objective then is within this weight times the number of inequalities of its minimum. There
+/// A larger one would outweigh the prior, and inflate links that the data leave open by the ratio
+/// of the two. The objective then is within this weight times the number of inequalities of its minimum. There
 /// are four inequalities per link, and one per positive column.
 const LAST_BARRIER: f64 = 1e-3;
 
@@ -94,9 +95,11 @@ impl BodyProgram<'_> {
         let inequalities = 4 * self.prior.len() + self.positive.len();
         // The first barrier weighs as much as the misfit at the start: its minimum is near.
         let mut barrier = (self.data.sum_of_squares(&x) / inequalities as f64).max(1.0);
+        let weak = self.strength.min(1.0);
+        let last = LAST_BARRIER * weak;
         let mut steps = 0;
         loop {
-            barrier = (SHRINK * barrier).max(LAST_BARRIER);
+            barrier = (SHRINK * barrier).max(last);
             // Newton's method for this barrier weight.
             let mut squared_decrement = f64::INFINITY;
             for _ in 0..MAX_STEPS {
@@ -105,11 +108,11 @@ impl BodyProgram<'_> {
                 let next = self.advance(&x, &step, barrier, &inverse)?;
                 let stuck = next == x;
                 x = next;
-                if 0.5 * squared_decrement < CONVERGED || stuck {
+                if 0.5 * squared_decrement < CONVERGED * weak || stuck {
                     break;
                 }
             }
-            if barrier <= LAST_BARRIER {
+            if barrier <= last {
                 let solution = BodySolution { x, gap: barrier * inequalities as f64, steps };
                 return (squared_decrement < ACCEPTED).then_some(solution);
             }
@@ -281,6 +284,35 @@ mod tests {
         // At the minimum s P0⁻¹ = (s + barrier) P⁻¹, so that the last barrier scales the prior.
         let scaled = (1.0 + LAST_BARRIER) * ball();
         assert!((pseudo_inertia(point.x.as_slice()) - scaled).amax() < 1e-6);
+    }
+
+    #[test]
+    fn a_weak_prior_still_decides_what_the_data_leave_open() {
+        // The data determine the mass alone.
+        let mut rows = vec![0.0; 11];
+        (rows[0], rows[10]) = (100.0, 100.0 * ball()[(3, 3)]);
+        let data = TriangularFactor::from_rows(&rows, 10);
+        for strength in [1e-3, 1e-6, 1e-9] {
+            let program = BodyProgram { data: &data, prior: &[ball()], strength, positive: &[] };
+            let found = pseudo_inertia(program.solve().unwrap().x.as_slice());
+            assert!((found - ball()).amax() < 0.01 * ball().amax(), "{strength}: {found}");
+        }
+    }
+
+    /// A flat link lies on the boundary; exact data have the smallest deviation that a fit allows.
+    #[test]
+    fn a_flat_link_is_found_from_exact_data() {
+        let flat =
+            link_parameters(&Matrix4::from_diagonal(&nalgebra::Vector4::new(0.03, 0.01, 0.0, 4.0)));
+        for scale in [1e2, 1e6, 1e8] {
+            let mut data = data_for(&flat);
+            (data.r, data.z) = (data.r * (scale / 100.0), data.z * (scale / 100.0));
+            let program =
+                BodyProgram { data: &data, prior: &[ball()], strength: 1.0, positive: &[] };
+            let found = program.solve().unwrap_or_else(|| panic!("no link at {scale}"));
+            let off = found.x.iter().zip(&flat).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 0.1 / scale.sqrt(), "{scale}: {off}");
+        }
     }
 
     proptest! {

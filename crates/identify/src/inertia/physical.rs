@@ -1,10 +1,11 @@
 use crate::bodies::program::{BodyProgram, PositiveColumn};
 use crate::error::{Error, Result};
-use crate::fit::Fit;
+use crate::fit::{Fit, JointFit};
 use crate::inertia::columns::inertia_part;
 use crate::inertia::prior::LinkPrior;
 use crate::regression::residuals::root_mean_square;
 use crate::regression::solution::Solution;
+use crate::regression::triangular_factor::TriangularFactor;
 use crate::samples::Samples;
 use crate::settings::{ModelSettings, Prior};
 use crate::variant::with_parameters;
@@ -14,6 +15,9 @@ use serde::Serialize;
 
 /// Limit of the rounds in which the size of the balls is adapted.
 const SIZE_ROUNDS: usize = 30;
+
+/// Least standard deviation of a joint's torque relative to its size that the program counts with.
+const SHARPEST: f64 = 1e-4;
 
 /// Prior of a positive parameter relative to the mean torque, if no joint determines one.
 const FIRST_SHARE: f64 = 0.1;
@@ -43,12 +47,16 @@ pub struct PhysicalFit {
 
 impl PhysicalFit {
     /// Returns a warning for each joint whose residual grows too much by the physical constraint
-    /// and its prior.
-    pub(crate) fn growth_warnings(&self, robot: &Robot) -> Vec<String> {
-        let joints = robot.joints().iter().zip(&self.residuals);
-        let grown = joints.filter(|(_, [plain, physical])| *physical > MAX_GROWTH * plain);
+    /// and its prior, in a fit of this quality.
+    ///
+    /// Residuals below [`SHARPEST`] of the torque count as that.
+    pub(crate) fn growth_warnings(&self, robot: &Robot, fits: &[JointFit]) -> Vec<String> {
+        let joints = robot.joints().iter().zip(&self.residuals).zip(fits);
+        let grown = joints.filter(|((_, [plain, physical]), fit)| {
+            *physical > MAX_GROWTH * plain.max(SHARPEST * fit.torque)
+        });
         grown
-            .map(|(joint, [plain, physical])| {
+            .map(|((joint, [plain, physical]), _)| {
                 format!(
                     "{}: physical links raise the residual from {plain:.4} to {physical:.4} {}; \
                      give masses in the description, lower model.prior_strength, or set parameters \
@@ -76,10 +84,11 @@ pub fn nearest_bodies(
     moving: &Samples,
     model: &ModelSettings,
 ) -> Result<(DVector<f64>, PhysicalFit)> {
+    let data = &no_sharper(&fit.whitened, &fit.joints[0]);
     let positive = positive_columns([robot, known], columns, fit, model.prior);
     let solve = |prior: &LinkPrior| {
         let (prior, strength) = (prior.inertias(), model.prior_strength);
-        BodyProgram { data: &fit.whitened, prior: &prior, strength, positive: &positive }
+        BodyProgram { data, prior: &prior, strength, positive: &positive }
             .solve()
             .ok_or(Error::NoPhysicalLinks)
     };
@@ -103,6 +112,17 @@ pub fn nearest_bodies(
         balls: prior.balls(robot),
     };
     Ok((solution.x, physical))
+}
+
+/// Returns the data with errors of at least [`SHARPEST`] of the torque.
+///
+/// Exact data of a link on the boundary of the physical ones, such as a flat plate, would leave no
+/// room inside for the program, beyond the rounding of the data.
+fn no_sharper(data: &TriangularFactor, joints: &[JointFit]) -> TriangularFactor {
+    let sharpness = |joint: &JointFit| joint.deviation / (SHARPEST * joint.torque);
+    let sharpest = joints.iter().filter(|joint| joint.rows > 0).map(sharpness);
+    let scale = sharpest.fold(1.0, f64::min).max(f64::EPSILON);
+    TriangularFactor { r: scale * &data.r, z: scale * &data.z, residual: scale * data.residual }
 }
 
 /// Returns the columns that must be positive, with their priors: motor inertias, and friction that

@@ -1,6 +1,7 @@
 //! Identification from simulated recordings of known robots, and from real recordings.
 
 mod faults;
+mod flat;
 mod frames;
 mod heavy;
 mod lab;
