@@ -6,6 +6,7 @@ mod frames;
 mod heavy;
 mod lab;
 mod laws;
+mod link_torque;
 mod messages;
 mod recorded;
 mod recovery;
