@@ -8,6 +8,7 @@ use crate::inertia::description::description;
 use crate::inertia::fit::{InertiaFit, fit_inertia};
 use crate::inputs::Inputs;
 use crate::plausibility::gain::{Gain, GainLikelihood, gains};
+use crate::plausibility::offset::{OffsetSearch, PositionOffset};
 use crate::plausibility::warnings::Checked;
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples};
@@ -32,6 +33,16 @@ pub(crate) struct Fitted {
     pub found: Robot,
 }
 
+/// What the recordings say about their own columns.
+pub(crate) struct Plausibility {
+    /// Gains of the joints' torques relative to each other.
+    pub gains: Vec<Gain>,
+    /// Offsets of the joints' positions.
+    pub offsets: Vec<PositionOffset>,
+    /// Warnings about implausible results.
+    pub warnings: Vec<String>,
+}
+
 impl Fitted {
     /// Fits gravity and friction in alternation, then the inertial parameters.
     pub fn new(robot: &Robot, inputs: &Inputs, model: &ModelSettings) -> Result<Self> {
@@ -46,7 +57,7 @@ impl Fitted {
             .map(|gravity| KnownFriction { robot: &slow, deviations: &gravity.rest_deviations });
         let (friction, known, inertia) = fit_links([robot, load], friction, kept, inputs, model)?;
         let mut description = description(robot, &inertia, &friction).map_err(|error| {
-            impossible(error, &check([robot, &known], &inertia, &friction, inputs).1)
+            impossible(error, &check([robot, &known], &inertia, &friction, inputs).warnings)
         })?;
         if let Some(gravity) = first.gravity.as_ref().filter(|_| model.separate_gravity) {
             set_gravity_moments(&mut description, &gravity.robot);
@@ -55,8 +66,9 @@ impl Fitted {
         Ok(Self { first, friction, known, inertia, description, found })
     }
 
-    /// Returns the gains of the joints and warnings about implausible results.
-    pub fn check(&self, robot: &Robot, inputs: &Inputs) -> (Vec<Gain>, Vec<String>) {
+    /// Returns the gains of the joints, the offsets of their positions, and warnings about
+    /// implausible results.
+    pub fn check(&self, robot: &Robot, inputs: &Inputs) -> Plausibility {
         check([robot, &self.known], &self.inertia, &self.friction, inputs)
     }
 }
@@ -109,19 +121,22 @@ fn fit_links(
     fit(chosen.collect())
 }
 
-/// Returns the gains of the joints and warnings about implausible results.
+/// Returns the gains of the joints, the offsets of their positions, and warnings about implausible
+/// results.
 fn check(
     [robot, known]: [&Robot; 2],
     fit: &InertiaFit,
     friction: &[FrictionDescription],
     inputs: &Inputs,
-) -> (Vec<Gain>, Vec<String>) {
+) -> Plausibility {
     let (logs, sampling) = (&inputs.dynamic, &inputs.sampling);
     let known = KnownTorque::Friction(known);
     let samples = &Samples::in_motion(robot, &fit.columns, logs, sampling, &known);
     let likelihood = GainLikelihood::new(samples, &fit.joints);
     let gains = gains(robot, samples, &likelihood);
-    let checked = Checked { robot, fit, friction, logs, samples, sampling };
-    let warnings = checked.warnings(&likelihood, &gains);
-    (gains, warnings)
+    let search = OffsetSearch::new(robot, &fit.columns, logs, sampling, &known);
+    let offsets = search.run();
+    let checked = Checked { robot, fit, friction, logs, samples, sampling, known: &known };
+    let warnings = checked.warnings(&likelihood, &gains, || search.reported(&offsets));
+    Plausibility { gains, offsets: offsets.joints, warnings }
 }

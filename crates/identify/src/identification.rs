@@ -1,5 +1,5 @@
 use crate::error::Result;
-use crate::fitted::Fitted;
+use crate::fitted::{Fitted, Plausibility};
 use crate::friction::fit::FrictionFit;
 use crate::gravity::fit::GravityFit;
 use crate::inertia::description::friction_errors;
@@ -7,6 +7,7 @@ use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
 use crate::law_gain::{LawGain, kept_back_residuals};
 use crate::plausibility::gain::Gain;
+use crate::plausibility::offset::PositionOffset;
 use crate::plausibility::validation::{poor_prediction, still_recordings, useless_simulation};
 use crate::settings::{IdentifySettings, ModelSettings, WarmingChoice};
 use crate::stiction::unknown_sides;
@@ -38,6 +39,8 @@ pub struct Identification {
     pub inertia: InertiaFit,
     /// Gains of the joints' torques relative to each other.
     pub gains: Vec<Gain>,
+    /// Offsets of the joints' positions that explain the torque best; empty for too few samples.
+    pub offsets: Vec<PositionOffset>,
     /// Laws by which friction falls while the joints warm up, if they were asked for.
     pub warming: Option<WarmingFit>,
     /// Torque residuals without and with the friction laws, if some were asked for.
@@ -97,7 +100,7 @@ pub fn identify(
         let after = kept_back_residuals(&fitted, &inputs);
         LawGain { kept_back: inputs.validation().0, before, after }
     });
-    let (gains, implausible) = fitted.check(robot, &inputs);
+    let Plausibility { gains, offsets, warnings: implausible } = fitted.check(robot, &inputs);
     let sides = fitted.first.gravity.as_ref().map_or(&[][..], |gravity| &gravity.poses.sides);
     inputs.changes.extend(unknown_sides(sides, robot.joint_count()));
     let mut law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
@@ -135,6 +138,7 @@ pub fn identify(
         friction: first.friction,
         inertia,
         gains,
+        offsets,
         warming,
         laws,
         validation,

@@ -74,7 +74,7 @@ pub use gravity::GravityFit;
 pub use identification::{Identification, identify};
 pub use inertia::{BaseParameter, InertiaFit, PhysicalFit};
 pub use law_gain::LawGain;
-pub use plausibility::Gain;
+pub use plausibility::{Gain, PositionOffset};
 pub use settings::{IdentifySettings, ModelSettings, Prior, WarmingChoice};
 pub use summary::Summary;
 pub use validate::{JointError, LogValidation, TorqueTrace, WindowErrors};

@@ -6,6 +6,7 @@ use crate::inertia::base::BaseParameter;
 use crate::inertia::physical::PhysicalFit;
 use crate::law_gain::LawGain;
 use crate::plausibility::gain::Gain;
+use crate::plausibility::offset::PositionOffset;
 use crate::validate::simulation::WindowErrors;
 use crate::validate::torque::LogValidation;
 use crate::warming::choice::WarmingFit;
@@ -37,6 +38,8 @@ pub struct Summary<'a> {
     pub physical: &'a Option<PhysicalFit>,
     /// Gains of the joints' torques relative to each other.
     pub gains: &'a [Gain],
+    /// Offsets of the joints' positions that explain the torque best; empty for too few samples.
+    pub offsets: &'a [PositionOffset],
     /// Laws by which friction falls while the joints warm up, if they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub warming: &'a Option<WarmingFit>,
@@ -69,6 +72,7 @@ impl Identification {
             condition: self.inertia.condition,
             physical: &self.inertia.physical,
             gains: &self.gains,
+            offsets: &self.offsets,
             warming: &self.warming,
             laws: &self.laws,
             validation: &self.validation,

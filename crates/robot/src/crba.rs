@@ -26,29 +26,46 @@ impl Robot {
     ///
     /// Panics if a slice or the workspace is too short for the robot.
     pub fn crba<S: Scalar>(&self, sin: &[S], cos: &[S], ws: &mut Workspace<S>, m: &mut [S]) {
+        if self.slides {
+            self.crba_among::<S, true>(sin, cos, ws, m);
+        } else {
+            self.crba_among::<S, false>(sin, cos, ws, m);
+        }
+    }
+
+    /// Computes the mass matrix of a robot that has prismatic joints only if `SLIDES`.
+    fn crba_among<S: Scalar, const SLIDES: bool>(
+        &self,
+        sin: &[S],
+        cos: &[S],
+        ws: &mut Workspace<S>,
+        m: &mut [S],
+    ) {
         let n = self.links.len();
         let (m, sin, cos, scratch) = (&mut m[..n * n], &sin[..n], &cos[..n], &mut ws.links[..n]);
         for i in 0..n {
-            scratch[i].pose = self.links[i].pose(&sin[i], &cos[i]);
+            scratch[i].pose = self.links[i].pose_among::<S, SLIDES>(&sin[i], &cos[i]);
         }
         let Some(last) = self.links.last() else { return };
         let (mut first_moment, mut second_moments) = last.moments::<S>();
         for i in (0..n).rev() {
             let link = &self.links[i];
-            let (mut force, mut moment) = unit_wrench(link, &first_moment, &second_moments);
-            m[i * n + i] = link.axis_component(&force, &moment) + S::from(link.armature);
+            let (mut force, mut moment) =
+                unit_wrench::<S, SLIDES>(link, &first_moment, &second_moments);
+            let own = link.axis_component_among::<S, SLIDES>(&force, &moment);
+            m[i * n + i] = own + S::from(link.armature);
             // Its axis components at the joints towards the base are row and column i of M.
             for j in (1..=i).rev() {
                 let pose = &scratch[j].pose;
                 force = pose.to_parent(&force);
                 moment = pose.to_parent(&moment).plus(&pose.origin.cross(&force));
-                let entry = self.links[j - 1].axis_component(&force, &moment);
+                let entry = self.links[j - 1].axis_component_among::<S, SLIDES>(&force, &moment);
                 m[i * n + j - 1] = entry.clone();
                 m[(j - 1) * n + i] = entry;
             }
             // The composite body grows by the next link towards the base.
             if i > 0 {
-                let shifted = composite_to_parent(
+                let shifted = composite_to_parent::<S, SLIDES>(
                     &scratch[i].pose,
                     &self.links[i],
                     &first_moment,
@@ -84,8 +101,12 @@ impl Robot {
 ///
 /// A rotation about z takes the force z × h and the moment I z.
 #[inline(always)]
-fn unit_wrench<S: Scalar>(link: &Link, h: &Vec3<S>, m: &Sym3<S>) -> (Vec3<S>, Vec3<S>) {
-    if link.kind == JointKind::Prismatic {
+fn unit_wrench<S: Scalar, const SLIDES: bool>(
+    link: &Link,
+    h: &Vec3<S>,
+    m: &Sym3<S>,
+) -> (Vec3<S>, Vec3<S>) {
+    if SLIDES && link.kind == JointKind::Prismatic {
         return unit_wrench_of_slide(link, h);
     }
     let inertia = m.xx.clone() + m.yy.clone();
@@ -107,15 +128,16 @@ fn unit_wrench_of_slide<S: Scalar>(link: &Link, h: &Vec3<S>) -> (Vec3<S>, Vec3<S
 /// Let h = E h_link, p the link's origin and m the mass. The first moment is h + m p, and the
 /// second moments are E Σ Eᵀ + p (h + m p / 2)ᵀ + (h + m p / 2) pᵀ.
 #[inline(always)]
-fn composite_to_parent<S: Scalar>(
+fn composite_to_parent<S: Scalar, const SLIDES: bool>(
     pose: &Pose<S>,
     link: &Link,
     h: &Vec3<S>,
     m: &Sym3<S>,
 ) -> (Vec3<S>, Sym3<S>) {
-    let half_shift = match link.kind {
-        JointKind::Revolute => Vec3::constant(link.half_shift),
-        JointKind::Prismatic => pose.origin.scaled(&S::from(0.5 * link.composite_mass)),
+    let half_shift = if SLIDES && link.kind == JointKind::Prismatic {
+        pose.origin.scaled(&S::from(0.5 * link.composite_mass))
+    } else {
+        Vec3::constant(link.half_shift)
     };
     let middle = pose.to_parent(h).plus(&half_shift);
     let mut second_moments = pose.symmetric_to_parent(m);

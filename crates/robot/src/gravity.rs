@@ -58,16 +58,31 @@ impl Robot {
         scratch: &mut [LinkScratch<S>],
         g: &mut [S],
     ) {
+        if self.slides {
+            self.gravity_pass_among::<S, true>(sin, cos, scratch, g);
+        } else {
+            self.gravity_pass_among::<S, false>(sin, cos, scratch, g);
+        }
+    }
+
+    /// Runs the pass for a robot that has prismatic joints only if `SLIDES`.
+    fn gravity_pass_among<S: Scalar, const SLIDES: bool>(
+        &self,
+        sin: &[S],
+        cos: &[S],
+        scratch: &mut [LinkScratch<S>],
+        g: &mut [S],
+    ) {
         let mut acceleration = self.base_acceleration();
         for (i, (link, scratch)) in self.links.iter().zip(scratch.iter_mut()).enumerate() {
-            let pose = link.pose(&sin[i], &cos[i]);
+            let pose = link.pose_among::<S, SLIDES>(&sin[i], &cos[i]);
             acceleration = pose.to_link(&acceleration);
             let (force, moment) = gravity_wrench(link, &acceleration);
             *scratch = LinkScratch { pose, force, moment };
         }
         accumulate_to_parents(scratch);
         for ((g, link), s) in g.iter_mut().zip(&self.links).zip(scratch) {
-            *g = link.axis_component(&s.force, &s.moment);
+            *g = link.axis_component_among::<S, SLIDES>(&s.force, &s.moment);
         }
     }
 

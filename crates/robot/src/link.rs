@@ -53,7 +53,13 @@ impl Link {
     /// Returns the pose in the parent for sin q and cos q, or for q of a prismatic joint.
     #[inline(always)]
     pub fn pose<S: Scalar>(&self, sin: &S, cos: &S) -> Pose<S> {
-        if self.kind == JointKind::Prismatic {
+        self.pose_among::<S, true>(sin, cos)
+    }
+
+    /// Returns the pose in the parent in a robot that has prismatic joints only if `SLIDES`.
+    #[inline(always)]
+    pub fn pose_among<S: Scalar, const SLIDES: bool>(&self, sin: &S, cos: &S) -> Pose<S> {
+        if SLIDES && self.kind == JointKind::Prismatic {
             return self.pose_of_slide(sin);
         }
         let (s0, c0) = (S::from(self.sin_offset), S::from(self.cos_offset));
@@ -86,10 +92,19 @@ impl Link {
     /// force along it.
     #[inline(always)]
     pub fn axis_component<S: Scalar>(&self, force: &Vec3<S>, moment: &Vec3<S>) -> S {
-        match self.kind {
-            JointKind::Revolute => moment.z.clone(),
-            JointKind::Prismatic => force.z.clone(),
-        }
+        self.axis_component_among::<S, true>(force, moment)
+    }
+
+    /// Returns the component of a wrench that acts on the joint, in a robot that has prismatic
+    /// joints only if `SLIDES`.
+    #[inline(always)]
+    pub fn axis_component_among<S: Scalar, const SLIDES: bool>(
+        &self,
+        force: &Vec3<S>,
+        moment: &Vec3<S>,
+    ) -> S {
+        let along = SLIDES && self.kind == JointKind::Prismatic;
+        if along { force.z.clone() } else { moment.z.clone() }
     }
 
     /// Returns the first and second moments.

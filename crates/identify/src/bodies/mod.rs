@@ -8,5 +8,5 @@ mod newton;
 pub(crate) mod program;
 pub(crate) mod pseudo_inertia;
 
-pub use program::{BodyProgram, BodySolution};
+pub use program::{BodyProgram, BodySolution, PositiveColumn};
 pub use pseudo_inertia::{PER_LINK, link_parameters, pseudo_inertia};

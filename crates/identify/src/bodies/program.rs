@@ -3,12 +3,17 @@ use crate::bodies::pseudo_inertia::{PER_LINK, link_parameters, parameter_basis, 
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix4};
 
+/// Weight of the prior of a positive column relative to that of a link, so that it decides where
+/// the data do not, and hardly moves what they determine.
+const POSITIVE_STRENGTH: f64 = 0.01;
+
 /// Ratio of consecutive barrier weights.
 const SHRINK: f64 = 0.1;
 
-/// Last barrier weight.
+/// Last barrier weight, relative to the weight of the prior where that is below 1.
 ///
-/// The objective then is within this weight times the number of inequalities of its minimum. There
+/// A larger one would outweigh the prior, and inflate links that the data leave open by the ratio
+/// of the two. The objective then is within this weight times the number of inequalities of its minimum. There
 /// are four inequalities per link, and one per positive column.
 const LAST_BARRIER: f64 = 1e-3;
 
@@ -25,14 +30,17 @@ const CONVERGED: f64 = 1e-8;
 
 /// The semidefinite program whose solution is the physically consistent links nearest to the data.
 ///
-/// It minimises ½ ‖R x - z‖² + s Σ_i [tr(P0_i⁻¹ P_i(x)) - log det P_i(x)] over all x for which each
-/// P_i(x) is positive definite and the listed parameters are positive.
+/// It minimises ½ ‖R x - z‖² + s Σ_i [tr(P0_i⁻¹ P_i(x)) - log det P_i(x)] + s' Σ_k [x_k / p_k -
+/// log x_k] over all x for which each P_i(x) is positive definite and each listed parameter x_k is
+/// positive, where s' is a hundredth of s.
 ///
 /// P_i is the pseudo-inertia [[Σ, h], [hᵀ, m]] of link i and linear in x. It is positive definite
 /// if and only if some distribution of positive mass has the link's ten parameters (Wensing, Kim
 /// and Slotine, RA-L 2018). The second term is the divergence of Lee and Park (RA-L 2018) from a
 /// prior P0. It is convex, does not depend on the frame, and decides the directions that the data
-/// do not determine.
+/// do not determine. The third term is the same divergence from a prior p. Without it, a parameter
+/// that the data do not bound, such as the dry friction of a joint that moves one way only, would
+/// grow without limit.
 ///
 /// A barrier method solves the program. The cone solver of this workspace supports semidefinite
 /// constraints only with BLAS and LAPACK, which would need a Fortran or C build on every user's
@@ -49,8 +57,17 @@ pub struct BodyProgram<'a> {
     /// Weight s of the prior, above 0; a weight of 1 counts about as much as one independent
     /// sample.
     pub strength: f64,
-    /// Indices of columns whose parameters must be positive, such as motor inertias.
-    pub positive: &'a [usize],
+    /// Columns whose parameters must be positive, such as motor inertias.
+    pub positive: &'a [PositiveColumn],
+}
+
+/// A column of [`BodyProgram`] whose parameter must be positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositiveColumn {
+    /// Index of the column.
+    pub index: usize,
+    /// Prior p of the parameter, above 0. It decides where the data do not bound the parameter.
+    pub prior: f64,
 }
 
 /// A solution of [`BodyProgram`].
@@ -78,9 +95,11 @@ impl BodyProgram<'_> {
         let inequalities = 4 * self.prior.len() + self.positive.len();
         // The first barrier weighs as much as the misfit at the start: its minimum is near.
         let mut barrier = (self.data.sum_of_squares(&x) / inequalities as f64).max(1.0);
+        let weak = self.strength.min(1.0);
+        let last = LAST_BARRIER * weak;
         let mut steps = 0;
         loop {
-            barrier = (SHRINK * barrier).max(LAST_BARRIER);
+            barrier = (SHRINK * barrier).max(last);
             // Newton's method for this barrier weight.
             let mut squared_decrement = f64::INFINITY;
             for _ in 0..MAX_STEPS {
@@ -89,24 +108,24 @@ impl BodyProgram<'_> {
                 let next = self.advance(&x, &step, barrier, &inverse)?;
                 let stuck = next == x;
                 x = next;
-                if 0.5 * squared_decrement < CONVERGED || stuck {
+                if 0.5 * squared_decrement < CONVERGED * weak || stuck {
                     break;
                 }
             }
-            if barrier <= LAST_BARRIER {
+            if barrier <= last {
                 let solution = BodySolution { x, gap: barrier * inequalities as f64, steps };
                 return (squared_decrement < ACCEPTED).then_some(solution);
             }
         }
     }
 
-    /// Returns the start: the links of the prior, 1 for positive columns, and 0 for the others.
+    /// Returns the start: the prior, and 0 for columns that have none.
     fn start(&self) -> DVector<f64> {
         let mut x = DVector::zeros(self.data.r.ncols());
         for (i, p) in self.prior.iter().enumerate() {
             x.rows_mut(PER_LINK * i, PER_LINK).copy_from_slice(&link_parameters(p));
         }
-        self.positive.iter().for_each(|column| x[*column] = 1.0);
+        self.positive.iter().for_each(|column| x[column.index] = column.prior);
         x
     }
 
@@ -119,9 +138,12 @@ impl BodyProgram<'_> {
             let log_det = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
             value += self.strength * (prior * p).trace() - (self.strength + barrier) * log_det;
         }
-        let log =
-            |column: &usize| if x[*column] > 0.0 { x[*column].ln() } else { f64::NEG_INFINITY };
-        value - barrier * self.positive.iter().map(log).sum::<f64>()
+        let strength = POSITIVE_STRENGTH * self.strength;
+        let divergence = |column: &PositiveColumn| match x[column.index] {
+            own if own > 0.0 => strength * own / column.prior - (strength + barrier) * own.ln(),
+            _ => f64::INFINITY,
+        };
+        value + self.positive.iter().map(divergence).sum::<f64>()
     }
 
     /// Returns the Newton step of the objective with its barrier; `normal` is RᵀR.
@@ -151,10 +173,11 @@ impl BodyProgram<'_> {
                 }
             }
         }
-        // Barrier of the positive columns.
-        for &column in self.positive {
-            gradient[column] -= barrier / x[column];
-            hessian[(column, column)] += barrier / x[column].powi(2);
+        // Divergence and barrier of the positive columns.
+        let strength = POSITIVE_STRENGTH * self.strength;
+        for &PositiveColumn { index, prior } in self.positive {
+            gradient[index] += strength / prior - (strength + barrier) / x[index];
+            hessian[(index, index)] += (strength + barrier) / x[index].powi(2);
         }
         NewtonStep::new(&hessian, &gradient)
     }
@@ -229,10 +252,27 @@ mod tests {
     fn positive_parameters_stay_positive() {
         let target = [link_parameters(&ball()).as_slice(), &[-0.5, 0.7]].concat();
         let data = data_for(&target);
-        let point = BodyProgram { data: &data, prior: &[ball()], strength: 1e-6, positive: &[10] }
-            .solve()
-            .unwrap();
+        let positive = [PositiveColumn { index: 10, prior: 1.0 }];
+        let point =
+            BodyProgram { data: &data, prior: &[ball()], strength: 1e-6, positive: &positive }
+                .solve()
+                .unwrap();
         assert!(point.x[10] > 0.0 && point.x[10] < 1e-3 && (point.x[11] - 0.7).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_positive_parameter_that_the_data_do_not_bound_stays_near_its_prior() {
+        // Of the parameters 10 and 11, the data determine the sum alone.
+        let mut rows = vec![0.0; 13];
+        (rows[10], rows[11], rows[12]) = (100.0, 100.0, 500.0);
+        let data = TriangularFactor::from_rows(&rows, 12);
+        let positive = [PositiveColumn { index: 10, prior: 2.0 }];
+        let point =
+            BodyProgram { data: &data, prior: &[ball()], strength: 1.0, positive: &positive }
+                .solve()
+                .unwrap();
+        assert!((point.x[10] - 2.0).abs() < 0.3, "{}", point.x);
+        assert!((point.x[10] + point.x[11] - 5.0).abs() < 1e-6, "{}", point.x);
     }
 
     #[test]
@@ -244,6 +284,35 @@ mod tests {
         // At the minimum s P0⁻¹ = (s + barrier) P⁻¹, so that the last barrier scales the prior.
         let scaled = (1.0 + LAST_BARRIER) * ball();
         assert!((pseudo_inertia(point.x.as_slice()) - scaled).amax() < 1e-6);
+    }
+
+    #[test]
+    fn a_weak_prior_still_decides_what_the_data_leave_open() {
+        // The data determine the mass alone.
+        let mut rows = vec![0.0; 11];
+        (rows[0], rows[10]) = (100.0, 100.0 * ball()[(3, 3)]);
+        let data = TriangularFactor::from_rows(&rows, 10);
+        for strength in [1e-3, 1e-6, 1e-9] {
+            let program = BodyProgram { data: &data, prior: &[ball()], strength, positive: &[] };
+            let found = pseudo_inertia(program.solve().unwrap().x.as_slice());
+            assert!((found - ball()).amax() < 0.01 * ball().amax(), "{strength}: {found}");
+        }
+    }
+
+    /// A flat link lies on the boundary; exact data have the smallest deviation that a fit allows.
+    #[test]
+    fn a_flat_link_is_found_from_exact_data() {
+        let flat =
+            link_parameters(&Matrix4::from_diagonal(&nalgebra::Vector4::new(0.03, 0.01, 0.0, 4.0)));
+        for scale in [1e2, 1e6, 1e8] {
+            let mut data = data_for(&flat);
+            (data.r, data.z) = (data.r * (scale / 100.0), data.z * (scale / 100.0));
+            let program =
+                BodyProgram { data: &data, prior: &[ball()], strength: 1.0, positive: &[] };
+            let found = program.solve().unwrap_or_else(|| panic!("no link at {scale}"));
+            let off = found.x.iter().zip(&flat).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 0.1 / scale.sqrt(), "{scale}: {off}");
+        }
     }
 
     proptest! {

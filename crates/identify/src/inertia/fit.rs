@@ -135,7 +135,8 @@ impl InertiaFit {
                  for the nearest physical links, without which motion cannot be simulated"
             )
         });
-        let physical = self.physical.iter().flat_map(|physical| physical.growth_warnings(robot));
+        let physical =
+            self.physical.iter().flat_map(|physical| physical.growth_warnings(robot, &self.joints));
         impossible.chain(physical).collect()
     }
 

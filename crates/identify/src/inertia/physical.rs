@@ -1,11 +1,13 @@
-use crate::bodies::program::BodyProgram;
+use crate::bodies::program::{BodyProgram, PositiveColumn};
 use crate::error::{Error, Result};
-use crate::fit::Fit;
+use crate::fit::{Fit, JointFit};
 use crate::inertia::columns::inertia_part;
 use crate::inertia::prior::LinkPrior;
 use crate::regression::residuals::root_mean_square;
+use crate::regression::solution::Solution;
+use crate::regression::triangular_factor::TriangularFactor;
 use crate::samples::Samples;
-use crate::settings::ModelSettings;
+use crate::settings::{ModelSettings, Prior};
 use crate::variant::with_parameters;
 use nalgebra::DVector;
 use reachtube_robot::{FrictionDescription, Parameter, ParameterKind, Robot, RobotError};
@@ -13,6 +15,12 @@ use serde::Serialize;
 
 /// Limit of the rounds in which the size of the balls is adapted.
 const SIZE_ROUNDS: usize = 30;
+
+/// Least standard deviation of a joint's torque relative to its size that the program counts with.
+const SHARPEST: f64 = 1e-4;
+
+/// Prior of a positive parameter relative to the mean torque, if no joint determines one.
+const FIRST_SHARE: f64 = 0.1;
 
 /// Growth of a joint's residual by physical links beyond which a warning names the joint.
 const MAX_GROWTH: f64 = 1.3;
@@ -39,12 +47,16 @@ pub struct PhysicalFit {
 
 impl PhysicalFit {
     /// Returns a warning for each joint whose residual grows too much by the physical constraint
-    /// and its prior.
-    pub(crate) fn growth_warnings(&self, robot: &Robot) -> Vec<String> {
-        let joints = robot.joints().iter().zip(&self.residuals);
-        let grown = joints.filter(|(_, [plain, physical])| *physical > MAX_GROWTH * plain);
+    /// and its prior, in a fit of this quality.
+    ///
+    /// Residuals below [`SHARPEST`] of the torque count as that.
+    pub(crate) fn growth_warnings(&self, robot: &Robot, fits: &[JointFit]) -> Vec<String> {
+        let joints = robot.joints().iter().zip(&self.residuals).zip(fits);
+        let grown = joints.filter(|((_, [plain, physical]), fit)| {
+            *physical > MAX_GROWTH * plain.max(SHARPEST * fit.torque)
+        });
         grown
-            .map(|(joint, [plain, physical])| {
+            .map(|((joint, [plain, physical]), _)| {
                 format!(
                     "{}: physical links raise the residual from {plain:.4} to {physical:.4} {}; \
                      give masses in the description, lower model.prior_strength, or set parameters \
@@ -72,10 +84,11 @@ pub fn nearest_bodies(
     moving: &Samples,
     model: &ModelSettings,
 ) -> Result<(DVector<f64>, PhysicalFit)> {
-    let positive = positive_columns(known, columns);
+    let data = &no_sharper(&fit.whitened, &fit.joints[0]);
+    let positive = positive_columns([robot, known], columns, fit, model.prior);
     let solve = |prior: &LinkPrior| {
         let (prior, strength) = (prior.inertias(), model.prior_strength);
-        BodyProgram { data: &fit.whitened, prior: &prior, strength, positive: &positive }
+        BodyProgram { data, prior: &prior, strength, positive: &positive }
             .solve()
             .ok_or(Error::NoPhysicalLinks)
     };
@@ -101,19 +114,53 @@ pub fn nearest_bodies(
     Ok((solution.x, physical))
 }
 
-/// Returns the indices of columns that must be positive: motor inertias, and friction that only
-/// this fit determines, because it must dissipate.
+/// Returns the data with errors of at least [`SHARPEST`] of the torque.
 ///
-/// A correction of known friction may have either sign.
-fn positive_columns(known: &Robot, columns: &[Parameter]) -> Vec<usize> {
+/// Exact data of a link on the boundary of the physical ones, such as a flat plate, would leave no
+/// room inside for the program, beyond the rounding of the data.
+fn no_sharper(data: &TriangularFactor, joints: &[JointFit]) -> TriangularFactor {
+    let sharpness = |joint: &JointFit| joint.deviation / (SHARPEST * joint.torque);
+    let sharpest = joints.iter().filter(|joint| joint.rows > 0).map(sharpness);
+    let scale = sharpest.fold(1.0, f64::min).max(f64::EPSILON);
+    TriangularFactor { r: scale * &data.r, z: scale * &data.z, residual: scale * data.residual }
+}
+
+/// Returns the columns that must be positive, with their priors: motor inertias, and friction that
+/// only this fit determines, because it must dissipate.
+///
+/// A correction of known friction may have either sign. The prior is the value of the description,
+/// or else the mean over the joints with a determined value of the same kind. Where there is none
+/// it is a tenth of the mean torque, per 1 rad/s or 1 rad/s².
+fn positive_columns(
+    [robot, known]: [&Robot; 2],
+    columns: &[Parameter],
+    fit: &Fit,
+    prior: Prior,
+) -> Vec<PositiveColumn> {
     let frictionless =
         |joint: usize| known.description().joints[joint].friction == FrictionDescription::default();
-    let positive = |column: &Parameter| match column.kind {
+    let is_positive = |column: &Parameter| match column.kind {
         ParameterKind::MotorInertia => true,
         ParameterKind::Coulomb | ParameterKind::Viscous1 => frictionless(column.joint),
         _ => false,
     };
-    (0..columns.len()).filter(|c| positive(&columns[*c])).collect()
+    let described = robot.parameter_values(columns);
+    let Solution { x, undetermined, .. } = &fit.solution;
+    let of_kind = |kind: ParameterKind| {
+        let usable = |c: &usize| columns[*c].kind == kind && x[*c] > 0.0;
+        let values = (0..columns.len()).filter(|c| usable(c) && !undetermined.contains(c));
+        let values: Vec<f64> = values.map(|c| x[c]).collect();
+        let torques = fit.joints[0].iter().map(|joint| joint.torque).collect();
+        let [own, torque] = [values, torques].map(|v| v.iter().sum::<f64>() / v.len() as f64);
+        if own.is_finite() { own } else { FIRST_SHARE * torque }
+    };
+    let column = |index: usize| {
+        let given = (prior == Prior::Description).then_some(described[index]);
+        let given = given.filter(|given| *given > 0.0);
+        let prior = given.unwrap_or_else(|| of_kind(columns[index].kind));
+        PositiveColumn { index, prior: prior.max(f64::MIN_POSITIVE) }
+    };
+    (0..columns.len()).filter(|c| is_positive(&columns[*c])).map(column).collect()
 }
 
 /// Returns the root mean square of each joint's residuals \[N m\].

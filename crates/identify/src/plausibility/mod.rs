@@ -3,8 +3,10 @@
 
 mod fault;
 pub(crate) mod gain;
+pub(crate) mod offset;
 mod search;
 pub(crate) mod validation;
 pub(crate) mod warnings;
 
 pub use gain::Gain;
+pub use offset::PositionOffset;

@@ -90,7 +90,7 @@ fn candidates(n: usize) -> Vec<Fault> {
 }
 
 /// Returns the parameters whose columns of the regressor are independent.
-fn independent_columns(robot: &Robot, columns: &[Parameter]) -> Vec<Parameter> {
+pub(super) fn independent_columns(robot: &Robot, columns: &[Parameter]) -> Vec<Parameter> {
     let base = BaseParameters::of_robot(robot, columns);
     base.independent().iter().map(|k| columns[*k]).collect()
 }

@@ -1,9 +1,10 @@
+use crate::fit::Fit;
 use crate::inertia::fit::InertiaFit;
 use crate::plausibility::fault::{Columns, Fault};
-use crate::plausibility::gain::{Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
+use crate::plausibility::gain::{self, Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
 use crate::plausibility::search::find_fault;
 use crate::prepare::log::Log;
-use crate::samples::{Samples, Sampling};
+use crate::samples::{KnownTorque, Samples, Sampling};
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
@@ -26,14 +27,23 @@ pub struct Checked<'a> {
     pub samples: &'a Samples,
     /// The rules by which the samples were taken.
     pub sampling: &'a Sampling,
+    /// The torque that was known before the fit.
+    pub known: &'a KnownTorque<'a>,
 }
 
 impl Checked<'_> {
     /// Returns warnings about implausible results: faults of the columns, friction that does not
     /// dissipate, wrong gains, and unexplained torque.
     ///
-    /// A fault of the columns makes all gains meaningless, so that it replaces their warnings.
-    pub fn warnings(&self, likelihood: &GainLikelihood, gains: &[Gain]) -> Vec<String> {
+    /// A fault of the columns makes all gains meaningless, so that it replaces their warnings. A
+    /// wrong gain may look like an `offset`, the recordings without it and the warning about it:
+    /// it is one if the gains agree without it.
+    pub fn warnings(
+        &self,
+        likelihood: &GainLikelihood,
+        gains: &[Gain],
+        offset: impl FnOnce() -> Option<(Vec<Log>, String)>,
+    ) -> Vec<String> {
         let driving: Vec<String> = self.driving_friction().collect();
         let gains: Vec<String> = gains.iter().filter_map(wrong_gain).collect();
         let unexplained: Vec<String> = self.unexplained_torque().collect();
@@ -44,9 +54,22 @@ impl Checked<'_> {
         };
         let fault = find_fault(self.robot, self.logs, self.samples, self.sampling)
             .map(|found| found.fault.warning(self.robot, found.clearest))
-            .or_else(inverted);
+            .or_else(inverted)
+            .or_else(|| {
+                let (logs, warning) = offset()?;
+                (gains.is_empty() || self.gains_agree(&logs)).then_some(warning)
+            });
         let gains = if fault.is_some() { Vec::new() } else { gains };
         fault.into_iter().chain(driving).chain(gains).chain(unexplained).collect()
+    }
+
+    /// Returns whether other recordings of the same motions have plausible gains.
+    fn gains_agree(&self, logs: &[Log]) -> bool {
+        let columns = &self.fit.columns;
+        let samples = Samples::in_motion(self.robot, columns, logs, self.sampling, self.known);
+        let joints = &Fit::of_groups(&[&samples], false).joints[0];
+        let likelihood = GainLikelihood::new(&samples, joints);
+        gain::gains(self.robot, &samples, &likelihood).iter().all(|gain| wrong_gain(gain).is_none())
     }
 
     fn name(&self, joint: usize) -> &str {

@@ -2,6 +2,7 @@
 
 use crate::lab::{Lab, geometry, lwa4p, simple_friction};
 use crate::virtual_robot::edit;
+use reachtube_identify::Identification;
 
 const JOINTS: usize = 6;
 
@@ -14,16 +15,25 @@ fn tau(joint: usize) -> usize {
 ///
 /// The torque has a noise of 0.03 N m.
 fn warnings(change: impl Fn(&mut Vec<Vec<f64>>)) -> Vec<String> {
+    identified(0.03, 1..=3, change).warnings
+}
+
+/// Identifies the arm from exciting motions with noise \[N m\]; `change` falsifies the rows of some.
+fn identified(
+    noise: f64,
+    false_ones: std::ops::RangeInclusive<usize>,
+    change: impl Fn(&mut Vec<Vec<f64>>),
+) -> Identification {
     let truth = simple_friction(&lwa4p());
     let lab = Lab::new();
-    lab.excite(&truth, 0.03, &[1.0; JOINTS]);
-    for seed in 1..=3 {
+    lab.excite(&truth, noise, &[1.0; JOINTS]);
+    for seed in false_ones {
         edit(&lab.path().join(format!("dynamic_{seed}.csv")), &change);
     }
     let mut settings = lab.settings();
     settings.model.physical = Some(false);
     settings.model.windows = vec![];
-    lab.identify(&geometry(&truth), &settings).warnings
+    lab.identify(&geometry(&truth), &settings)
 }
 
 /// Asserts that the first warning has all `parts`, and that no warning is about a gain.
@@ -49,6 +59,39 @@ fn swapped_joints_are_named() {
 fn an_offset_of_a_position_is_named_with_its_size() {
     let found = warnings(|rows| rows.iter_mut().for_each(|row| row[3] += 0.1));
     assert_named(&found, &["position of joint3", "offset of 0.1", "correct the zero of q3"]);
+}
+
+/// The residuals hardly change by such an offset, so that only its own estimate shows it.
+#[test]
+fn an_offset_under_noise_is_named_with_its_standard_error() {
+    let found = identified(0.3, 1..=3, |rows| rows.iter_mut().for_each(|row| row[3] += 0.1));
+    assert_named(&found.warnings, &["position of joint3", "offset of 0.", "± 0.0", "zero of q3"]);
+    let joint3 = &found.offsets[2];
+    let off = joint3.offset.unwrap() - 0.1;
+    assert!(off.abs() < 3.0 * joint3.standard_error.unwrap(), "{:?}", found.offsets);
+    // Nobody sees the zero of a vertical axis, nor that of a joint whose link has free parameters.
+    assert!(found.offsets[0].offset.is_none() && found.offsets[5].offset.is_none());
+}
+
+#[test]
+fn an_offset_of_one_recording_is_named_with_the_recording() {
+    let found = identified(0.1, 2..=2, |rows| rows.iter_mut().for_each(|row| row[3] += 0.1));
+    let parts = ["position of joint3", "offset of 0.", "dynamic_2", "leave the recording out"];
+    assert_named(&found.warnings, &parts);
+}
+
+#[test]
+fn healthy_recordings_have_offsets_within_their_errors() {
+    let found = identified(0.3, 1..=3, |_| ());
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    for joint in &found.offsets {
+        let Some(offset) = joint.offset else { continue };
+        assert!(offset.abs() < 4.0 * joint.standard_error.unwrap(), "{:?}", found.offsets);
+        assert!(joint.limit.unwrap() > offset.abs());
+    }
+    // The data show where an offset of 0.1 rad would be found.
+    let limits: Vec<Option<f64>> = found.offsets.iter().map(|joint| joint.limit).collect();
+    assert!(limits[2].unwrap() < 0.1 && limits[4].unwrap() > 0.1, "{limits:?}");
 }
 
 #[test]

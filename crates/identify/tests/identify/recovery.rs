@@ -1,7 +1,7 @@
 //! Identification recovers the robot of simulated recordings, with the errors that theory predicts.
 
 use crate::lab::{Lab, geometry, lwa4p, simple_friction};
-use crate::virtual_robot::{Random, Recorder, slow};
+use crate::virtual_robot::{Random, Recorder, excitation, slow};
 use reachtube_identify::friction::CoulombForm;
 use reachtube_identify::{Identification, IdentifySettings, identify};
 use reachtube_robot::{BaseParameters, Robot};
@@ -170,6 +170,34 @@ fn a_wrong_sign_and_a_wrong_gain_give_warnings() {
         "{:?}",
         found.warnings
     );
+}
+
+/// A joint that moves one way only does not tell dry friction from an offset.
+#[test]
+fn friction_that_the_recordings_do_not_bound_stays_small() {
+    let truth = simple_friction(&lwa4p());
+    let lab = Lab::new();
+    let mut recorder =
+        Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random::new(5) };
+    let forward = |motion: &dyn Fn(f64) -> [Vec<f64>; 3], t: f64| {
+        let [mut q, mut qd, qdd] = motion(t);
+        // Joint 3 swings about a steady motion that is faster than its swings.
+        q[2] += 2.5 * t;
+        qd[2] += 2.5;
+        [q, qd, qdd]
+    };
+    let motion = excitation(6, 1);
+    recorder.record(&lab.path().join("one_way.csv"), 24.0, |t| forward(&motion, t));
+    let mut settings = lab.settings();
+    settings.dynamic = vec![PathBuf::from("one_way.csv").into()];
+    settings.validate = vec![];
+    settings.model.windows = vec![];
+    settings.model.physical = Some(true);
+    let found = lab.identify(&geometry(&truth), &settings);
+    let warned = |w: &String| w.contains("the prior decides") && w.contains("fc3; o3");
+    assert!(found.warnings.iter().any(warned), "{:?}", found.warnings);
+    let friction = &found.description.joints[2].friction;
+    assert!(friction.coulomb.iter().all(|value| value.abs() < 20.0), "{friction:?}");
 }
 
 #[test]

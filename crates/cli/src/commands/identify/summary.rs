@@ -2,7 +2,7 @@
 
 use reachtube::identify::{
     BaseParameter, Identification, InertiaFit, JointError, JointFit, JointFriction, LogValidation,
-    PhysicalFit, WindowErrors,
+    PhysicalFit, PositionOffset, WindowErrors,
 };
 
 use reachtube::identify::friction::FrictionFit;
@@ -25,6 +25,7 @@ pub fn summary(found: &Identification) -> String {
         inertia(found),
         laws(found),
         gains(found),
+        offsets(found),
         validation(found),
         windows(found),
     ]
@@ -217,6 +218,29 @@ fn gains(found: &Identification) -> String {
     format!(
         "torque gains for which the joints agree best (± standard error): {}\n",
         gains.join(", ")
+    )
+}
+
+/// Returns the offsets of the positions, and the size from which on one would be reported.
+fn offsets(found: &Identification) -> String {
+    if found.offsets.is_empty() {
+        return String::new();
+    }
+    let unit = ColumnUnit::new(&found.description.kinds(), JointKind::position_unit);
+    let list = |cell: &dyn Fn(&PositionOffset) -> Option<String>| {
+        let cell = |(j, joint)| cell(joint).map_or("-".into(), |value| unit.cell(j, value));
+        found.offsets.iter().enumerate().map(cell).collect::<Vec<_>>().join(", ")
+    };
+    let own = |joint: &PositionOffset| {
+        Some(format!("{:.4} ± {:.4}", joint.offset?, joint.standard_error?))
+    };
+    let limit = |joint: &PositionOffset| Some(format!("{:.3}", joint.limit?));
+    format!(
+        "{} that explain the torque best, each alone (± standard error): {}\nsmaller offsets cannot \
+         be told from errors of the model: {}\n",
+        unit.head("offsets of the positions"),
+        list(&own),
+        list(&limit)
     )
 }
 

@@ -2,7 +2,7 @@
 //! with the same torques.
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
-use reachtube_identify::bodies::{BodyProgram, PER_LINK, pseudo_inertia};
+use reachtube_identify::bodies::{BodyProgram, PER_LINK, PositiveColumn, pseudo_inertia};
 use reachtube_identify::regression::TriangularFactor;
 use reachtube_robot::{LinkInertia, Parameter, ParameterKind, Placement, Regressor, Robot};
 
@@ -24,6 +24,9 @@ const EQUAL: f64 = 1e-9;
 
 /// Second moments \[kg m²\] and mass \[kg\] of a body, for what the torques do not tell.
 const PRIOR: Vector4<f64> = Vector4::new(0.01, 0.01, 0.01, 1.0);
+
+/// Motor inertia \[kg m²; kg\], for what the torques do not tell.
+const MOTOR_PRIOR: f64 = 1.0;
 
 /// A body and the joint that moves it. Its frame is the joint's, moved by q.
 #[derive(Debug, Clone)]
@@ -90,7 +93,8 @@ fn with_the_same_torques(robot: &Robot) -> Option<Vec<f64>> {
     rows *= WEIGHT;
     let data = TriangularFactor::from_rows(rows.transpose().as_slice(), columns);
     let prior = vec![Matrix4::from_diagonal(&PRIOR); n];
-    let motors: Vec<usize> = (PER_LINK * n..columns).collect();
+    let motor = |index: usize| PositiveColumn { index, prior: MOTOR_PRIOR };
+    let motors: Vec<PositiveColumn> = (PER_LINK * n..columns).map(motor).collect();
     let program = BodyProgram { data: &data, prior: &prior, strength: 1.0, positive: &motors };
     let near = program.solve()?.x;
     // The nearest parameters with exactly these torques.
@@ -99,7 +103,7 @@ fn with_the_same_torques(robot: &Robot) -> Option<Vec<f64>> {
     let least = RANK * decomposed.singular_values.max();
     let x = near + decomposed.solve(&misfit, least).ok()?;
     let exist = first_impossible(&x.as_slice()[..PER_LINK * n]).is_none();
-    let driven = motors.iter().all(|&motor| x[motor] >= 0.0);
+    let driven = motors.iter().all(|motor| x[motor.index] >= 0.0);
     let equal = (torques * &x - wanted).amax() < EQUAL;
     (exist && driven && equal).then(|| x.as_slice().to_vec())
 }
