@@ -146,6 +146,10 @@ def _write_summaries(part: _Part, rows: list[dict[str, Any]]) -> None:
     write(name, buffer.getvalue(), part.storage)
 
 
+def _same(job: _Job) -> _Job:
+    return job
+
+
 def _merge(job: _Job, parts: list[bytes]) -> bytes:
     return _fleet(job).merge(parts)
 
@@ -198,21 +202,20 @@ def _on_dask(job: _Job, parts: list[_Part], client: Any, count: Any) -> bytes:
     """Fold the parts on workers, and merge them as a tree."""
     from distributed import as_completed
 
-    shared = client.scatter(job, broadcast=True, hash=False)
-    # Workers that end are replaced, and what they held is folded again.
+    # A task, so that it is done again where the worker that holds its result ends. Scattered data
+    # would be lost with its workers.
+    shared = client.submit(_same, job, pure=False, retries=3)
     folds = [client.submit(_fold, shared, part, pure=False, retries=3) for part in parts]
-    every = list(folds)
     level = folds
     while len(level) > 1:
         groups = [level[first : first + GROUP] for first in range(0, len(level), GROUP)]
         level = [client.submit(_merge, shared, group, pure=False, retries=3) for group in groups]
-        every += level
-    # A fold is let go of when it is merged.
     [last] = level
     done = 0
     try:
+        # Nothing here keeps a fold, so that a worker lets go of it when it is merged.
         waiting: Any = as_completed(folds)  # type: ignore[no-untyped-call]
-        del folds, every[:-1]
+        del folds, level
         for _ in waiting:
             done += 1
             count(done)

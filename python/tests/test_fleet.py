@@ -137,6 +137,28 @@ def test_a_worker_that_is_killed_changes_nothing(
     assert killed.wait(5) and found == alone
 
 
+def test_the_only_worker_is_killed_and_replaced(manifest: Path, alone: rt.Model) -> None:
+    killed: list[int] = []
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=None, processes=True
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+
+        def kill(done: int, total: int, words: list[str]) -> None:
+            # Everything that the job has so far is with this worker.
+            if done == 5 and not killed:
+                killed.extend(client.run(os.getpid).values())
+                os.kill(killed[0], signal.SIGKILL)
+
+        found = fleet.conform(
+            rt.Robot.lwa4p(), manifest, torque="compensated", client=client, runs_per_task=1,
+            progress=kill,
+        )
+    assert killed and found == alone
+
+
 def test_defects_are_named_or_left_out(manifest: Path, tmp_path: Path, client: Any) -> None:
     rows = [row._replace(file=str(manifest.parent / row.file))
             for row in fleet.read_manifest(manifest)]
