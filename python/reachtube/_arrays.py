@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Sequence
 from typing import Any
 
@@ -60,12 +61,24 @@ def batch(n: int, **arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Arr
     ]
 
 
-def vector(name: str, values: npt.ArrayLike, size: int) -> list[float]:
-    """Return one number for each of `size` entries."""
-    array = numbers(name, values)
-    if array.shape != (size,):
-        raise SettingError(f"{name} has the shape {array.shape}, but ({size},) is needed")
-    return [float(value) for value in array]
+def whole(name: str, value: int, least: int = 0, most: int = 2**63 - 1) -> int:
+    """Return a whole number between two bounds."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        kind = type(value).__name__
+        raise SettingError(f"{name} is {value!r} of type {kind}; give a whole number") from None
+    if not least <= number <= most:
+        raise SettingError(f"{name} is {number}; give {least} to {most}")
+    return number
+
+
+def real(name: str, value: float) -> float:
+    """Return one real number."""
+    array = numbers(name, value)
+    if array.ndim > 0:
+        raise SettingError(f"{name} has the shape {array.shape}; give one number")
+    return float(array)
 
 
 def frozen(array: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -10,9 +11,16 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers
+from ._arrays import Array, frozen, numbers, whole
 from ._polynomial import Number, Polynomial, variable_name
 from .errors import SettingError
+
+
+#: Largest number of variables whose vertices are tried, all 2^v, and of pieces.
+MOST_VERTEX_VARIABLES, MOST_PIECES = 24, 1_000_000
+
+#: Exponents are bytes, and so is the order of Taylor models.
+MOST_EXPONENT = 255
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -106,6 +114,12 @@ def _terms(
     def exponents(monomial: Any) -> list[int]:
         powers = [0] * len(order)
         for factor, exponent in monomial:
+            if exponent > MOST_EXPONENT:
+                name = f"{factor[0]}" if factor[1] == "x" else f"{factor[1]} {factor[0]}"
+                raise SettingError(
+                    f"{name}^{exponent}: exponents are {MOST_EXPONENT} at most; substitute a "
+                    "variable for a power"
+                )
             powers[place[factor]] = exponent
         return powers
 
@@ -215,7 +229,17 @@ def flowpipe(
         for name in sets
     ]
     rows = np.array(columns, dtype=np.float64).T.reshape(len(times), len(sets))
+    if method not in ("linearisation", "taylor"):
+        raise SettingError(f"method is {method!r}; give 'linearisation' or 'taylor'")
     parts = _names(pieces or {})
+    if unknown := sorted(set(parts) - set(named)):
+        raise SettingError(f"pieces: {', '.join(unknown)} is no state ({', '.join(named)})")
+    cut = [whole(f"pieces of {name}", parts.get(name, 1), 1) for name in named] if parts else []
+    if math.prod(cut) > MOST_PIECES:
+        raise SettingError(f"pieces makes {math.prod(cut)} pieces; give {MOST_PIECES} at most")
+    vertices = vertex_variables
+    if vertices is not None:
+        vertices = whole("vertex_variables", vertices, 0, MOST_VERTEX_VARIABLES)
     samples, steps, ended = _reachtube.flowpipe(
         len(sets),
         angles,
@@ -226,10 +250,10 @@ def flowpipe(
         np.ascontiguousarray(rows),
         input_centre,
         input_radius,
-        taylor_order if method == "taylor" else None,
-        vertex_variables,
-        order,
-        [int(parts.get(name, 1)) for name in named] if parts else [],
+        whole("taylor_order", taylor_order, 1, MOST_EXPONENT) if method == "taylor" else None,
+        vertices,
+        None if order is None else whole("order", order, 1),
+        cut,
     )
     lower, upper = (frozen(values) for values in samples)
     step_lower, step_upper = (frozen(values) for values in steps)

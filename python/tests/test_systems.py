@@ -116,6 +116,77 @@ def test_an_exciting_motion_stays_within_limits(robot: rt.Robot) -> None:
     assert (np.abs(found.qd).max(axis=0) > 0.1 * limits).any()
 
 
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"period": 1e300}, "period of 1e\\+300 s at a rate of 100.0 .*10000000 at most"),
+        ({"period": 0.0}, "period is 0.0; give a finite number above 0"),
+        ({"period": "long"}, "period has the type"),
+        ({"rate": float("inf")}, "rate is inf"),
+        ({"rate": -1.0}, "rate is -1.0"),
+        ({"rate": [1.0, 2.0]}, "rate has the shape"),
+        ({"harmonics": 1001}, "harmonics is 1001; give 1 to 1000"),
+        ({"harmonics": -1}, "harmonics is -1"),
+        ({"harmonics": 2.5}, "harmonics is 2.5 of type float"),
+        ({"seed": -1}, "seed is -1"),
+        ({"starts": 2**64}, "starts is 18446744073709551616"),
+        ({"margin": 1.5}, "margin = 1.5"),
+        ({"criterion": "trace"}, "criterion is 'trace'"),
+    ],
+)
+def test_wrong_settings_of_a_motion_are_named(
+    robot: rt.Robot, setting: dict[str, object], words: str
+) -> None:
+    with pytest.raises(rt.SettingError, match=words):
+        rt.excite(robot, **{"trials": 2, "starts": 1, **setting})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"order": -1}, "order is -1; give 1 to 255"),
+        ({"order": 2**40}, "order is 1099511627776"),
+        ({"order": 1.5}, "order is 1.5 of type float"),
+        ({"model": 4}, "model is 4; give 1 to 3"),
+        ({"most_boxes": -1, "box": [0.1, 0.1, 1.0]}, "most_boxes is -1"),
+    ],
+)
+def test_wrong_settings_of_an_abstraction_are_named(
+    robot: rt.Robot, setting: dict[str, object], words: str
+) -> None:
+    with pytest.raises(rt.SettingError, match=words):
+        rt.abstract(robot, **setting)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"pieces": {"x": 0}}, "pieces of x is 0"),
+        ({"pieces": {"x": 10**7}}, "10000000 pieces"),
+        ({"pieces": {"z": 2}}, "pieces: z is no state"),
+        ({"method": "taylor", "taylor_order": -1}, "taylor_order is -1"),
+        ({"method": "taylor", "taylor_order": 256}, "taylor_order is 256; give 1 to 255"),
+        ({"method": "tayler"}, "method is 'tayler'"),
+        ({"order": -2}, "order is -2"),
+        ({"vertex_variables": 25}, "vertex_variables is 25; give 0 to 24"),
+    ],
+)
+def test_wrong_settings_of_a_flowpipe_are_named(
+    setting: dict[str, object], words: str
+) -> None:
+    x, y = rt.variables("x y")
+    with pytest.raises(rt.SettingError, match=words):
+        rt.flowpipe({x: y, y: -x}, {x: 1.0, y: 0.0}, [0.0, 0.1], **setting)  # type: ignore[arg-type]
+
+
+def test_exponents_that_do_not_fit_are_named() -> None:
+    x, y = rt.variables("x y")
+    with pytest.raises(rt.SettingError, match=r"x\^256: exponents are 255 at most"):
+        rt.flowpipe({x: -(x**256)}, {x: 0.5}, [0.0, 0.1])
+    with pytest.raises(rt.SettingError, match="400"):
+        rt.flowpipe({x: -(x**200 * y**200), y: 0.0}, {x: 0.5, y: 0.5}, [0.0, 0.1])
+
+
 def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path: Path) -> None:
     found = rt.excite(robot, period=10.0, trials=100, starts=1, rate=250.0)
     t = np.concatenate([found.t, found.t[-1] + found.t[1:]])
