@@ -58,7 +58,7 @@ def conform(
     robot
         A robot, or an abstraction of one made by `abstract`.
     data
-        The recordings.
+        The recordings: a data set, runs, or the path of a folder as for `Recordings.open`.
     torque
         What the recorded torques are: ``"compensated"`` (the model's input: gravity and Coulomb
         friction are already subtracted), ``"motor"`` (motor torque at the output side of the

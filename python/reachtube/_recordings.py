@@ -230,10 +230,20 @@ class Recordings:
     __slots__ = ("_folder", "_index", "_native")
 
     def __init__(self, runs: Iterable[Run]) -> None:
-        named = [
-            (run._native, run.name or f"run {k}", run.suite, run.motion, run.order, None)
-            for k, run in enumerate(runs, 1)
-        ]
+        if isinstance(runs, (str, bytes, PathLike)):
+            raise SettingError(
+                f"{runs!r} is a path, not runs; Recordings.open({runs!r}) opens a folder"
+            )
+        named = []
+        for k, run in enumerate(_iterated(runs), 1):
+            if not isinstance(run, Run):
+                kind = type(run).__name__
+                raise SettingError(
+                    f"item {k} of the recordings is of type {kind}; give runs: "
+                    "Run(t, q, qd, tau, suite=...)"
+                )
+            name = run.name or f"run {k}"
+            named.append((run._native, name, run.suite, run.motion, run.order, None))
         self._set(_reachtube.Source.of_runs(named), None)
 
     @classmethod
@@ -283,9 +293,19 @@ class Recordings:
         return Recordings, (list(self),)
 
 
-def source(data: Recordings | Run | Iterable[Run]) -> _reachtube.Source:
+def _iterated(runs: object) -> Iterable[object]:
+    if not isinstance(runs, Iterable):
+        raise SettingError(
+            f"recordings are of type {type(runs).__name__}; give Recordings, runs or the path of "
+            "a folder"
+        )
+    return runs
+
+
+def source(data: Recordings | Run | Iterable[Run] | str | PathLike[str]) -> _reachtube.Source:
     """Return the native source of what a user gives as recordings."""
+    if isinstance(data, (str, PathLike)):
+        return Recordings.open(data)._native
     if isinstance(data, Recordings):
         return data._native
-    runs = [data] if isinstance(data, Run) else list(data)
-    return Recordings(runs)._native
+    return Recordings([data] if isinstance(data, Run) else data)._native

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, batch
 from ._files import write_new
+from .errors import SettingError
 
 
 class Robot:
@@ -85,9 +86,16 @@ class Robot:
 
         Raises
         ------
+        SettingError
+            For a file whose name does not end with ``.urdf``.
         ReachtubeError
             With file, line, element and remedy.
         """
+        if not fspath(path).lower().endswith((".urdf", ".xacro")):
+            raise SettingError(
+                f"{fspath(path)}: the name of a URDF ends with .urdf; Robot.load reads robot files "
+                "in TOML and embedded robots"
+            )
         locks = [f"{joint}={position!r}" for joint, position in (lock or {}).items()]
         return cls(_reachtube.Robot.load(fspath(path), base, tip, locks))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
+from os import PathLike
 from typing import Any, Literal, TypeAlias
 
 import numpy.typing as npt
@@ -17,7 +18,9 @@ from .errors import SettingError
 Torque: TypeAlias = Literal["compensated", "motor", "link"]
 Notion: TypeAlias = Literal["hull", "phase-plane", "exact", "trace"]
 Group: TypeAlias = Literal["inertia", "viscous", "cubic", "coulomb", "warm-up", "payload"]
-Data: TypeAlias = "Recordings | Run | Iterable[Run]"
+
+#: Recordings: a data set, runs, or the path of a folder with its index.
+Data: TypeAlias = "Recordings | Run | Iterable[Run] | str | PathLike[str]"
 
 
 def _radii(name: str, values: npt.ArrayLike, joints: int) -> list[float]:

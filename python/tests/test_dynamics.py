@@ -86,3 +86,6 @@ def test_a_missing_or_wrong_robot_file_is_an_error_that_names_it() -> None:
         rt.Robot.from_toml("nonsense", "mine")
     with pytest.raises(rt.SettingError, match="base and a tip"):
         rt.Robot(rt._reachtube.Robot.load("lwa4p", "base"))
+    for path in ("arm.toml", "lwa4p"):
+        with pytest.raises(rt.SettingError, match=r"ends with \.urdf; Robot\.load"):
+            rt.Robot.from_urdf(path)
