@@ -10,6 +10,7 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, frozen, numbers, real, whole
 from ._robot import Robot
+from ._values import Values
 from .errors import SettingError
 
 #: Largest number of samples of a motion, and of harmonics of a joint.
@@ -17,7 +18,7 @@ MOST_SAMPLES, MOST_HARMONICS = 10_000_000, 1000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Excitation:
+class Excitation(Values):
     """A periodic motion that excites a robot's parameters, within its joint limits.
 
     Attributes

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, frozen, numbers, whole
 from ._polynomial import Number, Polynomial, variable_name
+from ._values import Values
 from .errors import SettingError
 
 
@@ -24,7 +25,7 @@ MOST_EXPONENT = 255
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Flowpipe:
+class Flowpipe(Values):
     """The reachable set of a polynomial system: a box at each sample and over each step.
 
     Outer, with directed rounding: every solution from a state in the initial set, under any input
@@ -58,10 +59,6 @@ class Flowpipe:
         """Whether the flowpipe reached the last sample."""
         return self.ended is None
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return everything as a new dictionary."""
-        return dict(vars(self))
-
     def to_pandas(self) -> Any:
         """Return one row for each sample: t, then lower and upper bound of each state."""
         import pandas
@@ -71,17 +68,6 @@ class Flowpipe:
             columns[f"{name}_lower"] = self.lower[:, i]
             columns[f"{name}_upper"] = self.upper[:, i]
         return pandas.DataFrame(columns)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Flowpipe):
-            return NotImplemented
-        return all(
-            np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
-            for a, b in zip(vars(self).values(), vars(other).values(), strict=True)
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.states, self.lower.tobytes(), self.upper.tobytes()))
 
     def __repr__(self) -> str:
         end = "" if self.ended is None else f", ended at {self.ended[0]:g} s"
@@ -255,15 +241,10 @@ def flowpipe(
         None if order is None else whole("order", order, 1),
         cut,
     )
-    lower, upper = (frozen(values) for values in samples)
-    step_lower, step_upper = (frozen(values) for values in steps)
-    states = tuple(named)
+    states, count = tuple(named), len(samples[0])
     return Flowpipe(
         states,
-        frozen(times[: len(lower)] - times[0]),
-        lower,
-        upper,
-        step_lower,
-        step_upper,
+        frozen(times[:count] - times[0]),
+        *map(frozen, (*samples, *steps)),
         None if ended is None else (ended[0], states[ended[1]]),
     )

@@ -19,10 +19,11 @@ from ._model import Model
 from ._progress import Progress, shown
 from ._recordings import source
 from ._settings import Data, differing
+from ._values import Values
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ReachableSet:
+class ReachableSet(Values):
     """The reachable set along a suite, or along one run with a nominal motion of its own.
 
     Outer: at each sample and over each step between samples, the bounds enclose every state that
@@ -64,10 +65,6 @@ class ReachableSet:
         """
         return (self.lower <= states) & (states <= self.upper)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return everything as a new dictionary."""
-        return dict(vars(self))
-
     def to_pandas(self) -> Any:
         """Return one row for each sample: t, then lower, nominal and upper of each state."""
         import pandas
@@ -79,17 +76,6 @@ class ReachableSet:
             parts = {"lower": self.lower, "nominal": self.nominal, "upper": self.upper}
             columns.update({f"{state}_{kind}": part[:, i] for kind, part in parts.items()})
         return pandas.DataFrame(columns)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, ReachableSet):
-            return NotImplemented
-        return all(
-            np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
-            for a, b in zip(vars(self).values(), vars(other).values(), strict=True)
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.suite, self.run, self.lower.tobytes(), self.upper.tobytes()))
 
     def __repr__(self) -> str:
         name = self.suite if self.run is None else f"{self.suite}, {self.run}"
@@ -126,12 +112,7 @@ def reach(
         ReachableSet(
             suite,
             run,
-            frozen(t),
-            frozen(samples[0]),
-            frozen(samples[1]),
-            frozen(samples[2]),
-            frozen(steps[0]),
-            frozen(steps[1]),
+            *map(frozen, (t, *samples, *steps)),
             None if lost is None else json.loads(lost),
         )
         for suite, run, t, samples, steps, lost in found

@@ -11,7 +11,6 @@ __all__ = [
     "Abstraction",
     "Fleet",
     "Fold",
-    "Identification",
     "Robot",
     "Run",
     "Source",
@@ -128,13 +127,6 @@ class Abstraction:
     def states(self, q: _Array, qd: _Array) -> _Array: ...
     def rate(self, x: _Array, u: _Array) -> _Array: ...
 
-@final
-class Identification:
-    def robot(self) -> Robot: ...
-    def robot_toml(self) -> str: ...
-    def summary(self) -> str: ...
-    def page(self) -> str: ...
-
 def conform(
     robot: Robot | None,
     abstraction: Abstraction | None,
@@ -171,7 +163,7 @@ def identify(
     given: str,
     folder: str,
     progress: _Progress = None,
-) -> Identification: ...
+) -> tuple[str, str, str]: ...
 def excite(
     robot: Robot,
     period: float,

@@ -30,7 +30,7 @@ mod _reachtube {
     #[pymodule_export]
     use crate::flowpipe::flowpipe;
     #[pymodule_export]
-    use crate::identification::{NativeIdentification, identify};
+    use crate::identification::identify;
     #[pymodule_export]
     use crate::logs::read_log;
     #[pymodule_export]

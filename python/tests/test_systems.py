@@ -67,6 +67,44 @@ def test_a_flowpipe_holds_sampled_trajectories() -> None:
     assert pickle.loads(pickle.dumps(found)) == found
 
 
+@pytest.fixture(scope="module")
+def values(robot: rt.Robot) -> list[object]:
+    """Results of every kind that is made of arrays."""
+    x, y = rt.variables("x y")
+    pipe = rt.flowpipe({x: y, y: -x}, {x: (0.9, 1.1), y: 0.0}, [0.0, 0.1, 0.2])
+    lost = rt.flowpipe({x: x**2}, {x: (0.0, 2.0)}, np.linspace(0.0, 1.0, 11))
+    assert pipe.is_reached and not lost.is_reached
+    motion = rt.excite(robot, trials=2, starts=1)
+    box = rt.Box(np.array([0.0, 1.0]), np.array([0.5, 0.25]))
+    return [pipe, lost, motion, box]
+
+
+def test_results_of_arrays_are_values(values: list[object]) -> None:
+    for index, value in enumerate(values):
+        again = pickle.loads(pickle.dumps(value))
+        assert again == value and hash(again) == hash(value) and type(again) is type(value)
+        assert [other == value for other in values] == [k == index for k in range(len(values))]
+        arrays = {name: part for name, part in again.to_dict().items() if hasattr(part, "dtype")}
+        assert len(arrays) >= 2
+        for name, array in arrays.items():
+            assert np.array_equal(array, value.to_dict()[name])  # type: ignore[attr-defined]
+            with pytest.raises(ValueError, match="read-only"):
+                array[...] = 0.0
+    assert values[1].ended == pickle.loads(pickle.dumps(values[1])).ended  # type: ignore[attr-defined]
+
+
+def test_bytes_of_other_results_are_refused(values: list[object]) -> None:
+    pipe, motion = values[0].to_bytes(), values[2].to_bytes()  # type: ignore[attr-defined]
+    with pytest.raises(rt.ModelFileError, match="Flowpipe, version 1, but of .*Excitation"):
+        rt.Flowpipe.from_bytes(motion)
+    for wrong in (b"", b"nonsense", b"[]\n", pipe.replace(b'"version": 1', b'"version": 2')):
+        with pytest.raises(rt.ModelFileError, match="not those of a Flowpipe"):
+            rt.Flowpipe.from_bytes(wrong)
+    for damaged in (pipe[:-1], pipe[:-8], pipe + bytes(8), pipe.replace(b"upper", b"uper", 1)):
+        with pytest.raises(rt.ModelFileError, match="damaged"):
+            rt.Flowpipe.from_bytes(damaged)
+
+
 def test_taylor_models_and_pieces_are_tighter() -> None:
     x, y = rt.variables("x y")
     system = {x: y, y: (1 - x**2) * y - x}
@@ -214,6 +252,11 @@ def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path:
         warnings.simplefilter("ignore")
         by_file = rt.identify(robot, dynamic=tmp_path / "run.csv", model=model)
     assert by_file.robot == other
+    again = pickle.loads(pickle.dumps(result))
+    assert again == result != by_file and hash(again) == hash(result)
+    assert again.robot == other and again.to_dict() == result.to_dict()
+    with pytest.raises(rt.ModelFileError, match="not those"):
+        rt.Identification.from_bytes(b"nonsense")
     assert result.to_pandas().shape[0] == len(result.parameters)
     page = result.report(tmp_path / "identify.html")
     assert "<svg" in page.read_text(encoding="utf-8")
