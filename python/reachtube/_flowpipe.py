@@ -36,7 +36,7 @@ class Flowpipe(Values):
     states
         Names of the states, N.
     t : array of shape (K,)
-        Times, s; they end early where ``ended`` says so.
+        Times since the first sample, s; they end early where ``ended`` says so.
     lower, upper : array of shape (K, N)
         Bounds at samples.
     step_lower, step_upper : array of shape (K - 1, N)

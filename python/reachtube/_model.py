@@ -142,6 +142,13 @@ class Model(Record):
         """The number of joints n."""
         return len(self._content["input_set"]["centre"])
 
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """The units of the states, 2n: rad and rad/s, or m and m/s for prismatic joints."""
+        kinds = [joint.get("type", "revolute") for joint in self._content["robot"]["joint"]]
+        lengths = ["m" if kind == "prismatic" else "rad" for kind in kinds]
+        return (*lengths, *(f"{unit}/s" for unit in lengths))
+
     def _number(self, name: str) -> float | None:
         value = self._content.get(name)
         return None if value is None else float(value)

@@ -36,11 +36,13 @@ class ReachableSet(Values):
     t : array of shape (K,)
         Times since the first sample, s.
     nominal, lower, upper : array of shape (K, 2n)
-        The nominal motion, and the bounds at samples; rad and rad/s, q then q̇.
+        The nominal motion, and the bounds at samples; q then q̇.
     step_lower, step_upper : array of shape (K - 1, 2n)
         The bounds over the steps from one sample to the next.
     lost
         Where and why the set ended before its suite; ``None`` where it did not.
+    units
+        Units of the states, 2n: rad and rad/s, or m and m/s for prismatic joints.
     """
 
     suite: str
@@ -52,6 +54,7 @@ class ReachableSet(Values):
     step_lower: Array
     step_upper: Array
     lost: dict[str, Any] | None
+    units: tuple[str, ...]
 
     @property
     def joints(self) -> int:
@@ -114,6 +117,7 @@ def reach(
             run,
             *map(frozen, (t, *samples, *steps)),
             None if lost is None else json.loads(lost),
+            model.state_units,
         )
         for suite, run, t, samples, steps, lost in found
     ]

@@ -41,6 +41,12 @@ def test_each_state_is_computed_as_if_it_were_alone(robot: rt.Robot) -> None:
     together = robot.rnea(q, qd, qdd)
     alone = np.array([robot.rnea(*state) for state in zip(q, qd, qdd, strict=True)])
     assert np.array_equal(together, alone)
+    # More states than one core takes at once.
+    q, qd, _ = states(6, (600,))
+    together = np.hstack([robot.viscous_friction(qd), robot.coulomb_friction(q, qd)])
+    for k in (0, 255, 256, 599):
+        one = np.hstack([robot.viscous_friction(qd[k]), robot.coulomb_friction(q[k], qd[k])])
+        assert np.array_equal(together[k], one) and one.all()
 
 
 def test_arguments_are_broadcast(robot: rt.Robot) -> None:
