@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::IdentifySettings;
+use reachtube::identify::prepare::LogEntry;
 use reachtube::recordings::column_names;
 use reachtube::report::write_identified_html;
 use reachtube::{Robot, Run};

@@ -35,10 +35,11 @@ impl NativeRobot {
             let robot = Arc::new(urdf.robot().clone());
             return Ok(Self { robot, urdf: Some(Arc::new(urdf)) });
         }
+        let robot = Robot::load_locked(path, &locks)?;
         if base.is_some() || tip.is_some() {
             return Err(Failure::Setting("only a URDF has a base and a tip".into()));
         }
-        Ok(Self::new(Robot::load_locked(path, &locks)?))
+        Ok(Self::new(robot))
     }
 
     /// Runs an algorithm over states whose arguments are count x n each.

@@ -86,13 +86,19 @@ def test_robots_are_values(robot: rt.Robot, tmp_path: object) -> None:
     assert robot.joint_names[0] in repr(robot)
 
 
-def test_a_missing_or_wrong_robot_file_is_an_error_that_names_it() -> None:
+def test_a_missing_or_wrong_robot_file_is_an_error_that_names_it(tmp_path: object) -> None:
+    from pathlib import Path
+
     with pytest.raises(rt.ReachtubeError, match="no/such.urdf"):
         rt.Robot.from_urdf("no/such.urdf")
     with pytest.raises(rt.ReachtubeError, match="mine"):
         rt.Robot.from_toml("nonsense", "mine")
     with pytest.raises(rt.SettingError, match="base and a tip"):
         rt.Robot(rt._reachtube.Robot.load("lwa4p", "base"))
+    xacro = Path(str(tmp_path)) / "arm.urdf.xacro"
+    xacro.write_text("<robot/>")
+    with pytest.raises(rt.ReachtubeError, match=r"xacro \S*arm.urdf.xacro > \S*arm.urdf$"):
+        rt.Robot.from_urdf(xacro, base="world")
     for path in ("arm.toml", "lwa4p"):
         with pytest.raises(rt.SettingError, match=r"ends with \.urdf; Robot\.load"):
             rt.Robot.from_urdf(path)
