@@ -76,9 +76,9 @@ def whole(name: str, value: int, least: int = 0, most: int = 2**63 - 1) -> int:
 def real(name: str, value: float) -> float:
     """Return one real number."""
     array = numbers(name, value)
-    if array.ndim > 0:
+    if np.ndim(value) > 0:
         raise SettingError(f"{name} has the shape {array.shape}; give one number")
-    return float(array)
+    return float(array[0])
 
 
 def frozen(array: Array) -> Array:

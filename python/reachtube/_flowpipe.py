@@ -245,6 +245,9 @@ def flowpipe(
     return Flowpipe(
         states,
         frozen(times[:count] - times[0]),
-        *map(frozen, (*samples, *steps)),
+        frozen(samples[0]),
+        frozen(samples[1]),
+        frozen(steps[0]),
+        frozen(steps[1]),
         None if ended is None else (ended[0], states[ended[1]]),
     )

@@ -115,7 +115,12 @@ def reach(
         ReachableSet(
             suite,
             run,
-            *map(frozen, (t, *samples, *steps)),
+            frozen(t),
+            frozen(samples[0]),
+            frozen(samples[1]),
+            frozen(samples[2]),
+            frozen(steps[0]),
+            frozen(steps[1]),
             None if lost is None else json.loads(lost),
             model.state_units,
         )

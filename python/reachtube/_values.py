@@ -33,13 +33,13 @@ class Values:
                 object.__setattr__(self, name, frozen(own))
 
     def _items(self) -> Iterator[tuple[str, Any]]:
-        names = (field.name for field in fields(self))  # type: ignore[arg-type]
+        names = (field.name for field in fields(self))  # type: ignore[arg-type, unused-ignore]
         return ((name, getattr(self, name)) for name in names)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return self.to_bytes() == other.to_bytes()  # type: ignore[attr-defined]
+        return self.to_bytes() == other.to_bytes()
 
     def __hash__(self) -> int:
         return hash(self.to_bytes())

@@ -169,7 +169,7 @@ def test_the_path_of_a_folder_is_its_data_set(
     folder = write_csv(tmp_path, list(data))
     for path in (tmp_path, str(tmp_path)):
         assert rt.check(model, path) == rt.check(model, folder)
-    with pytest.raises(rt.DefectsError, match=r"none.*runs\.csv"):
+    with pytest.raises(rt.ReachtubeError, match=r"none.*runs\.csv.*give the folder"):
         rt.check(model, tmp_path / "none")
 
 

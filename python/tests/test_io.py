@@ -166,7 +166,7 @@ def test_figures_are_drawn(model: rt.Model, data: rt.Recordings, tmp_path: Path)
         "q [rad]", "qd [rad/s]"
     ]
     # The second joint slides.
-    units = tuple("m" if i == 1 else "m/s" if i == 7 else unit for i, unit in enumerate(found.units))
+    units = ("rad", "m", *found.units[2:7], "m/s", *found.units[8:])
     figure = plot.reachable_set(dataclasses.replace(found, units=units))
     labels = [axis.get_ylabel() for axis in figure.axes]
     assert labels[:4] == ["q [rad]", "q [m]", "q [rad]", ""] and labels[7] == "qd [m/s]"

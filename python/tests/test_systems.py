@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -68,7 +69,7 @@ def test_a_flowpipe_holds_sampled_trajectories() -> None:
 
 
 @pytest.fixture(scope="module")
-def values(robot: rt.Robot) -> list[object]:
+def values(robot: rt.Robot) -> list[Any]:
     """Results of every kind that is made of arrays."""
     x, y = rt.variables("x y")
     pipe = rt.flowpipe({x: y, y: -x}, {x: (0.9, 1.1), y: 0.0}, [0.0, 0.1, 0.2])
@@ -79,7 +80,7 @@ def values(robot: rt.Robot) -> list[object]:
     return [pipe, lost, motion, box]
 
 
-def test_results_of_arrays_are_values(values: list[object]) -> None:
+def test_results_of_arrays_are_values(values: list[Any]) -> None:
     for index, value in enumerate(values):
         again = pickle.loads(pickle.dumps(value))
         assert again == value and hash(again) == hash(value) and type(again) is type(value)
@@ -87,14 +88,14 @@ def test_results_of_arrays_are_values(values: list[object]) -> None:
         arrays = {name: part for name, part in again.to_dict().items() if hasattr(part, "dtype")}
         assert len(arrays) >= 2
         for name, array in arrays.items():
-            assert np.array_equal(array, value.to_dict()[name])  # type: ignore[attr-defined]
+            assert np.array_equal(array, value.to_dict()[name])
             with pytest.raises(ValueError, match="read-only"):
                 array[...] = 0.0
-    assert values[1].ended == pickle.loads(pickle.dumps(values[1])).ended  # type: ignore[attr-defined]
+    assert values[1].ended == pickle.loads(pickle.dumps(values[1])).ended
 
 
-def test_bytes_of_other_results_are_refused(values: list[object]) -> None:
-    pipe, motion = values[0].to_bytes(), values[2].to_bytes()  # type: ignore[attr-defined]
+def test_bytes_of_other_results_are_refused(values: list[Any]) -> None:
+    pipe, motion = values[0].to_bytes(), values[2].to_bytes()
     with pytest.raises(rt.ModelFileError, match="Flowpipe, version 1, but of .*Excitation"):
         rt.Flowpipe.from_bytes(motion)
     for wrong in (b"", b"nonsense", b"[]\n", pipe.replace(b'"version": 1', b'"version": 2')):
@@ -210,11 +211,11 @@ def test_wrong_settings_of_an_abstraction_are_named(
     ],
 )
 def test_wrong_settings_of_a_flowpipe_are_named(
-    setting: dict[str, object], words: str
+    setting: dict[str, Any], words: str
 ) -> None:
     x, y = rt.variables("x y")
     with pytest.raises(rt.SettingError, match=words):
-        rt.flowpipe({x: y, y: -x}, {x: 1.0, y: 0.0}, [0.0, 0.1], **setting)  # type: ignore[arg-type]
+        rt.flowpipe({x: y, y: -x}, {x: 1.0, y: 0.0}, [0.0, 0.1], **setting)
 
 
 def test_exponents_that_do_not_fit_are_named() -> None:
