@@ -357,7 +357,10 @@ fn what_a_fold_cannot_do_is_refused_by_name() {
         Err(Error::Fold(why)) => why,
         other => panic!("{other:?}"),
     };
-    let exact = setup(&robot, |settings| settings.notion = Notion::Exact);
+    let exact = setup(&robot, |settings| {
+        settings.notion = Notion::Exact;
+        cubic(settings);
+    });
     assert!(refusal(Fold::new(&exact)).contains("--notion hull"));
     let explain = setup(&robot, |settings| settings.explain = Some(Tolerance::default()));
     assert!(refusal(Fold::new(&explain)).contains("--explain"));
