@@ -58,12 +58,13 @@ def fleet_of(job: Job) -> _reachtube.Fleet:
 #: What was read of a recording: the content of a CSV file, a run, or problem and remedy.
 Read: TypeAlias = "bytes | _reachtube.Run | tuple[str, str]"
 
-Entry: TypeAlias = "tuple[int, str, str, str | None, int, str | None]"
+Entry: TypeAlias = "tuple[int, str, str, str | None, int, str | None, float | None]"
 
 
 def read_one(place: int, row: Recording, part: Part) -> tuple[Entry, Read]:
     """Read one recording."""
-    entry = (place, row.file, row.suite, row.motion, row.order or 0, row.sha256)
+    order, warm = row.order or 0, row.temperature
+    entry = (place, row.file, row.suite, row.motion, order, row.sha256, warm)
     address = row.file if "://" in row.file or row.file.startswith("/") else part.base + row.file
     content = read(address, part.storage)
     if content is None:

@@ -126,7 +126,7 @@ class PartPoints:
     def __reduce__(self) -> tuple[Callable[[bytes], PartPoints], tuple[bytes]]: ...
     def __sizeof__(self) -> int: ...
 
-_Entry: TypeAlias = tuple[int, str, str, str | None, int, str | None]
+_Entry: TypeAlias = tuple[int, str, str, str | None, int, str | None, float | None]
 _Taken: TypeAlias = tuple[tuple[str, int, float] | None, list[str]]
 
 @final

@@ -7,14 +7,14 @@ order. So the model is the same to the last bit on one machine and on any number
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ._abstraction import Abstraction
 from ._conform import told
 from ._jobs import Job, Part, fleet_of, fold_of, on_dask
-from ._manifest import Recording, in_order, read_manifest, write_manifest
+from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
 from ._model import Check, Model
 from ._points import Points
 from ._progress import Progress, shown
@@ -29,17 +29,21 @@ __all__ = ["Recording", "check", "conform", "read_manifest", "write_manifest"]
 
 OnDefect: TypeAlias = Literal["raise", "report"]
 
+Robots: TypeAlias = "str | Sequence[str | None] | None"
+
 def _parts(
     manifest: str | PathLike[str],
     size: int,
     storage: Mapping[str, Any] | None,
     folders: tuple[str | PathLike[str] | None, str | PathLike[str] | None],
+    robots: Robots,
 ) -> list[Part]:
     """Return the recordings of each task."""
     if size < 1:
         raise SettingError(f"runs_per_task is {size}; give 1 or more")
     address, options = fspath(manifest), dict(storage or {})
-    all_rows = in_order(read_manifest(address, storage_options=options))
+    listed = list(enumerate(read_manifest(address, storage_options=options)))
+    all_rows = in_order(of_robots(listed, robots, address))
     # A fold is as large as its suites: a task takes few of them, and its neighbours the same.
     all_rows.sort(key=lambda numbered: numbered[1].suite)
     if not all_rows:
@@ -80,6 +84,7 @@ def conform(
     manifest: str | PathLike[str],
     *,
     torque: Torque,
+    robots: Robots = None,
     client: Client | None = None,
     runs_per_task: int = 1000,
     on_defect: OnDefect = "raise",
@@ -100,6 +105,9 @@ def conform(
         As for `reachtube.conform`.
     manifest
         A Parquet file, in any store that fsspec opens; see `read_manifest`.
+    robots
+        Names in the manifest's column ``robot``, whose recordings are used. A manifest of several
+        robots is refused where none is chosen; ``None`` in a list stands for rows without a name.
     client
         A Dask client; this process does everything where none is given.
     runs_per_task
@@ -128,7 +136,7 @@ def conform(
     else:
         job = Job("robot", robot._native.description(), text)
     fleet_of(job).fold()
-    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries))
+    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
     whole, points = _folded(job, parts, client, progress, "fleet.conform")
     ask = points.ask if fleet_of(job).asks_points() else None
     try:
@@ -142,6 +150,7 @@ def check(
     model: Model,
     manifest: str | PathLike[str],
     *,
+    robots: Robots = None,
     client: Client | None = None,
     runs_per_task: int = 1000,
     on_defect: OnDefect = "raise",
@@ -158,7 +167,7 @@ def check(
     ----------
     model
         The model.
-    manifest, client, runs_per_task, on_defect, resume, summaries, storage_options, progress
+    manifest, robots, client, runs_per_task, on_defect, resume, summaries, storage_options, progress
         As for `conform`.
     until, max_gap
         As for `reachtube.check`.
@@ -169,7 +178,7 @@ def check(
     """
     job = Job("model", model._text, differing("hull", until, max_gap))
     fleet_of(job).fold()
-    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries))
+    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
     whole, points = _folded(job, parts, client, progress, "fleet.check")
     ask = points.ask if fleet_of(job).asks_points() else None
     try:

@@ -31,9 +31,9 @@ pub struct NativeFold {
     fold: Mutex<Fold>,
 }
 
-/// An entry of a manifest: its place, file, suite, motion, order, and the SHA-256 that the file
-/// should have.
-pub type Entry = (u64, String, String, Option<String>, u64, Option<String>);
+/// An entry of a manifest: its place, file, suite, motion, order, the SHA-256 that the file should
+/// have, and the temperature of all joints, °C.
+pub type Entry = (u64, String, String, Option<String>, u64, Option<String>, Option<f64>);
 
 /// SHA-256, number of samples and duration of a recording; or its defects.
 type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
@@ -42,13 +42,13 @@ type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
 type Taken = (Option<(String, usize, f64)>, Vec<String>);
 
 pub fn entry(row: &Entry) -> RunEntry {
-    let (index, file, suite, motion, order, sha256) = row.clone();
+    let (index, file, suite, motion, order, sha256, temperature) = row.clone();
     RunEntry {
         file,
         suite: Some(suite),
         motion,
         kind: None,
-        temperature: None,
+        temperature,
         sha256,
         order,
         line: index + 1,
@@ -209,13 +209,20 @@ pub fn read_csv(row: &Entry, content: &[u8], options: &ReadOptions) -> Read {
             let remedy = "the file was changed or damaged: restore it, or write the manifest again";
             Err(vec![Defect::new(name, None, problem, remedy).of_kind(DefectKind::File)])
         }
-        _ => Ok(run),
+        _ => Ok(as_warm(row, run)),
     }
 }
 
 /// Checks a recording in memory as one that is read.
 pub fn read_run(row: &Entry, run: &reachtube::Run, options: &ReadOptions) -> Read {
-    run.clone().checked(Path::new(&row.1), options)
+    as_warm(row, run.clone()).checked(Path::new(&row.1), options)
+}
+
+/// Gives a run without temperatures that of the manifest.
+fn as_warm(row: &Entry, run: reachtube::Run) -> reachtube::Run {
+    let Some(temperature) = row.6.filter(|_| run.temperatures.is_empty()) else { return run };
+    let temperatures = vec![temperature; run.len() * run.joints];
+    run.with_temperatures(temperatures).expect("the manifest's temperature is finite")
 }
 
 /// A recording, or its defects.

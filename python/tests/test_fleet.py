@@ -259,6 +259,59 @@ def test_a_stopped_job_goes_on(manifest: Path, alone: rt.Model, tmp_path: Path) 
     assert finished[1].stat().st_mtime_ns == times[1]
 
 
+def test_the_recordings_of_one_robot_are_chosen(manifest: Path, tmp_path: Path) -> None:
+    rows = [row._replace(file=str(manifest.parent / row.file), robot=f"arm{k % 2}")
+            for k, row in enumerate(fleet.read_manifest(manifest))]
+    path, robot = tmp_path / "two.parquet", rt.Robot.lwa4p()
+    fleet.write_manifest(path, [*rows, rows[0]._replace(robot=None)])
+    with pytest.raises(rt.SettingError, match=r"arm0 \(20\), arm1 \(20\), no name \(1\).*robots=N"):
+        fleet.conform(robot, path, torque="compensated")
+    with pytest.raises(rt.SettingError, match="no recording is of robot 'arm2'"):
+        fleet.conform(robot, path, torque="compensated", robots=["arm0", "arm2"])
+    # The same recordings in a manifest of their own.
+    fleet.write_manifest(tmp_path / "one.parquet", [row for row in rows if row.robot == "arm1"])
+    one = fleet.conform(robot, tmp_path / "one.parquet", torque="compensated")
+    chosen = fleet.conform(robot, path, torque="compensated", robots="arm1")
+    assert chosen.cost == one.cost and chosen.proof["runs"] == 20
+    both = fleet.conform(robot, path, torque="compensated", robots=["arm0", "arm1"])
+    assert both.proof["runs"] == 40
+    assert not fleet.check(one, path, robots="arm0") and fleet.check(one, path, robots="arm1")
+
+
+def test_a_temperature_of_the_manifest_is_that_of_the_recording(
+    manifest: Path, tmp_path: Path
+) -> None:
+    import pandas
+
+    description = rt.Robot.lwa4p().to_dict()
+    for joint in description["joint"]:
+        law = {"by": "temperature", "reference": 20.0, "coulomb": 0.01, "viscous": 0.02}
+        joint["friction"]["warming"] = law
+    robot = rt.Robot.from_dict(description)
+    rows = [row._replace(file=str(manifest.parent / row.file), temperature=20.0 + 4.0 * k)
+            for k, row in enumerate(fleet.read_manifest(manifest)[:6])]
+    # As pandas writes it, where one is not known.
+    table = pandas.DataFrame([row._asdict() for row in rows])
+    table.loc[5, "temperature"] = float("nan")
+    table.to_parquet(tmp_path / "warm.parquet")
+    found = fleet.conform(robot, tmp_path / "warm.parquet", torque="compensated")
+    runs = []
+    for row in rows:
+        of_file = pandas.read_parquet if row.file.endswith(".parquet") else pandas.read_csv
+        columns = of_file(row.file)
+        parts = np.split(columns.to_numpy()[:, 1:], 3, axis=1)
+        warm = None if row is rows[5] else np.full(parts[0].shape, row.temperature)
+        labels = {"suite": row.suite, "motion": row.motion, "name": row.file}
+        runs.append(rt.Run(columns["t"], *parts, temperature=warm, **labels))
+    expected = rt.conform(robot, runs, torque="compensated")
+    assert names_left_out(found) == names_left_out(expected)
+    cold = fleet.conform(robot, manifest, torque="compensated", until=0.05, nominal="own")
+    assert cold.cost != found.cost
+    fleet.write_manifest(tmp_path / "hot.parquet", [rows[0]._replace(temperature=300.0)])
+    with pytest.raises(rt.ReachtubeError, match="row 0 .*temperature 300.0 °C"):
+        fleet.conform(robot, tmp_path / "hot.parquet", torque="compensated")
+
+
 def test_summaries_are_a_table(manifest: Path, tmp_path: Path) -> None:
     from pyarrow import parquet
 
