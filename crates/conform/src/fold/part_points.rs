@@ -26,8 +26,11 @@ pub struct FleetProblem {
     problem: Problem,
     context: Context,
     suites: HashMap<String, usize>,
-    nominals: Vec<OnceLock<Vec<(Nominal, Option<usize>)>>>,
+    nominals: Vec<OnceLock<SuiteNominals>>,
 }
+
+/// The nominal solutions of a suite, with the run where it is that of one run.
+type SuiteNominals = Vec<(Nominal, Option<usize>)>;
 
 /// The recorded points of a part of a fleet's recordings: 24 n bytes for each sample of a recording
 /// with n joints. It goes between machines in bytes.
