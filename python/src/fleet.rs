@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use reachtube::conform::{
     self as product, FleetProblem, Fold, Hulls, Model, Notion, OnDefect, Problem, Setup,
 };
@@ -100,13 +101,13 @@ impl NativeFleet {
     }
 
     /// Merges folds in any order.
-    fn merge(&self, py: Python<'_>, parts: Vec<Vec<u8>>) -> PyResult<Vec<u8>> {
+    fn merge(&self, py: Python<'_>, parts: Vec<PyBackedBytes>) -> PyResult<Vec<u8>> {
         let setup = Arc::clone(&self.setup);
         watched(py, None, move |_| Ok(merged(&setup, &parts)?.to_bytes()))
     }
 
     /// Returns how many recordings have no defect, how many have some, and their list for people.
-    fn count(&self, py: Python<'_>, fold: Vec<u8>) -> PyResult<(u64, u64, Vec<String>)> {
+    fn count(&self, py: Python<'_>, fold: PyBackedBytes) -> PyResult<(u64, u64, Vec<String>)> {
         let setup = Arc::clone(&self.setup);
         watched(py, None, move |_| {
             let fold = Fold::from_bytes(&setup, &fold)?;
@@ -121,7 +122,7 @@ impl NativeFleet {
     }
 
     /// Prepares what every part needs to find its points.
-    fn problem(&self, py: Python<'_>, fold: Vec<u8>) -> PyResult<NativeFleetProblem> {
+    fn problem(&self, py: Python<'_>, fold: PyBackedBytes) -> PyResult<NativeFleetProblem> {
         let setup = Arc::clone(&self.setup);
         watched(py, None, move |_| {
             let fold = Fold::from_bytes(&setup, &fold)?;
@@ -136,7 +137,7 @@ impl NativeFleet {
     fn conform(
         &self,
         py: Python<'_>,
-        fold: Vec<u8>,
+        fold: PyBackedBytes,
         report: bool,
         ask: Option<Py<PyAny>>,
         resume: Option<PathBuf>,
@@ -157,7 +158,7 @@ impl NativeFleet {
     fn check(
         &self,
         py: Python<'_>,
-        fold: Vec<u8>,
+        fold: PyBackedBytes,
         report: bool,
         ask: Option<Py<PyAny>>,
     ) -> PyResult<String> {
@@ -174,7 +175,7 @@ impl NativeFleet {
     }
 }
 
-fn merged(setup: &Setup, parts: &[Vec<u8>]) -> Result<Fold> {
+fn merged(setup: &Setup, parts: &[PyBackedBytes]) -> Result<Fold> {
     let mut parts = parts.iter().map(|part| Fold::from_bytes(setup, part));
     let first = parts.next().ok_or_else(|| Failure::Setting("there is no fold".into()))??;
     parts.try_fold(first, |mut all, part| {

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
 use reachtube::conform::{FleetProblem, PartPoints, PartReader, PointServer};
 
@@ -69,8 +70,8 @@ impl NativePartPoints {
 
     /// Merges the answers of parts to one question, in any order.
     #[staticmethod]
-    fn merge(py: Python<'_>, answers: Vec<Vec<u8>>) -> PyResult<Vec<u8>> {
-        let merged = py.detach(|| PartPoints::merge(answers.iter().map(Vec::as_slice)));
+    fn merge(py: Python<'_>, answers: Vec<PyBackedBytes>) -> PyResult<Vec<u8>> {
+        let merged = py.detach(|| PartPoints::merge(answers.iter().map(|answer| &**answer)));
         merged.map_err(|error| Failure::from(error).raised(py))
     }
 
@@ -110,7 +111,8 @@ impl PointServer for Asked {
     fn ask(&self, question: &[u8]) -> Result<Vec<u8>, String> {
         Python::attach(|py| {
             let answer = self.ask.call1(py, (PyBytes::new(py, question),));
-            let answer = answer.and_then(|answer| answer.extract::<Vec<u8>>(py));
+            let answer =
+                answer.and_then(|answer| Ok(answer.extract::<PyBackedBytes>(py)?.to_vec()));
             answer.map_err(|error| {
                 let words = format!("the points gave no answer: {error}");
                 *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
