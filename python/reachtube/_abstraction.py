@@ -13,7 +13,7 @@ from . import _reachtube
 from ._arrays import Array, batch, numbers, whole
 from ._files import write_new
 from ._progress import Progress, shown
-from ._robot import Robot
+from ._robot import Robot, native_of
 from .errors import ReachtubeError, SettingError
 
 
@@ -169,5 +169,5 @@ def abstract(
     most = None if most_boxes is None else whole("most_boxes", most_boxes, 1)
     with shown(progress, "abstract") as tell:
         return Abstraction(
-            _reachtube.Abstraction(robot._native, kind, power, given, radii, most, tell)
+            _reachtube.Abstraction(native_of(robot), kind, power, given, radii, most, tell)
         )

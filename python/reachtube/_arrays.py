@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -81,6 +81,13 @@ def real(name: str, value: float) -> float:
     return float(array[0])
 
 
+def label(name: str, value: str | None) -> str | None:
+    """Return a name, or nothing."""
+    if value is not None and not isinstance(value, str):
+        raise SettingError(f"{name} is {value!r} of type {type(value).__name__}; give a text")
+    return value
+
+
 def frozen(array: Array) -> Array:
     """Return the array, which can no longer be written to."""
     array.flags.writeable = False
@@ -91,7 +98,11 @@ def names(values: str | Sequence[str] | None) -> list[str]:
     """Return a list of names; one name may stand alone."""
     if values is None:
         return []
-    return [values] if isinstance(values, str) else [str(value) for value in values]
+    if isinstance(values, str):
+        return [values]
+    if not isinstance(values, Iterable) or not all(isinstance(value, str) for value in values):
+        raise SettingError(f"{values!r} is no name and no list of names")
+    return list(values)
 
 
 def array_of(values: Any) -> Array:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _reachtube
 from ._abstraction import Abstraction
 from ._arrays import names
-from ._model import Check, Model
+from ._model import Check, Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._robot import Robot
@@ -198,6 +198,6 @@ def check(
     with shown(progress, "check") as tell:
         return Check(
             _reachtube.check(
-                model._text, source(data), names(suites), differing(notion, until, max_gap), tell
+                text_of(model), source(data), names(suites), differing(notion, until, max_gap), tell
             )
         )

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _reachtube
 from ._arrays import Array, frozen, numbers, real, whole
-from ._robot import Robot
+from ._robot import Robot, native_of
 from ._values import Values
 from .errors import SettingError
 
@@ -115,7 +115,7 @@ def excite(
     if len(noise) == 1:
         noise *= robot.joints
     t, motion, condition, random = _reachtube.excite(
-        robot._native,
+        native_of(robot),
         period,
         whole("harmonics", harmonics, 1, MOST_HARMONICS),
         criterion == "condition",

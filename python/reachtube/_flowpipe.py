@@ -97,6 +97,10 @@ def _terms(
     order += [(states[i], kind) for kind in ("sin", "cos") for i in angles]
     place = {factor: k for k, factor in enumerate(order)}
 
+    for name, rate in zip(states, polynomials, strict=True):
+        if not all(map(math.isfinite, rate.terms.values())):
+            raise SettingError(f"the rate of {name} is {rate}; coefficients must be finite")
+
     def exponents(monomial: Any) -> list[int]:
         powers = [0] * len(order)
         for factor, exponent in monomial:
@@ -133,7 +137,10 @@ def _sides(sets: Mapping[str, Any], names: Sequence[str]) -> tuple[list[float], 
     for name in names:
         if name not in sets:
             raise SettingError(f"{name} has no initial value; give a number or an interval")
-        low, high = np.broadcast_to(numbers(name, sets[name]).ravel(), 2)
+        given = numbers(name, sets[name]).ravel()
+        if given.size > 2 or not np.isfinite(given).all():
+            raise SettingError(f"{name} is {given.tolist()}; give a finite number or an interval")
+        low, high = np.broadcast_to(given, 2)
         if not low <= high:
             raise SettingError(f"{name} is in [{low}, {high}]; the lower bound comes first")
         centre = float(low + (high - low) / 2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -14,8 +14,8 @@ from ._files import write_new
 from ._progress import Progress, shown
 from ._record import Record
 from ._recordings import Run
-from ._robot import Robot
-from .errors import ReachtubeError, ReachtubeWarning
+from ._robot import Robot, native_of
+from .errors import ReachtubeError, ReachtubeWarning, SettingError
 
 Logs: TypeAlias = "Sequence[Run | str | PathLike[str]] | Run | str | PathLike[str]"
 
@@ -107,7 +107,14 @@ class Identification(Record):
 
 def _recorded(logs: Logs) -> tuple[list[str], list[_reachtube.Run]]:
     """Return paths and runs."""
-    items = [logs] if isinstance(logs, (Run, str, PathLike)) else list(logs)
+    items = [logs] if isinstance(logs, (Run, str, PathLike)) else logs
+    if not isinstance(items, Iterable):
+        raise SettingError(f"recordings are of type {type(logs).__name__}; give runs or paths")
+    items = list(items)
+    for item in items:
+        if not isinstance(item, (Run, str, PathLike)):
+            kind = type(item).__name__
+            raise SettingError(f"a recording is of type {kind}; give runs or paths")
     paths = [fspath(item) for item in items if not isinstance(item, Run)]
     return paths, [item._native for item in items if isinstance(item, Run)]
 
@@ -163,6 +170,9 @@ def identify(
             toml = Path(settings).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ReachtubeError(f"{settings}: {error}") from None
+    for name, section in {"prepare": prepare, "model": model}.items():
+        if not isinstance(section or {}, Mapping):
+            raise SettingError(f"{name} is {section!r}; give settings by their names")
     own = dict(model or {})
     if link_torque:
         own["motor_inertia"] = False
@@ -174,7 +184,7 @@ def identify(
         recorded.append(([str(here / path) for path in paths], runs))
     with shown(progress, "identify") as tell:
         found = Identification._of(
-            *_reachtube.identify(robot._native, recorded, toml, given, str(folder), tell)
+            *_reachtube.identify(native_of(robot), recorded, toml, given, str(folder), tell)
         )
     for warning in found.warnings:
         warnings.warn(warning, ReachtubeWarning, 2)

@@ -12,7 +12,7 @@ from ._box import Box
 from ._files import write_new
 from ._record import Record
 from ._robot import Robot
-from .errors import ModelFileError, ReachtubeError
+from .errors import ModelFileError, ReachtubeError, SettingError
 
 
 class Model(Record):
@@ -171,6 +171,14 @@ class Model(Record):
 
     def _repr_html_(self) -> str:
         return _html.model(self)
+
+
+def text_of(model: Model) -> str:
+    """Return the text of a model."""
+    if not isinstance(model, Model):
+        kind = type(model).__name__
+        raise SettingError(f"the model is of type {kind}; give a Model, such as Model.load(PATH)")
+    return model._text
 
 
 class Check(Record):

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, frozen, names
 from ._files import check_new
-from ._model import Model
+from ._model import Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._settings import Data, differing
@@ -109,7 +109,7 @@ def reach(
     """
     with shown(progress, "reach") as tell:
         found = _reachtube.reach(
-            model._text, source(data), names(suites), differing(None, until, max_gap), tell
+            text_of(model), source(data), names(suites), differing(None, until, max_gap), tell
         )
     return [
         ReachableSet(
@@ -163,7 +163,7 @@ def report(
     with shown(progress, "report") as tell:
         return Path(
             _reachtube.report(
-                model._text,
+                text_of(model),
                 source(data),
                 names(suites),
                 settings,

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 from os import PathLike, fspath
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers, samples
+from ._arrays import Array, frozen, label, numbers, samples, whole
 from .errors import SettingError
 
 
@@ -95,7 +95,9 @@ class Run:
     ) -> None:
         self._native = native
         self._arrays: list[Array | None] | None = None
-        self.suite, self.motion, self.name, self.order = suite, motion, name, order
+        self.suite, self.motion = label("suite", suite), label("motion", motion)
+        self.name = label("name", name)
+        self.order = None if order is None else whole("order", order, 1)
 
     @classmethod
     def _of(
@@ -275,13 +277,25 @@ class Recordings:
     def __len__(self) -> int:
         return len(self._index)
 
-    def __getitem__(self, index: int) -> Run:
-        place = range(len(self))[index]
+    @overload
+    def __getitem__(self, index: int) -> Run: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Run]: ...
+
+    def __getitem__(self, index: int | slice) -> Run | list[Run]:
+        if isinstance(index, slice):
+            return [self._run(place) for place in range(len(self))[index]]
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"there is no run {index}; there are {len(self)}")
+        return self._run(index % len(self))
+
+    def _run(self, place: int) -> Run:
         file, suite, motion, _, order, _ = self._index[place]
         return Run._of(self._native.read(place), suite, motion, file, order)
 
     def __iter__(self) -> Iterator[Run]:
-        return (self[k] for k in range(len(self)))
+        return (self._run(k) for k in range(len(self)))
 
     def __repr__(self) -> str:
         where = self._folder or "in memory"

@@ -7,6 +7,7 @@ order. So the model is the same to the last bit on one machine and on any number
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -15,7 +16,7 @@ from ._abstraction import Abstraction
 from ._conform import told
 from ._jobs import Job, Part, fleet_of, fold_of, on_dask
 from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
-from ._model import Check, Model
+from ._model import Check, Model, text_of
 from ._points import Points
 from ._progress import Progress, shown
 from ._robot import Robot
@@ -130,6 +131,10 @@ def conform(
     -------
     Model
     """
+    known = inspect.signature(of_conformance).parameters
+    for name in settings:
+        if name not in known:
+            raise TypeError(f"fleet.conform() has no argument {name!r}")
     text = of_conformance(robot, torque=torque, **settings)
     if isinstance(robot, Abstraction):
         job = Job("abstraction", robot._native.to_json(), text)
@@ -176,7 +181,7 @@ def check(
     -------
     Check
     """
-    job = Job("model", model._text, differing("hull", until, max_gap))
+    job = Job("model", text_of(model), differing("hull", until, max_gap))
     fleet_of(job).fold()
     parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
     whole, points = _folded(job, parts, client, progress, "fleet.check")

@@ -14,57 +14,13 @@ import numpy as np
 import pytest
 
 import reachtube as rt
-from reachtube import _points, fleet
+from reachtube import fleet
+
+from conftest import RUNS, SAMPLES, SUITES
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("fsspec")
 distributed = pytest.importorskip("distributed")
-
-SUITES, RUNS, SAMPLES = 2, 20, 30
-
-
-def recordings(folder: Path) -> list[fleet.Recording]:
-    """Write runs that share their input, as CSV and Parquet files in turn."""
-    from pyarrow import Table, parquet
-
-    robot, random = rt.Robot.lwa4p(), np.random.default_rng(4)
-    t = 0.004 * np.arange(SAMPLES)
-    rows = []
-    for suite in range(SUITES):
-        q = 0.2 * np.sin(3 * t[:, None] + random.uniform(0, 1, 6))
-        qd = np.gradient(q, t, axis=0)
-        tau = robot.viscous_friction(qd) + robot.crba(np.zeros(6)).diagonal() * 0.3
-        for number in range(RUNS):
-            noise = 1e-3 * random.standard_normal((2, SAMPLES, 6))
-            run = rt.Run(t, q + noise[0], qd + noise[1], tau)
-            name = f"{suite}_{number}.{'parquet' if number % 5 == 0 else 'csv'}"
-            if name.endswith(".parquet"):
-                parquet.write_table(Table.from_pandas(run.to_pandas()), folder / name)
-            else:
-                lines = run.to_pandas().to_csv(index=False)
-                (folder / name).write_text(lines)
-            rows.append(fleet.Recording(name, f"S{suite}", f"m{suite}"))
-    return rows
-
-
-@pytest.fixture(scope="module")
-def manifest(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("fleet")
-    fleet.write_manifest(folder / "manifest.parquet", recordings(folder))
-    return folder / "manifest.parquet"
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[Any]:
-    """Two workers, each a process of its own."""
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
-        ) as cluster,
-        distributed.Client(cluster) as found,
-    ):
-        yield found
-
 
 @pytest.fixture(scope="module")
 def alone(manifest: Path) -> rt.Model:
@@ -157,57 +113,6 @@ def test_the_only_worker_is_killed_and_replaced(manifest: Path, alone: rt.Model)
             progress=kill,
         )
     assert killed and found == alone
-
-
-@pytest.fixture(scope="module")
-def few(manifest: Path) -> Path:
-    """A manifest of some of the recordings."""
-    rows = fleet.read_manifest(manifest)
-    fleet.write_manifest(manifest.parent / "few.parquet", rows[:8] + rows[RUNS : RUNS + 6])
-    return manifest.parent / "few.parquet"
-
-
-def of_points(notion: str) -> dict[str, Any]:
-    return {"torque": "compensated", "notion": notion, "until": 0.03}
-
-
-@pytest.mark.parametrize("notion", ["exact", "phase-plane"])
-def test_points_that_workers_hold_give_the_same_bits(
-    few: Path, client: Any, notion: str
-) -> None:
-    robot, arguments = rt.Robot.lwa4p(), of_points(notion)
-    alone = fleet.conform(robot, few, **arguments)
-    assert alone.verified and alone.proof["points"]["unproved"] == 0
-    hull = fleet.conform(robot, few, **of_points("hull"))
-    assert alone.cost is not None and hull.cost is not None and alone.cost > hull.cost
-    assert fleet.conform(robot, few, client=client, runs_per_task=3, **arguments) == alone
-    verdict = fleet.check(alone, few, runs_per_task=9)
-    assert verdict and verdict == fleet.check(alone, few, client=client, runs_per_task=4)
-
-
-def test_a_worker_that_held_points_is_killed(few: Path) -> None:
-    alone = fleet.conform(rt.Robot.lwa4p(), few, **of_points("exact"))
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        asked: list[int] = []
-        ask = _points.Points.ask
-
-        def kill_in_the_fourth_round(self: Any, question: bytes) -> bytes:
-            asked.append(len(question))
-            if len(asked) == 4:
-                os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
-            return ask(self, question)
-
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(_points.Points, "ask", kill_in_the_fourth_round)
-            found = fleet.conform(
-                rt.Robot.lwa4p(), few, client=client, runs_per_task=4, **of_points("exact")
-            )
-    assert len(asked) > 4 and found == alone
 
 
 def test_defects_are_named_or_left_out(manifest: Path, tmp_path: Path, client: Any) -> None:
