@@ -1,61 +1,60 @@
 """Times folds of many recordings in one process and on 1, 2 and 4 Dask workers, one of them killed.
 
-    python python/benches/fleet.py FOLDER [RUNS]
+    reachtube campaign --runs 132 --poses 2 --out CAMPAIGN
+    python python/benches/fleet.py CAMPAIGN [SIZE]
 
-FOLDER holds the recordings, which are made where they are missing: suites of a virtual LWA 4P,
-whose runs repeat with scatter. Every way must give the same bits. Prints the time and the peak
-memory of each process.
+CAMPAIGN holds the paper's whole experiment on a virtual arm, with more runs in each suite: 20,064
+runs of up to 5 s in 152 suites. Half of the runs and all of them are folded, SIZE (500) in a task;
+every way must give the same bits. Prints the time and the peak memory of each process: one that
+asks is a new one each time.
 """
 
 from __future__ import annotations
 
+import concurrent.futures
+import csv
+import multiprocessing
 import os
+import random
 import signal
 import sys
 import threading
 import time
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 import reachtube as rt
 from reachtube import fleet
 
-SUITES, SAMPLES = 40, 126
-HEADER = ",".join(["t", *(f"{part}{j}" for part in ("q", "qd", "tau") for j in range(1, 7))])
-
-
-def record(folder: Path, count: int) -> Path:
-    """Write runs of half a second at 250 Hz, and their manifest."""
-    folder = folder / str(count)
-    manifest = folder / "manifest.parquet"
-    if manifest.exists():
-        return manifest
-    folder.mkdir(parents=True, exist_ok=True)
-    robot, rows = rt.Robot.lwa4p(), []
-    t = 0.004 * np.arange(SAMPLES)
-    for suite in range(SUITES):
-        (folder / f"S{suite}").mkdir(exist_ok=True)
-        random = np.random.default_rng(suite)
-        amplitude, phase = random.uniform(0.1, 0.6, 6), random.uniform(0, 6, 6)
-        q = amplitude * np.sin(4 * t[:, None] + phase)
-        qd = 4 * amplitude * np.cos(4 * t[:, None] + phase)
-        mass = robot.crba(np.zeros(6)).diagonal()
-        tau = robot.viscous_friction(qd) - 16 * mass * q
-        for number in range(count // SUITES):
-            drift = random.normal(0, 2e-3, 12) * np.linspace(0.2, 1, SAMPLES)[:, None]
-            states = np.hstack([q, qd]) + drift + random.normal(0, 1e-4, (SAMPLES, 12))
-            name = f"S{suite}/{number}.csv"
-            table = np.hstack([t[:, None], states, tau])
-            with open(folder / name, "w") as file:
-                np.savetxt(file, table, fmt="%.9g", delimiter=",", header=HEADER, comments="")
-            rows.append(fleet.Recording(name, f"S{suite}", f"M{suite // 4}"))
-    # Tasks take runs of all suites, as they arrive from many robots.
-    order = np.random.default_rng(7).permutation(len(rows))
-    fleet.write_manifest(manifest, [rows[place] for place in order])
-    return manifest
+def manifests(campaign: Path) -> list[Path]:
+    """Write manifests of half of the runs and of all."""
+    with open(campaign / "runs.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["kind"] == "test_suite"]
+    listed = [
+        (
+            int(row["repeat"]),
+            fleet.Recording(
+                row["file"],
+                row["suite"],
+                row["motion"],
+                int(row["repeat"]),
+                row["sha256"],
+                temperature=float(row["temperature"]),
+            ),
+        )
+        for row in rows
+    ]
+    # The manifest lists runs of all suites, as they arrive from many robots.
+    random.Random(7).shuffle(listed)
+    last = max(repeat for repeat, _ in listed)
+    written = []
+    for most in (last // 2, last):
+        kept = [row for repeat, row in listed if repeat <= most]
+        written.append(campaign / f"manifest_{len(kept)}.parquet")
+        fleet.write_manifest(written[-1], kept)
+    return written
 
 
 def peak() -> float:
@@ -65,8 +64,8 @@ def peak() -> float:
     return int(line.split()[1]) / 1024
 
 
-def on_workers(manifest: Path, workers: int, kill: bool) -> tuple[rt.Model, float, list[float]]:
-    """Return the model, the time, and the peak memory of each worker."""
+def on_workers(manifest: Path, workers: int, kill: bool, size: int) -> dict[str, Any]:
+    """Return the model, the time, and the peak memory of this process and of each worker."""
     from distributed import Client, LocalCluster
 
     with (
@@ -80,33 +79,49 @@ def on_workers(manifest: Path, workers: int, kill: bool) -> tuple[rt.Model, floa
             [victim, *_] = client.run(os.getpid).values()
             threading.Timer(5.0, os.kill, (victim, signal.SIGKILL)).start()
         start = time.perf_counter()
-        model = conform(manifest, client=client)
-        return model, time.perf_counter() - start, sorted(client.run(peak).values())
+        model = conform(manifest, size, client=client)
+        seconds = time.perf_counter() - start
+        peaks = sorted(client.run(peak).values())
+    return {"model": model, "seconds": seconds, "own": peak(), "workers": peaks}
 
 
-def conform(manifest: Path, **options: Any) -> rt.Model:
+def alone(manifest: Path, size: int) -> dict[str, Any]:
+    """Return the same of this process without workers."""
+    start = time.perf_counter()
+    model = conform(manifest, size)
+    seconds = time.perf_counter() - start
+    return {"model": model, "seconds": seconds, "own": peak(), "workers": []}
+
+
+def conform(manifest: Path, size: int, **options: Any) -> rt.Model:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return fleet.conform(
-            rt.Robot.lwa4p(), manifest, torque="compensated", runs_per_task=500, **options
+            rt.Robot.lwa4p(), manifest, torque="compensated", runs_per_task=size, **options
         )
 
 
+def in_a_new_process(job: Callable[..., dict[str, Any]], *arguments: Any) -> dict[str, Any]:
+    """Run a job in a process of its own, so that its peak memory is that of the job."""
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
+        return pool.submit(job, *arguments).result()
+
+
 def main() -> None:
-    folder, count = Path(sys.argv[1]), int((sys.argv[2:] or ["20000"])[0])
-    small, large = record(folder, count // 2), record(folder, count)
-    for manifest in (small, large):
-        start = time.perf_counter()
-        alone = conform(manifest)
-        print(f"{manifest.parent.name} runs: one process {time.perf_counter() - start:.1f} s, "
-              f"peak {peak():.0f} MB, cost {alone.cost:.3f}", flush=True)
+    campaign, size = Path(sys.argv[1]), int((sys.argv[2:] or ["500"])[0])
+    for manifest in manifests(campaign):
+        first = in_a_new_process(alone, manifest, size)
+        print(f"{manifest.stem}: one process {first['seconds']:.1f} s, peak {first['own']:.0f} MB, "
+              f"cost {first['model'].cost:.3f}", flush=True)
         for workers, kill in [(1, False), (2, False), (4, False), (2, True)]:
-            model, seconds, memory = on_workers(manifest, workers, kill)
-            same = "same bits" if model == alone else "OTHER BITS"
-            words = ", ".join(f"{size:.0f}" for size in memory)
+            found = in_a_new_process(on_workers, manifest, workers, kill, size)
+            same = "same bits" if found["model"] == first["model"] else "OTHER BITS"
+            words = ", ".join(f"{one:.0f}" for one in found["workers"])
             killed = ", one killed" if kill else ""
-            print(f"{manifest.parent.name} runs: {workers} workers{killed} {seconds:.1f} s, "
-                  f"peak of each {words} MB, {same}", flush=True)
+            print(f"{manifest.stem}: {workers} workers{killed} {found['seconds']:.1f} s, peak of "
+                  f"each {words} MB, of the process that asks {found['own']:.0f} MB, {same}",
+                  flush=True)
 
 
 if __name__ == "__main__":

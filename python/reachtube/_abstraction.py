@@ -10,11 +10,15 @@ from typing import Any, Literal
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, batch, numbers
+from ._arrays import Array, batch, numbers, whole
 from ._files import write_new
 from ._progress import Progress, shown
-from ._robot import Robot
+from ._robot import Robot, native_of
 from .errors import ReachtubeError, SettingError
+
+
+#: Exponents are bytes.
+MOST_ORDER = 255
 
 
 class Abstraction:
@@ -154,12 +158,16 @@ def abstract(
 
     Raises
     ------
+    SettingError
+        An argument that is not possible.
     ReachtubeError
         Where the mass matrix is singular, or polynomials of this order do not fit.
     """
     given = [] if expansion is None else numbers("expansion", expansion).ravel().tolist()
     radii = [] if box is None else numbers("box", box).ravel().tolist()
+    kind, power = whole("model", model, 1, 3), whole("order", order, 1, MOST_ORDER)
+    most = None if most_boxes is None else whole("most_boxes", most_boxes, 1)
     with shown(progress, "abstract") as tell:
         return Abstraction(
-            _reachtube.Abstraction(robot._native, model, order, given, radii, most_boxes, tell)
+            _reachtube.Abstraction(native_of(robot), kind, power, given, radii, most, tell)
         )

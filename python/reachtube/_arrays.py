@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import operator
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -60,12 +61,31 @@ def batch(n: int, **arguments: npt.ArrayLike) -> tuple[tuple[int, ...], list[Arr
     ]
 
 
-def vector(name: str, values: npt.ArrayLike, size: int) -> list[float]:
-    """Return one number for each of `size` entries."""
-    array = numbers(name, values)
-    if array.shape != (size,):
-        raise SettingError(f"{name} has the shape {array.shape}, but ({size},) is needed")
-    return [float(value) for value in array]
+def whole(name: str, value: int, least: int = 0, most: int = 2**63 - 1) -> int:
+    """Return a whole number between two bounds."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        kind = type(value).__name__
+        raise SettingError(f"{name} is {value!r} of type {kind}; give a whole number") from None
+    if not least <= number <= most:
+        raise SettingError(f"{name} is {number}; give {least} to {most}")
+    return number
+
+
+def real(name: str, value: float) -> float:
+    """Return one real number."""
+    array = numbers(name, value)
+    if np.ndim(value) > 0:
+        raise SettingError(f"{name} has the shape {array.shape}; give one number")
+    return float(array[0])
+
+
+def label(name: str, value: str | None) -> str | None:
+    """Return a name, or nothing."""
+    if value is not None and not isinstance(value, str):
+        raise SettingError(f"{name} is {value!r} of type {type(value).__name__}; give a text")
+    return value
 
 
 def frozen(array: Array) -> Array:
@@ -78,7 +98,11 @@ def names(values: str | Sequence[str] | None) -> list[str]:
     """Return a list of names; one name may stand alone."""
     if values is None:
         return []
-    return [values] if isinstance(values, str) else [str(value) for value in values]
+    if isinstance(values, str):
+        return [values]
+    if not isinstance(values, Iterable) or not all(isinstance(value, str) for value in values):
+        raise SettingError(f"{values!r} is no name and no list of names")
+    return list(values)
 
 
 def array_of(values: Any) -> Array:

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from ._arrays import Array, array_of
+from ._values import Values
 
 
 @dataclass(frozen=True, eq=False)
-class Box:
+class Box(Values):
     """A box: all points between ``centre - radius`` and ``centre + radius``.
 
     Attributes
@@ -30,17 +31,6 @@ class Box:
     def upper(self) -> Array:
         """Upper bounds, to rounding: the box is defined by centre and radius."""
         return self.centre + self.radius
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Box):
-            return NotImplemented
-        return bool(
-            self.centre.tobytes() == other.centre.tobytes()
-            and self.radius.tobytes() == other.radius.tobytes()
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.centre.tobytes(), self.radius.tobytes()))
 
     @classmethod
     def _of(cls, record: dict[str, Any]) -> Box:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _reachtube
 from ._abstraction import Abstraction
 from ._arrays import names
-from ._model import Check, Model
+from ._model import Check, Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._robot import Robot
@@ -58,7 +58,7 @@ def conform(
     robot
         A robot, or an abstraction of one made by `abstract`.
     data
-        The recordings.
+        The recordings: a data set, runs, or the path of a folder as for `Recordings.open`.
     torque
         What the recorded torques are: ``"compensated"`` (the model's input: gravity and Coulomb
         friction are already subtracted), ``"motor"`` (motor torque at the output side of the
@@ -198,6 +198,6 @@ def check(
     with shown(progress, "check") as tell:
         return Check(
             _reachtube.check(
-                model._text, source(data), names(suites), differing(notion, until, max_gap), tell
+                text_of(model), source(data), names(suites), differing(notion, until, max_gap), tell
             )
         )

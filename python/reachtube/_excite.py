@@ -8,12 +8,17 @@ from typing import Any, Literal
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers
-from ._robot import Robot
+from ._arrays import Array, frozen, numbers, real, whole
+from ._robot import Robot, native_of
+from ._values import Values
+from .errors import SettingError
+
+#: Largest number of samples of a motion, and of harmonics of a joint.
+MOST_SAMPLES, MOST_HARMONICS = 10_000_000, 1000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Excitation:
+class Excitation(Values):
     """A periodic motion that excites a robot's parameters, within its joint limits.
 
     Attributes
@@ -87,22 +92,40 @@ def excite(
     starts, trials, seed
         Number of searches, of motions in each, and the seed.
     rate
-        Samples per second.
+        Samples per second; the period has 10 million samples at most.
+
+    Raises
+    ------
+    SettingError
+        An argument that is not possible.
     """
+    period, rate = real("period", period), real("rate", rate)
+    for name, value in {"period": period, "rate": rate}.items():
+        if not 0 < value < float("inf"):
+            raise SettingError(f"{name} is {value}; give a finite number above 0")
+    if period * rate > MOST_SAMPLES:
+        raise SettingError(
+            f"a period of {period} s at a rate of {rate} per second has {period * rate:g} "
+            f"samples; choose period and rate so that there are {MOST_SAMPLES} at most"
+        )
+    if criterion not in ("determinant", "condition"):
+        raise SettingError(f"criterion is {criterion!r}; give 'determinant' or 'condition'")
     limits = numbers("acceleration", acceleration).ravel().tolist()
     noise = numbers("torque_noise", torque_noise).ravel().tolist()
+    if len(noise) == 1:
+        noise *= robot.joints
     t, motion, condition, random = _reachtube.excite(
-        robot._native,
+        native_of(robot),
         period,
-        harmonics,
+        whole("harmonics", harmonics, 1, MOST_HARMONICS),
         criterion == "condition",
-        margin,
-        speed,
+        real("margin", margin),
+        real("speed", speed),
         limits,
         noise,
-        starts,
-        trials,
-        seed,
+        whole("starts", starts, 1),
+        whole("trials", trials, 1),
+        whole("seed", seed),
         rate,
     )
     q, qd, qdd = (frozen(values) for values in motion)

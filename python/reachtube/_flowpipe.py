@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -10,13 +11,21 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers
+from ._arrays import Array, frozen, numbers, whole
 from ._polynomial import Number, Polynomial, variable_name
+from ._values import Values
 from .errors import SettingError
 
 
+#: Largest number of variables whose vertices are tried, all 2^v, and of pieces.
+MOST_VERTEX_VARIABLES, MOST_PIECES = 24, 1_000_000
+
+#: Exponents are bytes, and so is the order of Taylor models.
+MOST_EXPONENT = 255
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Flowpipe:
+class Flowpipe(Values):
     """The reachable set of a polynomial system: a box at each sample and over each step.
 
     Outer, with directed rounding: every solution from a state in the initial set, under any input
@@ -27,7 +36,7 @@ class Flowpipe:
     states
         Names of the states, N.
     t : array of shape (K,)
-        Times, s; they end early where ``ended`` says so.
+        Times since the first sample, s; they end early where ``ended`` says so.
     lower, upper : array of shape (K, N)
         Bounds at samples.
     step_lower, step_upper : array of shape (K - 1, N)
@@ -50,10 +59,6 @@ class Flowpipe:
         """Whether the flowpipe reached the last sample."""
         return self.ended is None
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return everything as a new dictionary."""
-        return dict(vars(self))
-
     def to_pandas(self) -> Any:
         """Return one row for each sample: t, then lower and upper bound of each state."""
         import pandas
@@ -63,17 +68,6 @@ class Flowpipe:
             columns[f"{name}_lower"] = self.lower[:, i]
             columns[f"{name}_upper"] = self.upper[:, i]
         return pandas.DataFrame(columns)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Flowpipe):
-            return NotImplemented
-        return all(
-            np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
-            for a, b in zip(vars(self).values(), vars(other).values(), strict=True)
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.states, self.lower.tobytes(), self.upper.tobytes()))
 
     def __repr__(self) -> str:
         end = "" if self.ended is None else f", ended at {self.ended[0]:g} s"
@@ -103,9 +97,19 @@ def _terms(
     order += [(states[i], kind) for kind in ("sin", "cos") for i in angles]
     place = {factor: k for k, factor in enumerate(order)}
 
+    for name, rate in zip(states, polynomials, strict=True):
+        if not all(map(math.isfinite, rate.terms.values())):
+            raise SettingError(f"the rate of {name} is {rate}; coefficients must be finite")
+
     def exponents(monomial: Any) -> list[int]:
         powers = [0] * len(order)
         for factor, exponent in monomial:
+            if exponent > MOST_EXPONENT:
+                name = f"{factor[0]}" if factor[1] == "x" else f"{factor[1]} {factor[0]}"
+                raise SettingError(
+                    f"{name}^{exponent}: exponents are {MOST_EXPONENT} at most; substitute a "
+                    "variable for a power"
+                )
             powers[place[factor]] = exponent
         return powers
 
@@ -133,7 +137,10 @@ def _sides(sets: Mapping[str, Any], names: Sequence[str]) -> tuple[list[float], 
     for name in names:
         if name not in sets:
             raise SettingError(f"{name} has no initial value; give a number or an interval")
-        low, high = np.broadcast_to(numbers(name, sets[name]).ravel(), 2)
+        given = numbers(name, sets[name]).ravel()
+        if given.size > 2 or not np.isfinite(given).all():
+            raise SettingError(f"{name} is {given.tolist()}; give a finite number or an interval")
+        low, high = np.broadcast_to(given, 2)
         if not low <= high:
             raise SettingError(f"{name} is in [{low}, {high}]; the lower bound comes first")
         centre = float(low + (high - low) / 2)
@@ -215,7 +222,17 @@ def flowpipe(
         for name in sets
     ]
     rows = np.array(columns, dtype=np.float64).T.reshape(len(times), len(sets))
+    if method not in ("linearisation", "taylor"):
+        raise SettingError(f"method is {method!r}; give 'linearisation' or 'taylor'")
     parts = _names(pieces or {})
+    if unknown := sorted(set(parts) - set(named)):
+        raise SettingError(f"pieces: {', '.join(unknown)} is no state ({', '.join(named)})")
+    cut = [whole(f"pieces of {name}", parts.get(name, 1), 1) for name in named] if parts else []
+    if math.prod(cut) > MOST_PIECES:
+        raise SettingError(f"pieces makes {math.prod(cut)} pieces; give {MOST_PIECES} at most")
+    vertices = vertex_variables
+    if vertices is not None:
+        vertices = whole("vertex_variables", vertices, 0, MOST_VERTEX_VARIABLES)
     samples, steps, ended = _reachtube.flowpipe(
         len(sets),
         angles,
@@ -226,20 +243,18 @@ def flowpipe(
         np.ascontiguousarray(rows),
         input_centre,
         input_radius,
-        taylor_order if method == "taylor" else None,
-        vertex_variables,
-        order,
-        [int(parts.get(name, 1)) for name in named] if parts else [],
+        whole("taylor_order", taylor_order, 1, MOST_EXPONENT) if method == "taylor" else None,
+        vertices,
+        None if order is None else whole("order", order, 1),
+        cut,
     )
-    lower, upper = (frozen(values) for values in samples)
-    step_lower, step_upper = (frozen(values) for values in steps)
-    states = tuple(named)
+    states, count = tuple(named), len(samples[0])
     return Flowpipe(
         states,
-        frozen(times[: len(lower)] - times[0]),
-        lower,
-        upper,
-        step_lower,
-        step_upper,
+        frozen(times[:count] - times[0]),
+        frozen(samples[0]),
+        frozen(samples[1]),
+        frozen(steps[0]),
+        frozen(steps[1]),
         None if ended is None else (ended[0], states[ended[1]]),
     )

@@ -27,11 +27,9 @@ def verdict(is_good: bool, words: str) -> str:
 def rows_of_sets(model: Model) -> Iterator[tuple[str, str, str, float, float]]:
     """Yield set, entry, unit, centre and radius of all entries."""
     n = model.joints
-    kinds = [joint.get("type", "revolute") for joint in model._content["robot"]["joint"]]
-    lengths = ["m" if kind == "prismatic" else "rad" for kind in kinds]
-    units = lengths + [f"{unit}/s" for unit in lengths]
+    units = list(model.state_units)
     states = [f"q{j + 1}" for j in range(n)] + [f"qd{j + 1}" for j in range(n)]
-    forces = ["N" if kind == "prismatic" else "N m" for kind in kinds]
+    forces = ["N" if unit == "m" else "N m" for unit in units[:n]]
     inputs = [f"u{j + 1}" for j in range(n)]
     boxes = [("X0", states, units, model.initial_set), ("U", inputs, forces, model.input_set)]
     if model.noise_set is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -12,26 +12,38 @@ from typing import Any, TypeAlias
 from . import _reachtube
 from ._files import write_new
 from ._progress import Progress, shown
+from ._record import Record
 from ._recordings import Run
-from ._robot import Robot
-from .errors import ReachtubeError, ReachtubeWarning
+from ._robot import Robot, native_of
+from .errors import ReachtubeError, ReachtubeWarning, SettingError
 
 Logs: TypeAlias = "Sequence[Run | str | PathLike[str]] | Run | str | PathLike[str]"
 
 
-class Identification:
-    """A robot identified from recordings, with the quality of its fits and its validation."""
+class Identification(Record):
+    """A robot identified from recordings, with the quality of its fits and its validation.
 
-    __slots__ = ("_content", "_native")
+    It holds the texts that describe it: what the command prints as JSON, the robot file and the
+    page.
+    """
 
-    def __init__(self, native: _reachtube.Identification) -> None:
-        self._native = native
-        self._content: dict[str, Any] = json.loads(native.summary())
+    __slots__ = ()
+
+    @classmethod
+    def _of(cls, summary: str, robot: str, page: str) -> Identification:
+        return cls(json.dumps({"summary": summary, "robot": robot, "page": page}))
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        object.__setattr__(self, "_content", json.loads(self._content["summary"]))
+
+    def _kept(self, name: str) -> str:
+        return str(json.loads(self._text)[name])
 
     @property
     def robot(self) -> Robot:
         """The identified robot."""
-        return Robot(self._native.robot())
+        return Robot.from_dict(self._content["robot"])
 
     @property
     def warnings(self) -> list[str]:
@@ -41,16 +53,16 @@ class Identification:
     @property
     def parameters(self) -> list[dict[str, Any]]:
         """The identifiable combinations: name, value, standard error, ..."""
-        return list(self._content["parameters"])
+        return list(self.to_dict()["parameters"])
 
     @property
     def validation(self) -> list[dict[str, Any]]:
         """Errors of the predicted torque, for each recording that was kept back."""
-        return list(self._content["validation"])
+        return list(self.to_dict()["validation"])
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything as a new dictionary, with the keys of the command's JSON."""
-        content: dict[str, Any] = json.loads(self._native.summary())
+        content: dict[str, Any] = json.loads(self._kept("summary"))
         return content
 
     def to_pandas(self) -> Any:
@@ -62,11 +74,11 @@ class Identification:
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
         """Write the robot file, with standard errors. A file that exists is replaced with
         ``force=True`` only."""
-        write_new(Path(path), self._native.robot_toml(), force=force)
+        write_new(Path(path), self._kept("robot"), force=force)
 
     def report(self, path: str | PathLike[str], *, force: bool = False) -> Path:
         """Write the page about the identification, and return its path."""
-        write_new(Path(path), self._native.page(), force=force)
+        write_new(Path(path), self._kept("page"), force=force)
         return Path(path)
 
     def save_urdf(
@@ -80,7 +92,7 @@ class Identification:
         ReachtubeError
             Where `original` was not read from a URDF.
         """
-        texts = original._native.updated_urdf(self._native.robot())
+        texts = original._native.updated_urdf(self.robot._native)
         if texts is None:
             raise ReachtubeError(f"{original.name} was not read from a URDF; use save()")
         target = Path(path)
@@ -88,14 +100,21 @@ class Identification:
         write_new(target.with_suffix(".toml"), texts[1], force=force)
 
     def __repr__(self) -> str:
-        count, determined = len(self.parameters), self._content["determined"]
+        count, determined = len(self._content["parameters"]), self._content["determined"]
         name = self._content["robot"]["name"]
         return f"<Identification of {name}: {determined} of {count} combinations determined>"
 
 
 def _recorded(logs: Logs) -> tuple[list[str], list[_reachtube.Run]]:
     """Return paths and runs."""
-    items = [logs] if isinstance(logs, (Run, str, PathLike)) else list(logs)
+    items = [logs] if isinstance(logs, (Run, str, PathLike)) else logs
+    if not isinstance(items, Iterable):
+        raise SettingError(f"recordings are of type {type(logs).__name__}; give runs or paths")
+    items = list(items)
+    for item in items:
+        if not isinstance(item, (Run, str, PathLike)):
+            kind = type(item).__name__
+            raise SettingError(f"a recording is of type {kind}; give runs or paths")
     paths = [fspath(item) for item in items if not isinstance(item, Run)]
     return paths, [item._native for item in items if isinstance(item, Run)]
 
@@ -151,6 +170,9 @@ def identify(
             toml = Path(settings).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise ReachtubeError(f"{settings}: {error}") from None
+    for name, section in {"prepare": prepare, "model": model}.items():
+        if not isinstance(section or {}, Mapping):
+            raise SettingError(f"{name} is {section!r}; give settings by their names")
     own = dict(model or {})
     if link_torque:
         own["motor_inertia"] = False
@@ -161,8 +183,8 @@ def identify(
         paths, runs = _recorded(logs)
         recorded.append(([str(here / path) for path in paths], runs))
     with shown(progress, "identify") as tell:
-        found = Identification(
-            _reachtube.identify(robot._native, recorded, toml, given, str(folder), tell)
+        found = Identification._of(
+            *_reachtube.identify(native_of(robot), recorded, toml, given, str(folder), tell)
         )
     for warning in found.warnings:
         warnings.warn(warning, ReachtubeWarning, 2)

@@ -12,7 +12,7 @@ from ._box import Box
 from ._files import write_new
 from ._record import Record
 from ._robot import Robot
-from .errors import ModelFileError, ReachtubeError
+from .errors import ModelFileError, ReachtubeError, SettingError
 
 
 class Model(Record):
@@ -142,6 +142,13 @@ class Model(Record):
         """The number of joints n."""
         return len(self._content["input_set"]["centre"])
 
+    @property
+    def state_units(self) -> tuple[str, ...]:
+        """The units of the states, 2n: rad and rad/s, or m and m/s for prismatic joints."""
+        kinds = [joint.get("type", "revolute") for joint in self._content["robot"]["joint"]]
+        lengths = ["m" if kind == "prismatic" else "rad" for kind in kinds]
+        return (*lengths, *(f"{unit}/s" for unit in lengths))
+
     def _number(self, name: str) -> float | None:
         value = self._content.get(name)
         return None if value is None else float(value)
@@ -164,6 +171,14 @@ class Model(Record):
 
     def _repr_html_(self) -> str:
         return _html.model(self)
+
+
+def text_of(model: Model) -> str:
+    """Return the text of a model."""
+    if not isinstance(model, Model):
+        kind = type(model).__name__
+        raise SettingError(f"the model is of type {kind}; give a Model, such as Model.load(PATH)")
+    return model._text
 
 
 class Check(Record):

@@ -45,7 +45,11 @@ class Polynomial:
         """Return a polynomial; a number is a constant one."""
         if isinstance(value, Polynomial):
             return value
-        return Polynomial({(): float(value)})
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            raise SettingError(f"{value!r} is no polynomial and no number") from None
+        return Polynomial({(): number})
 
     def __add__(self, other: Polynomial | Number) -> Polynomial:
         terms = dict(self._terms)
@@ -81,8 +85,8 @@ class Polynomial:
         return Polynomial({monomial: value / other for monomial, value in self._terms.items()})
 
     def __pow__(self, exponent: int) -> Polynomial:
-        if exponent != int(exponent) or exponent < 0:
-            raise SettingError(f"the exponent {exponent} is no whole number of 0 or more")
+        if not isinstance(exponent, (int, float)) or exponent < 0 or exponent % 1 != 0:
+            raise SettingError(f"the exponent {exponent!r} is no whole number of 0 or more")
         result = Polynomial.of(1.0)
         for _ in range(int(exponent)):
             result = result * self

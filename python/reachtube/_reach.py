@@ -15,14 +15,15 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, frozen, names
 from ._files import check_new
-from ._model import Model
+from ._model import Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._settings import Data, differing
+from ._values import Values
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ReachableSet:
+class ReachableSet(Values):
     """The reachable set along a suite, or along one run with a nominal motion of its own.
 
     Outer: at each sample and over each step between samples, the bounds enclose every state that
@@ -35,11 +36,13 @@ class ReachableSet:
     t : array of shape (K,)
         Times since the first sample, s.
     nominal, lower, upper : array of shape (K, 2n)
-        The nominal motion, and the bounds at samples; rad and rad/s, q then q̇.
+        The nominal motion, and the bounds at samples; q then q̇.
     step_lower, step_upper : array of shape (K - 1, 2n)
         The bounds over the steps from one sample to the next.
     lost
         Where and why the set ended before its suite; ``None`` where it did not.
+    units
+        Units of the states, 2n: rad and rad/s, or m and m/s for prismatic joints.
     """
 
     suite: str
@@ -51,6 +54,7 @@ class ReachableSet:
     step_lower: Array
     step_upper: Array
     lost: dict[str, Any] | None
+    units: tuple[str, ...]
 
     @property
     def joints(self) -> int:
@@ -64,10 +68,6 @@ class ReachableSet:
         """
         return (self.lower <= states) & (states <= self.upper)
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return everything as a new dictionary."""
-        return dict(vars(self))
-
     def to_pandas(self) -> Any:
         """Return one row for each sample: t, then lower, nominal and upper of each state."""
         import pandas
@@ -79,17 +79,6 @@ class ReachableSet:
             parts = {"lower": self.lower, "nominal": self.nominal, "upper": self.upper}
             columns.update({f"{state}_{kind}": part[:, i] for kind, part in parts.items()})
         return pandas.DataFrame(columns)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, ReachableSet):
-            return NotImplemented
-        return all(
-            np.array_equal(a, b) if isinstance(a, np.ndarray) else a == b
-            for a, b in zip(vars(self).values(), vars(other).values(), strict=True)
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.suite, self.run, self.lower.tobytes(), self.upper.tobytes()))
 
     def __repr__(self) -> str:
         name = self.suite if self.run is None else f"{self.suite}, {self.run}"
@@ -120,7 +109,7 @@ def reach(
     """
     with shown(progress, "reach") as tell:
         found = _reachtube.reach(
-            model._text, source(data), names(suites), differing(None, until, max_gap), tell
+            text_of(model), source(data), names(suites), differing(None, until, max_gap), tell
         )
     return [
         ReachableSet(
@@ -133,6 +122,7 @@ def reach(
             frozen(steps[0]),
             frozen(steps[1]),
             None if lost is None else json.loads(lost),
+            model.state_units,
         )
         for suite, run, t, samples, steps, lost in found
     ]
@@ -173,7 +163,7 @@ def report(
     with shown(progress, "report") as tell:
         return Path(
             _reachtube.report(
-                model._text,
+                text_of(model),
                 source(data),
                 names(suites),
                 settings,

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 from os import PathLike, fspath
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers, samples
+from ._arrays import Array, frozen, label, numbers, samples, whole
 from .errors import SettingError
 
 
@@ -95,7 +95,9 @@ class Run:
     ) -> None:
         self._native = native
         self._arrays: list[Array | None] | None = None
-        self.suite, self.motion, self.name, self.order = suite, motion, name, order
+        self.suite, self.motion = label("suite", suite), label("motion", motion)
+        self.name = label("name", name)
+        self.order = None if order is None else whole("order", order, 1)
 
     @classmethod
     def _of(
@@ -230,10 +232,20 @@ class Recordings:
     __slots__ = ("_folder", "_index", "_native")
 
     def __init__(self, runs: Iterable[Run]) -> None:
-        named = [
-            (run._native, run.name or f"run {k}", run.suite, run.motion, run.order, None)
-            for k, run in enumerate(runs, 1)
-        ]
+        if isinstance(runs, (str, bytes, PathLike)):
+            raise SettingError(
+                f"{runs!r} is a path, not runs; Recordings.open({runs!r}) opens a folder"
+            )
+        named = []
+        for k, run in enumerate(_iterated(runs), 1):
+            if not isinstance(run, Run):
+                kind = type(run).__name__
+                raise SettingError(
+                    f"item {k} of the recordings is of type {kind}; give runs: "
+                    "Run(t, q, qd, tau, suite=...)"
+                )
+            name = run.name or f"run {k}"
+            named.append((run._native, name, run.suite, run.motion, run.order, None))
         self._set(_reachtube.Source.of_runs(named), None)
 
     @classmethod
@@ -265,13 +277,25 @@ class Recordings:
     def __len__(self) -> int:
         return len(self._index)
 
-    def __getitem__(self, index: int) -> Run:
-        place = range(len(self))[index]
+    @overload
+    def __getitem__(self, index: int) -> Run: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Run]: ...
+
+    def __getitem__(self, index: int | slice) -> Run | list[Run]:
+        if isinstance(index, slice):
+            return [self._run(place) for place in range(len(self))[index]]
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"there is no run {index}; there are {len(self)}")
+        return self._run(index % len(self))
+
+    def _run(self, place: int) -> Run:
         file, suite, motion, _, order, _ = self._index[place]
         return Run._of(self._native.read(place), suite, motion, file, order)
 
     def __iter__(self) -> Iterator[Run]:
-        return (self[k] for k in range(len(self)))
+        return (self._run(k) for k in range(len(self)))
 
     def __repr__(self) -> str:
         where = self._folder or "in memory"
@@ -283,9 +307,19 @@ class Recordings:
         return Recordings, (list(self),)
 
 
-def source(data: Recordings | Run | Iterable[Run]) -> _reachtube.Source:
+def _iterated(runs: object) -> Iterable[object]:
+    if not isinstance(runs, Iterable):
+        raise SettingError(
+            f"recordings are of type {type(runs).__name__}; give Recordings, runs or the path of "
+            "a folder"
+        )
+    return runs
+
+
+def source(data: Recordings | Run | Iterable[Run] | str | PathLike[str]) -> _reachtube.Source:
     """Return the native source of what a user gives as recordings."""
+    if isinstance(data, (str, PathLike)):
+        return Recordings.open(data)._native
     if isinstance(data, Recordings):
         return data._native
-    runs = [data] if isinstance(data, Run) else list(data)
-    return Recordings(runs)._native
+    return Recordings([data] if isinstance(data, Run) else data)._native

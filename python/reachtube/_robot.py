@@ -12,8 +12,24 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, batch
+from ._arrays import Array, batch, real
 from ._files import write_new
+from .errors import SettingError
+
+
+def native_of(robot: Robot) -> _reachtube.Robot:
+    """Return the native part of a robot."""
+    if not isinstance(robot, Robot):
+        kind = type(robot).__name__
+        raise SettingError(f"the robot is of type {kind}; give a Robot, such as Robot.load(PATH)")
+    return robot._native
+
+
+def _locks(lock: Mapping[str, float] | None) -> list[str]:
+    """Return locked joints as the command takes them."""
+    if not isinstance(lock or {}, Mapping):
+        raise SettingError(f"lock is {lock!r}; give the positions of joints by their names")
+    return [f"{joint}={real(joint, position)!r}" for joint, position in (lock or {}).items()]
 
 
 class Robot:
@@ -60,8 +76,7 @@ class Robot:
         ReachtubeError
             With file, line, joint and remedy.
         """
-        locks = [f"{joint}={position!r}" for joint, position in (lock or {}).items()]
-        return cls(_reachtube.Robot.load(fspath(path), None, None, locks))
+        return cls(_reachtube.Robot.load(fspath(path), None, None, _locks(lock)))
 
     @classmethod
     def from_urdf(
@@ -85,11 +100,17 @@ class Robot:
 
         Raises
         ------
+        SettingError
+            For a file whose name does not end with ``.urdf``.
         ReachtubeError
             With file, line, element and remedy.
         """
-        locks = [f"{joint}={position!r}" for joint, position in (lock or {}).items()]
-        return cls(_reachtube.Robot.load(fspath(path), base, tip, locks))
+        if not fspath(path).lower().endswith((".urdf", ".xacro")):
+            raise SettingError(
+                f"{fspath(path)}: the name of a URDF ends with .urdf; Robot.load reads robot files "
+                "in TOML and embedded robots"
+            )
+        return cls(_reachtube.Robot.load(fspath(path), base, tip, _locks(lock)))
 
     @classmethod
     def from_toml(cls, text: str, origin: str = "text") -> Robot:
@@ -99,7 +120,13 @@ class Robot:
     @classmethod
     def from_dict(cls, description: Mapping[str, Any]) -> Robot:
         """Make a robot of its description, as `to_dict` returns it."""
-        return cls(_reachtube.Robot.from_description(json.dumps(dict(description))))
+        if not isinstance(description, Mapping):
+            raise SettingError(f"the description is of type {type(description).__name__}")
+        try:
+            text = json.dumps(dict(description), allow_nan=False)
+        except (TypeError, ValueError) as error:
+            raise SettingError(f"the description: {error}") from None
+        return cls(_reachtube.Robot.from_description(text))
 
     def to_toml(self) -> str:
         """Return the text of a robot file."""

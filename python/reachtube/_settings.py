@@ -4,25 +4,31 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
+from os import PathLike
 from typing import Any, Literal, TypeAlias
 
+import numpy as np
 import numpy.typing as npt
 
 from ._abstraction import Abstraction
-from ._arrays import names, numbers
+from ._arrays import names, numbers, real, whole
 from ._recordings import Recordings, Run
-from ._robot import Robot
+from ._robot import Robot, native_of
 from .errors import SettingError
 
 Torque: TypeAlias = Literal["compensated", "motor", "link"]
 Notion: TypeAlias = Literal["hull", "phase-plane", "exact", "trace"]
 Group: TypeAlias = Literal["inertia", "viscous", "cubic", "coulomb", "warm-up", "payload"]
-Data: TypeAlias = "Recordings | Run | Iterable[Run]"
+
+#: Recordings: a data set, runs, or the path of a folder with its index.
+Data: TypeAlias = "Recordings | Run | Iterable[Run] | str | PathLike[str]"
 
 
 def _radii(name: str, values: npt.ArrayLike, joints: int) -> list[float]:
     """Return 2n numbers; two stand for all positions and all velocities."""
     given = numbers(name, values).ravel()
+    if not np.isfinite(given).all() or (given < 0).any():
+        raise SettingError(f"{name} is {given.tolist()}; give finite numbers of 0 or more")
     if given.size == 2:
         return [float(given[0])] * joints + [float(given[1])] * joints
     if given.size != 2 * joints:
@@ -34,9 +40,9 @@ def _limits(until: float | None, max_gap: float | None) -> dict[str, float]:
     """Return the limits of time that are given."""
     limits = {"until": until, "max_gap": max_gap}
     for name, value in limits.items():
-        if value is not None and not 0 < value < float("inf"):
+        if value is not None and not 0 < real(name, value) < float("inf"):
             raise SettingError(f"{name} is {value} s; it must be above 0")
-    return {name: value for name, value in limits.items() if value is not None}
+    return {name: float(value) for name, value in limits.items() if value is not None}
 
 
 def differing(notion: Notion | None, until: float | None, max_gap: float | None) -> str:
@@ -70,6 +76,8 @@ def of_conformance(
     max_gap: float | None = None,
 ) -> str:
     """Return the settings of `conform`."""
+    if not isinstance(robot, (Robot, Abstraction)):
+        native_of(robot)
     settings: dict[str, Any] = {
         "torque": torque,
         "disturbance": disturbance,
@@ -85,7 +93,8 @@ def of_conformance(
         if (model, order, expansion) != (1, 1, None):
             raise SettingError("model, order and expansion are those of the abstraction")
     else:
-        settings["abstraction"] = {"model": model, "order": order}
+        kind = whole("model", model, 1, 3)
+        settings["abstraction"] = {"model": kind, "order": whole("order", order, 1, 255)}
         if expansion is not None:
             settings["expansion"] = numbers("expansion", expansion).ravel().tolist()
     for name, value, key in [("weights", weights, "given"), ("noise", noise, "fixed")]:
@@ -98,6 +107,9 @@ def of_conformance(
     if explain is None:
         settings["explain"] = None
     elif explain != "default":
-        settings["explain"] = {"position": explain[0], "velocity": explain[1]}
+        both = numbers("explain", explain).ravel()
+        if both.size != 2:
+            raise SettingError(f"explain is {explain!r}; give two tolerances, rad and rad/s")
+        settings["explain"] = {"position": float(both[0]), "velocity": float(both[1])}
     settings.update(_limits(until, max_gap))
     return json.dumps(settings)

@@ -7,26 +7,21 @@ order. So the model is the same to the last bit on one machine and on any number
 
 from __future__ import annotations
 
-import functools
-import hashlib
-import io
-import json
-from collections.abc import Mapping
-from dataclasses import dataclass
+import inspect
+from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
-from . import _reachtube
 from ._abstraction import Abstraction
 from ._conform import told
-from ._manifest import Recording, in_order, read_manifest, write_manifest
-from ._model import Check, Model
+from ._jobs import Job, Part, fleet_of, fold_of, on_dask
+from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
+from ._model import Check, Model, text_of
+from ._points import Points
 from ._progress import Progress, shown
 from ._robot import Robot
 from ._settings import Torque, differing, of_conformance
-from ._store import read, write
 from .errors import ReachtubeError, SettingError
-from .io import _run_of_columns
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -35,132 +30,21 @@ __all__ = ["Recording", "check", "conform", "read_manifest", "write_manifest"]
 
 OnDefect: TypeAlias = Literal["raise", "report"]
 
-#: How many folds merge at once.
-GROUP = 8
-
-
-@dataclass(frozen=True)
-class _Job:
-    """What every task of a job needs: the text of a robot, abstraction or model, and settings."""
-
-    kind: Literal["robot", "abstraction", "model"]
-    text: str
-    settings: str
-
-    def digest(self) -> str:
-        parts = json.dumps([self.kind, self.text, self.settings])
-        return hashlib.sha256(parts.encode()).hexdigest()
-
-
-class _Part(NamedTuple):
-    """The recordings of a task: their places in the manifest, and where they are."""
-
-    rows: list[tuple[int, Recording]]
-    base: str
-    storage: dict[str, Any]
-    resume: str | None
-    summaries: str | None
-
-
-@functools.lru_cache(maxsize=4)
-def _fleet(job: _Job) -> _reachtube.Fleet:
-    """Return the native part of a job, which a worker makes once."""
-    if job.kind == "model":
-        return _reachtube.Fleet.to_check(job.text, job.settings)
-    if job.kind == "robot":
-        robot = _reachtube.Robot.from_description(job.text)
-        return _reachtube.Fleet.to_conform(robot, None, job.settings)
-    model = _reachtube.Abstraction.parse(job.text, "abstraction")
-    return _reachtube.Fleet.to_conform(None, model, job.settings)
-
-
-def _take(
-    fold: _reachtube.Fold, place: int, row: Recording, part: _Part
-) -> tuple[tuple[str, int, float] | None, list[str]]:
-    """Fold one recording; whatever is wrong with it is kept as its defect."""
-    entry = (place, row.file, row.suite, row.motion, row.order or 0, row.sha256)
-    address = row.file if "://" in row.file or row.file.startswith("/") else part.base + row.file
-    content = read(address, part.storage)
-    if content is None:
-        return fold.take_defect(entry, "there is no such file", "restore it, or leave it out")
-    if not row.file.endswith(".parquet"):
-        return fold.take_csv(entry, content)
-    found = hashlib.sha256(content).hexdigest()
-    if row.sha256 is not None and row.sha256.lower() != found:
-        problem = f"its SHA-256 is {found}, but the manifest says {row.sha256}"
-        return fold.take_defect(entry, problem, "restore the file, or write the manifest again")
-    from pyarrow import ArrowInvalid, parquet
-
-    try:
-        table = parquet.read_table(io.BytesIO(content))
-        columns = {name: table.column(name).to_numpy() for name in table.column_names}
-        run = _run_of_columns(row.file, columns, None, row.suite, row.motion)
-    except (ReachtubeError, ArrowInvalid) as error:
-        return fold.take_defect(entry, str(error), "record it again, or leave it out")
-    return fold.take_run(entry, run._native)
-
-
-def _fold(job: _Job, part: _Part) -> bytes:
-    """Fold the recordings of a task, or take what an earlier job finished."""
-    store = None
-    if part.resume is not None:
-        rows = json.dumps([job.digest(), part.rows]).encode()
-        store = f"{part.resume}{hashlib.sha256(rows).hexdigest()}.fold"
-        known = read(store, part.storage)
-        if known is not None:
-            try:
-                _fleet(job).merge([known])
-                return known
-            except ReachtubeError:
-                pass
-    fold = _fleet(job).fold()
-    summaries: list[dict[str, Any]] = []
-    for place, row in part.rows:
-        summary, defects = _take(fold, place, row, part)
-        if part.summaries is not None:
-            sha256, samples, duration = summary or (None, None, None)
-            numbers = {"sha256": sha256, "samples": samples, "duration": duration}
-            labels = {"place": place, "file": row.file, "suite": row.suite, "motion": row.motion}
-            summaries.append({**labels, **numbers, "defects": "\n".join(defects)})
-    content = fold.to_bytes()
-    if part.summaries is not None:
-        _write_summaries(part, summaries)
-    if store is not None:
-        write(store, content, part.storage)
-    return content
-
-
-def _write_summaries(part: _Part, rows: list[dict[str, Any]]) -> None:
-    """Write what was read of each recording as one Parquet file of a data set."""
-    import pyarrow
-    from pyarrow import parquet
-
-    text, whole = pyarrow.string(), pyarrow.int64()
-    kinds = {"place": whole, "file": text, "suite": text, "motion": text, "sha256": text}
-    kinds |= {"samples": whole, "duration": pyarrow.float64(), "defects": text}
-    buffer = io.BytesIO()
-    parquet.write_table(
-        pyarrow.Table.from_pylist(rows, schema=pyarrow.schema(list(kinds.items()))), buffer
-    )
-    name = f"{part.summaries}{rows[0]['place']:012d}.parquet"
-    write(name, buffer.getvalue(), part.storage)
-
-
-def _merge(job: _Job, parts: list[bytes]) -> bytes:
-    return _fleet(job).merge(parts)
-
+Robots: TypeAlias = "str | Sequence[str | None] | None"
 
 def _parts(
     manifest: str | PathLike[str],
     size: int,
     storage: Mapping[str, Any] | None,
     folders: tuple[str | PathLike[str] | None, str | PathLike[str] | None],
-) -> list[_Part]:
+    robots: Robots,
+) -> list[Part]:
     """Return the recordings of each task."""
     if size < 1:
         raise SettingError(f"runs_per_task is {size}; give 1 or more")
     address, options = fspath(manifest), dict(storage or {})
-    all_rows = in_order(read_manifest(address, storage_options=options))
+    listed = list(enumerate(read_manifest(address, storage_options=options)))
+    all_rows = in_order(of_robots(listed, robots, address))
     # A fold is as large as its suites: a task takes few of them, and its neighbours the same.
     all_rows.sort(key=lambda numbered: numbered[1].suite)
     if not all_rows:
@@ -170,15 +54,15 @@ def _parts(
         None if folder is None else fspath(folder).rstrip("/") + "/" for folder in folders
     )
     return [
-        _Part(all_rows[first : first + size], head + slash, options, resume, summaries)
+        Part(all_rows[first : first + size], head + slash, options, resume, summaries)
         for first in range(0, len(all_rows), size)
     ]
 
 
 def _folded(
-    job: _Job, parts: list[_Part], client: Client | None, progress: Progress, what: str
-) -> bytes:
-    """Return the fold of all parts."""
+    job: Job, parts: list[Part], client: Client | None, progress: Progress, what: str
+) -> tuple[bytes, Points]:
+    """Return the fold of all parts, and their points."""
     with shown(progress, what) as tell:
 
         def count(done: int) -> None:
@@ -186,41 +70,14 @@ def _folded(
                 tell(done, len(parts), [])
 
         if client is not None:
-            return _on_dask(job, parts, client, count)
-        whole = _fleet(job).fold()
+            content, last = on_dask(job, parts, client, count)
+            return content, Points(job, parts, client, last)
+        whole = fleet_of(job).fold()
         for done, part in enumerate(parts, 1):
-            whole.merge(_fleet(job), _fold(job, part))
+            whole.merge(fleet_of(job), fold_of(job, part))
             count(done)
-        return whole.to_bytes()
-
-
-def _on_dask(job: _Job, parts: list[_Part], client: Any, count: Any) -> bytes:
-    """Fold the parts on workers, and merge them as a tree."""
-    from distributed import as_completed
-
-    shared = client.scatter(job, broadcast=True, hash=False)
-    # Workers that end are replaced, and what they held is folded again.
-    folds = [client.submit(_fold, shared, part, pure=False, retries=3) for part in parts]
-    every = list(folds)
-    level = folds
-    while len(level) > 1:
-        groups = [level[first : first + GROUP] for first in range(0, len(level), GROUP)]
-        level = [client.submit(_merge, shared, group, pure=False, retries=3) for group in groups]
-        every += level
-    # A fold is let go of when it is merged.
-    [last] = level
-    done = 0
-    try:
-        waiting: Any = as_completed(folds)  # type: ignore[no-untyped-call]
-        del folds, every[:-1]
-        for _ in waiting:
-            done += 1
-            count(done)
-        content: bytes = last.result()
-        return content
-    except BaseException:
-        client.cancel([last], force=True)
-        raise
+        content = whole.to_bytes()
+        return content, Points(job, parts, None, content)
 
 
 def conform(
@@ -228,6 +85,7 @@ def conform(
     manifest: str | PathLike[str],
     *,
     torque: Torque,
+    robots: Robots = None,
     client: Client | None = None,
     runs_per_task: int = 1000,
     on_defect: OnDefect = "raise",
@@ -248,6 +106,9 @@ def conform(
         As for `reachtube.conform`.
     manifest
         A Parquet file, in any store that fsspec opens; see `read_manifest`.
+    robots
+        Names in the manifest's column ``robot``, whose recordings are used. A manifest of several
+        robots is refused where none is chosen; ``None`` in a list stands for rows without a name.
     client
         A Dask client; this process does everything where none is given.
     runs_per_task
@@ -262,21 +123,31 @@ def conform(
     storage_options
         For fsspec.
     settings
-        The other settings of `reachtube.conform`, for the notion ``"hull"``.
+        The other settings of `reachtube.conform`. The notions ``"phase-plane"`` and ``"exact"``
+        of a linear model need all points: workers keep them, 24 n bytes for each sample of a
+        recording with n joints, and are asked in rounds.
 
     Returns
     -------
     Model
     """
+    known = inspect.signature(of_conformance).parameters
+    for name in settings:
+        if name not in known:
+            raise TypeError(f"fleet.conform() has no argument {name!r}")
     text = of_conformance(robot, torque=torque, **settings)
     if isinstance(robot, Abstraction):
-        job = _Job("abstraction", robot._native.to_json(), text)
+        job = Job("abstraction", robot._native.to_json(), text)
     else:
-        job = _Job("robot", robot._native.description(), text)
-    _fleet(job).fold()
-    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries))
-    whole = _folded(job, parts, client, progress, "fleet.conform")
-    found, notes = _fleet(job).conform(whole, on_defect == "report")
+        job = Job("robot", robot._native.description(), text)
+    fleet_of(job).fold()
+    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
+    whole, points = _folded(job, parts, client, progress, "fleet.conform")
+    ask = points.ask if fleet_of(job).asks_points() else None
+    try:
+        found, notes = fleet_of(job).conform(whole, on_defect == "report", ask)
+    finally:
+        points.close()
     return told(found, notes, 3)
 
 
@@ -284,6 +155,7 @@ def check(
     model: Model,
     manifest: str | PathLike[str],
     *,
+    robots: Robots = None,
     client: Client | None = None,
     runs_per_task: int = 1000,
     on_defect: OnDefect = "raise",
@@ -300,7 +172,7 @@ def check(
     ----------
     model
         The model.
-    manifest, client, runs_per_task, on_defect, resume, summaries, storage_options, progress
+    manifest, robots, client, runs_per_task, on_defect, resume, summaries, storage_options, progress
         As for `conform`.
     until, max_gap
         As for `reachtube.check`.
@@ -309,8 +181,12 @@ def check(
     -------
     Check
     """
-    job = _Job("model", model._text, differing("hull", until, max_gap))
-    _fleet(job).fold()
-    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries))
-    whole = _folded(job, parts, client, progress, "fleet.check")
-    return Check(_fleet(job).check(whole, on_defect == "report"))
+    job = Job("model", text_of(model), differing("hull", until, max_gap))
+    fleet_of(job).fold()
+    parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
+    whole, points = _folded(job, parts, client, progress, "fleet.check")
+    ask = points.ask if fleet_of(job).asks_points() else None
+    try:
+        return Check(fleet_of(job).check(whole, on_defect == "report", ask))
+    finally:
+        points.close()

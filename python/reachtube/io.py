@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
@@ -25,6 +26,20 @@ __all__ = ["bag", "hdf5", "npz", "parquet", "ros1"]
 log = logging.getLogger("reachtube")
 
 Path_ = str | PathLike[str]
+
+
+@contextmanager
+def _opened(path: Path_) -> Iterator[None]:
+    """Name the file where another library cannot read it."""
+    if not Path(path).exists():
+        raise ReachtubeError(f"{fspath(path)}: there is no such file")
+    try:
+        yield
+    except ReachtubeError:
+        raise
+    except Exception as error:
+        # Each library has exceptions of its own.
+        raise ReachtubeError(f"{fspath(path)}: it could not be read: {error}") from error
 
 
 def bag(
@@ -129,9 +144,12 @@ def _run_of_columns(
         for part, own in wanted.items()
     }
     times = numbers("t", columns["t"])
+    warm = [name for j in range(len(wanted["q"])) if (name := f"temp{j + 1}") in columns]
+    if joints is None and len(warm) == len(wanted["q"]):
+        parts["temp"] = np.column_stack([numbers(name, columns[name]) for name in warm])
     _check_finite(origin, {"t": times[:, None], **parts})
     return Run(times, parts["q"], parts["qd"], parts["tau"], name=Path(origin).name, suite=suite,
-               motion=motion)
+               motion=motion, temperature=parts.get("temp"))
 
 
 def _check_finite(origin: str, parts: Mapping[str, Array]) -> None:
@@ -177,7 +195,8 @@ def parquet(
     """
     from pyarrow import parquet as files
 
-    found = files.read_table(fspath(path))
+    with _opened(path):
+        found = files.read_table(fspath(path))
     columns = {name: found.column(name).to_numpy() for name in found.column_names}
     return _run_of_columns(fspath(path), columns, joints, suite, motion)
 
@@ -200,7 +219,7 @@ def npz(
     suite, motion
         Those of the run.
     """
-    with np.load(path, allow_pickle=False) as file:
+    with _opened(path), np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
     return _run_of_arrays(fspath(path), arrays, joints, suite, motion)
 
@@ -224,7 +243,7 @@ def hdf5(
     """
     import h5py
 
-    with h5py.File(path, "r") as file:
+    with _opened(path), h5py.File(path, "r") as file:
         if group not in file:
             raise ReachtubeError(f"{path}: there is no group {group}; there are {', '.join(file)}")
         found = file[group]
@@ -303,7 +322,7 @@ def ros1(
     origin = fspath(path)
     stamps: list[int] = []
     rows: list[tuple[Array, Array, Array]] = []
-    with AnyReader([Path(path)]) as reader:
+    with _opened(path), AnyReader([Path(path)]) as reader:
         connections = [known for known in reader.connections if known.topic == topic]
         if not connections:
             there = ", ".join(sorted({known.topic for known in reader.connections}))

@@ -59,8 +59,9 @@ def reachable_set(
             axis.plot(found.t[:count], values, color="tab:blue", alpha=0.6, linewidth=0.8)
         axis.set_title(f"joint {i % n + 1}" if i < n else "")
         axis.margins(x=0)
-    axes[0, 0].set_ylabel("q [rad]")
-    axes[1, 0].set_ylabel("qd [rad/s]")
+        # A label holds for the panels to its right, up to the next one.
+        if i % n == 0 or found.units[i] != found.units[i - 1]:
+            axis.set_ylabel(f"{'q' if i < n else 'qd'} [{found.units[i]}]")
     drawing.supxlabel("t [s]")
     return drawing
 

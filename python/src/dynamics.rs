@@ -67,6 +67,25 @@ pub fn over_states(robot: &Robot, arguments: &[Vec<f64>], width: usize, run: Ker
     results
 }
 
+/// Returns the torques of viscous and of Coulomb friction, count x n each, for q and q̇, each
+/// count x n.
+pub fn friction(robot: &Robot, arguments: &[Vec<f64>]) -> [Vec<f64>; 2] {
+    let n = robot.joint_count();
+    let mut torques = [vec![0.0; arguments[0].len()], vec![0.0; arguments[0].len()]];
+    let [viscous, coulomb] = &mut torques;
+    let size = (CHUNK * n).max(1);
+    let states = arguments[0].par_chunks(size).zip(arguments[1].par_chunks(size));
+    let results = viscous.par_chunks_mut(size).zip(coulomb.par_chunks_mut(size));
+    states.zip(results).for_each(|((q, qd), (viscous, coulomb))| {
+        for first in (0..q.len()).step_by(n) {
+            let [q, qd] = [&q[first..first + n], &qd[first..first + n]];
+            viscous[first..first + n].copy_from_slice(robot.viscous_torque(qd).as_slice());
+            coulomb[first..first + n].copy_from_slice(robot.coulomb_torque(q, qd).as_slice());
+        }
+    });
+    torques
+}
+
 /// Returns the regressor of the inertial parameters, count x n x parameters, for q, q̇ and q̈,
 /// each count x n.
 pub fn regressors(robot: &Robot, parameters: &[Parameter], motion: &[Vec<f64>]) -> Vec<f64> {

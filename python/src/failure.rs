@@ -110,6 +110,16 @@ impl From<reachtube::identify::Error> for Failure {
     }
 }
 
+impl From<reachtube::robot::RobotError> for Failure {
+    fn from(error: reachtube::robot::RobotError) -> Self {
+        let text = error.to_string();
+        match error {
+            reachtube::robot::RobotError::Setting(_) => Self::Setting(text),
+            _ => Self::Other(text),
+        }
+    }
+}
+
 /// Errors that have no class of their own in Python.
 macro_rules! others {
     ($($error:ty),* $(,)?) => {
@@ -124,7 +134,6 @@ macro_rules! others {
 others!(
     reachtube::Error,
     reachtube::reach::ReachError,
-    reachtube::robot::RobotError,
     reachtube_files::Error,
     reachtube_logs::Error,
 );

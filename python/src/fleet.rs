@@ -4,13 +4,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
-use reachtube::conform::{self as product, Fold, Hulls, Model, OnDefect, Problem, Setup};
-use reachtube::recordings::{Defect, DefectKind, RunEntry, parse_csv};
+use pyo3::pybacked::PyBackedBytes;
+use reachtube::conform::{
+    self as product, FleetProblem, Fold, Hulls, Model, Notion, OnDefect, Problem, Setup,
+};
+use reachtube::recordings::{Defect, DefectKind, ReadOptions, RunEntry, parse_csv};
 use serde_json::{Map, Value};
 
 use crate::abstraction::NativeAbstraction;
 use crate::conformance::{Basis, differing, setup};
 use crate::failure::{Failure, Result};
+use crate::points::{Asked, NativeFleetProblem, asking};
 use crate::recordings::NativeRun;
 use crate::robot::NativeRobot;
 use crate::watched::watched;
@@ -28,9 +32,9 @@ pub struct NativeFold {
     fold: Mutex<Fold>,
 }
 
-/// An entry of a manifest: its place, file, suite, motion, order, and the SHA-256 that the file
-/// should have.
-type Entry = (u64, String, String, Option<String>, u64, Option<String>);
+/// An entry of a manifest: its place, file, suite, motion, order, the SHA-256 that the file should
+/// have, and the temperature of all joints, °C.
+pub type Entry = (u64, String, String, Option<String>, u64, Option<String>, Option<f64>);
 
 /// SHA-256, number of samples and duration of a recording; or its defects.
 type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
@@ -38,14 +42,14 @@ type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
 /// The same as Python has it.
 type Taken = (Option<(String, usize, f64)>, Vec<String>);
 
-fn entry(row: &Entry) -> RunEntry {
-    let (index, file, suite, motion, order, sha256) = row.clone();
+pub fn entry(row: &Entry) -> RunEntry {
+    let (index, file, suite, motion, order, sha256, temperature) = row.clone();
     RunEntry {
         file,
         suite: Some(suite),
         motion,
         kind: None,
-        temperature: None,
+        temperature,
         sha256,
         order,
         line: index + 1,
@@ -97,13 +101,13 @@ impl NativeFleet {
     }
 
     /// Merges folds in any order.
-    fn merge(&self, py: Python<'_>, parts: Vec<Vec<u8>>) -> PyResult<Vec<u8>> {
+    fn merge(&self, py: Python<'_>, parts: Vec<PyBackedBytes>) -> PyResult<Vec<u8>> {
         let setup = Arc::clone(&self.setup);
         watched(py, None, move |_| Ok(merged(&setup, &parts)?.to_bytes()))
     }
 
     /// Returns how many recordings have no defect, how many have some, and their list for people.
-    fn count(&self, py: Python<'_>, fold: Vec<u8>) -> PyResult<(u64, u64, Vec<String>)> {
+    fn count(&self, py: Python<'_>, fold: PyBackedBytes) -> PyResult<(u64, u64, Vec<String>)> {
         let setup = Arc::clone(&self.setup);
         watched(py, None, move |_| {
             let fold = Fold::from_bytes(&setup, &fold)?;
@@ -112,38 +116,66 @@ impl NativeFleet {
         })
     }
 
-    /// Finds the smallest sets, and returns the model file's text and notes.
-    #[pyo3(signature = (fold, report, resume=None, progress=None))]
+    /// Returns whether single points count, which `conform` and `check` ask for.
+    fn asks_points(&self) -> bool {
+        self.setup.settings.notion != Notion::Hull
+    }
+
+    /// Prepares what every part needs to find its points.
+    fn problem(&self, py: Python<'_>, fold: PyBackedBytes) -> PyResult<NativeFleetProblem> {
+        let setup = Arc::clone(&self.setup);
+        watched(py, None, move |_| {
+            let fold = Fold::from_bytes(&setup, &fold)?;
+            let problem = FleetProblem::new((*setup).clone(), fold)?;
+            Ok(NativeFleetProblem { problem })
+        })
+    }
+
+    /// Finds the smallest sets, and returns the model file's text and notes. `ask` returns the
+    /// answer of all points to a question, both in bytes.
+    #[pyo3(signature = (fold, report, ask=None, resume=None, progress=None))]
     fn conform(
         &self,
         py: Python<'_>,
-        fold: Vec<u8>,
+        fold: PyBackedBytes,
         report: bool,
+        ask: Option<Py<PyAny>>,
         resume: Option<PathBuf>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(String, Vec<String>)> {
         let setup = Arc::clone(&self.setup);
-        watched(py, progress.as_ref(), move |watch| {
-            let problem = problem(&setup, &fold, report)?;
-            let found = product::conform(&problem, watch, resume.as_deref())?;
-            Ok((Model::new(&problem, &found).to_json(), problem.recordings().notes.clone()))
+        asking(ask, |server| {
+            watched(py, progress.as_ref(), move |watch| {
+                let problem = problem(&setup, &fold, report, server)?;
+                let found = product::conform(&problem, watch, resume.as_deref())?;
+                Ok((Model::new(&problem, &found).to_json(), problem.recordings().notes.clone()))
+            })
         })
     }
 
     /// Compares the recordings with the model's reachable sets, and returns the answer as JSON.
-    fn check(&self, py: Python<'_>, fold: Vec<u8>, report: bool) -> PyResult<String> {
+    #[pyo3(signature = (fold, report, ask=None))]
+    fn check(
+        &self,
+        py: Python<'_>,
+        fold: PyBackedBytes,
+        report: bool,
+        ask: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
         let (setup, model) = (Arc::clone(&self.setup), self.model.clone());
-        watched(py, None, move |_| {
-            let model = model.ok_or_else(|| Failure::Setting("there is no model".into()))?;
-            let problem = problem(&setup, &fold, report)?;
-            let hulls = Hulls::new(&problem, model.sets())?;
-            let check = product::check(&model, &problem, &hulls)?;
-            Ok(serde_json::to_string(&check).expect("a check has string keys"))
+        asking(ask, |server| {
+            watched(py, None, move |_| {
+                let model = model.ok_or_else(|| Failure::Setting("there is no model".into()))?;
+                let problem = problem(&setup, &fold, report, server)?;
+                let hulls = Hulls::new(&problem, model.sets())?;
+                let check = product::check(&model, &problem, &hulls)?;
+                Ok(serde_json::to_string(&check).expect("a check has string keys"))
+            })
         })
     }
 }
 
-fn merged(setup: &Setup, parts: &[Vec<u8>]) -> Result<Fold> {
+fn merged(setup: &Setup, parts: &[PyBackedBytes]) -> Result<Fold> {
     let mut parts = parts.iter().map(|part| Fold::from_bytes(setup, part));
     let first = parts.next().ok_or_else(|| Failure::Setting("there is no fold".into()))??;
     parts.try_fold(first, |mut all, part| {
@@ -152,11 +184,50 @@ fn merged(setup: &Setup, parts: &[Vec<u8>]) -> Result<Fold> {
     })
 }
 
-fn problem(setup: &Setup, fold: &[u8], report: bool) -> Result<Problem> {
+fn problem(
+    setup: &Setup,
+    fold: &[u8],
+    report: bool,
+    server: Option<Arc<Asked>>,
+) -> Result<Problem> {
     let fold = Fold::from_bytes(setup, fold)?;
     let on_defect = if report { OnDefect::Report } else { OnDefect::Refuse };
-    Ok(Problem::of_fold(setup.clone(), fold, on_defect)?)
+    let problem = Problem::of_fold(setup.clone(), fold, on_defect)?;
+    Ok(match server {
+        Some(server) => problem.with_points_elsewhere(server),
+        None => problem,
+    })
 }
+
+/// Reads the recording in the content of a CSV file.
+pub fn read_csv(row: &Entry, content: &[u8], options: &ReadOptions) -> Read {
+    let name = Path::new(&row.1);
+    let run = parse_csv(name, content, options)?;
+    match &row.5 {
+        Some(expected) if !expected.eq_ignore_ascii_case(&run.sha256) => {
+            let problem =
+                format!("its SHA-256 is {}, but the manifest says {expected}", run.sha256);
+            let remedy = "the file was changed or damaged: restore it, or write the manifest again";
+            Err(vec![Defect::new(name, None, problem, remedy).of_kind(DefectKind::File)])
+        }
+        _ => Ok(as_warm(row, run)),
+    }
+}
+
+/// Checks a recording in memory as one that is read.
+pub fn read_run(row: &Entry, run: &reachtube::Run, options: &ReadOptions) -> Read {
+    as_warm(row, run.clone()).checked(Path::new(&row.1), options)
+}
+
+/// Gives a run without temperatures that of the manifest.
+fn as_warm(row: &Entry, run: reachtube::Run) -> reachtube::Run {
+    let Some(temperature) = row.6.filter(|_| run.temperatures.is_empty()) else { return run };
+    let temperatures = vec![temperature; run.len() * run.joints];
+    run.with_temperatures(temperatures).expect("the manifest's temperature is finite")
+}
+
+/// A recording, or its defects.
+pub type Read = std::result::Result<reachtube::Run, Vec<Defect>>;
 
 impl NativeFold {
     fn lock(&self) -> MutexGuard<'_, Fold> {
@@ -193,27 +264,13 @@ impl NativeFold {
 impl NativeFold {
     /// Takes the recording in the content of a CSV file.
     fn take_csv(&self, py: Python<'_>, row: Entry, content: &[u8]) -> PyResult<Taken> {
-        let name = PathBuf::from(&row.1);
-        self.take(py, &row, |fold| {
-            let run = parse_csv(&name, content, &fold.read_options())?;
-            match &row.5 {
-                Some(expected) if !expected.eq_ignore_ascii_case(&run.sha256) => {
-                    let problem =
-                        format!("its SHA-256 is {}, but the manifest says {expected}", run.sha256);
-                    let remedy = "the file was changed or damaged: restore it, or write the \
-                                  manifest again";
-                    Err(vec![Defect::new(&name, None, problem, remedy).of_kind(DefectKind::File)])
-                }
-                _ => Ok(run),
-            }
-        })
+        self.take(py, &row, |fold| read_csv(&row, content, &fold.read_options()))
     }
 
     /// Takes a recording in memory.
     fn take_run(&self, py: Python<'_>, row: Entry, run: PyRef<'_, NativeRun>) -> PyResult<Taken> {
         let run = Arc::clone(&run.run);
-        let name = PathBuf::from(&row.1);
-        self.take(py, &row, |fold| (*run).clone().checked(&name, &fold.read_options()))
+        self.take(py, &row, |fold| read_run(&row, &run, &fold.read_options()))
     }
 
     /// Takes a recording that could not be read.

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
+use reachtube::identify::IdentifySettings;
 use reachtube::identify::prepare::LogEntry;
-use reachtube::identify::{Identification, IdentifySettings};
 use reachtube::recordings::column_names;
 use reachtube::report::write_identified_html;
 use reachtube::{Robot, Run};
@@ -16,10 +16,9 @@ use crate::recordings::NativeRun;
 use crate::robot::NativeRobot;
 use crate::watched::watched;
 
-#[pyclass(frozen, name = "Identification", module = "reachtube._reachtube")]
-pub struct NativeIdentification {
-    found: Arc<Identification>,
-}
+/// What Python keeps of an identification: what `reachtube identify --json` prints, the robot file
+/// with standard errors, and the report page.
+type Identified = (String, String, String);
 
 /// Recordings of one use: paths, and runs in memory.
 type Recorded<'py> = (Vec<PathBuf>, Vec<PyRef<'py, NativeRun>>);
@@ -66,7 +65,7 @@ fn settings(basis: Option<&str>, given: &str) -> Result<IdentifySettings> {
 }
 
 /// Identifies a robot from recordings at rest, of slow motions, of exciting motions, and of motions
-/// that validate it.
+/// that validate it; returns the texts of the result.
 #[pyfunction]
 #[pyo3(signature = (robot, recorded, toml, given, folder, progress=None))]
 pub fn identify(
@@ -77,12 +76,12 @@ pub fn identify(
     given: String,
     folder: PathBuf,
     progress: Option<Bound<'_, PyAny>>,
-) -> PyResult<NativeIdentification> {
+) -> PyResult<Identified> {
     let robot: Arc<Robot> = Arc::clone(&robot.robot);
     let recorded = recorded.map(|(paths, runs)| {
         (paths, runs.iter().map(|run| Arc::clone(&run.run)).collect::<Vec<_>>())
     });
-    let found = watched(py, progress.as_ref(), move |watch| {
+    watched(py, progress.as_ref(), move |watch| {
         let mut settings = settings(toml.as_deref(), &given)?;
         let files = tempfile::tempdir()
             .map_err(|error| Failure::Other(format!("no temporary folder: {error}")))?;
@@ -99,32 +98,11 @@ pub fn identify(
             }
         }
         let step = |done, total| watch.count(done, total);
-        Ok(reachtube::identify::identify(&robot, &settings, &folder, &step)?)
-    })?;
-    Ok(NativeIdentification { found: Arc::new(found) })
-}
-
-#[pymethods]
-impl NativeIdentification {
-    fn robot(&self, py: Python<'_>) -> PyResult<NativeRobot> {
-        let robot = Robot::from_description(&self.found.description);
-        robot.map(NativeRobot::new).map_err(|error| Failure::from(error).raised(py))
-    }
-
-    fn robot_toml(&self) -> String {
-        self.found.robot_toml()
-    }
-
-    /// Returns what `reachtube identify --json` prints.
-    fn summary(&self) -> String {
-        serde_json::to_string(&self.found.summary()).expect("a summary has string keys")
-    }
-
-    /// Returns the report page.
-    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        let found = reachtube::identify::identify(&robot, &settings, &folder, &step)?;
+        let summary = serde_json::to_string(&found.summary()).map_err(Failure::setting)?;
         let mut page = Vec::new();
-        write_identified_html(&self.found, &mut page)
-            .map_err(|error| Failure::Other(error.to_string()).raised(py))?;
-        Ok(String::from_utf8_lossy(&page).into_owned())
-    }
+        write_identified_html(&found, &mut page)
+            .map_err(|error| Failure::Other(error.to_string()))?;
+        Ok((summary, found.robot_toml(), String::from_utf8_lossy(&page).into_owned()))
+    })
 }

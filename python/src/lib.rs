@@ -11,6 +11,7 @@ mod fleet;
 mod flowpipe;
 mod identification;
 mod logs;
+mod points;
 mod recordings;
 mod robot;
 mod watched;
@@ -30,9 +31,11 @@ mod _reachtube {
     #[pymodule_export]
     use crate::flowpipe::flowpipe;
     #[pymodule_export]
-    use crate::identification::{NativeIdentification, identify};
+    use crate::identification::identify;
     #[pymodule_export]
     use crate::logs::read_log;
+    #[pymodule_export]
+    use crate::points::{NativeFleetProblem, NativePartPoints};
     #[pymodule_export]
     use crate::recordings::{NativeRun, NativeSource};
     #[pymodule_export]

@@ -7,7 +7,7 @@ use reachtube::Robot;
 use reachtube::robot::{Lock, Parameter, ParameterKind, Urdf, UrdfOptions};
 
 use crate::arrays::{Input, Output, array, values};
-use crate::dynamics::{Kernel, over_states, regressors};
+use crate::dynamics::{Kernel, friction, over_states, regressors};
 use crate::failure::{Failure, Result};
 
 /// A robot, and the URDF it was read from if there is one.
@@ -35,10 +35,11 @@ impl NativeRobot {
             let robot = Arc::new(urdf.robot().clone());
             return Ok(Self { robot, urdf: Some(Arc::new(urdf)) });
         }
+        let robot = Robot::load_locked(path, &locks)?;
         if base.is_some() || tip.is_some() {
             return Err(Failure::Setting("only a URDF has a base and a tip".into()));
         }
-        Ok(Self::new(Robot::load_locked(path, &locks)?))
+        Ok(Self::new(robot))
     }
 
     /// Runs an algorithm over states whose arguments are count x n each.
@@ -48,8 +49,8 @@ impl NativeRobot {
         arguments: &[(&str, &Input<'py>)],
         shape: &[usize],
         kernel: Kernel,
-    ) -> Result<Output<'py>> {
-        let (count, arguments) = self.arguments(arguments)?;
+    ) -> PyResult<Output<'py>> {
+        let (count, arguments) = self.arguments(py, arguments)?;
         let width = shape.iter().product();
         let robot = &*self.robot;
         let found = py.detach(|| over_states(robot, &arguments, width, kernel));
@@ -57,11 +58,16 @@ impl NativeRobot {
     }
 
     /// Returns the number of states, and the values of each argument.
-    fn arguments(&self, arguments: &[(&str, &Input<'_>)]) -> Result<(usize, Vec<Vec<f64>>)> {
+    fn arguments(
+        &self,
+        py: Python<'_>,
+        arguments: &[(&str, &Input<'_>)],
+    ) -> PyResult<(usize, Vec<Vec<f64>>)> {
         let count = arguments[0].1.as_array().shape().first().copied().unwrap_or(0);
         let shape = [count, self.robot.joint_count()];
         let all = arguments.iter().map(|(name, argument)| values(name, argument, &shape));
-        Ok((count, all.collect::<Result<_>>()?))
+        let all = all.collect::<Result<_>>().map_err(|failure| failure.raised(py))?;
+        Ok((count, all))
     }
 }
 
@@ -125,7 +131,6 @@ impl NativeRobot {
         self.run(py, &[("q", &q), ("qd", &qd), ("qdd", &qdd)], &[n], &|s, tau| {
             robot.rnea(&s.sin, &s.cos, &s.arguments[0], &s.arguments[1], &mut s.workspace, tau);
         })
-        .map_err(|failure| failure.raised(py))
     }
 
     fn aba<'py>(
@@ -140,7 +145,6 @@ impl NativeRobot {
         self.run(py, &[("q", &q), ("qd", &qd), ("tau", &tau)], &[n], &|s, qdd| {
             robot.aba(&s.sin, &s.cos, &s.arguments[0], &s.arguments[1], &mut s.workspace, qdd);
         })
-        .map_err(|failure| failure.raised(py))
     }
 
     fn mass_matrix<'py>(&self, py: Python<'py>, q: Input<'py>) -> PyResult<Output<'py>> {
@@ -149,7 +153,6 @@ impl NativeRobot {
         self.run(py, &[("q", &q)], &[n, n], &|s, m| {
             robot.crba(&s.sin, &s.cos, &mut s.workspace, m);
         })
-        .map_err(|failure| failure.raised(py))
     }
 
     fn gravity<'py>(&self, py: Python<'py>, q: Input<'py>) -> PyResult<Output<'py>> {
@@ -158,7 +161,6 @@ impl NativeRobot {
         self.run(py, &[("q", &q)], &[n], &|s, g| {
             robot.gravity(&s.sin, &s.cos, &mut s.workspace, g);
         })
-        .map_err(|failure| failure.raised(py))
     }
 
     fn coriolis<'py>(
@@ -172,7 +174,6 @@ impl NativeRobot {
         self.run(py, &[("q", &q), ("qd", &qd)], &[n], &|s, c| {
             robot.coriolis(&s.sin, &s.cos, &s.arguments[0], &mut s.workspace, c);
         })
-        .map_err(|failure| failure.raised(py))
     }
 
     /// Returns the torques of friction: viscous and Coulomb friction under the load of gravity.
@@ -182,17 +183,11 @@ impl NativeRobot {
         q: Input<'py>,
         qd: Input<'py>,
     ) -> PyResult<(Output<'py>, Output<'py>)> {
-        let found = self.arguments(&[("q", &q), ("qd", &qd)]).map(|(count, arguments)| {
-            let n = self.robot.joint_count();
-            let (mut viscous, mut coulomb) = (Vec::new(), Vec::new());
-            for k in 0..count {
-                let [q, qd] = [0, 1].map(|which: usize| &arguments[which][k * n..(k + 1) * n]);
-                viscous.extend(&self.robot.viscous_torque(qd));
-                coulomb.extend(&self.robot.coulomb_torque(q, qd));
-            }
-            (array(py, viscous, &[count, n]), array(py, coulomb, &[count, n]))
-        });
-        found.map_err(|failure| failure.raised(py))
+        let n = self.robot.joint_count();
+        let (count, arguments) = self.arguments(py, &[("q", &q), ("qd", &qd)])?;
+        let robot = &*self.robot;
+        let [viscous, coulomb] = py.detach(|| friction(robot, &arguments));
+        Ok((array(py, viscous, &[count, n]), array(py, coulomb, &[count, n])))
     }
 
     fn regressor<'py>(
@@ -202,8 +197,7 @@ impl NativeRobot {
         qd: Input<'py>,
         qdd: Input<'py>,
     ) -> PyResult<Output<'py>> {
-        let found = self.arguments(&[("q", &q), ("qd", &qd), ("qdd", &qdd)]);
-        let (count, motion) = found.map_err(|failure| failure.raised(py))?;
+        let (count, motion) = self.arguments(py, &[("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
         let parameters = self.inertial_parameters();
         let robot = &*self.robot;
         let found = py.detach(|| regressors(robot, &parameters, &motion));

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -68,3 +70,51 @@ def write_csv(folder: Path, recordings: list[rt.Run]) -> rt.Recordings:
         lines.append(f"{number}.csv,{run.suite},{run.motion}")
     (folder / "runs.csv").write_text("\n".join(lines) + "\n")
     return rt.Recordings.open(folder)
+
+
+#: The recordings of a fleet.
+SUITES, RUNS, SAMPLES = 2, 20, 30
+
+
+def recordings(folder: Path) -> list[rt.fleet.Recording]:
+    """Write runs that share their input, as CSV and Parquet files in turn."""
+    from pyarrow import Table, parquet
+
+    robot, random = rt.Robot.lwa4p(), np.random.default_rng(4)
+    t = 0.004 * np.arange(SAMPLES)
+    rows = []
+    for suite in range(SUITES):
+        q = 0.2 * np.sin(3 * t[:, None] + random.uniform(0, 1, 6))
+        qd = np.gradient(q, t, axis=0)
+        tau = robot.viscous_friction(qd) + robot.crba(np.zeros(6)).diagonal() * 0.3
+        for number in range(RUNS):
+            noise = 1e-3 * random.standard_normal((2, SAMPLES, 6))
+            run = rt.Run(t, q + noise[0], qd + noise[1], tau)
+            name = f"{suite}_{number}.{'parquet' if number % 5 == 0 else 'csv'}"
+            if name.endswith(".parquet"):
+                parquet.write_table(Table.from_pandas(run.to_pandas()), folder / name)
+            else:
+                lines = run.to_pandas().to_csv(index=False)
+                (folder / name).write_text(lines)
+            rows.append(rt.fleet.Recording(name, f"S{suite}", f"m{suite}"))
+    return rows
+
+
+@pytest.fixture(scope="module")
+def manifest(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("fleet")
+    rt.fleet.write_manifest(folder / "manifest.parquet", recordings(folder))
+    return folder / "manifest.parquet"
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    """Two workers, each a process of its own."""
+    distributed = pytest.importorskip("distributed")
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+        ) as cluster,
+        distributed.Client(cluster) as found,
+    ):
+        yield found

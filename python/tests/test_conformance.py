@@ -132,7 +132,7 @@ def test_settings_reach_the_product(robot: rt.Robot, data: rt.Recordings) -> Non
         ({"until": -1.0}, "until is -1.0 s"),
         ({"suites": ["Z"]}, 'no suite "Z"'),
         ({"fit": ["mass"]}, "fit: unknown variant `mass`"),
-        ({"model": 4}, "abstraction: "),
+        ({"model": 4}, "model is 4; give 1 to 3"),
         ({"order": 0}, "order"),
         ({"weights": [0.0, 1.0]}, "weight 1 is 0"),
     ],
@@ -161,6 +161,37 @@ def test_defects_name_file_line_and_joint(tmp_path: Path, robot: rt.Robot) -> No
     with pytest.raises(rt.DefectsError) as error:
         rt.Recordings.open(tmp_path)[0]
     assert (error.value.defects[0].line, error.value.defects[0].joint) == (3, 1)
+
+
+def test_the_path_of_a_folder_is_its_data_set(
+    robot: rt.Robot, data: rt.Recordings, model: rt.Model, tmp_path: Path
+) -> None:
+    folder = write_csv(tmp_path, list(data))
+    for path in (tmp_path, str(tmp_path)):
+        assert rt.check(model, path) == rt.check(model, folder)
+    with pytest.raises(rt.ReachtubeError, match=r"none.*runs\.csv.*give the folder"):
+        rt.check(model, tmp_path / "none")
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (42, "of type int; give Recordings, runs or the path of a folder"),
+        (None, "of type NoneType"),
+        ([1.0], r"item 1 of the recordings is of type float; give runs: Run\(t, q"),
+        (np.zeros((3, 6)), "item 1 .* of type ndarray"),
+    ],
+)
+def test_what_is_no_recording_is_named(model: rt.Model, given: object, words: str) -> None:
+    with pytest.raises(rt.SettingError, match=words):
+        rt.check(model, given)  # type: ignore[arg-type]
+    with pytest.raises(rt.SettingError, match=words):
+        rt.Recordings(given)  # type: ignore[arg-type]
+
+
+def test_a_path_is_opened_and_not_iterated() -> None:
+    with pytest.raises(rt.SettingError, match=r"is a path.*Recordings\.open\('folder'\)"):
+        rt.Recordings("folder")  # type: ignore[arg-type]
 
 
 def test_a_robot_with_other_joints_is_refused(data: rt.Recordings) -> None:

@@ -29,11 +29,10 @@ def test_algorithms_agree_with_each_other(robot: rt.Robot, shape: tuple[int, ...
     by_parts = np.einsum("...ij,...j->...i", mass, qdd) + robot.coriolis(q, qd) + robot.gravity(q)
     assert np.allclose(tau, by_parts, rtol=0, atol=1e-10)
     parameters = robot.regressor(q, qd, qdd) @ robot.parameter_values
-    gravity_apart = robot.to_dict()["joint"][0].get("gravity") is not None
-    if not gravity_apart:
-        expected = tau - robot.gravity(q)
-        still = robot.regressor(q, 0 * qd, 0 * qdd) @ robot.parameter_values
-        assert np.allclose(parameters - still, expected, rtol=0, atol=1e-9)
+    # This robot's gravity has parameters of its own, so that of its links is taken off.
+    still = robot.regressor(q, 0 * qd, 0 * qdd) @ robot.parameter_values
+    assert np.abs(tau - robot.gravity(q)).max() > 1.0
+    assert np.allclose(parameters - still, tau - robot.gravity(q), rtol=0, atol=1e-9)
 
 
 def test_each_state_is_computed_as_if_it_were_alone(robot: rt.Robot) -> None:
@@ -41,6 +40,12 @@ def test_each_state_is_computed_as_if_it_were_alone(robot: rt.Robot) -> None:
     together = robot.rnea(q, qd, qdd)
     alone = np.array([robot.rnea(*state) for state in zip(q, qd, qdd, strict=True)])
     assert np.array_equal(together, alone)
+    # More states than one core takes at once.
+    q, qd, _ = states(6, (600,))
+    together = np.hstack([robot.viscous_friction(qd), robot.coulomb_friction(q, qd)])
+    for k in (0, 255, 256, 599):
+        one = np.hstack([robot.viscous_friction(qd[k]), robot.coulomb_friction(q[k], qd[k])])
+        assert np.array_equal(together[k], one) and one.all()
 
 
 def test_arguments_are_broadcast(robot: rt.Robot) -> None:
@@ -63,6 +68,8 @@ def test_the_oracle_of_another_library_agrees(name: str) -> None:
     expected = np.array([state["rnea"] for state in record["states"]])
     assert len(expected) == 100 and np.abs(expected).max() > 10
     assert np.allclose(found, expected, rtol=1e-12, atol=1e-11)
+    by_parameters = robot.regressor(*states.values()) @ robot.parameter_values
+    assert np.allclose(by_parameters, robot.rnea(*states.values()), rtol=1e-12, atol=1e-11)
 
 
 def test_robots_are_values(robot: rt.Robot, tmp_path: object) -> None:
@@ -79,10 +86,19 @@ def test_robots_are_values(robot: rt.Robot, tmp_path: object) -> None:
     assert robot.joint_names[0] in repr(robot)
 
 
-def test_a_missing_or_wrong_robot_file_is_an_error_that_names_it() -> None:
+def test_a_missing_or_wrong_robot_file_is_an_error_that_names_it(tmp_path: object) -> None:
+    from pathlib import Path
+
     with pytest.raises(rt.ReachtubeError, match="no/such.urdf"):
         rt.Robot.from_urdf("no/such.urdf")
     with pytest.raises(rt.ReachtubeError, match="mine"):
         rt.Robot.from_toml("nonsense", "mine")
     with pytest.raises(rt.SettingError, match="base and a tip"):
         rt.Robot(rt._reachtube.Robot.load("lwa4p", "base"))
+    xacro = Path(str(tmp_path)) / "arm.urdf.xacro"
+    xacro.write_text("<robot/>")
+    with pytest.raises(rt.ReachtubeError, match=r"xacro \S*arm.urdf.xacro > \S*arm.urdf$"):
+        rt.Robot.from_urdf(xacro, base="world")
+    for path in ("arm.toml", "lwa4p"):
+        with pytest.raises(rt.SettingError, match=r"ends with \.urdf; Robot\.load"):
+            rt.Robot.from_urdf(path)

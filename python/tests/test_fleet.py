@@ -16,55 +16,11 @@ import pytest
 import reachtube as rt
 from reachtube import fleet
 
+from conftest import RUNS, SAMPLES, SUITES
+
 pytest.importorskip("pyarrow")
 pytest.importorskip("fsspec")
 distributed = pytest.importorskip("distributed")
-
-SUITES, RUNS, SAMPLES = 2, 20, 30
-
-
-def recordings(folder: Path) -> list[fleet.Recording]:
-    """Write runs that share their input, as CSV and Parquet files in turn."""
-    from pyarrow import Table, parquet
-
-    robot, random = rt.Robot.lwa4p(), np.random.default_rng(4)
-    t = 0.004 * np.arange(SAMPLES)
-    rows = []
-    for suite in range(SUITES):
-        q = 0.2 * np.sin(3 * t[:, None] + random.uniform(0, 1, 6))
-        qd = np.gradient(q, t, axis=0)
-        tau = robot.viscous_friction(qd) + robot.crba(np.zeros(6)).diagonal() * 0.3
-        for number in range(RUNS):
-            noise = 1e-3 * random.standard_normal((2, SAMPLES, 6))
-            run = rt.Run(t, q + noise[0], qd + noise[1], tau)
-            name = f"{suite}_{number}.{'parquet' if number % 5 == 0 else 'csv'}"
-            if name.endswith(".parquet"):
-                parquet.write_table(Table.from_pandas(run.to_pandas()), folder / name)
-            else:
-                lines = run.to_pandas().to_csv(index=False)
-                (folder / name).write_text(lines)
-            rows.append(fleet.Recording(name, f"S{suite}", f"m{suite}"))
-    return rows
-
-
-@pytest.fixture(scope="module")
-def manifest(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("fleet")
-    fleet.write_manifest(folder / "manifest.parquet", recordings(folder))
-    return folder / "manifest.parquet"
-
-
-@pytest.fixture(scope="module")
-def client() -> Iterator[Any]:
-    """Two workers, each a process of its own."""
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
-        ) as cluster,
-        distributed.Client(cluster) as found,
-    ):
-        yield found
-
 
 @pytest.fixture(scope="module")
 def alone(manifest: Path) -> rt.Model:
@@ -137,6 +93,28 @@ def test_a_worker_that_is_killed_changes_nothing(
     assert killed.wait(5) and found == alone
 
 
+def test_the_only_worker_is_killed_and_replaced(manifest: Path, alone: rt.Model) -> None:
+    killed: list[int] = []
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=None, processes=True
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+
+        def kill(done: int, total: int, words: list[str]) -> None:
+            # Everything that the job has so far is with this worker.
+            if done == 5 and not killed:
+                killed.extend(client.run(os.getpid).values())
+                os.kill(killed[0], signal.SIGKILL)
+
+        found = fleet.conform(
+            rt.Robot.lwa4p(), manifest, torque="compensated", client=client, runs_per_task=1,
+            progress=kill,
+        )
+    assert killed and found == alone
+
+
 def test_defects_are_named_or_left_out(manifest: Path, tmp_path: Path, client: Any) -> None:
     rows = [row._replace(file=str(manifest.parent / row.file))
             for row in fleet.read_manifest(manifest)]
@@ -186,6 +164,59 @@ def test_a_stopped_job_goes_on(manifest: Path, alone: rt.Model, tmp_path: Path) 
     assert finished[1].stat().st_mtime_ns == times[1]
 
 
+def test_the_recordings_of_one_robot_are_chosen(manifest: Path, tmp_path: Path) -> None:
+    rows = [row._replace(file=str(manifest.parent / row.file), robot=f"arm{k % 2}")
+            for k, row in enumerate(fleet.read_manifest(manifest))]
+    path, robot = tmp_path / "two.parquet", rt.Robot.lwa4p()
+    fleet.write_manifest(path, [*rows, rows[0]._replace(robot=None)])
+    with pytest.raises(rt.SettingError, match=r"arm0 \(20\), arm1 \(20\), no name \(1\).*robots=N"):
+        fleet.conform(robot, path, torque="compensated")
+    with pytest.raises(rt.SettingError, match="no recording is of robot 'arm2'"):
+        fleet.conform(robot, path, torque="compensated", robots=["arm0", "arm2"])
+    # The same recordings in a manifest of their own.
+    fleet.write_manifest(tmp_path / "one.parquet", [row for row in rows if row.robot == "arm1"])
+    one = fleet.conform(robot, tmp_path / "one.parquet", torque="compensated")
+    chosen = fleet.conform(robot, path, torque="compensated", robots="arm1")
+    assert chosen.cost == one.cost and chosen.proof["runs"] == 20
+    both = fleet.conform(robot, path, torque="compensated", robots=["arm0", "arm1"])
+    assert both.proof["runs"] == 40
+    assert not fleet.check(one, path, robots="arm0") and fleet.check(one, path, robots="arm1")
+
+
+def test_a_temperature_of_the_manifest_is_that_of_the_recording(
+    manifest: Path, tmp_path: Path
+) -> None:
+    import pandas
+
+    description = rt.Robot.lwa4p().to_dict()
+    for joint in description["joint"]:
+        law = {"by": "temperature", "reference": 20.0, "coulomb": 0.01, "viscous": 0.02}
+        joint["friction"]["warming"] = law
+    robot = rt.Robot.from_dict(description)
+    rows = [row._replace(file=str(manifest.parent / row.file), temperature=20.0 + 4.0 * k)
+            for k, row in enumerate(fleet.read_manifest(manifest)[:6])]
+    # As pandas writes it, where one is not known.
+    table = pandas.DataFrame([row._asdict() for row in rows])
+    table.loc[5, "temperature"] = float("nan")
+    table.to_parquet(tmp_path / "warm.parquet")
+    found = fleet.conform(robot, tmp_path / "warm.parquet", torque="compensated")
+    runs = []
+    for row in rows:
+        of_file = pandas.read_parquet if row.file.endswith(".parquet") else pandas.read_csv
+        columns = of_file(row.file)
+        parts = np.split(columns.to_numpy()[:, 1:], 3, axis=1)
+        warm = None if row is rows[5] else np.full(parts[0].shape, row.temperature)
+        labels = {"suite": row.suite, "motion": row.motion, "name": row.file}
+        runs.append(rt.Run(columns["t"], *parts, temperature=warm, **labels))
+    expected = rt.conform(robot, runs, torque="compensated")
+    assert names_left_out(found) == names_left_out(expected)
+    cold = fleet.conform(robot, manifest, torque="compensated", until=0.05, nominal="own")
+    assert cold.cost != found.cost
+    fleet.write_manifest(tmp_path / "hot.parquet", [rows[0]._replace(temperature=300.0)])
+    with pytest.raises(rt.ReachtubeError, match="row 0 .*temperature 300.0 °C"):
+        fleet.conform(robot, tmp_path / "hot.parquet", torque="compensated")
+
+
 def test_summaries_are_a_table(manifest: Path, tmp_path: Path) -> None:
     from pyarrow import parquet
 
@@ -217,8 +248,10 @@ def test_wrong_manifests_are_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(rt.ReachtubeError, match="row 0"):
         fleet.conform(robot, tmp_path / "empty.parquet", torque="motor")
-    with pytest.raises(rt.ReachtubeError, match="hull only"):
-        fleet.conform(robot, tmp_path / "empty.parquet", torque="motor", notion="exact")
+    with pytest.raises(rt.ReachtubeError, match="notion trace"):
+        fleet.conform(
+            robot, tmp_path / "empty.parquet", torque="motor", notion="trace", noise=[1.0, 1.0]
+        )
 
 
 @pytest.fixture

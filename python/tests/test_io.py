@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import importlib.util
 import subprocess
 import sys
@@ -161,6 +162,14 @@ def test_figures_are_drawn(model: rt.Model, data: rt.Recordings, tmp_path: Path)
     figure = plot.reachable_set(found, data, deviation=True)
     figure.savefig(tmp_path / "sets.png")
     assert len(figure.axes) == 12 and len(figure.axes[0].lines) == 1
+    assert [axis.get_ylabel() for axis in figure.axes if axis.get_ylabel()] == [
+        "q [rad]", "qd [rad/s]"
+    ]
+    # The second joint slides.
+    units = ("rad", "m", *found.units[2:7], "m/s", *found.units[8:])
+    figure = plot.reachable_set(dataclasses.replace(found, units=units))
+    labels = [axis.get_ylabel() for axis in figure.axes]
+    assert labels[:4] == ["q [rad]", "q [m]", "q [rad]", ""] and labels[7] == "qd [m/s]"
     axis = plot.flowpipe(found.lower, found.upper, 0, 6)
     axis.figure.savefig(tmp_path / "plane.png")
     assert (tmp_path / "plane.png").stat().st_size > 1000

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -67,6 +68,44 @@ def test_a_flowpipe_holds_sampled_trajectories() -> None:
     assert pickle.loads(pickle.dumps(found)) == found
 
 
+@pytest.fixture(scope="module")
+def values(robot: rt.Robot) -> list[Any]:
+    """Results of every kind that is made of arrays."""
+    x, y = rt.variables("x y")
+    pipe = rt.flowpipe({x: y, y: -x}, {x: (0.9, 1.1), y: 0.0}, [0.0, 0.1, 0.2])
+    lost = rt.flowpipe({x: x**2}, {x: (0.0, 2.0)}, np.linspace(0.0, 1.0, 11))
+    assert pipe.is_reached and not lost.is_reached
+    motion = rt.excite(robot, trials=2, starts=1)
+    box = rt.Box(np.array([0.0, 1.0]), np.array([0.5, 0.25]))
+    return [pipe, lost, motion, box]
+
+
+def test_results_of_arrays_are_values(values: list[Any]) -> None:
+    for index, value in enumerate(values):
+        again = pickle.loads(pickle.dumps(value))
+        assert again == value and hash(again) == hash(value) and type(again) is type(value)
+        assert [other == value for other in values] == [k == index for k in range(len(values))]
+        arrays = {name: part for name, part in again.to_dict().items() if hasattr(part, "dtype")}
+        assert len(arrays) >= 2
+        for name, array in arrays.items():
+            assert np.array_equal(array, value.to_dict()[name])
+            with pytest.raises(ValueError, match="read-only"):
+                array[...] = 0.0
+    assert values[1].ended == pickle.loads(pickle.dumps(values[1])).ended
+
+
+def test_bytes_of_other_results_are_refused(values: list[Any]) -> None:
+    pipe, motion = values[0].to_bytes(), values[2].to_bytes()
+    with pytest.raises(rt.ModelFileError, match="Flowpipe, version 1, but of .*Excitation"):
+        rt.Flowpipe.from_bytes(motion)
+    for wrong in (b"", b"nonsense", b"[]\n", pipe.replace(b'"version": 1', b'"version": 2')):
+        with pytest.raises(rt.ModelFileError, match="not those of a Flowpipe"):
+            rt.Flowpipe.from_bytes(wrong)
+    for damaged in (pipe[:-1], pipe[:-8], pipe + bytes(8), pipe.replace(b"upper", b"uper", 1)):
+        with pytest.raises(rt.ModelFileError, match="damaged"):
+            rt.Flowpipe.from_bytes(damaged)
+
+
 def test_taylor_models_and_pieces_are_tighter() -> None:
     x, y = rt.variables("x y")
     system = {x: y, y: (1 - x**2) * y - x}
@@ -116,6 +155,77 @@ def test_an_exciting_motion_stays_within_limits(robot: rt.Robot) -> None:
     assert (np.abs(found.qd).max(axis=0) > 0.1 * limits).any()
 
 
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"period": 1e300}, "period of 1e\\+300 s at a rate of 100.0 .*10000000 at most"),
+        ({"period": 0.0}, "period is 0.0; give a finite number above 0"),
+        ({"period": "long"}, "period has the type"),
+        ({"rate": float("inf")}, "rate is inf"),
+        ({"rate": -1.0}, "rate is -1.0"),
+        ({"rate": [1.0, 2.0]}, "rate has the shape"),
+        ({"harmonics": 1001}, "harmonics is 1001; give 1 to 1000"),
+        ({"harmonics": -1}, "harmonics is -1"),
+        ({"harmonics": 2.5}, "harmonics is 2.5 of type float"),
+        ({"seed": -1}, "seed is -1"),
+        ({"starts": 2**64}, "starts is 18446744073709551616"),
+        ({"margin": 1.5}, "margin = 1.5"),
+        ({"criterion": "trace"}, "criterion is 'trace'"),
+    ],
+)
+def test_wrong_settings_of_a_motion_are_named(
+    robot: rt.Robot, setting: dict[str, object], words: str
+) -> None:
+    with pytest.raises(rt.SettingError, match=words):
+        rt.excite(robot, **{"trials": 2, "starts": 1, **setting})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"order": -1}, "order is -1; give 1 to 255"),
+        ({"order": 2**40}, "order is 1099511627776"),
+        ({"order": 1.5}, "order is 1.5 of type float"),
+        ({"model": 4}, "model is 4; give 1 to 3"),
+        ({"most_boxes": -1, "box": [0.1, 0.1, 1.0]}, "most_boxes is -1"),
+    ],
+)
+def test_wrong_settings_of_an_abstraction_are_named(
+    robot: rt.Robot, setting: dict[str, object], words: str
+) -> None:
+    with pytest.raises(rt.SettingError, match=words):
+        rt.abstract(robot, **setting)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"pieces": {"x": 0}}, "pieces of x is 0"),
+        ({"pieces": {"x": 10**7}}, "10000000 pieces"),
+        ({"pieces": {"z": 2}}, "pieces: z is no state"),
+        ({"method": "taylor", "taylor_order": -1}, "taylor_order is -1"),
+        ({"method": "taylor", "taylor_order": 256}, "taylor_order is 256; give 1 to 255"),
+        ({"method": "tayler"}, "method is 'tayler'"),
+        ({"order": -2}, "order is -2"),
+        ({"vertex_variables": 25}, "vertex_variables is 25; give 0 to 24"),
+    ],
+)
+def test_wrong_settings_of_a_flowpipe_are_named(
+    setting: dict[str, Any], words: str
+) -> None:
+    x, y = rt.variables("x y")
+    with pytest.raises(rt.SettingError, match=words):
+        rt.flowpipe({x: y, y: -x}, {x: 1.0, y: 0.0}, [0.0, 0.1], **setting)
+
+
+def test_exponents_that_do_not_fit_are_named() -> None:
+    x, y = rt.variables("x y")
+    with pytest.raises(rt.SettingError, match=r"x\^256: exponents are 255 at most"):
+        rt.flowpipe({x: -(x**256)}, {x: 0.5}, [0.0, 0.1])
+    with pytest.raises(rt.SettingError, match="400"):
+        rt.flowpipe({x: -(x**200 * y**200), y: 0.0}, {x: 0.5, y: 0.5}, [0.0, 0.1])
+
+
 def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path: Path) -> None:
     found = rt.excite(robot, period=10.0, trials=100, starts=1, rate=250.0)
     t = np.concatenate([found.t, found.t[-1] + found.t[1:]])
@@ -143,6 +253,11 @@ def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path:
         warnings.simplefilter("ignore")
         by_file = rt.identify(robot, dynamic=tmp_path / "run.csv", model=model)
     assert by_file.robot == other
+    again = pickle.loads(pickle.dumps(result))
+    assert again == result != by_file and hash(again) == hash(result)
+    assert again.robot == other and again.to_dict() == result.to_dict()
+    with pytest.raises(rt.ModelFileError, match="not those"):
+        rt.Identification.from_bytes(b"nonsense")
     assert result.to_pandas().shape[0] == len(result.parameters)
     page = result.report(tmp_path / "identify.html")
     assert "<svg" in page.read_text(encoding="utf-8")

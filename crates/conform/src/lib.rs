@@ -55,7 +55,7 @@ pub use fitting::{
     FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, MOST_ERRORS, PullCost,
     TorquePrediction, UnseenMotion, fit,
 };
-pub use fold::{Fold, OnDefect};
+pub use fold::{FleetProblem, Fold, OnDefect, PartPoints, PartReader};
 pub use found::SearchSummary;
 pub use grids::{Grid, Grids};
 pub use growth::Growth;
@@ -74,6 +74,7 @@ pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use nominal::correction::{InputCorrection, JointCorrection};
 pub use notion::certificate::{CERTIFICATE_FORMAT, Certificate};
+pub use notion::elsewhere::PointServer;
 pub use notion::phase_plane::PhasePlane;
 pub use notion::verdict::{PointVerdict, PointWitness};
 pub use optimality::{LARGEST_GAP, optimality_gap};

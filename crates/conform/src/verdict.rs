@@ -231,11 +231,11 @@ fn judge_points(
 ) -> Result<PointVerdict> {
     let Judged { verdict, unproved } = judge(problem, hulls)?;
     suites.iter_mut().for_each(|suite| suite.points_unproved = Some(0));
-    for (suite, run) in unproved {
-        let (suite, run) = (&mut suites[suite], &problem.entry(run).file);
-        suite.points_unproved = suite.points_unproved.map(|count| count + 1);
-        if !suite.violating_runs.contains(run) {
-            suite.violating_runs.push(run.clone());
+    for (suite, run, points) in unproved {
+        let suite = &mut suites[suite];
+        suite.points_unproved = suite.points_unproved.map(|count| count + points);
+        if !suite.violating_runs.contains(&run) {
+            suite.violating_runs.push(run);
         }
     }
     Ok(verdict)

@@ -19,6 +19,17 @@ pub enum RobotError {
         /// The error of the operating system.
         source: std::io::Error,
     },
+    /// The file is a xacro file, from which a URDF is made.
+    #[error(
+        "robot `{}` is a xacro file, from which a URDF is made; make it first: xacro {} > {}",
+        path.display(), path.display(), urdf.display()
+    )]
+    Xacro {
+        /// The requested path.
+        path: PathBuf,
+        /// The path that the URDF might have.
+        urdf: PathBuf,
+    },
     /// The text is not TOML or XML, or a field is missing; the parser's message names line, column
     /// and field.
     #[error(

@@ -57,7 +57,14 @@ impl Robot {
         if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == name_or_path) {
             return Self::from_toml(text, name);
         }
-        Self::from_toml(&read_text(Path::new(name_or_path))?, name_or_path)
+        let path = Path::new(name_or_path);
+        let text = read_text(path)?;
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("xacro")) {
+            // `arm.xacro` and `arm.urdf.xacro` are both usual.
+            let urdf = path.with_extension("").with_extension("urdf");
+            return Err(RobotError::Xacro { path: path.into(), urdf });
+        }
+        Self::from_toml(&text, name_or_path)
     }
 
     /// Returns the Schunk LWA 4P as identified by Liu & Althoff (IROS 2018), Table III.
@@ -66,5 +73,27 @@ impl Robot {
     /// with these combinations. Gravity has parameters of its own.
     pub fn lwa4p() -> Self {
         Self::load("lwa4p").expect("the embedded description is valid")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_xacro_file_is_named_with_the_command_that_makes_a_urdf() {
+        let folder = std::env::temp_dir().join(format!("reachtube-xacro-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        for name in ["arm.xacro", "arm.urdf.xacro", "arm.XACRO"] {
+            let path = folder.join(name);
+            std::fs::write(&path, "<robot name=\"arm\"/>").unwrap();
+            let text = Robot::load(path.to_str().unwrap()).unwrap_err().to_string();
+            let urdf = folder.join("arm.urdf");
+            let command = format!("xacro {} > {}", path.display(), urdf.display());
+            assert!(text.contains("is a xacro file") && text.ends_with(&command), "{text}");
+        }
+        std::fs::remove_dir_all(&folder).unwrap();
+        let missing = Robot::load("none.xacro").unwrap_err();
+        assert!(matches!(missing, RobotError::Read { .. }));
     }
 }

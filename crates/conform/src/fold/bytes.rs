@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use sha2::{Digest, Sha256};
 
 use crate::error::{Error, Result};
@@ -22,7 +22,7 @@ const FORMAT: &[u8] = b"reachtube-fold";
 const VERSION: u32 = 1;
 
 /// A fold in bytes, after the format and its version and before their SHA-256.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 struct Stored {
     /// The digest of what the reading depends on.
     context: [u8; 32],
@@ -34,21 +34,45 @@ struct Stored {
     suites: Vec<(String, StoredSuite)>,
 }
 
+/// The same as it is written: a fold has many megabytes, so only one suite is copied at a time.
+#[derive(Serialize)]
+struct StoredRef<'a> {
+    context: [u8; 32],
+    most_bytes: usize,
+    runs: u64,
+    tree: &'a Tree,
+    defects: &'a Defects,
+    compared: &'a Option<(String, u64)>,
+    suites: Settled<'a>,
+}
+
+/// The suites of a fold without what is superfluous.
+struct Settled<'a>(&'a State);
+
+impl Serialize for Settled<'_> {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        let are_listed = self.0.are_listed();
+        out.collect_seq(self.0.suites.iter().map(|(name, suite)| {
+            let mut suite = suite.clone();
+            suite.settle(are_listed, true);
+            (name, StoredSuite::new(&suite))
+        }))
+    }
+}
+
 impl Fold {
     /// Returns the fold in bytes. Folds of the same recordings have the same bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut state = self.state.clone();
-        state.settle();
-        let suite = |(name, suite): (&String, &SuiteFold)| (name.clone(), StoredSuite::new(suite));
-        let stored = Stored {
+        let state = &self.state;
+        let stored = StoredRef {
             context: self.context.digest,
             most_bytes: state.most_bytes,
             runs: state.runs,
-            suites: state.suites.iter().map(suite).collect(),
-            tree: state.tree,
-            defects: state.defects,
-            compared: state.compared,
+            tree: &state.tree,
+            defects: &state.defects,
+            compared: &state.compared,
+            suites: Settled(state),
         };
         let header = [FORMAT, &VERSION.to_le_bytes()].concat();
         let mut bytes = postcard::to_extend(&stored, header).expect("every part can be written");

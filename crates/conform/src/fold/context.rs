@@ -32,11 +32,11 @@ impl Context {
     pub fn new(setup: &Setup) -> Result<Self> {
         let Setup { robot, settings, correction, .. } = setup;
         settings.validate(robot.joint_count())?;
-        if settings.notion != Notion::Hull {
+        let is_linear = setup.dynamics.linear_system().is_some();
+        if settings.notion == Notion::Trace || settings.notion != Notion::Hull && !is_linear {
             return Err(Error::Fold(
-                "its envelopes suffice for the notion hull only; the other notions need the \
-                 points of every recording: use --notion hull, or read the recordings on one \
-                 machine"
+                "the notion trace, and for models that are not linear every notion but the hull, \
+                 need whole recordings: use --notion hull, or read the recordings on one machine"
                     .into(),
             ));
         }

@@ -11,6 +11,9 @@ use crate::problem::input::{RunInput, SharedInput};
 use crate::problem::suite::{RunSummary, SAMPLE, sampled};
 use crate::problem::totals::Totals;
 
+/// Summaries of runs beyond the sample that may stay for a while.
+const SUPERFLUOUS: usize = SAMPLE / 4;
+
 /// Names that may be superfluous before they are looked through.
 const MOST_SUPERFLUOUS: usize = 256;
 
@@ -86,7 +89,7 @@ impl SuiteFold {
     pub fn settle(&mut self, are_listed: bool, now: bool) {
         let keeps_all = are_listed || self.whole.are_all();
         let marked = self.runs.values().filter(|run| !run.marks.is_empty()).count();
-        if now || marked.max(if keeps_all { 0 } else { self.runs.len() }) > 2 * SAMPLE {
+        if now || marked.max(if keeps_all { 0 } else { self.runs.len() }) > SAMPLE + SUPERFLUOUS {
             let sample: BTreeSet<usize> = sampled(self.runs.values()).map(|r| r.index).collect();
             let others = self.runs.values_mut().filter(|run| !sample.contains(&run.index));
             others.for_each(|run| run.marks.clear());

@@ -1,16 +1,19 @@
 //! The recorded points of a linear model: the deviations of all runs, sample by sample. And the
 //! projections in which points must lie in a set.
 
+use reachtube_recordings::Run;
 use reachtube_scalar::Interval;
+use serde::{Deserialize, Serialize};
 
 use crate::deviation::Nominal;
 use crate::error::Result;
+use crate::notion::ask::At;
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::settings::{Notion, States};
 
-/// The points of all runs at one sample of one grid.
-#[derive(Debug, Clone, Default)]
+/// The points of runs at one sample of one grid.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct SamplePoints {
     /// The grid.
     pub grid: usize,
@@ -18,8 +21,10 @@ pub(crate) struct SamplePoints {
     pub sample: usize,
     /// The deviations d = x_m(t_k) - x̂(t_k), points x 2n, rounded.
     pub values: Vec<f64>,
-    /// How far a deviation may be from its rounded value, 2n; the largest over the points.
-    pub error: Vec<f64>,
+    /// How far each deviation may be from its rounded value, points x 2n, rounded up.
+    pub errors: Vec<f32>,
+    /// The number of states, 2n.
+    pub states: usize,
     /// The suite, and the run (index in the source), of each point.
     pub owners: Vec<(u32, u32)>,
 }
@@ -27,12 +32,28 @@ pub(crate) struct SamplePoints {
 impl SamplePoints {
     /// Iterates over the points, 2n entries each.
     pub fn iter(&self) -> impl Iterator<Item = &[f64]> {
-        self.values.chunks_exact(self.error.len().max(1))
+        self.values.chunks_exact(self.states.max(1))
+    }
+
+    /// Returns whether values, errors and owners are those of the same points.
+    pub fn fits(&self) -> bool {
+        let count = self.owners.len() * self.states;
+        self.states > 0 && [self.values.len(), self.errors.len()] == [count; 2]
+    }
+
+    /// Returns grid and sample.
+    pub fn place(&self) -> At {
+        (self.grid as u32, self.sample as u32)
     }
 
     /// Returns a point, 2n entries.
     pub fn point(&self, index: usize) -> &[f64] {
-        &self.values[index * self.error.len()..][..self.error.len()]
+        &self.values[index * self.states..][..self.states]
+    }
+
+    /// Returns how far the deviation in state `state` of a point may be from its rounded value.
+    pub fn error(&self, index: usize, state: usize) -> f64 {
+        f64::from(self.errors[index * self.states + state])
     }
 
     /// Returns the point with the largest lᵀ d, and that value.
@@ -55,54 +76,81 @@ pub(crate) fn projections(notion: Notion, states: States, joints: usize) -> Vec<
 
 /// Collects the points of a problem whose model is linear, from the second sample of each grid on:
 /// at the first one the set is a box, and its hull is the set itself. The points of all runs stay
-/// in memory, 16 n bytes each.
+/// in memory, 24 n bytes each.
 ///
 /// # Guarantee
 ///
-/// Outer: the exact deviation lies within `error` of its point.
+/// Outer: the exact deviation lies within `errors` of its point.
 ///
 /// # Errors
 ///
 /// As [`Problem::grids`] and [`Problem::run`].
 pub(crate) fn points(problem: &Problem) -> Result<Vec<SamplePoints>> {
-    let (grids, states) = (problem.grids()?, 2 * problem.joints());
-    let empty = |(grid, samples): (usize, usize)| {
-        (1..samples).map(move |sample| SamplePoints {
-            grid,
-            sample,
-            error: vec![0.0; states],
-            ..SamplePoints::default()
-        })
-    };
-    let lengths = grids.as_slice().iter().map(|grid| grid.propagation.grid().len());
-    let mut all: Vec<Vec<SamplePoints>> =
-        lengths.enumerate().map(|pair| empty(pair).collect()).collect();
+    let mut all = AllPoints::new(problem)?;
     for (index, suite) in problem.recordings().suites.iter().enumerate() {
-        let of_case = |case: Case| Ok((Nominal::new(grids, &case), case.run));
-        for (nominal, run) in problem.cases_of(index, of_case)? {
+        for (nominal, run) in nominals(problem, index)? {
             let mine =
                 suite.every_run()?.iter().filter(|summary| run.is_none_or(|r| r == summary.index));
             for summary in mine {
-                let recorded = problem.run(summary.index)?;
-                let samples = all[nominal.grid].iter_mut().take(recorded.len().saturating_sub(1));
-                for at in samples {
-                    at.take(recorded.state(at.sample), nominal.trajectory.state(at.sample));
-                    at.owners.push((index as u32, summary.index as u32));
-                }
+                let owner = (index as u32, summary.index as u32);
+                all.take(owner, &nominal, &*problem.run(summary.index)?);
             }
         }
     }
-    let mut all: Vec<SamplePoints> = all.into_iter().flatten().collect();
-    all.retain(|at| !at.owners.is_empty());
-    Ok(all)
+    Ok(all.into_samples())
+}
+
+/// Returns the nominal solutions of a suite, with the run where it is that of one run.
+///
+/// # Errors
+///
+/// As [`Problem::grids`] and [`Problem::run`].
+pub(crate) fn nominals(problem: &Problem, suite: usize) -> Result<Vec<(Nominal, Option<usize>)>> {
+    let grids = problem.grids()?;
+    problem.cases_of(suite, |case: Case| Ok((Nominal::new(grids, &case), case.run)))
+}
+
+/// Points by grid and sample.
+#[derive(Debug)]
+pub(crate) struct AllPoints(Vec<Vec<SamplePoints>>);
+
+impl AllPoints {
+    /// Returns no points, at every sample of the problem's grids but the first.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::grids`].
+    pub fn new(problem: &Problem) -> Result<Self> {
+        let states = 2 * problem.joints();
+        let empty = |(grid, samples): (usize, usize)| {
+            let at = |sample| SamplePoints { grid, sample, states, ..SamplePoints::default() };
+            (1..samples).map(at).collect()
+        };
+        let grids = problem.grids()?.as_slice().iter();
+        Ok(Self(grids.map(|grid| grid.propagation.grid().len()).enumerate().map(empty).collect()))
+    }
+
+    /// Takes the points of a run: its suite and index are `owner`.
+    pub fn take(&mut self, owner: (u32, u32), nominal: &Nominal, recorded: &Run) {
+        let samples = self.0[nominal.grid].iter_mut().take(recorded.len().saturating_sub(1));
+        for at in samples {
+            at.take(recorded.state(at.sample), nominal.trajectory.state(at.sample));
+            at.owners.push(owner);
+        }
+    }
+
+    /// Returns the points at the samples that have some.
+    pub fn into_samples(self) -> Vec<SamplePoints> {
+        self.0.into_iter().flatten().filter(|at| !at.owners.is_empty()).collect()
+    }
 }
 
 impl SamplePoints {
     fn take(&mut self, measured: &[f64], nominal: &[Interval]) {
-        for ((x, nominal), error) in measured.iter().zip(nominal).zip(&mut self.error) {
+        for (x, nominal) in measured.iter().zip(nominal) {
             let exact = Interval::point(*x) - *nominal;
             self.values.push(exact.mid());
-            *error = error.max(exact.rad());
+            self.errors.push((exact.rad() as f32).next_up());
         }
     }
 }

@@ -120,7 +120,7 @@ impl<'a> ProjectedPoints<'a> {
         let d: Vec<f64> = self.projection.iter().map(|&i| measured[i] - self.centre[i]).collect();
         // The deviation and the centre are not exact, nor is their difference.
         let radius = |(x, &i): (&f64, &usize)| {
-            let given = add_up(self.at.error[i], self.error[i]);
+            let given = add_up(self.at.error(point, i), self.error[i]);
             add_up(given, f64::EPSILON * x.abs() + f64::MIN_POSITIVE)
         };
         let radius: Vec<f64> = d.iter().zip(self.projection).map(radius).collect();

@@ -9,7 +9,9 @@ use crate::found::{Deciding, Found};
 use crate::hulls::Hulls;
 use crate::linear::program::{Program, Solution};
 use crate::linear::smallest_sets::{encloses, program};
-use crate::notion::sweep::{Outside, Sweep};
+use crate::notion::answers::points_of;
+use crate::notion::ask::{Answer, At, Near, PointAlong, Points, Question, other_answer};
+use crate::notion::sweep::Sweep;
 use crate::optimality::optimality_gap;
 use crate::problem::problem::Problem;
 use crate::progress::Progress;
@@ -52,18 +54,18 @@ pub(crate) fn smallest_sets_widened(
     progress: &dyn Progress,
     widen: impl FnOnce(UncertaintySets) -> Result<UncertaintySets>,
 ) -> Result<Found> {
-    let sweep = Sweep::new(problem)?;
+    let (points, frame) = (points_of(problem)?, Sweep::without_points(problem)?);
     let mut program = program(problem)?;
     let tolerance = match problem.settings().noise {
         Noise::None => TOLERANCE,
         Noise::Fitted | Noise::Fixed(_) => TOLERANCE_WITH_NOISE,
     };
-    let (solution, cuts) = solve(&sweep, &mut program, tolerance, progress)?;
+    let (solution, cuts) = solve(&*points, &frame, &mut program, tolerance, progress)?;
     let sets = widen(solution.sets)?;
-    let hulls = prove(problem, &sweep, &sets, tolerance, program.scale())?;
+    let hulls = prove(problem, &*points, &sets, tolerance, program.scale())?;
     let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
     let (cost, lower_bound) = (program.cost(&hulls.sets), solution.lower_bound);
-    let touching = sweep.touching(problem, &program, &hulls.sets, &cuts);
+    let touching = frame.touching(problem, &program, &hulls.sets, &cuts);
     Ok(Found {
         cost,
         lower_bound: Some(lower_bound),
@@ -76,65 +78,102 @@ pub(crate) fn smallest_sets_widened(
     })
 }
 
-/// Solves the program by rounds of cutting planes; returns the points whose cuts were added.
+/// A direction that was added to the program, with the point that is furthest along it.
+pub(super) struct Added {
+    pub at: At,
+    /// 2n entries.
+    pub direction: Vec<f64>,
+    pub furthest: PointAlong,
+}
+
+/// Solves the program by rounds of cutting planes; returns the directions that were added.
 fn solve(
-    sweep: &Sweep,
+    points: &dyn Points,
+    frame: &Sweep,
     program: &mut Program,
     tolerance: f64,
     progress: &dyn Progress,
-) -> Result<(Solution, Vec<Outside>)> {
+) -> Result<(Solution, Vec<Added>)> {
     let mut rows = program.first_rows();
-    let (mut near, mut cuts): (Option<Vec<Vec<usize>>>, Vec<Outside>) = (None, Vec::new());
+    let (mut near, mut cuts): (Vec<Near>, Vec<Added>) = Default::default();
     for round in 1..=ROUNDS {
         progress.go_on()?;
         let solution = program.solve_from(&mut rows)?;
-        let near = near.get_or_insert_with(|| sweep.near(&solution.sets, MARGIN));
-        let mut outside = sweep.outside(&solution.sets, tolerance, near);
+        let sets = &solution.sets;
+        if near.is_empty() {
+            near.push(Near { sets: sets.clone(), margin: MARGIN });
+        }
+        let mut outside = directions_outside(points, sets, tolerance, &near)?;
         if outside.is_empty() {
-            let others = sweep.near(&solution.sets, 1.0 + tolerance);
-            outside = sweep.outside(&solution.sets, tolerance, &others);
-            near.iter_mut().zip(others).for_each(|(near, others)| {
-                near.extend(others);
-                near.sort_unstable();
-                near.dedup();
-            });
+            // All points are tried, and those that may be outside stay in the list.
+            near.push(Near { sets: sets.clone(), margin: 1.0 + tolerance });
+            outside = directions_outside(points, sets, tolerance, &near[near.len() - 1..])?;
         }
         if outside.is_empty() {
+            let directions = cuts.len();
             progress.finished(&format!(
-                "the cutting planes ended in round {round}: directions {}, samples {}",
-                cuts.len(),
-                sweep.points.len()
+                "the cutting planes ended in round {round}: directions {directions}"
             ));
             return Ok((solution, cuts));
         }
-        program.cuts.extend(outside.iter().map(|outside| sweep.cut(outside)));
-        cuts.extend(outside);
+        for added in furthest(points, outside)? {
+            let (grid, sample) = (added.at.0 as usize, added.at.1 as usize);
+            let value = added.furthest.value;
+            program.cuts.push(frame.cut((grid, sample), &added.direction, value));
+            cuts.push(added);
+        }
     }
     Err(Error::Program(format!(
         "{ROUNDS} rounds of cutting planes left points outside; report this with the data"
     )))
 }
 
+/// Returns the direction of the point furthest outside at each sample and in each projection.
+fn directions_outside(
+    points: &dyn Points,
+    sets: &UncertaintySets,
+    tolerance: f64,
+    near: &[Near],
+) -> Result<Vec<(At, Vec<f64>)>> {
+    let question = Question::Outside { sets: sets.clone(), tolerance, near: near.to_vec() };
+    let Answer::Outside(outside) = points.ask(&question)? else { return Err(other_answer()) };
+    Ok(outside.into_iter().map(|((at, _), point)| (at, point.direction)).collect())
+}
+
+/// Finds the points furthest along directions.
+fn furthest(points: &dyn Points, directions: Vec<(At, Vec<f64>)>) -> Result<Vec<Added>> {
+    let question = Question::Furthest { directions: directions.clone() };
+    let Answer::Furthest(found) = points.ask(&question)? else { return Err(other_answer()) };
+    let added = |((at, direction), furthest): ((At, Vec<f64>), Option<PointAlong>)| {
+        let furthest = furthest.ok_or_else(other_answer)?;
+        Ok(Added { at, direction, furthest })
+    };
+    directions.into_iter().zip(found).map(added).collect()
+}
+
 /// Inflates the sets until every row and every point is proved, or for a number of times.
 fn prove(
     problem: &Problem,
-    sweep: &Sweep,
+    points: &dyn Points,
     sets: &UncertaintySets,
     tolerance: f64,
     scale: f64,
 ) -> Result<Hulls> {
-    let mut left: Vec<usize> = (0..sweep.points.len()).collect();
+    let mut left: Option<Vec<At>> = None;
     let mut attempt = 0;
     loop {
         let factor = tolerance * 2f64.powi(attempt);
         let term = f64::EPSILON * 4f64.powi(attempt) * scale;
         let hulls = Hulls::new(problem, sets.inflated(1.0 + factor, term))?;
         // Points that were proved for smaller sets lie in larger ones.
-        left = sweep.unproved(&hulls.sets, &left).into_iter().map(|unproved| unproved.at).collect();
-        left.dedup();
+        let question = Question::Unproved { sets: hulls.sets.clone(), at: left };
+        let Answer::Unproved(unproved) = points.ask(&question)? else {
+            return Err(other_answer());
+        };
         attempt += 1;
-        if (left.is_empty() && encloses(problem, &hulls)?) || attempt == REPAIRS {
+        if (unproved.is_empty() && encloses(problem, &hulls)?) || attempt == REPAIRS {
             return Ok(hulls);
         }
+        left = Some(unproved);
     }
 }

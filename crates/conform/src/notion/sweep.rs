@@ -1,5 +1,7 @@
 //! The search for recorded points outside the reachable sets.
 
+use std::borrow::Cow;
+
 use nalgebra::DVectorView;
 use rayon::prelude::*;
 use reachtube_reach::{GeneratorRows, Membership, MembershipWorkspace, Place, SampleGenerators};
@@ -24,6 +26,9 @@ const NEAR: f64 = 1e-3;
 /// A point counts as outside when the set must grow by more than this part.
 pub(super) const OUTSIDE: f64 = 1e-9;
 
+/// A factor of growth that is below another by this part is below it whatever the rounding.
+const CLEARLY_BELOW: f64 = 1.0 - 1e-9;
+
 /// Number of disturbances, held over equally many steps, that suffice for most points.
 const HELD: usize = 24;
 
@@ -34,7 +39,7 @@ pub(super) const PARTS: usize = 2;
 pub(crate) struct Sweep<'a> {
     pub grids: &'a [Grid],
     pub generators: Vec<SampleGenerators<'a>>,
-    pub points: Vec<SamplePoints>,
+    pub points: Cow<'a, [SamplePoints]>,
     /// The states of each projection in which points must lie in the set.
     pub projections: Vec<Vec<usize>>,
     pub states: usize,
@@ -58,6 +63,8 @@ pub(crate) struct SampleSet<'a> {
 pub(crate) struct Outside {
     /// Index of its sample among those of the sweep.
     pub at: usize,
+    /// Which projection.
+    pub projection: usize,
     /// Which of the sample's points.
     pub point: usize,
     /// The direction, 2n entries.
@@ -90,6 +97,37 @@ impl<'a> SampleSet<'a> {
     }
 }
 
+impl SampleSet<'_> {
+    /// Returns by which factor the set would have to grow for a point, in the projection and from
+    /// the set's centre, with the direction that shows it; nothing where it must not grow by more
+    /// than the factor 1 + `tolerance`. Nothing also where the factor is surely below `known`,
+    /// which saves the search for it. The answer does not depend on the points before.
+    pub fn growth(
+        &mut self,
+        d: &[f64],
+        tolerance: f64,
+        known: Option<f64>,
+    ) -> Option<(f64, Vec<f64>)> {
+        let accuracy = GAUGE * tolerance;
+        let scaled = |factor: f64| d.iter().map(|x| x / factor).collect::<Vec<_>>();
+        if let Some(known) = known {
+            // The factor that is found is never above the true one.
+            let d = scaled(known * CLEARLY_BELOW / (1.0 + accuracy));
+            if self.contains(&d, accuracy) {
+                return None;
+            }
+        }
+        let d = scaled(1.0 + tolerance);
+        let (coarse, work) = self.coarse();
+        if coarse.locate(&d, accuracy, work) == Place::Inside {
+            return None;
+        }
+        let (fine, work) = self.fine();
+        let (ratio, direction) = fine.gauge(&d, accuracy, work)?;
+        Some((ratio * (1.0 + tolerance), direction))
+    }
+}
+
 impl<'a> Sweep<'a> {
     /// Collects the points and the generators of a problem.
     ///
@@ -106,13 +144,35 @@ impl<'a> Sweep<'a> {
     ///
     /// As [`points`].
     pub fn of_notion(problem: &'a Problem, notion: Notion) -> Result<Self> {
+        Self::of_points(problem, notion, points(problem)?.into())
+    }
+
+    /// Prepares the generators of a problem alone.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::grids`].
+    pub fn without_points(problem: &'a Problem) -> Result<Self> {
+        Self::of_points(problem, problem.settings().notion, Cow::default())
+    }
+
+    /// Prepares the generators of a problem for points that were collected.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::grids`].
+    pub fn of_points(
+        problem: &'a Problem,
+        notion: Notion,
+        points: Cow<'a, [SamplePoints]>,
+    ) -> Result<Self> {
         let (grids, settings) = (problem.grids()?.as_slice(), problem.settings());
         let generators =
             |grid: &'a Grid| SampleGenerators::new(&grid.propagation, settings.disturbance, PARTS);
         Ok(Self {
             grids,
             generators: grids.iter().map(generators).collect::<Result<_, _>>()?,
-            points: points(problem)?,
+            points,
             projections: projections(notion, settings.states, problem.joints()),
             states: 2 * problem.joints(),
         })
@@ -237,7 +297,9 @@ impl<'a> Sweep<'a> {
     }
 
     /// Returns, for each sample and projection, that one of the points `near` that is furthest
-    /// outside, where the set must grow by more than the factor 1 + `tolerance`.
+    /// outside, where the set must grow by more than the factor 1 + `tolerance`. Each point is
+    /// judged alone, so that neither the order nor the grouping of the points makes a difference;
+    /// of points that are equally far, the one with the lowest owner counts.
     pub fn outside(
         &self,
         sets: &UncertaintySets,
@@ -247,50 +309,50 @@ impl<'a> Sweep<'a> {
         let of_sample = |index: usize| {
             let at = &self.points[index];
             let (centre, _) = self.centre(at, sets);
-            let worst = |projection: &Vec<usize>| {
-                let mut set = self.set(at, sets, projection);
+            let worst = |projection: usize| {
+                let states = &self.projections[projection];
+                let mut set = self.set(at, sets, states);
                 let mut worst: Option<Outside> = None;
                 for &point in &near[index] {
                     let d = at.point(point);
-                    let factor = worst.as_ref().map_or(1.0 + tolerance, |worst| worst.ratio);
-                    let of_state = |&i: &usize| (d[i] - centre[i]) / factor;
-                    let d: Vec<f64> = projection.iter().map(of_state).collect();
-                    let (coarse, work) = set.coarse();
-                    if coarse.locate(&d, GAUGE * tolerance, work) == Place::Inside {
-                        continue;
+                    let d: Vec<f64> = states.iter().map(|&i| d[i] - centre[i]).collect();
+                    let known = worst.as_ref().map(|worst| worst.ratio);
+                    let Some((ratio, short)) = set.growth(&d, tolerance, known) else { continue };
+                    let owner = |point: usize| at.owners[point];
+                    let is_further = worst.as_ref().is_none_or(|worst| {
+                        ratio > worst.ratio
+                            || ratio == worst.ratio && owner(point) < owner(worst.point)
+                    });
+                    if is_further {
+                        let mut direction = vec![0.0; self.states];
+                        states.iter().zip(short).for_each(|(&i, l)| direction[i] = l);
+                        worst = Some(Outside { at: index, projection, point, direction, ratio });
                     }
-                    let (fine, work) = set.fine();
-                    let Some((ratio, short)) = fine.gauge(&d, GAUGE * tolerance, work) else {
-                        continue;
-                    };
-                    let mut direction = vec![0.0; self.states];
-                    projection.iter().zip(short).for_each(|(&i, l)| direction[i] = l);
-                    worst = Some(Outside { at: index, point, direction, ratio: ratio * factor });
                 }
                 worst
             };
-            self.projections.iter().filter_map(worst).collect::<Vec<_>>()
+            (0..self.projections.len()).filter_map(worst).collect::<Vec<_>>()
         };
         let samples: Vec<usize> =
             (0..near.len()).filter(|index| !near[*index].is_empty()).collect();
         samples.into_par_iter().flat_map_iter(of_sample).collect()
     }
 
-    /// Returns the row of the program that a point outside gives.
-    pub fn cut(&self, outside: &Outside) -> Cut {
-        let (at, l) = (&self.points[outside.at], &outside.direction);
-        let propagation = &self.grids[at.grid].propagation;
-        let (e, gamma) = (propagation.exponential(at.sample), propagation.integral(at.sample));
+    /// Returns the row of the program that a direction gives at a sample, for the largest lᵀ d of
+    /// its points.
+    pub fn cut(&self, (grid, sample): (usize, usize), l: &[f64], bound: f64) -> Cut {
+        let propagation = &self.grids[grid].propagation;
+        let (e, gamma) = (propagation.exponential(sample), propagation.integral(sample));
         let along = |column: DVectorView<'_, Interval>| {
             column.iter().zip(l).map(|(x, l)| x.mid() * l).sum::<f64>()
         };
         let centre = e.column_iter().chain(gamma.column_iter()).map(along).collect();
-        let (initial, input) = self.generators[at.grid].gains(at.sample, l);
+        let (initial, input) = self.generators[grid].gains(sample, l);
         Cut {
             centre,
             radius: [initial, input].concat(),
             noise: l.iter().map(|l| l.abs()).collect(),
-            bound: at.furthest(l).1,
+            bound,
         }
     }
 }

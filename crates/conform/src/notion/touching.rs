@@ -4,7 +4,9 @@ use std::collections::HashSet;
 
 use crate::found::TOUCHING;
 use crate::linear::program::Program;
-use crate::notion::sweep::{Outside, Sweep};
+use crate::notion::ask::PointOutside;
+use crate::notion::smallest_sets::Added;
+use crate::notion::sweep::Sweep;
 use crate::notion::verdict::PointWitness;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
@@ -18,19 +20,21 @@ impl Sweep<'_> {
         problem: &Problem,
         program: &Program,
         sets: &UncertaintySets,
-        cuts: &[Outside],
+        cuts: &[Added],
     ) -> Vec<Witness> {
         let mut seen = HashSet::new();
         let mut touching = Vec::new();
-        for (outside, cut) in cuts.iter().zip(&program.cuts) {
-            let (point, _) = self.points[outside.at].furthest(&outside.direction);
+        for (added, cut) in cuts.iter().zip(&program.cuts) {
+            let point = &added.furthest.point;
             let (from_centre, reach) = program.reach(cut, sets);
             let ratio = from_centre / reach;
-            if ratio < 1.0 - TOUCHING || !seen.insert((outside.at, point)) {
+            if ratio < 1.0 - TOUCHING || !seen.insert((added.at, point.owner)) {
                 continue;
             }
-            let touch = Outside { point, ratio, ..outside.clone() };
-            touching.push(PointWitness::of_sweep(problem, self, sets, &touch).into_witness());
+            let touch =
+                PointOutside { point: point.clone(), direction: added.direction.clone(), ratio };
+            let witness = PointWitness::of_sweep(problem, self, sets, added.at, &touch);
+            touching.push(witness.into_witness());
         }
         touching.sort_by(|a, b| (b.excess / b.radius).total_cmp(&(a.excess / a.radius)));
         touching

@@ -8,9 +8,13 @@ use serde::{Deserialize, Serialize};
 use crate::error::Result;
 use crate::flowpipes::OuterSet;
 use crate::hulls::{HullKind, Hulls};
-use crate::notion::outer::FurthestPoint;
-use crate::notion::proof::Unproved;
-use crate::notion::sweep::{OUTSIDE, Outside, Sweep};
+use crate::notion::answers::points_of;
+use crate::notion::ask::{
+    Answer, At, Owner, PointOutside, Question, RecordedPoint, UnprovedRun, other_answer,
+};
+use crate::notion::outer::{FurthestPoint, UnprovedPoint};
+use crate::notion::points::SamplePoints;
+use crate::notion::sweep::Sweep;
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
@@ -67,8 +71,8 @@ pub struct PointWitness {
 /// What a direction shows of a point outside a set.
 pub(crate) struct SeparatedPoint<'a> {
     pub suite: usize,
-    /// The run (index in the source).
-    pub run: usize,
+    /// The recording.
+    pub file: &'a str,
     pub sample: usize,
     /// Time since the first sample, s.
     pub time: f64,
@@ -83,10 +87,15 @@ pub(crate) struct SeparatedPoint<'a> {
 }
 
 impl<'a> SeparatedPoint<'a> {
-    fn of_outer(case: &Case, point: &'a FurthestPoint, hull: &'a [f64]) -> Self {
+    fn of_outer(
+        problem: &'a Problem,
+        case: &Case,
+        point: &'a FurthestPoint,
+        hull: &'a [f64],
+    ) -> Self {
         Self {
             suite: case.suite,
-            run: point.run,
+            file: &problem.entry(point.run).file,
             sample: point.sample,
             time: case.grid.times()[point.sample],
             hull,
@@ -97,10 +106,11 @@ impl<'a> SeparatedPoint<'a> {
     }
 }
 
-/// A verdict, and the suite and run of each point that is not proved.
+/// A verdict, and suite, recording and number of the points that are not proved: a recording may be
+/// there more than once, and the first has the first point.
 pub(crate) struct Judged {
     pub verdict: PointVerdict,
-    pub unproved: Vec<(usize, usize)>,
+    pub unproved: Vec<(usize, String, usize)>,
 }
 
 /// Judges all points of a problem whose settings ask for more than the hull.
@@ -142,53 +152,54 @@ fn judge_outer(problem: &Problem, sets: &UncertaintySets, outer: &[OuterSet]) ->
         outside: unproved().filter(|(_, point)| point.is_outside).count(),
         worst: worst.map(|(case, set, point)| {
             let hull = set.hull_radii(point.sample, sets);
-            PointWitness::new(problem, &SeparatedPoint::of_outer(case, point, &hull))
+            PointWitness::new(problem, &SeparatedPoint::of_outer(problem, case, point, &hull))
         }),
     };
-    Ok(Judged { verdict, unproved: unproved().map(|(suite, point)| (suite, point.run)).collect() })
+    let of_run =
+        |(suite, point): (usize, UnprovedPoint)| (suite, problem.entry(point.run).file.clone(), 1);
+    Ok(Judged { verdict, unproved: unproved().map(of_run).collect() })
 }
 
 fn judge_linear(problem: &Problem, sets: &UncertaintySets) -> Result<Judged> {
-    let sweep = Sweep::new(problem)?;
-    let all: Vec<usize> = (0..sweep.points.len()).collect();
-    let unproved = sweep.unproved(sets, &all);
-    let mut near = vec![Vec::new(); sweep.points.len()];
-    unproved.iter().for_each(|unproved| near[unproved.at].push(unproved.point));
-    let outside = sweep.outside(sets, OUTSIDE, &near);
-    let worst = outside.iter().max_by(|a, b| a.ratio.total_cmp(&b.ratio));
-    let owner = |unproved: &Unproved| {
-        let (suite, run) = sweep.points[unproved.at].owners[unproved.point];
-        (suite as usize, run as usize)
+    let question = Question::Judge { sets: sets.clone() };
+    let Answer::Judge(part) = points_of(problem)?.ask(&question)? else {
+        return Err(other_answer());
     };
+    let frame = Sweep::without_points(problem)?;
+    let worst = part.furthest.iter().max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio));
     let verdict = PointVerdict {
         notion: problem.settings().notion,
-        points: sweep.point_count(),
-        unproved: unproved.len(),
-        outside: sweep.count_outside(sets, &unproved),
-        worst: worst.map(|worst| PointWitness::of_sweep(problem, &sweep, sets, worst)),
+        points: part.points,
+        unproved: part.unproved.values().map(|run| run.count).sum(),
+        outside: part.outside,
+        worst: worst
+            .map(|((at, _), point)| PointWitness::of_sweep(problem, &frame, sets, *at, point)),
     };
-    Ok(Judged { verdict, unproved: unproved.iter().map(owner).collect() })
+    let mut runs: Vec<(Owner, UnprovedRun)> = part.unproved.into_iter().collect();
+    runs.sort_by_key(|(owner, run)| (run.first, *owner));
+    let unproved = runs.into_iter().map(|((suite, _), run)| (suite as usize, run.file, run.count));
+    Ok(Judged { verdict, unproved: unproved.collect() })
 }
 
 impl PointWitness {
     /// Names a point outside the set of a linear model.
     pub(crate) fn of_sweep(
         problem: &Problem,
-        sweep: &Sweep,
+        frame: &Sweep,
         sets: &UncertaintySets,
-        outside: &Outside,
+        at: At,
+        outside: &PointOutside,
     ) -> Self {
-        let at = &sweep.points[outside.at];
-        let (suite, run) = at.owners[outside.point];
-        let (centre, _) = sweep.centre(at, sets);
-        let hull = sweep.hull(at, sets);
-        let deviation: Vec<f64> =
-            at.point(outside.point).iter().zip(&centre).map(|(x, c)| x - c).collect();
+        let at = SamplePoints { grid: at.0 as usize, sample: at.1 as usize, ..Default::default() };
+        let RecordedPoint { owner, file, deviation } = &outside.point;
+        let (centre, _) = frame.centre(&at, sets);
+        let hull = frame.hull(&at, sets);
+        let deviation: Vec<f64> = deviation.iter().zip(&centre).map(|(x, c)| x - c).collect();
         let point = SeparatedPoint {
-            suite: suite as usize,
-            run: run as usize,
+            suite: owner.0 as usize,
+            file,
             sample: at.sample,
-            time: sweep.grids[at.grid].propagation.grid().times()[at.sample],
+            time: frame.grids[at.grid].propagation.grid().times()[at.sample],
             hull: &hull,
             deviation: &deviation,
             direction: &outside.direction,
@@ -208,7 +219,7 @@ impl PointWitness {
         let value: f64 = deviation.iter().zip(&direction).map(|(d, l)| d * l).sum();
         Self {
             suite: problem.recordings().suites[point.suite].entry.name.clone(),
-            run: problem.entry(point.run).file.clone(),
+            run: point.file.into(),
             sample: point.sample,
             time: point.time,
             combination: combination(&direction, &parts, problem.joints()),

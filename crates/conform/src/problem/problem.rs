@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::explain::trace;
 use crate::grids::Grids;
 use crate::nominal::correction::InputCorrection;
+use crate::notion::elsewhere::PointServer;
 use crate::problem::case::Case;
 use crate::problem::condition::Condition;
 use crate::problem::kept::KeptRuns;
@@ -119,6 +120,8 @@ pub struct Problem {
     grids: OnceLock<Grids>,
     pub(super) cases: OnceLock<Vec<Case>>,
     deviations: OnceLock<Vec<Deviation>>,
+    /// Where the points are, if they are with other processes.
+    pub(crate) point_server: Option<Arc<dyn PointServer>>,
 }
 
 /// What was read of the recordings. It does not depend on the model.
@@ -193,7 +196,7 @@ impl Problem {
 
     pub(super) fn of(setup: Setup, read: Arc<Read>) -> Self {
         let (grids, cases, deviations) = Default::default();
-        Self { setup, read, grids, cases, deviations }
+        Self { setup, read, grids, cases, deviations, point_server: None }
     }
 
     /// Returns the setup: robot, model, settings.

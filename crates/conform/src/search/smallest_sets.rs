@@ -81,7 +81,7 @@ fn touching(
             recorded.state(at.sample).iter().zip(centres).map(|(x, c)| x - c).collect();
         let point = SeparatedPoint {
             suite: case.suite,
-            run: at.run,
+            file: &problem.entry(at.run).file,
             sample: at.sample,
             time: case.grid.times()[at.sample],
             hull: &hull,

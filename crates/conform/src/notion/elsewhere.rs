@@ -1,0 +1,120 @@
+//! Points that other processes have.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::notion::ask::{Answer, Points, Question};
+use crate::problem::problem::Problem;
+use crate::problem::tree::Tree;
+
+/// The version of questions and answers in bytes.
+const VERSION: u32 = 1;
+
+/// The way to the points of a fold's recordings, which other processes have in parts
+/// ([`PartPoints`](crate::PartPoints)).
+pub trait PointServer: Debug + Send + Sync {
+    /// Asks every part a question, and merges the answers
+    /// ([`PartPoints::merge`](crate::PartPoints::merge)) in any order.
+    ///
+    /// # Errors
+    ///
+    /// In words, where a part gave no answer.
+    fn ask(&self, question: &[u8]) -> Result<Vec<u8>, String>;
+}
+
+/// The points of a problem, with a server.
+#[derive(Debug)]
+pub(crate) struct PointsElsewhere<'a> {
+    pub server: &'a Arc<dyn PointServer>,
+    /// The root of the tree over the recordings of the problem.
+    pub root: &'a str,
+}
+
+/// An answer, with the recordings that it is of.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct SentAnswer {
+    version: u32,
+    tree: Tree,
+    answer: Answer,
+}
+
+impl Points for PointsElsewhere<'_> {
+    fn ask(&self, question: &Question) -> Result<Answer> {
+        let bytes = self.server.ask(&question_to_bytes(question)).map_err(Error::Fold)?;
+        let sent = SentAnswer::from_bytes(&bytes)?;
+        if sent.tree.root() != self.root {
+            return Err(Error::Fold(
+                "the points are not those of the recordings that were folded: a recording was \
+                 changed meanwhile, or the points of a part are missing; fold them again"
+                    .into(),
+            ));
+        }
+        Ok(sent.answer)
+    }
+}
+
+impl SentAnswer {
+    pub fn new(tree: Tree, answer: Answer) -> Self {
+        Self { version: VERSION, tree, answer }
+    }
+
+    /// Merges the answer of another part.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fold`] for an answer to another question, or of the same recordings.
+    pub fn merge(mut self, other: Self) -> Result<Self> {
+        if !self.tree.merge(other.tree) {
+            return Err(Error::Fold("two parts have points of the same recording".into()));
+        }
+        let answer = self.answer.merge(other.answer);
+        let answer =
+            answer.ok_or_else(|| Error::Fold("two parts were asked different questions".into()))?;
+        Ok(Self { answer, ..self })
+    }
+
+    pub fn to_bytes(&self) -> Vec<u8> {
+        postcard::to_stdvec(self).expect("every part can be written")
+    }
+
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let sent: Option<Self> = postcard::from_bytes(bytes).ok();
+        sent.filter(|sent| sent.version == VERSION && sent.tree.is_valid()).ok_or_else(|| {
+            Error::Fold("the bytes are not those of an answer of this version".into())
+        })
+    }
+}
+
+fn question_to_bytes(question: &Question) -> Vec<u8> {
+    postcard::to_stdvec(&(VERSION, question)).expect("every part can be written")
+}
+
+/// Reads a question.
+///
+/// # Errors
+///
+/// [`Error::Fold`] for other bytes.
+pub(crate) fn question_from_bytes(bytes: &[u8]) -> Result<Question> {
+    let read: Option<(u32, Question)> = postcard::from_bytes(bytes).ok();
+    let question = read.filter(|(version, _)| *version == VERSION).map(|(_, question)| question);
+    question
+        .ok_or_else(|| Error::Fold("the bytes are not those of a question of this version".into()))
+}
+
+impl Problem {
+    /// Returns the problem of a fold whose points other processes have: the notions phase-plane and
+    /// exact ask them.
+    #[must_use]
+    pub fn with_points_elsewhere(mut self, server: Arc<dyn PointServer>) -> Self {
+        self.point_server = Some(server);
+        self
+    }
+
+    pub(crate) fn points_elsewhere(&self) -> Option<PointsElsewhere<'_>> {
+        let root = &self.recordings().root;
+        self.point_server.as_ref().map(|server| PointsElsewhere { server, root })
+    }
+}

@@ -1,0 +1,72 @@
+"""Fleets for the notions that need every point: the bits of one machine, whatever workers do."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import reachtube as rt
+from reachtube import _points, fleet
+
+from conftest import RUNS
+
+pytest.importorskip("pyarrow")
+pytest.importorskip("fsspec")
+distributed = pytest.importorskip("distributed")
+
+pytestmark = pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+
+
+@pytest.fixture(scope="module")
+def few(manifest: Path) -> Path:
+    """A manifest of some of the recordings."""
+    rows = fleet.read_manifest(manifest)
+    fleet.write_manifest(manifest.parent / "few.parquet", rows[:8] + rows[RUNS : RUNS + 6])
+    return manifest.parent / "few.parquet"
+
+
+def of_points(notion: str) -> dict[str, Any]:
+    return {"torque": "compensated", "notion": notion, "until": 0.03}
+
+
+@pytest.mark.parametrize("notion", ["exact", "phase-plane"])
+def test_points_that_workers_hold_give_the_same_bits(
+    few: Path, client: Any, notion: str
+) -> None:
+    robot, arguments = rt.Robot.lwa4p(), of_points(notion)
+    alone = fleet.conform(robot, few, **arguments)
+    assert alone.verified and alone.proof["points"]["unproved"] == 0
+    hull = fleet.conform(robot, few, **of_points("hull"))
+    assert alone.cost is not None and hull.cost is not None and alone.cost > hull.cost
+    assert fleet.conform(robot, few, client=client, runs_per_task=3, **arguments) == alone
+    verdict = fleet.check(alone, few, runs_per_task=9)
+    assert verdict and verdict == fleet.check(alone, few, client=client, runs_per_task=4)
+
+
+def test_a_worker_that_held_points_is_killed(few: Path) -> None:
+    alone = fleet.conform(rt.Robot.lwa4p(), few, **of_points("exact"))
+    with (
+        distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        asked: list[int] = []
+        ask = _points.Points.ask
+
+        def kill_in_the_fourth_round(self: Any, question: bytes) -> bytes:
+            asked.append(len(question))
+            if len(asked) == 4:
+                os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
+            return ask(self, question)
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(_points.Points, "ask", kill_in_the_fourth_round)
+            found = fleet.conform(
+                rt.Robot.lwa4p(), few, client=client, runs_per_task=4, **of_points("exact")
+            )
+    assert len(asked) > 4 and found == alone

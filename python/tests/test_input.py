@@ -1,0 +1,118 @@
+"""Input as new users give it: wrong types, missing files, numbers that are none."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import reachtube as rt
+
+X, Y = rt.variables("x y")
+
+
+def conform(robot: Any, data: Any, **settings: Any) -> object:
+    return rt.conform(robot, data, torque="motor", **settings)
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"suites": 3}, "3 is no name and no list of names"),
+        ({"until": "1"}, "until has the type"),
+        ({"explain": 5}, "explain is 5; give two tolerances"),
+        ({"noise": [float("nan"), 1.0]}, r"noise is \[nan, 1.0\]; give finite numbers"),
+        ({"order": "x"}, "order is 'x' of type str"),
+        ({"order": -1}, "order is -1; give 1 to 255"),
+        ({"model": 2.5}, "model is 2.5 of type float"),
+    ],
+)
+def test_settings_of_wrong_types_are_named(
+    robot: rt.Robot, data: rt.Recordings, settings: dict[str, Any], words: str
+) -> None:
+    with pytest.raises(rt.SettingError, match=words):
+        conform(robot, data, **settings)
+
+
+def test_numbers_of_numpy_are_numbers(robot: rt.Robot, data: rt.Recordings) -> None:
+    own: dict[str, Any] = {"order": np.int64(1), "until": np.float32(0.125)}
+    found: Any = conform(robot, data, **own)
+    assert found.settings["until"] == 0.125
+    assert rt.Robot.load("lwa4p", lock={"joint6": np.float64(0.5)}).joints == 5
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda data: conform("lwa4p", data), "the robot is of type str; give a Robot"),
+        (lambda data: rt.check("model.json", data), "the model is of type str; give a Model"),
+        (lambda data: rt.reach(None, data), "the model is of type NoneType"),
+        (lambda data: rt.abstract("lwa4p"), "the robot is of type str"),
+        (lambda data: rt.excite("lwa4p"), "the robot is of type str"),
+        (lambda data: rt.identify("lwa4p", dynamic=data[0]), "the robot is of type str"),
+        (lambda data: rt.fleet.conform("lwa4p", "m.parquet", torque="motor"), "type str"),
+        (lambda data: rt.identify(rt.Robot.lwa4p(), dynamic=3), "of type int; give runs or paths"),
+        (lambda data: rt.identify(rt.Robot.lwa4p(), prepare=[1]), r"prepare is \[1\]"),
+        (lambda data: rt.Robot.load("lwa4p", lock=["joint1"]), "give the positions of joints"),
+        (lambda data: rt.Robot.from_dict(3), "the description is of type int"),
+        (lambda data: rt.Robot.from_dict({"gravity": float("nan")}), "the description: Out"),
+        (lambda data: rt.flowpipe({X: "y", Y: -X}, {X: 1, Y: 0}, [0, 1]), "'y' is no polynomial"),
+        (lambda data: rt.flowpipe({X: -X}, {X: [1, 2, 3]}, [0, 1]), "an interval"),
+        (lambda data: rt.flowpipe({X: -X}, {X: float("nan")}, [0, 1]), "give a finite number"),
+        (lambda data: rt.flowpipe({X: X * float("inf")}, {X: 1}, [0, 1]), "must be finite"),
+        (lambda data: X ** "a", "the exponent 'a'"),
+        (lambda data: X + "a", "'a' is no polynomial"),
+    ],
+)
+def test_wrong_arguments_are_named(
+    data: rt.Recordings, call: Callable[[Any], object], words: str
+) -> None:
+    with pytest.raises(rt.SettingError, match=words):
+        call(data)
+
+
+@pytest.mark.parametrize(
+    ("labels", "words"),
+    [
+        ({"suite": 3}, "suite is 3 of type int"),
+        ({"name": b"run"}, "name is b'run'"),
+        ({"order": 0}, "order is 0; give 1 to"),
+    ],
+)
+def test_labels_of_a_run_are_texts(labels: dict[str, Any], words: str) -> None:
+    still = np.zeros((2, 6))
+    with pytest.raises(rt.SettingError, match=words):
+        rt.Run([0.0, 0.1], still, still, still, **labels)
+
+
+def test_runs_are_taken_by_number_and_slice(data: rt.Recordings) -> None:
+    assert data[-1] == data[len(data) - 1] and data[1:3] == [data[1], data[2]]
+    with pytest.raises(IndexError, match="there is no run 6; there are 6"):
+        data[6]
+
+
+@pytest.mark.parametrize("reader", ["npz", "hdf5", "parquet", "ros1"])
+def test_files_that_other_libraries_cannot_read_are_named(reader: str, tmp_path: Path) -> None:
+    for module in {"hdf5": ["h5py"], "parquet": ["pyarrow"], "ros1": ["rosbags"]}.get(reader, []):
+        pytest.importorskip(module)
+    more: dict[str, Any] = {"topic": "/t", "joints": ["a"]} if reader == "ros1" else {}
+    read = getattr(rt.io, reader)
+    with pytest.raises(rt.ReachtubeError, match="none.bag: there is no such file"):
+        read(tmp_path / "none.bag", **more)
+    (tmp_path / "text.bag").write_text("this is none")
+    with pytest.raises(rt.ReachtubeError, match="text.bag: it could not be read"):
+        read(tmp_path / "text.bag", **more)
+
+
+def test_temperatures_of_a_table_are_read(tmp_path: Path) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    still = np.zeros((2, 2))
+    run = rt.Run([0.0, 0.1], still, still, still, temperature=still + 21.0)
+    parquet.write_table(pyarrow.Table.from_pandas(run.to_pandas()), tmp_path / "run.parquet")
+    found = rt.io.parquet(tmp_path / "run.parquet").temperature
+    assert found is not None and (found == 21.0).all()
