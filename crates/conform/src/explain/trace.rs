@@ -174,26 +174,31 @@ pub(crate) fn smallest_outer_sets(
     Ok(Found { hulls, cost, hull_volume, ..found })
 }
 
-/// Widens X0 until a motion passes through each recording, however wide U is, and then U until it
-/// does so within U.
+/// Widens X0 until a motion passes through each recording, however wide U is, or through as many
+/// as possible, and then U until it does so within U.
 fn widened(
     problem: &Problem,
     mut sets: UncertaintySets,
     progress: &dyn Progress,
 ) -> Result<UncertaintySets> {
     sets.input_set.radius.iter_mut().for_each(|radius| *radius += LEAST_RADIUS);
-    let least = sets.initial_set.radius.clone();
-    let mut factors = Vec::new();
+    let mut best: Option<(usize, UncertaintySets, Vec<TraceFactor>)> = None;
     for room in START_ROOMS {
         progress.go_on()?;
-        for (i, radius) in sets.initial_set.radius.iter_mut().enumerate() {
-            *radius = least[i] + room * sets.noise_set.as_ref().map_or(0.0, |set| set.radius[i]);
+        let mut wider = sets.clone();
+        for (i, radius) in wider.initial_set.radius.iter_mut().enumerate() {
+            *radius += room * sets.noise_radius(i);
         }
-        factors = trace_factors(problem, &sets)?;
-        if factors.iter().all(|trace| trace.factor.is_some()) {
+        let factors = trace_factors(problem, &wider)?;
+        let without = factors.iter().filter(|trace| trace.factor.is_none()).count();
+        if best.as_ref().is_none_or(|(least, ..)| without < *least) {
+            best = Some((without, wider, factors));
+        }
+        if without == 0 {
             break;
         }
     }
+    let (_, sets, factors) = best.expect("there is at least one room");
     let factor = factors.iter().filter_map(|trace| trace.factor).fold(1.0, f64::max);
     progress.finished(&format!(
         "{} of {} recordings are motions of the model within V; U is widened by {factor:.3}",
