@@ -7,8 +7,8 @@ use common::{Disturbed, Random, grid, two_joints};
 use proptest::prelude::*;
 use reachtube_abstraction::{Abstraction, ModelKind, OperatingBox};
 use reachtube_conform::{
-    Error, Fold, Hulls, Keep, Model, Noise, NominalStart, Notion, OnDefect, Problem, Settings,
-    Setup, Silent, Tolerance, check, conform,
+    Error, Fold, Hulls, Keep, Model, NominalStart, OnDefect, Problem, Settings, Setup, Silent,
+    Tolerance, check, conform,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
@@ -357,17 +357,6 @@ fn what_a_fold_cannot_do_is_refused_by_name() {
         Err(Error::Fold(why)) => why,
         other => panic!("{other:?}"),
     };
-    let trace = setup(&robot, |settings| {
-        settings.notion = Notion::Trace;
-        settings.noise = Noise::Fixed(vec![1e-3; 4]);
-    });
-    assert!(refusal(Fold::new(&trace)).contains("--notion hull"));
-    let exact = setup(&robot, |settings| {
-        settings.notion = Notion::Exact;
-        settings.abstraction = Abstraction { model: ModelKind::Two, order: 3 };
-    });
-    assert!(exact.dynamics.linear_system().is_none());
-    assert!(refusal(Fold::new(&exact)).contains("--notion hull"));
     let explain = setup(&robot, |settings| settings.explain = Some(Tolerance::default()));
     assert!(refusal(Fold::new(&explain)).contains("--explain"));
     let setup_of = setup(&robot, |_| {});

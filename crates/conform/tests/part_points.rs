@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use common::{Disturbed, Random, grid, two_joints};
+use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::{
     Conformance, Error, FleetProblem, Fold, Hulls, Keep, Model, Noise, Notion, OnDefect,
     PartPoints, PartReader, PointServer, Problem, Settings, Setup, Silent, check, conform,
@@ -189,4 +190,19 @@ fn points_of_other_recordings_are_refused() {
     for bytes in [&b""[..], b"nonsense"] {
         assert!(PartPoints::from_bytes(bytes).is_err() && PartPoints::merge([bytes]).is_err());
     }
+}
+
+#[test]
+fn notions_that_need_whole_recordings_are_refused_by_name() {
+    let refused = |setup: &Setup| match Fold::new(setup) {
+        Err(Error::Fold(why)) => assert!(why.contains("--notion hull"), "{why}"),
+        other => panic!("{other:?}"),
+    };
+    refused(&setup(Notion::Trace, Noise::Fixed(vec![1e-3; 4])));
+    let abstraction = Abstraction { model: ModelKind::Two, order: 3 };
+    let exact =
+        Settings { notion: Notion::Exact, abstraction, ..Settings::new(Torque::Compensated, 2) };
+    let exact = Setup::new(two_joints(), exact).unwrap();
+    assert!(exact.dynamics.linear_system().is_none());
+    refused(&exact);
 }
