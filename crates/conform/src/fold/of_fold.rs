@@ -27,7 +27,8 @@ impl Problem {
     /// Makes the problem of the recordings that were folded, which is that of
     /// [`read`](Self::read) over the same recordings: the same sets, verdicts and model files to
     /// the last bit. What needs single recordings again ends with [`Error::Fold`]: figures,
-    /// explanations, notions other than the hull, and `fit` where runs differ.
+    /// explanations, the notion trace, and `fit` where runs differ. The notions phase-plane and
+    /// exact ask the points ([`with_points_elsewhere`](Self::with_points_elsewhere)).
     ///
     /// # Errors
     ///
