@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+import pickle
 import signal
+import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import reachtube as rt
-from reachtube import _points, fleet
+from reachtube import _jobs, _points, fleet
+from reachtube._settings import of_conformance
 
 from conftest import RUNS
 
@@ -70,3 +73,15 @@ def test_a_worker_that_held_points_is_killed(few: Path) -> None:
                 rt.Robot.lwa4p(), few, client=client, runs_per_task=4, **of_points("exact")
             )
     assert len(asked) > 4 and found == alone
+
+
+def test_points_go_from_worker_to_worker(few: Path) -> None:
+    robot = rt.Robot.lwa4p()
+    settings = of_conformance(robot, torque="compensated", notion="exact", until=0.03)
+    job = _jobs.Job("robot", robot._native.description(), settings)
+    [part] = fleet._parts(few, 1000, None, (None, None), None)
+    points = _points._points(job, _jobs.fold_of(job, part), part)
+    again = pickle.loads(pickle.dumps(points))
+    assert again.to_bytes() == points.to_bytes()
+    # Dask plans its memory by this: 14 recordings of 7 points.
+    assert sys.getsizeof(again) == sys.getsizeof(points) > 14 * 7 * 6 * 24
