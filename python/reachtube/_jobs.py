@@ -7,7 +7,7 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple, TypeAlias
+from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar
 
 from . import _reachtube
 from ._manifest import Recording
@@ -15,6 +15,8 @@ from ._robot import Robot
 from ._store import read, write
 from .errors import ReachtubeError
 from .io import _run_of_columns
+
+Own = TypeVar("Own")
 
 #: How many folds merge at once.
 GROUP = 8
@@ -143,8 +145,9 @@ def _write_summaries(part: Part, rows: list[dict[str, Any]]) -> None:
     write(name, buffer.getvalue(), part.storage)
 
 
-def same(job: Job) -> Job:
-    return job
+def same(value: Own) -> Own:
+    """Return a value, as a task whose result can be made again where its worker ends."""
+    return value
 
 
 def _merge(job: Job, parts: list[bytes]) -> bytes:
@@ -155,8 +158,7 @@ def on_dask(job: Job, parts: list[Part], client: Any, count: Any) -> tuple[bytes
     """Fold the parts on workers, and merge them as a tree; return the whole and its future."""
     from distributed import as_completed
 
-    # A task, so that it is done again where the worker that holds its result ends. Scattered data
-    # would be lost with its workers.
+    # Scattered data would be lost with the workers that hold it.
     shared = client.submit(same, job, pure=False, retries=3)
     folds = [client.submit(fold_of, shared, part, pure=False, retries=3) for part in parts]
     last = as_tree(client, functools.partial(client.submit, _merge, shared), folds)

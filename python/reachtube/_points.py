@@ -27,9 +27,7 @@ def _points(job: Job, whole: bytes, part: Part) -> _reachtube.PartPoints:
     return _reachtube.PartPoints.read(_problem(job, whole), recorded())
 
 
-def _answer(
-    job: Job, whole: bytes, points: _reachtube.PartPoints, question: bytes
-) -> bytes:
+def _answer(job: Job, whole: bytes, points: _reachtube.PartPoints, question: bytes) -> bytes:
     return points.answer(_problem(job, whole), question)
 
 
@@ -89,6 +87,9 @@ class Points:
     def close(self) -> None:
         """Let go of the points; a question that waits ends."""
         self._is_over = True
-        if self._client is not None and self._held is not None:
-            self._client.cancel([*self._held, self._asked], force=True)
+        if self._client is None:
+            _problem.cache_clear()
+        elif self._held is not None:
+            asked = [] if self._asked is None else [self._asked]
+            self._client.cancel([*self._held, *asked], force=True)
         self._held = self._asked = self._whole = None
