@@ -13,8 +13,8 @@ const SHRINK: f64 = 0.1;
 /// Last barrier weight, relative to the weight of the prior where that is below 1.
 ///
 /// A larger one would outweigh the prior, and inflate links that the data leave open by the ratio
-/// of the two. The objective then is within this weight times the number of inequalities of its minimum. There
-/// are four inequalities per link, and one per positive column.
+/// of the two. The objective then is within this weight times the number of inequalities of its
+/// minimum. There are four inequalities per link, and one per positive column.
 const LAST_BARRIER: f64 = 1e-3;
 
 /// Limit of the Newton steps for one barrier weight; a dozen are typical.

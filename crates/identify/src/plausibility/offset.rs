@@ -176,8 +176,8 @@ impl<'a> OffsetSearch<'a> {
             ),
         };
         let warning = format!(
-            "the position of {name} probably has an offset of {offset:.3} ± {error:.3} {unit}{place}: \
-             the torque is explained better without it; {remedy}"
+            "the position of {name} probably has an offset of {offset:.3} ± {error:.3} \
+             {unit}{place}: the torque is explained better without it; {remedy}"
         );
         Some((corrected(&self.logs, at, offset), warning))
     }

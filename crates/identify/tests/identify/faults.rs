@@ -18,7 +18,7 @@ fn warnings(change: impl Fn(&mut Vec<Vec<f64>>)) -> Vec<String> {
     identified(0.03, 1..=3, change).warnings
 }
 
-/// Identifies the arm from exciting motions with noise \[N m\]; `change` falsifies the rows of some.
+/// Identifies the arm from exciting motions with noise \[N m\], of which `change` falsifies some.
 fn identified(
     noise: f64,
     false_ones: std::ops::RangeInclusive<usize>,

@@ -8,8 +8,9 @@ use reachtube_robot::{Physicality, Robot};
 fn flat_arm() -> Robot {
     let link = |(name, alpha): (&str, f64)| {
         format!(
-            "[[joint]]\nname = \"{name}\"\ndh = {{ a = 0.3, alpha = {alpha:?}, theta = 0.0, d = 0.1 \
-             }}\nmass = 4.0\ncom = [-0.1, 0.0, 0.0]\ninertia = [0.01, 0.0, 0.0, 0.03, 0.0, 0.04]\n\
+            "[[joint]]\nname = \"{name}\"\ndh = {{ a = 0.3, alpha = {alpha:?}, theta = 0.0, \
+             d = 0.1 }}\nmass = 4.0\ncom = [-0.1, 0.0, 0.0]\n\
+             inertia = [0.01, 0.0, 0.0, 0.03, 0.0, 0.04]\n\
              armature = 0.1\nfriction = {{ viscous = [2.0, 0.0, 0.0] }}\n"
         )
     };

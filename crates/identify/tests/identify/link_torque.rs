@@ -13,8 +13,8 @@ use std::path::Path;
 
 const JOINTS: usize = 7;
 
-/// Modified Denavit-Hartenberg parameters a \[m\], alpha \[π/2\] and d \[m\], mass \[kg\] and centre
-/// of mass \[m\] of each link.
+/// Modified Denavit-Hartenberg parameters a \[m\], alpha \[π/2\] and d \[m\], mass \[kg\] and
+/// centre of mass \[m\] of each link.
 type Link = ([f64; 3], f64, [f64; 3]);
 
 const LINKS: [Link; JOINTS] = [
@@ -36,9 +36,10 @@ fn arm() -> Robot {
         let inertia = [0.011 * mass, 0.0, 0.0, 0.009 * mass, 0.001 * mass, 0.006 * mass];
         let (dry, viscous) = (0.02 * NOISE[k] * 20.0, 0.1);
         format!(
-            "[[joint]]\nname = \"joint{}\"\ndh = {{ a = {a:?}, alpha = {:?}, theta = 0.0, d = {d:?} \
-             }}\nmass = {mass:?}\ncom = {com:?}\ninertia = {inertia:?}\n[joint.friction]\ncoulomb = \
-             [{dry:?}, 0.0, {:?}, 0.0, {:?}, 0.0, {dry:?}, 0.0]\nviscous = [{viscous:?}, 0.0, 0.0]\n",
+            "[[joint]]\nname = \"joint{}\"\ndh = {{ a = {a:?}, alpha = {:?}, theta = 0.0, d = \
+             {d:?} }}\nmass = {mass:?}\ncom = {com:?}\ninertia = {inertia:?}\n\
+             [joint.friction]\ncoulomb = [{dry:?}, 0.0, {:?}, 0.0, {:?}, 0.0, {dry:?}, 0.0]\n\
+             viscous = [{viscous:?}, 0.0, 0.0]\n",
             k + 1,
             turns * FRAC_PI_2,
             -dry,

@@ -253,7 +253,8 @@ fn check_limits(joint: &JointDescription) -> Checked {
     require(
         joint.position_limits.is_some() || kind == JointKind::Revolute,
         "name",
-        "give the lowest and the highest position in m",
+        "give the lowest and the highest position in m; a turn bounds a revolute joint, but \
+         nothing bounds a slide, and the mass matrix is checked over all positions",
         || "the joint is prismatic and has no position limits".into(),
     )?;
     let [low, high] = joint.position_limits.unwrap_or([0.0, 1.0]);

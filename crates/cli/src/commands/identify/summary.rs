@@ -236,8 +236,8 @@ fn offsets(found: &Identification) -> String {
     };
     let limit = |joint: &PositionOffset| Some(format!("{:.3}", joint.limit?));
     format!(
-        "{} that explain the torque best, each alone (± standard error): {}\nsmaller offsets cannot \
-         be told from errors of the model: {}\n",
+        "{} that explain the torque best, each alone (± standard error): {}\nsmaller offsets \
+         cannot be told from errors of the model: {}\n",
         unit.head("offsets of the positions"),
         list(&own),
         list(&limit)
