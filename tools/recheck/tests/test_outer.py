@@ -9,8 +9,8 @@ import toy
 from recheck.cli import main
 
 STEP, SAMPLES = 0.01, 20
-# Friction that bends: the acceleration of joint j is -v (qd + 0.2 qd^3) + the row of TORQUE times u;
-# sin q1 pulls at joint 2.
+# Friction that bends: the acceleration of joint j is -v (qd + 0.2 qd^3) + the row of TORQUE times
+# u; sin q1 pulls at joint 2.
 NAMES = ["qd1", "qd2", "s1", "s2", "c1", "c2", "u1", "u2"]
 BEND, PULL = 0.2, 0.7
 

@@ -148,8 +148,8 @@ pub(crate) fn trace_factors(problem: &Problem, sets: &UncertaintySets) -> Result
 }
 
 /// Finds the smallest sets of a linear model in which every recorded point lies, and widens U until
-/// one motion of the model passes through all samples of each recording. A recording through which none passes,
-/// however wide U is, does not count.
+/// one motion of the model passes through all samples of each recording. A recording through which
+/// none passes, however wide U is, does not count.
 ///
 /// # Errors
 ///
