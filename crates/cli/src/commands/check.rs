@@ -98,7 +98,10 @@ fn outside_points(verdict: &PointVerdict, followed: bool, kinds: &[JointKind]) -
     let close = match unproved - outside {
         0 => String::new(),
         lost if !followed => format!(", and {lost} not proved, as the set was lost before"),
-        close => format!(", and {close} too close to its boundary to be proved"),
+        close => format!(
+            ", and {close} too close to its boundary to be proved (sets that `conform --notion` \
+             fits for this notion leave room for a proof)"
+        ),
     };
     let mut text = format!(
         "{outside} of {points} recorded points ({}) outside the set{close}",
@@ -119,9 +122,16 @@ fn outside_points(verdict: &PointVerdict, followed: bool, kinds: &[JointKind]) -
     text
 }
 
+/// Factor beyond which widening a set is no remedy.
+const MOST_GROWTH: f64 = 100.0;
+
 /// Says which set would have to grow, and by how much.
 fn growth_words(growth: &Growth, kinds: &[JointKind]) -> String {
     let set = |name: &str, factor: Option<f64>| match factor {
+        Some(factor) if factor > MOST_GROWTH => format!(
+            "widening {name} does not help (it would have to be {} times as wide)",
+            at_least(factor)
+        ),
         Some(factor) => format!("{name} about {} times as wide", at_least(factor)),
         None => format!("no factor of {name} suffices"),
     };
@@ -167,4 +177,24 @@ fn witness(place: &Witness, kinds: &[JointKind]) -> String {
         four_decimals(place.excess),
         format!("{:?}", place.side).to_lowercase()
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_that_cannot_grow_enough_is_no_remedy() {
+        let growth = Growth {
+            initial_set: Some(1.5e6),
+            input_set: Some(1.25),
+            both_sets: Some(1.2),
+            noise_position: 0.1,
+            noise_velocity: 0.2,
+        };
+        let words = growth_words(&growth, &[JointKind::Revolute]);
+        assert!(words.contains("U about 1.25"), "{words}");
+        assert!(words.contains("widening X0 does not help"), "{words}");
+        assert!(!words.contains("X0 about"), "{words}");
+    }
 }
