@@ -10,3 +10,4 @@ pub(crate) mod program;
 mod repair;
 pub(crate) mod smallest_sets;
 pub(crate) mod solver;
+mod units;

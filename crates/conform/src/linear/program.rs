@@ -46,9 +46,6 @@ const GAP: f64 = 1e-8;
 /// How often the program is solved with other units at most.
 const SCALINGS: usize = 4;
 
-/// An unknown that contributes less than this part to the cost gets the unit that would.
-const NEGLIGIBLE_PART: f64 = 1e-7;
-
 /// The program.
 #[derive(Clone)]
 pub struct Program<'a> {
@@ -310,25 +307,6 @@ impl<'a> Program<'a> {
         };
         let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
         Ok(([sets(&found), sets(&polished)], lower_bound))
-    }
-
-    /// The unit of each unknown: such that all cost the same, or about its value in the sets
-    /// `near`, where an earlier solution is known, but never more than its limit. With units of the
-    /// first kind the solver may miss what small unknowns do to small rows; with the second, every
-    /// row that decides has terms of about its own size.
-    fn units(&self, layout: &Layout, near: Option<&UncertaintySets>) -> Vec<f64> {
-        let largest = layout.cost.iter().copied().fold(0.0, f64::max);
-        let cheapest = |sets: &UncertaintySets| {
-            NEGLIGIBLE_PART * self.cost(sets).max(self.negligible_cost()) / self.scale
-        };
-        let unit = |(j, w): (usize, &f64)| {
-            let unit = match near {
-                None => largest / w,
-                Some(sets) => (layout.value(sets, j) / self.scale).max(cheapest(sets) / w),
-            };
-            unit.min(layout.limit_of(&self.limits, j) / self.scale)
-        };
-        layout.cost.iter().enumerate().map(unit).collect()
     }
 
     /// The scaled rows `indices`, the signs of the radii, and the bounds of the centres.
