@@ -19,7 +19,7 @@ use crate::envelope::Envelope;
 use crate::explain::chain::Chain;
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::explain::regulate::regulate;
-use crate::linear::solver::{Triplets, solve_cone};
+use crate::linear::solver::{FINE, Triplets, solve_cone};
 use crate::problem::case::Case;
 use crate::problem::condition::Condition;
 use crate::sets::UncertaintySets;
@@ -266,7 +266,7 @@ fn least(matrices: &[(DMatrix<f64>, DMatrix<f64>, DMatrix<f64>)]) -> f64 {
     }
     let mut objective = vec![0.0; moves + 1];
     objective[moves] = 1.0;
-    solve_cone(&objective, &rows, &bounds).unwrap().dual
+    solve_cone(&objective, &rows, &bounds, FINE).unwrap().dual
 }
 
 /// Draws a number uniformly from [-bound, bound).

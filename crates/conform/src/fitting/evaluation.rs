@@ -7,7 +7,7 @@ use reachtube_reach::{Disturbance, TimeGrid};
 
 use crate::envelope::Envelope;
 use crate::error::{Error, Result};
-use crate::fitting::data::{Data, Track};
+use crate::fitting::data::Data;
 use crate::fitting::parameters::Parameters;
 use crate::linear::block::Block;
 use crate::linear::layout::Limits;
@@ -39,7 +39,8 @@ pub(crate) struct Fit<'a> {
 pub(crate) struct Model {
     /// For each grid, the entries of E_k and R_k at the samples that are rows, as in a [`Block`].
     pub coefficients: Vec<Arc<Vec<f64>>>,
-    /// For each track, the nominal motion at the samples that are rows, samples x 2n.
+    /// For each track, the nominal motion at the samples that are rows, samples x 2n; empty for a
+    /// track that was not asked for.
     pub motions: Vec<Vec<f64>>,
 }
 
@@ -55,12 +56,13 @@ impl Fit<'_> {
         self.weights.len() / 2
     }
 
-    /// Returns the model with these numbers; `known` is one whose E_k and R_k are the same.
+    /// Returns the model with these numbers and its nominal motions of `tracks`; `known` is one
+    /// whose E_k and R_k are the same.
     ///
     /// # Errors
     ///
     /// A robot that is not physical, a model that is not linear.
-    pub fn model(&self, numbers: &[f64], known: Option<&Model>) -> Result<Model> {
+    pub fn model(&self, numbers: &[f64], tracks: &[usize], known: Option<&Model>) -> Result<Model> {
         let setup = self.parameters.apply(numbers)?;
         let system = setup.dynamics.linear_system().ok_or(Error::NotLinear)?;
         let grids = self.data.grids.iter();
@@ -69,7 +71,7 @@ impl Fit<'_> {
             Some(model) => model.coefficients.clone(),
             None => self.coefficients(&steps),
         };
-        Ok(Model { coefficients, motions: self.motions(&setup, &steps)? })
+        Ok(Model { coefficients, motions: self.motions(&setup, &steps, tracks)? })
     }
 
     fn coefficients(&self, steps: &[Steps]) -> Vec<Arc<Vec<f64>>> {
@@ -80,18 +82,24 @@ impl Fit<'_> {
         steps.iter().zip(&self.data.grids).map(of).collect()
     }
 
-    fn motions(&self, setup: &Setup, steps: &[Steps]) -> Result<Vec<Vec<f64>>> {
+    fn motions(&self, setup: &Setup, steps: &[Steps], tracks: &[usize]) -> Result<Vec<Vec<f64>>> {
         let none = InputCorrection::none(self.joints());
         let correction = setup.correction.as_ref().unwrap_or(&none);
         let (robot, dynamics) = (&setup.robot, &setup.dynamics);
         let corrected = Corrected { robot, dynamics, correction, settings: self.settings };
         let width = 2 * self.joints();
-        let of = |track: &Track| {
+        let of = |&t: &usize| {
+            let track = &self.data.tracks[t];
             let states = corrected.motion(&track.case, Some(&steps[track.grid]))?.states;
             let rows = states.chunks_exact(width).step_by(self.stride);
-            Ok(rows.flatten().copied().collect())
+            Ok((t, rows.flatten().copied().collect()))
         };
-        self.data.tracks.par_iter().map(of).collect()
+        let found: Vec<(usize, Vec<f64>)> = tracks.par_iter().map(of).collect::<Result<_>>()?;
+        let mut motions = vec![Vec::new(); self.data.tracks.len()];
+        for (t, motion) in found {
+            motions[t] = motion;
+        }
+        Ok(motions)
     }
 
     /// Returns the program of `model` for the tracks named.
@@ -164,7 +172,8 @@ impl Fit<'_> {
     /// As [`model`](Self::model) and [`Program::solve`].
     pub fn whole_cost(&self, numbers: &[f64]) -> Result<f64> {
         let whole = Self { stride: 1, ..self.clone() };
-        Ok(whole.smallest(&whole.model(numbers, None)?, &whole.tracks(None))?.cost)
+        let tracks = whole.tracks(None);
+        Ok(whole.smallest(&whole.model(numbers, &tracks, None)?, &tracks)?.cost)
     }
 
     /// Returns at most `few` tracks of each suite, from the first to the last, of all motions but

@@ -20,7 +20,10 @@ use crate::progress::Progress;
 use crate::settings::{Method, Weights};
 use crate::weights::state_weights;
 
-/// Tracks of a suite that the search starts with.
+/// Tracks of a suite that decide where the search starts.
+const FEWEST: usize = 4;
+
+/// Tracks of a suite that the search goes on with.
 const FEW: usize = 8;
 
 /// What a fit found.
@@ -84,7 +87,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let choice = choose(&fit, settings.pull)?;
     progress.finished(&format!("the weight of the pull is {}", choice.pull));
     progress.go_on()?;
-    let found = search(&fit, choice.pull)?;
+    let found = search(&fit, &settings.distinct_groups(), choice.pull)?;
     progress.finished(&format!("the fit took {} steps", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {
         let own = Parameters::new(problem.setup(), &settings.groups);
@@ -107,17 +110,41 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
 
 /// Searches with `pull` in parts of the identified model's cost: few runs of each suite show where
 /// to go, and all of them decide the end.
-fn search(fit: &Fit, pull: f64) -> Result<Optimum> {
+///
+/// The cost has more than one local optimum. One search moves all groups from the beginning, and
+/// one for each group first the others; the best answer counts.
+fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
     let (start, tracks) = (vec![0.0; fit.parameters.len()], fit.tracks(None));
-    let pull = pull * fit.smallest(&fit.model(&start, None)?, &tracks)?.cost;
-    let few = fit.few_tracks(None, FEW);
-    let is_done = few.len() == tracks.len();
-    let found = Search { fit, tracks: few, pull, effort: Effort::WHOLE }.run(&start)?;
-    if is_done {
-        return Ok(found);
+    let pull = pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
+    let search = |tracks: &[usize], held, effort| {
+        let tracks = tracks.to_vec();
+        Search { fit, tracks, pull, held, effort }
+    };
+    let fewest = fit.few_tracks(None, FEWEST);
+    let of_held = |held: Option<Group>| {
+        let first = match held {
+            Some(_) => search(&fewest, held, Effort::QUICK).run(&start)?.numbers,
+            None => start.clone(),
+        };
+        search(&fewest, None, Effort::QUICK).run(&first)
+    };
+    let held = groups.iter().map(|group| Some(*group)).filter(|_| groups.len() > 1);
+    let starts: Vec<Option<Group>> = std::iter::once(None).chain(held).collect();
+    let mut answers: Vec<Result<Optimum>> = starts.into_par_iter().map(of_held).collect();
+    let mut best = answers.remove(0)?;
+    for other in answers.into_iter().flatten() {
+        if other.value < best.value {
+            best = other;
+        }
     }
-    let last = Search { fit, tracks, pull, effort: Effort::LAST }.run(&found.numbers)?;
-    Ok(Optimum { steps: found.steps + last.steps, ..last })
+    let few = fit.few_tracks(None, FEW);
+    let found = search(&few, None, Effort::WHOLE).run(&best.numbers)?;
+    let steps = best.steps + found.steps;
+    if few.len() == tracks.len() {
+        return Ok(Optimum { steps, ..found });
+    }
+    let last = search(&tracks, None, Effort::LAST).run(&found.numbers)?;
+    Ok(Optimum { steps: steps + last.steps, ..last })
 }
 
 /// Refuses what cannot be fitted, whatever the recordings are.
@@ -174,9 +201,7 @@ fn record(
         let numbers: Vec<f64> = numbers.iter().zip(&fit.parameters.list).map(kept).collect();
         Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&numbers)? })
     };
-    // Each group once, also where it was named twice.
-    let named = |group: &Group| settings.groups.contains(group);
-    let groups: Vec<Group> = Group::ALL.into_iter().filter(named).collect();
+    let groups = settings.distinct_groups();
     let cases = || fit.data.tracks.iter().map(|track| &track.case);
     let before = InputError::of_cases(setup, cases())?;
     let after = InputError::of_cases(&fit.parameters.apply(numbers)?, cases())?;

@@ -51,3 +51,10 @@ pub struct FitSettings {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pull: Option<f64>,
 }
+
+impl FitSettings {
+    /// Returns each group once, also where it was named twice.
+    pub(crate) fn distinct_groups(&self) -> Vec<Group> {
+        Group::ALL.into_iter().filter(|group| self.groups.contains(group)).collect()
+    }
+}

@@ -14,10 +14,11 @@ const INERTIAL: usize = ParameterKind::INERTIAL.len();
 /// What a number of a fit changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Quantity {
-    /// The motor inertia: the number is the logarithm of the factor on the inertia that the motor
-    /// feels at the expansion point.
+    /// The motor inertia: the number is half the logarithm of the factor on the inertia that the
+    /// motor feels at the expansion point. Half, because a velocity that is scaled by a factor
+    /// scales its inertia by the square.
     MotorInertia,
-    /// The density of a link: the logarithm of a factor.
+    /// The density of a link: half the logarithm of a factor.
     Density,
     /// v1: the logarithm of a factor.
     Viscous,
@@ -112,9 +113,9 @@ impl<'a> Parameters<'a> {
             Group::Inertia => {
                 // The motor inertia must not become negative.
                 let rest = (1.0 - drive.armature / self.inertia[joint]).max(LEAST_INERTIA);
-                let motor = (Quantity::MotorInertia, [rest.ln().min(0.0), WIDEST]);
+                let motor = (Quantity::MotorInertia, [rest.ln().min(0.0), WIDEST].map(half));
                 let link = self.link(joint).iter().any(|x| *x != 0.0);
-                let density = if_any(link, Quantity::Density, [-WIDEST, WIDEST]);
+                let density = if_any(link, Quantity::Density, [-WIDEST, WIDEST].map(half));
                 [vec![motor], density].concat()
             }
             Group::Viscous => if_any(viscous.v1 > 0.0, Quantity::Viscous, [-WIDEST, WIDEST]),
@@ -163,8 +164,8 @@ impl<'a> Parameters<'a> {
         let viscous = &self.setup.robot.joints()[joint].friction.viscous;
         let times = |identified: f64, factor: f64| (identified, identified * factor, Some(factor));
         match quantity {
-            Quantity::MotorInertia => times(self.inertia[joint], number.exp()),
-            Quantity::Density => times(self.link(joint)[0], number.exp()),
+            Quantity::MotorInertia => times(self.inertia[joint], (2.0 * number).exp()),
+            Quantity::Density => times(self.link(joint)[0], (2.0 * number).exp()),
             Quantity::Viscous => times(viscous.v1, number.exp()),
             Quantity::Cubic => times(viscous.v3, 1.0 + number),
             Quantity::Coulomb(quadrants) => {
@@ -210,12 +211,12 @@ impl<'a> Parameters<'a> {
             let corrected = &mut correction.joints[joint];
             match quantity {
                 Quantity::MotorInertia => {
-                    let armature = drive.armature + self.inertia[joint] * number.exp_m1();
+                    let armature = drive.armature + self.inertia[joint] * (2.0 * number).exp_m1();
                     change(joint, ParameterKind::MotorInertia, armature.max(0.0));
                 }
                 Quantity::Density => {
                     let link = &mut links[INERTIAL * joint..INERTIAL * (joint + 1)];
-                    link.iter_mut().for_each(|value| *value *= number.exp());
+                    link.iter_mut().for_each(|value| *value *= (2.0 * number).exp());
                 }
                 Quantity::Viscous => {
                     change(joint, ParameterKind::Viscous1, viscous.v1 * number.exp());
@@ -263,6 +264,10 @@ impl<'a> Parameters<'a> {
             _ => [0.0, 0.0],
         }
     }
+}
+
+fn half(x: f64) -> f64 {
+    0.5 * x
 }
 
 /// The first of some quadrants.

@@ -9,7 +9,7 @@ use crate::fitting::search::{Effort, Search};
 
 /// The weights that are tried, in parts of the identified model's cost per unit, the strongest
 /// first.
-const PULLS: [f64; 4] = [0.05, 0.02, 0.005, 0.001];
+const PULLS: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
 
 /// Tracks of a suite that are enough to compare weights by.
 const FEW: usize = 4;
@@ -52,11 +52,16 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
 fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<f64>> {
     let tracks = fit.few_tracks(Some(motion), FEW);
     let mut numbers = vec![0.0; fit.parameters.len()];
-    let identified = fit.smallest(&fit.model(&numbers, None)?, &tracks)?.cost;
+    let identified = fit.smallest(&fit.model(&numbers, &tracks, None)?, &tracks)?.cost;
     let mut costs = Vec::new();
     for pull in pulls {
-        let search =
-            Search { fit, tracks: tracks.clone(), pull: pull * identified, effort: Effort::QUICK };
+        let search = Search {
+            fit,
+            tracks: tracks.clone(),
+            pull: pull * identified,
+            held: None,
+            effort: Effort::QUICK,
+        };
         numbers = search.run(&numbers)?.numbers;
         costs.push(fit.whole_cost(&numbers)?);
     }

@@ -1,5 +1,6 @@
 use crate::error::Result;
 use crate::fitting::evaluation::{Fit, Model, Smallest};
+use crate::fitting::group::Group;
 use crate::fitting::slopes::slopes;
 use crate::fitting::step::{Step, StepRow};
 use crate::linear::program::RowIndex;
@@ -17,6 +18,8 @@ pub(crate) struct Optimum {
     pub numbers: Vec<f64>,
     /// Number of steps that were accepted.
     pub steps: usize,
+    /// The cost with the pull.
+    pub value: f64,
 }
 
 /// The parameters for which the sets of some tracks cost least, with a pull.
@@ -25,6 +28,8 @@ pub(crate) struct Search<'a> {
     pub tracks: Vec<usize>,
     /// Cost of a number's distance from 0.
     pub pull: f64,
+    /// A group whose numbers stay as they are.
+    pub held: Option<Group>,
     pub effort: Effort,
 }
 
@@ -66,7 +71,8 @@ impl Search<'_> {
         let mut point = self.point(start.to_vec(), &mut own_rows)?;
         let (mut trust, mut steps) = (FIRST_TRUST, 0);
         'search: for _ in 0..self.effort.steps {
-            let slopes = slopes(self.fit, &point.numbers, &point.model, &point.smallest)?;
+            let slopes =
+                slopes(self.fit, &point.numbers, &self.tracks, &point.model, &point.smallest)?;
             let program = self.fit.program(&point.model, &self.tracks);
             loop {
                 let step = Step {
@@ -76,7 +82,9 @@ impl Search<'_> {
                     program: &program,
                     tracks: &self.tracks,
                     numbers: &point.numbers,
+                    smallest: &point.smallest,
                     trust,
+                    held: self.held,
                     pull: self.pull,
                 };
                 let Ok(answer) = step.solve(&mut rows) else { break 'search };
@@ -106,14 +114,14 @@ impl Search<'_> {
                 }
             }
         }
-        Ok(Optimum { numbers: point.numbers, steps })
+        Ok(Optimum { value: self.value(&point), numbers: point.numbers, steps })
     }
 
     fn point(&self, numbers: Vec<f64>, rows: &mut Vec<RowIndex>) -> Result<Point> {
         if self.effort.is_physical {
             self.fit.parameters.apply(&numbers)?.robot.check_physical()?;
         }
-        let model = self.fit.model(&numbers, None)?;
+        let model = self.fit.model(&numbers, &self.tracks, None)?;
         let smallest = self.fit.smallest_from(&model, &self.tracks, rows)?;
         Ok(Point { numbers, model, smallest })
     }

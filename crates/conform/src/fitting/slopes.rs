@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use crate::error::Result;
 use crate::fitting::evaluation::{Fit, Model, Smallest};
 
-/// The step of a difference, in the numbers of the parameters.
-const DIFFERENCE: f64 = 1e-4;
+/// The step of a difference, in the numbers of the parameters. Friction that differs between
+/// quadrants jumps at a sample; a step this long sees past small jumps.
+const DIFFERENCE: f64 = 1e-3;
 
 /// The derivatives with respect to one parameter.
 pub(crate) struct Slope {
@@ -18,7 +19,7 @@ pub(crate) struct Slope {
     pub reach: Option<Vec<Vec<[f64; 2]>>>,
 }
 
-/// Returns the derivatives at `numbers`, where the model is `model` and its smallest sets are
+/// Returns the derivatives for `tracks` at `numbers`, where the model is `model` and its smallest sets are
 /// `smallest`, one for each parameter.
 ///
 /// # Errors
@@ -27,6 +28,7 @@ pub(crate) struct Slope {
 pub(crate) fn slopes(
     fit: &Fit,
     numbers: &[f64],
+    tracks: &[usize],
     model: &Model,
     smallest: &Smallest,
 ) -> Result<Vec<Slope>> {
@@ -42,7 +44,7 @@ pub(crate) fn slopes(
         let step = if up { DIFFERENCE } else { -DIFFERENCE };
         moved[p] += step;
         let changes = fit.parameters.changes_model(p);
-        let other = fit.model(&moved, (!changes).then_some(model))?;
+        let other = fit.model(&moved, tracks, (!changes).then_some(model))?;
         let pairs = other.motions.iter().zip(&model.motions);
         let difference = |(other, here): (&Vec<f64>, &Vec<f64>)| {
             other.iter().zip(here).map(|(x, y)| (x - y) / step).collect()

@@ -13,7 +13,8 @@ use std::collections::{BTreeMap, HashSet};
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::fitting::evaluation::{Fit, Model};
+use crate::fitting::evaluation::{Fit, Model, Smallest};
+use crate::fitting::group::Group;
 use crate::fitting::slopes::Slope;
 use crate::linear::layout::Layout;
 use crate::linear::program::{Program, dot};
@@ -31,11 +32,19 @@ const WINDOWS: usize = 24;
 const ROUNDS: usize = 25;
 
 /// Rows within this part of the largest deviation are kept for the next step.
-const CLOSE: f64 = 0.02;
+const CLOSE: f64 = 0.005;
 
 /// The weight of the pull at least, in parts of the cost: without any, the program has no unique
 /// answer where a parameter does nothing.
 const LEAST_PULL: f64 = 1e-6;
+
+/// How much each of the sets' numbers may cost more or less after a step, in parts of the cost and
+/// per unit of the trust region. The derivatives of the rows are those along the present sets.
+/// Where other sets cost nearly as little, a step that left them would promise what no step gains.
+const SET_TRUST: f64 = 0.1;
+
+/// The tolerance of the solver. A step need not be exact: the cost at its end decides.
+const SOLVER_TOLERANCE: f64 = 1e-8;
 
 /// Track, sample among the rows, state, side.
 pub(crate) type StepRow = (usize, usize, usize, Side);
@@ -51,8 +60,12 @@ pub(crate) struct Step<'a> {
     pub tracks: &'a [usize],
     /// The present numbers.
     pub numbers: &'a [f64],
+    /// The smallest sets at the present parameters.
+    pub smallest: &'a Smallest,
     /// How far each number may move.
     pub trust: f64,
+    /// A group whose numbers may not move.
+    pub held: Option<Group>,
     /// Cost of a number's distance from 0.
     pub pull: f64,
 }
@@ -200,9 +213,9 @@ impl Step<'_> {
     fn solve_rows(&self, rows: &[StepRow]) -> Result<(Vec<f64>, f64)> {
         let layout = self.layout();
         let (sets, count) = (layout.cost.len(), self.numbers.len());
-        let largest = layout.cost.iter().copied().fold(0.0, f64::max);
         let scale = self.program.scale();
-        let units = layout.cost.iter().map(|w| scale * largest / w);
+        let units = self.program.units(&layout, Some(&self.smallest.sets));
+        let units = units.into_iter().map(|unit| unit * scale);
         let unit: Vec<f64> = units.chain(std::iter::repeat_n(1.0, 2 * count)).collect();
         let (mut matrix, mut bounds) = (Triplets::default(), Vec::new());
         for &row in rows {
@@ -214,30 +227,40 @@ impl Step<'_> {
         }
         layout.restrict(self.fit.settings.centre, &mut matrix, &mut bounds, &unit);
         layout.limit(&self.fit.limits, &mut matrix, &mut bounds, &unit);
+        let total = self.smallest.cost.max(self.program.negligible_cost());
+        let present = layout.unknowns(&self.smallest.sets);
+        for (j, (here, w)) in present.iter().zip(&layout.cost).enumerate() {
+            let most = self.trust * SET_TRUST * total / w;
+            matrix.row([(j, 1.0)]);
+            matrix.row([(j, -1.0)]);
+            bounds.extend([(here + most) / unit[j], (most - here) / unit[j]]);
+        }
         for p in 0..count {
             let (plus, minus) = (sets + p, sets + count + p);
+            let is_held = Some(self.fit.parameters.list[p].quantity.group()) == self.held;
+            let trust = if is_held { 0.0 } else { self.trust };
             let [low, high] = self.fit.parameters.list[p].bounds;
             matrix.row([(plus, -1.0)]);
             matrix.row([(minus, -1.0)]);
             matrix.row([(plus, 1.0), (minus, -1.0)]);
             matrix.row([(plus, -1.0), (minus, 1.0)]);
-            let (top, bottom) = (self.numbers[p] + self.trust, self.numbers[p] - self.trust);
+            let (top, bottom) = (self.numbers[p] + trust, self.numbers[p] - trust);
             bounds.extend([0.0, 0.0, top.min(high), -bottom.max(low)]);
         }
         let slopes = self.cost_slopes();
-        let pull = self.pull.max(LEAST_PULL * scale * largest);
+        let pull = self.pull.max(LEAST_PULL * total);
         let of_set = |(j, w): (usize, &f64)| {
-            if j < layout.centres() { 0.0 } else { w * unit[j] / (scale * largest) }
+            if j < layout.centres() { 0.0 } else { w * unit[j] / total }
         };
         let mut objective: Vec<f64> = layout.cost.iter().enumerate().map(of_set).collect();
         for sign in [1.0, -1.0] {
-            objective.extend(slopes.iter().map(|w| (sign * w + pull) / (scale * largest)));
+            objective.extend(slopes.iter().map(|w| (sign * w + pull) / total));
         }
-        let found = solve_cone(&objective, &matrix, &bounds)?.found;
+        let found = solve_cone(&objective, &matrix, &bounds, SOLVER_TOLERANCE)?.found;
         let value: f64 = found.iter().zip(&objective).map(|(x, w)| x * w).sum();
         let present: f64 = slopes.iter().zip(self.numbers).map(|(w, x)| w * x).sum();
         let unknowns = found.iter().zip(&unit).map(|(x, unit)| x * unit).collect();
-        Ok((unknowns, value * scale * largest - present))
+        Ok((unknowns, value * total - present))
     }
 
     /// Deviation minus reach of a row after the parameters changed by `moved`.

@@ -103,6 +103,15 @@ impl Layout {
         }
     }
 
+    /// Returns the values of the unknowns that describe some sets.
+    pub fn unknowns(&self, sets: &UncertaintySets) -> Vec<f64> {
+        let (start, input) = (&sets.initial_set, &sets.input_set);
+        let centres = start.centre.iter().chain(&input.centre).take(self.centres());
+        let radii = start.radius.iter().chain(&input.radius);
+        let noise = sets.noise_set.iter().flat_map(|set| &set.radius);
+        centres.chain(radii).chain(noise).take(self.cost.len()).copied().collect()
+    }
+
     /// Returns the largest that the unknown of column `j` may be; infinite where it has no limit.
     pub fn limit_of(&self, limits: &Limits, j: usize) -> f64 {
         let (width, centres) = (3 * self.joints, self.centres());

@@ -19,7 +19,7 @@ use crate::linear::block::Block;
 use crate::linear::costs::{cost, shares};
 use crate::linear::cut::Cut;
 use crate::linear::layout::{Layout, Limits};
-use crate::linear::solver::{Optimum, Triplets, solve_cone};
+use crate::linear::solver::{FINE, Triplets, polished, solve_cone};
 use crate::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
 use crate::settings::{Noise, Settings};
@@ -298,15 +298,16 @@ impl<'a> Program<'a> {
             if j < layout.centres() { 0.0 } else { w * unit[j] / largest_cost }
         };
         let objective: Vec<f64> = layout.cost.iter().enumerate().map(weigh).collect();
-        let Optimum { found, polished, dual } = solve_cone(&objective, &triplets, &bounds)?;
+        let optimum = solve_cone(&objective, &triplets, &bounds, FINE)?;
+        let polished = polished(&optimum, &triplets, &bounds);
         // Undo the scaling.
         let sets = |x: &[f64]| {
             let unknowns: Vec<f64> =
                 x.iter().zip(&unit).map(|(x, unit)| x * unit * self.scale).collect();
             layout.sets(&unknowns, self.settings)
         };
-        let lower_bound = dual * self.scale * largest_cost + self.fixed_cost();
-        Ok(([sets(&found), sets(&polished)], lower_bound))
+        let lower_bound = optimum.dual * self.scale * largest_cost + self.fixed_cost();
+        Ok(([sets(&optimum.found), sets(&polished)], lower_bound))
     }
 
     /// The scaled rows `indices`, the signs of the radii, and the bounds of the centres.

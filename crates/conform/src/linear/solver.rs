@@ -30,20 +30,30 @@ impl Triplets {
     }
 }
 
-/// An optimal point as the solver found it, the same point moved onto its active rows, and the
-/// dual objective.
+/// An optimal point as the solver found it.
 pub(crate) struct Optimum {
     pub found: Vec<f64>,
-    pub polished: Vec<f64>,
+    /// Which rows decide it: those whose multiplier exceeds their slack.
+    pub active: Vec<bool>,
+    /// The dual objective.
     pub dual: f64,
 }
 
-/// Minimises objective·x subject to A x <= bounds.
+/// The tolerance of an answer that is proved afterwards.
+pub(crate) const FINE: f64 = 1e-11;
+
+/// Minimises objective·x subject to A x <= bounds, to `tolerance` in every row and in the
+/// objective.
 ///
 /// # Errors
 ///
 /// [`Error::Program`] when the solver stops without an answer.
-pub(crate) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -> Result<Optimum> {
+pub(crate) fn solve_cone(
+    objective: &[f64],
+    matrix: &Triplets,
+    bounds: &[f64],
+    tolerance: f64,
+) -> Result<Optimum> {
     let (m, n) = (matrix.count, objective.len());
     let a = CscMatrix::new_from_triplets(
         m,
@@ -55,9 +65,9 @@ pub(crate) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -
     let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(m)];
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
-        .tol_feas(1e-11)
-        .tol_gap_abs(1e-11)
-        .tol_gap_rel(1e-11)
+        .tol_feas(tolerance)
+        .tol_gap_abs(tolerance)
+        .tol_gap_rel(tolerance)
         .max_iter(200)
         .build()
         .map_err(|error| Error::Program(error.to_string()))?;
@@ -68,11 +78,9 @@ pub(crate) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved | SolverStatus::InsufficientProgress => {
             let solution = &solver.solution;
-            let active: Vec<bool> =
-                solution.z.iter().zip(&solution.s).map(|(z, s)| z > s).collect();
             Ok(Optimum {
                 found: solution.x.clone(),
-                polished: polish(matrix, bounds, &active, &solution.x),
+                active: solution.z.iter().zip(&solution.s).map(|(z, s)| z > s).collect(),
                 dual: solution.obj_val_dual,
             })
         }
@@ -83,10 +91,11 @@ pub(crate) fn solve_cone(objective: &[f64], matrix: &Triplets, bounds: &[f64]) -
     }
 }
 
-/// Moves x the least way onto the active rows, those whose multiplier exceeds their slack. An
-/// interior-point solution meets each of them to about 1e-9 of the largest row, which is much for a
-/// small one; a vertex meets all to rounding.
-fn polish(matrix: &Triplets, bounds: &[f64], active: &[bool], x: &[f64]) -> Vec<f64> {
+/// Moves an optimum the least way onto its active rows. An interior-point solution meets each of
+/// them to about 1e-9 of the largest row, which is much for a small one; a vertex meets all to
+/// rounding.
+pub(crate) fn polished(optimum: &Optimum, matrix: &Triplets, bounds: &[f64]) -> Vec<f64> {
+    let Optimum { found: x, active, .. } = optimum;
     let place: Vec<Option<usize>> = active
         .iter()
         .scan(0, |count, &active| {
@@ -107,6 +116,6 @@ fn polish(matrix: &Triplets, bounds: &[f64], active: &[bool], x: &[f64]) -> Vec<
     );
     let before = DVector::from_column_slice(x);
     let residual = &wanted - &rows * &before;
-    let Ok(step) = rows.svd(true, true).solve(&residual, 1e-9) else { return x.to_vec() };
+    let Ok(step) = rows.svd(true, true).solve(&residual, 1e-9) else { return x.clone() };
     (before + step).data.into()
 }

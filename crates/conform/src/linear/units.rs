@@ -12,7 +12,7 @@ impl Program<'_> {
     /// `near`, where an earlier solution is known, but never more than its limit. With units of the
     /// first kind the solver may miss what small unknowns do to small rows; with the second, every
     /// row that decides has terms of about its own size.
-    pub(super) fn units(&self, layout: &Layout, near: Option<&UncertaintySets>) -> Vec<f64> {
+    pub(crate) fn units(&self, layout: &Layout, near: Option<&UncertaintySets>) -> Vec<f64> {
         let largest = layout.cost.iter().copied().fold(0.0, f64::max);
         let cheapest = |sets: &UncertaintySets| {
             NEGLIGIBLE_PART * self.cost(sets).max(self.negligible_cost()) / self.scale
