@@ -202,8 +202,8 @@ pub enum Error {
     },
     /// The search for physically consistent links failed.
     #[error(
-        "no physically consistent links were found near the data; check gains and signs, or set \
-         model.physical = false to see the least-squares fit"
+        "no physically consistent links were found near the data; check the units, gains and signs \
+         of the torques, or set model.physical = false to see the least-squares fit"
     )]
     NoPhysicalLinks,
     /// The recordings have defects or could not be read.

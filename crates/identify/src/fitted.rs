@@ -136,7 +136,9 @@ fn check(
     let gains = gains(robot, samples, &likelihood);
     let search = OffsetSearch::new(robot, &fit.columns, logs, sampling, &known);
     let offsets = search.run();
-    let checked = Checked { robot, fit, friction, logs, samples, sampling, known: &known };
+    let compensated = inputs.compensated;
+    let checked =
+        Checked { robot, fit, friction, logs, samples, sampling, known: &known, compensated };
     let warnings = checked.warnings(&likelihood, &gains, || search.reported(&offsets));
     Plausibility { gains, offsets: offsets.joints, warnings }
 }

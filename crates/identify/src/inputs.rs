@@ -1,6 +1,7 @@
 use crate::error::{Error, Result};
 use crate::prepare::changes::described as described_changes;
 use crate::prepare::cut_off::chosen_cut_off;
+use crate::prepare::entry::LogEntry;
 use crate::prepare::log::Log;
 use crate::prepare::prepared::{common_step, prepare_one};
 use crate::prepare::read::{Source, sources};
@@ -44,6 +45,8 @@ pub struct Inputs {
     validate: Vec<Log>,
     /// The rules for taking samples.
     pub sampling: Sampling,
+    /// Whether torques of exciting motions contain the gravity torque of the description.
+    pub compensated: bool,
     /// Changes to the recordings, one sentence each.
     pub changes: Vec<String>,
     /// Warnings about the recordings.
@@ -106,7 +109,8 @@ impl Inputs {
         changes.push(described(&sampling, robot));
         changes.extend(thinning(&dynamic, strides[2], &sampling));
         let warnings = velocity_warnings(robot, &all);
-        Ok(Self { rest, friction, dynamic, validate, sampling, changes, warnings })
+        let compensated = settings.dynamic.iter().any(LogEntry::is_compensated);
+        Ok(Self { rest, friction, dynamic, validate, sampling, compensated, changes, warnings })
     }
 
     /// Returns whether there are validation recordings, and the recordings for the validation:

@@ -1,5 +1,7 @@
 use crate::prepare::log::Log;
-use reachtube_robot::Robot;
+use crate::samples::Sampling;
+use reachtube_robot::{JointKind, Robot};
+use std::f64::consts::PI;
 
 /// A fault of the recordings' columns that may explain a poor fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +14,9 @@ pub(super) enum Fault {
     Offset { joint: usize, offset: f64 },
     /// The torque of a joint, or of all joints, lags the motion by `delay` \[s\].
     Lag { joint: Option<usize>, delay: f64 },
+    /// Positions and velocities of all revolute joints are in degrees. Prismatic joints have limits,
+    /// by which values in mm are refused.
+    Degrees,
 }
 
 /// The columns of a joint that have a fault.
@@ -46,8 +51,8 @@ impl Columns {
 }
 
 impl Fault {
-    /// Returns the log without the fault.
-    pub fn corrected(&self, log: &Log) -> Log {
+    /// Returns the log of a robot without the fault.
+    pub fn corrected(&self, robot: &Robot, log: &Log) -> Log {
         let (mut out, n) = (log.clone(), log.joints);
         match *self {
             Self::Sign { joint, columns } => columns.change(&mut out, |values| {
@@ -60,6 +65,21 @@ impl Fault {
                 out.q.iter_mut().skip(joint).step_by(n).for_each(|q| *q -= offset);
             }
             Self::Lag { joint, delay } => return advanced(log, joint, delay),
+            Self::Degrees => {
+                let factors = factors_to_rad(robot);
+                Columns::Motion.change(&mut out, |values| scale(values, &factors));
+                scale(&mut out.slowest, &factors);
+            }
+        }
+        out
+    }
+
+    /// Returns the sampling of recordings without the fault: limits of speed have the unit of the
+    /// recordings.
+    pub fn corrected_sampling(&self, robot: &Robot, sampling: &Sampling) -> Sampling {
+        let mut out = sampling.clone();
+        if *self == Self::Degrees {
+            scale(&mut out.slow, &factors_to_rad(robot));
         }
         out
     }
@@ -69,7 +89,7 @@ impl Fault {
         match *self {
             Self::Offset { joint, .. } => Some(Self::Offset { joint, offset: size }),
             Self::Lag { joint, .. } => Some(Self::Lag { joint, delay: size }),
-            Self::Sign { .. } | Self::Swap { .. } => None,
+            Self::Sign { .. } | Self::Swap { .. } | Self::Degrees => None,
         }
     }
 
@@ -78,7 +98,7 @@ impl Fault {
         match *self {
             Self::Offset { offset, .. } => Some(offset),
             Self::Lag { delay, .. } => Some(delay),
-            Self::Sign { .. } | Self::Swap { .. } => None,
+            Self::Sign { .. } | Self::Swap { .. } | Self::Degrees => None,
         }
     }
 
@@ -126,12 +146,31 @@ impl Fault {
                 "shifting it".into(),
                 "record torque and motion with the same clock, or shift the columns tau".into(),
             ],
+            Self::Degrees => [
+                "q and qd are probably in degrees and degrees/s, not in rad and rad/s".into(),
+                "multiplying them by pi/180".into(),
+                "all identified values are wrong until then; convert the columns q and qd of all \
+                 recordings"
+                    .into(),
+            ],
         };
         format!(
             "{what}: {correction} reduces the sum of squared residuals of {of_joint} to \
              {share:.3} of its value; {remedy}"
         )
     }
+}
+
+/// Returns the factors that take the positions of all joints from degrees to rad, n entries: 1 for
+/// prismatic joints.
+fn factors_to_rad(robot: &Robot) -> Vec<f64> {
+    let of_joint = |kind| if kind == JointKind::Revolute { PI / 180.0 } else { 1.0 };
+    robot.kinds().into_iter().map(of_joint).collect()
+}
+
+/// Multiplies the values of each joint in row-major `values` by its factor.
+fn scale(values: &mut [f64], factors: &[f64]) {
+    values.iter_mut().zip(factors.iter().cycle()).for_each(|(value, factor)| *value *= factor);
 }
 
 /// Returns a log with the torque of one joint, or of all, advanced by `delay` \[s\].
@@ -160,25 +199,40 @@ mod tests {
         Log { q, qd, tau, ..Log::zeros("log", 2, 6, 0.1) }
     }
 
+    /// The faults of the tests look at no joint of the robot.
+    fn robot() -> Robot {
+        Robot::lwa4p()
+    }
+
     #[test]
     fn faults_change_the_columns_that_they_name() {
-        let swapped = Fault::Swap { joints: [0, 1], columns: Columns::Torque }.corrected(&log());
+        let swapped =
+            Fault::Swap { joints: [0, 1], columns: Columns::Torque }.corrected(&robot(), &log());
         assert_eq!((swapped.tau(0), swapped.q(0)), (&[100.0, 0.0][..], &[0.0, 1.0][..]));
-        let signed = Fault::Sign { joint: 1, columns: Columns::Motion }.corrected(&log());
+        let signed = Fault::Sign { joint: 1, columns: Columns::Motion }.corrected(&robot(), &log());
         assert_eq!((signed.qd(1), signed.tau(1)), (&[20.0, -30.0][..], &[200.0, 300.0][..]));
-        let moved = Fault::Offset { joint: 0, offset: 0.5 }.corrected(&log());
+        let moved = Fault::Offset { joint: 0, offset: 0.5 }.corrected(&robot(), &log());
         assert_eq!((moved.q(1), moved.qd(1)), (&[1.5, 3.0][..], &[20.0, 30.0][..]));
     }
 
     #[test]
+    fn degrees_change_motion_and_limits_of_speed() {
+        let corrected = Fault::Degrees.corrected(&robot(), &log());
+        assert_eq!((corrected.q(2)[1], corrected.tau(1)), (5.0 * PI / 180.0, &[200.0, 300.0][..]));
+        let slow = vec![180.0; 6];
+        let sampling = Sampling { rate: 1.0, slow, margin: 0.1, laws: vec![] };
+        assert_eq!(Fault::Degrees.corrected_sampling(&robot(), &sampling).slow, [PI; 6]);
+    }
+
+    #[test]
     fn a_late_torque_is_advanced() {
-        let late = Fault::Lag { joint: Some(1), delay: 0.2 }.corrected(&log());
+        let late = Fault::Lag { joint: Some(1), delay: 0.2 }.corrected(&robot(), &log());
         assert_eq!((late.len(), late.tau(0), late.q(0)), (4, &[0.0, 500.0][..], &[0.0, 1.0][..]));
-        let early = Fault::Lag { joint: None, delay: -0.1 }.corrected(&log());
+        let early = Fault::Lag { joint: None, delay: -0.1 }.corrected(&robot(), &log());
         assert_eq!(
             (early.len(), early.tau(0), early.q(0)),
             (5, &[0.0, 100.0][..], &[2.0, 3.0][..])
         );
-        assert!(Fault::Lag { joint: None, delay: 9.0 }.corrected(&log()).is_empty());
+        assert!(Fault::Lag { joint: None, delay: 9.0 }.corrected(&robot(), &log()).is_empty());
     }
 }

@@ -4,6 +4,7 @@
 mod fault;
 pub(crate) mod gain;
 pub(crate) mod offset;
+mod scale;
 mod search;
 pub(crate) mod validation;
 pub(crate) mod warnings;

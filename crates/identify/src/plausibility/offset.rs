@@ -147,7 +147,7 @@ impl<'a> OffsetSearch<'a> {
     /// Returns the offset with the nonlinear part of its effect.
     fn refined(&self, (at, mut estimate): (Candidate, Estimate)) -> (Candidate, Estimate) {
         for _ in 0..ROUNDS {
-            let logs = corrected(&self.logs, at, estimate.offset);
+            let logs = self.corrected(&self.logs, at, estimate.offset);
             let Some(fit) = Regression::new(self, &logs) else { break };
             let effect = fit.effect(self, &logs, at.joint);
             let Some(rest) = fit.estimate(&effect, at.log) else { break };
@@ -179,17 +179,18 @@ impl<'a> OffsetSearch<'a> {
             "the position of {name} probably has an offset of {offset:.3} ± {error:.3} \
              {unit}{place}: the torque is explained better without it; {remedy}"
         );
-        Some((corrected(&self.logs, at, offset), warning))
+        Some((self.corrected(&self.logs, at, offset), warning))
     }
-}
 
-fn corrected(logs: &[Log], at: Candidate, offset: f64) -> Vec<Log> {
-    let fault = Fault::Offset { joint: at.joint, offset };
-    let of_log = |(k, log): (usize, &Log)| match at.log {
-        Some(own) if own != k => log.clone(),
-        _ => fault.corrected(log),
-    };
-    logs.iter().enumerate().map(of_log).collect()
+    /// Returns logs without an offset.
+    fn corrected(&self, logs: &[Log], at: Candidate, offset: f64) -> Vec<Log> {
+        let fault = Fault::Offset { joint: at.joint, offset };
+        let of_log = |(k, log): (usize, &Log)| match at.log {
+            Some(own) if own != k => log.clone(),
+            _ => fault.corrected(self.robot, log),
+        };
+        logs.iter().enumerate().map(of_log).collect()
+    }
 }
 
 /// A weighted least-squares fit of the torque of all used rows to independent columns.
@@ -246,7 +247,7 @@ impl Regression {
     fn effect(&self, search: &OffsetSearch, logs: &[Log], joint: usize) -> DVector<f64> {
         let OffsetSearch { robot, columns, sampling, .. } = search;
         let predicted = |offset: f64| {
-            let logs = corrected(logs, Candidate { joint, log: None }, offset);
+            let logs = search.corrected(logs, Candidate { joint, log: None }, offset);
             let samples = Samples::in_motion(robot, columns, &logs, sampling, &KnownTorque::None);
             samples.predicted(&self.theta)
         };

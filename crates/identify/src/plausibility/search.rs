@@ -52,7 +52,8 @@ pub(super) fn find_fault(
     let logs: Vec<Log> = spread(logs, MOST_LOGS).into_iter().cloned().collect();
     let here = residual_sizes(robot, &columns, &logs, &sampling)?;
     let without = |fault: Fault| {
-        let logs: Vec<Log> = logs.iter().map(|log| fault.corrected(log)).collect();
+        let logs: Vec<Log> = logs.iter().map(|log| fault.corrected(robot, log)).collect();
+        let sampling = fault.corrected_sampling(robot, &sampling);
         let sizes = residual_sizes(robot, &columns, &logs, &sampling)?;
         let shares = sizes.iter().zip(&here).map(|(size, here)| (size / here).powi(2));
         let score = shares.clone().map(f64::ln).sum();
@@ -60,7 +61,7 @@ pub(super) fn find_fault(
         Some(Found { fault, score, clearest })
     };
     let better = |a: &Found, b: &Found| a.score.total_cmp(&b.score);
-    let mut best = candidates(samples.joints).into_par_iter().filter_map(without).min_by(better)?;
+    let mut best = candidates(robot).into_par_iter().filter_map(without).min_by(better)?;
     // The size of an offset or lag.
     let mut step = 0.5 * best.fault.size().unwrap_or(0.0);
     for _ in 0..REFINEMENTS {
@@ -73,9 +74,9 @@ pub(super) fn find_fault(
     (best.score < REMAINING.ln()).then_some(best)
 }
 
-/// Returns all faults that are tried for n joints.
-fn candidates(n: usize) -> Vec<Fault> {
-    let mut faults = Vec::new();
+/// Returns all faults that are tried for a robot.
+fn candidates(robot: &Robot) -> Vec<Fault> {
+    let (n, mut faults) = (robot.joint_count(), vec![Fault::Degrees]);
     for joint in 0..n {
         faults.extend(Columns::CASES.map(|columns| Fault::Sign { joint, columns }));
         faults.extend(OFFSETS.map(|offset| Fault::Offset { joint, offset }));

@@ -2,6 +2,7 @@ use crate::fit::Fit;
 use crate::inertia::fit::InertiaFit;
 use crate::plausibility::fault::{Columns, Fault};
 use crate::plausibility::gain::{self, Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
+use crate::plausibility::scale::torque_unit_warning;
 use crate::plausibility::search::find_fault;
 use crate::prepare::log::Log;
 use crate::samples::{KnownTorque, Samples, Sampling};
@@ -29,11 +30,13 @@ pub struct Checked<'a> {
     pub sampling: &'a Sampling,
     /// The torque that was known before the fit.
     pub known: &'a KnownTorque<'a>,
+    /// Whether recordings contain the gravity torque of the given robot.
+    pub compensated: bool,
 }
 
 impl Checked<'_> {
-    /// Returns warnings about implausible results: faults of the columns, friction that does not
-    /// dissipate, wrong gains, and unexplained torque.
+    /// Returns warnings about implausible results: faults of the columns, a wrong unit of the
+    /// torque, friction that does not dissipate, wrong gains, and unexplained torque.
     ///
     /// A fault of the columns makes all gains meaningless, so that it replaces their warnings. A
     /// wrong gain may look like an `offset`, the recordings without it and the warning about it:
@@ -52,7 +55,14 @@ impl Checked<'_> {
             let fault = Fault::Sign { joint, columns: Columns::Torque };
             Some(fault.warning(self.robot, (joint, share)))
         };
-        let fault = find_fault(self.robot, self.logs, self.samples, self.sampling)
+        let found = find_fault(self.robot, self.logs, self.samples, self.sampling);
+        // Degrees make all masses meaningless.
+        let torque_unit = if found.as_ref().is_some_and(|found| found.fault == Fault::Degrees) {
+            None
+        } else {
+            torque_unit_warning(self.robot, self.fit, self.logs, self.compensated)
+        };
+        let fault = found
             .map(|found| found.fault.warning(self.robot, found.clearest))
             .or_else(inverted)
             .or_else(|| {
@@ -60,7 +70,13 @@ impl Checked<'_> {
                 (gains.is_empty() || self.gains_agree(&logs)).then_some(warning)
             });
         let gains = if fault.is_some() { Vec::new() } else { gains };
-        fault.into_iter().chain(driving).chain(gains).chain(unexplained).collect()
+        fault
+            .into_iter()
+            .chain(torque_unit)
+            .chain(driving)
+            .chain(gains)
+            .chain(unexplained)
+            .collect()
     }
 
     /// Returns whether other recordings of the same motions have plausible gains.

@@ -40,7 +40,7 @@ impl LogEntry {
     }
 
     /// Returns whether `tau` is the input u.
-    pub(super) fn is_compensated(&self) -> bool {
+    pub(crate) fn is_compensated(&self) -> bool {
         matches!(self, Self::Stretch { compensated: true, .. })
     }
 

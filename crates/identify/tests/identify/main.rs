@@ -10,4 +10,5 @@ mod link_torque;
 mod messages;
 mod recorded;
 mod recovery;
+mod units;
 mod virtual_robot;

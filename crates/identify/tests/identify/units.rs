@@ -1,0 +1,92 @@
+//! Recordings in a wrong unit are named with the unit and the remedy.
+
+use crate::lab::{Lab, geometry, lwa4p, simple_friction};
+use crate::virtual_robot::{Random, Recorder, edit, excitation};
+use reachtube_robot::Robot;
+use std::f64::consts::PI;
+use std::path::PathBuf;
+
+const JOINTS: usize = 6;
+
+/// Returns the arm of the recordings without limits, by which degrees would be refused.
+fn arm() -> Robot {
+    let mut description = simple_friction(&lwa4p()).description().clone();
+    description.joints.iter_mut().for_each(|joint| joint.velocity_limit = None);
+    Robot::from_description(&description).unwrap()
+}
+
+/// Returns the arm with all masses multiplied by `factor`.
+fn scaled(robot: &Robot, factor: f64) -> Robot {
+    let mut description = robot.description().clone();
+    for joint in &mut description.joints {
+        joint.mass *= factor;
+        joint.inertia.iter_mut().for_each(|value| *value *= factor);
+        joint.first_moment.iter_mut().flatten().for_each(|value| *value *= factor);
+        joint.armature = joint.armature.map(|value| value * factor);
+    }
+    Robot::from_description(&description).unwrap()
+}
+
+/// Returns the warnings of an identification of the arm with the links of `described`, where the
+/// recorded positions and velocities were multiplied by `motion`, and the torques by `torque`.
+/// The links are those of least squares, or physical.
+fn warnings(described: &Robot, physical: bool, [motion, torque]: [f64; 2]) -> Vec<String> {
+    let (lab, arm) = (Lab::new(), arm());
+    let random = Random::new(5);
+    let mut recorder = Recorder { robot: &arm, noise: 0.03, gains: vec![1.0; JOINTS], random };
+    let path = lab.path().join("dynamic.csv");
+    recorder.record(&path, 15.0, excitation(JOINTS, 1));
+    edit(&path, |rows: &mut Vec<Vec<f64>>| {
+        for row in rows {
+            row[1..=2 * JOINTS].iter_mut().for_each(|value| *value *= motion);
+            row[2 * JOINTS + 1..].iter_mut().for_each(|value| *value *= torque);
+        }
+    });
+    let mut settings = lab.settings();
+    settings.dynamic = vec![PathBuf::from("dynamic.csv").into()];
+    settings.validate = vec![];
+    settings.model.physical = Some(physical);
+    settings.model.windows = vec![];
+    lab.identify(described, &settings).warnings
+}
+
+/// Asserts that the first warning has all `parts`.
+fn assert_named(warnings: &[String], parts: &[&str]) {
+    let first = warnings.first().expect("a warning");
+    assert!(parts.iter().all(|part| first.contains(part)), "{parts:?}: {warnings:?}");
+}
+
+#[test]
+fn torques_in_another_unit_are_named_by_the_masses_of_the_description() {
+    let described = scaled(&arm(), 1.5);
+    assert!(warnings(&described, false, [1.0, 1.0]).is_empty());
+    let words = ["identified gravity torque of joint2", "where the description has"];
+    let parts = [&words[..], &["in N mm", "by 0.001, for example with --gains"]].concat();
+    assert_named(&warnings(&described, true, [1.0, 1e3]), &parts);
+    let parts = [&words[..], &["in kN m", "by 1000, for example with --gains"]].concat();
+    assert_named(&warnings(&described, false, [1.0, 1e-3]), &parts);
+}
+
+#[test]
+fn torques_in_another_unit_are_named_by_the_size_of_the_arm() {
+    let described = geometry(&arm());
+    assert!(warnings(&described, false, [1.0, 1.0]).is_empty());
+    let parts = ["gravity torque of joint2", "at the end of this arm of 0.97 m", "in N mm"];
+    assert_named(&warnings(&described, true, [1.0, 1e3]), &parts);
+    assert_named(&warnings(&described, false, [1.0, 1e-3]), &["arm of 0.97 m", "in kN m"]);
+}
+
+#[test]
+fn masses_of_the_description_that_no_such_arm_has_are_named() {
+    let found = warnings(&scaled(&arm(), 1e-3), false, [1.0, 1.0]);
+    assert_named(&found, &["where the description has", "check the masses of the description"]);
+}
+
+#[test]
+fn degrees_are_named() {
+    for described in [arm(), geometry(&arm())] {
+        let found = warnings(&described, true, [180.0 / PI, 1.0]);
+        assert_named(&found, &["q and qd are probably in degrees", "convert the columns q and qd"]);
+        assert!(!found.iter().any(|warning| warning.contains("tau is probably")), "{found:?}");
+    }
+}
