@@ -8,7 +8,9 @@ use crate::inputs::Inputs;
 use crate::law_gain::{LawGain, kept_back_residuals};
 use crate::plausibility::gain::Gain;
 use crate::plausibility::offset::PositionOffset;
-use crate::plausibility::validation::{poor_prediction, still_recordings, useless_simulation};
+use crate::plausibility::validation::{
+    costly_links, poor_prediction, still_recordings, useless_simulation,
+};
 use crate::settings::{IdentifySettings, ModelSettings, WarmingChoice};
 use crate::stiction::unknown_sides;
 use crate::validate::simulation::{WindowErrors, simulate};
@@ -128,6 +130,9 @@ pub fn identify(
     warnings.extend(implausible);
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
+    if kept_back && inertia.physical.is_some() && !model.separate_gravity {
+        warnings.extend(costly_links(robot, &validation));
+    }
     warnings.extend(validation_warnings(robot, &validation, &windows, kept_back));
     progress(STEPS, STEPS);
     Ok(Identification {
