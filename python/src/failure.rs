@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use reachtube::conform;
 use reachtube::recordings::{self, Defect};
+use reachtube::robot::RobotError;
 
 /// Why a job failed, before it becomes an exception. The kinds are the classes of
 /// `reachtube.errors`.
@@ -110,11 +111,11 @@ impl From<reachtube::identify::Error> for Failure {
     }
 }
 
-impl From<reachtube::robot::RobotError> for Failure {
-    fn from(error: reachtube::robot::RobotError) -> Self {
+impl From<RobotError> for Failure {
+    fn from(error: RobotError) -> Self {
         let text = error.to_string();
         match error {
-            reachtube::robot::RobotError::Setting(_) => Self::Setting(text),
+            RobotError::Setting { .. } | RobotError::NotALock { .. } => Self::Setting(text),
             _ => Self::Other(text),
         }
     }

@@ -59,13 +59,13 @@ fn run_of(
     let states = states.flat_map(|(q, qd)| q.iter().chain(qd)).copied().collect();
     let first = times.first().copied().unwrap_or(0.0);
     let times = if start.is_some() { times } else { relative(&times)? };
-    let run = Run::new(joints, times, states, tau).map_err(Failure::Setting)?;
+    let run = Run::new(joints, times, states, tau).map_err(Failure::setting)?;
     let run = Run { start: start.unwrap_or(first), ..run };
     match temperature {
         None => Ok(run),
         Some(given) => {
             let given = values("temperature", given, &shape)?;
-            run.with_temperatures(given).map_err(Failure::Setting)
+            run.with_temperatures(given).map_err(Failure::setting)
         }
     }
 }

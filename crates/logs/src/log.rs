@@ -195,7 +195,8 @@ impl Log {
         let states = rows.clone().flat_map(|row| &row[..2 * n]).copied().collect();
         let torques = rows.flat_map(|row| &row[2 * n..]).copied().collect();
         let mut run = Run::new(n, times, states, torques).map_err(|problem| {
-            vec![Defect::new(&self.path, None, problem, "record again, or cut the log elsewhere")]
+            let remedy = "record again, or cut the log elsewhere";
+            vec![Defect::new(&self.path, None, problem.to_string(), remedy)]
         })?;
         run.start = decimal(first).parse().expect("a decimal number is a number");
         Ok(run)

@@ -27,7 +27,7 @@ impl Run {
     /// assert_eq!(run.clone().checked("run".as_ref(), &options).unwrap().len(), 2);
     /// let other = ReadOptions { joints: Some(2), ..options };
     /// assert!(run.checked("run".as_ref(), &other).is_err());
-    /// # Ok::<(), String>(())
+    /// # Ok::<(), reachtube_recordings::RunError>(())
     /// ```
     pub fn checked(mut self, name: &Path, options: &ReadOptions) -> Result<Self, Vec<Defect>> {
         let expected = options.joints.unwrap_or(self.joints);

@@ -17,7 +17,7 @@ use crate::source::{ReadOptions, RunSource};
 /// runs.push("first", Some("A"), None, run);
 /// assert_eq!(runs.suites()[0].runs, [0]);
 /// assert_eq!(runs.read(0, &ReadOptions::default()).unwrap().len(), 2);
-/// # Ok::<(), String>(())
+/// # Ok::<(), reachtube_recordings::RunError>(())
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct MemoryRuns {

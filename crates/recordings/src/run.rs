@@ -18,6 +18,71 @@ pub struct Run {
     pub sha256: String,
 }
 
+/// Why numbers are no run. Samples are counted from 0.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// There is no joint.
+    #[error("a run needs one joint at least")]
+    NoJoint,
+    /// There is no sample.
+    #[error("a run needs one sample at least")]
+    NoSample,
+    /// An array does not have one row per sample.
+    #[error("{array} has {length} numbers, but {samples} samples of {joints} joints need {needed}")]
+    Length {
+        /// Name of the array.
+        array: &'static str,
+        /// Its length.
+        length: usize,
+        /// Number of samples.
+        samples: usize,
+        /// Number of joints.
+        joints: usize,
+        /// The length that it needs.
+        needed: usize,
+    },
+    /// A number is not finite.
+    #[error("{array} holds {value} at sample {sample}; drop that sample")]
+    NotFinite {
+        /// Name of the array.
+        array: &'static str,
+        /// The number.
+        value: f64,
+        /// The sample.
+        sample: usize,
+    },
+    /// Times do not increase.
+    #[error(
+        "the time of sample {sample}, {time} s, is not later than that of the sample before; sort \
+         the samples and drop duplicates"
+    )]
+    NotLater {
+        /// The sample.
+        sample: usize,
+        /// Its time, s.
+        time: f64,
+    },
+}
+
+/// Checks that an array has `needed` finite numbers for its samples and joints.
+fn check_rows(
+    array: &'static str,
+    values: &[f64],
+    [samples, joints, needed]: [usize; 3],
+) -> Result<(), RunError> {
+    let length = values.len();
+    if length != needed {
+        return Err(RunError::Length { array, length, samples, joints, needed });
+    }
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(at) => {
+            Err(RunError::NotFinite { array, value: values[at], sample: at * samples / needed })
+        }
+    }
+}
+
 impl Run {
     /// Returns a run of `joints` joints from numbers in memory: `times` (K, s, strictly
     /// increasing), `states` (q then q̇, row-major K x 2n, rad and rad/s) and `torques` (row-major
@@ -25,42 +90,27 @@ impl Run {
     ///
     /// # Errors
     ///
-    /// A message that names the array and the sample (from 0) when there is no joint or no sample,
-    /// lengths do not fit, a number is not finite, or times do not increase.
+    /// [`RunError`] names the array and the sample when there is no joint or no sample, lengths do
+    /// not fit, a number is not finite, or times do not increase.
     pub fn new(
         joints: usize,
         times: Vec<f64>,
         states: Vec<f64>,
         torques: Vec<f64>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, RunError> {
         if joints == 0 {
-            return Err("a run needs one joint at least".into());
+            return Err(RunError::NoJoint);
         }
         let samples = times.len();
-        for (name, values, width) in
+        for (array, values, width) in
             [("times", &times, 1), ("states", &states, 2 * joints), ("torques", &torques, joints)]
         {
-            if values.len() != samples * width {
-                let needed = samples * width;
-                let length = values.len();
-                return Err(format!(
-                    "{name} has {length} numbers, but {samples} samples of {joints} joints need \
-                     {needed}"
-                ));
-            }
-            if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-                let (value, sample) = (values[at], at / width);
-                return Err(format!("{name} holds {value} at sample {sample}; drop that sample"));
-            }
+            check_rows(array, values, [samples, joints, samples * width])?;
         }
-        if let Some(k) = (1..samples).find(|&k| times[k] <= times[k - 1]) {
-            return Err(format!(
-                "the time of sample {k}, {} s, is not later than that of the sample before; sort \
-                 the samples and drop duplicates",
-                times[k]
-            ));
+        if let Some(sample) = (1..samples).find(|&k| times[k] <= times[k - 1]) {
+            return Err(RunError::NotLater { sample, time: times[sample] });
         }
-        let start = times.first().copied().ok_or("a run needs one sample at least")?;
+        let start = times.first().copied().ok_or(RunError::NoSample)?;
         let times = times.iter().map(|time| time - start).collect();
         let (temperatures, sha256) = (vec![], String::new());
         Ok(Self { joints, start, times, states, torques, temperatures, sha256 })
@@ -70,8 +120,7 @@ impl Run {
     ///
     /// # Errors
     ///
-    /// A message that names the sample (from 0) when their number does not fit or one is not
-    /// finite.
+    /// [`RunError`] names the sample when their number does not fit or one is not finite.
     ///
     /// # Examples
     ///
@@ -82,21 +131,11 @@ impl Run {
     /// assert_eq!(run.mean_temperature(), None);
     /// let warm = run.with_temperatures(vec![30.0, 31.0])?;
     /// assert_eq!(warm.mean_temperature(), Some(vec![30.5]));
-    /// # Ok::<(), String>(())
+    /// # Ok::<(), reachtube_recordings::RunError>(())
     /// ```
-    pub fn with_temperatures(mut self, temperatures: Vec<f64>) -> Result<Self, String> {
-        let (samples, joints, length) = (self.len(), self.joints, temperatures.len());
-        if length != samples * joints {
-            return Err(format!(
-                "temperatures has {length} numbers, but {samples} samples of {joints} joints need \
-                 {}",
-                samples * joints
-            ));
-        }
-        if let Some(at) = temperatures.iter().position(|value| !value.is_finite()) {
-            let (value, sample) = (temperatures[at], at / joints);
-            return Err(format!("temperatures holds {value} at sample {sample}; drop that sample"));
-        }
+    pub fn with_temperatures(mut self, temperatures: Vec<f64>) -> Result<Self, RunError> {
+        let (samples, joints) = (self.len(), self.joints);
+        check_rows("temperatures", &temperatures, [samples, joints, samples * joints])?;
         self.temperatures = temperatures;
         Ok(self)
     }
@@ -220,11 +259,11 @@ mod tests {
         assert_eq!(warm.mean_temperature(), Some(vec![20.0, 30.0]));
         assert_eq!((run(2).mean_temperature(), run(2).temperatures.capacity()), (None, 0));
         assert_eq!(
-            run(2).with_temperatures(vec![20.0; 2]).unwrap_err(),
+            run(2).with_temperatures(vec![20.0; 2]).unwrap_err().to_string(),
             "temperatures has 2 numbers, but 2 samples of 2 joints need 4"
         );
         assert_eq!(
-            run(1).with_temperatures(vec![20.0, f64::NAN]).unwrap_err(),
+            run(1).with_temperatures(vec![20.0, f64::NAN]).unwrap_err().to_string(),
             "temperatures holds NaN at sample 1; drop that sample"
         );
     }
@@ -232,7 +271,9 @@ mod tests {
     #[test]
     fn numbers_that_do_not_fit_are_refused() {
         let refused = |joints, times: &[f64], states: &[f64], torques: &[f64]| {
-            Run::new(joints, times.to_vec(), states.to_vec(), torques.to_vec()).unwrap_err()
+            Run::new(joints, times.to_vec(), states.to_vec(), torques.to_vec())
+                .unwrap_err()
+                .to_string()
         };
         assert_eq!(refused(0, &[0.0], &[], &[]), "a run needs one joint at least");
         assert_eq!(refused(1, &[], &[], &[]), "a run needs one sample at least");

@@ -28,7 +28,7 @@ const NORMAL_MEDIAN: f64 = 0.674_489_75;
 /// let run = Run::new(1, times, states, vec![0.0; 200])?;
 /// let deviations = noise_deviations(&run).unwrap();
 /// assert!((1e-3..4e-3).contains(&deviations[0]) && deviations[1] == 0.0);
-/// # Ok::<(), String>(())
+/// # Ok::<(), reachtube_recordings::RunError>(())
 /// ```
 #[must_use]
 pub fn noise_deviations(run: &Run) -> Option<Vec<f64>> {

@@ -47,7 +47,7 @@ pub struct ReadOptions {
 /// }
 /// let chosen = source.select(&["A".into()]).unwrap();
 /// assert_eq!(chosen[0].runs, [0, 2]);
-/// # Ok::<(), String>(())
+/// # Ok::<(), reachtube_recordings::RunError>(())
 /// ```
 pub trait RunSource: fmt::Debug + Send + Sync {
     /// Returns the name of the list of runs for messages, such as the path of an index.

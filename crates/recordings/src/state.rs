@@ -81,17 +81,25 @@ impl fmt::Display for State {
     }
 }
 
-impl FromStr for State {
-    type Err = String;
+/// A name is not that of a state.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("\"{name}\" is not a state; states are named q1, q2, ..., qd1, ...")]
+pub struct StateNameError {
+    /// The name.
+    pub name: String,
+}
 
-    fn from_str(name: &str) -> Result<Self, String> {
+impl FromStr for State {
+    type Err = StateNameError;
+
+    fn from_str(name: &str) -> Result<Self, StateNameError> {
         let (kind, digits) = match (name.strip_prefix("qd"), name.strip_prefix('q')) {
             (Some(digits), _) => (StateKind::Velocity, digits),
             (None, Some(digits)) => (StateKind::Position, digits),
             (None, None) => (StateKind::Position, ""),
         };
         let joint = digits.parse::<usize>().ok().and_then(|joint| joint.checked_sub(1));
-        let wrong = || format!("\"{name}\" is not a state; states are named q1, q2, ..., qd1, ...");
+        let wrong = || StateNameError { name: name.into() };
         joint.map(|joint| Self { joint, kind }).ok_or_else(wrong)
     }
 }

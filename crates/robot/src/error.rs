@@ -76,7 +76,25 @@ pub enum RobotError {
         /// The kinds of all joints.
         kinds: Box<[JointKind]>,
     },
-    /// A setting is outside its range; the message names the setting, its value and a remedy.
-    #[error("{0}")]
-    Setting(String),
+    /// A setting is outside its range.
+    #[error("{setting} = {value} {problem}; give {range}")]
+    Setting {
+        /// Name of the setting.
+        setting: &'static str,
+        /// Its value, with its unit.
+        value: String,
+        /// What is wrong with it.
+        problem: &'static str,
+        /// The values that are allowed.
+        range: String,
+    },
+    /// A text is not that of a locked joint.
+    #[error(
+        "\"{text}\" locks no joint; give JOINT=VALUE, the name of a joint and its position in rad, \
+         or in m for a prismatic joint"
+    )]
+    NotALock {
+        /// The text.
+        text: String,
+    },
 }

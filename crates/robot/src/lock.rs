@@ -49,10 +49,7 @@ impl FromStr for Lock {
             Some((joint, Ok(position))) if !joint.is_empty() && f64::is_finite(position) => {
                 Ok(Self { joint: joint.into(), position })
             }
-            _ => Err(RobotError::Setting(format!(
-                "\"{text}\" locks no joint; give JOINT=VALUE, the name of a joint and its position \
-                 in rad, or in m for a prismatic joint"
-            ))),
+            _ => Err(RobotError::NotALock { text: text.into() }),
         }
     }
 }

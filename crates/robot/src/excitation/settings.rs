@@ -69,51 +69,56 @@ impl ExcitationSettings {
         let fits = |list: &[f64], one_for_all: bool| {
             list.is_empty() || list.len() == joints || (one_for_all && list.len() == 1)
         };
+        // Name, whether it is wrong, value, problem, and what is allowed.
         let checks = [
             (
+                "period",
                 !positive(self.period),
-                format!("period = {} s is not positive; give a positive time", self.period),
+                format!("{} s", self.period),
+                "is not positive",
+                "a positive time".into(),
             ),
             (
+                "harmonics",
                 self.harmonics < least,
-                format!("harmonics = {} is too few; give {least} or more", self.harmonics),
+                self.harmonics.to_string(),
+                "is too few",
+                format!("{least} or more"),
             ),
             (
+                "margin",
                 !positive(self.margin) || self.margin > 1.0,
-                format!(
-                    "margin = {} is outside (0, 1]; give a positive number up to 1",
-                    self.margin
-                ),
+                self.margin.to_string(),
+                "is outside (0, 1]",
+                "a positive number up to 1".into(),
             ),
             (
+                "speed",
                 !positive(self.speed),
-                format!("speed = {} is not positive; give a positive speed", self.speed),
+                self.speed.to_string(),
+                "is not positive",
+                "a positive speed".into(),
             ),
+            ("starts", self.starts == 0, "0".into(), "allows no search", "1 or more".into()),
+            ("trials", self.trials == 0, "0".into(), "allows no search", "1 or more".into()),
             (
-                self.starts == 0 || self.trials == 0,
-                format!(
-                    "starts = {} and trials = {} allow no search; give 1 or more of each",
-                    self.starts, self.trials
-                ),
-            ),
-            (
+                "acceleration",
                 !fits(&self.acceleration, true) || !self.acceleration.iter().all(|a| positive(*a)),
-                format!(
-                    "acceleration = {:?} does not fit; give no limit, one for all joints, \
-                     or {joints}, all positive",
-                    self.acceleration
-                ),
+                format!("{:?}", self.acceleration),
+                "does not fit",
+                format!("no limit, one for all joints, or {joints}, all positive"),
             ),
             (
+                "torque_noise",
                 !fits(&self.torque_noise, false) || !self.torque_noise.iter().all(|s| positive(*s)),
-                format!(
-                    "torque_noise = {:?} does not fit; give no standard deviation or {joints}, \
-                     all positive",
-                    self.torque_noise
-                ),
+                format!("{:?}", self.torque_noise),
+                "does not fit",
+                format!("no standard deviation or {joints}, all positive"),
             ),
         ];
-        let first = checks.into_iter().find(|(is_wrong, _)| *is_wrong);
-        first.map_or(Ok(()), |(_, message)| Err(RobotError::Setting(message)))
+        let first = checks.into_iter().find(|(_, is_wrong, ..)| *is_wrong);
+        first.map_or(Ok(()), |(setting, _, value, problem, range)| {
+            Err(RobotError::Setting { setting, value, problem, range })
+        })
     }
 }
