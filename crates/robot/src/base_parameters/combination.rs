@@ -81,10 +81,7 @@ impl Factor {
                 .map(|(cost, text)| (cost + 1, Self::Over(text))),
         ];
         let best = forms.into_iter().flatten().min_by_key(|(cost, _)| *cost);
-        best.map_or_else(
-            || Self::Times(((size * 1e6).round() / 1e6).to_string()),
-            |(_, factor)| factor,
-        )
+        best.map_or_else(|| Self::Times(rounded(size, 1e6).to_string()), |(_, factor)| factor)
     }
 
     /// Formats the coefficient times `what`.
@@ -101,9 +98,14 @@ impl Factor {
 fn shortest(x: f64, most: i32) -> Option<(i32, String)> {
     (1..=most).find_map(|digits| {
         let unit = 10f64.powi(digits - 1 - x.log10().floor() as i32);
-        let rounded = (x * unit).round() / unit;
+        let rounded = rounded(x, unit);
         ((rounded - x).abs() <= SNAP * x).then(|| (digits, rounded.to_string()))
     })
+}
+
+/// Returns the multiple of 1/`unit` nearest to x.
+fn rounded(x: f64, unit: f64) -> f64 {
+    (x * unit).round() / unit
 }
 
 #[cfg(test)]
