@@ -14,8 +14,8 @@ pub(super) enum Fault {
     Offset { joint: usize, offset: f64 },
     /// The torque of a joint, or of all joints, lags the motion by `delay` \[s\].
     Lag { joint: Option<usize>, delay: f64 },
-    /// Positions and velocities of all revolute joints are in degrees. Prismatic joints have limits,
-    /// by which values in mm are refused.
+    /// Positions and velocities of all revolute joints are in degrees. Prismatic joints have
+    /// limits, by which values in mm are refused.
     Degrees,
 }
 

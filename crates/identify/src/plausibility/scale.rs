@@ -19,8 +19,8 @@ const MOST_TIMES: f64 = 30.0;
 /// The same factor for compensated recordings, whose robot must have been described well.
 const MOST_TIMES_COMPENSATED: f64 = 10.0;
 
-/// Mass over cubed length that arms have \[kg/m³\]. The mass is that which causes the gravity torque
-/// or the inertia at the end of the outstretched arm.
+/// Mass over cubed length that arms have \[kg/m³\]. The mass is that which causes the gravity
+/// torque or the inertia at the end of the outstretched arm.
 ///
 /// The recorded arms have 0.26 to 7.4, a pendulum of two rods included. A unit wrong by 1000 gives
 /// at least 260 or at most 0.0074.
