@@ -30,13 +30,16 @@ struct Written {
     /// Samples by which the torques are late.
     late: usize,
     swapped: Option<(usize, usize)>,
+    /// The position about which joint 2 moves, rad.
+    about: f64,
 }
 
-const RIGHT: Written = Written { time: 1.0, angle: 1.0, torque: 1.0, late: 0, swapped: None };
+const RIGHT: Written =
+    Written { time: 1.0, angle: 1.0, torque: 1.0, late: 0, swapped: None, about: 0.0 };
 
 /// Motions of the arm with the motor torques that its dynamics need, written in some way.
 fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
-    let times = grid(0.004, 400);
+    let (times, n) = (grid(0.004, 400), robot.joint_count());
     let (mut runs, mut random) = (MemoryRuns::default(), Random(9));
     for (suite, phase) in [("A", 0.0), ("B", 1.0)] {
         for run in 0..2 {
@@ -44,9 +47,10 @@ fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
             for &t in &times {
                 let wave = |j: usize| (3.0 + 0.5 * j as f64, 2.0 * j as f64 + phase);
                 let value = |f: &dyn Fn(f64, f64) -> f64| -> Vec<f64> {
-                    (0..JOINTS).map(wave).map(|(w, p)| 0.25 * f(w, w * t + p)).collect()
+                    (0..n).map(wave).map(|(w, p)| 0.25 * f(w, w * t + p)).collect()
                 };
-                let q = value(&|_, x| x.sin());
+                let mut q = value(&|_, x| x.sin());
+                q[1] += written.about;
                 let qd = value(&|w, x| w * x.cos());
                 let qdd = value(&|w, x| -w * w * x.sin());
                 let inertia = robot.mass_matrix(&q) * nalgebra::DVector::from_vec(qdd);
@@ -57,11 +61,11 @@ fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
                 torques.extend(motor.iter().map(|x| written.torque * x));
             }
             if let Some((i, j)) = written.swapped {
-                torques.chunks_exact_mut(JOINTS).for_each(|row| row.swap(i, j));
+                torques.chunks_exact_mut(n).for_each(|row| row.swap(i, j));
             }
-            torques.rotate_right(JOINTS * written.late);
+            torques.rotate_right(n * written.late);
             let times = times.iter().map(|t| t * written.time).collect();
-            let recording = Run::new(JOINTS, times, states, torques).unwrap();
+            let recording = Run::new(n, times, states, torques).unwrap();
             runs.push(&format!("{suite}{run}"), Some(suite), None, recording);
         }
     }
@@ -69,7 +73,10 @@ fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
 }
 
 fn found(written: &Written, settings: Settings) -> (Problem, Conformance) {
-    let robot = arm();
+    found_for(arm(), written, settings)
+}
+
+fn found_for(robot: Robot, written: &Written, settings: Settings) -> (Problem, Conformance) {
     let runs = recorded(&robot, written);
     let setup = Setup::new(robot, settings).unwrap();
     let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
@@ -111,6 +118,39 @@ fn the_cause_of_a_wrong_reading_is_named() {
         assert!(cause.contains(words), "{words} is not in {cause}; {:?}", found.warnings);
         assert_eq!(Model::new(&problem, &found).warnings, found.warnings);
     }
+}
+
+/// Two links without friction, the second one the heavier: folded they turn easily, stretched not.
+fn folding() -> Robot {
+    let joint = |name: &str, mass: f64| {
+        format!(
+            "[[joint]]\nname = \"{name}\"\n\
+             dh = {{ a = 0.4, alpha = 0.0, theta = 0.0, d = 0.0 }}\n\
+             mass = {mass}\ncom = [-0.1, 0.0, 0.0]\ninertia = [0.01, 0.0, 0.0, 0.02, 0.0, 0.02]\n"
+        )
+    };
+    let text = format!(
+        "schema_version = 1\nname = \"folding\"\n{}{}",
+        joint("shoulder", 0.5),
+        joint("elbow", 3.0)
+    );
+    Robot::from_toml(&text, "folding").unwrap()
+}
+
+#[test]
+fn an_expansion_point_far_from_the_motion_is_named_and_a_better_one_proposed() {
+    let folded = Written { about: 2.6, ..RIGHT };
+    let (_, far) = found_for(folding(), &folded, Settings::new(Torque::Motor, 2));
+    let cause = cause(&far.warnings).unwrap();
+    assert!(
+        cause.starts_with("the robot explains the recordings, and model 1 does not"),
+        "{cause}"
+    );
+    assert!(cause.contains("up to 2.85 rad; with --expansion=0.02,2.58, the mean"), "{cause}");
+    let mut near = Settings::new(Torque::Motor, 2);
+    near.expansion_point.q = vec![0.0, 2.6];
+    let (_, near) = found_for(folding(), &folded, near);
+    assert!(near.cost < 0.5 * far.cost, "{} for {}", near.cost, far.cost);
 }
 
 #[test]

@@ -28,6 +28,9 @@ const TOLERANCE: f64 = 1e-7;
 /// Windows of the horizon; each adds its worst violated row.
 const WINDOWS: usize = 24;
 
+/// Tracks that the first rows are taken from at most.
+const FIRST_TRACKS: usize = 4;
+
 /// Rounds of row generation at most.
 const ROUNDS: usize = 25;
 
@@ -121,7 +124,8 @@ impl Step<'_> {
 
     fn first_rows(&self) -> Vec<StepRow> {
         let mut rows = Vec::new();
-        for &t in self.tracks {
+        let stride = self.tracks.len().div_ceil(FIRST_TRACKS).max(1);
+        for &t in self.tracks.iter().step_by(stride) {
             let samples = self.samples(t);
             for k in (0..samples).step_by((samples / 4).max(1)) {
                 let states = self.fit.settings.states.rows(self.fit.joints());

@@ -1,5 +1,6 @@
 use std::f64::consts::PI;
 
+use reachtube_abstraction::ModelKind;
 use reachtube_recordings::Torque;
 
 use crate::error::Result;
@@ -40,13 +41,58 @@ pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
             percent(least),
             percent(rest)
         ),
-        None => format!(
-            "no other unit, sign, kind of torque, order of joints or lag explains the recordings \
+        None => match lost_by_model(problem, &evidence, &stated, rest) {
+            Some(words) => words,
+            None => format!(
+                "no other unit, sign, kind of torque, order of joints or lag explains the recordings \
              better ({} of the recorded input is not explained by the recorded motion): check the \
              robot's parameters, for example with `reachtube identify`",
-            percent(rest)
-        ),
+                percent(rest)
+            ),
+        },
     })
+}
+
+/// Returns, in words, what the constant inertia of model 1 does not explain, where the robot itself
+/// leaves `rest` unexplained and the model much more.
+fn lost_by_model(
+    problem: &Problem,
+    evidence: &Evidence,
+    stated: &Hypothesis,
+    rest: f64,
+) -> Option<String> {
+    let settings = problem.settings();
+    if settings.abstraction.model != ModelKind::One {
+        return None;
+    }
+    let at = |q: &[f64]| {
+        evidence.unexplained(&Hypothesis { inertia_at: Some(q.to_vec()), ..stated.clone() })
+    };
+    let origin = &settings.expansion_point.q;
+    let lost = at(origin);
+    if lost < LEAST_GAIN + rest || rest > LARGEST_REST * lost {
+        return None;
+    }
+    let (mean, distance) = evidence.positions(origin);
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part.min(1.0));
+    let about_mean = at(&mean);
+    let remedy = if about_mean < LARGEST_REST.sqrt() * lost {
+        let mean: Vec<String> = mean.iter().map(|q| format!("{q:.2}")).collect();
+        let point = mean.join(",");
+        format!(
+            "with --expansion={point}, the mean of the positions, {} is not",
+            percent(about_mean)
+        )
+    } else {
+        "model 3 of order 2 (--model 3 --order 2) knows how the inertia changes".into()
+    };
+    Some(format!(
+        "the robot explains the recordings, and model 1 does not: {} of the recorded input is not \
+         explained by the robot, and {} by the inertia at the expansion point, from which the \
+         positions lie up to {distance:.2} rad; {remedy}; shorter windows lessen what is missed",
+        percent(rest),
+        percent(lost),
+    ))
 }
 
 /// Returns what was stated.
@@ -60,6 +106,7 @@ fn stated(problem: &Problem) -> Hypothesis {
         torque_factors: vec![1.0; n],
         columns: (0..n).collect(),
         lag: 0.0,
+        inertia_at: None,
     }
 }
 

@@ -39,6 +39,9 @@ pub(super) struct Hypothesis {
     pub columns: Vec<usize>,
     /// Time by which the torques are later than the motion, s.
     pub lag: f64,
+    /// The position whose mass matrix stands for all, as model 1 has it, without Coriolis terms; n,
+    /// or `None` for the robot itself.
+    pub inertia_at: Option<Vec<f64>>,
 }
 
 impl<'a> Evidence<'a> {
@@ -53,6 +56,17 @@ impl<'a> Evidence<'a> {
         let firsts = suites.iter().step_by(stride).map(|suite| suite.totals.first);
         let runs = firsts.map(|run| Ok(problem.run(run)?.into_owned()));
         Ok(Self { robot: problem.robot(), runs: runs.collect::<Result<_>>()? })
+    }
+
+    /// Returns the mean of the recorded positions, n, and their largest distance from `origin` in
+    /// any joint.
+    pub fn positions(&self, origin: &[f64]) -> (Vec<f64>, f64) {
+        let all = || self.runs.iter().flat_map(|run| (0..run.len()).map(|k| run.q(k)));
+        let mut mean = vec![0.0; origin.len()];
+        let count = all().count().max(1) as f64;
+        all().for_each(|q| mean.iter_mut().zip(q).for_each(|(mean, q)| *mean += q / count));
+        let distances = all().flat_map(|q| q.iter().zip(origin).map(|(q, at)| (q - at).abs()));
+        (mean, distances.fold(0.0, f64::max))
     }
 
     /// Returns the part of the input that the motion does not explain under a hypothesis: the mean
@@ -91,7 +105,8 @@ impl<'a> Evidence<'a> {
         half: usize,
         lag: usize,
     ) -> (Vec<f64>, Vec<f64>) {
-        let Hypothesis { torque, time, angle, torque_factors, columns, .. } = hypothesis;
+        let Hypothesis { torque, time, angle, torque_factors, columns, inertia_at, .. } =
+            hypothesis;
         let scaled = |values: &[f64]| values.iter().map(|x| angle * x).collect::<Vec<f64>>();
         let (q, qd) = (scaled(run.q(k)), scaled(run.qd(k)));
         let duration = time * (run.times[k + half] - run.times[k - half]);
@@ -104,9 +119,11 @@ impl<'a> Evidence<'a> {
             torque_factors[joint] * sum / (2 * half) as f64
         };
         let torques: Vec<f64> = (0..q.len()).map(mean).collect();
-        let inertia =
-            self.robot.mass_matrix(&q) * nalgebra::DVector::from_column_slice(&acceleration);
-        let moving = inertia + self.robot.coriolis_torque(&q, &qd);
+        let acceleration = nalgebra::DVector::from_column_slice(&acceleration);
+        let moving = match inertia_at {
+            Some(at) => self.robot.mass_matrix(at) * acceleration,
+            None => self.robot.mass_matrix(&q) * acceleration + self.robot.coriolis_torque(&q, &qd),
+        };
         let viscous = self.robot.viscous_torque(&qd);
         let input = torque.input(self.robot, &q, &qd, &torques);
         // Friction that is added to both sides says nothing about either.
