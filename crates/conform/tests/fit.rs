@@ -257,22 +257,31 @@ fn a_model_that_is_not_linear_gets_the_parameters_too() {
 
 /// The costs that an independent sketch of the program reached by scaling the mass matrix and the
 /// friction, and a little above (docs/conform.md).
-const REACHED: [(Disturbance, &[Group], f64); 5] = [
-    (Disturbance::Constant, &[Group::Inertia, Group::Viscous], 5100.0),
-    (Disturbance::Sample, &[Group::Inertia, Group::Viscous], 4720.0),
-    (Disturbance::Sample, &[Group::Inertia, Group::Viscous, Group::Cubic, Group::Coulomb], 4200.0),
-    (Disturbance::Constant, &[Group::Inertia, Group::Viscous, Group::WarmUp], 3930.0),
-    (Disturbance::Sample, &[Group::Inertia, Group::Viscous, Group::WarmUp], 3680.0),
+///
+/// With the pull of the last one, steps lead to robots whose mass matrix is not positive definite
+/// at every position, which must be taken back.
+const REACHED: [(Disturbance, &[Group], f64, f64); 6] = [
+    (Disturbance::Constant, &[Group::Inertia, Group::Viscous], 0.02, 5100.0),
+    (Disturbance::Sample, &[Group::Inertia, Group::Viscous], 0.02, 4720.0),
+    (
+        Disturbance::Sample,
+        &[Group::Inertia, Group::Viscous, Group::Cubic, Group::Coulomb],
+        0.02,
+        4200.0,
+    ),
+    (Disturbance::Constant, &[Group::Inertia, Group::Viscous, Group::WarmUp], 0.02, 3930.0),
+    (Disturbance::Sample, &[Group::Inertia, Group::Viscous, Group::WarmUp], 0.02, 3680.0),
+    (Disturbance::Constant, &[Group::Inertia, Group::Viscous], 0.002, 4950.0),
 ];
 
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn the_sets_of_the_papers_arm_shrink() {
     let folder = shared("schunk_lwa4p");
-    for (disturbance, groups, most) in REACHED {
+    for (disturbance, groups, pull, most) in REACHED {
         let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
         let problem = read(&Robot::lwa4p(), &folder, &["A", "B", "D", "E"], &settings);
-        let Fitted { problem: better, record } = fitted(&problem, groups, Some(0.005));
+        let Fitted { problem: better, record } = fitted(&problem, groups, Some(pull));
         let found = conform_all(&better);
         eprintln!("{disturbance:?} {groups:?}: {} for {most}", found.cost);
         assert!(found.verdict.conformant && found.cost <= most, "{groups:?}: {}", found.cost);

@@ -123,10 +123,10 @@ fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
     let fewest = fit.few_tracks(None, FEWEST);
     let of_held = |held: Option<Group>| {
         let first = match held {
-            Some(_) => search(&fewest, held, Effort::QUICK).run(&start)?.numbers,
+            Some(_) => search(&fewest, held, Effort::START).run(&start)?.numbers,
             None => start.clone(),
         };
-        search(&fewest, None, Effort::QUICK).run(&first)
+        search(&fewest, None, Effort::START).run(&first)
     };
     let held = groups.iter().map(|group| Some(*group)).filter(|_| groups.len() > 1);
     let starts: Vec<Option<Group>> = std::iter::once(None).chain(held).collect();

@@ -49,6 +49,8 @@ impl Effort {
     pub const WHOLE: Self = Self { settled: 2e-4, steps: 40, is_physical: true };
     /// For an answer that was found on fewer tracks.
     pub const LAST: Self = Self { settled: 2e-4, steps: 4, is_physical: true };
+    /// For where to start.
+    pub const START: Self = Self { is_physical: true, ..Self::QUICK };
     /// For comparisons.
     pub const QUICK: Self = Self { settled: 2e-3, steps: 12, is_physical: false };
 }
