@@ -19,8 +19,8 @@ pub(crate) struct Slope {
     pub reach: Option<Vec<Vec<[f64; 2]>>>,
 }
 
-/// Returns the derivatives for `tracks` at `numbers`, where the model is `model` and its smallest sets are
-/// `smallest`, one for each parameter.
+/// Returns the derivatives for `tracks` at `numbers`, where the model is `model` and its smallest
+/// sets are `smallest`, one for each parameter.
 ///
 /// # Errors
 ///

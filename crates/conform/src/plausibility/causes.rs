@@ -33,24 +33,23 @@ pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.min(1.0));
     let likely =
         best.filter(|(least, _)| rest - least > LEAST_GAIN && *least < LARGEST_REST * rest);
-    Ok(match likely {
-        Some((least, hypothesis)) => format!(
+    if let Some((least, hypothesis)) = likely {
+        return Ok(format!(
             "the most likely cause: {}. So read, {} of the recorded input is not explained by the \
              recorded motion, and {} as stated",
             hypothesis.words,
             percent(least),
             percent(rest)
-        ),
-        None => match lost_by_model(problem, &evidence, &stated, rest) {
-            Some(words) => words,
-            None => format!(
-                "no other unit, sign, kind of torque, order of joints or lag explains the recordings \
+        ));
+    }
+    Ok(lost_by_model(problem, &evidence, &stated, rest).unwrap_or_else(|| {
+        format!(
+            "no other unit, sign, kind of torque, order of joints or lag explains the recordings \
              better ({} of the recorded input is not explained by the recorded motion): check the \
              robot's parameters, for example with `reachtube identify`",
-                percent(rest)
-            ),
-        },
-    })
+            percent(rest)
+        )
+    }))
 }
 
 /// Returns, in words, what the constant inertia of model 1 does not explain, where the robot itself
