@@ -74,6 +74,11 @@ pub enum Error {
     /// A step for linear models was asked of another one.
     #[error("the model is not linear; use the steps for polynomial models")]
     NotLinear,
+    /// Nominal motions by the robot's own equations were asked of a model that is not linear.
+    #[error(
+        "nominal motions by the robot's own equations (--equations robot) need a linear model,          which then describes deviations only; use model 1 of order 1 with --method program, or          --equations model"
+    )]
+    Equations,
     /// A notion of enclosure other than the hull was asked of the bisection.
     #[error(
         "the paper's bisection finds sets for the notion hull only; use --method program, or \

@@ -88,7 +88,8 @@ pub use rows::{Edge, Hull, HullBounds, Row, rows};
 pub use sensor_noise::SensorNoise;
 pub use sets::UncertaintySets;
 pub use settings::{
-    Centre, InitialLimit, Method, Noise, NominalStart, Notion, Settings, States, Tolerance, Weights,
+    Centre, Equations, InitialLimit, Method, Noise, NominalStart, Notion, Settings, States,
+    Tolerance, Weights,
 };
 pub use side::Side;
 pub use verdict::{SuiteVerdict, Verdict, Violations, Witness};

@@ -99,6 +99,18 @@ pub enum NominalStart {
     Own,
 }
 
+/// Whose equations of motion the nominal solutions satisfy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Equations {
+    /// The model's: U covers what the model leaves out of the robot's equations.
+    #[default]
+    Model,
+    /// The robot's own (docs/method.md, section 3). The model, which is linear, describes the
+    /// deviations from that motion only.
+    Robot,
+}
+
 /// The measurement noise: a set V of the measured state, centred at 0, that is added to the
 /// reachable set where runs are compared with it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -187,6 +199,9 @@ pub struct Settings {
     pub sensor_noise: Option<Vec<f64>>,
     /// Where nominal solutions start.
     pub nominal: NominalStart,
+    /// Whose equations of motion nominal solutions satisfy.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub equations: Equations,
     /// The motions that are kept back from the fit and then calibrate its sets. They are not
     /// looked at but by [`conform`](crate::conform).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -220,6 +235,7 @@ impl Settings {
             noise: Noise::default(),
             sensor_noise: None,
             nominal: NominalStart::default(),
+            equations: Equations::default(),
             calibrate: Vec::new(),
             explain: None,
             until: None,
@@ -275,8 +291,8 @@ impl Settings {
     }
 }
 
-fn is_default(limit: &InitialLimit) -> bool {
-    *limit == InitialLimit::default()
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 fn check_list(

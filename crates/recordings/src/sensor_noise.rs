@@ -1,4 +1,5 @@
-//! The noise of the sensors, estimated from what a recording holds at the highest frequencies.
+//! The noise of the sensors, estimated from what a recording holds at the highest frequencies, and
+//! from velocities that contradict positions.
 
 use crate::run::Run;
 
@@ -8,6 +9,16 @@ const FEWEST: usize = 20;
 /// The median of |x| of a normal variable, in its standard deviations.
 const NORMAL_MEDIAN: f64 = 0.674_489_75;
 
+/// Time over which velocities are compared with positions, s, at most a quarter of the run.
+const SPAN: f64 = 0.1;
+
+/// Velocities that contradict positions by more than this part of their root mean square are in
+/// another unit, or of another joint.
+const LARGEST_CONTRADICTION: f64 = 0.02;
+
+/// The part of normal numbers that lie within one standard deviation.
+const WITHIN_ONE_DEVIATION: f64 = 0.682_689_49;
+
 /// Returns the standard deviation of the noise in each state of `run`, 2n, rad and rad/s; nothing
 /// for a run of fewer than 20 samples.
 ///
@@ -16,6 +27,11 @@ const NORMAL_MEDIAN: f64 = 0.674_489_75;
 /// the cubic exactly do not count: a joint at rest behind a coarse encoder shows no noise. The
 /// median makes the estimate robust. Noise that a filter has taken away is not seen, nor is noise
 /// that changes slowly.
+///
+/// A velocity that does not integrate to the positions is wrong by noise too, however smooth it is,
+/// because no force can separate the two. The change of each position over 0.1 s is compared with
+/// the integral of the velocity. The noise of a velocity is at least what differs, less the noise
+/// of the positions, and at most a fiftieth of the velocity: more is no noise.
 ///
 /// # Examples
 ///
@@ -55,7 +71,46 @@ pub fn noise_deviations(run: &Run) -> Option<Vec<f64>> {
         let middle = differences.len() / 2;
         *differences.select_nth_unstable_by(middle, f64::total_cmp).1 / NORMAL_MEDIAN
     };
-    Some((0..2 * run.joints).map(deviation).collect())
+    let mut deviations: Vec<f64> = (0..2 * run.joints).map(deviation).collect();
+    for j in 0..run.joints {
+        let contradiction = contradiction(run, j, deviations[j]);
+        let of_velocity = &mut deviations[run.joints + j];
+        *of_velocity = of_velocity.max(contradiction);
+    }
+    Some(deviations)
+}
+
+/// Returns one standard deviation of the difference between the velocity of joint `j` (from 0),
+/// averaged over [`SPAN`], and the change of its position, whose noise is `position_noise`.
+fn contradiction(run: &Run, j: usize, position_noise: f64) -> f64 {
+    let (times, last) = (&run.times, run.len() - 1);
+    let velocity = |k: usize| run.qd(k)[j];
+    let acceleration = |k: usize| {
+        let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+        (velocity(after) - velocity(before)) / (times[after] - times[before])
+    };
+    // What the position has moved beyond the integral of the velocity: the trapezoidal rule with
+    // its first correction (Euler and Maclaurin).
+    let (mut beyond, mut all) = (0.0, vec![0.0]);
+    for k in 0..last {
+        let h = times[k + 1] - times[k];
+        let bend = h / 6.0 * (acceleration(k + 1) - acceleration(k));
+        let mean = 0.5 * (velocity(k) + velocity(k + 1) - bend);
+        beyond += run.q(k + 1)[j] - run.q(k)[j] - h * mean;
+        all.push(beyond);
+    }
+    let duration = times[last] - times[0];
+    let span = SPAN.min(0.25 * duration);
+    let steps = ((span / duration * last as f64).round() as usize).max(1);
+    let mut differences: Vec<f64> = (steps..=last)
+        .map(|k| ((all[k] - all[k - steps]) / (times[k] - times[k - steps])).abs())
+        .collect();
+    let at = (WITHIN_ONE_DEVIATION * differences.len() as f64) as usize;
+    let difference = *differences.select_nth_unstable_by(at, f64::total_cmp).1;
+    let squares: f64 = (0..=last).map(|k| velocity(k).powi(2)).sum();
+    let largest = LARGEST_CONTRADICTION * (squares / run.len() as f64).sqrt();
+    let of_positions = 2.0 * (position_noise / span).powi(2);
+    (difference.powi(2) - of_positions).max(0.0).sqrt().min(largest)
 }
 
 /// Returns the weights with which the cubic through the samples k-2, k-1, k+1, k+2 predicts sample
@@ -100,6 +155,26 @@ mod tests {
         let noisy = run(|t, k| (3.0 * t).sin() + noise[k] + glitch(k));
         let deviation = noise_deviations(&noisy).unwrap()[0];
         assert!((deviation / (1e-3 / 3f64.sqrt()) - 1.0).abs() < 0.25, "{deviation}");
+    }
+
+    /// Returns a run that moves smoothly, whose velocity is `velocity` of the true one.
+    fn moving(velocity: impl Fn(f64, f64) -> f64) -> Run {
+        let times: Vec<f64> = (0..300).map(|k| 0.01 * f64::from(k)).collect();
+        let states = |t: &f64| [(3.0 * t).sin(), velocity(*t, 3.0 * (3.0 * t).cos())];
+        let states = times.iter().flat_map(states).collect();
+        Run::new(1, times, states, vec![0.0; 300]).unwrap()
+    }
+
+    #[test]
+    fn velocities_that_contradict_positions_are_noisy() {
+        let noise = |velocity: fn(f64, f64) -> f64| noise_deviations(&moving(velocity)).unwrap()[1];
+        let (exact, offset) = (noise(|_, v| v), noise(|_, v| v + 0.01));
+        assert!(exact < 1e-5, "{exact}");
+        assert!((offset / 0.01 - 1.0).abs() < 1e-3, "{offset}");
+        // A velocity in another unit is no noise.
+        let in_degrees = noise(|_, v| v.to_degrees());
+        let velocity = (3.0 / 2f64.sqrt()).to_degrees();
+        assert!((in_degrees / velocity - LARGEST_CONTRADICTION).abs() < 1e-3, "{in_degrees}");
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::fitting::group::Group;
 use crate::nominal::correction::InputCorrection;
 use crate::problem::problem::Setup;
+use crate::settings::Equations;
 
 /// The number of inertial parameters of a link.
 const INERTIAL: usize = ParameterKind::INERTIAL.len();
@@ -54,6 +55,10 @@ pub(crate) struct Parameters<'a> {
 
 /// Numbers of logarithms lie within this distance from 0: a factor of 10.
 const WIDEST: f64 = LN_10;
+
+/// Highest number of the inertia that a motor feels: a factor of 100. Where torque is measured
+/// behind the gear, the links alone may have nearly none.
+const LARGEST_INERTIA: f64 = LN_10;
 
 /// The least factor on the inertia that a motor feels.
 const LEAST_INERTIA: f64 = 0.1;
@@ -113,7 +118,7 @@ impl<'a> Parameters<'a> {
             Group::Inertia => {
                 // The motor inertia must not become negative.
                 let rest = (1.0 - drive.armature / self.inertia[joint]).max(LEAST_INERTIA);
-                let motor = (Quantity::MotorInertia, [rest.ln().min(0.0), WIDEST].map(half));
+                let motor = (Quantity::MotorInertia, [half(rest.ln().min(0.0)), LARGEST_INERTIA]);
                 let link = self.link(joint).iter().any(|x| *x != 0.0);
                 let density = if_any(link, Quantity::Density, [-WIDEST, WIDEST].map(half));
                 [vec![motor], density].concat()
@@ -255,8 +260,11 @@ impl<'a> Parameters<'a> {
     }
 
     /// The quadratic and cubic viscous friction that the order of the model leaves out, about the
-    /// velocity of the expansion point.
+    /// velocity of the expansion point. The robot's own equations leave nothing out.
     fn left_out(&self, joint: usize, v2: f64, v3: f64) -> [f64; 2] {
+        if self.setup.settings.equations == Equations::Robot {
+            return [0.0, 0.0];
+        }
         let origin = self.setup.settings.expansion_point.qd[joint];
         match self.setup.settings.abstraction.order {
             1 => [v2 + 3.0 * v3 * origin, v3],

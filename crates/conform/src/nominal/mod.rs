@@ -4,4 +4,5 @@ pub(crate) mod correction;
 pub(crate) mod corrector;
 pub(crate) mod input_error;
 pub(crate) mod motion;
+mod robot_equations;
 pub(crate) mod steps;

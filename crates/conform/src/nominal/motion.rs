@@ -3,13 +3,14 @@ use reachtube_ode::{Ensemble, Outcome, Run};
 use reachtube_robot::Robot;
 
 use crate::dynamics::Dynamics;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::nominal::correction::InputCorrection;
 use crate::nominal::corrector::Corrector;
+use crate::nominal::robot_equations::RobotEquations;
 use crate::nominal::steps::Steps;
 use crate::problem::case::Case;
 use crate::search::sensitivity::{BOUND, runs_away, substeps};
-use crate::settings::Settings;
+use crate::settings::{Equations, Settings};
 
 /// A nominal motion with the inputs that cause it, unrounded.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,12 +43,22 @@ impl Corrected<'_> {
     pub fn motion(&self, case: &Case, steps: Option<&Steps>) -> Result<NominalMotion> {
         let mut corrector =
             Corrector::new(self.robot, self.correction, self.settings, &case.condition)?;
+        let mut equations = match self.settings.equations {
+            Equations::Model => None,
+            Equations::Robot => {
+                let model = self.dynamics.linear_system().ok_or(Error::Equations)?;
+                Some(RobotEquations::new(self.robot, model)?)
+            }
+        };
         let correct = |x: &[f64], u: &mut [f64]| {
             let (q, qd) = x.split_at(u.len());
             corrector.take_off(q, &qd[..u.len()], u);
+            if let Some(equations) = &mut equations {
+                equations.replace(x, u);
+            }
         };
         match steps {
-            Some(steps) => Ok(linear(case, steps, correct)),
+            Some(steps) => linear(case, steps, correct),
             None => polynomial(self.dynamics.polynomials(), case, correct),
         }
     }
@@ -57,7 +68,7 @@ fn linear(
     case: &Case,
     steps: &Steps,
     mut correct: impl FnMut(&[f64], &mut [f64]),
-) -> NominalMotion {
+) -> Result<NominalMotion> {
     let (n, samples) = (case.joints(), case.grid.len());
     let mut inputs = case.inputs.to_vec();
     let mut states = vec![0.0; samples * 2 * n];
@@ -67,8 +78,11 @@ fn linear(
         let (x, u) = (&before[k * 2 * n..], &mut inputs[k * n..(k + 1) * n]);
         correct(x, u);
         steps.advance(k, x, u, &mut after[..2 * n]);
+        if !after[..2 * n].iter().all(|x| x.abs() < BOUND) {
+            return Err(runs_away(case, case.grid.times()[k]));
+        }
     }
-    NominalMotion { states, inputs }
+    Ok(NominalMotion { states, inputs })
 }
 
 fn polynomial(

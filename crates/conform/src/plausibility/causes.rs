@@ -6,12 +6,17 @@ use reachtube_recordings::Torque;
 use crate::error::Result;
 use crate::plausibility::evidence::{Evidence, Hypothesis};
 use crate::problem::problem::Problem;
+use crate::settings::{Equations, Method};
 
 /// A hypothesis is named when it lessens the unexplained part of the input by this much ...
 const LEAST_GAIN: f64 = 0.1;
 
 /// ... and to this part at most of what it is as stated.
 const LARGEST_REST: f64 = 0.5;
+
+/// The inertia at the mean of the positions is named when the unexplained part is this part at most
+/// of that at the expansion point.
+const LARGEST_OF_MEAN: f64 = 0.7;
 
 /// Lags that are tried, s.
 const LAGS: [f64; 8] = [0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2];
@@ -43,17 +48,23 @@ pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
         ));
     }
     Ok(lost_by_model(problem, &evidence, &stated, rest).unwrap_or_else(|| {
+        let remedy = if problem.setup().correction.is_some() {
+            "the nominal model was fitted for small sets already, so record more motions, or cut \
+             them into shorter windows (`reachtube prepare --window`)"
+        } else {
+            "check the robot's parameters, for example with `reachtube identify`, or fit the \
+             nominal model for small sets (--fit)"
+        };
         format!(
             "no other unit, sign, kind of torque, order of joints or lag explains the recordings \
-             better ({} of the recorded input is not explained by the recorded motion): check the \
-             robot's parameters, for example with `reachtube identify`",
+             better ({} of the recorded input is not explained by the recorded motion): {remedy}",
             percent(rest)
         )
     }))
 }
 
-/// Returns, in words, what the constant inertia of model 1 does not explain, where the robot itself
-/// leaves `rest` unexplained and the model much more.
+/// Returns, in words, what the constant inertia of model 1 does not explain, where the nominal
+/// motions follow the model, the robot itself leaves `rest` unexplained, and the model much more.
 fn lost_by_model(
     problem: &Problem,
     evidence: &Evidence,
@@ -61,7 +72,8 @@ fn lost_by_model(
     rest: f64,
 ) -> Option<String> {
     let settings = problem.settings();
-    if settings.abstraction.model != ModelKind::One {
+    let follows_robot = settings.equations == Equations::Robot;
+    if settings.abstraction.model != ModelKind::One || follows_robot {
         return None;
     }
     let at = |q: &[f64]| {
@@ -75,20 +87,25 @@ fn lost_by_model(
     let (mean, distance) = evidence.positions(origin);
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.min(1.0));
     let about_mean = at(&mean);
-    let remedy = if about_mean < LARGEST_REST.sqrt() * lost {
+    let better = if about_mean < LARGEST_OF_MEAN * lost {
         let mean: Vec<String> = mean.iter().map(|q| format!("{q:.2}")).collect();
         let point = mean.join(",");
         format!(
-            "with --expansion={point}, the mean of the positions, {} is not",
+            "with --expansion={point}, the mean of the positions, {} is not; ",
             percent(about_mean)
         )
     } else {
-        "model 3 of order 2 (--model 3 --order 2) knows how the inertia changes".into()
+        String::new()
+    };
+    let remedy = if settings.abstraction.order == 1 && settings.method == Method::Program {
+        "with --equations robot the nominal motions follow the robot"
+    } else {
+        "model 3 of order 2 (--model 3 --order 2) knows how the inertia changes"
     };
     Some(format!(
         "the robot explains the recordings, and model 1 does not: {} of the recorded input is not \
          explained by the robot, and {} by the inertia at the expansion point, from which the \
-         positions lie up to {distance:.2} rad; {remedy}; shorter windows lessen what is missed",
+         positions lie up to {distance:.2} rad; {better}{remedy}; shorter windows lessen what is missed",
         percent(rest),
         percent(lost),
     ))

@@ -128,7 +128,7 @@ impl Problem {
         let none = InputCorrection::none(robot.joint_count());
         let correction = match &self.setup().correction {
             Some(correction) => correction,
-            None if !robot.warms_by().is_empty() => &none,
+            None if !self.setup().is_recorded_input() => &none,
             None => return Ok(case),
         };
         let model = Corrected { robot, dynamics, correction, settings: self.settings() };

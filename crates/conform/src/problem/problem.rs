@@ -21,7 +21,7 @@ use crate::problem::recordings::Recordings;
 use crate::problem::suite::{Suite, SuiteReader};
 use crate::progress::Progress;
 use crate::sensor_noise::SensorNoise;
-use crate::settings::{Notion, Settings};
+use crate::settings::{Equations, Notion, Settings};
 
 /// What decides a conformance besides the recordings: the robot, its model and the settings.
 ///
@@ -54,7 +54,7 @@ impl Setup {
     pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
         settings.validate(robot.joint_count())?;
         let dynamics = Dynamics::new(&robot, &settings)?;
-        Ok(Self::of(robot, dynamics, settings))
+        Self::of(robot, dynamics, settings)
     }
 
     /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
@@ -69,12 +69,23 @@ impl Setup {
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
         let dynamics = Dynamics::of(model, settings.method);
-        Ok(Self::of(robot, dynamics, settings))
+        Self::of(robot, dynamics, settings)
     }
 
-    fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Self {
+    fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Result<Self> {
+        if settings.equations == Equations::Robot && dynamics.linear_system().is_none() {
+            return Err(Error::Equations);
+        }
         let nominal_starts = BTreeMap::new();
-        Self { robot, dynamics, settings, nominal_starts, correction: None, condition: None }
+        Ok(Self { robot, dynamics, settings, nominal_starts, correction: None, condition: None })
+    }
+
+    /// Returns whether the model's input is the recorded one, with nothing taken off it along the
+    /// nominal motion.
+    pub(crate) fn is_recorded_input(&self) -> bool {
+        self.correction.is_none()
+            && self.robot.warms_by().is_empty()
+            && self.settings.equations == Equations::Model
     }
 }
 

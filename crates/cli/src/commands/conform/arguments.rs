@@ -2,7 +2,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use reachtube::abstraction::ModelKind;
-use reachtube::conform::{Centre, Group, InitialLimit, Method, NominalStart, Notion, States};
+use reachtube::conform::{
+    Centre, Equations, Group, InitialLimit, Method, NominalStart, Notion, States,
+};
 use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;
@@ -179,6 +181,15 @@ pub struct Arguments {
         value_parser = choice::<NominalStart>(NOMINAL_STARTS)
     )]
     pub nominal: NominalStart,
+    /// Equations of motion that nominal solutions satisfy. Those of the robot leave to U what the
+    /// robot itself does not explain, and need a linear model
+    #[arg(
+        long,
+        help_heading = "Model",
+        default_value = "model",
+        value_parser = choice::<Equations>(EQUATIONS)
+    )]
+    pub equations: Equations,
     /// Motions that are kept back from the fit, separated by commas, as runs.csv names them. The
     /// sets found on the others are scaled until they enclose these too, which bounds the
     /// probability that the next motion leaves them
@@ -232,6 +243,11 @@ const STATES: Choices = &[("all", "positions and velocities"), ("positions", "po
 const NOMINAL_STARTS: Choices = &[
     ("mean", "the mean of the first states of the suite's runs"),
     ("own", "each run's own first state"),
+];
+
+const EQUATIONS: Choices = &[
+    ("model", "the model's"),
+    ("robot", "the robot's own; the model describes the deviations from them"),
 ];
 
 const METHODS: Choices = &[

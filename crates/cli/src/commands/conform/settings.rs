@@ -70,6 +70,7 @@ fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
             None => None,
         },
         nominal: args.nominal,
+        equations: args.equations,
         calibrate: args.calibrate.clone(),
         until: args.data.until,
         gap_limit: gap_limit(args.data.max_gap),
