@@ -43,6 +43,7 @@ def conform(
     noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
     sensor_noise: npt.ArrayLike | None = None,
     nominal: Literal["mean", "own"] = "mean",
+    equations: Literal["model", "robot"] = "model",
     calibrate: Sequence[str] = (),
     method: Literal["program", "bisection"] = "program",
     explain: Literal["default"] | tuple[float, float] | None = "default",
@@ -89,6 +90,9 @@ def conform(
         it, estimated from the recordings where they are not given.
     nominal
         Where nominal motions start: at the mean of a suite's first states, or at each run's own.
+    equations
+        Whose equations of motion nominal motions satisfy: the model's, or the robot's own, which
+        leaves to U what the robot itself does not explain and needs a linear model.
     calibrate
         Motions that are kept back from the fit, to which the sets are then scaled.
     method
@@ -135,6 +139,7 @@ def conform(
         noise=noise,
         sensor_noise=sensor_noise,
         nominal=nominal,
+        equations=equations,
         calibrate=calibrate,
         method=method,
         explain=explain,

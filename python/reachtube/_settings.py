@@ -69,6 +69,7 @@ def of_conformance(
     noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
     sensor_noise: npt.ArrayLike | None = None,
     nominal: Literal["mean", "own"] = "mean",
+    equations: Literal["model", "robot"] = "model",
     calibrate: Sequence[str] = (),
     method: Literal["program", "bisection"] = "program",
     explain: Literal["default"] | tuple[float, float] | None = "default",
@@ -86,6 +87,7 @@ def of_conformance(
         "states": states,
         "initial_limit": initial_limit,
         "nominal": nominal,
+        "equations": equations,
         "calibrate": names(calibrate),
         "method": method,
     }

@@ -76,7 +76,9 @@ pub enum Error {
     NotLinear,
     /// Nominal motions by the robot's own equations were asked of a model that is not linear.
     #[error(
-        "nominal motions by the robot's own equations (--equations robot) need a linear model,          which then describes deviations only; use model 1 of order 1 with --method program, or          --equations model"
+        "nominal motions by the robot's own equations (--equations robot) need a linear model, \
+         which then describes deviations only; use model 1 of order 1 with --method program, or \
+         --equations model"
     )]
     Equations,
     /// A notion of enclosure other than the hull was asked of the bisection.

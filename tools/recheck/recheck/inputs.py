@@ -55,6 +55,11 @@ class Inputs:
     """Evaluates the inputs of runs under a model."""
 
     def __init__(self, model, system, input_error, given=None):
+        if model.settings.get("equations", "model") == "robot":
+            raise BadInput(
+                "the nominal motions follow the robot's own equations (--equations robot), which "
+                "this program does not evaluate"
+            )
         self.model, self.system, self.given = model, system, given
         self.robot = Robot(model.robot)
         self.error = input_error

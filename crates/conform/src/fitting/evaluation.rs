@@ -165,15 +165,20 @@ impl Fit<'_> {
         Ok(Smallest { cost: program.cost(&sets), sets })
     }
 
-    /// Returns the cost of the smallest sets of all tracks at every sample.
+    /// Returns the cost of the smallest sets of all tracks at every sample; nothing where a nominal
+    /// motion runs away.
     ///
     /// # Errors
     ///
     /// As [`model`](Self::model) and [`Program::solve`].
-    pub fn whole_cost(&self, numbers: &[f64]) -> Result<f64> {
+    pub fn whole_cost(&self, numbers: &[f64]) -> Result<Option<f64>> {
         let whole = Self { stride: 1, ..self.clone() };
         let tracks = whole.tracks(None);
-        Ok(whole.smallest(&whole.model(numbers, &tracks, None)?, &tracks)?.cost)
+        match whole.model(numbers, &tracks, None) {
+            Ok(model) => Ok(Some(whole.smallest(&model, &tracks)?.cost)),
+            Err(Error::RunsAway { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// Returns at most `few` tracks of each suite, from the first to the last, of all motions but

@@ -34,12 +34,16 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
     let pulls = given.map_or_else(|| PULLS.to_vec(), |pull| vec![pull]);
     let of_motion = |motion: usize| leave_out(fit, motion, &pulls);
     let motions = fit.data.motions.len();
-    let costs: Vec<Vec<f64>> =
+    let costs: Vec<Vec<Option<f64>>> =
         (0..motions).into_par_iter().map(of_motion).collect::<Result<_>>()?;
-    let mean = |at: usize| costs.iter().map(|of| of[at]).sum::<f64>() / motions as f64;
+    let mean = |at: usize| {
+        let sum: Option<f64> = costs.iter().map(|of| of[at]).sum();
+        sum.map(|sum| sum / motions as f64)
+    };
+    let worth = |at: usize| mean(at).unwrap_or(f64::INFINITY);
     let tried: Vec<PullCost> =
         pulls.iter().enumerate().map(|(at, &pull)| PullCost { pull, cost: mean(at) }).collect();
-    let best = (0..pulls.len()).min_by(|a, b| mean(*a).total_cmp(&mean(*b))).unwrap_or(0);
+    let best = (0..pulls.len()).min_by(|a, b| worth(*a).total_cmp(&worth(*b))).unwrap_or(0);
     let left_out = fit.data.motions.iter().zip(&costs);
     let left_out = left_out
         .map(|(motion, of)| UnseenMotion { motion: motion.clone(), cost: of[best] })
@@ -48,8 +52,8 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
 }
 
 /// Fits without a motion for each weight, each from the answer before, and returns the costs of the
-/// sets of all motions.
-fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<f64>> {
+/// sets of all motions; nothing where a nominal motion runs away.
+fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<Option<f64>>> {
     let tracks = fit.few_tracks(Some(motion), FEW);
     let mut numbers = vec![0.0; fit.parameters.len()];
     let identified = fit.smallest(&fit.model(&numbers, &tracks, None)?, &tracks)?.cost;

@@ -36,8 +36,9 @@ pub struct FitRecord {
 pub struct GroupCost {
     /// The group.
     pub group: Group,
-    /// Cost of the sets with this group at its identified values and all others as fitted.
-    pub cost_without: f64,
+    /// Cost of the sets with this group at its identified values and all others as fitted; nothing
+    /// where a nominal motion runs away.
+    pub cost_without: Option<f64>,
 }
 
 /// A fit without one motion.
@@ -46,8 +47,9 @@ pub struct GroupCost {
 pub struct UnseenMotion {
     /// The motion.
     pub motion: String,
-    /// Cost of the sets of all motions for the nominal model that was fitted without it.
-    pub cost: f64,
+    /// Cost of the sets of all motions for the nominal model that was fitted without it; nothing
+    /// where a nominal motion runs away.
+    pub cost: Option<f64>,
 }
 
 /// A weight of the pull that was tried.
@@ -56,22 +58,23 @@ pub struct UnseenMotion {
 pub struct PullCost {
     /// The weight.
     pub pull: f64,
-    /// The mean cost over the motions left out.
-    pub cost: f64,
+    /// The mean cost over the motions left out; nothing where a nominal motion runs away.
+    pub cost: Option<f64>,
 }
 
 impl FitRecord {
-    /// Returns the mean cost over the motions left out, with the weight that was chosen.
+    /// Returns the mean cost over the motions left out, with the weight that was chosen; nothing
+    /// where a nominal motion runs away.
     #[must_use]
-    pub fn left_out_mean(&self) -> f64 {
-        let sum: f64 = self.leave_one_out.iter().map(|left| left.cost).sum();
-        sum / self.leave_one_out.len() as f64
+    pub fn left_out_mean(&self) -> Option<f64> {
+        let sum: Option<f64> = self.leave_one_out.iter().map(|left| left.cost).sum();
+        sum.map(|sum| sum / self.leave_one_out.len() as f64)
     }
 
     /// Returns whether the fit makes the sets of motions larger that it has not seen.
     #[must_use]
     pub fn is_overfitted(&self) -> bool {
-        self.left_out_mean() > self.identified_cost
+        self.left_out_mean().is_none_or(|mean| mean > self.identified_cost)
     }
 }
 

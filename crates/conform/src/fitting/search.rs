@@ -1,4 +1,4 @@
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fitting::evaluation::{Fit, Model, Smallest};
 use crate::fitting::group::Group;
 use crate::fitting::slopes::slopes;
@@ -74,7 +74,11 @@ impl Search<'_> {
         let (mut trust, mut steps) = (FIRST_TRUST, 0);
         'search: for _ in 0..self.effort.steps {
             let slopes =
-                slopes(self.fit, &point.numbers, &self.tracks, &point.model, &point.smallest)?;
+                match slopes(self.fit, &point.numbers, &self.tracks, &point.model, &point.smallest)
+                {
+                    Err(Error::RunsAway { .. }) => break 'search,
+                    slopes => slopes?,
+                };
             let program = self.fit.program(&point.model, &self.tracks);
             loop {
                 let step = Step {

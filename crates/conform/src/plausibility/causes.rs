@@ -105,7 +105,8 @@ fn lost_by_model(
     Some(format!(
         "the robot explains the recordings, and model 1 does not: {} of the recorded input is not \
          explained by the robot, and {} by the inertia at the expansion point, from which the \
-         positions lie up to {distance:.2} rad; {better}{remedy}; shorter windows lessen what is missed",
+         positions lie up to {distance:.2} rad; {better}{remedy}; shorter windows lessen what is \
+         missed",
         percent(rest),
         percent(lost),
     ))

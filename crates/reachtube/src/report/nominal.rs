@@ -52,9 +52,10 @@ pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
 
 /// Returns the costs of the smallest sets for all motions, for several nominal models.
 fn costs(fit: &FitRecord) -> TextTable {
-    let row = |name: String, cost: f64| {
-        let change = 100.0 * (cost / fit.identified_cost - 1.0);
-        vec![name, four_decimals(cost), format!("{change:+.1} %")]
+    let row = |name: String, cost: Option<f64>| {
+        let change = |cost| format!("{:+.1} %", 100.0 * (cost / fit.identified_cost - 1.0));
+        let none = || "a nominal motion runs away".into();
+        vec![name, cost.map_or_else(none, four_decimals), cost.map_or_else(String::new, change)]
     };
     let first = [("Identified", fit.identified_cost), ("Fitted", fit.cost)];
     let groups = fit.groups.iter().map(|group| {
@@ -69,7 +70,7 @@ fn costs(fit: &FitRecord) -> TextTable {
         title: "Cost of the smallest sets".into(),
         header: ["Nominal model", "Cost", "Change"].map(String::from).to_vec(),
         rows: first
-            .map(|(name, cost)| row(name.into(), cost))
+            .map(|(name, cost)| row(name.into(), Some(cost)))
             .into_iter()
             .chain(groups)
             .chain(left_out)

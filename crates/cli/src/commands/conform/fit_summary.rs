@@ -24,8 +24,7 @@ pub fn fit_summary(model: &Model) -> String {
         record.pull
     );
     let groups = record.groups.iter();
-    let groups =
-        groups.map(|group| format!("{} {}", group.group.name(), four_decimals(group.cost_without)));
+    let groups = groups.map(|group| format!("{} {}", group.group.name(), cost(group.cost_without)));
     let _ = writeln!(text, "cost without a group: {}", groups.collect::<Vec<_>>().join(", "));
     text.push_str(&left_out(record));
     text.push_str(&parameters(model, record));
@@ -33,16 +32,20 @@ pub fn fit_summary(model: &Model) -> String {
     text
 }
 
+/// Returns a cost in words.
+fn cost(cost: Option<f64>) -> String {
+    cost.map_or_else(|| "none (a nominal motion runs away)".into(), four_decimals)
+}
+
 /// Returns what the fit is worth for motions that it has not seen.
 fn left_out(record: &FitRecord) -> String {
-    let of = |left: &reachtube::conform::UnseenMotion| {
-        format!("{} {}", left.motion, four_decimals(left.cost))
-    };
+    let of =
+        |left: &reachtube::conform::UnseenMotion| format!("{} {}", left.motion, cost(left.cost));
     let each: Vec<String> = record.leave_one_out.iter().map(of).collect();
     let mut text = format!(
         "cost with one motion left out of the fit: {}; mean {}\n",
         each.join(", "),
-        four_decimals(record.left_out_mean())
+        cost(record.left_out_mean())
     );
     if record.is_overfitted() {
         text.push_str(
