@@ -30,7 +30,7 @@ const WITHIN_ONE_DEVIATION: f64 = 0.682_689_49;
 ///
 /// A velocity that does not integrate to the positions is wrong by noise too, however smooth it is,
 /// because no force can separate the two. The change of each position over 0.1 s is compared with
-/// the integral of the velocity. The noise of a velocity is at least what differs, less the noise
+/// the integral of the velocity. The noise of a velocity is at least what differs beyond the noise
 /// of the positions, and at most a fiftieth of the velocity: more is no noise.
 ///
 /// # Examples
@@ -109,7 +109,8 @@ fn contradiction(run: &Run, j: usize, position_noise: f64) -> f64 {
     let difference = *differences.select_nth_unstable_by(at, f64::total_cmp).1;
     let squares: f64 = (0..=last).map(|k| velocity(k).powi(2)).sum();
     let largest = LARGEST_CONTRADICTION * (squares / run.len() as f64).sqrt();
-    let of_positions = 2.0 * (position_noise / span).powi(2);
+    // Twice the variance that the noise of two positions gives: the estimates vary themselves.
+    let of_positions = 4.0 * (position_noise / span).powi(2);
     (difference.powi(2) - of_positions).max(0.0).sqrt().min(largest)
 }
 
