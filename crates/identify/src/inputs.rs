@@ -81,7 +81,7 @@ impl Inputs {
         for (group, stride) in sources.iter().zip(strides) {
             let prepared = |source: &Source| {
                 let raw = source.read(robot, prepare)?;
-                let (log, change) = prepare_one(&raw, prepare, cut_off, common)?;
+                let (log, change) = prepare_one(&raw, prepare, cut_off, common, None)?;
                 Ok((log.len(), log.thinned(stride, margin), change))
             };
             let done = group.par_iter().map(prepared).collect::<Vec<Result<_>>>();

@@ -47,6 +47,35 @@ impl Robot {
         DVector::from_column_slice(tau_motor) - self.coulomb_torque_under(&g, qd) - g
     }
 
+    /// Returns the input (11) \[N m\] for a motor torque on the link side, where the friction of a
+    /// joint near standstill holds it ([`Friction::holding_torque`](crate::friction::Friction)).
+    ///
+    /// [`Robot::input_from_motor_torque`] lets the friction of a joint at rest step from one sign
+    /// to the other with the noise of its velocity.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// let robot = reachtube_robot::Robot::lwa4p();
+    /// let tau_motor = robot.gravity_torque(&[0.4; 6]).add_scalar(1.0);
+    /// let u = robot.input_from_holding_torque(&[0.4; 6], &[1e-4; 6], tau_motor.as_slice());
+    /// assert!(u.amax() < 0.05); // the joints stay where they are
+    /// ```
+    pub fn input_from_holding_torque(
+        &self,
+        q: &[f64],
+        qd: &[f64],
+        tau_motor: &[f64],
+    ) -> DVector<f64> {
+        let g = self.gravity_torque(q);
+        let driving = DVector::from_column_slice(tau_motor) - &g;
+        let joints = self.joints.iter().zip(qd).zip(g.iter().zip(&driving));
+        let input = joints.map(|((joint, qd), (load, driving))| {
+            driving - joint.friction.holding_torque(*load, *qd, *driving)
+        });
+        DVector::from_iterator(self.joint_count(), input)
+    }
+
     /// Returns the motor torque that gives an input \[N m\], which is the inverse of
     /// [`Robot::input_from_motor_torque`].
     pub fn motor_torque_from_input(&self, q: &[f64], qd: &[f64], u: &[f64]) -> DVector<f64> {

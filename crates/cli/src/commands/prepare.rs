@@ -17,7 +17,7 @@ use crate::output;
 const HELP: &str = "\
 Example:
   reachtube prepare --robot arm.toml --logs repeated --repeats --window 1 --cut-off 6 \\
-      --out windows
+      --compensate --out windows
 
 Then: reachtube inspect --data windows";
 
@@ -54,6 +54,10 @@ pub struct Arguments {
     /// order]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
+    /// Write the input u, which is the motor torque less the robot's gravity and dry friction, in
+    /// place of the torque; read it with `--torque compensated`
+    #[arg(long)]
+    pub compensate: bool,
     /// Longest time between two samples, above 0 s [default: 10 times the usual sample time]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
@@ -70,7 +74,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let entries: Vec<LogEntry> = args.logs.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, std::path::Path::new(""), &robot, &settings)?;
     let cut_off = cut_off(&raw.iter().collect::<Vec<&RawLog>>(), &settings)?;
-    let prepared = prepare(&raw, &settings, cut_off)?;
+    let prepared = prepare(&raw, &settings, cut_off, args.compensate.then_some(&robot))?;
     let cut = windows(&prepared.logs, args.window, args.repeats);
     if cut.windows.is_empty() {
         return Err(nothing_left(args, &prepared.logs));

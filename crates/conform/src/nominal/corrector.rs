@@ -1,17 +1,13 @@
 //! The correction of the input, evaluated at one state after another without allocation.
 
 use reachtube_recordings::Torque;
-use reachtube_robot::friction::{Coulomb, LoadLine};
+use reachtube_robot::friction::{Coulomb, LoadLine, NEAR_STANDSTILL};
 use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
 use crate::error::Result;
 use crate::nominal::correction::InputCorrection;
 use crate::problem::condition::Condition;
 use crate::settings::Settings;
-
-/// Below this speed, rad/s or m/s, Coulomb friction is taken in proportion to the speed, so that
-/// the nominal motion comes to rest instead of jumping between two signs.
-pub const SLOW: f64 = 0.02;
 
 /// Evaluates a correction for one robot.
 #[derive(Debug, Clone)]
@@ -97,7 +93,7 @@ impl<'a> Corrector<'a> {
             let joints = self.robot.joints().iter().zip(&self.correction.joints);
             for (j, (joint, correction)) in joints.enumerate() {
                 let scaled = scaled(&joint.friction.coulomb, &correction.coulomb);
-                let part = (qd[j].abs() / SLOW).min(1.0);
+                let part = (qd[j].abs() / NEAR_STANDSTILL).min(1.0);
                 u[j] -= part * scaled.torque(self.torque[j], qd[j]);
                 if let Some(warm) = self.warm.as_ref().filter(|_| changes_coulomb) {
                     let of = |robot: &Robot| {

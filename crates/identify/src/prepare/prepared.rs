@@ -1,3 +1,5 @@
+use std::borrow::Cow;
+
 use crate::error::{Error, Result};
 use crate::prepare::changes::{LogChange, described};
 use crate::prepare::derivative::derivative;
@@ -8,6 +10,7 @@ use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource};
 use rayon::prelude::*;
 use reachtube_recordings::Run;
+use reachtube_robot::Robot;
 
 /// Relative difference up to which two sample times count as the same.
 const SAME_STEP: f64 = 0.25;
@@ -32,18 +35,36 @@ pub struct Prepared {
 /// torques are filtered without phase shift. Accelerations are derivatives of the velocity. Both
 /// ends, where the filter extrapolates, are cut by 2.5 periods of the cut-off.
 ///
+/// `compensated` takes gravity and dry friction of this robot off the torques, which are then the
+/// input u of (11). Near standstill, friction holds a joint
+/// ([`Robot::input_from_holding_torque`]). What is taken off is filtered as the torques are: where
+/// a joint turns, friction steps, and the filtered torque does not. An input that is computed from
+/// filtered torques misses up to twice the friction about every turn.
+///
 /// # Errors
 ///
 /// [`Error::TooShort`] and [`Error::SampledTooSlowly`] name a recording that does not suit the
 /// cut-off.
-pub fn prepare(raw: &[RawLog], settings: &PrepareSettings, cut_off: f64) -> Result<Prepared> {
+pub fn prepare(
+    raw: &[RawLog],
+    settings: &PrepareSettings,
+    cut_off: f64,
+    compensated: Option<&Robot>,
+) -> Result<Prepared> {
     let common = common_step(raw.iter().filter_map(|log| median_step(&log.run.times)).collect());
     let done: Vec<(Log, LogChange)> = raw
         .par_iter()
-        .map(|log| prepare_one(log, settings, cut_off, common))
+        .map(|log| prepare_one(log, settings, cut_off, common, compensated))
         .collect::<Result<_>>()?;
     let (logs, changes): (Vec<Log>, Vec<LogChange>) = done.into_iter().unzip();
-    let changes = described(logs.iter().map(Log::len).sum(), &changes, settings, cut_off);
+    let mut changes = described(logs.iter().map(Log::len).sum(), &changes, settings, cut_off);
+    changes.extend(compensated.map(|robot| {
+        format!(
+            "gravity and dry friction of {}, filtered likewise, were taken off tau, which is the \
+             input u now (--torque compensated)",
+            robot.name()
+        )
+    }));
     Ok(Prepared { logs, cut_off, changes })
 }
 
@@ -62,6 +83,7 @@ pub(crate) fn prepare_one(
     settings: &PrepareSettings,
     cut_off: f64,
     common: f64,
+    compensated: Option<&Robot>,
 ) -> Result<(Log, LogChange)> {
     let too_short = || Error::TooShort {
         log: raw.name.clone(),
@@ -84,7 +106,10 @@ pub(crate) fn prepare_one(
         VelocitySource::Differentiated => true,
         VelocitySource::Quieter => signals.is_differentiated_quieter(),
     };
-    let log = signals.log(&settings.gains, differentiated);
+    let mut log = signals.log(&settings.gains, differentiated);
+    if let Some(robot) = compensated {
+        signals.compensate(&mut log, robot);
+    }
     // Ends without the filter's extrapolation.
     let end = (TRANSIENT_PERIODS / (cut_off * step)).ceil() as usize;
     let samples = log.len();
@@ -156,6 +181,35 @@ impl<'a> Signals<'a> {
         }
         log
     }
+
+    /// Replaces the torques by the input (11).
+    fn compensate(&self, log: &mut Log, robot: &Robot) {
+        let n = log.joints;
+        let taken_off = |k: usize| {
+            let (tau, robot) = (log.tau(k), warm_robot(robot, log, k));
+            let u = robot.input_from_holding_torque(log.q(k), log.qd(k), tau);
+            tau.iter().zip(&u).map(|(tau, u)| tau - u).collect::<Vec<f64>>()
+        };
+        let rows: Vec<f64> = (0..log.len()).flat_map(taken_off).collect();
+        for joint in 0..n {
+            let column = rows.iter().skip(joint).step_by(n).copied().collect();
+            let torques = log.tau.iter_mut().skip(joint).step_by(n);
+            torques.zip(self.filtered(column)).for_each(|(torque, off)| *torque -= off);
+        }
+    }
+}
+
+/// Returns the robot with the friction that it has at sample `k`, as far as the log knows it.
+fn warm_robot<'a>(robot: &'a Robot, log: &Log, k: usize) -> Cow<'a, Robot> {
+    if robot.warms_by().is_empty() {
+        return Cow::Borrowed(robot);
+    }
+    let n = log.joints;
+    let warm = robot.at_run(log.order.unwrap_or(1) as f64);
+    Cow::Owned(match log.temperatures.get(k * n..(k + 1) * n) {
+        Some(temperatures) => warm.at_temperature(temperatures),
+        None => warm,
+    })
 }
 
 fn set_column(rows: &mut [f64], joint: usize, n: usize, column: &[f64]) {
@@ -171,6 +225,7 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::prepare::cut_off::cut_off;
+    use std::f64::consts::PI;
 
     fn wave() -> RawLog {
         let times: Vec<f64> =
@@ -193,7 +248,7 @@ mod tests {
         for velocity in [VelocitySource::Recorded, VelocitySource::Differentiated] {
             let settings =
                 PrepareSettings { gains: vec![3.0], velocity, ..PrepareSettings::default() };
-            let prepared = prepare(&[wave()], &settings, 4.0).unwrap();
+            let prepared = prepare(&[wave()], &settings, 4.0, None).unwrap();
             let log = &prepared.logs[0];
             for k in 0..log.len() {
                 let t = log.time(k);
@@ -214,6 +269,42 @@ mod tests {
     }
 
     #[test]
+    fn the_input_of_a_joint_that_turns_is_free_of_its_friction() {
+        let robot = "schema_version = 1\nname = \"turning\"\n[[joint]]\nname = \"joint\"\n\
+                     dh = { a = 0.0, alpha = 0.0, theta = 0.0, d = 0.0 }\nmass = 1.0\n\
+                     com = [0.0, 0.0, 0.0]\ninertia = [1.0, 0.0, 0.0, 1.0, 0.0, 1.0]\n\
+                     friction = { coulomb = [3.0, 0.0, -3.0, 0.0, -3.0, 0.0, 3.0, 0.0] }\n";
+        let robot = Robot::from_toml(robot, "turning").unwrap();
+        let mut raw = wave();
+        // The joint turns twice and then rests, pushed less than its friction holds.
+        let velocity = |t: f64| if t < 2.5 * PI { t.cos() } else { 0.0 };
+        let torque = |t: f64| match velocity(t) {
+            0.0 => 1.0,
+            moving => 2.0 * t.sin() + 3.0 * moving.signum(),
+        };
+        let states = |t: &f64| [if velocity(*t) == 0.0 { 1.0 } else { t.sin() }, velocity(*t)];
+        raw.run.times = (0..2000).map(|k| 0.01 * f64::from(k)).collect();
+        raw.run.states = raw.run.times.iter().flat_map(states).collect();
+        raw.run.torques = raw.run.times.iter().map(|t| torque(*t)).collect();
+        let settings = PrepareSettings::default();
+        let furthest = |robot: Option<&Robot>| {
+            let log = prepare(&[raw.clone()], &settings, 4.0, robot).unwrap().logs.remove(0);
+            let input = |k: usize| match robot {
+                Some(_) => log.tau(k)[0],
+                None => log.tau(k)[0] - 3.0 * log.qd(k)[0].signum(),
+            };
+            let expected = |t: f64| if velocity(t) == 0.0 { 0.0 } else { 2.0 * t.sin() };
+            // The stop itself is a step of the input, which the filter softens.
+            let away = |k: &usize| (log.time(*k) - 2.5 * PI).abs() > 0.5;
+            let off = |k: usize| (input(k) - expected(log.time(k))).abs();
+            (0..log.len()).filter(away).map(off).fold(0.0, f64::max)
+        };
+        let (compensated, as_recorded) = (furthest(Some(&robot)), furthest(None));
+        // A tenth of the friction, and more than all of it.
+        assert!(compensated < 0.3 && as_recorded > 3.0, "{compensated} {as_recorded}");
+    }
+
+    #[test]
     fn recordings_that_do_not_suit_the_cut_off_are_errors() {
         let settings = PrepareSettings { cut_off: Some(70.0), ..PrepareSettings::default() };
         assert!(
@@ -225,7 +316,7 @@ mod tests {
         let mut short = wave();
         short.run.times.truncate(30);
         assert!(
-            prepare(&[short], &PrepareSettings::default(), 3.0)
+            prepare(&[short], &PrepareSettings::default(), 3.0, None)
                 .unwrap_err()
                 .to_string()
                 .contains("too few")

@@ -25,7 +25,26 @@ pub struct Friction {
     pub warming: Option<Warming>,
 }
 
+/// Speed below which a joint is near standstill, rad/s or m/s. The steps of dry friction are
+/// softened there.
+pub const NEAR_STANDSTILL: f64 = 0.02;
+
 impl Friction {
+    /// Returns dry friction \[N m\] where it holds a joint near standstill, at a load torque
+    /// \[N m\], a joint velocity \[rad/s\] and the torque \[N m\] that would move the joint
+    /// without it, the motor torque less gravity.
+    ///
+    /// At rest, friction balances that torque as far as it can. From [`NEAR_STANDSTILL`] on it is
+    /// [`Friction::dry_torque`], and in between it passes from one to the other.
+    #[must_use]
+    pub fn holding_torque(&self, load: f64, qd: f64, driving: f64) -> f64 {
+        let limit = |direction: f64| self.dry_torque(load, direction * f64::MIN_POSITIVE);
+        let (one, other) = (limit(-1.0), limit(1.0));
+        let held = driving.clamp(one.min(other), one.max(other));
+        let moving = (qd.abs() / NEAR_STANDSTILL).min(1.0);
+        moving * self.dry_torque(load, qd) + (1.0 - moving) * held
+    }
+
     /// Returns dry friction \[N m\], Coulomb friction with the Stribeck effect, at a load torque
     /// \[N m\] and a joint velocity \[rad/s\]. It is 0 at standstill.
     pub fn dry_torque<S: Lanewise>(&self, load: S, qd: S) -> S {

@@ -8,7 +8,7 @@ pub(crate) mod viscous;
 pub(crate) mod warming;
 
 pub use coulomb::{Coulomb, LoadLine};
-pub use joint_friction::Friction;
+pub use joint_friction::{Friction, NEAR_STANDSTILL};
 pub use stribeck::Stribeck;
 pub use viscous::Viscous;
 pub use warming::{Warming, WarmingBy};
