@@ -196,3 +196,26 @@ fn windows_of_recordings_are_suites_and_motions_are_designed() {
     let motion = lab.read("motion.csv");
     assert!(motion.starts_with("t,q1,qd1,qdd1\n") && motion.lines().count() == 402);
 }
+
+#[test]
+fn windows_free_of_friction_have_smaller_sets() {
+    let lab = lab();
+    lab.run("identify --robot pendulum.toml --dynamic a.csv b.csv --cut-off 15 --out found.toml")
+        .exits(0);
+    let prepare = "prepare --robot found.toml --logs a.csv b.csv --window 0.5 --cut-off 5";
+    lab.run(&format!("{prepare} --out recorded")).exits(0);
+    lab.run(&format!("{prepare} --compensate --out free"))
+        .exits(0)
+        .notes("dry friction of pendulum")
+        .notes("--torque compensated");
+    let cost = |of: &str| {
+        let job = "conform --robot found.toml --nominal own --noise fitted --json";
+        lab.run(&format!("{job} {of}")).exits(0).json()["cost"].as_f64().unwrap()
+    };
+    let recorded = cost("--data recorded --torque motor");
+    let free = cost("--data free --torque compensated");
+    let nonlinear = cost("--data free --torque compensated --equations robot");
+    // The inertia of a pendulum is the same everywhere; its viscous friction is linear.
+    assert!(free < 0.5 * recorded, "{free} {recorded}");
+    assert!((nonlinear / free - 1.0).abs() < 0.01, "{nonlinear} {free}");
+}

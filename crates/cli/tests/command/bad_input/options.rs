@@ -50,6 +50,11 @@ pub const CASES: &[Case] = &[
     case("a weight of 0", conform!("--weights 0,1"), &["weight 1 is 0", "between 1e-9 and 1e9"]),
     case("a negative noise", conform!("--noise -1,0"), &["noise radius 1 is -1"]),
     case(
+        "the robot's equations beside a model that is not linear",
+        conform!("--method bisection --equations robot"),
+        &["--equations robot", "need a linear model", "--equations model"],
+    ),
+    case(
         "an expansion point of another robot",
         conform!("--expansion 1,2,3"),
         &["3 values", "the robot has 2 joints"],
