@@ -16,8 +16,8 @@ pub struct SensorNoise {
     /// Its radius in each state, 2n, rad and rad/s.
     pub radius: Vec<f64>,
     /// Whether it was estimated from the recordings: 5 standard deviations of what they hold at the
-    /// highest frequencies, the median over the runs, of which 256 of each suite count. Otherwise
-    /// it was given.
+    /// highest frequencies, and of what velocities contradict positions by; the median over the
+    /// runs, of which 256 of each suite count. Otherwise it was given.
     pub estimated: bool,
 }
 
