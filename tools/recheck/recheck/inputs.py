@@ -13,6 +13,7 @@ from fractions import Fraction
 
 import numpy
 
+from .dynamics import Dynamics
 from .errors import BadInput
 from .recordings import Run
 from .robot import Robot, coulomb_torque, viscous_torque
@@ -55,11 +56,6 @@ class Inputs:
     """Evaluates the inputs of runs under a model."""
 
     def __init__(self, model, system, input_error, given=None):
-        if model.settings.get("equations", "model") == "robot":
-            raise BadInput(
-                "the nominal motions follow the robot's own equations (--equations robot), which "
-                "this program does not evaluate"
-            )
         self.model, self.system, self.given = model, system, given
         self.robot = Robot(model.robot)
         self.error = input_error
@@ -69,7 +65,11 @@ class Inputs:
         self.correction = model.correction
         if self.correction is None and self.warms:
             self.correction = {"joints": [{}] * n}
-        self.is_exact = self.torque == "compensated" and self.correction is None
+        self.equations = None
+        if model.settings.get("equations", "model") == "robot":
+            self.equations = RobotEquations(model, self.robot)
+        is_recorded = self.correction is None and self.equations is None
+        self.is_exact = self.torque == "compensated" and is_recorded
 
     def cases(self, suite, runs):
         """Returns the cases of a suite."""
@@ -112,19 +112,24 @@ class Inputs:
         if self.is_exact:
             case.doubt = [0.0] * self.model.joints
         else:
-            if self.correction is not None:
+            if self.correction is not None or self.equations is not None:
                 self._correct(case, evaluation)
             case.doubt = [self.error + jump for jump in evaluation.jumps]
         if self.given is not None:
             self._replace(case)
 
     def _correct(self, case, evaluation):
-        """Takes the correction off along the nominal motion, sample by sample."""
+        """Takes the correction off along the nominal motion, sample by sample, and follows the
+        robot's own equations where the model does."""
         n, grid = self.model.joints, case.grid
         x, rounded = numpy.array(case.start), {}
         case.inputs = list(case.inputs)
         for k in range(len(grid) - 1):
-            u = evaluation.corrected(x[:n], x[n:], case.inputs[k])
+            u = case.inputs[k]
+            if self.correction is not None:
+                u = evaluation.corrected(x[:n], x[n:], u)
+            if self.equations is not None:
+                u = self.equations.replaced(x, u)
             case.inputs[k] = u
             step = self.system.step(grid.span(k))
             if id(step) not in rounded:
@@ -147,6 +152,22 @@ class Inputs:
                 )
         case.inputs = [*rows[:count], case.inputs[-1]]
         case.doubt = [0.0] * self.model.joints
+
+
+class RobotEquations:
+    """The input under which the linear model accelerates as the robot itself does."""
+
+    def __init__(self, model, robot):
+        n = model.joints
+        self.dynamics, self.joints = Dynamics(robot), n
+        self.of_state, self.of_input = numpy.array(model.a)[n:], numpy.array(model.b)[n:]
+        self.drift = numpy.array(model.drift)[n:]
+
+    def replaced(self, x, u):
+        """Returns the input of the model in place of the robot's input `u` at the state `x`."""
+        qdd = self.dynamics.acceleration(x[: self.joints], x[self.joints :], u)
+        missing = qdd - self.of_state @ x - self.drift
+        return [float(value) for value in numpy.linalg.solve(self.of_input, missing)]
 
 
 class _Evaluation:

@@ -9,6 +9,8 @@ origin of its frame) pulls at joint i, whose axis a passes through o, with
 
 import math
 
+import numpy
+
 
 def _product(a, b):
     b0, b1, b2 = b
@@ -137,22 +139,31 @@ class Robot:
         """Gravity torques of 1 kg at the origin of the last link's frame."""
         return self._torque(q, self.payload)
 
-    def _torque(self, q, moments):
-        place, axes, links = (IDENTITY, [0.0, 0.0, 0.0]), [], []
+    def places(self, q):
+        """Axis and origin of each joint, then rotation and origin of its link, in the base."""
+        return [tuple(numpy.array(x) for x in place) for place in self._places(q)]
+
+    def _places(self, q):
+        place, places = (IDENTITY, [0.0, 0.0, 0.0]), []
         for j, (before, axis, after) in enumerate(self.geometry):
             place = _then(place, before)
-            axes.append((_apply(place[0], axis), place[1]))
+            joint = (_apply(place[0], axis), place[1])
             if self.is_prismatic(j):
                 motion = (IDENTITY, [q[j] * x for x in axis])
             else:
                 motion = (_about_axis(axis, q[j]), [0.0, 0.0, 0.0])
             place = _then(_then(place, motion), after)
-            mass, moment = moments[j]
-            links.append((mass, _plus([mass * x for x in place[1]], _apply(place[0], moment))))
+            places.append((*joint, *place))
+        return places
+
+    def _torque(self, q, moments):
+        places = self._places(q)
         torques, mass, moment = [0.0] * len(q), 0.0, [0.0, 0.0, 0.0]
         for j in reversed(range(len(q))):
-            mass, moment = mass + links[j][0], _plus(moment, links[j][1])
-            axis, origin = axes[j]
+            axis, origin, rotation, link_at = places[j]
+            own, first = moments[j]
+            mass = mass + own
+            moment = _plus(moment, _plus([own * x for x in link_at], _apply(rotation, first)))
             if self.is_prismatic(j):
                 pull = [mass * x for x in axis]
             else:
