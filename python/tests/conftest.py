@@ -17,7 +17,9 @@ SHARED = Path(os.environ.get("REACHTUBE_SHARED", Path(__file__).parents[3] / "sh
 SCHUNK = SHARED / "data" / "schunk_lwa4p"
 
 
-def runs(robot: rt.Robot, count: int = 3, samples: int = 60) -> list[rt.Run]:
+def runs(
+    robot: rt.Robot, count: int = 3, samples: int = 60, noise_of: float = 1e-4
+) -> list[rt.Run]:
     """Return runs of two suites near a smooth motion, with torques of the robot's own dynamics."""
     n = robot.joints
     random = np.random.default_rng(1)
@@ -30,7 +32,7 @@ def runs(robot: rt.Robot, count: int = 3, samples: int = 60) -> list[rt.Run]:
         qdd = -1.2 * np.sin(2 * t[:, None] + phase)
         tau = robot.rnea(q, qd, qdd) + robot.viscous_friction(qd) + robot.coulomb_friction(q, qd)
         for k in range(count):
-            noise = 1e-4 * random.standard_normal((2, samples, n))
+            noise = noise_of * random.standard_normal((2, samples, n))
             name = "AB"[suite]
             run = rt.Run(t, q + noise[0], qd + 10 * noise[1], tau, suite=name, motion=f"m{suite}")
             found.append(run)

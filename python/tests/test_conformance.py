@@ -33,6 +33,21 @@ def test_every_recording_lies_in_the_reachable_set(
         assert (found.step_upper >= found.upper[1:]).all()
 
 
+def test_nominal_motions_may_follow_the_robot(robot: rt.Robot) -> None:
+    exact = runs(robot, noise_of=0.0)
+    model, by_robot = (
+        rt.conform(robot, exact, torque="motor", equations=equations)
+        for equations in ("model", "robot")
+    )
+    assert by_robot.to_dict()["settings"]["equations"] == "robot"
+    assert rt.check(by_robot, exact)
+    # The torques are those of the robot, whose inertia is another than at q = 0.
+    assert by_robot.cost is not None and model.cost is not None
+    assert by_robot.cost < 0.5 * model.cost, (by_robot.cost, model.cost)
+    with pytest.raises(rt.ReachtubeError, match="need a linear model"):
+        rt.conform(robot, exact, torque="motor", order=3, equations="robot")
+
+
 def test_not_conformant_is_a_value_with_a_witness(model: rt.Model, robot: rt.Robot) -> None:
     moved = []
     for run in runs(robot):

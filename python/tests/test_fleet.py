@@ -63,6 +63,11 @@ def test_a_fleet_is_the_data_set(manifest: Path, alone: rt.Model) -> None:
     assert parquet.read_metadata(manifest).num_rows == len(runs) == SUITES * RUNS
     found = rt.conform(rt.Robot.lwa4p(), runs, torque="compensated")
     assert names_left_out(found) == names_left_out(alone)
+    by_robot: dict[str, Any] = {"torque": "compensated", "equations": "robot"}
+    folded = fleet.conform(rt.Robot.lwa4p(), manifest, **by_robot)
+    assert folded.verified and folded.cost != alone.cost
+    found = rt.conform(rt.Robot.lwa4p(), runs, **by_robot)
+    assert names_left_out(found) == names_left_out(folded)
 
 
 def test_workers_give_the_same_bits(manifest: Path, alone: rt.Model, client: Any) -> None:
