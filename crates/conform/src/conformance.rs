@@ -47,8 +47,8 @@ pub struct Conformance {
     pub trust: Trust,
     /// How the sets were scaled, where motions were kept back for it.
     pub calibration: Option<Calibration>,
-    /// The sets without each of the motions they were found on; none for one motion, for a model
-    /// that is not linear, and for other notions than the hull.
+    /// The sets without each of the motions they were found on; none for one motion, for a
+    /// bisection, and for other notions than the hull.
     pub left_out: Vec<LeftOut>,
     /// The runs that decide the sets.
     pub deciding_runs: DecidingRuns,
@@ -96,16 +96,18 @@ pub fn conform(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    let (found, calibration, left_out) = if problem.settings().calibrate.is_empty() {
-        let found = smallest_sets(problem, progress, resume)?;
-        let left_out = leave_each_out(problem, &found.hulls.sets)?;
-        (found, None, left_out)
+    let (found, calibration) = if problem.settings().calibrate.is_empty() {
+        let mut found = smallest_sets(problem, progress, resume)?;
+        found.left_out.extend(leave_each_out(problem, &found.hulls.sets)?);
+        (found, None)
     } else {
-        let Calibrated { fit, fitted, found, calibration } = calibrate(problem, progress, resume)?;
-        (found, Some(calibration), leave_each_out(&fit, &fitted)?)
+        let Calibrated { fit, fitted, mut found, calibration } =
+            calibrate(problem, progress, resume)?;
+        found.left_out.extend(leave_each_out(&fit, &fitted)?);
+        (found, Some(calibration))
     };
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
-    let Found { paper_cost, hull_volume, search, deciding, .. } = found;
+    let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
     let mut tight = match &deciding {
         Deciding::Points(points) | Deciding::Rows(_, points) => points.clone(),
         Deciding::Touching(_) => Vec::new(),

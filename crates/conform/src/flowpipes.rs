@@ -130,6 +130,26 @@ pub enum Enclosed {
     Lost,
 }
 
+/// Returns how many rows of a case, both sides together, the flowpipe under `sets` does not
+/// enclose; nothing where it is lost.
+///
+/// # Errors
+///
+/// When sizes do not fit.
+pub fn rows_outside(
+    problem: &Problem,
+    case: &Case,
+    sets: &UncertaintySets,
+) -> Result<Option<usize>> {
+    let system = problem.dynamics().polynomial_system()?;
+    let flowpipe = attempt(system, case, sets, VERTEX_VARIABLES[0], None)?;
+    let (mut outside, states) = (0, problem.settings().states);
+    rows(&case.measured, case.grid.times(), &flowpipe, sets, states, |row| {
+        outside += usize::from(!row.holds());
+    });
+    Ok(flowpipe.is_reached().then_some(outside))
+}
+
 /// Returns whether the flowpipe of a case under `sets` encloses its recordings.
 ///
 /// # Errors

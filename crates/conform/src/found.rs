@@ -3,6 +3,7 @@ use std::collections::HashSet;
 use serde::{Deserialize, Serialize};
 
 use crate::hulls::Hulls;
+use crate::next_motion::left_out::LeftOut;
 use crate::rows::{Edge, Row};
 use crate::side::Side;
 use crate::verdict::Witness;
@@ -23,6 +24,8 @@ pub(crate) struct Found {
     pub hull_volume: f64,
     /// The search, for a model that is not linear.
     pub search: Option<SearchSummary>,
+    /// The sets without each motion, where the search for a model that is not linear found them.
+    pub left_out: Vec<LeftOut>,
     /// Which rows decide the sets.
     pub deciding: Deciding,
 }

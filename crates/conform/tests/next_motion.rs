@@ -192,7 +192,31 @@ fn the_outer_sets_of_a_model_that_is_not_linear_calibrate_it() {
     let hulls = Hulls::new(&problem, smaller).unwrap();
     let verdict = check(&Model::new(&problem, &found), &problem, &hulls).unwrap().verdict;
     assert!(!verdict.conformant && verdict.suites[2].violations.count > 0);
-    assert!(found.left_out.is_empty());
+    assert_eq!(found.left_out.len(), 2);
+}
+
+#[test]
+fn a_motion_left_out_of_a_search_is_as_a_separate_search_and_check_find_it() {
+    let folder = recorded([0.3, 0.4, 0.6, 1.0]);
+    let abstraction = Abstraction { model: ModelKind::Two, order: 3 };
+    let settings = Settings { abstraction, ..settings(&[]) };
+    let found = conform_all(&read(&two_joints(), folder.path(), &[], &settings));
+    assert_eq!(found.left_out.len(), 4);
+    for left in &found.left_out {
+        let others: Vec<&str> = SUITES.into_iter().filter(|name| *name != left.motion).collect();
+        let fit = read(&two_joints(), folder.path(), &others, &settings);
+        let alone = conform_all(&fit);
+        let separate = alone.search.as_ref().unwrap().linearised_cost.unwrap();
+        let checked = check_of(&folder, &Model::new(&fit, &alone), &[&left.motion]);
+        let outside = checked.verdict.violations.count;
+        // The cost counts the samples of all motions, as that of the others alone does here.
+        assert!((left.cost.unwrap() / separate - 1.0).abs() < 0.02, "{left:?} {separate}");
+        assert_eq!(left.rows, 160);
+        let apart = left.outside.unwrap().abs_diff(outside);
+        assert!(apart <= 2 + outside / 10, "{left:?} {outside}");
+        assert_eq!(left.outside == Some(0), left.gauge == Some(1.0), "{left:?}");
+    }
+    assert!(found.left_out[3].gauge.unwrap() > 1.2, "{:?}", found.left_out);
 }
 
 #[test]

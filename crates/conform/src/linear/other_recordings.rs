@@ -23,6 +23,17 @@ impl Program<'_> {
         program
     }
 
+    /// Returns the program with the rows of some of its blocks alone: the cost is the same.
+    #[must_use]
+    pub(crate) fn with_blocks(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let mut program = self.clone();
+        let states = 2 * self.joints;
+        let others = program.blocks.iter_mut().enumerate().filter(|(block, _)| !keep(*block));
+        others.for_each(|(_, block)| block.envelope = Envelope::new(states));
+        program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program
+    }
+
     /// Returns the program with every `stride`-th sample of its blocks alone, at the same cost of
     /// each radius. Its deviations are to be given anew.
     #[must_use]

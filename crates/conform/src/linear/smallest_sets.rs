@@ -32,6 +32,7 @@ pub(crate) fn smallest_sets(problem: &Problem) -> Result<Found> {
         paper_cost: Some(paper_cost),
         hull_volume,
         search: None,
+        left_out: Vec::new(),
         deciding: Deciding::Touching(TIGHT),
         hulls,
     })

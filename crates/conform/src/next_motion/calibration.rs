@@ -22,6 +22,9 @@ use crate::smallest_sets::smallest_sets;
 /// Ratio of the factors that are tried for a model that is not linear.
 const STEP: f64 = 1.01;
 
+/// The first step away from a guess, in powers of [`STEP`].
+const FIRST_STEP: i32 = 8;
+
 /// Number of factors that are tried at most, as powers of [`STEP`]: up to 160.
 const MOST_STEPS: i32 = 512;
 
@@ -80,7 +83,7 @@ pub(crate) fn calibrate(
     let kept_back = kept_back(problem, &motions)?;
     let fit = problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)));
     let first = smallest_sets(&fit, progress, resume)?;
-    let (fitted, search) = (first.hulls.sets, first.search);
+    let Found { hulls: Hulls { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
     let linear = problem.dynamics().linear_system().map(|_| program(problem)).transpose()?;
     let grown = |factor: f64| {
@@ -92,14 +95,18 @@ pub(crate) fn calibrate(
             .collect();
         let gauge = match &linear {
             Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
-            None => outer_gauge(problem, motion, &suites, &grown),
+            None => match outer_gauge(problem, &suites, Effort::Whole, 1.0, &grown)? {
+                OuterGauge::Factor(factor) => Ok(Some(factor)),
+                OuterGauge::None => Ok(None),
+                OuterGauge::Lost(factor) => Err(Error::Calibration(lost(motion, factor))),
+            },
         }?;
         let gauge = gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only)))?;
         Ok(Gauge { motion: (*motion).to_string(), gauge })
     };
     let gauges = kept_back.iter().map(gauge).collect::<Result<Vec<_>>>()?;
     let factor = gauges.iter().map(|gauge| gauge.gauge).fold(1.0, f64::max);
-    let found = Found { search, ..scaled(problem, grown(factor))? };
+    let found = Found { search, left_out, ..scaled(problem, grown(factor))? };
     let all = motions.distinct().into_iter();
     let others = all.filter(|motion| !kept_back.contains(motion)).map(String::from).collect();
     let calibration = Calibration { fitted: others, gauges, factor, input_only };
@@ -173,29 +180,58 @@ fn linear_gauge(
     Ok(if input_only { input } else { both })
 }
 
-/// Returns the gauge of the suites that are marked, those of `motion`, by the computed outer sets:
-/// the least power of [`STEP`] that suffices. It is assumed that larger sets have larger outer
-/// sets, and that sets larger than one whose reachable set is lost lose theirs too.
-fn outer_gauge(
+fn lost(motion: &str, factor: f64) -> String {
+    format!(
+        "the reachable sets of motion {motion} are lost when the sets grow {factor:.2} times, and \
+         less does not enclose the motion; keep back other motions, find the sets with this one, \
+         or shorten the recordings with --until"
+    )
+}
+
+/// The gauge of suites by computed outer sets.
+pub(super) enum OuterGauge {
+    /// The least factor that was found to suffice.
+    Factor(f64),
+    /// No factor suffices.
+    None,
+    /// The reachable sets are lost under this factor, and less does not suffice.
+    Lost(f64),
+}
+
+/// Returns the gauge of the suites that are marked by the computed outer sets: the least power of
+/// [`STEP`] that suffices. It is assumed that larger sets have larger outer sets, and that sets
+/// larger than one whose reachable set is lost lose theirs too. The search begins at `guess`.
+pub(super) fn outer_gauge(
     problem: &Problem,
-    motion: &str,
     suites: &[bool],
+    effort: Effort,
+    guess: f64,
     grown: &(impl Fn(f64) -> UncertaintySets + Sync),
-) -> Result<Option<f64>> {
+) -> Result<OuterGauge> {
     let cases: Vec<&Case> = problem.cases()?.iter().filter(|case| suites[case.suite]).collect();
     let answer = |steps: i32| {
         let sets = grown(STEP.powi(steps));
-        let of_case = |case: &&Case| enclosed(problem, case, &sets, Effort::Whole);
+        let of_case = |case: &&Case| enclosed(problem, case, &sets, effort);
         let worse = |a: Enclosed, b: Enclosed| Ok(a.max(b));
         cases.par_iter().map(of_case).try_reduce(|| Enclosed::Yes, worse)
     };
-    // Double the steps until they suffice or are too many, then halve the interval: `low` does not
-    // suffice, and what `high` does is known.
-    let (mut low, mut high) = (-1, 0);
-    let mut at_high = answer(high)?;
-    while at_high == Enclosed::No && high < MOST_STEPS {
-        (low, high) = (high, (2 * high).max(8));
-        at_high = answer(high)?;
+    // Look about the guess, in steps that double, then halve the interval: `low` does not suffice,
+    // and what `high` does is known.
+    let guess = (guess.ln() / STEP.ln()).ceil() as i32;
+    let (mut low, mut high) = (-1, guess.clamp(0, MOST_STEPS));
+    let (mut at_high, mut step) = (answer(high)?, FIRST_STEP);
+    if at_high == Enclosed::No {
+        while at_high == Enclosed::No && high < MOST_STEPS {
+            (low, high, step) = (high, high + step, 2 * step);
+            at_high = answer(high)?;
+        }
+    } else {
+        while high - step > low {
+            match answer(high - step)? {
+                Enclosed::No => low = high - step,
+                other => (high, at_high, step) = (high - step, other, 2 * step),
+            }
+        }
     }
     while high - low > 1 && at_high != Enclosed::No {
         let middle = i32::midpoint(low, high);
@@ -205,15 +241,11 @@ fn outer_gauge(
         }
     }
     let factor = STEP.powi(high);
-    match at_high {
-        Enclosed::Yes => Ok(Some(factor)),
-        Enclosed::No => Ok(None),
-        Enclosed::Lost => Err(Error::Calibration(format!(
-            "the reachable sets of motion {motion} are lost when the sets grow {factor:.2} times, \
-             and less does not enclose the motion; keep back other motions, find the sets with \
-             this one, or shorten the recordings with --until"
-        ))),
-    }
+    Ok(match at_high {
+        Enclosed::Yes => OuterGauge::Factor(factor),
+        Enclosed::No => OuterGauge::None,
+        Enclosed::Lost => OuterGauge::Lost(factor),
+    })
 }
 
 /// Returns the scaled sets with their reachable sets over all recordings. They are not the
@@ -240,6 +272,7 @@ fn scaled(problem: &Problem, sets: UncertaintySets) -> Result<Found> {
         paper_cost,
         hull_volume,
         search: None,
+        left_out: Vec::new(),
         deciding: Deciding::Touching(if paper_cost.is_some() { TIGHT } else { STEP - 1.0 }),
     })
 }

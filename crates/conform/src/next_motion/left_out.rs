@@ -3,10 +3,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::deviation::Deviation;
 use crate::error::Result;
+use crate::flowpipes::{Effort, rows_outside};
 use crate::linear::program::Program;
 use crate::linear::smallest_sets::program;
+use crate::next_motion::calibration::{OuterGauge, outer_gauge};
 use crate::next_motion::motions::Motions;
+use crate::problem::case::Case;
 use crate::problem::problem::Problem;
+use crate::progress::Progress;
 use crate::sets::UncertaintySets;
 use crate::settings::{NominalStart, Notion};
 
@@ -20,15 +24,16 @@ const MOST_PROGRAMS: usize = 60;
 pub struct LeftOut {
     /// The motion that is left out.
     pub motion: String,
-    /// The cost of the smallest sets for the others, over the same samples as the cost of all.
-    /// Nothing where it was not computed.
+    /// The cost of the smallest sets for the others, over the same samples as the cost of all; of a
+    /// model that is not linear, that of the linearised sets. Nothing where it was not computed.
     pub cost: Option<f64>,
     /// Number of rows of the motion.
     pub rows: usize,
     /// How many of them leave these sets.
     pub outside: Option<usize>,
     /// The factor, at least 1, by which the radii of these sets must grow to enclose the motion.
-    /// Nothing where no factor suffices.
+    /// Nothing where no factor suffices, or where the reachable set of a model that is not linear
+    /// is lost before one does.
     pub gauge: Option<f64>,
 }
 
@@ -90,6 +95,68 @@ pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Resul
         }
     };
     Ok(steps.par_iter().map(leave_out).collect())
+}
+
+/// Leaves each motion out of the last program of a search for a model that is not linear, and
+/// compares the motion with the computed outer sets. Nothing with fewer than two motions, and for
+/// other notions than the hull. `sets` are those of all motions, as in [`leave_each_out`].
+///
+/// # Errors
+///
+/// When sizes do not fit, or the job is cancelled.
+pub(crate) fn leave_each_out_of_search(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    program: &Program,
+    progress: &dyn Progress,
+) -> Result<Vec<LeftOut>> {
+    let motions = Motions::new(problem.recordings());
+    if motions.count() < 2 || problem.settings().notion != Notion::Hull {
+        return Ok(Vec::new());
+    }
+    let cases = problem.cases()?;
+    let input_only = problem.settings().nominal == NominalStart::Own;
+    let mut programs = 0;
+    let leave_out = |motion: &str| {
+        progress.go_on()?;
+        let is_own = |suite: usize| motions.of_suite(suite) == motion;
+        let own = program.with_blocks(|case| is_own(cases[case].suite));
+        let of_motion: Vec<&Case> = cases.iter().filter(|case| is_own(case.suite)).collect();
+        let states = problem.settings().states.rows(problem.joints());
+        let rows = states * of_motion.iter().map(|case| case.measured.len()).sum::<usize>();
+        let unknown =
+            LeftOut { motion: motion.into(), cost: None, rows, outside: None, gauge: None };
+        if !own.touches(sets) {
+            let cost = Some(program.cost(sets));
+            return Ok(LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown });
+        }
+        programs += 1;
+        let others = program.with_blocks(|case| !is_own(cases[case].suite));
+        let Some(solution) = (programs <= MOST_PROGRAMS).then(|| others.solve().ok()).flatten()
+        else {
+            return Ok(unknown);
+        };
+        let sets = others.repaired(&solution.sets);
+        let grown = |factor: f64| match input_only {
+            true => sets.with_input_scaled(factor),
+            false => sets.inflated(factor, 0.0),
+        };
+        let of_case = |case: &&Case| rows_outside(problem, case, &sets);
+        let sum = |a: Option<usize>, b: Option<usize>| Ok(a.zip(b).map(|(a, b)| a + b));
+        let outside = of_motion.par_iter().map(of_case).try_reduce(|| Some(0), sum)?;
+        let [_, input, both] = own.growth_factors(&sets);
+        let guess = if input_only { input } else { both }.unwrap_or(1.0);
+        let suites: Vec<bool> = (0..problem.recordings().suites.len()).map(is_own).collect();
+        let gauge = match outside {
+            Some(0) => Some(1.0),
+            _ => match outer_gauge(problem, &suites, Effort::Quick, guess, &grown)? {
+                OuterGauge::Factor(factor) => Some(factor),
+                OuterGauge::None | OuterGauge::Lost(_) => None,
+            },
+        };
+        Ok(LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown })
+    };
+    motions.distinct().into_iter().map(leave_out).collect()
 }
 
 /// What leaving a motion out takes.

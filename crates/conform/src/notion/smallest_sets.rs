@@ -73,6 +73,7 @@ pub(crate) fn smallest_sets_widened(
         paper_cost: Some(paper_cost),
         hull_volume,
         search: None,
+        left_out: Vec::new(),
         deciding: Deciding::Points(touching),
         hulls,
     })

@@ -47,11 +47,11 @@ struct BisectionState {
 /// # Errors
 ///
 /// As [`SuccessiveLinearisation::run`].
-pub(super) fn run(
-    search: &SuccessiveLinearisation,
+pub(super) fn run<'a>(
+    search: &'a SuccessiveLinearisation,
     journal: &Journal,
     progress: &dyn Progress,
-) -> Result<SearchResult> {
+) -> Result<SearchResult<'a>> {
     let linearised = search.round(&mut SearchState::start(search.problem.joints()))?.solution.sets;
     let mut state = journal.load()?.unwrap_or_else(|| BisectionState::start(&linearised));
     while !state.enclosed && state.factor < FACTORS.len() {
@@ -156,7 +156,7 @@ impl BisectionState {
         self.first = self.radius_now();
     }
 
-    fn result(self, search: &SuccessiveLinearisation) -> Result<SearchResult> {
+    fn result<'a>(self, search: &'a SuccessiveLinearisation) -> Result<SearchResult<'a>> {
         let outer = search.outer_sets(&self.sets, &[])?;
         let states = search.problem.settings().states;
         let mut deciding = Vec::new();
@@ -170,6 +170,7 @@ impl BisectionState {
         let reachable_sets = self.reachable_sets + 1;
         let summary =
             SearchSummary { rounds: 1, reachable_sets, linearised_cost: None, runs_away: None };
-        Ok(SearchResult { sets: self.sets, outer, directions: Vec::new(), deciding, summary })
+        let (sets, directions) = (self.sets, Vec::new());
+        Ok(SearchResult { sets, program: None, outer, directions, deciding, summary })
     }
 }

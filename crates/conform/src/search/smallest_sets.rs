@@ -7,6 +7,7 @@ use crate::flowpipes::OuterSet;
 use crate::found::{Deciding, Found, TOUCHING};
 use crate::hulls::{HullKind, Hulls};
 use crate::linear::costs::shares;
+use crate::next_motion::left_out::leave_each_out_of_search;
 use crate::notion::verdict::{PointWitness, SeparatedPoint};
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
@@ -38,10 +39,15 @@ pub(crate) fn smallest_sets(
     let journal = Journal::new(resume, problem);
     let search = SuccessiveLinearisation { problem, cases, weights };
     let settings = problem.settings();
-    let SearchResult { sets, outer, directions, deciding, summary } = match settings.method {
+    let found = match settings.method {
         Method::Program => search.run(&journal, progress)?,
         Method::Bisection if settings.notion != Notion::Hull => return Err(Error::Notion),
         Method::Bisection => bisection::run(&search, &journal, progress)?,
+    };
+    let SearchResult { sets, program, outer, directions, deciding, summary } = found;
+    let left_out = match &program {
+        Some(program) => leave_each_out_of_search(problem, &sets, program, progress)?,
+        None => Vec::new(),
     };
     let points = touching(problem, &directions, &outer, &sets)?;
     let (cost, hull_volume) = sums(cases, &outer, &sets, &search.weights);
@@ -54,6 +60,7 @@ pub(crate) fn smallest_sets(
         paper_cost: None,
         hull_volume,
         search: Some(summary),
+        left_out,
         deciding: Deciding::Rows(deciding.into_iter().collect(), points),
     })
 }

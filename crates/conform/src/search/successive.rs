@@ -46,8 +46,10 @@ pub(super) struct SuccessiveLinearisation<'a> {
 }
 
 /// The sets that a search found.
-pub(super) struct SearchResult {
+pub(super) struct SearchResult<'a> {
     pub sets: UncertaintySets,
+    /// The last program, with one block per case; nothing for a bisection.
+    pub program: Option<Program<'a>>,
     pub outer: Vec<OuterSet>,
     /// The directions, other than those of the states, in which recorded points decide the sets,
     /// and how close the points are to what the linearised set reaches.
@@ -73,7 +75,7 @@ impl SuccessiveLinearisation<'_> {
     ///
     /// When the model cannot be followed along a case, a program is not solved, or the journal
     /// cannot be written.
-    pub fn run(&self, journal: &Journal, progress: &dyn Progress) -> Result<SearchResult> {
+    pub fn run(&self, journal: &Journal, progress: &dyn Progress) -> Result<SearchResult<'_>> {
         let mut state =
             journal.load()?.unwrap_or_else(|| SearchState::start(self.problem.joints()));
         loop {
@@ -146,7 +148,12 @@ impl SuccessiveLinearisation<'_> {
         self.cases.par_iter().enumerate().map(of).collect()
     }
 
-    fn result(&self, state: &SearchState, round: Round, outer: Vec<OuterSet>) -> SearchResult {
+    fn result<'s>(
+        &'s self,
+        state: &SearchState,
+        round: Round<'s>,
+        outer: Vec<OuterSet>,
+    ) -> SearchResult<'s> {
         let sets = state.sets.clone();
         let summary = SearchSummary {
             rounds: state.rounds,
@@ -165,6 +172,7 @@ impl SuccessiveLinearisation<'_> {
             sets,
             outer,
             summary,
+            program: Some(round.program),
         }
     }
 

@@ -152,7 +152,9 @@ fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
 
 /// Returns what the sets cost without each motion, the cheapest first.
 fn by_motion(model: &Model) -> TextTable {
-    let Some(cost) = model.cost else { return TextTable::default() };
+    // Sets of a model that is not linear are linearised ones.
+    let linearised = model.search.as_ref().and_then(|search| search.linearised_cost);
+    let Some(cost) = linearised.or(model.cost) else { return TextTable::default() };
     let mut motions: Vec<_> =
         model.left_out.iter().filter_map(|left| Some((left, left.cost?))).collect();
     motions.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -161,7 +163,7 @@ fn by_motion(model: &Model) -> TextTable {
             left.motion.clone(),
             four_decimals(*without),
             format!("{:+.1} %", 100.0 * (without / cost - 1.0)),
-            left.gauge.map_or_else(|| "none suffices".into(), at_least),
+            left.gauge.map_or_else(|| "none found".into(), at_least),
         ]
     };
     TextTable {

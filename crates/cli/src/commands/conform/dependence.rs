@@ -19,13 +19,9 @@ pub fn dependence(model: &Model) -> String {
 /// Returns the table of the sets without each motion, those that need the most growth first.
 fn left_out(model: &Model) -> String {
     if model.left_out.is_empty() {
-        return match (model.data.motions(), model.acceleration.is_empty()) {
-            (0 | 1, _) | (_, true) => String::new(),
-            _ => "\nsets without each motion: not computed for a model that is not linear; run \
-                  conform with --suites of the other motions, then check the one left out\n"
-                .into(),
-        };
+        return String::new();
     }
+    let is_linear = model.acceleration.is_empty();
     let mut all: Vec<&LeftOut> = model.left_out.iter().collect();
     // What was not computed goes last.
     let size = |left: &LeftOut| match left.cost {
@@ -35,7 +31,11 @@ fn left_out(model: &Model) -> String {
     all.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let row = |left: &&LeftOut| {
         let or = |value: Option<String>, other: &str| value.unwrap_or_else(|| other.into());
-        let none = if left.cost.is_some() { "none suffices" } else { "not computed" };
+        let none = match left.cost {
+            None => "not computed",
+            Some(_) if is_linear => "none suffices",
+            Some(_) => "none found",
+        };
         let outside = left.outside.map(|outside| format!("{outside} of {}", left.rows));
         vec![
             left.motion.clone(),
@@ -45,7 +45,8 @@ fn left_out(model: &Model) -> String {
         ]
     };
     let rows: Vec<_> = all.iter().take(MOST_MOTIONS).map(row).collect();
-    let header = ["without motion", "cost of the sets", "its rows outside", "growth that holds it"];
+    let cost = if is_linear { "cost of the sets" } else { "cost of the linearised sets" };
+    let header = ["without motion", cost, "its rows outside", "growth that holds it"];
     let mut text = format!(
         "\nsets found without a motion (a description of these motions, no bound for the next):\n\
          {}",
