@@ -39,12 +39,15 @@ pub(super) struct Found {
 ///
 /// The likelihood decides, with an unknown standard deviation of each joint: a fault counts as much
 /// on a joint with little torque as on one with much. The result is `None` if no fault explains
-/// enough.
+/// enough. Where the recordings do not determine all combinations of parameters (`is_determined`),
+/// the others imitate much, and many a false column explains a short motion better than the right
+/// one: only degrees are then told.
 pub(super) fn find_fault(
     robot: &Robot,
     logs: &[Log],
     samples: &Samples,
     sampling: &Sampling,
+    is_determined: bool,
 ) -> Option<Found> {
     let thinned = ENOUGH_SAMPLES * samples.joints as f64 / samples.len().max(1) as f64;
     let sampling = Sampling { rate: sampling.rate * thinned.min(1.0), ..sampling.clone() };
@@ -61,7 +64,8 @@ pub(super) fn find_fault(
         Some(Found { fault, score, clearest })
     };
     let better = |a: &Found, b: &Found| a.score.total_cmp(&b.score);
-    let mut best = candidates(robot).into_par_iter().filter_map(without).min_by(better)?;
+    let candidates = if is_determined { candidates(robot) } else { vec![Fault::Degrees] };
+    let mut best = candidates.into_par_iter().filter_map(without).min_by(better)?;
     // The size of an offset or lag.
     let mut step = 0.5 * best.fault.size().unwrap_or(0.0);
     for _ in 0..REFINEMENTS {

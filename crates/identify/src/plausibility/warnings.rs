@@ -55,7 +55,8 @@ impl Checked<'_> {
             let fault = Fault::Sign { joint, columns: Columns::Torque };
             Some(fault.warning(self.robot, (joint, share)))
         };
-        let found = find_fault(self.robot, self.logs, self.samples, self.sampling);
+        let is_determined = self.fit.determined == self.fit.parameters.len();
+        let found = find_fault(self.robot, self.logs, self.samples, self.sampling, is_determined);
         // Degrees make all masses meaningless.
         let torque_unit = if found.as_ref().is_some_and(|found| found.fault == Fault::Degrees) {
             None

@@ -76,6 +76,34 @@ fn the_ur10e_predicts_validation_recordings() {
     );
 }
 
+#[test]
+#[ignore = "needs the recordings in ../shared"]
+fn healthy_suites_that_determine_little_have_no_faults() {
+    // Three short motions, each repeated; every joint turns little, and some one way only.
+    for [a, b, kept_back] in ["AEB", "ABE", "BEA"].map(|s| [&s[..1], &s[1..2], &s[2..]]) {
+        for cut_off in ["", "prepare.cut_off = 6.0"] {
+            let suite = |s: &str| format!("{{ path = \"suite_{s}\", compensated = true }}");
+            let settings = format!(
+                "dynamic = [{}, {}]\nvalidate = [{}]\nmodel.physical = true\n{cut_off}\n",
+                suite(a),
+                suite(b),
+                suite(kept_back)
+            );
+            let settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
+            let folder = Path::new(DATA).join("schunk_lwa4p");
+            let found = identify(&Robot::lwa4p(), &settings, &folder, &|_, _| {}).unwrap();
+            let is_fault = |warning: &&String| {
+                ["swapped", "sign of", " lags ", " leads ", "offset", "in degrees", "in N mm"]
+                    .iter()
+                    .any(|words| warning.contains(words))
+            };
+            let faults: Vec<&String> = found.warnings.iter().filter(is_fault).collect();
+            assert!(faults.is_empty(), "{a} {b}: {faults:?}");
+            assert!(found.warnings.iter().any(|w| w.contains("do not determine")));
+        }
+    }
+}
+
 /// Modified Denavit-Hartenberg parameters a \[m\], alpha \[π/2\] and d \[m\] of the Panda's joints.
 const PANDA: [[f64; 3]; 7] = [
     [0.0, 0.0, 0.333],
