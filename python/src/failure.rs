@@ -1,5 +1,7 @@
 //! Errors of the product as exceptions.
 
+use std::path::{MAIN_SEPARATOR, Path};
+
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use reachtube::conform;
@@ -26,6 +28,22 @@ impl Failure {
     /// Returns a failure about an argument.
     pub fn setting(error: impl ToString) -> Self {
         Self::Setting(error.to_string())
+    }
+
+    /// Returns the failure with runs in memory, which were written as CSV files in `folder`, by
+    /// their names alone.
+    pub fn of_runs_in(self, folder: &Path) -> Self {
+        match self {
+            Self::Defects(mut defects, text) => {
+                for defect in &mut defects {
+                    defect.file = without_folder(&defect.file.display().to_string(), folder).into();
+                }
+                Self::Defects(defects, without_folder(&text, folder))
+            }
+            Self::Setting(text) => Self::Setting(without_folder(&text, folder)),
+            Self::ModelFile(text) => Self::ModelFile(without_folder(&text, folder)),
+            Self::Other(text) => Self::Other(without_folder(&text, folder)),
+        }
     }
 
     /// Returns the exception.
@@ -56,6 +74,14 @@ impl Failure {
             Self::Other(text) => errors.getattr("ReachtubeError")?.call1((text,)),
         }
     }
+}
+
+/// Returns a text in which `dynamic_1` stands for the path of `dynamic_1.csv` in a folder.
+fn without_folder(text: &str, folder: &Path) -> String {
+    let prefix = format!("{}{MAIN_SEPARATOR}", folder.display());
+    let mut parts = text.split(&prefix);
+    let first = parts.next().unwrap_or_default().to_string();
+    parts.fold(first, |text, part| text + &part.replacen(".csv", "", 1))
 }
 
 impl From<recordings::Error> for Failure {

@@ -98,7 +98,8 @@ pub fn identify(
             }
         }
         let step = |done, total| watch.count(done, total);
-        let found = reachtube::identify::identify(&robot, &settings, &folder, &step)?;
+        let found = reachtube::identify::identify(&robot, &settings, &folder, &step)
+            .map_err(|error| Failure::from(error).of_runs_in(files.path()))?;
         let summary = serde_json::to_string(&found.summary()).map_err(Failure::setting)?;
         let mut page = Vec::new();
         write_identified_html(&found, &mut page)

@@ -267,3 +267,13 @@ def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path:
         result.save_urdf(robot, tmp_path / "arm.urdf")
     with pytest.raises(rt.SettingError, match="cutoff"):
         rt.identify(robot, dynamic=rt.Run(t, q, qd, tau), prepare={"cutoff": 5.0})
+
+
+def test_a_defect_of_a_run_in_memory_names_the_run() -> None:
+    robot = rt.Robot.lwa4p()
+    t = 0.01 * np.arange(1000)
+    t[500:] += 3.0
+    q, qd = (np.tile(wave(t)[:, None], robot.joints) for wave in (np.sin, np.cos))
+    with pytest.raises(rt.DefectsError, match=r"^dynamic_1:502: there is a gap") as refused:
+        rt.identify(robot, dynamic=rt.Run(t, q, qd, np.zeros_like(q)))
+    assert refused.value.defects[0].file == "dynamic_1"
