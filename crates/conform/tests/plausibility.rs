@@ -30,12 +30,14 @@ struct Written {
     /// Samples by which the torques are late.
     late: usize,
     swapped: Option<(usize, usize)>,
+    /// Samples to either side over which the torques are averaged.
+    filtered: usize,
     /// The position about which joint 2 moves, rad.
     about: f64,
 }
 
 const RIGHT: Written =
-    Written { time: 1.0, angle: 1.0, torque: 1.0, late: 0, swapped: None, about: 0.0 };
+    Written { time: 1.0, angle: 1.0, torque: 1.0, late: 0, swapped: None, filtered: 0, about: 0.0 };
 
 /// Motions of the arm with the motor torques that its dynamics need, written in some way.
 fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
@@ -64,12 +66,24 @@ fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
                 torques.chunks_exact_mut(n).for_each(|row| row.swap(i, j));
             }
             torques.rotate_right(n * written.late);
+            let torques = averaged(&torques, n, written.filtered);
             let times = times.iter().map(|t| t * written.time).collect();
             let recording = Run::new(n, times, states, torques).unwrap();
             runs.push(&format!("{suite}{run}"), Some(suite), None, recording);
         }
     }
     runs
+}
+
+/// Averages each column of `values`, samples x n, over `reach` samples to either side.
+fn averaged(values: &[f64], n: usize, reach: usize) -> Vec<f64> {
+    let samples = values.len() / n;
+    let mean = |k: usize, j: usize| {
+        let around = k.saturating_sub(reach)..(k + reach + 1).min(samples);
+        let count = around.len() as f64;
+        around.map(|at| values[at * n + j]).sum::<f64>() / count
+    };
+    (0..samples * n).map(|at| mean(at / n, at % n)).collect()
 }
 
 fn found(written: &Written, settings: Settings) -> (Problem, Conformance) {
@@ -118,6 +132,24 @@ fn the_cause_of_a_wrong_reading_is_named() {
         assert!(cause.contains(words), "{words} is not in {cause}; {:?}", found.warnings);
         assert_eq!(Model::new(&problem, &found).warnings, found.warnings);
     }
+}
+
+#[test]
+fn filtered_torques_of_joints_that_turn_are_named() {
+    let mut description = folding().description().clone();
+    for joint in &mut description.joints {
+        joint.friction.coulomb = [5.0, 0.0, -5.0, 0.0, -5.0, 0.0, 5.0, 0.0];
+    }
+    let robot = Robot::from_description(&description).unwrap();
+    let own = Settings { nominal: NominalStart::Own, ..Settings::new(Torque::Motor, 2) };
+    let cause_of = |filtered: usize| {
+        let written = Written { filtered, about: 2.0, ..RIGHT };
+        let (_, found) = found_for(robot.clone(), &written, own.clone());
+        cause(&found.warnings).map(String::from)
+    };
+    let named = cause_of(12).expect("the sets are wide");
+    assert!(named.contains("`reachtube prepare --compensate`"), "{named}");
+    assert!(cause_of(0).is_none_or(|cause| !cause.contains("--compensate")));
 }
 
 /// Two links without friction, the second one the heavier: folded they turn easily, stretched not.

@@ -124,6 +124,7 @@ fn stated(problem: &Problem) -> Hypothesis {
         columns: (0..n).collect(),
         lag: 0.0,
         inertia_at: None,
+        softened: false,
     }
 }
 
@@ -150,6 +151,12 @@ fn hypotheses(stated: &Hypothesis) -> Vec<Hypothesis> {
                 h.torque = kind;
             });
         }
+    }
+    if stated.torque == Torque::Motor {
+        let words = "dry friction steps where joints turn and rest, and the recorded torques do \
+                     not, as where they were filtered; `reachtube prepare --compensate` writes \
+                     inputs that are free of it";
+        add(words.into(), &|h| h.softened = true);
     }
     add("the times are in ms, not in s".into(), &|h| h.time = 1e-3);
     let degrees = "positions and velocities are in degrees, not in rad";

@@ -16,6 +16,11 @@ const FEWEST: usize = 8;
 /// Half the time over which accelerations and torques are averaged, s.
 const HALF_WINDOW: f64 = 0.02;
 
+/// Half the time over which a filter is taken to spread the steps of dry friction, s, and the number
+/// of samples that stand for it.
+const SPREAD: f64 = 0.06;
+const SPREAD_SAMPLES: usize = 9;
+
 /// Some runs of a problem, on which hypotheses about their meaning are tried.
 pub(super) struct Evidence<'a> {
     robot: &'a Robot,
@@ -42,6 +47,9 @@ pub(super) struct Hypothesis {
     /// The position whose mass matrix stands for all, as model 1 has it, without Coriolis terms; n,
     /// or `None` for the robot itself.
     pub inertia_at: Option<Vec<f64>>,
+    /// Whether dry friction holds joints near standstill, and is spread as the torques are by a
+    /// filter; of motor torques.
+    pub softened: bool,
 }
 
 impl<'a> Evidence<'a> {
@@ -96,6 +104,23 @@ impl<'a> Evidence<'a> {
         parts.iter().sum::<f64>() / parts.len().max(1) as f64
     }
 
+    /// Returns the motor torques `torques`, the means around sample `k`, less gravity and softened
+    /// dry friction.
+    fn softened_input(&self, run: &Run, k: usize, half: usize, torques: &[f64]) -> Vec<f64> {
+        let step = (run.times[k + half] - run.times[k - half]) / (2 * half) as f64;
+        let reach = ((SPREAD / step).round() as usize).min(k).min(run.len() - 1 - k);
+        let stride = (2 * reach).div_ceil(SPREAD_SAMPLES).max(1);
+        let mut input = torques.to_vec();
+        let around: Vec<usize> = (k - reach..=k + reach).step_by(stride).collect();
+        for at in &around {
+            let tau = run.torque(*at);
+            let free = self.robot.input_from_holding_torque(run.q(*at), run.qd(*at), tau);
+            let parts = input.iter_mut().zip(tau.iter().zip(&free));
+            parts.for_each(|(input, (tau, free))| *input -= (tau - free) / around.len() as f64);
+        }
+        input
+    }
+
     /// Returns the input that the motion needs around sample `k`, and the recorded one, n each.
     fn inputs(
         &self,
@@ -105,8 +130,8 @@ impl<'a> Evidence<'a> {
         half: usize,
         lag: usize,
     ) -> (Vec<f64>, Vec<f64>) {
-        let Hypothesis { torque, time, angle, torque_factors, columns, inertia_at, .. } =
-            hypothesis;
+        let Hypothesis { torque, time, angle, torque_factors, columns, .. } = hypothesis;
+        let Hypothesis { inertia_at, softened, .. } = hypothesis;
         let scaled = |values: &[f64]| values.iter().map(|x| angle * x).collect::<Vec<f64>>();
         let (q, qd) = (scaled(run.q(k)), scaled(run.qd(k)));
         let duration = time * (run.times[k + half] - run.times[k - half]);
@@ -125,7 +150,10 @@ impl<'a> Evidence<'a> {
             None => self.robot.mass_matrix(&q) * acceleration + self.robot.coriolis_torque(&q, &qd),
         };
         let viscous = self.robot.viscous_torque(&qd);
-        let input = torque.input(self.robot, &q, &qd, &torques);
+        let input = match softened {
+            true => self.softened_input(run, k, half, &torques),
+            false => torque.input(self.robot, &q, &qd, &torques),
+        };
         // Friction that is added to both sides says nothing about either.
         match torque {
             Torque::Link => {
