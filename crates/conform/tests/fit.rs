@@ -256,7 +256,7 @@ fn a_model_that_is_not_linear_gets_the_parameters_too() {
 }
 
 /// The costs that an independent sketch of the program reached by scaling the mass matrix and the
-/// friction, and a little above (docs/conform.md).
+/// friction, and a little above (docs/fit.md).
 ///
 /// With the pull of the last one, steps lead to robots whose mass matrix is not positive definite
 /// at every position, which must be taken back.

@@ -47,7 +47,8 @@ pub struct FitSettings {
     /// The groups of parameters.
     pub groups: Vec<Group>,
     /// The weight of the pull: part of the identified model's cost per unit of the logarithm of a
-    /// factor. It is chosen by leaving one motion out where it is `None`.
+    /// factor, or of half the logarithm for inertia. It is chosen by leaving one motion out where
+    /// it is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pull: Option<f64>,
 }

@@ -96,7 +96,8 @@ pub struct Arguments {
     )]
     pub fit: Vec<Group>,
     /// Weight of the pull toward the identified values, from 0 to 1: part of the identified model's
-    /// cost per unit of the logarithm of a factor [default: chosen by leaving one motion out]
+    /// cost per unit of the logarithm of a factor, or of half the logarithm for inertia [default:
+    /// chosen by leaving one motion out]
     #[arg(
         long,
         help_heading = "Fit",
