@@ -30,6 +30,7 @@ fn models_fit_the_schema() {
         "--notion phase-plane",
         "--notion exact",
         "--fit inertia,viscous,warm-up --pull 0.02",
+        "--nominal own --noise fitted --equations robot --fit viscous --pull 0.02",
     ] {
         let model = lab.conform(&format!("--json {options}")).exits(0).json();
         assert_eq!(complaints(&schema, &model), Vec::<String>::new(), "{options}");

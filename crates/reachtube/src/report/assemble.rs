@@ -1,7 +1,8 @@
 //! Assembly of a page from a model and recordings.
 
 use reachtube_conform::{
-    self as conform, Check, Enclosure, LeftOut, Lost, Model, Notion, Problem, States, SuiteReach,
+    self as conform, Check, Enclosure, Equations, LeftOut, Lost, Model, Notion, Problem, States,
+    SuiteReach,
 };
 use reachtube_reach::Hyperrectangle;
 
@@ -38,9 +39,13 @@ pub fn page(sources: &Sources) -> Result<Page> {
     Ok(Page {
         title: format!("{}: reachset conformance", model.robot.name),
         subtitle: format!(
-            "Model {} of order {}, {} recordings in {} test suites",
+            "Model {} of order {}{}, {} recordings in {} test suites",
             u32::from(model.settings.abstraction.model),
             model.settings.abstraction.order,
+            match model.settings.equations {
+                Equations::Model => "",
+                Equations::Robot => " about nominal motions by the robot's own equations",
+            },
             check.verdict.runs,
             check.verdict.suites.len()
         ),
@@ -221,6 +226,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("Weights", word(&settings.weights)),
         ("Measurement noise", word(&settings.noise)),
         ("Nominal solution starts at", word(settings.nominal)),
+        ("Nominal solution satisfies the equations of", word(settings.equations)),
         ("Recorded torque", word(settings.torque)),
         ("Fitted to", format!("{runs} runs of suites {}", suites.join(", "))),
         ("SHA-256 of the data", model.data.sha256.clone()),

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::Model;
-use reachtube::conform::{Enclosure, MOST_TIGHT, Notion, Witness};
+use reachtube::conform::{Enclosure, Equations, MOST_TIGHT, Notion, Witness};
 use reachtube::recordings::State;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
@@ -189,8 +189,12 @@ fn explained(model: &Model) -> String {
     };
     let errors = model.input_error.iter().map(|error| format!("{error:.2}"));
     let kinds = model.robot.kinds();
+    let by = match model.settings.equations {
+        Equations::Model => "",
+        Equations::Robot => ", by the robot's own equations",
+    };
     format!(
-        "variance explained by the nominal motions: q {} %; qd {} %\nerror of the input that the \
+        "variance explained by the nominal motions{by}: q {} %; qd {} %\nerror of the input that the \
          robot predicts, root mean square: {} {}",
         list(q),
         list(qd),
