@@ -68,6 +68,10 @@ pub struct Arguments {
 
 pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
+    if args.compensate {
+        // A robot without masses has no gravity that could be taken off.
+        robot.check_physical()?;
+    }
     let settings = settings(args);
     let index = args.out.join("runs.csv");
     output::claim(&index)?;

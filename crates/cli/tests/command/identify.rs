@@ -206,8 +206,17 @@ fn windows_free_of_friction_have_smaller_sets() {
     lab.run(&format!("{prepare} --out recorded")).exits(0);
     lab.run(&format!("{prepare} --compensate --out free"))
         .exits(0)
-        .notes("dry friction of pendulum")
+        .notes("gravity and dry friction of pendulum")
         .notes("--torque compensated");
+    lab.run(&format!("{} --compensate --out light", prepare.replace("found", "pendulum")))
+        .exits(0)
+        .notes("there is no dry friction in its description");
+    lab.write(
+        "massless.toml",
+        PENDULUM.replace("mass = 1.0\n", "").replace("inertia", "# inertia"),
+    );
+    lab.run(&format!("{} --compensate --out none", prepare.replace("found", "massless")))
+        .fails_with(&["robot `pendulum`", "must be positive"]);
     let cost = |of: &str| {
         let job = "conform --robot found.toml --nominal own --noise fitted --json";
         lab.run(&format!("{job} {of}")).exits(0).json()["cost"].as_f64().unwrap()

@@ -10,7 +10,8 @@ use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource};
 use rayon::prelude::*;
 use reachtube_recordings::Run;
-use reachtube_robot::Robot;
+use reachtube_robot::friction::Coulomb;
+use reachtube_robot::{Joint, Robot};
 
 /// Relative difference up to which two sample times count as the same.
 const SAME_STEP: f64 = 0.25;
@@ -58,14 +59,25 @@ pub fn prepare(
         .collect::<Result<_>>()?;
     let (logs, changes): (Vec<Log>, Vec<LogChange>) = done.into_iter().unzip();
     let mut changes = described(logs.iter().map(Log::len).sum(), &changes, settings, cut_off);
-    changes.extend(compensated.map(|robot| {
-        format!(
-            "gravity and dry friction of {}, filtered likewise, were taken off tau, which is the \
-             input u now (--torque compensated)",
-            robot.name()
-        )
-    }));
+    changes.extend(compensated.map(compensation));
     Ok(Prepared { logs, cut_off, changes })
+}
+
+/// Describes what was taken off the torques.
+fn compensation(robot: &Robot) -> String {
+    let has_friction = |joint: &Joint| {
+        joint.friction.coulomb != Coulomb::default() || joint.friction.stribeck.is_some()
+    };
+    let [what, rest] = if robot.joints().iter().any(has_friction) {
+        ["gravity and dry friction", ""]
+    } else {
+        ["gravity", "; there is no dry friction in its description"]
+    };
+    format!(
+        "{what} of {}, filtered likewise, taken off: tau is the input u now (--torque \
+         compensated){rest}",
+        robot.name()
+    )
 }
 
 /// Returns the median of the median times between the samples of recordings \[s\].
