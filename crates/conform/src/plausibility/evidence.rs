@@ -16,8 +16,8 @@ const FEWEST: usize = 8;
 /// Half the time over which accelerations and torques are averaged, s.
 const HALF_WINDOW: f64 = 0.02;
 
-/// Half the time over which a filter is taken to spread the steps of dry friction, s, and the number
-/// of samples that stand for it.
+/// Half the time over which a filter is taken to spread the steps of dry friction, s, and the
+/// number of samples that stand for it.
 const SPREAD: f64 = 0.06;
 const SPREAD_SAMPLES: usize = 9;
 

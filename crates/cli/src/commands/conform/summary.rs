@@ -194,8 +194,8 @@ fn explained(model: &Model) -> String {
         Equations::Robot => ", by the robot's own equations",
     };
     format!(
-        "variance explained by the nominal motions{by}: q {} %; qd {} %\nerror of the input that the \
-         robot predicts, root mean square: {} {}",
+        "variance explained by the nominal motions{by}: q {} %; qd {} %\n\
+         error of the input that the robot predicts, root mean square: {} {}",
         list(q),
         list(qd),
         errors.collect::<Vec<_>>().join(" "),
