@@ -24,9 +24,9 @@ pub struct ExportCase {
     /// The sample times, which are the tested ones.
     pub grid: TimeGrid,
     /// The input that is held from each sample to the next, samples x n: the recorded one, less the
-    /// correction of the model where it has one, or the one under which the linear model accelerates
-    /// as the robot does where nominal motions satisfy the robot's equations. The last one acts on
-    /// nothing.
+    /// correction of the model where it has one. Where nominal motions satisfy the robot's
+    /// equations, it is the one under which the linear model accelerates as the robot does. The
+    /// last one acts on nothing.
     pub inputs: Vec<f64>,
     /// How the disturbance changes in time.
     pub disturbance: Disturbance,
