@@ -4,8 +4,8 @@ mod common;
 
 use common::{Random, grid};
 use reachtube_conform::{
-    Conformance, Keep, Method, Model, Noise, NominalStart, Problem, Settings, Setup, Silent,
-    Warning, WarningKind, conform,
+    Conformance, Equations, Keep, Method, Model, Noise, NominalStart, Problem, Settings, Setup,
+    Silent, Warning, WarningKind, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
@@ -183,6 +183,14 @@ fn an_expansion_point_far_from_the_motion_is_named_and_a_better_one_proposed() {
     near.expansion_point.q = vec![0.0, 2.6];
     let (_, near) = found_for(folding(), &folded, near);
     assert!(near.cost < 0.5 * far.cost, "{} for {}", near.cost, far.cost);
+
+    // About the robot's own motions, under torques that are 1.8 times too large.
+    let wrong = Written { torque: 1.8, ..folded };
+    let by_robot = Settings { equations: Equations::Robot, ..Settings::new(Torque::Motor, 2) };
+    let (_, far) = found_for(folding(), &wrong, by_robot);
+    let cause = self::cause(&far.warnings).unwrap();
+    assert!(cause.starts_with("the nominal motions follow the robot, and deviations"), "{cause}");
+    assert!(cause.contains("--expansion=0.02,2.58 is the mean of the positions"), "{cause}");
 }
 
 #[test]

@@ -63,8 +63,8 @@ pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
     }))
 }
 
-/// Returns, in words, what the constant inertia of model 1 does not explain, where the nominal
-/// motions follow the model, the robot itself leaves `rest` unexplained, and the model much more.
+/// Returns, in words, what the constant inertia of model 1 does not explain, where the robot itself
+/// leaves `rest` unexplained, and the model much more.
 fn lost_by_model(
     problem: &Problem,
     evidence: &Evidence,
@@ -72,8 +72,7 @@ fn lost_by_model(
     rest: f64,
 ) -> Option<String> {
     let settings = problem.settings();
-    let follows_robot = settings.equations == Equations::Robot;
-    if settings.abstraction.model != ModelKind::One || follows_robot {
+    if settings.abstraction.model != ModelKind::One {
         return None;
     }
     let at = |q: &[f64]| {
@@ -87,9 +86,18 @@ fn lost_by_model(
     let (mean, distance) = evidence.positions(origin);
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.min(1.0));
     let about_mean = at(&mean);
-    let better = if about_mean < LARGEST_OF_MEAN * lost {
-        let mean: Vec<String> = mean.iter().map(|q| format!("{q:.2}")).collect();
-        let point = mean.join(",");
+    let point = mean.iter().map(|q| format!("{q:.2}")).collect::<Vec<_>>().join(",");
+    let is_mean_better = about_mean < LARGEST_OF_MEAN * lost;
+    if settings.equations == Equations::Robot {
+        return is_mean_better.then(|| {
+            format!(
+                "the nominal motions follow the robot, and deviations from them the inertia at the \
+                 expansion point, from which the positions lie up to {distance:.2} rad: \
+                 --expansion={point} is the mean of the positions"
+            )
+        });
+    }
+    let better = if is_mean_better {
         format!(
             "with --expansion={point}, the mean of the positions, {} is not; ",
             percent(about_mean)
