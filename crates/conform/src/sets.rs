@@ -28,6 +28,13 @@ impl UncertaintySets {
         scaled
     }
 
+    /// Returns the sets with the radii of X0 and U scaled about their centres, or of U alone where
+    /// the noise of the sensors limits X0 (`input_only`).
+    #[must_use]
+    pub(crate) fn grown(&self, factor: f64, input_only: bool) -> Self {
+        if input_only { self.with_input_scaled(factor) } else { self.inflated(factor, 0.0) }
+    }
+
     /// All radii times `factor` plus `term`, both rounded to nearest. The radius of V is left
     /// alone: where it is known it must stay.
     pub(crate) fn inflated(&self, factor: f64, term: f64) -> Self {

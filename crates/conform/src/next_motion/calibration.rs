@@ -86,9 +86,7 @@ pub(crate) fn calibrate(
     let Found { hulls: Hulls { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
     let linear = problem.dynamics().linear_system().map(|_| program(problem)).transpose()?;
-    let grown = |factor: f64| {
-        if input_only { fitted.with_input_scaled(factor) } else { fitted.inflated(factor, 0.0) }
-    };
+    let grown = |factor: f64| fitted.grown(factor, input_only);
     let gauge = |motion: &&str| {
         let suites: Vec<bool> = (0..problem.recordings().suites.len())
             .map(|s| motions.of_suite(s) == *motion)
@@ -222,7 +220,7 @@ pub(super) fn outer_gauge(
     let (mut at_high, mut step) = (answer(high)?, FIRST_STEP);
     if at_high == Enclosed::No {
         while at_high == Enclosed::No && high < MOST_STEPS {
-            (low, high, step) = (high, high + step, 2 * step);
+            (low, high, step) = (high, (high + step).min(MOST_STEPS), 2 * step);
             at_high = answer(high)?;
         }
     } else {

@@ -137,10 +137,7 @@ pub(crate) fn leave_each_out_of_search(
             return Ok(unknown);
         };
         let sets = others.repaired(&solution.sets);
-        let grown = |factor: f64| match input_only {
-            true => sets.with_input_scaled(factor),
-            false => sets.inflated(factor, 0.0),
-        };
+        let grown = |factor: f64| sets.grown(factor, input_only);
         let of_case = |case: &&Case| rows_outside(problem, case, &sets);
         let sum = |a: Option<usize>, b: Option<usize>| Ok(a.zip(b).map(|(a, b)| a + b));
         let outside = of_motion.par_iter().map(of_case).try_reduce(|| Some(0), sum)?;

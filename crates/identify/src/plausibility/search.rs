@@ -40,8 +40,8 @@ pub(super) struct Found {
 /// The likelihood decides, with an unknown standard deviation of each joint: a fault counts as much
 /// on a joint with little torque as on one with much. The result is `None` if no fault explains
 /// enough. Where the recordings do not determine all combinations of parameters (`is_determined`),
-/// the others imitate much, and many a false column explains a short motion better than the right
-/// one: only degrees are then told.
+/// a false reading may explain a short motion better than the right one, because the open
+/// parameters adapt to it. Only degrees are then looked for.
 pub(super) fn find_fault(
     robot: &Robot,
     logs: &[Log],

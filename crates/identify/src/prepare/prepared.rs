@@ -74,7 +74,7 @@ fn compensation(robot: &Robot) -> String {
         ["gravity", "; there is no dry friction in its description"]
     };
     format!(
-        "{what} of {}, filtered likewise, taken off: tau is the input u now (--torque \
+        "took {what} of {} off tau, filtered as tau is: tau is the input u now (--torque \
          compensated){rest}",
         robot.name()
     )

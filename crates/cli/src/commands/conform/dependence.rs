@@ -18,10 +18,16 @@ pub fn dependence(model: &Model) -> String {
 
 /// Returns the table of the sets without each motion, those that need the most growth first.
 fn left_out(model: &Model) -> String {
-    if model.left_out.is_empty() {
-        return String::new();
-    }
     let is_linear = model.acceleration.is_empty();
+    if model.left_out.is_empty() {
+        return match (model.data.motions(), is_linear) {
+            (0 | 1, _) | (_, true) => String::new(),
+            _ => "\nsets without each motion: computed for --method program and --notion hull \
+                  only; run conform with --suites of the other motions, then check the one left \
+                  out\n"
+                .into(),
+        };
+    }
     let mut all: Vec<&LeftOut> = model.left_out.iter().collect();
     // What was not computed goes last.
     let size = |left: &LeftOut| match left.cost {
