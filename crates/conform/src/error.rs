@@ -110,10 +110,11 @@ pub enum Error {
         /// What is wrong and what to do.
         problem: String,
     },
-    /// The model's own motion, without any disturbance, leaves every bound.
+    /// The nominal motion, without any disturbance, leaves every bound.
     #[error(
         "{case}: the model runs away after {time:.3} s under the recorded input alone, so no sets \
-         can be found for it; use --until {time:.3}, another order or another model"
+         can be found for it; check that --torque says what was recorded, or use --until \
+         {time:.3}, shorter windows, another --model or --order, or --equations model"
     )]
     RunsAway {
         /// The suite or run.
