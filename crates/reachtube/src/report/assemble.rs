@@ -292,14 +292,23 @@ fn caution(model: &Model) -> Vec<String> {
 
 /// Says how far the motion that the others foretell least lies outside their sets.
 fn furthest_motion(model: &Model) -> Option<String> {
-    let growth = |left: &LeftOut| left.gauge.filter(|_| left.cost.is_some());
-    let all = model.left_out.iter().filter_map(|left| Some((left, growth(left)?)));
-    let (left, gauge) = all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, gauge)| *gauge > 1.0)?;
+    let growth = |left: &LeftOut| left.gauge.unwrap_or(f64::INFINITY);
+    let computed = model.left_out.iter().filter(|left| left.cost.is_some());
+    let left = computed.max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
+    let motion = &left.motion;
+    let words = match left.gauge {
+        Some(gauge) if gauge > 1.0 => format!(
+            "The sets found without motion {motion} would have to grow {} times to hold it.",
+            at_least(gauge)
+        ),
+        Some(_) => return None,
+        None => format!(
+            "No growth was found under which the sets found without motion {motion} hold it."
+        ),
+    };
     Some(format!(
-        "The sets found without motion {} would have to grow {} times to hold it. Another motion \
-         may need as much. This describes the recorded motions and bounds no probability.",
-        left.motion,
-        at_least(gauge)
+        "{words} Another motion may lie as far out. This describes the recorded motions and bounds \
+         no probability."
     ))
 }
 

@@ -167,8 +167,10 @@ fn by_motion(model: &Model) -> TextTable {
         ]
     };
     TextTable {
-        title: "Sets found without a motion, and the factor by which they must grow to hold it"
-            .into(),
+        title: format!(
+            "{} found without a motion, and the factor by which they must grow to hold it",
+            if linearised.is_some() { "Linearised sets" } else { "Sets" }
+        ),
         header: ["Without", "Cost", "Change", "Factor"].map(String::from).to_vec(),
         rows: motions.iter().take(MOST_ROWS).map(row).collect(),
     }
