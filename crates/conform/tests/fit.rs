@@ -260,7 +260,7 @@ fn a_model_that_is_not_linear_gets_the_parameters_too() {
 ///
 /// With the pull of the last one, steps lead to robots whose mass matrix is not positive definite
 /// at every position, which must be taken back.
-const REACHED: [(Disturbance, &[Group], f64, f64); 6] = [
+const REACHED: [(Disturbance, &[Group], f64, f64); 7] = [
     (Disturbance::Constant, &[Group::Inertia, Group::Viscous], 0.02, 5100.0),
     (Disturbance::Sample, &[Group::Inertia, Group::Viscous], 0.02, 4720.0),
     (
@@ -268,6 +268,12 @@ const REACHED: [(Disturbance, &[Group], f64, f64); 6] = [
         &[Group::Inertia, Group::Viscous, Group::Cubic, Group::Coulomb],
         0.02,
         4200.0,
+    ),
+    (
+        Disturbance::Constant,
+        &[Group::Inertia, Group::Viscous, Group::Cubic, Group::Coulomb],
+        0.0003,
+        4490.0,
     ),
     (Disturbance::Constant, &[Group::Inertia, Group::Viscous, Group::WarmUp], 0.02, 3930.0),
     (Disturbance::Sample, &[Group::Inertia, Group::Viscous, Group::WarmUp], 0.02, 3680.0),

@@ -16,10 +16,8 @@ import numpy
 from .dynamics import Dynamics
 from .errors import BadInput
 from .recordings import Run
-from .robot import Robot, coulomb_torque, viscous_torque
+from .robot import SLOW, Robot, coulomb_torque, softened_coulomb_torque, viscous_torque
 
-# Below this speed (rad/s or m/s) a correction takes Coulomb friction in proportion to the speed.
-SLOW = 0.02
 # A load (N m) whose sign depends on rounding.
 NO_LOAD = 1e-9
 
@@ -227,15 +225,12 @@ class _Evaluation:
             u[j] -= cubic * offset * offset + terms.get("warm_up", 0.0) * self.warmth * qd[j]
             coulomb, viscous = self.factors[j]
             u[j] -= (viscous - 1.0) * viscous_torque(robot.viscous(j), qd[j])
-            parts = terms.get("coulomb", (0.0,) * 4)
+            parts, coefficients = terms.get("coulomb", (0.0,) * 4), robot.coulomb(j)
+            u[j] -= softened_coulomb_torque(coefficients, loads[j], qd[j], parts)
             if self.warms and self.torque == "compensated":
-                parts = [part + coulomb - 1.0 for part in parts]
-            if any(parts):
-                coefficients = robot.coulomb(j)
-                self._note_jump(j, loads[j], qd[j], coefficients, parts)
-                slow = min(abs(qd[j]) / SLOW, 1.0)
-                u[j] -= slow * coulomb_torque(coefficients, loads[j], qd[j], parts)
-            if self.warms and self.torque == "compensated":
+                warm = [coulomb * a for a in coefficients]
+                u[j] -= softened_coulomb_torque(warm, loads[j], qd[j])
+                u[j] += softened_coulomb_torque(coefficients, loads[j], qd[j])
                 slow = min(abs(qd[j]) / SLOW, 1.0)
                 u[j] -= slow * (coulomb - 1.0) * robot.stribeck(j, qd[j])
         payload = self.correction.get("payload", 0.0)

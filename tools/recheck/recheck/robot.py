@@ -11,6 +11,12 @@ import math
 
 import numpy
 
+# Coulomb friction of a correction has no steps: below this speed (rad/s or m/s) it is in proportion
+# to the speed, and at loads below this part of the friction at no load it passes from braking to
+# driving.
+SLOW = 0.02
+SMALL_LOAD = 0.5
+
 
 def _product(a, b):
     b0, b1, b2 = b
@@ -205,6 +211,23 @@ def coulomb_torque(coefficients, load, velocity, parts=(1.0, 1.0, 1.0, 1.0)):
     at = quadrant(load, velocity)
     offset, slope = coefficients[2 * at : 2 * at + 2]
     return parts[at] * offset + parts[at] * slope * load
+
+
+def softened_coulomb_torque(coefficients, load, velocity, parts=(1.0, 1.0, 1.0, 1.0)):
+    """Coulomb friction (N m) without steps, with each quadrant in these parts: in proportion to
+    the velocity near standstill, and from braking to driving in proportion to a small load."""
+    lines = [
+        part * (coefficients[2 * at] + coefficients[2 * at + 1] * load)
+        for at, part in enumerate(parts)
+    ]
+    driving, braking = (lines[0], lines[3]) if velocity > 0.0 else (lines[1], lines[2])
+    small = SMALL_LOAD * sum(abs(offset) for offset in coefficients[::2]) / 4.0
+    along = load if velocity > 0.0 else -load
+    if abs(along) < small:
+        share = 0.5 + 0.5 * along / small
+    else:
+        share = 1.0 if along > 0.0 else 0.0
+    return min(abs(velocity) / SLOW, 1.0) * (share * driving + (1.0 - share) * braking)
 
 
 def viscous_torque(coefficients, velocity):

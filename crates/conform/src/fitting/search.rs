@@ -46,9 +46,9 @@ pub(crate) struct Effort {
 
 impl Effort {
     /// For the answer.
-    pub const WHOLE: Self = Self { settled: 2e-4, steps: 40, is_physical: true };
+    pub const WHOLE: Self = Self { settled: 5e-5, steps: 40, is_physical: true };
     /// For an answer that was found on fewer tracks.
-    pub const LAST: Self = Self { settled: 2e-4, steps: 4, is_physical: true };
+    pub const LAST: Self = Self { settled: 5e-5, steps: 4, is_physical: true };
     /// For where to start.
     pub const START: Self = Self { is_physical: true, ..Self::QUICK };
     /// For comparisons.

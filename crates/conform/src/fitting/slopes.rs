@@ -7,9 +7,8 @@ use rayon::prelude::*;
 use crate::error::Result;
 use crate::fitting::evaluation::{Fit, Model, Smallest};
 
-/// The step of a difference, in the numbers of the parameters. Friction that differs between
-/// quadrants jumps at a sample; a step this long sees past small jumps.
-const DIFFERENCE: f64 = 1e-3;
+/// The step of a difference, in the numbers of the parameters.
+const DIFFERENCE: f64 = 1e-4;
 
 /// The derivatives with respect to one parameter.
 pub(crate) struct Slope {

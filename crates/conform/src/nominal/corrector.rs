@@ -1,7 +1,6 @@
 //! The correction of the input, evaluated at one state after another without allocation.
 
 use reachtube_recordings::Torque;
-use reachtube_robot::friction::{Coulomb, LoadLine, NEAR_STANDSTILL};
 use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
 use crate::error::Result;
@@ -92,14 +91,12 @@ impl<'a> Corrector<'a> {
             self.robot.gravity(&self.sin, &self.cos, &mut self.workspace, &mut self.torque);
             let joints = self.robot.joints().iter().zip(&self.correction.joints);
             for (j, (joint, correction)) in joints.enumerate() {
-                let scaled = scaled(&joint.friction.coulomb, &correction.coulomb);
-                let part = (qd[j].abs() / NEAR_STANDSTILL).min(1.0);
-                u[j] -= part * scaled.torque(self.torque[j], qd[j]);
+                let (load, qd) = (self.torque[j], qd[j]);
+                u[j] -= joint.friction.coulomb.softened_torque(load, qd, correction.coulomb);
                 if let Some(warm) = self.warm.as_ref().filter(|_| changes_coulomb) {
-                    let of = |robot: &Robot| {
-                        robot.joints()[j].friction.dry_torque(self.torque[j], qd[j])
-                    };
-                    u[j] -= part * (of(warm) - of(self.robot));
+                    let of =
+                        |robot: &Robot| robot.joints()[j].friction.softened_dry_torque(load, qd);
+                    u[j] -= of(warm) - of(self.robot);
                 }
             }
         }
@@ -108,20 +105,6 @@ impl<'a> Corrector<'a> {
             let weights = u.iter_mut().zip(&self.torque);
             weights.for_each(|(u, unit)| *u -= self.correction.payload * unit);
         }
-    }
-}
-
-/// The Coulomb friction with each quadrant in these parts.
-fn scaled(coulomb: &Coulomb, parts: &[f64; 4]) -> Coulomb {
-    let line = |line: LoadLine, part: f64| LoadLine {
-        offset: part * line.offset,
-        slope: part * line.slope,
-    };
-    Coulomb {
-        driving_forward: line(coulomb.driving_forward, parts[0]),
-        driving_backward: line(coulomb.driving_backward, parts[1]),
-        braking_backward: line(coulomb.braking_backward, parts[2]),
-        braking_forward: line(coulomb.braking_forward, parts[3]),
     }
 }
 

@@ -55,6 +55,16 @@ impl Friction {
         }
     }
 
+    /// Returns dry friction \[N m\] as [`Friction::dry_torque`] does, but without steps:
+    /// [`Coulomb::softened_torque`], and the Stribeck effect in proportion to the velocity below
+    /// [`NEAR_STANDSTILL`].
+    #[must_use]
+    pub fn softened_dry_torque(&self, load: f64, qd: f64) -> f64 {
+        let coulomb = self.coulomb.softened_torque(load, qd, [1.0; 4]);
+        let moving = (qd.abs() / NEAR_STANDSTILL).min(1.0);
+        coulomb + self.stribeck.map_or(0.0, |stribeck| moving * stribeck.torque(qd))
+    }
+
     /// Returns a range of the friction torque \[N m\], dry and viscous, over loads \[N m\] and
     /// velocities \[rad/s\] that may cross zero.
     ///
