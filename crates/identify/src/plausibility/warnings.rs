@@ -38,9 +38,10 @@ impl Checked<'_> {
     /// Returns warnings about implausible results: faults of the columns, a wrong unit of the
     /// torque, friction that does not dissipate, wrong gains, and unexplained torque.
     ///
-    /// A fault of the columns makes all gains meaningless, so that it replaces their warnings. A
-    /// wrong gain may look like an `offset`, the recordings without it and the warning about it:
-    /// it is one if the gains agree without it.
+    /// A fault of the columns makes all gains meaningless, so that it replaces their warnings. So
+    /// does a wrong unit where the gravity torque of the description was added: the sum has no unit
+    /// at all. A wrong gain may look like an `offset`, the recordings without it and the warning
+    /// about it: it is one if the gains agree without it.
     pub fn warnings(
         &self,
         likelihood: &GainLikelihood,
@@ -63,14 +64,15 @@ impl Checked<'_> {
         } else {
             torque_unit_warning(self.robot, self.fit, self.logs, self.compensated)
         };
+        let has_no_unit = self.compensated && torque_unit.is_some();
         let fault = found
             .map(|found| found.fault.warning(self.robot, found.clearest))
-            .or_else(inverted)
+            .or_else(|| if has_no_unit { None } else { inverted() })
             .or_else(|| {
-                let (logs, warning) = offset()?;
+                let (logs, warning) = if has_no_unit { None } else { offset() }?;
                 (gains.is_empty() || self.gains_agree(&logs)).then_some(warning)
             });
-        let gains = if fault.is_some() { Vec::new() } else { gains };
+        let gains = if fault.is_some() || has_no_unit { Vec::new() } else { gains };
         fault
             .into_iter()
             .chain(torque_unit)

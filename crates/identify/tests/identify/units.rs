@@ -2,6 +2,7 @@
 
 use crate::lab::{Lab, geometry, lwa4p, simple_friction};
 use crate::virtual_robot::{Random, Recorder, edit, excitation};
+use reachtube_identify::prepare::LogEntry;
 use reachtube_robot::Robot;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -88,5 +89,40 @@ fn degrees_are_named() {
         let found = warnings(&described, true, [180.0 / PI, 1.0]);
         assert_named(&found, &["q and qd are probably in degrees", "convert the columns q and qd"]);
         assert!(!found.iter().any(|warning| warning.contains("tau is probably")), "{found:?}");
+    }
+}
+
+/// The gravity torque of the description is added to such inputs, and in no unit is the sum a
+/// torque: gains and signs that the joints would agree by are not named.
+#[test]
+fn compensated_inputs_in_another_unit_are_named_alone() {
+    for (factor, words) in [(1.0, None), (1e3, Some("tau is probably in N mm"))] {
+        let (lab, arm) = (Lab::new(), arm());
+        let random = Random::new(5);
+        let mut recorder = Recorder { robot: &arm, noise: 0.03, gains: vec![1.0; JOINTS], random };
+        let path = lab.path().join("dynamic.csv");
+        recorder.record(&path, 15.0, excitation(JOINTS, 1));
+        edit(&path, |rows: &mut Vec<Vec<f64>>| {
+            for row in rows {
+                let (motion, torque) = row[1..].split_at_mut(2 * JOINTS);
+                let (q, qd) = motion.split_at(JOINTS);
+                let input = arm.input_from_motor_torque(q, qd, torque);
+                torque.iter_mut().zip(&input).for_each(|(tau, u)| *tau = factor * u);
+            }
+        });
+        let path = PathBuf::from("dynamic.csv");
+        let (from, until, order, compensated) = (0.0, None, None, true);
+        let mut settings = lab.settings();
+        settings.dynamic = vec![LogEntry::Stretch { path, from, until, order, compensated }];
+        settings.validate = vec![];
+        settings.model.physical = Some(true);
+        settings.model.windows = vec![];
+        let found = lab.identify(&arm, &settings).warnings;
+        let lies = ["check its gain", "sign", "offset"];
+        assert!(!found.iter().any(|w| lies.iter().any(|lie| w.contains(lie))), "{found:?}");
+        match words {
+            Some(words) => assert_named(&found, &[words, "multiply the torques by 0.001"]),
+            None => assert!(found.is_empty(), "{found:?}"),
+        }
     }
 }

@@ -76,8 +76,8 @@ impl Coulomb {
     /// \[rad/s\]. The parts are those of driving forward, driving backward, braking backward and
     /// braking forward.
     ///
-    /// Below [`NEAR_STANDSTILL`] it is in proportion to the velocity. Where the load is smaller than
-    /// half of the mean friction at no load, it passes linearly from braking to driving.
+    /// Below [`NEAR_STANDSTILL`] it is in proportion to the velocity. Where the load is smaller
+    /// than half of the mean friction at no load, it passes linearly from braking to driving.
     #[must_use]
     pub fn softened_torque(&self, load: f64, qd: f64, parts: [f64; 4]) -> f64 {
         let lines = [
