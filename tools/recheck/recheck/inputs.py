@@ -205,14 +205,14 @@ class _Evaluation:
 
     def _dry(self, j, load, velocity):
         coefficients = self.robot.coulomb(j)
-        self._note_jump(j, load, velocity, coefficients, (1.0,) * 4)
+        self._note_jump(j, load, velocity, coefficients)
         return coulomb_torque(coefficients, load, velocity) + self.robot.stribeck(j, velocity)
 
-    def _note_jump(self, j, load, velocity, coefficients, parts):
+    def _note_jump(self, j, load, velocity, coefficients):
         """Friction may jump where a load vanishes, and rounding then decides its quadrant."""
         if abs(load) <= NO_LOAD and velocity != 0.0:
             pair = (0, 3) if velocity > 0.0 else (1, 2)
-            one, other = (parts[at] * coefficients[2 * at] for at in pair)
+            one, other = (coefficients[2 * at] for at in pair)
             self.jumps[j] = max(self.jumps[j], abs(one - other))
 
     def corrected(self, q, qd, recorded):

@@ -204,13 +204,13 @@ def quadrant(load, velocity):
     return 1 if load < 0.0 else 2
 
 
-def coulomb_torque(coefficients, load, velocity, parts=(1.0, 1.0, 1.0, 1.0)):
-    """Coulomb friction (N m), with each quadrant in these parts; 0 at standstill."""
+def coulomb_torque(coefficients, load, velocity):
+    """Coulomb friction (N m); 0 at standstill."""
     if velocity == 0.0:
         return 0.0
     at = quadrant(load, velocity)
     offset, slope = coefficients[2 * at : 2 * at + 2]
-    return parts[at] * offset + parts[at] * slope * load
+    return offset + slope * load
 
 
 def softened_coulomb_torque(coefficients, load, velocity, parts=(1.0, 1.0, 1.0, 1.0)):

@@ -5,7 +5,7 @@ import math
 import pytest
 import toy
 
-from recheck.robot import Robot, coulomb_torque, quadrant
+from recheck.robot import Robot, coulomb_torque, quadrant, softened_coulomb_torque
 
 
 def test_gravity_of_two_links_in_a_plane():
@@ -54,3 +54,15 @@ def test_friction_has_four_quadrants_and_none_at_rest():
     assert coulomb_torque(a, -5.0, 1.0) == 2.0
     assert coulomb_torque(a, 0.0, 1.0) == 4.0 and coulomb_torque(a, 0.0, -1.0) == -3.0
     assert coulomb_torque(a, 5.0, 0.0) == 0.0
+
+
+def test_softened_friction_meets_the_quadrants_and_has_no_steps():
+    # The mean friction at no load is 2.5, so that braking passes to driving within 1.25.
+    a = [1.0, 0.1, -2.0, 0.2, -3.0, 0.3, 4.0, 0.4]
+    for load in (-5.0, -1.25, 1.25, 5.0):
+        for speed in (-0.3, -0.02, 0.02, 0.3):
+            assert softened_coulomb_torque(a, load, speed) == coulomb_torque(a, load, speed)
+    assert softened_coulomb_torque(a, 0.0, 0.3) == 2.5
+    assert softened_coulomb_torque(a, 0.625, 0.3) == 0.75 * 1.0625 + 0.25 * 4.25
+    assert softened_coulomb_torque(a, 5.0, 0.01) == 0.75
+    assert softened_coulomb_torque(a, 5.0, 0.3, (0.5, 0.0, 0.0, 0.0)) == 0.75
