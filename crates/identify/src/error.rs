@@ -203,9 +203,13 @@ pub enum Error {
     /// The search for physically consistent links failed.
     #[error(
         "no physically consistent links were found near the data; check the units, gains and signs \
-         of the torques, or set model.physical = false to see the least-squares fit"
+         of the torques, or set model.physical = false to see the least-squares fit{}",
+        cause.iter().map(|cause| format!("\nprobable cause: {cause}")).collect::<String>()
     )]
-    NoPhysicalLinks,
+    NoPhysicalLinks {
+        /// A warning about the recordings that may explain it.
+        cause: Option<String>,
+    },
     /// The recordings have defects or could not be read.
     #[error(transparent)]
     Recordings(#[from] reachtube_recordings::Error),

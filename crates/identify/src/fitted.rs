@@ -7,6 +7,7 @@ use crate::inertia::columns::FrictionColumns;
 use crate::inertia::description::description;
 use crate::inertia::fit::{InertiaFit, fit_inertia};
 use crate::inputs::Inputs;
+use crate::plausibility::compensated::input_unit_warning;
 use crate::plausibility::gain::{Gain, GainLikelihood, gains};
 use crate::plausibility::offset::{OffsetSearch, PositionOffset};
 use crate::plausibility::warnings::Checked;
@@ -83,6 +84,17 @@ fn impossible(error: Error, implausible: &[String]) -> Error {
     }
 }
 
+/// Returns the error with a wrong unit of compensated inputs as its cause, if they have one.
+fn with_cause(error: Error, robot: &Robot, inputs: &Inputs) -> Error {
+    match error {
+        Error::NoPhysicalLinks { .. } if inputs.compensated => {
+            let cause = input_unit_warning(robot, &inputs.dynamic, &inputs.sampling);
+            Error::NoPhysicalLinks { cause }
+        }
+        other => other,
+    }
+}
+
 /// Fits the inertial parameters to motions with the friction of slow motions subtracted.
 ///
 /// A joint whose torque is explained better by friction that only the exciting motions determine
@@ -108,7 +120,8 @@ fn fit_links(
     let logs = [&inputs.dynamic[..], rest];
     let fit = |friction: Vec<FrictionDescription>| {
         let known = with_friction(load, &friction)?;
-        let fit = fit_inertia(robot, &known, logs, kept, &inputs.sampling, model, columns)?;
+        let fit = fit_inertia(robot, &known, logs, kept, &inputs.sampling, model, columns);
+        let fit = fit.map_err(|error| with_cause(error, robot, inputs))?;
         Ok((friction, known, fit))
     };
     let first = fit(slow)?;

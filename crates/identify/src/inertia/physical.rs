@@ -90,7 +90,7 @@ pub fn nearest_bodies(
         let (prior, strength) = (prior.inertias(), model.prior_strength);
         BodyProgram { data, prior: &prior, strength, positive: &positive }
             .solve()
-            .ok_or(Error::NoPhysicalLinks)
+            .ok_or(Error::NoPhysicalLinks { cause: None })
     };
     // The data decide the size of the balls.
     let mut prior = LinkPrior::new(robot, model.prior);

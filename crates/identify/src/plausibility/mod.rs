@@ -1,6 +1,7 @@
 //! Plausibility of an identification: wrong signs and gains contradict the dynamics of rigid
 //! bodies.
 
+pub(crate) mod compensated;
 mod fault;
 pub(crate) mod gain;
 pub(crate) mod offset;

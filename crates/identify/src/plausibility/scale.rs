@@ -16,9 +16,6 @@ const POSITIONS: usize = 32;
 /// Roughly described links are wrong by a factor of 5, and a wrong unit by one of 1000.
 const MOST_TIMES: f64 = 30.0;
 
-/// The same factor for compensated recordings, whose robot must have been described well.
-const MOST_TIMES_COMPENSATED: f64 = 10.0;
-
 /// Mass over cubed length that arms have \[kg/m³\]. The mass is that which causes the gravity
 /// torque or the inertia at the end of the outstretched arm.
 ///
@@ -104,14 +101,8 @@ impl Size {
 /// the description, or, if it has no masses, from those of arms of its length.
 ///
 /// Both must be too large, or both too small: friction imitates one of them, and gravity is absent
-/// where a controller compensates it. `compensated` recordings contain the gravity torque of the
-/// description, so that their inertias decide alone.
-pub fn torque_unit_warning(
-    robot: &Robot,
-    fit: &InertiaFit,
-    logs: &[Log],
-    compensated: bool,
-) -> Option<String> {
+/// where a controller compensates it.
+pub fn torque_unit_warning(robot: &Robot, fit: &InertiaFit, logs: &[Log]) -> Option<String> {
     // Least squares: a prior far from the data would hide how far it is.
     let (columns, values) = inertia_part(&fit.columns, &fit.fit.solution.x);
     let found = Size::new(robot, &columns, &values, logs);
@@ -120,14 +111,9 @@ pub fn torque_unit_warning(
     // Gravity torque and inertia of a mass of 1 kg/m³ times the cubed length at the arm's end.
     let length = length(robot);
     let usual = [gravity(robot) * length.powi(4), length.powi(5)];
-    let side = |unit: [f64; 2], limits: [f64; 2]| {
-        let unit = [if compensated { 0.0 } else { unit[0] }, unit[1]];
-        found.side(unit, limits)
-    };
-    let by_length = side(usual, DENSITIES);
+    let by_length = found.side(usual, DENSITIES);
     let has_masses = described.gravity.1 > 0.0 || described.inertia.1 > 0.0;
-    let by_inertia =
-        compensated || found.gravity.1 == 0.0 || (has_masses && described.gravity.1 == 0.0);
+    let by_inertia = found.gravity.1 == 0.0 || (has_masses && described.gravity.1 == 0.0);
     let clause = found.clause(robot, by_inertia);
     if !has_masses {
         let mass = if by_inertia {
@@ -140,15 +126,15 @@ pub fn torque_unit_warning(
             format!(
                 "{clause}, as {mass} kg at the end of this arm of {length:.2} m would cause, \
                  which no such arm has: {}",
-                unit_words(side, compensated)
+                unit_words(side, false)
             )
         });
     }
-    let most = if compensated { MOST_TIMES_COMPENSATED } else { MOST_TIMES };
-    let by_description = side([described.gravity.1, described.inertia.1], [most.recip(), most]);
+    let limits = [MOST_TIMES.recip(), MOST_TIMES];
+    let by_description = found.side([described.gravity.1, described.inertia.1], limits);
     by_description.map(|side| {
         let cause = if by_length == Some(side) || length == 0.0 {
-            unit_words(side, compensated)
+            unit_words(side, false)
         } else {
             "arms of this length have such values; check the masses of the description, and the \
              units of tau (N m), q (rad) and qd (rad/s)"
@@ -159,7 +145,7 @@ pub fn torque_unit_warning(
 }
 
 /// Formats a positive number with three digits or so.
-fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     match value {
         100.0.. => format!("{value:.0}"),
         0.1..100.0 => format!("{value:.2}"),
@@ -170,7 +156,7 @@ fn number(value: f64) -> String {
 /// Returns the probable unit of the torques and the remedy.
 ///
 /// Gains would multiply the torque that controllers add as well.
-fn unit_words(side: Ordering, compensated: bool) -> String {
+pub fn unit_words(side: Ordering, compensated: bool) -> String {
     let (unit, factor) = if side == Ordering::Greater { ("N mm", 0.001) } else { ("kN m", 1000.0) };
     let gains = if compensated { "" } else { ", for example with --gains or prepare.gains" };
     format!("tau is probably in {unit}, not in N m; multiply the torques by {factor}{gains}")

@@ -1,5 +1,6 @@
 use crate::fit::Fit;
 use crate::inertia::fit::InertiaFit;
+use crate::plausibility::compensated::input_unit_warning;
 use crate::plausibility::fault::{Columns, Fault};
 use crate::plausibility::gain::{self, Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
 use crate::plausibility::scale::torque_unit_warning;
@@ -61,8 +62,10 @@ impl Checked<'_> {
         // Degrees make all masses meaningless.
         let torque_unit = if found.as_ref().is_some_and(|found| found.fault == Fault::Degrees) {
             None
+        } else if self.compensated {
+            input_unit_warning(self.robot, self.logs, self.sampling)
         } else {
-            torque_unit_warning(self.robot, self.fit, self.logs, self.compensated)
+            torque_unit_warning(self.robot, self.fit, self.logs)
         };
         let has_no_unit = self.compensated && torque_unit.is_some();
         let fault = found
