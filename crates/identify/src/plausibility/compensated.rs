@@ -20,7 +20,8 @@ const MOST_TIMES: f64 = 10.0;
 /// far larger or smaller than the description needs for these motions.
 ///
 /// The logs have the gravity torque of the description added, in whose sum a wrong unit is hard to
-/// see: inputs in kN m hardly change it.
+/// see: inputs in kN m hardly change it. A description without masses needs nothing, and there is no
+/// warning.
 pub fn input_unit_warning(robot: &Robot, logs: &[Log], sampling: &Sampling) -> Option<String> {
     let n = robot.joint_count();
     // Sums of squares of each joint's recorded and needed inputs.
@@ -31,8 +32,8 @@ pub fn input_unit_warning(robot: &Robot, logs: &[Log], sampling: &Sampling) -> O
             let (q, qd) = (log.q(k), log.qd(k));
             let input = robot.input_from_motor_torque(q, qd, log.tau(k));
             let rigid = robot.inverse_dynamics(q, qd, log.qdd(k)) - robot.gravity_torque(q);
-            let model = rigid + robot.viscous_torque(qd);
-            for j in (0..n).filter(|j| moves[k * n + j]) {
+            let model = &rigid + robot.viscous_torque(qd);
+            for j in (0..n).filter(|j| moves[k * n + j] && rigid[*j] != 0.0) {
                 sums[j][0] += input[j] * input[j];
                 sums[j][1] += model[j] * model[j];
             }

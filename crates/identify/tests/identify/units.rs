@@ -2,8 +2,8 @@
 
 use crate::lab::{Lab, geometry, lwa4p, simple_friction};
 use crate::virtual_robot::{Random, Recorder, edit, excitation};
-use reachtube_identify::identify;
 use reachtube_identify::prepare::LogEntry;
+use reachtube_identify::{IdentifySettings, identify};
 use reachtube_robot::Robot;
 use std::f64::consts::PI;
 use std::path::PathBuf;
@@ -29,26 +29,31 @@ fn scaled(robot: &Robot, factor: f64) -> Robot {
     Robot::from_description(&description).unwrap()
 }
 
-/// Returns the warnings of an identification of the arm with the links of `described`, where the
-/// recorded positions and velocities were multiplied by `motion`, and the torques by `torque`.
-/// The links are those of least squares, or physical.
-fn warnings(described: &Robot, physical: bool, [motion, torque]: [f64; 2]) -> Vec<String> {
+/// Records an exciting motion of the arm, changed by `change`, and returns settings that identify
+/// it from that recording.
+fn recorded(physical: bool, change: impl Fn(&mut [f64])) -> (Lab, IdentifySettings) {
     let (lab, arm) = (Lab::new(), arm());
     let random = Random::new(5);
     let mut recorder = Recorder { robot: &arm, noise: 0.03, gains: vec![1.0; JOINTS], random };
     let path = lab.path().join("dynamic.csv");
     recorder.record(&path, 15.0, excitation(JOINTS, 1));
-    edit(&path, |rows: &mut Vec<Vec<f64>>| {
-        for row in rows {
-            row[1..=2 * JOINTS].iter_mut().for_each(|value| *value *= motion);
-            row[2 * JOINTS + 1..].iter_mut().for_each(|value| *value *= torque);
-        }
-    });
+    edit(&path, |rows: &mut Vec<Vec<f64>>| rows.iter_mut().for_each(|row| change(row)));
     let mut settings = lab.settings();
     settings.dynamic = vec![PathBuf::from("dynamic.csv").into()];
     settings.validate = vec![];
     settings.model.physical = Some(physical);
     settings.model.windows = vec![];
+    (lab, settings)
+}
+
+/// Returns the warnings of an identification of the arm with the links of `described`, where the
+/// recorded positions and velocities were multiplied by `motion`, and the torques by `torque`.
+/// The links are those of least squares, or physical.
+fn warnings(described: &Robot, physical: bool, [motion, torque]: [f64; 2]) -> Vec<String> {
+    let (lab, settings) = recorded(physical, |row| {
+        row[1..=2 * JOINTS].iter_mut().for_each(|value| *value *= motion);
+        row[2 * JOINTS + 1..].iter_mut().for_each(|value| *value *= torque);
+    });
     lab.identify(described, &settings).warnings
 }
 
@@ -103,26 +108,16 @@ fn compensated_inputs_in_another_unit_are_named_alone() {
         (1e-3, Some(["tau is probably in kN m", "multiply the torques by 1000"])),
     ];
     for (factor, words) in units {
-        let (lab, arm) = (Lab::new(), arm());
-        let random = Random::new(5);
-        let mut recorder = Recorder { robot: &arm, noise: 0.03, gains: vec![1.0; JOINTS], random };
-        let path = lab.path().join("dynamic.csv");
-        recorder.record(&path, 15.0, excitation(JOINTS, 1));
-        edit(&path, |rows: &mut Vec<Vec<f64>>| {
-            for row in rows {
-                let (motion, torque) = row[1..].split_at_mut(2 * JOINTS);
-                let (q, qd) = motion.split_at(JOINTS);
-                let input = arm.input_from_motor_torque(q, qd, torque);
-                torque.iter_mut().zip(&input).for_each(|(tau, u)| *tau = factor * u);
-            }
+        let arm = arm();
+        let (lab, mut settings) = recorded(true, |row| {
+            let (motion, torque) = row[1..].split_at_mut(2 * JOINTS);
+            let (q, qd) = motion.split_at(JOINTS);
+            let input = arm.input_from_motor_torque(q, qd, torque);
+            torque.iter_mut().zip(&input).for_each(|(tau, u)| *tau = factor * u);
         });
         let path = PathBuf::from("dynamic.csv");
         let (from, until, order, compensated) = (0.0, None, None, true);
-        let mut settings = lab.settings();
         settings.dynamic = vec![LogEntry::Stretch { path, from, until, order, compensated }];
-        settings.validate = vec![];
-        settings.model.physical = Some(true);
-        settings.model.windows = vec![];
         // No physical links come near inputs in kN m.
         let found = match identify(&arm, &settings, lab.path(), &|_, _| {}) {
             Ok(found) => found.warnings,
