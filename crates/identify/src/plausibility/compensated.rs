@@ -20,8 +20,7 @@ const MOST_TIMES: f64 = 10.0;
 /// far larger or smaller than the description needs for these motions.
 ///
 /// The logs have the gravity torque of the description added, in whose sum a wrong unit is hard to
-/// see: inputs in kN m hardly change it. A description without masses needs nothing, and there is no
-/// warning.
+/// see: inputs in kN m hardly change it. There is no warning for a description without masses.
 pub fn input_unit_warning(robot: &Robot, logs: &[Log], sampling: &Sampling) -> Option<String> {
     let n = robot.joint_count();
     // Sums of squares of each joint's recorded and needed inputs.
