@@ -161,23 +161,27 @@ def on_dask(job: Job, parts: list[Part], client: Any, count: Any) -> tuple[bytes
     # Scattered data would be lost with the workers that hold it.
     shared = client.submit(same, job, pure=False, retries=3)
     folds = [client.submit(fold_of, shared, part, pure=False, retries=3) for part in parts]
-    last = as_tree(client, functools.partial(client.submit, _merge, shared), folds)
+    last = as_tree(functools.partial(client.submit, _merge, shared), folds)
+    # Nothing here keeps a fold, so that a worker lets go of it when it is merged.
+    waiting: Any = as_completed(folds)  # type: ignore[no-untyped-call]
+    del folds
     done = 0
     try:
-        # Nothing here keeps a fold, so that a worker lets go of it when it is merged.
-        waiting: Any = as_completed(folds)  # type: ignore[no-untyped-call]
-        del folds
         for _ in waiting:
             done += 1
             count(done)
         content: bytes = last.result()
         return content, last
     except BaseException:
-        client.cancel([last], force=True)
+        with waiting.lock:
+            rest = [*waiting.futures, *waiting.queue.queue]
+        # In this order, see `Points.close`.
+        client.cancel([last])
+        client.cancel([*rest, shared])
         raise
 
 
-def as_tree(client: Any, submit: Any, level: list[Any]) -> Any:
+def as_tree(submit: Any, level: list[Any]) -> Any:
     """Merge the results of tasks in groups, and these again."""
     while len(level) > 1:
         groups = [level[first : first + GROUP] for first in range(0, len(level), GROUP)]

@@ -53,24 +53,26 @@ class Points:
         """Return the answer of all points to a question."""
         if self._client is None:
             return self._ask_here(question)
-        client: Any = self._client
         if self._held is None:
-            self._shared = client.submit(same, self._job, pure=False, retries=3)
+            self._shared = self._submit(same, self._job)
             self._held = [
-                client.submit(_points, self._shared, self._whole, part, pure=False, retries=3)
-                for part in self._parts
+                self._submit(_points, self._shared, self._whole, part) for part in self._parts
             ]
-        put = client.submit(same, question, pure=False, retries=3)
+        put = self._submit(same, question)
         answers = [
-            client.submit(
-                _answer, self._shared, self._whole, points, put, pure=False, retries=3
-            )
-            for points in self._held
+            self._submit(_answer, self._shared, self._whole, points, put) for points in self._held
         ]
-        self._asked = as_tree(client, functools.partial(client.submit, _merge_answers), answers)
-        del answers
-        content: bytes = self._asked.result()
+        asked = self._asked = as_tree(
+            functools.partial(self._client.submit, _merge_answers), answers
+        )
+        del answers, put
+        if self._is_over:
+            asked.cancel()
+        content: bytes = asked.result()
         return content
+
+    def _submit(self, task: Any, *arguments: Any) -> Any:
+        return self._client.submit(task, *arguments, pure=False, retries=3)
 
     def _ask_here(self, question: bytes) -> bytes:
         if self._held is None:
@@ -89,7 +91,8 @@ class Points:
         self._is_over = True
         if self._client is None:
             _problem.cache_clear()
-        elif self._held is not None:
-            asked = [] if self._asked is None else [self._asked]
-            self._client.cancel([*self._held, *asked], force=True)
-        self._held = self._asked = self._whole = None
+        elif self._asked is not None:
+            # Only what no other task needs can be cancelled: Dask's scheduler ends the connection
+            # of a client that cancels a task whose dependents are not wanted any more.
+            self._asked.cancel()
+        self._held = self._shared = self._asked = self._whole = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -120,3 +121,13 @@ def client() -> Iterator[Any]:
         distributed.Client(cluster) as found,
     ):
         yield found
+
+
+def tasks_end_but(other: Any, client: Any) -> bool:
+    """Return whether a client's scheduler soon has no task but that of one future."""
+    for _ in range(200):
+        tasks = client.run_on_scheduler(lambda dask_scheduler: list(dask_scheduler.tasks))
+        if tasks == [other.key]:
+            return True
+        time.sleep(0.05)
+    return False

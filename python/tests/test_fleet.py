@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 import reachtube as rt
-from reachtube import fleet
+from reachtube import _jobs, fleet
 
-from conftest import RUNS, SAMPLES, SUITES
+from conftest import RUNS, SAMPLES, SUITES, tasks_end_but
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("fsspec")
@@ -167,6 +167,47 @@ def test_a_stopped_job_goes_on(manifest: Path, alone: rt.Model, tmp_path: Path) 
     assert fleet.conform(rt.Robot.lwa4p(), manifest, **arguments) == alone
     assert len(list((tmp_path / "tasks").iterdir())) == 4
     assert finished[1].stat().st_mtime_ns == times[1]
+
+
+GATE = threading.Event()
+
+FOLDED: list[Any] = []
+
+FOLD_OF = _jobs.fold_of
+
+
+def fold_two(job: Any, part: Any) -> bytes:
+    """Fold a part, the third and later ones only when the gate is open."""
+    FOLDED.append(part)
+    assert len(FOLDED) <= 2 or GATE.wait(60)
+    return FOLD_OF(job, part)
+
+
+def test_a_stopped_job_leaves_the_workers(
+    manifest: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(done: int, total: int, words: list[str]) -> None:
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=None, processes=False
+        ) as cluster,
+        distributed.Client(cluster) as client,
+        monkeypatch.context() as patch,
+    ):
+        other = client.submit(len, "others", pure=False)
+        patch.setattr(_jobs, "fold_of", fold_two)
+        # The exception is kept, and with it what the job's frames hold.
+        with pytest.raises(KeyboardInterrupt) as stopped:
+            fleet.conform(
+                rt.Robot.lwa4p(), manifest, torque="compensated", client=client, runs_per_task=1,
+                progress=stop,
+            )
+        assert stopped.tb and tasks_end_but(other, client)
+        GATE.set()
+        assert other.result() == 6 and len(FOLDED) <= 3
 
 
 def test_the_recordings_of_one_robot_are_chosen(manifest: Path, tmp_path: Path) -> None:

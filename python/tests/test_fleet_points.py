@@ -6,6 +6,8 @@ import os
 import pickle
 import signal
 import sys
+import threading
+import time
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +17,19 @@ import reachtube as rt
 from reachtube import _jobs, _points, fleet
 from reachtube._settings import of_conformance
 
-from conftest import RUNS
+from conftest import RUNS, tasks_end_but
 
 pytest.importorskip("pyarrow")
 pytest.importorskip("fsspec")
 distributed = pytest.importorskip("distributed")
 
 pytestmark = pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+
+GATE = threading.Event()
+
+
+def wait_at_the_gate() -> bool:
+    return GATE.wait(60)
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +56,48 @@ def test_points_that_workers_hold_give_the_same_bits(
     assert fleet.conform(robot, few, client=client, runs_per_task=3, **arguments) == alone
     verdict = fleet.check(alone, few, runs_per_task=9)
     assert verdict and verdict == fleet.check(alone, few, client=client, runs_per_task=4)
+
+
+def test_jobs_leave_nothing_but_the_futures_of_others(few: Path, client: Any) -> None:
+    other = client.submit(len, "others", pure=False)
+    model = fleet.conform(
+        rt.Robot.lwa4p(), few, client=client, runs_per_task=3, **of_points("exact")
+    )
+    assert tasks_end_but(other, client) and other.status == "finished"
+    assert fleet.check(model, few, client=client, runs_per_task=4)
+    assert tasks_end_but(other, client) and other.result() == 6
+
+
+def test_a_question_that_waits_ends(few: Path) -> None:
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, dashboard_address=None, processes=False
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        other = client.submit(wait_at_the_gate, pure=False)
+        robot = rt.Robot.lwa4p()
+        settings = of_conformance(robot, torque="compensated", notion="exact", until=0.03)
+        job = _jobs.Job("robot", robot._native.description(), settings)
+        points = _points.Points(job, fleet._parts(few, 3, None, (None, None), None), client, b"")
+        ended: list[type] = []
+
+        def ask() -> None:
+            try:
+                points.ask(b"")
+            except BaseException as error:
+                ended.append(type(error))
+
+        asking = threading.Thread(target=ask)
+        asking.start()
+        while points._asked is None and asking.is_alive():
+            time.sleep(0.01)
+        points.close()
+        asking.join(30)
+        assert ended and issubclass(ended[0], distributed.client.CancelledError)
+        assert tasks_end_but(other, client)
+        GATE.set()
+        assert other.result()
 
 
 def test_a_worker_that_held_points_is_killed(few: Path) -> None:
