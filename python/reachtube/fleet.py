@@ -13,6 +13,7 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ._abstraction import Abstraction
+from ._arrays import names
 from ._conform import told
 from ._jobs import Job, Part, fleet_of, fold_of, on_dask
 from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
@@ -20,7 +21,7 @@ from ._model import Check, Model, text_of
 from ._points import Points
 from ._progress import Progress, shown
 from ._robot import Robot
-from ._settings import Torque, differing, of_conformance
+from ._settings import Group, Torque, differing, of_conformance
 from .errors import ReachtubeError, SettingError
 
 if TYPE_CHECKING:
@@ -85,6 +86,8 @@ def conform(
     manifest: str | PathLike[str],
     *,
     torque: Torque,
+    fit: Sequence[Group] = (),
+    pull: float | None = None,
     robots: Robots = None,
     client: Client | None = None,
     runs_per_task: int = 1000,
@@ -102,8 +105,10 @@ def conform(
 
     Parameters
     ----------
-    robot, torque
-        As for `reachtube.conform`.
+    robot, torque, fit, pull
+        As for `reachtube.conform`. What is fitted are envelopes, and no recording is read again;
+        so warm-up, which is another for each run, is only fitted where a fold keeps whole
+        recordings, as with ``nominal="own"``.
     manifest
         A Parquet file, in any store that fsspec opens; see `read_manifest`.
     robots
@@ -140,12 +145,17 @@ def conform(
         job = Job("abstraction", robot._native.to_json(), text)
     else:
         job = Job("robot", robot._native.description(), text)
+    groups = names(fit)
     fleet_of(job).fold()
+    fleet_of(job).check_fit(groups, pull)
     parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
     whole, points = _folded(job, parts, client, progress, "fleet.conform")
     ask = points.ask if fleet_of(job).asks_points() else None
     try:
-        found, notes = fleet_of(job).conform(whole, on_defect == "report", ask)
+        with shown(progress, "fleet.conform: sets") as tell:
+            found, notes = fleet_of(job).conform(
+                whole, on_defect == "report", groups, pull, ask, tell
+            )
     finally:
         points.close()
     return told(found, notes, 3)

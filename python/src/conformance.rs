@@ -19,7 +19,7 @@ use crate::arrays::{Output, array};
 use crate::failure::{Failure, Result};
 use crate::recordings::{NativeSource, SharedSource};
 use crate::robot::NativeRobot;
-use crate::watched::watched;
+use crate::watched::{Watch, watched};
 
 /// Returns settings from the defaults and a JSON object with those that differ.
 fn settings(text: &str, joints: usize) -> Result<Settings> {
@@ -121,25 +121,48 @@ pub fn conform(
     let basis = Basis::new(robot, abstraction).map_err(|failure| failure.raised(py))?;
     let source = source.source.clone();
     watched(py, progress.as_ref(), move |watch| {
-        let groups = serde_json::to_value(&fit).and_then(serde_json::from_value);
-        let groups: Vec<Group> =
-            groups.map_err(|error| Failure::Setting(format!("fit: {error}")))?;
+        let fit = fit_settings(&fit, pull)?;
         let setup = setup(basis, &settings)?;
-        let keep = if groups.contains(&Group::WarmUp) { Keep::All } else { Keep::Needed };
-        let mut problem = Problem::read(setup, Box::new(source), &suites, keep, watch)?;
-        let mut record = None;
-        if !groups.is_empty() {
-            let fitted = product::fit(&problem, &FitSettings { groups, pull }, watch)?;
-            (problem, record) = (fitted.problem, Some(fitted.record));
-        }
-        let found = product::conform(&problem, watch, resume.as_deref())?;
-        let model = Model::new(&problem, &found);
-        let model = match record {
-            Some(record) => model.with_fit(record),
-            None => model,
-        };
-        Ok((model.to_json(), problem.recordings().notes.clone()))
+        let by_run = fit.as_ref().is_some_and(|fit| fit.groups.contains(&Group::WarmUp));
+        let keep = if by_run { Keep::All } else { Keep::Needed };
+        let problem = Problem::read(setup, Box::new(source), &suites, keep, watch)?;
+        smallest_sets(problem, fit.as_ref(), watch, resume.as_deref())
     })
+}
+
+/// Returns what is to be fitted; nothing without any group.
+pub fn fit_settings(groups: &[String], pull: Option<f64>) -> Result<Option<FitSettings>> {
+    let groups = serde_json::to_value(groups).and_then(serde_json::from_value);
+    let groups: Vec<Group> = groups.map_err(|error| Failure::Setting(format!("fit: {error}")))?;
+    match (groups.is_empty(), pull) {
+        (true, Some(_)) => {
+            Err(Failure::Setting("pull is the weight of a fit, and fit names no group".into()))
+        }
+        (true, None) => Ok(None),
+        (false, _) => Ok(Some(FitSettings { groups, pull })),
+    }
+}
+
+/// Finds the smallest sets, of a fitted nominal model where `fit` is given, and returns the model
+/// file's text and notes about the recordings.
+pub fn smallest_sets(
+    mut problem: Problem,
+    fit: Option<&FitSettings>,
+    watch: &Watch,
+    resume: Option<&Path>,
+) -> Result<(String, Vec<String>)> {
+    let mut record = None;
+    if let Some(settings) = fit {
+        let fitted = product::fit(&problem, settings, watch)?;
+        (problem, record) = (fitted.problem, Some(fitted.record));
+    }
+    let found = product::conform(&problem, watch, resume)?;
+    let model = Model::new(&problem, &found);
+    let model = match record {
+        Some(record) => model.with_fit(record),
+        None => model,
+    };
+    Ok((model.to_json(), problem.recordings().notes.clone()))
 }
 
 /// Checks the text of a model file; errors name it `origin`.

@@ -1,6 +1,6 @@
 //! Recordings of a fleet, folded in parts.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use reachtube::recordings::{Defect, DefectKind, ReadOptions, RunEntry, parse_csv
 use serde_json::{Map, Value};
 
 use crate::abstraction::NativeAbstraction;
-use crate::conformance::{Basis, differing, setup};
+use crate::conformance::{Basis, differing, fit_settings, setup, smallest_sets};
 use crate::failure::{Failure, Result};
 use crate::points::{Asked, NativeFleetProblem, asking};
 use crate::recordings::NativeRun;
@@ -131,24 +131,45 @@ impl NativeFleet {
         })
     }
 
-    /// Finds the smallest sets, and returns the model file's text and notes. `ask` returns the
-    /// answer of all points to a question, both in bytes.
-    #[pyo3(signature = (fold, report, ask=None, resume=None, progress=None))]
+    /// Refuses what cannot be fitted, whatever the recordings are.
+    #[pyo3(signature = (fit, pull=None))]
+    fn check_fit(&self, py: Python<'_>, fit: Vec<String>, pull: Option<f64>) -> PyResult<()> {
+        let setup = Arc::clone(&self.setup);
+        watched(py, None, move |_| {
+            if let Some(settings) = fit_settings(&fit, pull)? {
+                settings.check(&setup)?;
+                if setup.settings.notion != Notion::Hull {
+                    return Err(Failure::Setting(
+                        "a fit moves the nominal motions, and the points that workers hold are \
+                         deviations from those before it: fit with notion=\"hull\""
+                            .into(),
+                    ));
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// Finds the smallest sets, of a fitted nominal model where groups are given, and returns the
+    /// model file's text and notes. `ask` returns the answer of all points to a question, both in
+    /// bytes.
+    #[pyo3(signature = (fold, report, fit, pull=None, ask=None, progress=None))]
+    #[allow(clippy::too_many_arguments)]
     fn conform(
         &self,
         py: Python<'_>,
         fold: PyBackedBytes,
         report: bool,
+        fit: Vec<String>,
+        pull: Option<f64>,
         ask: Option<Py<PyAny>>,
-        resume: Option<PathBuf>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(String, Vec<String>)> {
         let setup = Arc::clone(&self.setup);
         asking(ask, |server| {
             watched(py, progress.as_ref(), move |watch| {
                 let problem = problem(&setup, &fold, report, server)?;
-                let found = product::conform(&problem, watch, resume.as_deref())?;
-                Ok((Model::new(&problem, &found).to_json(), problem.recordings().notes.clone()))
+                smallest_sets(problem, fit_settings(&fit, pull)?.as_ref(), watch, None)
             })
         })
     }

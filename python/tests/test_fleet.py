@@ -46,9 +46,8 @@ def test_one_task_and_many_give_the_same_bits(manifest: Path, alone: rt.Model) -
         assert found == alone
 
 
-def test_a_fleet_is_the_data_set(manifest: Path, alone: rt.Model) -> None:
-    from pyarrow import parquet
-
+def read(manifest: Path) -> list[rt.Run]:
+    """Read the recordings of a manifest one by one."""
     runs = []
     for row in fleet.read_manifest(manifest):
         path = manifest.parent / row.file
@@ -60,14 +59,40 @@ def test_a_fleet_is_the_data_set(manifest: Path, alone: rt.Model) -> None:
             labels = {"suite": row.suite, "motion": row.motion, "name": row.file}
             run = rt.Run(numbers[:, 0], *parts, **labels)
         runs.append(run)
-    assert parquet.read_metadata(manifest).num_rows == len(runs) == SUITES * RUNS
+    return runs
+
+
+def test_a_fleet_is_the_data_set(manifest: Path, alone: rt.Model) -> None:
+    runs = read(manifest)
+    assert len(runs) == SUITES * RUNS
     found = rt.conform(rt.Robot.lwa4p(), runs, torque="compensated")
     assert names_left_out(found) == names_left_out(alone)
-    by_robot: dict[str, Any] = {"torque": "compensated", "equations": "robot"}
-    folded = fleet.conform(rt.Robot.lwa4p(), manifest, **by_robot)
-    assert folded.verified and folded.cost != alone.cost
-    found = rt.conform(rt.Robot.lwa4p(), runs, **by_robot)
-    assert names_left_out(found) == names_left_out(folded)
+    fit = {"fit": ["viscous"], "pull": 0.02}
+    by_run = {"fit": ["warm-up"], "pull": 0.02, "nominal": "own"}
+    for other in [{"equations": "robot"}, fit, by_run]:
+        arguments: dict[str, Any] = {"torque": "compensated", **other}
+        folded = fleet.conform(rt.Robot.lwa4p(), manifest, **arguments)
+        assert folded.verified and folded.cost != alone.cost
+        found = rt.conform(rt.Robot.lwa4p(), runs, **arguments)
+        assert names_left_out(found) == names_left_out(folded)
+
+
+def test_a_fit_that_cannot_be_is_refused_before_anything_is_read(
+    manifest: Path, tmp_path: Path
+) -> None:
+    robot, nowhere = rt.Robot.lwa4p(), tmp_path / "nowhere.parquet"
+    for arguments, words in [
+        ({"torque": "compensated", "fit": ["bogus"]}, "fit: unknown variant `bogus`"),
+        ({"torque": "compensated", "pull": 0.02}, "fit names no group"),
+        ({"torque": "compensated", "fit": "viscous", "pull": 2.0}, "from 0 to 1"),
+        ({"torque": "link", "fit": ["viscous"]}, "no friction in link torques"),
+        ({"torque": "compensated", "fit": ["viscous"], "notion": "exact"}, 'notion="hull"'),
+    ]:
+        with pytest.raises(rt.ReachtubeError, match=words):
+            fleet.conform(robot, nowhere, **arguments)
+    # Only a fold can know that its recordings share their input.
+    with pytest.raises(rt.ReachtubeError, match="a fit of warm-up needs each recording"):
+        fleet.conform(robot, manifest, torque="compensated", fit=["warm-up"], pull=0.02)
 
 
 def test_workers_give_the_same_bits(manifest: Path, alone: rt.Model, client: Any) -> None:
@@ -77,6 +102,9 @@ def test_workers_give_the_same_bits(manifest: Path, alone: rt.Model, client: Any
     assert found == alone
     verdict = fleet.check(alone, manifest, client=client, runs_per_task=3)
     assert verdict and verdict == fleet.check(alone, manifest)
+    fit: dict[str, Any] = {"torque": "compensated", "fit": ["viscous"], "pull": 0.02}
+    found = fleet.conform(rt.Robot.lwa4p(), manifest, client=client, runs_per_task=3, **fit)
+    assert found == fleet.conform(rt.Robot.lwa4p(), manifest, **fit)
 
 
 def test_a_worker_that_is_killed_changes_nothing(

@@ -124,7 +124,7 @@ pub fn conform(
         None => Vec::new(),
     };
     let fit = NominalFit::new(problem)?;
-    let warnings = warnings(problem, &hulls.sets, &radii, &fit)?;
+    let warnings = warnings(problem, &hulls.sets, &radii, &fit, calibration.as_ref())?;
     let is_proved = verdict.conformant;
     let is_hull = problem.settings().notion == Notion::Hull;
     let smallest_cost = (calibration.is_none() && is_hull).then_some(cost);

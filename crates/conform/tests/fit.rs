@@ -6,11 +6,11 @@ use common::{Random, conform_all, grid, read, shared, step, two_joints};
 use nalgebra::DVector;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, OperatingBox, linear_model};
 use reachtube_conform::{
-    Centre, FitSettings, Fitted, Group, Hulls, Keep, Model, Problem, Settings, Setup, Silent,
-    check, fit,
+    Centre, FitRecord, FitSettings, Fitted, Fold, Group, Hulls, Keep, Model, NominalStart,
+    OnDefect, Problem, Settings, Setup, Silent, WarningKind, check, fit,
 };
 use reachtube_reach::Disturbance;
-use reachtube_recordings::{MemoryRuns, Run, Torque};
+use reachtube_recordings::{MemoryRuns, Run, RunSource, Torque};
 use reachtube_robot::{FrictionErrors, Parameter, ParameterKind, Robot};
 
 const SAMPLES: usize = 120;
@@ -253,6 +253,74 @@ fn a_model_that_is_not_linear_gets_the_parameters_too() {
         fitted(&problem, &[Group::Inertia, Group::Viscous], Some(0.001));
     let after = conform_all(&better);
     assert!(after.verdict.conformant && after.cost < 0.3 * before.cost, "{}", after.cost);
+}
+
+/// The warning that a fit to motions of these arms suits them only, and the fit's record.
+fn overfitted(elbows: &[f64], calibrate: &[&str]) -> (Option<String>, FitRecord) {
+    let (robot, mut runs) = (two_joints(), MemoryRuns::default());
+    for (motion, elbow) in elbows.iter().enumerate() {
+        let all = record(&robot, Truth { elbow: *elbow, ..PLAIN }, motion + 1);
+        for (index, entry) in all.runs().iter().enumerate().skip(motion * RUNS) {
+            let run = all.read(index, &Default::default()).unwrap();
+            runs.push(&entry.file, entry.suite.as_deref(), entry.motion.as_deref(), run);
+        }
+    }
+    let calibrate = calibrate.iter().map(|name| name.to_string()).collect();
+    let settings = Settings { calibrate, ..Settings::new(Torque::Compensated, 2) };
+    let setup = Setup::new(robot, settings).unwrap();
+    let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
+    let Fitted { problem, record } = fitted(&problem, &[Group::Viscous], Some(0.001));
+    let model = Model::new(&problem, &conform_all(&problem)).with_fit(record.clone());
+    let of = model.warnings.into_iter().filter(|found| found.kind == WarningKind::Overfitted);
+    (of.map(|found| found.text).next(), record)
+}
+
+#[test]
+fn a_fit_that_suits_its_own_motions_only_is_a_warning() {
+    let (none, record) = overfitted(&[1.6, 1.6, 1.6], &["motion2"]);
+    assert!(none.is_none() && record.identified_calibrated_cost.is_some(), "{none:?}");
+    let (words, record) = overfitted(&[1.6, 1.6, 0.6], &["motion2"]);
+    let before = record.identified_calibrated_cost.unwrap();
+    let fact = format!("and {before:.0} with the identified one");
+    assert!(words.as_ref().is_some_and(|words| words.contains(&fact)), "{words:?}");
+    let (words, record) = overfitted(&[1.6, 0.6], &[]);
+    assert!(record.left_out_mean() > Some(record.identified_cost), "{record:?}");
+    assert!(words.is_some_and(|words| words.contains("with a motion left out")));
+}
+
+/// The fold of a source, read back as the problem that the source gives.
+fn folded(setup: &Setup, runs: &MemoryRuns) -> Problem {
+    let fold = Fold::of_source(setup, runs, 0).unwrap();
+    Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap()
+}
+
+#[test]
+fn recordings_that_were_folded_are_fitted_to_the_last_bit() {
+    let robot = two_joints();
+    let truth = Truth { elbow: 1.6, shoulder: 0.2, uneven: true, ..PLAIN };
+    let runs = record(&robot, truth, 3);
+    let with = |adjust: &dyn Fn(&mut Settings)| {
+        let mut settings = Settings::new(Torque::Compensated, 2);
+        adjust(&mut settings);
+        Setup::new(robot.clone(), settings).unwrap()
+    };
+    let own = with(&|settings| settings.nominal = NominalStart::Own);
+    let calibrated = with(&|settings| settings.calibrate = vec!["motion1".into()]);
+    let groups = [Group::Inertia, Group::Viscous];
+    for setup in [with(&|_| {}), own, calibrated] {
+        let once = Problem::read(setup.clone(), Box::new(runs.clone()), &[], Keep::Needed, &Silent);
+        let [by_fold, once] = [folded(&setup, &runs), once.unwrap()].map(|problem| {
+            let Fitted { problem, record } = fitted(&problem, &groups, Some(0.001));
+            let found = conform_all(&problem);
+            assert!(found.verdict.conformant);
+            Model::new(&problem, &found).with_fit(record).to_json()
+        });
+        assert_eq!(by_fold, once);
+    }
+    // A fold of runs that share their input has not kept them.
+    let warm_up = FitSettings { groups: vec![Group::WarmUp], pull: Some(0.02) };
+    let refused = fit(&folded(&with(&|_| {}), &runs), &warm_up, &Silent).unwrap_err().to_string();
+    assert!(refused.contains("warm-up"), "{refused}");
 }
 
 /// The costs that an independent sketch of the program reached by scaling the mass matrix and the

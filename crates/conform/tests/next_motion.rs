@@ -6,7 +6,7 @@ use common::{Disturbed, Random, Recorded, conform_all, grid, read, two_joints, w
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::{
     Check, Error, Hulls, Keep, Model, NominalStart, Problem, Settings, Setup, Silent, Trust,
-    Witness, check, conform,
+    WarningKind, Witness, check, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use tempfile::TempDir;
@@ -97,6 +97,20 @@ fn a_calibrated_model_is_read_again_and_bounds_other_recordings_as_any_model() {
     // The motion that calibrated the sets is no other one.
     let known = check_of(&folder, &model, &["c"]);
     assert!(known.trust.is_none() && known.rates.is_none() && known.verdict.conformant);
+}
+
+#[test]
+fn a_motion_that_makes_calibrated_sets_absurd_is_named() {
+    let folder = recorded([0.05, 0.05, 0.05, 5.0]);
+    let cause = |suites: &[&str], calibrate: &[&str]| {
+        let found = conform_all(&read(&two_joints(), folder.path(), suites, &settings(calibrate)));
+        let cause = found.warnings.into_iter().find(|found| found.kind == WarningKind::Cause);
+        cause.map(|cause| cause.text)
+    };
+    let words = cause(&[], &["c", "d"]).unwrap();
+    let parts = ["motion d, which was kept back, is unlike", "found with (a, b)", "scaled these"];
+    assert!(parts.iter().all(|part| words.contains(part)), "{words}");
+    assert_eq!(cause(&["a", "b", "c"], &["c"]), None);
 }
 
 #[test]

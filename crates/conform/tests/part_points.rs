@@ -9,8 +9,9 @@ use std::sync::{Arc, Mutex};
 use common::{Disturbed, Random, grid, two_joints};
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::{
-    Conformance, Error, FleetProblem, Fold, Hulls, Keep, Model, Noise, Notion, OnDefect,
-    PartPoints, PartReader, PointServer, Problem, Settings, Setup, Silent, check, conform,
+    Conformance, Error, FitSettings, FleetProblem, Fold, Group, Hulls, Keep, Model, Noise, Notion,
+    OnDefect, PartPoints, PartReader, PointServer, Problem, Settings, Setup, Silent, check,
+    conform, fit,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunSource, Torque};
 
@@ -190,6 +191,15 @@ fn points_of_other_recordings_are_refused() {
     for bytes in [&b""[..], b"nonsense"] {
         assert!(PartPoints::from_bytes(bytes).is_err() && PartPoints::merge([bytes]).is_err());
     }
+}
+
+#[test]
+fn a_fit_is_refused_because_points_are_deviations_from_the_motions_before_it() {
+    let runs = campaign(&[("A", 4), ("B", 4)]);
+    let problem = in_parts(&setup(Notion::Exact, Noise::None), &runs, 2, |index| index % 2, None);
+    let settings = FitSettings { groups: vec![Group::Viscous], pull: Some(0.02) };
+    let refused = fit(&problem, &settings, &Silent).unwrap_err().to_string();
+    assert!(refused.contains("fit for the notion hull"), "{refused}");
 }
 
 #[test]

@@ -4,12 +4,15 @@ use std::sync::Arc;
 
 use reachtube_reach::TimeGrid;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::problem::case::Case;
 use crate::problem::problem::Problem;
 
 /// While parameters are moved, samples are thinned to about this number, of all cases together.
 const MOST_SAMPLES: usize = 6_000;
+
+const NOT_KEPT: &str = "a fit of warm-up needs each recording, which a fold of recordings that \
+    share their input has not kept; fit without warm-up, or read the recordings on one machine";
 
 /// The recordings of a problem.
 pub(crate) struct Data {
@@ -49,7 +52,7 @@ impl Data {
     ///
     /// # Errors
     ///
-    /// As [`Problem::run`].
+    /// [`Error::Fold`] where a fold has not kept runs that are needed; as [`Problem::run`].
     pub fn new(problem: &Problem, by_run: bool) -> Result<Self> {
         let (mut cases, mut motions, mut motion_of) = (Vec::new(), Vec::<String>::new(), vec![]);
         for (index, suite) in problem.recordings().suites.iter().enumerate() {
@@ -58,7 +61,11 @@ impl Data {
                 motions.push(name.clone());
                 motions.len() - 1
             });
-            let of_suite = problem.recorded_cases_of(suite, index, by_run, Ok)?;
+            let of_suite = problem.recorded_cases_of(suite, index, by_run, Ok);
+            let of_suite = of_suite.map_err(|error| match error {
+                Error::Fold(_) if by_run => Error::Fold(NOT_KEPT.into()),
+                other => other,
+            })?;
             motion_of.extend(of_suite.iter().map(|_| motion));
             cases.extend(of_suite);
         }

@@ -1,6 +1,5 @@
 use rayon::prelude::*;
 use reachtube_abstraction::Abstraction;
-use reachtube_recordings::Torque;
 
 use crate::dynamics::Dynamics;
 use crate::envelope::Envelope;
@@ -13,10 +12,10 @@ use crate::fitting::pull::{PullChoice, choose};
 use crate::fitting::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fitting::search::{Effort, Optimum, Search};
 use crate::linear::smallest_sets::program;
-use crate::next_motion::calibration::without_kept_back;
+use crate::next_motion::calibration::{calibrate, without_kept_back};
 use crate::nominal::input_error::InputError;
 use crate::problem::problem::{Problem, Setup};
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 use crate::settings::{Method, Weights};
 use crate::weights::state_weights;
 
@@ -46,9 +45,10 @@ pub struct Fitted {
 ///
 /// # Errors
 ///
-/// [`Error::Fit`] with fewer than two motions, without any parameter, for friction and link
-/// torques, for a model whose error was bounded, and where the fitted robot is not physical; as
-/// [`Problem::run`] and [`conform`](crate::conform).
+/// As [`FitSettings::check`]; [`Error::Fit`] with fewer than two motions, without any parameter,
+/// with points that other processes hold, and where the fitted robot is not physical;
+/// [`Error::Fold`] for warm-up where a fold has not kept the recordings; as [`Problem::run`] and
+/// [`conform`](crate::conform).
 pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
     refuse(problem, settings)?;
     let kept = without_kept_back(problem)?;
@@ -102,7 +102,8 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
     }
     let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
-    let record = record(&fit, settings, choice, &found.numbers, costs)?;
+    let mut record = record(&fit, settings, choice, &found.numbers, costs)?;
+    record.identified_calibrated_cost = calibrated_cost(problem);
     // The numbers go to the model that was asked for, with all motions.
     let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
     Ok(Fitted { problem, record })
@@ -149,22 +150,13 @@ fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
 
 /// Refuses what cannot be fitted, whatever the recordings are.
 fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
-    let refused = |why: &str| Err(Error::Fit(why.into()));
-    if let Some(pull) = settings.pull.filter(|pull| !(0.0..=1.0).contains(pull)) {
-        return refused(&format!("the weight of the pull is {pull}; give a number from 0 to 1"));
-    }
-    // The fit replaces the robot.
-    if problem.settings().operating_box.is_some() {
-        return refused(
-            "the error of the model was bounded for the identified robot, and does not hold for \
-             another one; fit without the file of the abstraction",
-        );
-    }
-    let friction = [Group::Viscous, Group::Cubic, Group::Coulomb, Group::WarmUp];
-    if problem.settings().torque == Torque::Link
-        && settings.groups.iter().any(|group| friction.contains(group))
-    {
-        return refused("there is no friction in link torques; fit inertia or payload");
+    settings.check(problem.setup())?;
+    if problem.points_elsewhere().is_some() {
+        return Err(Error::Fit(
+            "a fit moves the nominal motions, and the points that other processes hold are \
+             deviations from those before it; fit for the notion hull"
+                .into(),
+        ));
     }
     Ok(())
 }
@@ -174,6 +166,14 @@ fn smallest_cost(problem: &Problem) -> Result<f64> {
     let program = program(problem)?;
     let solution = program.solve()?;
     Ok(program.cost(&program.repaired(&solution.sets)))
+}
+
+/// The cost of a linear model's calibrated sets, where they are to be calibrated and can be.
+fn calibrated_cost(problem: &Problem) -> Option<f64> {
+    let is_calibrated = !problem.settings().calibrate.is_empty();
+    let is_linear = problem.dynamics().linear_system().is_some();
+    let found = (is_calibrated && is_linear).then(|| calibrate(problem, &Silent, None));
+    found?.ok().map(|calibrated| calibrated.found.cost)
 }
 
 /// The linear model of the same robot about the same point.
@@ -212,6 +212,7 @@ fn record(
         cost,
         groups: groups.par_iter().map(cost_without).collect::<Result<_>>()?,
         leave_one_out: choice.left_out,
+        identified_calibrated_cost: None,
         pulls: choice.tried,
         parameters: parameters_of(fit, numbers, setup),
         torque: torque

@@ -1,6 +1,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fitting::group::Group;
+use crate::plausibility::{Warning, WarningKind};
 
 /// Number of standard errors by which a fit may move a value that is still a measurement.
 pub const MOST_ERRORS: f64 = 3.0;
@@ -22,6 +23,10 @@ pub struct FitRecord {
     /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
     /// compare with `identified_cost`.
     pub leave_one_out: Vec<UnseenMotion>,
+    /// Cost of the identified model's sets when they are calibrated with the same motions; nothing
+    /// without calibration, for a model that is not linear, and where no factor calibrates them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub identified_calibrated_cost: Option<f64>,
     /// The weights of the pull that were tried.
     pub pulls: Vec<PullCost>,
     /// The parameters.
@@ -71,10 +76,25 @@ impl FitRecord {
         sum.map(|sum| sum / self.leave_one_out.len() as f64)
     }
 
-    /// Returns whether the fit makes the sets of motions larger that it has not seen.
-    #[must_use]
-    pub fn is_overfitted(&self) -> bool {
-        self.left_out_mean().is_none_or(|mean| mean > self.identified_cost)
+    /// Returns why the fit suits its motions only, if it does. `calibrated_cost` is the cost of the
+    /// fitted model's calibrated sets, where they are calibrated.
+    pub(crate) fn overfitted(&self, calibrated_cost: Option<f64>) -> Option<Warning> {
+        let costs = self.identified_calibrated_cost.zip(calibrated_cost);
+        let fact = match (costs.filter(|(before, after)| after > before), self.left_out_mean()) {
+            (Some((before, after)), _) => format!(
+                "calibrated sets cost {after:.0} with the fitted nominal model and {before:.0} \
+                 with the identified one"
+            ),
+            (None, Some(mean)) if mean <= self.identified_cost => return None,
+            (None, _) => "with a motion left out the fitted nominal model needs larger sets than \
+                          the identified one"
+                .into(),
+        };
+        let text = format!(
+            "{fact}: the fit suits its own motions only, so fit to more of them, fit fewer groups \
+             (--fit), or give a larger weight to the pull (--pull)"
+        );
+        Some(Warning { kind: WarningKind::Overfitted, joints: Vec::new(), text })
     }
 }
 

@@ -262,9 +262,12 @@ impl Model {
         json::to_lines(&self.clone().sealed())
     }
 
-    /// Returns the model with the record of how its nominal model was fitted.
+    /// Returns the model with the record of how its nominal model was fitted, and a warning where
+    /// the fit suits its own motions only.
     #[must_use]
-    pub fn with_fit(self, record: FitRecord) -> Self {
+    pub fn with_fit(mut self, record: FitRecord) -> Self {
+        let calibrated_cost = self.calibration.as_ref().and(self.cost);
+        self.warnings.extend(record.overfitted(calibrated_cost));
         Self { fit: Some(record), ..self }.sealed()
     }
 

@@ -4,6 +4,7 @@ use reachtube_abstraction::ModelKind;
 use reachtube_recordings::Torque;
 
 use crate::error::Result;
+use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::plausibility::evidence::{Evidence, Hypothesis};
 use crate::problem::problem::Problem;
 use crate::settings::{Equations, Method};
@@ -18,17 +19,20 @@ const LARGEST_REST: f64 = 0.5;
 /// of that at the expansion point.
 const LARGEST_OF_MEAN: f64 = 0.7;
 
+/// Calibration is named when it scaled the sets by this factor or more.
+const LARGE_FACTOR: f64 = 2.0;
+
 /// Lags that are tried, s.
 const LAGS: [f64; 8] = [0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2];
 
 /// Returns, in words, what most likely makes an answer implausible: the reading of the recordings
 /// under which the robot's dynamics agree best with them, where it is much better than the one
-/// that was stated.
+/// that was stated, and otherwise a calibration that scaled the sets by much.
 ///
 /// # Errors
 ///
 /// As [`Problem::run`].
-pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
+pub(super) fn likely_cause(problem: &Problem, calibration: Option<&Calibration>) -> Result<String> {
     let evidence = Evidence::new(problem)?;
     let stated = stated(problem);
     let rest = evidence.unexplained(&stated);
@@ -47,6 +51,9 @@ pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
             percent(rest)
         ));
     }
+    if let Some(calibration) = calibration.filter(|found| found.factor >= LARGE_FACTOR) {
+        return Ok(scaled_by(calibration));
+    }
     Ok(lost_by_model(problem, &evidence, &stated, rest).unwrap_or_else(|| {
         let remedy = if problem.setup().correction.is_some() {
             "the nominal model was fitted for small sets already, so record more motions, or cut \
@@ -61,6 +68,18 @@ pub(super) fn likely_cause(problem: &Problem) -> Result<String> {
             percent(rest)
         )
     }))
+}
+
+/// Returns, in words, which motion that was kept back made the sets as large as they are.
+fn scaled_by(Calibration { fitted, gauges, factor, .. }: &Calibration) -> String {
+    let far = |a: &&Gauge, b: &&Gauge| a.gauge.total_cmp(&b.gauge);
+    let motion = gauges.iter().max_by(far).map_or("", |gauge| gauge.motion.as_str());
+    format!(
+        "the most likely cause: motion {motion}, which was kept back, is unlike those that the \
+         sets were found with ({}), so that calibration scaled these sets by {factor:.2}; record \
+         more motions to find the sets with, among them some like {motion}",
+        fitted.join(", ")
+    )
 }
 
 /// Returns, in words, what the constant inertia of model 1 does not explain, where the robot itself

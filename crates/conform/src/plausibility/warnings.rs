@@ -2,6 +2,7 @@ use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Result;
+use crate::next_motion::calibration::Calibration;
 use crate::plausibility::causes::likely_cause;
 use crate::plausibility::nominal_fit::NominalFit;
 use crate::problem::problem::Problem;
@@ -49,6 +50,9 @@ pub enum WarningKind {
     Unexplained,
     /// What most likely caused the other warnings.
     Cause,
+    /// The fitted nominal model needs larger sets than the identified one for motions that it was
+    /// not fitted to.
+    Overfitted,
 }
 
 impl WarningKind {
@@ -93,7 +97,7 @@ impl WarningKind {
                 "the nominal motions explain little of the recorded velocities (part of the \
                  variance)"
             }
-            Self::Cause => "",
+            Self::Cause | Self::Overfitted => "",
         }
     }
 }
@@ -107,7 +111,7 @@ struct Remark {
 
 /// Returns what is remarkable about `sets` beside the recordings of `problem`, and the most likely
 /// cause where anything is. `radii` are the largest radii of the reachable set, for each state
-/// that is checked.
+/// that is checked. `calibration` is how the sets were scaled, if they were.
 ///
 /// # Errors
 ///
@@ -117,6 +121,7 @@ pub(crate) fn warnings(
     sets: &UncertaintySets,
     radii: &[f64],
     fit: &NominalFit,
+    calibration: Option<&Calibration>,
 ) -> Result<Vec<Warning>> {
     let n = problem.joints();
     let mut remarks: Vec<Remark> =
@@ -134,7 +139,7 @@ pub(crate) fn warnings(
     let mut found: Vec<Warning> = WarningKind::OF_JOINTS.into_iter().filter_map(of_kind).collect();
     // X0 takes over from U where that is cheaper, whatever the recordings are.
     if found.iter().any(|warning| warning.kind != WarningKind::InitialSetStarts) {
-        let text = likely_cause(problem)?;
+        let text = likely_cause(problem, calibration)?;
         found.push(Warning { kind: WarningKind::Cause, joints: Vec::new(), text });
     }
     Ok(found)

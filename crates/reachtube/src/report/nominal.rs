@@ -66,6 +66,9 @@ fn costs(fit: &FitRecord) -> TextTable {
         .iter()
         .map(|left| row(format!("Fitted without motion {}", left.motion), left.cost));
     let mean = row("Mean of the fits without a motion".into(), fit.left_out_mean());
+    let calibrated = fit
+        .identified_calibrated_cost
+        .map(|cost| row("Identified, calibrated (not the smallest)".into(), Some(cost)));
     TextTable {
         title: "Cost of the smallest sets".into(),
         header: ["Nominal model", "Cost", "Change"].map(String::from).to_vec(),
@@ -75,6 +78,7 @@ fn costs(fit: &FitRecord) -> TextTable {
             .chain(groups)
             .chain(left_out)
             .chain([mean])
+            .chain(calibrated)
             .collect(),
     }
 }

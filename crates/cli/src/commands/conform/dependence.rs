@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use reachtube::Model;
 use reachtube::conform::{LeftOut, Trend};
-use reachtube::number::{at_least, four_decimals};
+use reachtube::number::{at_least, four_decimals, significant};
 
 use crate::table::{plural, table};
 
@@ -101,10 +101,10 @@ fn trends(model: &Model) -> String {
     let kinds = model.robot.kinds();
     let joint = |trend: &Trend| {
         format!(
-            "{} {:+.2} ({:.2} {})",
+            "{} {:+.2} ({} {})",
             model.robot.joints[trend.joint - 1].name,
             trend.correlation,
-            trend.range,
+            significant(trend.range, 2),
             kinds[trend.joint - 1].position_unit()
         )
     };

@@ -47,12 +47,9 @@ fn left_out(record: &FitRecord) -> String {
         each.join(", "),
         cost(record.left_out_mean())
     );
-    if record.is_overfitted() {
-        text.push_str(
-            "warning: with a motion left out the fitted model needs larger sets than the \
-             identified one; the fit suits these motions only, so record more of them, fit fewer \
-             groups or give a larger --pull\n",
-        );
+    if let Some(before) = record.identified_calibrated_cost {
+        let before = four_decimals(before);
+        let _ = writeln!(text, "cost of calibrated sets with the identified model: {before}");
     }
     text
 }
