@@ -30,15 +30,18 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if let Some(folder) = &args.report {
         output::claim(&report_files::page_in(folder))?;
     }
-    let fit_settings = FitSettings { groups: args.fit.clone(), pull: args.pull };
-    fit_settings.check(&setup)?;
+    let fit_settings =
+        (!args.fit.is_empty()).then(|| FitSettings { groups: args.fit.clone(), pull: args.pull });
+    if let Some(settings) = &fit_settings {
+        settings.check(&setup)?;
+    }
     let by_run = args.report.is_some() || args.fit.contains(&Group::WarmUp);
     let keep = if by_run { Keep::All } else { Keep::Needed };
     let bar = Progress::new();
     let mut problem = Problem::read(setup, source, &args.data.suites, keep, &bar)?;
     let mut record = None;
-    if !args.fit.is_empty() {
-        let fitted = fit(&problem, &fit_settings, &bar)?;
+    if let Some(settings) = &fit_settings {
+        let fitted = fit(&problem, settings, &bar)?;
         (problem, record) = (fitted.problem, Some(fitted.record));
     }
     let found = conform(&problem, &bar, args.resume.as_deref())?;
