@@ -110,11 +110,22 @@ impl Step<'_> {
         Layout::new(self.fit.settings, &self.program.cost, &self.program.noise_cost)
     }
 
-    /// The numbers among the unknowns: after the sets stand their positive and negative parts.
+    /// The parameters that may move. After the sets, the unknowns are their numbers, and then
+    /// bounds of the absolute values of these numbers.
+    fn free(&self) -> Vec<usize> {
+        let list = self.fit.parameters.list.iter().enumerate();
+        let free = list.filter(|(_, p)| Some(p.quantity.group()) != self.held);
+        free.map(|(p, _)| p).collect()
+    }
+
+    /// The numbers among the unknowns.
     fn numbers_of(&self, unknowns: &[f64]) -> Vec<f64> {
-        let count = self.numbers.len();
-        let parts = &unknowns[unknowns.len() - 2 * count..];
-        (0..count).map(|p| parts[p] - parts[count + p]).collect()
+        let free = self.free();
+        let mut numbers = self.numbers.to_vec();
+        for (p, x) in free.iter().zip(&unknowns[unknowns.len() - 2 * free.len()..]) {
+            numbers[*p] = *x;
+        }
+        numbers
     }
 
     fn moved(&self, unknowns: &[f64]) -> Vec<f64> {
@@ -201,32 +212,29 @@ impl Step<'_> {
         self.slopes.iter().map(of).collect()
     }
 
-    fn entries(&self, row: StepRow, layout: &Layout) -> Vec<(usize, f64)> {
+    fn entries(&self, row: StepRow, layout: &Layout, free: &[usize]) -> Vec<(usize, f64)> {
         let (t, k, i, side) = row;
         let (centre, radius) = self.reach(t, k, i);
         let mut entries = layout.entries(centre, radius, i, side);
-        let (first, count) = (layout.cost.len(), self.numbers.len());
-        for p in 0..count {
-            let slope = self.slope(p, row);
-            entries.extend([(first + p, slope), (first + count + p, -slope)]);
-        }
+        let slopes = free.iter().map(|&p| self.slope(p, row));
+        entries.extend(slopes.enumerate().map(|(at, slope)| (layout.cost.len() + at, slope)));
         entries
     }
 
     /// Solves with these rows only; returns the unknowns and their cost.
     fn solve_rows(&self, rows: &[StepRow]) -> Result<(Vec<f64>, f64)> {
-        let layout = self.layout();
-        let (sets, count) = (layout.cost.len(), self.numbers.len());
+        let (layout, free) = (self.layout(), self.free());
+        let (sets, count) = (layout.cost.len(), free.len());
         let scale = self.program.scale();
         let units = self.program.units(&layout, Some(&self.smallest.sets));
         let units = units.into_iter().map(|unit| unit * scale);
         let unit: Vec<f64> = units.chain(std::iter::repeat_n(1.0, 2 * count)).collect();
         let (mut matrix, mut bounds) = (Triplets::default(), Vec::new());
         for &row in rows {
-            let entries = self.entries(row, &layout);
+            let entries = self.entries(row, &layout, &free);
             let size = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
             matrix.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / size)));
-            let present = self.numbers.iter().enumerate().map(|(p, x)| self.slope(p, row) * x);
+            let present = free.iter().map(|&p| self.slope(p, row) * self.numbers[p]);
             bounds.push(-(self.deviation(row) + present.sum::<f64>()) / size);
         }
         layout.restrict(self.fit.settings.centre, &mut matrix, &mut bounds, &unit);
@@ -239,16 +247,14 @@ impl Step<'_> {
             matrix.row([(j, -1.0)]);
             bounds.extend([(here + most) / unit[j], (most - here) / unit[j]]);
         }
-        for p in 0..count {
-            let (plus, minus) = (sets + p, sets + count + p);
-            let is_held = Some(self.fit.parameters.list[p].quantity.group()) == self.held;
-            let trust = if is_held { 0.0 } else { self.trust };
+        for (at, &p) in free.iter().enumerate() {
+            let (number, size) = (sets + at, sets + count + at);
             let [low, high] = self.fit.parameters.list[p].bounds;
-            matrix.row([(plus, -1.0)]);
-            matrix.row([(minus, -1.0)]);
-            matrix.row([(plus, 1.0), (minus, -1.0)]);
-            matrix.row([(plus, -1.0), (minus, 1.0)]);
-            let (top, bottom) = (self.numbers[p] + trust, self.numbers[p] - trust);
+            matrix.row([(number, 1.0), (size, -1.0)]);
+            matrix.row([(number, -1.0), (size, -1.0)]);
+            matrix.row([(number, 1.0)]);
+            matrix.row([(number, -1.0)]);
+            let (top, bottom) = (self.numbers[p] + self.trust, self.numbers[p] - self.trust);
             bounds.extend([0.0, 0.0, top.min(high), -bottom.max(low)]);
         }
         let slopes = self.cost_slopes();
@@ -257,14 +263,15 @@ impl Step<'_> {
             if j < layout.centres() { 0.0 } else { w * unit[j] / total }
         };
         let mut objective: Vec<f64> = layout.cost.iter().enumerate().map(of_set).collect();
-        for sign in [1.0, -1.0] {
-            objective.extend(slopes.iter().map(|w| (sign * w + pull) / total));
-        }
+        objective.extend(free.iter().map(|&p| slopes[p] / total));
+        objective.extend(free.iter().map(|_| pull / total));
         let found = solve_cone(&objective, &matrix, &bounds, SOLVER_TOLERANCE)?.found;
         let value: f64 = found.iter().zip(&objective).map(|(x, w)| x * w).sum();
-        let present: f64 = slopes.iter().zip(self.numbers).map(|(w, x)| w * x).sum();
+        let present: f64 = free.iter().map(|&p| slopes[p] * self.numbers[p]).sum();
+        let held = (0..self.numbers.len()).filter(|p| !free.contains(p));
+        let held: f64 = held.map(|p| pull * self.numbers[p].abs()).sum();
         let unknowns = found.iter().zip(&unit).map(|(x, unit)| x * unit).collect();
-        Ok((unknowns, value * total - present))
+        Ok((unknowns, value * total - present + held))
     }
 
     /// Deviation minus reach of a row after the parameters changed by `moved`.
