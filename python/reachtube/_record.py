@@ -5,12 +5,9 @@ from __future__ import annotations
 import json
 from typing import Any, TypeVar
 
-from .errors import ModelFileError
+from ._bytes import reading, with_head, without_head
 
 Own = TypeVar("Own", bound="Record")
-
-#: Version of the bytes by which results without a file format of their own are pickled.
-VERSION = 1
 
 
 class Record:
@@ -40,8 +37,7 @@ class Record:
 
     def to_bytes(self) -> bytes:
         """Return versioned bytes, from which `from_bytes` makes an equal result."""
-        head = {"format": f"reachtube-python-{type(self).__name__}", "version": VERSION}
-        return json.dumps(head).encode() + b"\n" + self._text.encode()
+        return with_head(type(self), self._text.encode())
 
     @classmethod
     def from_bytes(cls: type[Own], data: bytes) -> Own:
@@ -50,17 +46,11 @@ class Record:
         Raises
         ------
         ModelFileError
-            For other bytes, or those of another version.
+            For other bytes, damaged ones, or those of another version.
         """
-        head, _, text = data.partition(b"\n")
-        expected = {"format": f"reachtube-python-{cls.__name__}", "version": VERSION}
-        try:
-            found = json.loads(head)
-        except ValueError:
-            found = None
-        if found != expected:
-            raise ModelFileError(f"these bytes are not those of {expected}, but of {found}")
-        return cls(text.decode())
+        _, text = without_head(cls, data)
+        with reading(cls):
+            return cls(text.decode())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self).from_bytes, (self.to_bytes(),)

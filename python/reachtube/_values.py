@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any, TypeVar
@@ -10,12 +9,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ._arrays import frozen
-from .errors import ModelFileError
+from ._bytes import reading, with_head, without_head
 
 Own = TypeVar("Own", bound="Values")
-
-#: Version of the bytes by which these results are pickled.
-VERSION = 1
 
 
 class Values:
@@ -50,16 +46,14 @@ class Values:
 
     def to_bytes(self) -> bytes:
         """Return versioned bytes, from which `from_bytes` makes an equal result."""
-        head: dict[str, Any] = {"format": f"reachtube-python-{type(self).__name__}"}
-        head |= {"version": VERSION, "shapes": {}, "values": {}}
-        numbers = []
+        shapes, values, numbers = {}, {}, []
         for name, value in self._items():
             if isinstance(value, np.ndarray):
-                head["shapes"][name] = value.shape
+                shapes[name] = value.shape
                 numbers.append(value.astype("<f8").tobytes())
             else:
-                head["values"][name] = value
-        return b"\n".join([json.dumps(head).encode(), b"".join(numbers)])
+                values[name] = value
+        return with_head(type(self), b"".join(numbers), shapes=shapes, values=values)
 
     @classmethod
     def from_bytes(cls: type[Own], data: bytes) -> Own:
@@ -68,19 +62,10 @@ class Values:
         Raises
         ------
         ModelFileError
-            For other bytes, or those of another version.
+            For other bytes, damaged ones, or those of another version.
         """
-        line, _, rest = data.partition(b"\n")
-        try:
-            head = json.loads(line)
-            found = (head["format"], head["version"])
-        except (ValueError, KeyError, TypeError):
-            head, found = {}, None
-        if found != (f"reachtube-python-{cls.__name__}", VERSION):
-            raise ModelFileError(
-                f"these bytes are not those of a {cls.__name__}, version {VERSION}, but of {found}"
-            )
-        try:
+        head, rest = without_head(cls, data)
+        with reading(cls):
             flat, place = np.frombuffer(rest, "<f8").astype(np.float64), 0
             content = {
                 name: tuple(value) if isinstance(value, list) else value
@@ -93,8 +78,6 @@ class Values:
             if place != len(flat):
                 raise ValueError(f"{len(flat) - place} numbers too many")
             return cls(**content)
-        except (ValueError, TypeError) as error:
-            raise ModelFileError(f"these bytes of a {cls.__name__} are damaged: {error}") from None
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self).from_bytes, (self.to_bytes(),)

@@ -99,9 +99,10 @@ def test_bytes_of_other_results_are_refused(values: list[Any]) -> None:
     with pytest.raises(rt.ModelFileError, match="Flowpipe, version 1, but of .*Excitation"):
         rt.Flowpipe.from_bytes(motion)
     for wrong in (b"", b"nonsense", b"[]\n", pipe.replace(b'"version": 1', b'"version": 2')):
-        with pytest.raises(rt.ModelFileError, match="not those of a Flowpipe"):
+        with pytest.raises(rt.ModelFileError, match="not those of Flowpipe"):
             rt.Flowpipe.from_bytes(wrong)
-    for damaged in (pipe[:-1], pipe[:-8], pipe + bytes(8), pipe.replace(b"upper", b"uper", 1)):
+    for damaged in (pipe[:-1], pipe[:-8], pipe + bytes(8), pipe.replace(b"upper", b"uper", 1),
+                    pipe.replace(b'"values"', b'"value"')):
         with pytest.raises(rt.ModelFileError, match="damaged"):
             rt.Flowpipe.from_bytes(damaged)
 
@@ -258,6 +259,10 @@ def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path:
     assert again.robot == other and again.to_dict() == result.to_dict()
     with pytest.raises(rt.ModelFileError, match="not those"):
         rt.Identification.from_bytes(b"nonsense")
+    whole = result.to_bytes()
+    for damaged in (whole[:-5], whole[:-5] + b"\xff"):
+        with pytest.raises(rt.ModelFileError, match="Identification. are damaged"):
+            rt.Identification.from_bytes(damaged)
     assert result.to_pandas().shape[0] == len(result.parameters)
     page = result.report(tmp_path / "identify.html")
     assert "<svg" in page.read_text(encoding="utf-8")
