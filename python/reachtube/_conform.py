@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _reachtube
 from ._abstraction import Abstraction
-from ._arrays import names
+from ._arrays import names, real
 from ._model import Check, Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
@@ -154,7 +154,7 @@ def conform(
             names(suites),
             settings,
             names(fit),
-            pull,
+            None if pull is None else real("pull", pull),
             None if resume is None else fspath(resume),
             tell,
         )

@@ -13,7 +13,7 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from ._abstraction import Abstraction
-from ._arrays import names
+from ._arrays import names, real
 from ._conform import told
 from ._jobs import Job, Part, fleet_of, fold_of, on_dask
 from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
@@ -145,7 +145,7 @@ def conform(
         job = Job("abstraction", robot._native.to_json(), text)
     else:
         job = Job("robot", robot._native.description(), text)
-    groups = names(fit)
+    groups, pull = names(fit), None if pull is None else real("pull", pull)
     fleet_of(job).fold()
     fleet_of(job).check_fit(groups, pull)
     parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)

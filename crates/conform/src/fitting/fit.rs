@@ -65,11 +65,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let by_run = settings.groups.contains(&Group::WarmUp);
     let data = Data::new(steering, by_run)?;
     if data.motions.len() < 2 {
-        return Err(Error::Fit(
-            "there is only one motion, and a model that is chosen for one motion holds for no \
-             other; record a second motion, or name the motions in the column motion of runs.csv"
-                .into(),
-        ));
+        return Err(Error::Fit(one_motion(kept.is_some())));
     }
     let parameters = Parameters::new(setup, &settings.groups);
     if parameters.len() == 0 {
@@ -159,6 +155,18 @@ fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
         ));
     }
     Ok(())
+}
+
+fn one_motion(others_are_kept_back: bool) -> String {
+    let remedy = if others_are_kept_back {
+        "keep fewer motions back for the calibration"
+    } else {
+        "record a second motion, or name the motions in the column motion of runs.csv"
+    };
+    format!(
+        "there is only one motion to fit to, and a model that is chosen for one motion holds for \
+         no other; {remedy}"
+    )
 }
 
 /// The cost of the smallest sets of a linear model, as [`conform`](crate::conform) finds it.
