@@ -11,6 +11,7 @@ use crate::problem::problem::Problem;
 /// While parameters are moved, samples are thinned to about this number, of all cases together.
 const MOST_SAMPLES: usize = 6_000;
 
+/// Why warm-up cannot be fitted to some folds.
 const NOT_KEPT: &str = "a fit of warm-up needs each recording, which a fold of recordings that \
     share their input has not kept; fit without warm-up, or read the recordings on one machine";
 
