@@ -54,6 +54,14 @@ proptest! {
 
     #[test]
     fn exponential(x in prop_oneof![-745.1..709.7_f64, -2.0..2.0_f64, -1e-8..1e-8_f64]) {
+        // Only at 0 is the exponential exact, and the reference is not.
+        prop_assume!(x != 0.0);
+        assert_exp(x);
+    }
+
+    /// Subnormal numbers are rounded once more.
+    #[test]
+    fn exponential_that_is_subnormal(x in -745.1..-708.3_f64) {
         assert_exp(x);
     }
 

@@ -4,7 +4,7 @@ use core::f64::consts::LOG2_E;
 
 use super::closed::Interval;
 use super::power_series::{PowerSeries, inverse_factorial};
-use crate::rounding::{mul_down, mul_up, two_sum};
+use crate::rounding::two_sum;
 
 /// The leading 41 bits of ln 2 = `LN_2_HEAD` + `LN_2_TAIL`; the product of the head with |k| ≤ 2¹¹
 /// is exact.
@@ -80,7 +80,20 @@ fn times_power_of_two(m: Interval, k: i32) -> Interval {
     if scaled.lo.is_normal() && scaled.hi.is_normal() {
         return scaled;
     }
-    Interval { lo: mul_down(m.lo * first, second), hi: mul_up(m.hi * first, second) }
+    Interval { lo: scaled_down(m.lo * first, second), hi: scaled_up(m.hi * first, second) }
+}
+
+/// The largest number that is at most x · power, for a power of two of 2^-600 to 2^600: what was
+/// rounded shows, because the quotient is exact.
+fn scaled_down(x: f64, power: f64) -> f64 {
+    let product = x * power;
+    if product / power > x { product.next_down() } else { product }
+}
+
+/// The smallest number that is at least x · power, for a power of two of 2^-600 to 2^600.
+fn scaled_up(x: f64, power: f64) -> f64 {
+    let product = x * power;
+    if product / power < x { product.next_up() } else { product }
 }
 
 #[cfg(test)]
