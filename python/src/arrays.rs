@@ -7,15 +7,15 @@ use pyo3::prelude::*;
 
 use crate::failure::{Failure, Result};
 
-pub type Input<'py> = PyReadonlyArrayDyn<'py, f64>;
-pub type Output<'py> = Bound<'py, PyArrayDyn<f64>>;
+pub(crate) type Input<'py> = PyReadonlyArrayDyn<'py, f64>;
+pub(crate) type Output<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Returns the values of an array of a given shape, row by row.
 ///
 /// # Errors
 ///
 /// [`Failure::Setting`] for another shape.
-pub fn values(name: &str, array: &Input<'_>, shape: &[usize]) -> Result<Vec<f64>> {
+pub(crate) fn values(name: &str, array: &Input<'_>, shape: &[usize]) -> Result<Vec<f64>> {
     let view = array.as_array();
     if view.shape() != shape {
         let words = |shape: &[usize]| format!("{shape:?}").replace('[', "(").replace(']', ")");
@@ -33,7 +33,7 @@ pub fn values(name: &str, array: &Input<'_>, shape: &[usize]) -> Result<Vec<f64>
 /// # Panics
 ///
 /// Panics where the number of values does not fit the shape.
-pub fn array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> Output<'py> {
+pub(crate) fn array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> Output<'py> {
     let array = ArrayD::from_shape_vec(IxDyn(shape), values);
     array.expect("the values fit the shape").into_pyarray(py)
 }

@@ -60,13 +60,13 @@ fn gap_limit(max_gap: Option<f64>) -> GapLimit {
 }
 
 /// What a nominal model is made of.
-pub enum Basis {
+pub(crate) enum Basis {
     Robot(Arc<Robot>),
     Abstraction(Box<reachtube::PolynomialModel>),
 }
 
 impl Basis {
-    pub fn new(
+    pub(crate) fn new(
         robot: Option<PyRef<'_, NativeRobot>>,
         abstraction: Option<PyRef<'_, NativeAbstraction>>,
     ) -> Result<Self> {
@@ -79,7 +79,7 @@ impl Basis {
 }
 
 /// Returns the setup of a conformance, whose settings are the defaults but for those given.
-pub fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
+pub(crate) fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
     let mut setup = match basis {
         Basis::Robot(robot) => {
             robot.check_physical()?;
@@ -106,7 +106,7 @@ pub fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
     robot, abstraction, source, suites, settings, fit, pull=None, resume=None, progress=None
 ))]
 #[allow(clippy::too_many_arguments)]
-pub fn conform(
+pub(crate) fn conform(
     py: Python<'_>,
     robot: Option<PyRef<'_, NativeRobot>>,
     abstraction: Option<PyRef<'_, NativeAbstraction>>,
@@ -131,7 +131,7 @@ pub fn conform(
 }
 
 /// Returns what is to be fitted; nothing without any group.
-pub fn fit_settings(groups: &[String], pull: Option<f64>) -> Result<Option<FitSettings>> {
+pub(crate) fn fit_settings(groups: &[String], pull: Option<f64>) -> Result<Option<FitSettings>> {
     let groups = serde_json::to_value(groups).and_then(serde_json::from_value);
     let groups: Vec<Group> = groups.map_err(|error| Failure::Setting(format!("fit: {error}")))?;
     match (groups.is_empty(), pull) {
@@ -145,7 +145,7 @@ pub fn fit_settings(groups: &[String], pull: Option<f64>) -> Result<Option<FitSe
 
 /// Finds the smallest sets, of a fitted nominal model where `fit` is given, and returns the model
 /// file's text and notes about the recordings.
-pub fn smallest_sets(
+pub(crate) fn smallest_sets(
     mut problem: Problem,
     fit: Option<&FitSettings>,
     watch: &Watch,
@@ -167,7 +167,7 @@ pub fn smallest_sets(
 
 /// Checks the text of a model file; errors name it `origin`.
 #[pyfunction]
-pub fn check_model(py: Python<'_>, text: String, origin: String) -> PyResult<()> {
+pub(crate) fn check_model(py: Python<'_>, text: String, origin: String) -> PyResult<()> {
     watched(py, None, move |_| Ok(Model::parse(&text, Path::new(&origin)).map(|_| ())?))
 }
 
@@ -179,7 +179,7 @@ struct Opened {
 }
 
 /// Sets what differs from a model's settings.
-pub fn differing(settings: &mut Settings, mut given: Map<String, Value>) -> Result<()> {
+pub(crate) fn differing(settings: &mut Settings, mut given: Map<String, Value>) -> Result<()> {
     settings.notion = take(&mut given, "notion")?.unwrap_or(settings.notion);
     settings.until = take(&mut given, "until")?.or(settings.until);
     settings.gap_limit = gap_limit(take(&mut given, "max_gap")?);
@@ -220,7 +220,7 @@ impl Opened {
 /// Compares recordings with a model's reachable sets, and returns the answer as JSON.
 #[pyfunction]
 #[pyo3(signature = (model, source, suites, settings, progress=None))]
-pub fn check(
+pub(crate) fn check(
     py: Python<'_>,
     model: String,
     source: PyRef<'_, NativeSource>,
@@ -244,7 +244,7 @@ type NativeReach<'py> =
 /// Computes a model's reachable sets along recordings.
 #[pyfunction]
 #[pyo3(signature = (model, source, suites, settings, progress=None))]
-pub fn reach<'py>(
+pub(crate) fn reach<'py>(
     py: Python<'py>,
     model: String,
     source: PyRef<'_, NativeSource>,
@@ -280,7 +280,7 @@ fn arrays_of(py: Python<'_>, reach: SuiteReach) -> NativeReach<'_> {
 #[pyfunction]
 #[pyo3(signature = (model, source, suites, settings, folder, beside, progress=None))]
 #[allow(clippy::too_many_arguments)]
-pub fn report(
+pub(crate) fn report(
     py: Python<'_>,
     model: String,
     source: PyRef<'_, NativeSource>,

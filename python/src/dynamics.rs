@@ -14,7 +14,7 @@ type Lane = Lanes<LANES>;
 const CHUNK: usize = 64 * LANES;
 
 /// Scratch memory for one vector of states: sines, cosines, and the arguments after q, n each.
-pub struct Scratch {
+pub(crate) struct Scratch {
     pub sin: Vec<Lane>,
     pub cos: Vec<Lane>,
     pub arguments: Vec<Vec<Lane>>,
@@ -23,11 +23,16 @@ pub struct Scratch {
 }
 
 /// An algorithm on one vector of states, which writes its result to the last slice.
-pub type Kernel<'a> = &'a (dyn Fn(&mut Scratch, &mut [Lane]) + Sync);
+pub(crate) type Kernel<'a> = &'a (dyn Fn(&mut Scratch, &mut [Lane]) + Sync);
 
 /// Runs an algorithm over `count` states. `arguments` are q and what follows it, each count x n;
 /// the result is count x `width`.
-pub fn over_states(robot: &Robot, arguments: &[Vec<f64>], width: usize, run: Kernel) -> Vec<f64> {
+pub(crate) fn over_states(
+    robot: &Robot,
+    arguments: &[Vec<f64>],
+    width: usize,
+    run: Kernel,
+) -> Vec<f64> {
     let n = robot.joint_count();
     let count = arguments[0].len() / n.max(1);
     let mut results = vec![0.0; count * width];
@@ -69,7 +74,7 @@ pub fn over_states(robot: &Robot, arguments: &[Vec<f64>], width: usize, run: Ker
 
 /// Returns the torques of viscous and of Coulomb friction, count x n each, for q and q̇, each
 /// count x n.
-pub fn friction(robot: &Robot, arguments: &[Vec<f64>]) -> [Vec<f64>; 2] {
+pub(crate) fn friction(robot: &Robot, arguments: &[Vec<f64>]) -> [Vec<f64>; 2] {
     let n = robot.joint_count();
     let mut torques = [vec![0.0; arguments[0].len()], vec![0.0; arguments[0].len()]];
     let [viscous, coulomb] = &mut torques;
@@ -88,7 +93,7 @@ pub fn friction(robot: &Robot, arguments: &[Vec<f64>]) -> [Vec<f64>; 2] {
 
 /// Returns the regressor of the inertial parameters, count x n x parameters, for q, q̇ and q̈,
 /// each count x n.
-pub fn regressors(robot: &Robot, parameters: &[Parameter], motion: &[Vec<f64>]) -> Vec<f64> {
+pub(crate) fn regressors(robot: &Robot, parameters: &[Parameter], motion: &[Vec<f64>]) -> Vec<f64> {
     let n = robot.joint_count();
     let (count, width) = (motion[0].len() / n.max(1), n * parameters.len());
     let mut results = vec![0.0; count * width];

@@ -28,7 +28,7 @@ type Motion<'py> = (Output<'py>, Vec<Output<'py>>, f64, f64);
     seed, rate
 ))]
 #[allow(clippy::too_many_arguments)]
-pub fn excite<'py>(
+pub(crate) fn excite<'py>(
     py: Python<'py>,
     robot: PyRef<'py, NativeRobot>,
     period: f64,

@@ -11,7 +11,7 @@ use reachtube::robot::RobotError;
 /// Why a job failed, before it becomes an exception. The kinds are the classes of
 /// `reachtube.errors`.
 #[derive(Debug)]
-pub enum Failure {
+pub(crate) enum Failure {
     /// Recordings with defects, and the list of them for people.
     Defects(Vec<Defect>, String),
     /// A wrong argument.
@@ -22,17 +22,17 @@ pub enum Failure {
     Other(String),
 }
 
-pub type Result<T, E = Failure> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Failure> = std::result::Result<T, E>;
 
 impl Failure {
     /// Returns a failure about an argument.
-    pub fn setting(error: impl ToString) -> Self {
+    pub(crate) fn setting(error: impl ToString) -> Self {
         Self::Setting(error.to_string())
     }
 
     /// Returns the failure with runs in memory, which were written as CSV files in `folder`, by
     /// their names alone.
-    pub fn of_runs_in(self, folder: &Path) -> Self {
+    pub(crate) fn of_runs_in(self, folder: &Path) -> Self {
         match self {
             Self::Defects(mut defects, text) => {
                 for defect in &mut defects {
@@ -47,7 +47,7 @@ impl Failure {
     }
 
     /// Returns the exception.
-    pub fn raised(self, py: Python<'_>) -> PyErr {
+    pub(crate) fn raised(self, py: Python<'_>) -> PyErr {
         self.exception(py).map_or_else(|error| error, PyErr::from_value)
     }
 

@@ -34,7 +34,7 @@ pub struct NativeFold {
 
 /// An entry of a manifest: its place, file, suite, motion, order, the SHA-256 that the file should
 /// have, and the temperature of all joints, °C.
-pub type Entry = (u64, String, String, Option<String>, u64, Option<String>, Option<f64>);
+pub(crate) type Entry = (u64, String, String, Option<String>, u64, Option<String>, Option<f64>);
 
 /// SHA-256, number of samples and duration of a recording; or its defects.
 type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
@@ -42,7 +42,7 @@ type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
 /// The same as Python has it.
 type Taken = (Option<(String, usize, f64)>, Vec<String>);
 
-pub fn entry(row: &Entry) -> RunEntry {
+pub(crate) fn entry(row: &Entry) -> RunEntry {
     let (index, file, suite, motion, order, sha256, temperature) = row.clone();
     RunEntry {
         file,
@@ -221,7 +221,7 @@ fn problem(
 }
 
 /// Reads the recording in the content of a CSV file.
-pub fn read_csv(row: &Entry, content: &[u8], options: &ReadOptions) -> Read {
+pub(crate) fn read_csv(row: &Entry, content: &[u8], options: &ReadOptions) -> Read {
     let name = Path::new(&row.1);
     let run = parse_csv(name, content, options)?;
     match &row.5 {
@@ -236,7 +236,7 @@ pub fn read_csv(row: &Entry, content: &[u8], options: &ReadOptions) -> Read {
 }
 
 /// Checks a recording in memory as one that is read.
-pub fn read_run(row: &Entry, run: &reachtube::Run, options: &ReadOptions) -> Read {
+pub(crate) fn read_run(row: &Entry, run: &reachtube::Run, options: &ReadOptions) -> Read {
     as_warm(row, run.clone()).checked(Path::new(&row.1), options)
 }
 
@@ -248,7 +248,7 @@ fn as_warm(row: &Entry, run: reachtube::Run) -> reachtube::Run {
 }
 
 /// A recording, or its defects.
-pub type Read = std::result::Result<reachtube::Run, Vec<Defect>>;
+pub(crate) type Read = std::result::Result<reachtube::Run, Vec<Defect>>;
 
 impl NativeFold {
     fn lock(&self) -> MutexGuard<'_, Fold> {

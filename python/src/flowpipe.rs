@@ -48,7 +48,7 @@ fn system(
     vertex_variables, order, pieces
 ))]
 #[allow(clippy::too_many_arguments)]
-pub fn flowpipe<'py>(
+pub(crate) fn flowpipe<'py>(
     py: Python<'py>,
     inputs: usize,
     angles: Vec<usize>,

@@ -68,7 +68,7 @@ fn settings(basis: Option<&str>, given: &str) -> Result<IdentifySettings> {
 /// that validate it; returns the texts of the result.
 #[pyfunction]
 #[pyo3(signature = (robot, recorded, toml, given, folder, progress=None))]
-pub fn identify(
+pub(crate) fn identify(
     py: Python<'_>,
     robot: PyRef<'_, NativeRobot>,
     recorded: [Recorded<'_>; 4],

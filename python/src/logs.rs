@@ -29,7 +29,7 @@ type NamedRun = (NativeRun, String, Option<String>, Option<String>);
 /// Reads logs and cuts them into runs; also returns notes, and what was lost from damaged logs.
 #[pyfunction]
 #[pyo3(signature = (paths, topics, joints, receipt_time, recover, cutting))]
-pub fn read_log(
+pub(crate) fn read_log(
     py: Python<'_>,
     paths: Vec<PathBuf>,
     topics: Vec<String>,

@@ -13,7 +13,7 @@ use crate::recordings::NativeRun;
 
 /// What every part of a fleet needs to find its points.
 #[pyclass(frozen, name = "FleetProblem", module = "reachtube._reachtube")]
-pub struct NativeFleetProblem {
+pub(crate) struct NativeFleetProblem {
     pub problem: FleetProblem,
 }
 
@@ -101,7 +101,7 @@ impl NativePartPoints {
 
 /// A function of Python that asks all points.
 #[derive(Debug)]
-pub struct Asked {
+pub(crate) struct Asked {
     ask: Py<PyAny>,
     /// The exception with which it ended.
     raised: Mutex<Option<PyErr>>,
@@ -123,7 +123,7 @@ impl PointServer for Asked {
 }
 
 /// Runs a job that may ask points. An exception of the function that asks is that of the job.
-pub fn asking<T>(
+pub(crate) fn asking<T>(
     ask: Option<Py<PyAny>>,
     job: impl FnOnce(Option<Arc<Asked>>) -> PyResult<T>,
 ) -> PyResult<T> {

@@ -25,7 +25,7 @@ const STACK: usize = 8 << 20;
 
 /// What a job says of itself, and whether it is still wanted.
 #[derive(Debug, Default)]
-pub struct Watch {
+pub(crate) struct Watch {
     cancelled: AtomicBool,
     done: AtomicUsize,
     total: AtomicUsize,
@@ -34,7 +34,7 @@ pub struct Watch {
 
 impl Watch {
     /// Takes how many of `total` parts are done.
-    pub fn count(&self, done: usize, total: usize) {
+    pub(crate) fn count(&self, done: usize, total: usize) {
         self.total.store(total, Ordering::Relaxed);
         self.done.fetch_max(done, Ordering::Relaxed);
     }
@@ -73,7 +73,7 @@ impl Progress for Watch {
 ///
 /// The exception of the job's failure; the exception of a signal, within [`POLL`] and [`GRACE`]:
 /// the job is then cancelled, and must have written nothing.
-pub fn watched<T: Send + 'static>(
+pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     job: impl FnOnce(&Watch) -> Result<T> + Send + 'static,

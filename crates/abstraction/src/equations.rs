@@ -45,7 +45,7 @@ pub(crate) struct Angles {
 
 impl<'a> Equations<'a> {
     /// Prepares the equations for Taylor models of `order` in q.
-    pub fn new(
+    pub(crate) fn new(
         model: &'a PolynomialModel,
         robot: &'a Robot,
         operating_box: &OperatingBox,
@@ -71,7 +71,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    pub fn scratch(&self) -> Scratch {
+    pub(crate) fn scratch(&self) -> Scratch {
         Scratch {
             mass: Workspace::new(self.robot),
             coriolis: Workspace::new(self.robot),
@@ -80,12 +80,12 @@ impl<'a> Equations<'a> {
     }
 
     /// Returns the space of the positions that M_m depends on.
-    pub fn positions(&self) -> &Arc<TaylorSpace> {
+    pub(crate) fn positions(&self) -> &Arc<TaylorSpace> {
         &self.positions
     }
 
     /// Returns sin q and cos q over a box of positions, n sides.
-    pub fn angles(&self, q: &[Interval]) -> Angles {
+    pub(crate) fn angles(&self, q: &[Interval]) -> Angles {
         let variables = position_variables(q.len());
         let sides: Vec<Interval> = variables.clone().map(|i| q[i]).collect();
         let mut models: Vec<TaylorModel> = q.iter().map(|side| TaylorModel::from(*side)).collect();
@@ -96,7 +96,7 @@ impl<'a> Equations<'a> {
     }
 
     /// Returns M_m, row-major n x n.
-    pub fn mass_matrix(&self, angles: &Angles, scratch: &mut Scratch) -> Vec<TaylorModel> {
+    pub(crate) fn mass_matrix(&self, angles: &Angles, scratch: &mut Scratch) -> Vec<TaylorModel> {
         let n = self.robot.joint_count();
         let mut mass = vec![TaylorModel::from(0.0); n * n];
         self.robot.crba(&angles.sin, &angles.cos, &mut scratch.mass, &mut mass);
@@ -104,7 +104,7 @@ impl<'a> Equations<'a> {
     }
 
     /// Returns u - c - τ_v, n: M_m times the acceleration of the robot.
-    pub fn load(&self, angles: &Angles, scratch: &mut Scratch) -> Vec<InputPolynomial> {
+    pub(crate) fn load(&self, angles: &Angles, scratch: &mut Scratch) -> Vec<InputPolynomial> {
         let n = self.robot.joint_count();
         let mut coriolis = vec![InputPolynomial::from(0.0); n];
         let [sin, cos] = [&angles.sin, &angles.cos].map(|models| constants(models));
@@ -117,7 +117,11 @@ impl<'a> Equations<'a> {
     }
 
     /// Returns f_p, n: the acceleration of the model.
-    pub fn acceleration(&self, angles: &Angles, scratch: &mut Scratch) -> Vec<InputPolynomial> {
+    pub(crate) fn acceleration(
+        &self,
+        angles: &Angles,
+        scratch: &mut Scratch,
+    ) -> Vec<InputPolynomial> {
         let n = self.robot.joint_count();
         // The accelerations depend on q by its sines and cosines only.
         let mut state = vec![InputPolynomial::from(0.0); n];
@@ -134,7 +138,7 @@ impl<'a> Equations<'a> {
 
     /// Returns one Taylor model in the positions and (q̇, u). Its terms with the smallest
     /// coefficients, up to a sum of `slack`, go into the remainder.
-    pub fn joined(&self, polynomial: &InputPolynomial, slack: f64) -> TaylorModel {
+    pub(crate) fn joined(&self, polynomial: &InputPolynomial, slack: f64) -> TaylorModel {
         let terms = polynomial.terms();
         let (k, slack) = (self.positions.variables(), slack / terms.len().max(1) as f64);
         let indices: Vec<usize> = (0..k).collect();

@@ -19,7 +19,7 @@ use crate::outcome::Outcome;
 /// this with directed rounding.
 #[derive(Debug, Parser)]
 #[command(name = "reachtube", version = VERSION, after_help = HELP)]
-pub struct Cli {
+pub(crate) struct Cli {
     #[command(subcommand)]
     pub command: Command,
     #[command(flatten)]
@@ -57,7 +57,7 @@ Exit codes: 0 conformant (or done), 1 not conformant, 2 error.
 Results go to standard output; notes, warnings and errors go to standard error.";
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     Demo(demo::Arguments),
     Campaign(campaign::Arguments),
     #[command(subcommand)]
@@ -80,7 +80,7 @@ pub enum Command {
 }
 
 /// Runs the command that the arguments name.
-pub fn run(cli: &Cli) -> Result<Outcome> {
+pub(crate) fn run(cli: &Cli) -> Result<Outcome> {
     let json = cli.global.json;
     match &cli.command {
         Command::Demo(args) => demo::run(args, json),

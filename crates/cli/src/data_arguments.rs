@@ -11,7 +11,7 @@ use crate::option_values::{Choices, choice, seconds, trimmed};
 // Options that name recordings and the meaning of their torques.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
-pub struct DataArguments {
+pub(crate) struct DataArguments {
     /// Folder with runs.csv and the recordings
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
@@ -38,7 +38,7 @@ const TORQUES: Choices = &[
 
 // Options that name a model and the recordings to compare it with.
 #[derive(Debug, Args)]
-pub struct ModelArguments {
+pub(crate) struct ModelArguments {
     /// Model file that `conform --out` wrote
     #[arg(long, value_name = "FILE")]
     pub model: PathBuf,
@@ -47,6 +47,6 @@ pub struct ModelArguments {
 }
 
 /// Returns the limit that `--max-gap` sets.
-pub fn gap_limit(max_gap: Option<f64>) -> GapLimit {
+pub(crate) fn gap_limit(max_gap: Option<f64>) -> GapLimit {
     max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
 }

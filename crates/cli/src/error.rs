@@ -8,7 +8,7 @@ use thiserror::Error;
 /// Why a command failed. A model that is not conformant is an [`Outcome`](crate::outcome::Outcome),
 /// not an error.
 #[derive(Debug, Error)]
-pub enum Error {
+pub(crate) enum Error {
     /// The command line is wrong, or asks for help or the version.
     #[error("{}", usage_words(.0))]
     Usage(clap::Error),
@@ -182,7 +182,7 @@ pub enum Error {
 
 impl Error {
     /// Returns what the error is about, as `--json` prints it.
-    pub fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Usage(_) => "usage",
             Self::Output(_) => "file",
@@ -242,7 +242,7 @@ fn usage_words(error: &clap::Error) -> String {
 }
 
 /// A result of the command line.
-pub type Result<T, E = Error> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Lets `?` pass on the errors of the library's crates.
 macro_rules! from_library {

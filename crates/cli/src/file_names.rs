@@ -8,17 +8,17 @@ use reachtube::report::SuiteFigure;
 
 /// Returns one file name for each reachable set: the suite's name, with the run's where runs have
 /// nominal solutions of their own. The names are distinct and contain no path separators.
-pub fn of_reach(reach: &[SuiteReach]) -> Vec<String> {
+pub(crate) fn of_reach(reach: &[SuiteReach]) -> Vec<String> {
     distinct(reach.iter().map(SuiteReach::name), &["", "_tube"])
 }
 
 /// Returns one file name for the figures of each suite.
-pub fn of_figures(figures: &[SuiteFigure]) -> Vec<String> {
+pub(crate) fn of_figures(figures: &[SuiteFigure]) -> Vec<String> {
     distinct(figures.iter().map(|figure| figure.suite.clone()), &["_motion", "_deviation"])
 }
 
 /// Returns one folder name for each exported case.
-pub fn of_cases(cases: &[ExportCase]) -> Vec<String> {
+pub(crate) fn of_cases(cases: &[ExportCase]) -> Vec<String> {
     distinct(cases.iter().map(|case| case.reach.name()), &[""])
 }
 

@@ -9,7 +9,7 @@ use reachtube_files::Overwrite;
 // Options that every command has.
 #[derive(Debug, Clone, Copy, Default, Args)]
 #[command(next_help_heading = "Global options")]
-pub struct GlobalOptions {
+pub(crate) struct GlobalOptions {
     /// Print the result as JSON on standard output, and an error as JSON on standard error
     #[arg(long, global = true)]
     pub json: bool,
@@ -28,17 +28,17 @@ static OPTIONS: OnceLock<GlobalOptions> = OnceLock::new();
 
 impl GlobalOptions {
     /// Makes these the options of the process. Later calls have no effect.
-    pub fn install(self) {
+    pub(crate) fn install(self) {
         OPTIONS.get_or_init(|| self);
     }
 
     /// Returns the files that commands may replace.
-    pub fn overwrite(self) -> Overwrite {
+    pub(crate) fn overwrite(self) -> Overwrite {
         if self.force { Overwrite::Any } else { Overwrite::Own }
     }
 }
 
 /// Returns the options of the process.
-pub fn global() -> GlobalOptions {
+pub(crate) fn global() -> GlobalOptions {
     OPTIONS.get().copied().unwrap_or_default()
 }

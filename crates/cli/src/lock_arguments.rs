@@ -8,7 +8,7 @@ use crate::error::Result;
 // A comment, not a doc comment: clap would show it as the description of the command.
 // The option that holds joints of a robot file at positions.
 #[derive(Debug, Args)]
-pub struct LockArguments {
+pub(crate) struct LockArguments {
     /// Hold a joint of the robot at a position, in rad, or in m for a prismatic joint; joints that
     /// mimic it follow, and the links that they carry become part of the link before them. Repeat
     /// the option for more joints
@@ -18,7 +18,7 @@ pub struct LockArguments {
 
 impl LockArguments {
     /// Loads a robot by name or path.
-    pub fn load(&self, robot: &str) -> Result<Robot> {
+    pub(crate) fn load(&self, robot: &str) -> Result<Robot> {
         Ok(Robot::load_locked(robot, &self.lock)?)
     }
 }

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::output;
 
 /// Reads a log, prints its notes, and warns of what is lost.
-pub fn read_log(path: &Path, options: &LogOptions) -> Result<Log> {
+pub(crate) fn read_log(path: &Path, options: &LogOptions) -> Result<Log> {
     let log = Log::read(path, options)?;
     output::notes(log.notes());
     for loss in log.losses() {
@@ -24,7 +24,7 @@ pub fn read_log(path: &Path, options: &LogOptions) -> Result<Log> {
 }
 
 /// A folder with the logs among some paths as CSV files, which is deleted with this value.
-pub struct LogFiles {
+pub(crate) struct LogFiles {
     options: LogOptions,
     folder: TempDir,
     count: usize,
@@ -32,7 +32,7 @@ pub struct LogFiles {
 
 impl LogFiles {
     /// Makes an empty folder for logs.
-    pub fn new(options: LogOptions) -> Result<Self> {
+    pub(crate) fn new(options: LogOptions) -> Result<Self> {
         let folder = tempfile::tempdir().map_err(|source| reachtube_files::Error::Write {
             path: std::env::temp_dir(),
             source,
@@ -42,7 +42,7 @@ impl LogFiles {
 
     /// Replaces the path of a log, whole or an interval of it, by that of the same recording as
     /// CSV. Paths are relative to `folder`, and other paths stay as they are.
-    pub fn convert(&mut self, entry: &mut LogEntry, folder: &Path) -> Result<()> {
+    pub(crate) fn convert(&mut self, entry: &mut LogEntry, folder: &Path) -> Result<()> {
         let (LogEntry::Path(path) | LogEntry::Stretch { path, .. }) = entry;
         if is_log(path) {
             *path = self.csv_of(&folder.join(&path))?;

@@ -11,7 +11,7 @@ use crate::output;
 use crate::progress::Progress;
 
 /// A model, the recordings read with its settings, and its reachable sets over them.
-pub struct Opened {
+pub(crate) struct Opened {
     pub model: Model,
     pub problem: Problem,
     hulls: Hulls,
@@ -20,14 +20,19 @@ pub struct Opened {
 impl Opened {
     /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
     /// judged by `notion`, or by that of the file.
-    pub fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {
+    pub(crate) fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {
         let (model, mut setup) = Model::open(&args.model)?;
         setup.settings.notion = notion.unwrap_or(setup.settings.notion);
         Self::with(model, setup, &args.data, keep)
     }
 
     /// Reads the recordings and computes the reachable sets of a model in memory.
-    pub fn with(model: Model, mut setup: Setup, args: &DataArguments, keep: Keep) -> Result<Self> {
+    pub(crate) fn with(
+        model: Model,
+        mut setup: Setup,
+        args: &DataArguments,
+        keep: Keep,
+    ) -> Result<Self> {
         let settings = &mut setup.settings;
         if let (None, Some(until)) = (args.until, settings.until) {
             output::note(&format!(
@@ -50,19 +55,19 @@ impl Opened {
     }
 
     /// Returns each suite, or run with a nominal motion of its own, as exports take it.
-    pub fn export_cases(&self) -> Result<Vec<ExportCase>> {
+    pub(crate) fn export_cases(&self) -> Result<Vec<ExportCase>> {
         let _bar = Progress::new();
         Ok(ExportCase::all(&self.problem, &self.hulls)?)
     }
 
     /// Compares the recordings with the reachable sets.
-    pub fn check(&self) -> Result<Check> {
+    pub(crate) fn check(&self) -> Result<Check> {
         let _bar = Progress::new();
         Ok(check(&self.model, &self.problem, &self.hulls)?)
     }
 
     /// Returns the reachable set of each suite, at samples and between them.
-    pub fn reach(&self) -> Result<Vec<SuiteReach>> {
+    pub(crate) fn reach(&self) -> Result<Vec<SuiteReach>> {
         let _bar = Progress::new();
         Ok(reach(&self.problem, &self.hulls)?)
     }

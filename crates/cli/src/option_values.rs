@@ -4,10 +4,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use serde::de::DeserializeOwned;
 
 /// The values of an option, each with its explanation.
-pub type Choices = &'static [(&'static str, &'static str)];
+pub(crate) type Choices = &'static [(&'static str, &'static str)];
 
 /// The directions in which recordings must lie in the reachable set, as `--notion` names them.
-pub const NOTIONS: Choices = &[
+pub(crate) const NOTIONS: Choices = &[
     ("hull", "each state by itself: in the interval hull of the set"),
     ("phase-plane", "position and velocity of each joint together: in the set's projections"),
     ("exact", "all states together: in the set itself"),
@@ -15,43 +15,43 @@ pub const NOTIONS: Choices = &[
 ];
 
 /// How the disturbance may change in time.
-pub const DISTURBANCES: Choices = &[
+pub(crate) const DISTURBANCES: Choices = &[
     ("constant", "constant over the whole recording, as in the paper"),
     ("sample", "constant over each sample"),
     ("measurable", "any measurable function of time"),
 ];
 
 /// How far X0 may reach, as `--initial-limit` names it.
-pub const INITIAL_LIMITS: Choices = &[
+pub(crate) const INITIAL_LIMITS: Choices = &[
     ("none", "as far as makes the sets cheapest"),
     ("positions", "positions no further than the recorded starts"),
     ("states", "positions and velocities no further than the recorded starts"),
 ];
 
 /// The models of the paper (Sec. IV-B), as `--model` names them.
-pub const MODELS: Choices = &[
+pub(crate) const MODELS: Choices = &[
     ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),
     ("2", "also Coriolis terms, polynomial in sin q and cos q, eqs. (14), (15)"),
     ("3", "Taylor polynomial of the whole forward dynamics, eq. (16)"),
 ];
 
 /// Parses a name and removes the space around it.
-pub fn trimmed(text: &str) -> Result<String, std::convert::Infallible> {
+pub(crate) fn trimmed(text: &str) -> Result<String, std::convert::Infallible> {
     Ok(text.trim().into())
 }
 
 /// Parses a duration above 0 \[s\].
-pub fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     positive(text).ok_or_else(|| "give a number of seconds above 0".into())
 }
 
 /// Parses a speed above 0 \[rad/s or m/s\].
-pub fn speed(text: &str) -> Result<f64, String> {
+pub(crate) fn speed(text: &str) -> Result<f64, String> {
     positive(text).ok_or_else(|| "give a speed above 0 in rad/s or m/s".into())
 }
 
 /// Parses a frequency above 0 \[Hz\].
-pub fn hertz(text: &str) -> Result<f64, String> {
+pub(crate) fn hertz(text: &str) -> Result<f64, String> {
     positive(text).ok_or_else(|| "give a frequency above 0 in Hz".into())
 }
 
@@ -60,7 +60,7 @@ fn positive(text: &str) -> Option<f64> {
 }
 
 /// Parses a setting by its name in model files; each name comes with its explanation.
-pub fn choice<T>(names: Choices) -> impl TypedValueParser<Value = T>
+pub(crate) fn choice<T>(names: Choices) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,
 {
@@ -68,7 +68,7 @@ where
 }
 
 /// Parses a setting that is one of a few numbers; each number comes with its explanation.
-pub fn numbered_choice<T>(numbers: Choices) -> impl TypedValueParser<Value = T>
+pub(crate) fn numbered_choice<T>(numbers: Choices) -> impl TypedValueParser<Value = T>
 where
     T: DeserializeOwned + Clone + Send + Sync + 'static,
 {
@@ -76,7 +76,7 @@ where
 }
 
 /// Parses one of a few names, each with its explanation.
-pub fn explained(values: Choices) -> PossibleValuesParser {
+pub(crate) fn explained(values: Choices) -> PossibleValuesParser {
     let value = |&(name, help): &(_, _)| PossibleValue::new(name).help(help);
     PossibleValuesParser::new(values.iter().map(value).collect::<Vec<_>>())
 }

@@ -1,7 +1,7 @@
 //! The result of a command that did not fail, as its exit code reports it.
 
 /// The result of a command that did not fail.
-pub enum Outcome {
+pub(crate) enum Outcome {
     /// The command is done, and a verdict, if there is one, is conformant.
     Done,
     /// The verdict is not conformant.
@@ -10,7 +10,7 @@ pub enum Outcome {
 
 impl Outcome {
     /// Returns the outcome of a verdict.
-    pub fn of(conformant: bool) -> Self {
+    pub(crate) fn of(conformant: bool) -> Self {
         if conformant { Self::Done } else { Self::NotConformant }
     }
 }

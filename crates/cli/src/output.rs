@@ -12,12 +12,12 @@ use crate::global::global;
 const MOST_NOTES: usize = 20;
 
 /// Prints a result as text. A reader that closes the pipe early is not an error.
-pub fn print(text: &str) -> Result<()> {
+pub(crate) fn print(text: &str) -> Result<()> {
     write_out(printable(text).as_bytes())
 }
 
 /// Writes bytes to standard output.
-pub fn write_out(bytes: &[u8]) -> Result<()> {
+pub(crate) fn write_out(bytes: &[u8]) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Output(error)),
@@ -26,14 +26,14 @@ pub fn write_out(bytes: &[u8]) -> Result<()> {
 }
 
 /// Prints a result as JSON.
-pub fn print_json(value: &impl Serialize) -> Result<()> {
+pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).expect("results have string keys");
     print_json_text(&(text + "\n"))
 }
 
 /// Prints text that is JSON already. JSON escapes control characters itself, but for those from
 /// U+007F to U+009F, which terminals obey too.
-pub fn print_json_text(text: &str) -> Result<()> {
+pub(crate) fn print_json_text(text: &str) -> Result<()> {
     let escaped = |c: char| match c {
         '\u{7f}'..='\u{9f}' => format!("\\u{:04x}", u32::from(c)),
         c => c.to_string(),
@@ -46,52 +46,56 @@ pub fn print_json_text(text: &str) -> Result<()> {
 }
 
 /// Prints a result as JSON or as text.
-pub fn show(json: bool, value: &impl Serialize, text: impl FnOnce() -> String) -> Result<()> {
+pub(crate) fn show(
+    json: bool,
+    value: &impl Serialize,
+    text: impl FnOnce() -> String,
+) -> Result<()> {
     if json { print_json(value) } else { print(&text()) }
 }
 
 /// Checks, before a long job, that a file can be written at `path` and that none is lost by it.
 /// Every file that a command writes passes here or through [`claim_all`].
-pub fn claim(path: &Path) -> Result<()> {
+pub(crate) fn claim(path: &Path) -> Result<()> {
     Ok(global().overwrite().check(path)?)
 }
 
 /// Claims all files of a result before the first of them is written.
-pub fn claim_all<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+pub(crate) fn claim_all<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
     paths.into_iter().try_for_each(|path| claim(path))
 }
 
 /// Reports a file that was written.
-pub fn wrote(path: &Path) {
+pub(crate) fn wrote(path: &Path) {
     note(&format!("wrote {}", path.display()));
 }
 
 /// Prints a note on standard error. A closed standard error is ignored: nobody reads it.
-pub fn note(text: &str) {
+pub(crate) fn note(text: &str) {
     if !global().quiet {
         line("note", text);
     }
 }
 
 /// Prints a note that only `--verbose` asks for.
-pub fn detail(text: &str) {
+pub(crate) fn detail(text: &str) {
     if global().verbose {
         line("note", text);
     }
 }
 
 /// Prints a warning on standard error.
-pub fn warn(text: &str) {
+pub(crate) fn warn(text: &str) {
     line("warning", text);
 }
 
 /// Prints an error on standard error, each of its lines marked as one.
-pub fn error(text: &str) {
+pub(crate) fn error(text: &str) {
     text.lines().for_each(|text| line("error", text));
 }
 
 /// Prints an error as one line of JSON on standard error.
-pub fn json_error(error: &str, kind: &str, exit_code: u8) {
+pub(crate) fn json_error(error: &str, kind: &str, exit_code: u8) {
     let object = serde_json::json!({ "error": error, "kind": kind, "exit_code": exit_code });
     let _ = writeln!(std::io::stderr(), "{object}");
 }
@@ -101,7 +105,7 @@ fn line(kind: &str, text: &str) {
 }
 
 /// Prints the first notes of a list, and the number of the others; all notes with `--verbose`.
-pub fn notes(notes: &[String]) {
+pub(crate) fn notes(notes: &[String]) {
     let most = if global().verbose { notes.len() } else { MOST_NOTES };
     notes.iter().take(most).for_each(|text| note(text));
     if notes.len() > most {
@@ -111,7 +115,7 @@ pub fn notes(notes: &[String]) {
 
 /// Returns text in which control characters are written as escapes, except the ends of lines. Names
 /// in files can hold codes that would move the cursor of a terminal or change its colours.
-pub fn printable(text: &str) -> String {
+pub(crate) fn printable(text: &str) -> String {
     let escaped = |c: char| match c {
         '\n' => c.to_string(),
         c if c.is_control() => format!("\\u{{{:x}}}", u32::from(c)),

@@ -18,7 +18,7 @@ const REFRESH: Duration = Duration::from_millis(100);
 const BAR: u64 = 32;
 
 /// Progress of one job. Nothing is drawn unless standard error is a terminal.
-pub struct Progress {
+pub(crate) struct Progress {
     bar: ProgressBar,
     job: &'static str,
     started: Instant,
@@ -26,12 +26,12 @@ pub struct Progress {
 
 impl Progress {
     /// Shows progress in reading recordings.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self::with("reading recordings", "the job")
     }
 
     /// Shows progress in the job that `doing` names.
-    pub fn of(doing: &'static str) -> Self {
+    pub(crate) fn of(doing: &'static str) -> Self {
         Self::with(doing, doing)
     }
 
@@ -48,7 +48,7 @@ impl Progress {
     }
 
     /// Reports that `done` of `total` parts are finished; parallel parts may report out of order.
-    pub fn show(&self, done: usize, total: usize) {
+    pub(crate) fn show(&self, done: usize, total: usize) {
         self.bar.update(|state| {
             state.set_len(total as u64);
             state.set_pos(state.pos().max(done as u64));
@@ -56,7 +56,7 @@ impl Progress {
     }
 
     /// Prints a note above the bar.
-    pub fn note(&self, text: &str) {
+    pub(crate) fn note(&self, text: &str) {
         self.bar.suspend(|| output::note(text));
     }
 }

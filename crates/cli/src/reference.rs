@@ -21,7 +21,7 @@ command means something else by them, its section says so.
 const GLOBAL: &str = "Global options";
 
 /// Returns the page for a command line that was built.
-pub fn markdown(command: Command) -> String {
+pub(crate) fn markdown(command: Command) -> String {
     let mut page = OPENING.to_string();
     let _ = writeln!(page, "\n## {GLOBAL}\n\nEvery command has these options.\n");
     for arg in command.get_arguments().filter(|arg| arg.get_help_heading() == Some(GLOBAL)) {

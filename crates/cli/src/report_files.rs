@@ -11,12 +11,12 @@ use crate::error::Result;
 use crate::{file_names, output};
 
 /// Returns where the page is written in `folder`.
-pub fn page_in(folder: &Path) -> PathBuf {
+pub(crate) fn page_in(folder: &Path) -> PathBuf {
     folder.join("report.html")
 }
 
 /// Writes the page and its figures to `folder` and returns the page's path.
-pub fn write(sources: &Sources, assets: Assets, folder: &Path) -> Result<PathBuf> {
+pub(crate) fn write(sources: &Sources, assets: Assets, folder: &Path) -> Result<PathBuf> {
     let path = page_in(folder);
     let library = folder.join(LIBRARY_FILE);
     output::claim(&path)?;
@@ -37,7 +37,7 @@ pub fn write(sources: &Sources, assets: Assets, folder: &Path) -> Result<PathBuf
 }
 
 /// Writes one SVG file per suite and view: A_motion.svg, A_deviation.svg.
-pub fn write_figures(page: &Page, folder: &Path) -> Result<()> {
+pub(crate) fn write_figures(page: &Page, folder: &Path) -> Result<()> {
     let mut figures = Vec::new();
     for (figure, name) in page.suites.iter().zip(file_names::of_figures(&page.suites)) {
         for &view in figure.views() {

@@ -24,7 +24,7 @@ const COMMAND: &str = "conform";
 const OPTION: &str = "settings";
 
 /// Parses the command line, with the settings file that it names.
-pub fn parse(line: Vec<OsString>) -> Result<Cli> {
+pub(crate) fn parse(line: Vec<OsString>) -> Result<Cli> {
     // Options that the file gives may be missing from the command line.
     let first = Cli::command().ignore_errors(true).try_get_matches_from(&line);
     let given = first.as_ref().ok().and_then(|matches| matches.subcommand_matches(COMMAND));

@@ -5,7 +5,7 @@ use reachtube::report::TextTable;
 use crate::output::printable;
 
 /// Returns the word in the number that `count` asks for.
-pub fn plural(count: usize, word: &str) -> String {
+pub(crate) fn plural(count: usize, word: &str) -> String {
     format!("{word}{}", if count == 1 { "" } else { "s" })
 }
 
@@ -15,18 +15,18 @@ fn one_line(text: &str) -> String {
 }
 
 /// Lays out a table of the library under its title.
-pub fn titled(text: &TextTable) -> String {
+pub(crate) fn titled(text: &TextTable) -> String {
     format!("{}\n\n{}", one_line(&text.title), untitled(text))
 }
 
 /// Lays out a table of the library.
-pub fn untitled(text: &TextTable) -> String {
+pub(crate) fn untitled(text: &TextTable) -> String {
     let header: Vec<&str> = text.header.iter().map(String::as_str).collect();
     table(&header, &text.rows)
 }
 
 /// Lays out a table: the first column is left-aligned, the others are right-aligned.
-pub fn table(header: &[&str], rows: &[Vec<String>]) -> String {
+pub(crate) fn table(header: &[&str], rows: &[Vec<String>]) -> String {
     let rows: Vec<Vec<String>> =
         rows.iter().map(|row| row.iter().map(|cell| one_line(cell)).collect()).collect();
     let width = |column: usize| {

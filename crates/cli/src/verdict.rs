@@ -5,7 +5,7 @@ use reachtube::conform::{Lost, Notion, TraceVerdict};
 use reachtube::number::at_least;
 
 /// Reports where a reachable set ended before its suite.
-pub fn lost(lost: &Lost) -> String {
+pub(crate) fn lost(lost: &Lost) -> String {
     format!(
         "{}: the reachable set could not be computed beyond {:.3} s, where {} grew fastest; later \
          samples are not enclosed (--until {:.3} uses only the samples before)",
@@ -14,7 +14,7 @@ pub fn lost(lost: &Lost) -> String {
 }
 
 /// Says in which directions recorded points must lie in the reachable set.
-pub fn notion_words(notion: Notion) -> &'static str {
+pub(crate) fn notion_words(notion: Notion) -> &'static str {
     match notion {
         Notion::Hull => "each state by itself",
         Notion::PhasePlane => "position and velocity of each joint together",
@@ -23,7 +23,7 @@ pub fn notion_words(notion: Notion) -> &'static str {
 }
 
 /// Says how many recordings are motions of the model, and what U lacks for the others.
-pub fn traces(traces: &TraceVerdict, runs: usize, disturbance: Disturbance) -> String {
+pub(crate) fn traces(traces: &TraceVerdict, runs: usize, disturbance: Disturbance) -> String {
     let mut text = format!(
         "{} of {runs} recordings proved to be one motion of the model each, within V",
         runs - traces.unproved

@@ -13,7 +13,7 @@ const REMEDY: &str =
 
 /// How the virtual robot differs from its nominal model.
 #[derive(Debug, Args)]
-pub struct VirtualRobotArguments {
+pub(crate) struct VirtualRobotArguments {
     /// Parameters of the virtual robot, a TOML file as docs/campaign.md describes; those that it
     /// does not have keep their defaults
     #[arg(long, value_name = "FILE")]
@@ -22,7 +22,7 @@ pub struct VirtualRobotArguments {
 
 impl VirtualRobotArguments {
     /// Returns the parameters.
-    pub fn parameters(&self) -> Result<VirtualRobotParameters> {
+    pub(crate) fn parameters(&self) -> Result<VirtualRobotParameters> {
         let Some(path) = &self.parameters else { return Ok(VirtualRobotParameters::default()) };
         let text = reachtube_files::read_text(path, REMEDY)?;
         toml::from_str(&text).map_err(|error| Error::SettingsSyntax {

@@ -20,7 +20,7 @@ const VERTEX_VARIABLES: [usize; 3] = [8, 14, 18];
 
 /// How hard to try where a set is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
+pub(crate) enum Effort {
     /// Once: for candidates.
     Quick,
     /// With tighter and tighter remainders: for the verdict.
@@ -121,7 +121,7 @@ fn attempt(
 
 /// How recordings lie to a computed reachable set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Enclosed {
+pub(crate) enum Enclosed {
     /// All rows hold.
     Yes,
     /// The set was followed to the end, and a row does not hold.
@@ -136,7 +136,7 @@ pub enum Enclosed {
 /// # Errors
 ///
 /// When sizes do not fit.
-pub fn rows_outside(
+pub(crate) fn rows_outside(
     problem: &Problem,
     case: &Case,
     sets: &UncertaintySets,
@@ -155,7 +155,7 @@ pub fn rows_outside(
 /// # Errors
 ///
 /// When sizes do not fit.
-pub fn enclosed(
+pub(crate) fn enclosed(
     problem: &Problem,
     case: &Case,
     sets: &UncertaintySets,

@@ -46,7 +46,7 @@ pub(crate) enum Deciding {
 impl Deciding {
     /// Returns whether one side of a row decides the sets; `case` is that of the row, where hulls
     /// belong to cases.
-    pub fn contains(&self, case: Option<usize>, row: &Row, edge: &Edge) -> bool {
+    pub(crate) fn contains(&self, case: Option<usize>, row: &Row, edge: &Edge) -> bool {
         match self {
             Self::Touching(part) => edge.excess >= -part * row.radius,
             Self::Rows(rows, _) => {

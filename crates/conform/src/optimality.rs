@@ -5,7 +5,7 @@ pub const LARGEST_GAP: f64 = 1e-6;
 
 /// Relative gap above which sets for the points themselves, and not only their hull, are not called
 /// the smallest: cutting planes end below it.
-pub const LARGEST_GAP_OF_POINTS: f64 = 1e-4;
+pub(crate) const LARGEST_GAP_OF_POINTS: f64 = 1e-4;
 
 /// Returns how far `cost` may be above the least cost, relative to the `lower_bound` of the
 /// program. Costs that differ by less than `negligible` are equal: sets of rounding only have no

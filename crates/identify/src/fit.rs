@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// Condition beyond which a combination of parameters counts as undetermined: a rigid robot's
 /// torque is not known to one part in ten thousand of a column.
-pub const CONDITION_LIMIT: f64 = 1e4;
+pub(crate) const CONDITION_LIMIT: f64 = 1e4;
 
 /// Rounds of reweighting; the weights change by less than 1 % after three.
 const ROUNDS: usize = 4;

@@ -46,7 +46,7 @@ pub(crate) struct Plausibility {
 
 impl Fitted {
     /// Fits gravity and friction in alternation, then the inertial parameters.
-    pub fn new(robot: &Robot, inputs: &Inputs, model: &ModelSettings) -> Result<Self> {
+    pub(crate) fn new(robot: &Robot, inputs: &Inputs, model: &ModelSettings) -> Result<Self> {
         let (rest, slow, sampling) = (&inputs.rest, &inputs.friction, &inputs.sampling);
         let first = fit_gravity_and_friction(robot, rest, slow, sampling, model)?;
         // Inertial parameters, with the friction and its load subtracted.
@@ -69,7 +69,7 @@ impl Fitted {
 
     /// Returns the gains of the joints, the offsets of their positions, and warnings about
     /// implausible results.
-    pub fn check(&self, robot: &Robot, inputs: &Inputs) -> Plausibility {
+    pub(crate) fn check(&self, robot: &Robot, inputs: &Inputs) -> Plausibility {
         check([robot, &self.known], &self.inertia, &self.friction, inputs)
     }
 }

@@ -34,7 +34,7 @@ const MIN_SLOW: f64 = 1e-4;
 const MOST_NUMBERS: usize = 8_000_000;
 
 /// The prepared recordings of an identification, and how samples are taken from them.
-pub struct Inputs {
+pub(crate) struct Inputs {
     /// Poses at rest.
     pub rest: Vec<Log>,
     /// Slow motions of one joint at a time.
@@ -60,7 +60,7 @@ impl Inputs {
     /// prepare them. Of many exciting motions not all samples are kept.
     ///
     /// The controllers of `robot` compensate, where a recording has the input u.
-    pub fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {
+    pub(crate) fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {
         let IdentifySettings { rest, friction, dynamic, validate, prepare, model, .. } = settings;
         let groups = [rest, friction, dynamic, validate];
         let sources = groups.map(|entries| sources(entries, folder)).into_iter();
@@ -115,7 +115,7 @@ impl Inputs {
 
     /// Returns whether there are validation recordings, and the recordings for the validation:
     /// these or else the exciting motions.
-    pub fn validation(&self) -> (bool, &[Log]) {
+    pub(crate) fn validation(&self) -> (bool, &[Log]) {
         let kept_back = !self.validate.is_empty();
         (kept_back, if kept_back { &self.validate } else { &self.dynamic })
     }

@@ -4,7 +4,7 @@
 /// each part without and with it: by more than two standard errors of the mean gain.
 ///
 /// The rule favours the simpler law, since the best of several laws looks better than it is.
-pub fn gains(without: &[f64], with: &[f64]) -> bool {
+pub(crate) fn gains(without: &[f64], with: &[f64]) -> bool {
     let gains: Vec<f64> = without.iter().zip(with).map(|(a, b)| a - b).collect();
     let count = gains.len() as f64;
     let mean = gains.iter().sum::<f64>() / count;

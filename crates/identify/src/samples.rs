@@ -13,10 +13,10 @@ use std::ops::Range;
 const MOST_SAMPLES: usize = 30_000;
 
 /// Shortest rest that counts as a pose \[s\].
-pub const SHORTEST_REST: f64 = 0.5;
+pub(crate) const SHORTEST_REST: f64 = 0.5;
 
 /// Returns the number of samples that are used of a group of recordings with `total` samples.
-pub fn most_samples(total: usize) -> usize {
+pub(crate) fn most_samples(total: usize) -> usize {
     total.clamp(1, MOST_SAMPLES)
 }
 

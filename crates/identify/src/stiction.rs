@@ -33,7 +33,7 @@ pub struct KnownFriction<'a> {
 
 /// Returns the sign of the last velocity of each joint before sample `rest` that was above `speed`
 /// \[rad/s\], n entries; 0 where the recording has none.
-pub fn sides(log: &Log, rest: usize, speed: f64) -> Vec<f64> {
+pub(crate) fn sides(log: &Log, rest: usize, speed: f64) -> Vec<f64> {
     let of_joint = |joint: usize| {
         let before = (0..rest).rev().map(|k| log.qd(k)[joint]);
         before.into_iter().find(|qd| qd.abs() > speed).map_or(0.0, f64::signum)
@@ -119,7 +119,7 @@ impl Rests {
 
 /// Takes out of rows what columns with coefficients of variance 1, in units of the noise, explain:
 /// multiplies each column of `rows` by the square root of (I + N Nᵀ)⁻¹ for the columns N.
-pub fn discount(columns: &DMatrix<f64>, rows: &mut DMatrix<f64>) {
+pub(crate) fn discount(columns: &DMatrix<f64>, rows: &mut DMatrix<f64>) {
     if columns.amax() == 0.0 {
         return;
     }
@@ -137,7 +137,7 @@ pub fn discount(columns: &DMatrix<f64>, rows: &mut DMatrix<f64>) {
 /// Returns a warning for each joint that comes to nearly all its rests from one side.
 ///
 /// `sides` are row-major rests x n.
-pub fn one_sided(robot: &Robot, sides: &[f64]) -> Vec<String> {
+pub(crate) fn one_sided(robot: &Robot, sides: &[f64]) -> Vec<String> {
     let n = robot.joint_count();
     let warning = |(joint, name): (usize, &String)| {
         let own = || sides.iter().skip(joint).step_by(n);
@@ -158,7 +158,7 @@ pub fn one_sided(robot: &Robot, sides: &[f64]) -> Vec<String> {
 
 /// Returns a sentence about the rests of which the recordings do not show how they were reached, if
 /// there are any. `sides` are row-major rests x n.
-pub fn unknown_sides(sides: &[f64], joints: usize) -> Option<String> {
+pub(crate) fn unknown_sides(sides: &[f64], joints: usize) -> Option<String> {
     let rests = sides.chunks_exact(joints);
     let (count, unknown) =
         (rests.len(), rests.filter(|sides| sides.iter().all(|side| *side == 0.0)).count());

@@ -10,7 +10,7 @@ use reachtube_robot::{
 /// Returns the robot with the gravity of its links.
 ///
 /// Without `motor_inertia` it has no motor inertia either, because the torque does not drive it.
-pub fn with_gravity_of_links(robot: &Robot, motor_inertia: bool) -> Result<Robot> {
+pub(crate) fn with_gravity_of_links(robot: &Robot, motor_inertia: bool) -> Result<Robot> {
     let mut description = robot.description().clone();
     for joint in &mut description.joints {
         joint.gravity_moments = None;
@@ -22,7 +22,7 @@ pub fn with_gravity_of_links(robot: &Robot, motor_inertia: bool) -> Result<Robot
 }
 
 /// Returns the robot with other friction, one entry per joint.
-pub fn with_friction(robot: &Robot, friction: &[FrictionDescription]) -> Result<Robot> {
+pub(crate) fn with_friction(robot: &Robot, friction: &[FrictionDescription]) -> Result<Robot> {
     let mut description = robot.description().clone();
     for (joint, friction) in description.joints.iter_mut().zip(friction) {
         joint.friction = *friction;
@@ -31,7 +31,7 @@ pub fn with_friction(robot: &Robot, friction: &[FrictionDescription]) -> Result<
 }
 
 /// Returns the robot with other inertial parameters, which need not be physically consistent.
-pub fn with_parameters(
+pub(crate) fn with_parameters(
     robot: &Robot,
     columns: &[Parameter],
     values: &DVector<f64>,
@@ -41,7 +41,7 @@ pub fn with_parameters(
 }
 
 /// Gives a description the gravity moments of a fitted robot.
-pub fn set_gravity_moments(description: &mut RobotDescription, fitted: &Robot) {
+pub(crate) fn set_gravity_moments(description: &mut RobotDescription, fitted: &Robot) {
     let parameters = fitted.inertial_parameters();
     for (joint, link) in description.joints.iter_mut().zip(parameters.chunks_exact(PER_LINK)) {
         joint.gravity_moments =

@@ -53,14 +53,14 @@ const MIN_ERROR: f64 = 1e-4;
 
 impl StepControl {
     /// Returns the control before the first step.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { proposal: None, previous_error: MIN_ERROR, rejected: false }
     }
 
     /// Proposes the next step size after a step of size h \[s\] with an error of at most 1.
     ///
     /// A `shortened` step, which ends at the end of the span, does not reduce a longer proposal.
-    pub fn accept(&mut self, h: f64, error: f64, shortened: bool) {
+    pub(crate) fn accept(&mut self, h: f64, error: f64, shortened: bool) {
         let ratio = SAFETY * self.previous_error.powf(BETA) / error.powf(ALPHA);
         let max_ratio = if self.rejected { 1.0 } else { RATIO[1] };
         let next = h * ratio.clamp(RATIO[0], max_ratio);
@@ -74,7 +74,7 @@ impl StepControl {
     }
 
     /// Proposes a smaller step size after a step of size h \[s\] with an error above 1, or NaN.
-    pub fn reject(&mut self, h: f64, error: f64) {
+    pub(crate) fn reject(&mut self, h: f64, error: f64) {
         let ratio = SAFETY / error.powf(ALPHA);
         // A NaN compares false and gives the smallest ratio.
         self.proposal = Some(h * if ratio > RATIO[0] { ratio } else { RATIO[0] });

@@ -32,19 +32,19 @@ pub(crate) struct Planned {
 
 impl Motion {
     /// Returns a motion of one joint by `travel` \[rad\], with the others at rest.
-    pub fn along(start: Vec<f64>, joint: usize, travel: f64, duration: f64) -> Self {
+    pub(crate) fn along(start: Vec<f64>, joint: usize, travel: f64, duration: f64) -> Self {
         let travel = (0..start.len()).map(|i| if i == joint { travel } else { 0.0 }).collect();
         Self { start, travel, duration }
     }
 
     /// Returns the number of whole cycles that the motion lasts.
-    pub fn cycles(&self) -> usize {
+    pub(crate) fn cycles(&self) -> usize {
         (self.duration / SAMPLE_TIME).round() as usize
     }
 
     /// Returns the plan at time `t` \[s\]: q = start + s(t / T) travel with
     /// s(x) = 10 x³ - 15 x⁴ + 6 x⁵; at rest outside \[0, T\].
-    pub fn at(&self, t: f64) -> Planned {
+    pub(crate) fn at(&self, t: f64) -> Planned {
         let x = (t / self.duration).clamp(0.0, 1.0);
         let rest = 1.0 - x;
         let s = x * x * x * (10.0 + x * (6.0 * x - 15.0));
@@ -64,7 +64,7 @@ impl Motion {
 
     /// Returns the input (11) that moves the nominal robot along the plan at time `t` \[s\]:
     /// u = M_m q̈ + c + τ_v \[N m\], n.
-    pub fn input(&self, robot: &Robot, t: f64) -> Vec<f64> {
+    pub(crate) fn input(&self, robot: &Robot, t: f64) -> Vec<f64> {
         let Planned { q, qd, qdd } = self.at(t);
         let link = robot.inverse_dynamics(&q, &qd, &qdd);
         robot.input_from_link_torque(&q, &qd, link.as_slice()).data.into()
@@ -72,7 +72,7 @@ impl Motion {
 
     /// Returns the input to hold over sample `k` \[N m\], n: the input in the middle of the sample,
     /// which follows the plan better than the one at its start.
-    pub fn held_input(&self, robot: &Robot, k: usize) -> Vec<f64> {
+    pub(crate) fn held_input(&self, robot: &Robot, k: usize) -> Vec<f64> {
         self.input(robot, (k as f64 + 0.5) * SAMPLE_TIME)
     }
 }

@@ -54,7 +54,7 @@ pub(crate) struct JointOfRun {
 
 impl RunSummary {
     /// Summarises run `index` of a source; `first` is the first run of its group.
-    pub fn new(source: &dyn RunSource, index: usize, run: &Run, first: &Run) -> Self {
+    pub(crate) fn new(source: &dyn RunSource, index: usize, run: &Run, first: &Run) -> Self {
         let steps = run.times.windows(2).map(|pair| pair[1] - pair[0]);
         Self {
             order: source.runs()[index].order,
@@ -70,12 +70,12 @@ impl RunSummary {
     }
 
     /// Returns whether the run has recorded temperatures.
-    pub fn has_temperatures(&self) -> bool {
+    pub(crate) fn has_temperatures(&self) -> bool {
         self.joints.iter().any(|joint| joint.temperature.is_some())
     }
 
     /// Returns the number of joints n.
-    pub fn joint_count(&self) -> usize {
+    pub(crate) fn joint_count(&self) -> usize {
         self.joints.len()
     }
 }

@@ -48,23 +48,23 @@ pub(crate) fn det2<S: Scalar>(a: &S, b: &S, c: &S, d: &S) -> S {
 
 impl<S: Scalar> Vec3<S> {
     #[inline(always)]
-    pub fn new(x: S, y: S, z: S) -> Self {
+    pub(crate) fn new(x: S, y: S, z: S) -> Self {
         Self { x, y, z }
     }
 
     #[inline(always)]
-    pub fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self::new(S::zero(), S::zero(), S::zero())
     }
 
     #[inline(always)]
-    pub fn constant(v: [f64; 3]) -> Self {
+    pub(crate) fn constant(v: [f64; 3]) -> Self {
         let [x, y, z] = v.map(S::from);
         Self { x, y, z }
     }
 
     #[inline(always)]
-    pub fn cross(&self, b: &Self) -> Self {
+    pub(crate) fn cross(&self, b: &Self) -> Self {
         Self::new(
             det2(&self.y, &b.z, &self.z, &b.y),
             det2(&self.z, &b.x, &self.x, &b.z),
@@ -73,29 +73,29 @@ impl<S: Scalar> Vec3<S> {
     }
 
     #[inline(always)]
-    pub fn dot(&self, b: &Self) -> S {
+    pub(crate) fn dot(&self, b: &Self) -> S {
         sum2(&self.x, &b.x, &self.y, &b.y) + mul(&self.z, &b.z)
     }
 
     #[inline(always)]
-    pub fn scaled(&self, k: &S) -> Self {
+    pub(crate) fn scaled(&self, k: &S) -> Self {
         Self::new(mul(&self.x, k), mul(&self.y, k), mul(&self.z, k))
     }
 
     #[inline(always)]
-    pub fn plus(self, b: &Self) -> Self {
+    pub(crate) fn plus(self, b: &Self) -> Self {
         Self::new(self.x + b.x.clone(), self.y + b.y.clone(), self.z + b.z.clone())
     }
 
     #[inline(always)]
-    pub fn accumulate(&mut self, b: &Self) {
+    pub(crate) fn accumulate(&mut self, b: &Self) {
         self.x += b.x.clone();
         self.y += b.y.clone();
         self.z += b.z.clone();
     }
 
     #[inline(always)]
-    pub fn subtract(&mut self, b: &Self) {
+    pub(crate) fn subtract(&mut self, b: &Self) {
         self.x -= b.x.clone();
         self.y -= b.y.clone();
         self.z -= b.z.clone();
@@ -104,13 +104,13 @@ impl<S: Scalar> Vec3<S> {
 
 impl<S: Scalar> Sym3<S> {
     #[inline(always)]
-    pub fn constant(m: [f64; 6]) -> Self {
+    pub(crate) fn constant(m: [f64; 6]) -> Self {
         let [xx, xy, xz, yy, yz, zz] = m.map(S::from);
         Self { xx, xy, xz, yy, yz, zz }
     }
 
     #[inline(always)]
-    pub fn times(&self, v: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn times(&self, v: &Vec3<S>) -> Vec3<S> {
         Vec3::new(
             sum2(&self.xx, &v.x, &self.xy, &v.y) + mul(&self.xz, &v.z),
             sum2(&self.xy, &v.x, &self.yy, &v.y) + mul(&self.yz, &v.z),
@@ -119,7 +119,7 @@ impl<S: Scalar> Sym3<S> {
     }
 
     #[inline(always)]
-    pub fn accumulate(&mut self, b: &Self) {
+    pub(crate) fn accumulate(&mut self, b: &Self) {
         self.xx += b.xx.clone();
         self.xy += b.xy.clone();
         self.xz += b.xz.clone();
@@ -130,7 +130,7 @@ impl<S: Scalar> Sym3<S> {
 
     /// Adds a bᵀ + b aᵀ.
     #[inline(always)]
-    pub fn add_symmetric_product(&mut self, a: &Vec3<S>, b: &Vec3<S>) {
+    pub(crate) fn add_symmetric_product(&mut self, a: &Vec3<S>, b: &Vec3<S>) {
         let (xx, yy, zz) = (mul(&a.x, &b.x), mul(&a.y, &b.y), mul(&a.z, &b.z));
         self.xx += xx.clone() + xx;
         self.yy += yy.clone() + yy;
@@ -142,7 +142,7 @@ impl<S: Scalar> Sym3<S> {
 
     /// Subtracts a bᵀ, which is symmetric because b is parallel to a.
     #[inline(always)]
-    pub fn subtract_product(&mut self, a: &Vec3<S>, b: &Vec3<S>) {
+    pub(crate) fn subtract_product(&mut self, a: &Vec3<S>, b: &Vec3<S>) {
         self.xx -= mul(&a.x, &b.x);
         self.xy -= mul(&a.x, &b.y);
         self.xz -= mul(&a.x, &b.z);
@@ -154,7 +154,7 @@ impl<S: Scalar> Sym3<S> {
     /// Adds [p]× H'ᵀ - H [p]×, which is symmetric for H' = H + [p]× M; `h` and `shifted` hold the
     /// rows of H and H'.
     #[inline(always)]
-    pub fn add_shift(&mut self, p: &Vec3<S>, h: &[Vec3<S>; 3], shifted: &[Vec3<S>; 3]) {
+    pub(crate) fn add_shift(&mut self, p: &Vec3<S>, h: &[Vec3<S>; 3], shifted: &[Vec3<S>; 3]) {
         let (x, y, z) = (p.cross(&shifted[0]), p.cross(&shifted[1]), p.cross(&shifted[2]));
         // Row i of H [p]× is h_i × p.
         let (hx, hy, hz) = (p.cross(&h[0]), p.cross(&h[1]), p.cross(&h[2]));

@@ -41,7 +41,7 @@ pub(crate) struct ArticulatedBody<S> {
 
 impl<S: Scalar> ArticulatedScratch<S> {
     /// Returns scratch memory with neutral contents.
-    pub fn blank() -> Self {
+    pub(crate) fn blank() -> Self {
         let zero = Vec3::zero;
         let symmetric = || Sym3::constant([0.0; 6]);
         let body = ArticulatedBody {
@@ -66,7 +66,7 @@ impl<S: Scalar> ArticulatedScratch<S> {
     /// Computes all terms that depend on position and velocity only, and returns the link's motion
     /// at zero joint acceleration.
     #[inline(always)]
-    pub fn set_velocity_terms(
+    pub(crate) fn set_velocity_terms(
         &mut self,
         link: &Link,
         pose: Pose<S>,
@@ -103,7 +103,7 @@ impl<S: Scalar> ArticulatedScratch<S> {
     /// Replaces the body by what its parent feels through the joint: I^a = I^A - U Uᵀ / D and the
     /// bias wrench p^a = p^A + I^a c + U u / D.
     #[inline(always)]
-    pub fn eliminate_joint(&mut self, link: &Link, tau: &S) {
+    pub(crate) fn eliminate_joint(&mut self, link: &Link, tau: &S) {
         let body = &mut self.body;
         (self.axis_moment, self.axis_force) = body.along_axis(link.kind);
         let own = link.axis_component(&self.axis_force, &self.axis_moment);
@@ -124,7 +124,7 @@ impl<S: Scalar> ArticulatedScratch<S> {
 
     /// Adds the body, whose joint is eliminated, to its parent's in the parent's coordinates.
     #[inline(always)]
-    pub fn accumulate_to_parent(&self, parent: &mut ArticulatedBody<S>) {
+    pub(crate) fn accumulate_to_parent(&self, parent: &mut ArticulatedBody<S>) {
         let (pose, body, p) = (&self.pose, &self.body, &self.pose.origin);
         let force = pose.to_parent(&body.force);
         parent.moment.accumulate(&pose.to_parent(&body.moment));

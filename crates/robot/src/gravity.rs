@@ -20,7 +20,7 @@ pub(crate) enum GravityLoad<S> {
 impl<S: Scalar> GravityLoad<S> {
     /// Returns the base acceleration for the inertial parameters, and the one for the separate
     /// gravity parameters if there are any.
-    pub fn split(self) -> (Vec3<S>, Option<Vec3<S>>) {
+    pub(crate) fn split(self) -> (Vec3<S>, Option<Vec3<S>>) {
         match self {
             Self::None => (Vec3::zero(), None),
             Self::Inertial(acceleration) => (acceleration, None),

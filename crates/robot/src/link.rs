@@ -52,13 +52,13 @@ pub(crate) struct Link {
 impl Link {
     /// Returns the pose in the parent for sin q and cos q, or for q of a prismatic joint.
     #[inline(always)]
-    pub fn pose<S: Scalar>(&self, sin: &S, cos: &S) -> Pose<S> {
+    pub(crate) fn pose<S: Scalar>(&self, sin: &S, cos: &S) -> Pose<S> {
         self.pose_among::<S, true>(sin, cos)
     }
 
     /// Returns the pose in the parent in a robot that has prismatic joints only if `SLIDES`.
     #[inline(always)]
-    pub fn pose_among<S: Scalar, const SLIDES: bool>(&self, sin: &S, cos: &S) -> Pose<S> {
+    pub(crate) fn pose_among<S: Scalar, const SLIDES: bool>(&self, sin: &S, cos: &S) -> Pose<S> {
         if SLIDES && self.kind == JointKind::Prismatic {
             return self.pose_of_slide(sin);
         }
@@ -91,14 +91,14 @@ impl Link {
     /// Returns the component of a wrench that acts on the joint: the moment about its axis, or the
     /// force along it.
     #[inline(always)]
-    pub fn axis_component<S: Scalar>(&self, force: &Vec3<S>, moment: &Vec3<S>) -> S {
+    pub(crate) fn axis_component<S: Scalar>(&self, force: &Vec3<S>, moment: &Vec3<S>) -> S {
         self.axis_component_among::<S, true>(force, moment)
     }
 
     /// Returns the component of a wrench that acts on the joint, in a robot that has prismatic
     /// joints only if `SLIDES`.
     #[inline(always)]
-    pub fn axis_component_among<S: Scalar, const SLIDES: bool>(
+    pub(crate) fn axis_component_among<S: Scalar, const SLIDES: bool>(
         &self,
         force: &Vec3<S>,
         moment: &Vec3<S>,
@@ -109,7 +109,7 @@ impl Link {
 
     /// Returns the first and second moments.
     #[inline(always)]
-    pub fn moments<S: Scalar>(&self) -> (Vec3<S>, Sym3<S>) {
+    pub(crate) fn moments<S: Scalar>(&self) -> (Vec3<S>, Sym3<S>) {
         (Vec3::constant(self.first_moment), Sym3::constant(self.second_moments))
     }
 }

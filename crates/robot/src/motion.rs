@@ -20,13 +20,13 @@ pub(crate) struct AccelerationGradient<S>([S; 9]);
 impl<S: Scalar> Motion<S> {
     /// Returns a motion without velocity in which only the origin accelerates.
     #[inline(always)]
-    pub fn at_rest(acceleration: Vec3<S>) -> Self {
+    pub(crate) fn at_rest(acceleration: Vec3<S>) -> Self {
         Self { angular_velocity: Vec3::zero(), angular_acceleration: Vec3::zero(), acceleration }
     }
 
     /// Returns the motion of the first link, whose parent does not rotate.
     #[inline(always)]
-    pub fn of_first_link(
+    pub(crate) fn of_first_link(
         kind: JointKind,
         pose: &Pose<S>,
         base_acceleration: &Vec3<S>,
@@ -50,7 +50,7 @@ impl<S: Scalar> Motion<S> {
 
     /// Returns the motion of the next link from this link's motion and acceleration gradient.
     #[inline(always)]
-    pub fn of_child(
+    pub(crate) fn of_child(
         &self,
         kind: JointKind,
         gradient: &AccelerationGradient<S>,
@@ -78,7 +78,7 @@ impl<S: Scalar> Motion<S> {
 
     /// Returns K of this motion.
     #[inline(always)]
-    pub fn gradient(&self) -> AccelerationGradient<S> {
+    pub(crate) fn gradient(&self) -> AccelerationGradient<S> {
         let (w, a) = (&self.angular_velocity, &self.angular_acceleration);
         let (xx, yy, zz) = (mul(&w.x, &w.x), mul(&w.y, &w.y), mul(&w.z, &w.z));
         let (xy, xz, yz) = (mul(&w.x, &w.y), mul(&w.x, &w.z), mul(&w.y, &w.z));
@@ -106,7 +106,7 @@ pub(crate) fn coriolis_of_slide<S: Scalar>(w: &Vec3<S>, qd: &S) -> Vec3<S> {
 impl<S: Scalar> AccelerationGradient<S> {
     /// Returns K r.
     #[inline(always)]
-    pub fn times(&self, r: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn times(&self, r: &Vec3<S>) -> Vec3<S> {
         let k = &self.0;
         Vec3::new(
             sum2(&k[0], &r.x, &k[1], &r.y) + mul(&k[2], &r.z),
@@ -117,7 +117,7 @@ impl<S: Scalar> AccelerationGradient<S> {
 
     /// Returns Kᵀ v.
     #[inline(always)]
-    pub fn transposed_times(&self, v: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn transposed_times(&self, v: &Vec3<S>) -> Vec3<S> {
         let k = &self.0;
         Vec3::new(
             sum2(&k[0], &v.x, &k[3], &v.y) + mul(&k[6], &v.z),

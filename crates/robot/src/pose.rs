@@ -20,14 +20,14 @@ pub(crate) struct Pose<S> {
 
 impl<S: Scalar> Pose<S> {
     /// Returns the pose of a frame that coincides with its parent.
-    pub fn identity() -> Self {
+    pub(crate) fn identity() -> Self {
         let (zero, one) = (S::zero, S::one);
         Self { sin: zero(), cos: one(), sin_twist: zero(), cos_twist: one(), origin: Vec3::zero() }
     }
 
     /// Rotates a free vector from link to parent coordinates.
     #[inline(always)]
-    pub fn to_parent(&self, v: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn to_parent(&self, v: &Vec3<S>) -> Vec3<S> {
         let x = det2(&self.cos, &v.x, &self.sin, &v.y);
         let y = sum2(&self.sin, &v.x, &self.cos, &v.y);
         Vec3::new(
@@ -39,7 +39,7 @@ impl<S: Scalar> Pose<S> {
 
     /// Rotates a free vector from parent to link coordinates.
     #[inline(always)]
-    pub fn to_link(&self, v: &Vec3<S>) -> Vec3<S> {
+    pub(crate) fn to_link(&self, v: &Vec3<S>) -> Vec3<S> {
         let y = sum2(&self.cos_twist, &v.y, &self.sin_twist, &v.z);
         let z = det2(&self.cos_twist, &v.z, &self.sin_twist, &v.y);
         Vec3::new(sum2(&self.cos, &v.x, &self.sin, &y), det2(&self.cos, &y, &self.sin, &v.x), z)
@@ -47,7 +47,7 @@ impl<S: Scalar> Pose<S> {
 
     /// Returns E A Eᵀ, which is a symmetric A rotated from link to parent coordinates.
     #[inline(always)]
-    pub fn symmetric_to_parent(&self, a: &Sym3<S>) -> Sym3<S> {
+    pub(crate) fn symmetric_to_parent(&self, a: &Sym3<S>) -> Sym3<S> {
         let (s, c) = (&self.sin, &self.cos);
         let (px, py) = (det2(c, &a.xx, s, &a.xy), det2(c, &a.xy, s, &a.yy));
         let (qx, qy) = (sum2(s, &a.xx, c, &a.xy), sum2(s, &a.xy, c, &a.yy));
@@ -68,7 +68,7 @@ impl<S: Scalar> Pose<S> {
 
     /// Returns the rows of E H Eᵀ for a matrix H that is given by its rows.
     #[inline(always)]
-    pub fn general_to_parent(&self, h: &[Vec3<S>; 3]) -> [Vec3<S>; 3] {
+    pub(crate) fn general_to_parent(&self, h: &[Vec3<S>; 3]) -> [Vec3<S>; 3] {
         let [x, y, z] = [0, 1, 2].map(|i| self.to_parent(&h[i]));
         let column =
             |a: &S, b: &S, c: &S| self.to_parent(&Vec3::new(a.clone(), b.clone(), c.clone()));

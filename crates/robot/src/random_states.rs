@@ -11,18 +11,18 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 pub(crate) struct Random(SplitMix64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
     /// Returns a uniformly distributed number in [low, high).
-    pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
         let unit = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
         low + (high - low) * unit
     }
 
     /// Returns a standard normal number (Box & Muller).
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.uniform(0.0, 1.0), self.uniform(0.0, TAU));
         (-2.0 * u.ln()).sqrt() * v.cos()
     }

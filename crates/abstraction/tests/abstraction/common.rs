@@ -3,21 +3,21 @@ use reachtube_ode::{Ensemble, Run};
 use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::{Lanewise, Powers};
 
-pub const KINDS: [ModelKind; 3] = [ModelKind::One, ModelKind::Two, ModelKind::Three];
+pub(crate) const KINDS: [ModelKind; 3] = [ModelKind::One, ModelKind::Two, ModelKind::Three];
 
 /// Returns a reproducible number in [-1, 1].
-pub fn number(seed: &mut u64) -> f64 {
+pub(crate) fn number(seed: &mut u64) -> f64 {
     *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     (*seed >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-pub fn numbers(seed: &mut u64, count: usize, scale: f64) -> Vec<f64> {
+pub(crate) fn numbers(seed: &mut u64, count: usize, scale: f64) -> Vec<f64> {
     (0..count).map(|_| scale * number(seed)).collect()
 }
 
 /// Returns q̈ of (10), n, rad/s², by the articulated-body algorithm. The motor torque minus gravity
 /// and Coulomb friction is u.
-pub fn truth(robot: &Robot, q: &[f64], qd: &[f64], u: &[f64]) -> Vec<f64> {
+pub(crate) fn truth(robot: &Robot, q: &[f64], qd: &[f64], u: &[f64]) -> Vec<f64> {
     let n = robot.joint_count();
     let (sin, cos) = robot.sin_cos(q);
     let mut ws = Workspace::new(robot);
@@ -31,16 +31,16 @@ pub fn truth(robot: &Robot, q: &[f64], qd: &[f64], u: &[f64]) -> Vec<f64> {
     qdd
 }
 
-pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
-pub fn model(robot: &Robot, kind: ModelKind, order: u32) -> PolynomialModel {
+pub(crate) fn model(robot: &Robot, kind: ModelKind, order: u32) -> PolynomialModel {
     PolynomialModel::new(robot, kind, order, &ExpansionPoint::zero(robot.joint_count())).unwrap()
 }
 
 /// Returns the states at the samples of all runs, one run after the other.
-pub fn simulated<S: Lanewise + Powers>(
+pub(crate) fn simulated<S: Lanewise + Powers>(
     model: &PolynomialModel,
     times: &[f64],
     runs: &[Run<'_>],
@@ -57,13 +57,13 @@ pub fn simulated<S: Lanewise + Powers>(
 }
 
 /// Returns an arm with the axes of a usual arm of seven joints. Its masses and lengths are made up.
-pub fn seven_joints() -> Robot {
+pub(crate) fn seven_joints() -> Robot {
     Robot::from_toml(SEVEN_JOINTS, "seven joints").unwrap()
 }
 
 /// Returns the arm of seven joints without its motors. The inertia of its last joint is a
 /// thousandth of that of the first one, so its mass matrix changes by a multiple over small boxes.
-pub fn light_wrist() -> Robot {
+pub(crate) fn light_wrist() -> Robot {
     let lines = SEVEN_JOINTS.lines().filter(|line| !line.contains("armature"));
     Robot::from_toml(&lines.collect::<Vec<_>>().join("\n"), "light wrist").unwrap()
 }

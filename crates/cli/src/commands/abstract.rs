@@ -35,7 +35,7 @@ Examples:
 /// error, the forward dynamics minus the model.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
@@ -67,7 +67,7 @@ pub struct Arguments {
     pub out: Option<PathBuf>,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     robot.check_physical()?;
     let point = ExpansionPoint::from_values(&args.at, robot.joint_count())?;

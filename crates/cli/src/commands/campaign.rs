@@ -29,7 +29,7 @@ Its README.md has all commands. A campaign that was stopped goes on when it is s
 /// static poses, slow motions of single joints, and exciting motions. No file is overwritten.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Folder for the recordings
     #[arg(long, value_name = "FOLDER")]
     pub out: PathBuf,
@@ -65,7 +65,7 @@ pub struct Arguments {
 }
 
 /// Runs the campaign.
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let bar = Progress::of("recording");
     let progress = |done: usize, total: usize| bar.show(done, total);
     let recorded = record(&Robot::lwa4p(), &options(args)?, &args.out, &progress)?;

@@ -32,7 +32,7 @@ Exit codes: 0 all recordings were proved to lie in the reachable set, at samples
 /// Check whether a model encloses other recordings
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
     /// Directions in which the recordings must lie in the reachable set [default: those of the
@@ -41,7 +41,7 @@ pub struct Arguments {
     pub notion: Option<Notion>,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model, args.notion, Keep::Needed)?;
     let check = opened.check()?;
     output::notes(&check.notes);
@@ -53,7 +53,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 }
 
 /// Returns the result of `check` of a model, with one line per suite.
-pub fn summary(check: &Check, model: &Model) -> String {
+pub(crate) fn summary(check: &Check, model: &Model) -> String {
     let (verdict, kinds) = (&check.verdict, &model.robot.kinds());
     let set = verdict.enclosure.set_name();
     let outcome = if verdict.conformant { "conformant" } else { "not conformant" };

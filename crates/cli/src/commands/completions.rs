@@ -22,7 +22,7 @@ Examples:
 /// Print a script that completes commands and options in a shell, or write those of all shells
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// The shell
     #[arg(required_unless_present = "out", conflicts_with = "out")]
     pub shell: Option<Shell>,
@@ -42,7 +42,7 @@ const PLACES: [(Shell, &str); 5] = [
     (Shell::Zsh, "zsh/site-functions/_reachtube"),
 ];
 
-pub fn run(args: &Arguments) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments) -> Result<Outcome> {
     if let Some(folder) = &args.out {
         write_all(folder)?;
     } else if let Some(shell) = args.shell {

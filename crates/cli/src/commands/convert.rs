@@ -48,7 +48,7 @@ const TIMES: Choices = &[
 /// Without --intervals, --marker and --repeats, each log is one run.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot, for the names of its joints: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
@@ -94,7 +94,7 @@ pub struct Arguments {
     pub out: PathBuf,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let options = options(args)?;
     output::claim(&args.out.join("runs.csv"))?;
     let intervals = args.intervals.as_deref().map(Intervals::read).transpose()?;

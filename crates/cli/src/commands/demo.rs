@@ -43,7 +43,7 @@ Example:
 /// the model was made from, one on motions that were held out.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Folder for the recordings, the model and the reports
     #[arg(long, value_name = "FOLDER", default_value = "reachtube-demo")]
     pub out: PathBuf,
@@ -56,7 +56,7 @@ pub struct Arguments {
 
 /// Runs the demo. The outcome is the model's verdict on the recordings that it was made from;
 /// motions that were held out may leave its sets, which the demo shows.
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = Robot::lwa4p();
     let folder = args.out.join("recordings");
     let path = args.out.join("model.json");

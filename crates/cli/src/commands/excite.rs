@@ -28,7 +28,7 @@ surroundings before you run it.";
 /// Each joint follows a Fourier series that starts and ends at rest.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
@@ -77,7 +77,7 @@ const MOST_HARMONICS: u64 = 1000;
 /// Usual length of one number in the CSV file with its comma, bytes.
 const BYTES_PER_VALUE: f64 = 11.0;
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     output::claim(&args.out)?;
     let n = robot.joint_count();

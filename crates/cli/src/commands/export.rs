@@ -61,7 +61,7 @@ const FORMS: Choices = &[
 /// Write a model over recorded inputs, or its robot, as other tools read it
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Model file that `conform --out` wrote
     #[arg(long, value_name = "FILE", required_unless_present = "robot")]
     pub model: Option<PathBuf>,
@@ -100,7 +100,7 @@ pub struct Arguments {
 /// What is written.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Target {
+pub(crate) enum Target {
     /// The robot for MuJoCo.
     Mjcf,
     /// The robot as URDF.
@@ -119,7 +119,7 @@ struct Written {
     may_be_smaller: bool,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     match args.to {
         Target::Mjcf => robot(args, mjcf_files, json),
         Target::Urdf => robot(args, urdf_files, json),

@@ -28,7 +28,7 @@ with the number of defects, the first of them, and the option that accepts it.";
 /// Summarise a data set: its suites, runs, sample times, ranges and drift
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot that was recorded, for the units of its joints [default: revolute joints]
     #[arg(long)]
     pub robot: Option<String>,
@@ -43,7 +43,7 @@ pub struct Arguments {
     pub max_gap: Option<f64>,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let bar = Progress::of("reading recordings");
     let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap));
     drop(bar);

@@ -21,7 +21,7 @@ Examples:
 /// Print the manual page, or write one page for each command
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Write the pages of all commands to this folder: reachtube.1, reachtube-conform.1, ...
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
@@ -30,7 +30,7 @@ pub struct Arguments {
     pub markdown: bool,
 }
 
-pub fn run(args: &Arguments) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments) -> Result<Outcome> {
     if args.markdown {
         output::write_out(reference::markdown(built()).as_bytes())?;
     } else if let Some(folder) = &args.out {
@@ -48,7 +48,7 @@ pub fn run(args: &Arguments) -> Result<Outcome> {
 }
 
 /// Returns the manual page of each command under its file's name.
-pub fn pages() -> std::io::Result<Vec<(String, Vec<u8>)>> {
+pub(crate) fn pages() -> std::io::Result<Vec<(String, Vec<u8>)>> {
     let named = |command: Command| {
         let name = format!("{}.1", command.get_display_name().unwrap_or(command.get_name()));
         Ok((name, page(command)?))

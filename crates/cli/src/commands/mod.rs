@@ -1,19 +1,19 @@
 //! The commands: one module holds a command's arguments, its call and the text that it prints.
 
-pub mod r#abstract;
-pub mod campaign;
-pub mod check;
-pub mod completions;
-pub mod conform;
-pub mod convert;
-pub mod demo;
-pub mod excite;
-pub mod export;
-pub mod identify;
-pub mod inspect;
-pub mod man;
-pub mod prepare;
-pub mod reach;
-pub mod report;
-pub mod reproduce;
-pub mod robot;
+pub(crate) mod r#abstract;
+pub(crate) mod campaign;
+pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod conform;
+pub(crate) mod convert;
+pub(crate) mod demo;
+pub(crate) mod excite;
+pub(crate) mod export;
+pub(crate) mod identify;
+pub(crate) mod inspect;
+pub(crate) mod man;
+pub(crate) mod prepare;
+pub(crate) mod reach;
+pub(crate) mod report;
+pub(crate) mod reproduce;
+pub(crate) mod robot;

@@ -27,7 +27,7 @@ Then: reachtube inspect --data windows";
 /// backward, without delay.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
@@ -66,7 +66,7 @@ pub struct Arguments {
     pub out: PathBuf,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     if args.compensate {
         // A robot without masses has no gravity that could be taken off.

@@ -32,7 +32,7 @@ Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
 /// Compute a model's reachable sets along recorded test suites, at samples and between them
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
     /// Folder for the CSV files and figures
@@ -47,7 +47,7 @@ struct Written<'a> {
     tube: PathBuf,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&args.out.join("A.csv"))?;
     let opened = Opened::new(&args.model, None, Keep::All)?;
     let Opened { model, problem, .. } = &opened;

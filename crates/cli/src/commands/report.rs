@@ -40,7 +40,7 @@ impl From<AssetsArgument> for Assets {
 /// Write an HTML page and figures that compare a model with recordings
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
     /// Folder for the page and figures
@@ -51,7 +51,7 @@ pub struct Arguments {
     pub assets: AssetsArgument,
 }
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim(&report_files::page_in(&args.out))?;
     let opened = Opened::new(&args.model, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);

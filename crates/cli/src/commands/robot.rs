@@ -16,7 +16,7 @@ use reachtube::units::ColumnUnit;
 
 /// Show how reachtube understands a robot's description
 #[derive(Debug, Subcommand)]
-pub enum RobotCommand {
+pub(crate) enum RobotCommand {
     Show(ShowArguments),
 }
 
@@ -31,7 +31,7 @@ Examples:
 /// The command fails for a robot that cannot exist: one whose mass matrix is not positive definite.
 #[derive(Debug, Args)]
 #[command(after_help = SHOW_HELP)]
-pub struct ShowArguments {
+pub(crate) struct ShowArguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     pub robot: String,
     #[command(flatten)]
@@ -43,7 +43,7 @@ pub struct ShowArguments {
 }
 
 /// Runs `robot show`.
-pub fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
+pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     let joints = robot.joint_count();
     if !args.at.is_empty() && args.at.len() != joints {

@@ -10,22 +10,22 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// Samples of each run.
-pub const SAMPLES: usize = 51;
+pub(crate) const SAMPLES: usize = 51;
 
 /// Time between samples, s.
-pub const STEP: f64 = 0.01;
+pub(crate) const STEP: f64 = 0.01;
 
 const INERTIA: [f64; 2] = [1.0, 0.5];
 const DAMPING: [f64; 2] = [2.0, 1.0];
 
 /// Radius of the first positions about their mean, rad.
-pub const START: f64 = 0.002;
+pub(crate) const START: f64 = 0.002;
 
 /// Radius of the disturbance torque, N m.
-pub const TORQUE: f64 = 0.1;
+pub(crate) const TORQUE: f64 = 0.1;
 
 /// Returns the description of the robot that generated the recordings.
-pub fn robot_toml() -> String {
+pub(crate) fn robot_toml() -> String {
     let joint = |j: usize| {
         format!(
             "[[joint]]\nname = \"axis{}\"\nplacement = {{ translation = [0.0, 0.0, 0.5] }}\n\
@@ -44,12 +44,12 @@ pub fn robot_toml() -> String {
 
 /// A folder with `arm.toml`, and with the suites A and B of three runs each in `data`. Each suite
 /// is a motion of its own.
-pub struct Lab {
+pub(crate) struct Lab {
     folder: TempDir,
 }
 
 impl Lab {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let lab = Self { folder: tempfile::tempdir().unwrap() };
         std::fs::create_dir(lab.path("data")).unwrap();
         lab.write("arm.toml", robot_toml());
@@ -67,27 +67,27 @@ impl Lab {
         lab
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
-    pub fn read(&self, name: &str) -> String {
+    pub(crate) fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap()
     }
 
-    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+    pub(crate) fn write(&self, name: &str, text: impl AsRef<[u8]>) {
         std::fs::write(self.path(name), text).unwrap();
     }
 
     /// Changes the lines of a file.
-    pub fn edit(&self, name: &str, change: impl FnOnce(&mut Vec<String>)) {
+    pub(crate) fn edit(&self, name: &str, change: impl FnOnce(&mut Vec<String>)) {
         let mut lines: Vec<String> = self.read(name).lines().map(String::from).collect();
         change(&mut lines);
         self.write(name, lines.join("\n") + "\n");
     }
 
     /// Returns the names in a folder, sorted.
-    pub fn names(&self, folder: &str) -> Vec<String> {
+    pub(crate) fn names(&self, folder: &str) -> Vec<String> {
         let entries = std::fs::read_dir(self.path(folder)).unwrap();
         let mut names: Vec<_> =
             entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -95,27 +95,27 @@ impl Lab {
         names
     }
 
-    pub fn command(&self, arguments: &str) -> Command {
+    pub(crate) fn command(&self, arguments: &str) -> Command {
         command_in(self.folder.path(), arguments)
     }
 
-    pub fn run(&self, arguments: &str) -> Run {
+    pub(crate) fn run(&self, arguments: &str) -> Run {
         Run::of(self.command(arguments).output().unwrap())
     }
 
     /// Runs `conform` with the required options and `more`.
-    pub fn conform(&self, more: &str) -> Run {
+    pub(crate) fn conform(&self, more: &str) -> Run {
         self.run(&format!("conform --robot arm.toml --data data --torque compensated {more}"))
     }
 
     /// Runs `check` of model.json.
-    pub fn check(&self, more: &str) -> Run {
+    pub(crate) fn check(&self, more: &str) -> Run {
         self.run(&format!("check --model model.json --data data --torque compensated {more}"))
     }
 }
 
 /// Returns the command in a folder, with arguments separated by spaces.
-pub fn command_in(folder: &Path, arguments: &str) -> Command {
+pub(crate) fn command_in(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_reachtube"));
     command.current_dir(folder).args(arguments.split_whitespace());
     command
@@ -123,19 +123,19 @@ pub fn command_in(folder: &Path, arguments: &str) -> Command {
 
 /// The result of a run of the command.
 #[derive(Debug)]
-pub struct Run {
+pub(crate) struct Run {
     pub code: i32,
     pub stdout: String,
     pub stderr: String,
 }
 
 /// Returns the file of a model whose content was changed, with the SHA-256 of the new content.
-pub fn sealed(model: serde_json::Value) -> String {
+pub(crate) fn sealed(model: serde_json::Value) -> String {
     serde_json::from_value::<reachtube::Model>(model).unwrap().to_json()
 }
 
 impl Run {
-    pub fn of(output: Output) -> Self {
+    pub(crate) fn of(output: Output) -> Self {
         let text = |bytes| String::from_utf8(bytes).unwrap();
         Self {
             code: output.status.code().unwrap(),
@@ -146,14 +146,14 @@ impl Run {
 
     /// Asserts the exit code.
     #[track_caller]
-    pub fn exits(self, code: i32) -> Self {
+    pub(crate) fn exits(self, code: i32) -> Self {
         assert_eq!(self.code, code, "{self:#?}");
         self
     }
 
     /// Asserts an error: exit code 2, nothing on standard output, and each of `parts` in the text.
     #[track_caller]
-    pub fn fails_with(self, parts: &[&str]) -> Self {
+    pub(crate) fn fails_with(self, parts: &[&str]) -> Self {
         assert_eq!((self.code, self.stdout.as_str()), (2, ""), "{self:#?}");
         assert!(self.stderr.lines().all(|line| line.starts_with("error: ")), "{}", self.stderr);
         parts.iter().for_each(|part| {
@@ -164,7 +164,7 @@ impl Run {
 
     /// Asserts an error after a result: exit code 2, and each of `parts` in the lines of the error.
     #[track_caller]
-    pub fn fails_after_result(mut self, parts: &[&str]) -> Self {
+    pub(crate) fn fails_after_result(mut self, parts: &[&str]) -> Self {
         assert!(!self.stdout.is_empty(), "{self:#?}");
         self.stdout.clear();
         self.fails_with_last(parts)
@@ -173,7 +173,7 @@ impl Run {
     /// Asserts an error in JSON: exit code 2, nothing on standard output, and an object of this
     /// kind, with each of `parts` in its message, as the last line of standard error.
     #[track_caller]
-    pub fn fails_in_json(self, kind: &str, parts: &[&str]) -> Self {
+    pub(crate) fn fails_in_json(self, kind: &str, parts: &[&str]) -> Self {
         assert_eq!((self.code, self.stdout.as_str()), (2, ""), "{self:#?}");
         let error: Value = serde_json::from_str(self.stderr.lines().last().unwrap()).unwrap();
         assert_eq!((&error["kind"], &error["exit_code"]), (&kind.into(), &2.into()), "{error}");
@@ -184,7 +184,7 @@ impl Run {
 
     /// Asserts an error as [`fails_with`](Self::fails_with) does, after notes.
     #[track_caller]
-    pub fn fails_with_last(mut self, parts: &[&str]) -> Self {
+    pub(crate) fn fails_with_last(mut self, parts: &[&str]) -> Self {
         self.stderr = self
             .stderr
             .lines()
@@ -196,7 +196,7 @@ impl Run {
 
     /// Asserts that a note on standard error contains `part`.
     #[track_caller]
-    pub fn notes(self, part: &str) -> Self {
+    pub(crate) fn notes(self, part: &str) -> Self {
         assert!(
             self.stderr.lines().any(|line| line.starts_with("note: ") && line.contains(part)),
             "{}",
@@ -206,7 +206,7 @@ impl Run {
     }
 
     #[track_caller]
-    pub fn json(&self) -> Value {
+    pub(crate) fn json(&self) -> Value {
         serde_json::from_str(&self.stdout)
             .unwrap_or_else(|error| panic!("{error}: {}", self.stdout))
     }
@@ -238,13 +238,13 @@ fn step(j: usize, q: f64, qd: f64, u: f64) -> (f64, f64) {
 }
 
 /// Replaces a cell of a CSV line.
-pub fn set_cell(line: &mut String, column: usize, value: &str) {
+pub(crate) fn set_cell(line: &mut String, column: usize, value: &str) {
     let mut cells: Vec<&str> = line.split(',').collect();
     cells[column] = value;
     *line = cells.join(",");
 }
 
 /// Returns a cell of a CSV line as a number.
-pub fn cell(line: &str, column: usize) -> f64 {
+pub(crate) fn cell(line: &str, column: usize) -> f64 {
     line.split(',').nth(column).unwrap().parse().unwrap()
 }

@@ -15,7 +15,7 @@ fn schema(name: &str) -> jsonschema::Validator {
 
 /// Asserts that a value fits the schema of a command's output.
 #[track_caller]
-pub fn fits(name: &str, value: &Value) {
+pub(crate) fn fits(name: &str, value: &Value) {
     let schema = schema(name);
     let complaints: Vec<String> = schema
         .iter_errors(value)

@@ -24,12 +24,12 @@ struct Link {
 
 impl Chain {
     /// Returns a chain without links for states of dimension `states`.
-    pub fn new(states: usize) -> Self {
+    pub(super) fn new(states: usize) -> Self {
         Self { states, links: Vec::new(), drift: Vec::new(), moves: 0 }
     }
 
     /// Appends a link: a row (G, Φ) and a drift for each state.
-    pub fn push(&mut self, rows: Vec<f64>, drift: impl IntoIterator<Item = f64>) {
+    pub(super) fn push(&mut self, rows: Vec<f64>, drift: impl IntoIterator<Item = f64>) {
         let moves = self.moves..self.moves + rows.len() / self.states - self.states;
         self.moves = moves.end;
         self.links.push(Link { rows, moves });
@@ -37,7 +37,7 @@ impl Chain {
     }
 
     /// Appends the first link: each state has a move of its own.
-    pub fn push_diagonal(
+    pub(super) fn push_diagonal(
         &mut self,
         gains: impl Iterator<Item = f64>,
         drift: impl IntoIterator<Item = f64>,
@@ -48,12 +48,12 @@ impl Chain {
     }
 
     /// Returns the number of all moves.
-    pub fn moves(&self) -> usize {
+    pub(super) fn moves(&self) -> usize {
         self.moves
     }
 
     /// Returns the states without moves.
-    pub fn rest(&self) -> Vec<f64> {
+    pub(super) fn rest(&self) -> Vec<f64> {
         let mut x = self.drift.clone();
         for (k, link) in self.links.iter().enumerate().skip(1) {
             let (before, after) =
@@ -92,7 +92,7 @@ pub(super) struct Riccati<'a> {
 
 impl<'a> Riccati<'a> {
     /// Allocates the recursion for `chain`.
-    pub fn new(chain: &'a Chain) -> Self {
+    pub(super) fn new(chain: &'a Chain) -> Self {
         let (states, widest) = (chain.states, chain.widest());
         let rows = |link: &Link| vec![0.0; link.moves.len() * (link.moves.len() + states)];
         Self {
@@ -108,7 +108,7 @@ impl<'a> Riccati<'a> {
 
     /// Factors the recursion for new Q, one entry per state, and R, one per move; returns whether
     /// every step was positive definite.
-    pub fn factor(&mut self, q: &[f64], r: &[f64]) -> bool {
+    pub(super) fn factor(&mut self, q: &[f64], r: &[f64]) -> bool {
         let states = self.chain.states;
         self.cost.fill(0.0);
         for (k, link) in self.chain.links.iter().enumerate().rev() {
@@ -153,7 +153,7 @@ impl<'a> Riccati<'a> {
 
     /// Finds the states `x` and moves `y` of the chain without drift that minimise the quadratic
     /// cost + q·x + r·y.
-    pub fn solve(&mut self, q: &[f64], r: &[f64], x: &mut [f64], y: &mut [f64]) {
+    pub(super) fn solve(&mut self, q: &[f64], r: &[f64], x: &mut [f64], y: &mut [f64]) {
         self.backward(q, r, y);
         let states = self.chain.states;
         let before = &mut self.slope;

@@ -71,7 +71,7 @@ pub(super) struct ClosestMotion<'a> {
 }
 
 impl<'a> ClosestMotion<'a> {
-    pub fn new(
+    pub(super) fn new(
         model: &'a PolynomialModel,
         case: &'a Case,
         sets: &UncertaintySets,
@@ -98,7 +98,7 @@ impl<'a> ClosestMotion<'a> {
     }
 
     /// Repeats the linearisation until the model meets its residual.
-    pub fn run(&self) -> Behaviour {
+    pub(super) fn run(&self) -> Behaviour {
         let centre: Vec<f64> = self.inputs.iter().map(middle).collect();
         let (mut best, mut expected) = self.pass(&self.recorded.states, &centre);
         for _ in 1..PASSES {

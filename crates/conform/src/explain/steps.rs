@@ -22,14 +22,20 @@ pub(super) struct Step {
 }
 
 impl<'a> Steps<'a> {
-    pub fn new(model: &'a PolynomialModel, substeps: usize) -> Self {
+    pub(super) fn new(model: &'a PolynomialModel, substeps: usize) -> Self {
         let (linearisation, field) = (Linearisation::new(model), ModelField::new(model));
         Self { model, linearisation, field, method: RungeKutta4::new(model.states()), substeps }
     }
 
     /// Integrates from the state `before` under a held input; the derivatives are those halfway to
     /// `after`.
-    pub fn step(&mut self, times: [f64; 2], before: &[f64], after: &[f64], held: &[f64]) -> Step {
+    pub(super) fn step(
+        &mut self,
+        times: [f64; 2],
+        before: &[f64],
+        after: &[f64],
+        held: &[f64],
+    ) -> Step {
         let n = held.len();
         let mut x = self.model.state(&before[..n], &before[n..]);
         self.method.integrate(&mut self.field, times, self.substeps, &mut x, held);

@@ -77,7 +77,7 @@ pub(crate) struct TraceFactor {
 
 impl TraceFactor {
     /// Whether a motion under the sets themselves was proved.
-    pub fn holds(&self) -> bool {
+    pub(crate) fn holds(&self) -> bool {
         self.factor == Some(1.0)
     }
 }

@@ -37,14 +37,14 @@ pub(crate) struct Track {
 
 impl Track {
     /// Returns the samples that are rows.
-    pub fn samples(&self, stride: usize) -> impl Iterator<Item = usize> + use<> {
+    pub(crate) fn samples(&self, stride: usize) -> impl Iterator<Item = usize> + use<> {
         (0..self.case.measured.len()).step_by(stride)
     }
 }
 
 impl Data {
     /// Returns every how many samples rows are taken while parameters are moved.
-    pub fn stride(&self) -> usize {
+    pub(crate) fn stride(&self) -> usize {
         let samples: usize = self.tracks.iter().map(|track| track.case.measured.len()).sum();
         samples.div_ceil(MOST_SAMPLES).max(1)
     }
@@ -54,7 +54,7 @@ impl Data {
     /// # Errors
     ///
     /// [`Error::Fold`] where a fold has not kept runs that are needed; as [`Problem::run`].
-    pub fn new(problem: &Problem, by_run: bool) -> Result<Self> {
+    pub(crate) fn new(problem: &Problem, by_run: bool) -> Result<Self> {
         let (mut cases, mut motions, mut motion_of) = (Vec::new(), Vec::<String>::new(), vec![]);
         for (index, suite) in problem.recordings().suites.iter().enumerate() {
             let name = suite.entry.motion.as_ref().unwrap_or(&suite.entry.name);

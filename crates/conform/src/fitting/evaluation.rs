@@ -52,7 +52,7 @@ pub(crate) struct Smallest {
 
 impl Fit<'_> {
     /// Returns the number of joints.
-    pub fn joints(&self) -> usize {
+    pub(crate) fn joints(&self) -> usize {
         self.weights.len() / 2
     }
 
@@ -62,7 +62,12 @@ impl Fit<'_> {
     /// # Errors
     ///
     /// A robot that is not physical, a model that is not linear.
-    pub fn model(&self, numbers: &[f64], tracks: &[usize], known: Option<&Model>) -> Result<Model> {
+    pub(crate) fn model(
+        &self,
+        numbers: &[f64],
+        tracks: &[usize],
+        known: Option<&Model>,
+    ) -> Result<Model> {
         let setup = self.parameters.apply(numbers)?;
         let system = setup.dynamics.linear_system().ok_or(Error::NotLinear)?;
         let grids = self.data.grids.iter();
@@ -103,7 +108,7 @@ impl Fit<'_> {
     }
 
     /// Returns the program of `model` for the tracks named.
-    pub fn program(&self, model: &Model, tracks: &[usize]) -> Program<'_> {
+    pub(crate) fn program(&self, model: &Model, tracks: &[usize]) -> Program<'_> {
         let (stride, states) = (self.stride, 2 * self.joints());
         let mut blocks: Vec<Block> = Vec::new();
         for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
@@ -139,7 +144,7 @@ impl Fit<'_> {
     /// # Errors
     ///
     /// As [`Program::solve`].
-    pub fn smallest(&self, model: &Model, tracks: &[usize]) -> Result<Smallest> {
+    pub(crate) fn smallest(&self, model: &Model, tracks: &[usize]) -> Result<Smallest> {
         self.smallest_from(model, tracks, &mut Vec::new())
     }
 
@@ -149,7 +154,7 @@ impl Fit<'_> {
     /// # Errors
     ///
     /// As [`Program::solve`].
-    pub fn smallest_from(
+    pub(crate) fn smallest_from(
         &self,
         model: &Model,
         tracks: &[usize],
@@ -171,7 +176,7 @@ impl Fit<'_> {
     /// # Errors
     ///
     /// As [`model`](Self::model) and [`Program::solve`].
-    pub fn whole_cost(&self, numbers: &[f64]) -> Result<Option<f64>> {
+    pub(crate) fn whole_cost(&self, numbers: &[f64]) -> Result<Option<f64>> {
         let whole = Self { stride: 1, ..self.clone() };
         let tracks = whole.tracks(None);
         match whole.model(numbers, &tracks, None) {
@@ -183,7 +188,7 @@ impl Fit<'_> {
 
     /// Returns at most `few` tracks of each suite, from the first to the last, of all motions but
     /// `left_out`.
-    pub fn few_tracks(&self, left_out: Option<usize>, few: usize) -> Vec<usize> {
+    pub(crate) fn few_tracks(&self, left_out: Option<usize>, few: usize) -> Vec<usize> {
         let suite = |t: &usize| self.data.tracks[*t].case.suite;
         let all = self.tracks(left_out);
         let of_suite = |tracks: &[usize]| {
@@ -196,7 +201,7 @@ impl Fit<'_> {
     }
 
     /// Returns the tracks of all motions but `left_out`.
-    pub fn tracks(&self, left_out: Option<usize>) -> Vec<usize> {
+    pub(crate) fn tracks(&self, left_out: Option<usize>) -> Vec<usize> {
         let tracks = self.data.tracks.iter().enumerate();
         tracks.filter(|(_, track)| Some(track.motion) != left_out).map(|(t, _)| t).collect()
     }

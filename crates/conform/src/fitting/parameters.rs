@@ -68,7 +68,7 @@ const LARGEST_PAYLOAD: f64 = 100.0;
 
 impl Quantity {
     /// Returns the group.
-    pub fn group(self) -> Group {
+    pub(crate) fn group(self) -> Group {
         match self {
             Self::MotorInertia | Self::Density => Group::Inertia,
             Self::Viscous => Group::Viscous,
@@ -82,7 +82,7 @@ impl Quantity {
 
 impl<'a> Parameters<'a> {
     /// Lists the parameters of `groups` that the robot has.
-    pub fn new(setup: &'a Setup, groups: &[Group]) -> Self {
+    pub(crate) fn new(setup: &'a Setup, groups: &[Group]) -> Self {
         let robot = &setup.robot;
         let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
         let inertia = mass_matrix.diagonal().iter().copied().collect();
@@ -99,12 +99,12 @@ impl<'a> Parameters<'a> {
     }
 
     /// Returns the identified model.
-    pub fn setup(&self) -> &'a Setup {
+    pub(crate) fn setup(&self) -> &'a Setup {
         self.setup
     }
 
     /// Returns the number of parameters.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.list.len()
     }
 
@@ -154,7 +154,7 @@ impl<'a> Parameters<'a> {
     }
 
     /// Returns whether parameter `p` changes A and B, and not only the nominal motions.
-    pub fn changes_model(&self, p: usize) -> bool {
+    pub(crate) fn changes_model(&self, p: usize) -> bool {
         match self.list[p].quantity {
             Quantity::Cubic => self.setup.settings.abstraction.order >= 2,
             Quantity::Coulomb(_) | Quantity::WarmUp => false,
@@ -164,7 +164,7 @@ impl<'a> Parameters<'a> {
 
     /// Returns the identified and the fitted value of parameter `p`, and what multiplies the
     /// identified value where that is how it changes.
-    pub fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {
+    pub(crate) fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {
         let Parameter { quantity, joint, .. } = self.list[p];
         let viscous = &self.setup.robot.joints()[joint].friction.viscous;
         let times = |identified: f64, factor: f64| (identified, identified * factor, Some(factor));
@@ -184,7 +184,7 @@ impl<'a> Parameters<'a> {
 
     /// Returns the standard error of the identified value of parameter `p`, where the robot's
     /// description has it.
-    pub fn standard_error(&self, p: usize) -> Option<f64> {
+    pub(crate) fn standard_error(&self, p: usize) -> Option<f64> {
         let Parameter { quantity, joint, .. } = self.list[p];
         let errors = self.setup.robot.description().joints[joint].friction.standard_errors?;
         let error = match quantity {
@@ -201,7 +201,7 @@ impl<'a> Parameters<'a> {
     /// # Errors
     ///
     /// When the robot is not physical at the expansion point.
-    pub fn apply(&self, numbers: &[f64]) -> Result<Setup> {
+    pub(crate) fn apply(&self, numbers: &[f64]) -> Result<Setup> {
         let Setup { robot, settings, nominal_starts, .. } = self.setup;
         let mut correction = InputCorrection::none(robot.joint_count());
         let (mut changed, mut values, mut links) = (Vec::new(), Vec::new(), self.links.clone());

@@ -46,13 +46,13 @@ pub(crate) struct Effort {
 
 impl Effort {
     /// For the answer.
-    pub const WHOLE: Self = Self { settled: 5e-5, steps: 40, is_physical: true };
+    pub(crate) const WHOLE: Self = Self { settled: 5e-5, steps: 40, is_physical: true };
     /// For an answer that was found on fewer tracks.
-    pub const LAST: Self = Self { settled: 5e-5, steps: 4, is_physical: true };
+    pub(crate) const LAST: Self = Self { settled: 5e-5, steps: 4, is_physical: true };
     /// For where to start.
-    pub const START: Self = Self { is_physical: true, ..Self::QUICK };
+    pub(crate) const START: Self = Self { is_physical: true, ..Self::QUICK };
     /// For comparisons.
-    pub const QUICK: Self = Self { settled: 2e-3, steps: 12, is_physical: false };
+    pub(crate) const QUICK: Self = Self { settled: 2e-3, steps: 12, is_physical: false };
 }
 
 /// A point of the search.
@@ -68,7 +68,7 @@ impl Search<'_> {
     /// # Errors
     ///
     /// When the first program is not solved.
-    pub fn run(&self, start: &[f64]) -> Result<Optimum> {
+    pub(crate) fn run(&self, start: &[f64]) -> Result<Optimum> {
         let (mut rows, mut own_rows) = (Vec::<StepRow>::new(), Vec::new());
         let mut point = self.point(start.to_vec(), &mut own_rows)?;
         let (mut trust, mut steps) = (FIRST_TRUST, 0);

@@ -87,7 +87,7 @@ impl Step<'_> {
     /// # Errors
     ///
     /// [`Error::Program`](crate::Error::Program).
-    pub fn solve(&self, rows: &mut Vec<StepRow>) -> Result<Answer> {
+    pub(crate) fn solve(&self, rows: &mut Vec<StepRow>) -> Result<Answer> {
         if rows.is_empty() {
             rows.extend(self.first_rows());
         }

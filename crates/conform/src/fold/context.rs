@@ -29,7 +29,7 @@ impl Context {
     /// # Errors
     ///
     /// Settings that need every run sample by sample.
-    pub fn new(setup: &Setup) -> Result<Self> {
+    pub(super) fn new(setup: &Setup) -> Result<Self> {
         let Setup { robot, settings, correction, .. } = setup;
         settings.validate(robot.joint_count())?;
         let is_linear = setup.dynamics.linear_system().is_some();
@@ -61,7 +61,7 @@ impl Context {
     /// # Errors
     ///
     /// [`Error::Fold`].
-    pub fn refuse_explanations(settings: &Settings) -> Result<()> {
+    pub(super) fn refuse_explanations(settings: &Settings) -> Result<()> {
         let refused = || {
             Error::Fold(
                 "an explanation needs every recording sample by sample; leave out --explain, or \
@@ -77,7 +77,7 @@ impl Context {
     /// # Errors
     ///
     /// The defects of the run.
-    pub fn input(&self, file: &str, run: &Run) -> Result<RunInput, Vec<Defect>> {
+    pub(super) fn input(&self, file: &str, run: &Run) -> Result<RunInput, Vec<Defect>> {
         let (path, n) = (Path::new(file), self.robot.joint_count());
         let lengths = [run.states.len(), 2 * run.torques.len()];
         if run.joints != n || run.is_empty() || lengths != [2 * n * run.len(); 2] {

@@ -19,7 +19,7 @@ pub(super) struct Defects {
 
 impl Defects {
     /// Takes the defects of the recording at `place`.
-    pub fn take(&mut self, place: u32, mut defects: Vec<Defect>) {
+    pub(super) fn take(&mut self, place: u32, mut defects: Vec<Defect>) {
         defects.truncate(MOST_OF_ONE);
         for defect in &mut defects {
             // A path that is no Unicode could not be stored.
@@ -28,7 +28,7 @@ impl Defects {
         self.merge(Self { recordings: 1, of: [(place, defects)].into() });
     }
 
-    pub fn merge(&mut self, other: Self) {
+    pub(super) fn merge(&mut self, other: Self) {
         self.recordings += other.recordings;
         self.of.extend(other.of);
         while self.of.len() > MOST_RECORDINGS {
@@ -37,7 +37,7 @@ impl Defects {
     }
 
     /// Returns the defects that were kept, in the order of the manifest.
-    pub fn list(&self) -> Vec<Defect> {
+    pub(super) fn list(&self) -> Vec<Defect> {
         self.of.values().flatten().cloned().collect()
     }
 }

@@ -318,12 +318,12 @@ impl State {
     }
 
     /// Returns whether a model file lists each recording.
-    pub fn are_listed(&self) -> bool {
+    pub(super) fn are_listed(&self) -> bool {
         self.runs < LISTED_BELOW
     }
 
     /// Lets go of everything superfluous.
-    pub fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         let are_listed = self.are_listed();
         self.suites.values_mut().for_each(|suite| suite.settle(are_listed, true));
     }

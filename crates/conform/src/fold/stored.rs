@@ -83,7 +83,7 @@ struct StoredSummary {
 }
 
 impl StoredSuite {
-    pub fn new(suite: &SuiteFold) -> Self {
+    pub(super) fn new(suite: &SuiteFold) -> Self {
         let summary = |(place, run): (&u32, &RunSummary)| (*place, StoredSummary::new(run));
         let input = |shared: &SharedInput| StoredInput {
             run: shared.run,
@@ -105,7 +105,7 @@ impl StoredSuite {
     }
 
     /// Returns the suite; nothing where its parts do not fit together.
-    pub fn into_suite(self, context: &Context) -> Option<SuiteFold> {
+    pub(super) fn into_suite(self, context: &Context) -> Option<SuiteFold> {
         let states = 2 * context.robot.joint_count();
         let whole = |(place, stored): (u32, StoredRun)| {
             Some((place, stored.into_whole(states / 2, context)?))

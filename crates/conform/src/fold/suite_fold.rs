@@ -44,7 +44,7 @@ pub(super) struct SuiteFold {
 impl SuiteFold {
     /// Folds one run, whose measured states `envelope` has already, or the envelope of the suite
     /// that it will be merged with.
-    pub fn of(
+    pub(super) fn of(
         place: u32,
         entry: &RunEntry,
         run: Run,
@@ -69,7 +69,7 @@ impl SuiteFold {
     }
 
     /// Merges the fold of other runs.
-    pub fn merge(&mut self, other: Self, context: &Context, most_bytes: usize) {
+    pub(super) fn merge(&mut self, other: Self, context: &Context, most_bytes: usize) {
         let joints = context.robot.joint_count();
         let motions = self.motion.take().into_iter().chain(other.motion);
         self.motion = motions.min_by_key(|(place, _)| *place);
@@ -86,7 +86,7 @@ impl SuiteFold {
 
     /// Lets go of what is superfluous; `are_listed` says whether the data set lists its runs. With
     /// `now`, nothing superfluous stays.
-    pub fn settle(&mut self, are_listed: bool, now: bool) {
+    pub(super) fn settle(&mut self, are_listed: bool, now: bool) {
         let keeps_all = are_listed || self.whole.are_all();
         let marked = self.runs.values().filter(|run| !run.marks.is_empty()).count();
         if now || marked.max(if keeps_all { 0 } else { self.runs.len() }) > SAMPLE + SUPERFLUOUS {
@@ -110,7 +110,7 @@ impl SuiteFold {
     /// # Errors
     ///
     /// Runs with nominal solutions of their own that could not be kept.
-    pub fn check(&self, name: &str, context: &Context, most_bytes: usize) -> Result<()> {
+    pub(super) fn check(&self, name: &str, context: &Context, most_bytes: usize) -> Result<()> {
         let can_share = self.shared.is_some() && !context.is_own;
         if can_share || self.whole.are_all() {
             return Ok(());
@@ -135,7 +135,7 @@ impl SuiteFold {
     /// # Errors
     ///
     /// [`Error::StartsOutsideBox`].
-    pub fn check_starts(&self, context: &Context) -> Result<()> {
+    pub(super) fn check_starts(&self, context: &Context) -> Result<()> {
         let (Some((place, state, value)), Some(sides)) = (self.outside, &context.start_box) else {
             return Ok(());
         };

@@ -32,14 +32,14 @@ impl WholeRun {
 
 impl WholeRuns {
     /// Returns the runs of one part.
-    pub fn one(place: u32, run: WholeRun) -> Self {
+    pub(super) fn one(place: u32, run: WholeRun) -> Self {
         Self::All([(place, run)].into())
     }
 
     /// Merges those of another part. All stay whole where no two share their input, or where all
     /// are cases of their own anyway, up to `most_bytes`. Both depend on the runs only, and what
     /// holds for all holds for every part, so that the order makes no difference.
-    pub fn merge(self, other: Self, context: &Context, most_bytes: usize) -> Self {
+    pub(super) fn merge(self, other: Self, context: &Context, most_bytes: usize) -> Self {
         let joints = context.robot.joint_count();
         match (self, other) {
             (Self::All(mut own), Self::All(other)) => {
@@ -59,7 +59,7 @@ impl WholeRuns {
     }
 
     /// Returns the runs that stay, by their places.
-    pub fn iter(&self) -> Box<dyn Iterator<Item = (u32, &WholeRun)> + '_> {
+    pub(super) fn iter(&self) -> Box<dyn Iterator<Item = (u32, &WholeRun)> + '_> {
         match self {
             Self::All(runs) => Box::new(runs.iter().map(|(place, run)| (*place, run))),
             Self::First(place, run) => Box::new(std::iter::once((*place, run))),
@@ -67,7 +67,7 @@ impl WholeRuns {
     }
 
     /// Returns whether all runs stay.
-    pub fn are_all(&self) -> bool {
+    pub(super) fn are_all(&self) -> bool {
         matches!(self, Self::All(_))
     }
 

@@ -6,7 +6,7 @@ use crate::linear::block::Block;
 
 /// Returns, for each of several lists of sample times, how much each sample counts: samples at one
 /// time together count 1.
-pub fn shares<'t>(lists: impl Iterator<Item = &'t [f64]> + Clone) -> Vec<Vec<f64>> {
+pub(crate) fn shares<'t>(lists: impl Iterator<Item = &'t [f64]> + Clone) -> Vec<Vec<f64>> {
     let nanoseconds = |t: &f64| (t * 1e9).round() as i64;
     let mut counts = HashMap::new();
     lists.clone().flatten().for_each(|t| *counts.entry(nanoseconds(t)).or_insert(0.0) += 1.0);

@@ -44,7 +44,7 @@ pub(crate) struct Layout {
 impl Layout {
     /// Lays out the unknowns for radii of the cost `cost` (3n) and noise radii of `noise_cost`
     /// (2n).
-    pub fn new(settings: &Settings, cost: &[f64], noise_cost: &[f64]) -> Self {
+    pub(crate) fn new(settings: &Settings, cost: &[f64], noise_cost: &[f64]) -> Self {
         let has_centres = settings.centre != Centre::Zero;
         let mut columns = if has_centres { cost.to_vec() } else { Vec::new() };
         columns.extend(cost);
@@ -59,12 +59,12 @@ impl Layout {
     }
 
     /// Returns the number of centres, which is the column of the first radius.
-    pub fn centres(&self) -> usize {
+    pub(crate) fn centres(&self) -> usize {
         if self.has_centres { 3 * self.joints } else { 0 }
     }
 
     /// Returns the columns and entries of one side of a row of the program.
-    pub fn entries(
+    pub(crate) fn entries(
         &self,
         centre: &[f64],
         radius: &[f64],
@@ -81,7 +81,7 @@ impl Layout {
     }
 
     /// Returns the columns and entries of a row in any direction.
-    pub fn cut_entries(&self, cut: &Cut) -> Vec<(usize, f64)> {
+    pub(crate) fn cut_entries(&self, cut: &Cut) -> Vec<(usize, f64)> {
         let centre = cut.centre.iter().take(self.centres());
         let has_noise = self.cost.len() > self.centres() + 3 * self.joints;
         let noise = cut.noise.iter().filter(|_| has_noise);
@@ -90,7 +90,7 @@ impl Layout {
 
     /// Returns the size of the unknown of column `j` in some sets: a radius, or the larger one of a
     /// centre's distance from 0 and its radius.
-    pub fn value(&self, sets: &UncertaintySets, j: usize) -> f64 {
+    pub(crate) fn value(&self, sets: &UncertaintySets, j: usize) -> f64 {
         let (n, centres) = (self.joints, self.centres());
         let of = |set: &Hyperrectangle, i: usize| {
             let centre = if j < centres { set.centre[i].abs() } else { 0.0 };
@@ -104,7 +104,7 @@ impl Layout {
     }
 
     /// Returns the values of the unknowns that describe some sets.
-    pub fn unknowns(&self, sets: &UncertaintySets) -> Vec<f64> {
+    pub(crate) fn unknowns(&self, sets: &UncertaintySets) -> Vec<f64> {
         let (start, input) = (&sets.initial_set, &sets.input_set);
         let centres = start.centre.iter().chain(&input.centre).take(self.centres());
         let radii = start.radius.iter().chain(&input.radius);
@@ -113,7 +113,7 @@ impl Layout {
     }
 
     /// Returns the largest that the unknown of column `j` may be; infinite where it has no limit.
-    pub fn limit_of(&self, limits: &Limits, j: usize) -> f64 {
+    pub(crate) fn limit_of(&self, limits: &Limits, j: usize) -> f64 {
         let (width, centres) = (3 * self.joints, self.centres());
         match if j < centres { j } else { j - centres } {
             i if i < width => limits.of_start(i),
@@ -123,7 +123,7 @@ impl Layout {
 
     /// Adds r >= 0, and |c| <= r where the origin must lie in the sets; `unit` is the unit of each
     /// unknown.
-    pub fn restrict(
+    pub(crate) fn restrict(
         &self,
         kind: Centre,
         triplets: &mut Triplets,
@@ -146,7 +146,7 @@ impl Layout {
     }
 
     /// Adds what limits V and X0; `unit` is the unit of each unknown.
-    pub fn limit(
+    pub(crate) fn limit(
         &self,
         limits: &Limits,
         triplets: &mut Triplets,
@@ -171,7 +171,7 @@ impl Layout {
     }
 
     /// Returns the sets that values of the unknowns describe.
-    pub fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
+    pub(crate) fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
         let (n, centres) = (self.joints, self.centres());
         let set = |from: usize, to: usize| {
             let radius: Vec<f64> =

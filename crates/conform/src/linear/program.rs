@@ -29,7 +29,7 @@ use crate::side::Side;
 const TOLERANCE: f64 = 1e-10;
 
 /// A row within this part of the radius of the reachable set is called tight.
-pub const TIGHT: f64 = 1e-6;
+pub(crate) const TIGHT: f64 = 1e-6;
 
 /// What is below this part of the largest deviation is rounding.
 pub(super) const ROUNDING: f64 = 1e-14;
@@ -83,7 +83,7 @@ pub struct Solution {
 }
 
 /// Where a row of the program stands: block, sample, state, side.
-pub type RowIndex = (usize, usize, usize, Side);
+pub(crate) type RowIndex = (usize, usize, usize, Side);
 
 impl<'a> Program<'a> {
     /// Makes the program of some blocks for the state weights `weights`, s, 2n.

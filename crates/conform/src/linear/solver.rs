@@ -20,7 +20,7 @@ pub(crate) struct Triplets {
 impl Triplets {
     /// Adds a row. Entries below 1e-13 are dropped: they cannot be told from rounding, and the
     /// repair covers them.
-    pub fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
+    pub(crate) fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
         for (column, value) in entries.into_iter().filter(|(_, value)| value.abs() > 1e-13) {
             self.rows.push(self.count);
             self.columns.push(column);

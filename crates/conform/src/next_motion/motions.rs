@@ -11,7 +11,7 @@ pub(crate) struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    pub fn new(recordings: &'a Recordings) -> Self {
+    pub(crate) fn new(recordings: &'a Recordings) -> Self {
         let entries = || recordings.suites.iter().map(|suite| &suite.entry);
         let motion = |entry: &'a reachtube_recordings::SuiteEntry| {
             (entry.name.as_str(), entry.motion.as_deref().unwrap_or(&entry.name))
@@ -21,24 +21,24 @@ impl<'a> Motions<'a> {
     }
 
     /// Returns the motion of suite `index`.
-    pub fn of_suite(&self, index: usize) -> &'a str {
+    pub(crate) fn of_suite(&self, index: usize) -> &'a str {
         self.of_suites[index].1
     }
 
     /// Returns the distinct motions, in the order of their first suites.
-    pub fn distinct(&self) -> Vec<&'a str> {
+    pub(crate) fn distinct(&self) -> Vec<&'a str> {
         let mut seen = BTreeSet::new();
         let motions = self.of_suites.iter().map(|(_, motion)| *motion);
         motions.filter(|motion| seen.insert(*motion)).collect()
     }
 
     /// Returns the number of distinct motions.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.distinct().len()
     }
 
     /// Returns the number of distinct motions of some suites, named one by one.
-    pub fn count_of<'s>(&self, suites: impl Iterator<Item = &'s str>) -> usize {
+    pub(crate) fn count_of<'s>(&self, suites: impl Iterator<Item = &'s str>) -> usize {
         let motion = |name: &str| {
             self.of_suites.iter().find(|(suite, _)| *suite == name).map(|(_, motion)| *motion)
         };
@@ -46,7 +46,7 @@ impl<'a> Motions<'a> {
     }
 
     /// Returns what weakens a statement that counts motions, to follow its basis.
-    pub fn caveat(&self) -> &'static str {
+    pub(crate) fn caveat(&self) -> &'static str {
         if self.are_named {
             ""
         } else {

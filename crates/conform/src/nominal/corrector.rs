@@ -36,7 +36,7 @@ impl<'a> Corrector<'a> {
     /// # Errors
     ///
     /// When no robot can be made with a payload only.
-    pub fn new(
+    pub(crate) fn new(
         robot: &'a Robot,
         correction: &'a InputCorrection,
         settings: &'a Settings,
@@ -66,7 +66,7 @@ impl<'a> Corrector<'a> {
     }
 
     /// Takes the correction at the state (q, q̇) off the input `u` (n, N m).
-    pub fn take_off(&mut self, q: &[f64], qd: &[f64], u: &mut [f64]) {
+    pub(crate) fn take_off(&mut self, q: &[f64], qd: &[f64], u: &mut [f64]) {
         let joints = self.correction.joints.iter().enumerate();
         for (j, joint) in joints {
             let offset = qd[j] - self.origin[j];

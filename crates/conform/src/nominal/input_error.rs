@@ -28,7 +28,7 @@ impl InputError {
     /// # Errors
     ///
     /// As [`Problem::run`].
-    pub fn of_problem(problem: &Problem) -> Result<Vec<f64>> {
+    pub(crate) fn of_problem(problem: &Problem) -> Result<Vec<f64>> {
         let mut all = Self::none(problem.joints());
         for (index, suite) in problem.recordings().suites.iter().enumerate() {
             let of = |case: Case| Self::of_case(problem.setup(), &case);
@@ -43,7 +43,7 @@ impl InputError {
     /// # Errors
     ///
     /// When the correction does not fit the robot.
-    pub fn of_cases<'c>(
+    pub(crate) fn of_cases<'c>(
         setup: &Setup,
         cases: impl IntoIterator<Item = &'c Case>,
     ) -> Result<Vec<f64>> {

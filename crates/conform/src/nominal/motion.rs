@@ -40,7 +40,7 @@ impl Corrected<'_> {
     /// # Errors
     ///
     /// [`Error::RunsAway`](crate::Error::RunsAway).
-    pub fn motion(&self, case: &Case, steps: Option<&Steps>) -> Result<NominalMotion> {
+    pub(crate) fn motion(&self, case: &Case, steps: Option<&Steps>) -> Result<NominalMotion> {
         let mut corrector =
             Corrector::new(self.robot, self.correction, self.settings, &case.condition)?;
         let mut equations = match self.settings.equations {

@@ -30,7 +30,7 @@ impl<'a> RobotEquations<'a> {
     /// # Errors
     ///
     /// [`Error::Equations`] where an input of the model moves no joint.
-    pub fn new(robot: &'a Robot, model: &LinearSystem) -> Result<Self> {
+    pub(super) fn new(robot: &'a Robot, model: &LinearSystem) -> Result<Self> {
         let n = robot.joint_count();
         let of_input = model.b().rows(n, n).into_owned();
         Ok(Self {
@@ -46,7 +46,7 @@ impl<'a> RobotEquations<'a> {
 
     /// Replaces the robot's input `u` (n, N m) at the state `x` (2n) by the model's: the q̈ of the
     /// model is then that of the robot.
-    pub fn replace(&mut self, x: &[f64], u: &mut [f64]) {
+    pub(super) fn replace(&mut self, x: &[f64], u: &mut [f64]) {
         self.robot.rate(0.0, x, u, &mut self.rate);
         let (n, drift) = (u.len(), &self.drift);
         for (j, row) in self.of_state.row_iter().enumerate() {

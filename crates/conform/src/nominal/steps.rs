@@ -20,7 +20,7 @@ impl Steps {
     /// Discretises `system` over the spans between `times` (s). Spans that differ by less than a
     /// picosecond share a map.
     #[must_use]
-    pub fn new(system: &LinearSystem, times: &[f64]) -> Self {
+    pub(crate) fn new(system: &LinearSystem, times: &[f64]) -> Self {
         let (states, inputs) = (system.states(), system.inputs());
         let (mut maps, mut known) = (Vec::new(), HashMap::new());
         let of_span = times
@@ -37,7 +37,7 @@ impl Steps {
     }
 
     /// Computes the state after span `k` from the state `x` under the input `u` into `next`.
-    pub fn advance(&self, k: usize, x: &[f64], u: &[f64], next: &mut [f64]) {
+    pub(crate) fn advance(&self, k: usize, x: &[f64], u: &[f64], next: &mut [f64]) {
         let width = self.states + self.inputs + 1;
         let rows = self.maps[self.of_span[k]].chunks_exact(width);
         for (next, row) in next.iter_mut().zip(rows) {
@@ -53,7 +53,7 @@ impl Steps {
     /// for spans of one length only. A disturbance that is measurable counts as one that is
     /// constant over samples.
     #[must_use]
-    pub fn coefficients(&self, samples: usize, stride: usize, constant: bool) -> Vec<f64> {
+    pub(crate) fn coefficients(&self, samples: usize, stride: usize, constant: bool) -> Vec<f64> {
         let (states, inputs) = (self.states, self.inputs);
         let mut coefficients = Vec::with_capacity(samples.div_ceil(stride) * states * 6 * inputs);
         let mut exponential = DMatrix::<f64>::identity(states, states);

@@ -41,7 +41,7 @@ impl<'a> PointsHere<'a> {
     /// # Errors
     ///
     /// As [`Sweep::new`].
-    pub fn new(problem: &'a Problem) -> Result<Self> {
+    pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
         Ok(Self { problem, sweep: Sweep::new(problem)?, lists: RefCell::default() })
     }
 }
@@ -55,7 +55,7 @@ impl Points for PointsHere<'_> {
 
 impl Sweep<'_> {
     /// Answers a question; `file` names a run.
-    pub fn answer(
+    pub(crate) fn answer(
         &self,
         question: &Question,
         lists: &mut KnownLists,

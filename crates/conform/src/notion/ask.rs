@@ -132,7 +132,7 @@ impl Answer {
     /// Merges the answer of other points to the same question; nothing where it is one to another
     /// question.
     #[must_use]
-    pub fn merge(self, other: Self) -> Option<Self> {
+    pub(crate) fn merge(self, other: Self) -> Option<Self> {
         match (self, other) {
             (Self::Outside(own), Self::Outside(other)) => {
                 Some(Self::Outside(merged(own, other, further)))
@@ -206,11 +206,16 @@ mod stored_sets {
 
     type Stored = (Hyperrectangle, Hyperrectangle, Option<Hyperrectangle>);
 
-    pub fn serialize<S: Serializer>(sets: &UncertaintySets, out: S) -> Result<S::Ok, S::Error> {
+    pub(super) fn serialize<S: Serializer>(
+        sets: &UncertaintySets,
+        out: S,
+    ) -> Result<S::Ok, S::Error> {
         (&sets.initial_set, &sets.input_set, &sets.noise_set).serialize(out)
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<UncertaintySets, D::Error> {
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        from: D,
+    ) -> Result<UncertaintySets, D::Error> {
         let (initial_set, input_set, noise_set) = Stored::deserialize(from)?;
         Ok(UncertaintySets { initial_set, input_set, noise_set })
     }

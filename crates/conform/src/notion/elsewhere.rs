@@ -57,7 +57,7 @@ impl Points for PointsElsewhere<'_> {
 }
 
 impl SentAnswer {
-    pub fn new(tree: Tree, answer: Answer) -> Self {
+    pub(crate) fn new(tree: Tree, answer: Answer) -> Self {
         Self { version: VERSION, tree, answer }
     }
 
@@ -66,7 +66,7 @@ impl SentAnswer {
     /// # Errors
     ///
     /// [`Error::Fold`] for an answer to another question, or of the same recordings.
-    pub fn merge(mut self, other: Self) -> Result<Self> {
+    pub(crate) fn merge(mut self, other: Self) -> Result<Self> {
         if !self.tree.merge(other.tree) {
             return Err(Error::Fold("two parts have points of the same recording".into()));
         }
@@ -76,11 +76,11 @@ impl SentAnswer {
         Ok(Self { answer, ..self })
     }
 
-    pub fn to_bytes(&self) -> Vec<u8> {
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
         postcard::to_stdvec(self).expect("every part can be written")
     }
 
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let sent: Option<Self> = postcard::from_bytes(bytes).ok();
         sent.filter(|sent| sent.version == VERSION && sent.tree.is_valid()).ok_or_else(|| {
             Error::Fold("the bytes are not those of an answer of this version".into())

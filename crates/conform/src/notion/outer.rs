@@ -78,7 +78,7 @@ pub(crate) struct FurthestPoint {
 
 impl CasePoints {
     /// Adds the points of another sample.
-    pub fn add(&mut self, other: Self) {
+    pub(crate) fn add(&mut self, other: Self) {
         self.points += other.points;
         self.unproved.extend(other.unproved);
         self.furthest.extend(other.furthest);
@@ -103,7 +103,7 @@ impl<'a> CaseRuns<'a> {
     /// # Errors
     ///
     /// As [`Problem::run`].
-    pub fn new(
+    pub(crate) fn new(
         problem: &'a Problem,
         case: &Case,
         sets: &UncertaintySets,
@@ -127,7 +127,7 @@ impl<'a> CaseRuns<'a> {
     /// # Guarantee
     ///
     /// As [`at_sample`](Self::at_sample).
-    pub fn take(&self, sample: usize, zonotope: &Zonotope, found: &mut CasePoints) {
+    pub(crate) fn take(&self, sample: usize, zonotope: &Zonotope, found: &mut CasePoints) {
         let here = self.asked.iter().enumerate().filter(|(_, asked)| asked.sample == sample);
         found.reaches.extend(here.map(|(index, at)| (index, reach(zonotope, at.direction))));
         let count = zonotope.generators().len();
@@ -140,7 +140,7 @@ impl<'a> CaseRuns<'a> {
     }
 
     /// Adds the points that no set judged, because the set was lost before.
-    pub fn finish(&self, samples: usize, found: &mut CasePoints) {
+    pub(crate) fn finish(&self, samples: usize, found: &mut CasePoints) {
         for (run, recorded) in &self.runs {
             let lost = recorded.len().saturating_sub(samples.max(1)) * self.projections.len();
             found.points += lost;

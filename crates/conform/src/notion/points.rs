@@ -31,33 +31,33 @@ pub(crate) struct SamplePoints {
 
 impl SamplePoints {
     /// Iterates over the points, 2n entries each.
-    pub fn iter(&self) -> impl Iterator<Item = &[f64]> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &[f64]> {
         self.values.chunks_exact(self.states.max(1))
     }
 
     /// Returns whether values, errors and owners are those of the same points.
-    pub fn fits(&self) -> bool {
+    pub(crate) fn fits(&self) -> bool {
         let count = self.owners.len() * self.states;
         self.states > 0 && [self.values.len(), self.errors.len()] == [count; 2]
     }
 
     /// Returns grid and sample.
-    pub fn place(&self) -> At {
+    pub(crate) fn place(&self) -> At {
         (self.grid as u32, self.sample as u32)
     }
 
     /// Returns a point, 2n entries.
-    pub fn point(&self, index: usize) -> &[f64] {
+    pub(crate) fn point(&self, index: usize) -> &[f64] {
         &self.values[index * self.states..][..self.states]
     }
 
     /// Returns how far the deviation in state `state` of a point may be from its rounded value.
-    pub fn error(&self, index: usize, state: usize) -> f64 {
+    pub(crate) fn error(&self, index: usize, state: usize) -> f64 {
         f64::from(self.errors[index * self.states + state])
     }
 
     /// Returns the point with the largest lᵀ d, and that value.
-    pub fn furthest(&self, direction: &[f64]) -> (usize, f64) {
+    pub(crate) fn furthest(&self, direction: &[f64]) -> (usize, f64) {
         let along = |d: &[f64]| d.iter().zip(direction).map(|(d, l)| d * l).sum::<f64>();
         let points = self.iter().map(along).enumerate();
         points.fold((0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best })
@@ -120,7 +120,7 @@ impl AllPoints {
     /// # Errors
     ///
     /// As [`Problem::grids`].
-    pub fn new(problem: &Problem) -> Result<Self> {
+    pub(crate) fn new(problem: &Problem) -> Result<Self> {
         let states = 2 * problem.joints();
         let empty = |(grid, samples): (usize, usize)| {
             let at = |sample| SamplePoints { grid, sample, states, ..SamplePoints::default() };
@@ -131,7 +131,7 @@ impl AllPoints {
     }
 
     /// Takes the points of a run: its suite and index are `owner`.
-    pub fn take(&mut self, owner: (u32, u32), nominal: &Nominal, recorded: &Run) {
+    pub(crate) fn take(&mut self, owner: (u32, u32), nominal: &Nominal, recorded: &Run) {
         let samples = self.0[nominal.grid].iter_mut().take(recorded.len().saturating_sub(1));
         for at in samples {
             at.take(recorded.state(at.sample), nominal.trajectory.state(at.sample));
@@ -140,7 +140,7 @@ impl AllPoints {
     }
 
     /// Returns the points at the samples that have some.
-    pub fn into_samples(self) -> Vec<SamplePoints> {
+    pub(crate) fn into_samples(self) -> Vec<SamplePoints> {
         self.0.into_iter().flatten().filter(|at| !at.owners.is_empty()).collect()
     }
 }

@@ -33,7 +33,7 @@ impl Sweep<'_> {
     /// # Guarantee
     ///
     /// Each point that is not returned lies in the exact reachable set.
-    pub fn unproved(&self, sets: &UncertaintySets, samples: &[usize]) -> Vec<Unproved> {
+    pub(crate) fn unproved(&self, sets: &UncertaintySets, samples: &[usize]) -> Vec<Unproved> {
         let of_sample = |&at: &usize| {
             let (centre, error) = self.centre(&self.points[at], sets);
             let mut unproved = Vec::new();
@@ -98,7 +98,7 @@ pub(super) struct ProjectedPoints<'a> {
 }
 
 impl<'a> ProjectedPoints<'a> {
-    pub fn new(
+    pub(super) fn new(
         sweep: &'a Sweep,
         at: usize,
         projection: usize,

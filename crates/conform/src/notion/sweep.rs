@@ -75,19 +75,19 @@ pub(crate) struct Outside {
 
 impl<'a> SampleSet<'a> {
     /// Returns the smaller set.
-    pub fn coarse(&mut self) -> &mut (Membership, MembershipWorkspace) {
+    pub(crate) fn coarse(&mut self) -> &mut (Membership, MembershipWorkspace) {
         &mut self.coarse
     }
 
     /// Returns the set itself, which is made when it is first asked for.
-    pub fn fine(&mut self) -> &mut (Membership, MembershipWorkspace) {
+    pub(crate) fn fine(&mut self) -> &mut (Membership, MembershipWorkspace) {
         let (sweep, at, sets, projection) = (self.sweep, self.at, self.sets, self.projection);
         self.fine.get_or_insert_with(|| sweep.members(at, sets, projection, 1))
     }
 
     /// Returns whether a point, in the projection and from the set's centre, lies in the set grown
     /// by the factor 1 + `tolerance`, in floating point.
-    pub fn contains(&mut self, d: &[f64], tolerance: f64) -> bool {
+    pub(crate) fn contains(&mut self, d: &[f64], tolerance: f64) -> bool {
         let (set, work) = &mut self.coarse;
         if set.locate(d, tolerance, work) == Place::Inside {
             return true;
@@ -102,7 +102,7 @@ impl SampleSet<'_> {
     /// the set's centre, with the direction that shows it; nothing where it must not grow by more
     /// than the factor 1 + `tolerance`. Nothing also where the factor is surely below `known`,
     /// which saves the search for it. The answer does not depend on the points before.
-    pub fn growth(
+    pub(crate) fn growth(
         &mut self,
         d: &[f64],
         tolerance: f64,
@@ -134,7 +134,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     ///
     /// As [`points`].
-    pub fn new(problem: &'a Problem) -> Result<Self> {
+    pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
         Self::of_notion(problem, problem.settings().notion)
     }
 
@@ -143,7 +143,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     ///
     /// As [`points`].
-    pub fn of_notion(problem: &'a Problem, notion: Notion) -> Result<Self> {
+    pub(crate) fn of_notion(problem: &'a Problem, notion: Notion) -> Result<Self> {
         Self::of_points(problem, notion, points(problem)?.into())
     }
 
@@ -152,7 +152,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     ///
     /// As [`Problem::grids`].
-    pub fn without_points(problem: &'a Problem) -> Result<Self> {
+    pub(crate) fn without_points(problem: &'a Problem) -> Result<Self> {
         Self::of_points(problem, problem.settings().notion, Cow::default())
     }
 
@@ -161,7 +161,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     ///
     /// As [`Problem::grids`].
-    pub fn of_points(
+    pub(crate) fn of_points(
         problem: &'a Problem,
         notion: Notion,
         points: Cow<'a, [SamplePoints]>,
@@ -179,7 +179,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The centre of the reachable set of the deviation, and how far it may be off, 2n each.
-    pub fn centre(&self, at: &SamplePoints, sets: &UncertaintySets) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn centre(&self, at: &SamplePoints, sets: &UncertaintySets) -> (Vec<f64>, Vec<f64>) {
         let propagation = &self.grids[at.grid].propagation;
         let (e, gamma) = (propagation.exponential(at.sample), propagation.integral(at.sample));
         let UncertaintySets { initial_set, input_set, .. } = sets;
@@ -193,7 +193,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The radii of the set's interval hull, 2n, in floating point.
-    pub fn hull(&self, at: &SamplePoints, sets: &UncertaintySets) -> Vec<f64> {
+    pub(crate) fn hull(&self, at: &SamplePoints, sets: &UncertaintySets) -> Vec<f64> {
         let grid = &self.grids[at.grid];
         let (e, gain) = (grid.propagation.exponential(at.sample), &grid.input_gains[at.sample]);
         let radius = |i: usize| {
@@ -206,13 +206,13 @@ impl<'a> Sweep<'a> {
     }
 
     /// Returns the number of points, each counted once for each projection.
-    pub fn point_count(&self) -> usize {
+    pub(crate) fn point_count(&self) -> usize {
         let points: usize = self.points.iter().map(|at| at.owners.len()).sum();
         points * self.projections.len()
     }
 
     /// Returns how many of some points are outside, in floating point.
-    pub fn count_outside(&self, sets: &UncertaintySets, unproved: &[Unproved]) -> usize {
+    pub(crate) fn count_outside(&self, sets: &UncertaintySets, unproved: &[Unproved]) -> usize {
         let in_one_set = |a: &Unproved, b: &Unproved| (a.at, a.projection) == (b.at, b.projection);
         let of_set = |points: &[Unproved]| {
             let (at, projection) =
@@ -230,7 +230,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// Prepares the reachable set at a sample in one projection.
-    pub fn set<'b>(
+    pub(crate) fn set<'b>(
         &'b self,
         at: &'b SamplePoints,
         sets: &'b UncertaintySets,
@@ -255,7 +255,7 @@ impl<'a> Sweep<'a> {
 
     /// The generators of the reachable set at a sample in one projection, for disturbances that are
     /// held over `held` steps.
-    pub fn rows(
+    pub(crate) fn rows(
         &self,
         at: &SamplePoints,
         sets: &UncertaintySets,
@@ -268,7 +268,7 @@ impl<'a> Sweep<'a> {
     }
 
     /// The generators of a smaller set, of which there are few.
-    pub fn coarse_rows(
+    pub(crate) fn coarse_rows(
         &self,
         at: &SamplePoints,
         sets: &UncertaintySets,
@@ -279,7 +279,7 @@ impl<'a> Sweep<'a> {
 
     /// Returns, for each sample, the points that are outside the set shrunk by the factor `margin`,
     /// or close to its boundary.
-    pub fn near(&self, sets: &UncertaintySets, margin: f64) -> Vec<Vec<usize>> {
+    pub(crate) fn near(&self, sets: &UncertaintySets, margin: f64) -> Vec<Vec<usize>> {
         let of_sample = |at: &SamplePoints| {
             let (centre, _) = self.centre(at, sets);
             let mut near = vec![false; at.owners.len()];
@@ -300,7 +300,7 @@ impl<'a> Sweep<'a> {
     /// outside, where the set must grow by more than the factor 1 + `tolerance`. Each point is
     /// judged alone, so that neither the order nor the grouping of the points makes a difference;
     /// of points that are equally far, the one with the lowest owner counts.
-    pub fn outside(
+    pub(crate) fn outside(
         &self,
         sets: &UncertaintySets,
         tolerance: f64,
@@ -340,7 +340,7 @@ impl<'a> Sweep<'a> {
 
     /// Returns the row of the program that a direction gives at a sample, for the largest lᵀ d of
     /// its points.
-    pub fn cut(&self, (grid, sample): (usize, usize), l: &[f64], bound: f64) -> Cut {
+    pub(crate) fn cut(&self, (grid, sample): (usize, usize), l: &[f64], bound: f64) -> Cut {
         let propagation = &self.grids[grid].propagation;
         let (e, gamma) = (propagation.exponential(sample), propagation.integral(sample));
         let along = |column: DVectorView<'_, Interval>| {

@@ -58,7 +58,7 @@ impl<'a> Evidence<'a> {
     /// # Errors
     ///
     /// As [`Problem::run`].
-    pub fn new(problem: &'a Problem) -> Result<Self> {
+    pub(super) fn new(problem: &'a Problem) -> Result<Self> {
         let suites = &problem.recordings().suites;
         let stride = suites.len().div_ceil(RUNS).max(1);
         let firsts = suites.iter().step_by(stride).map(|suite| suite.totals.first);
@@ -68,7 +68,7 @@ impl<'a> Evidence<'a> {
 
     /// Returns the mean of the recorded positions, n, and their largest distance from `origin` in
     /// any joint.
-    pub fn positions(&self, origin: &[f64]) -> (Vec<f64>, f64) {
+    pub(super) fn positions(&self, origin: &[f64]) -> (Vec<f64>, f64) {
         let all = || self.runs.iter().flat_map(|run| (0..run.len()).map(|k| run.q(k)));
         let mut mean = vec![0.0; origin.len()];
         let count = all().count().max(1) as f64;
@@ -81,7 +81,7 @@ impl<'a> Evidence<'a> {
     /// over the joints of Σ (u - u_m)² by Σ (u² + u_m²), where u is the recorded input and u_m the
     /// one that the robot needs for the recorded motion. It is 0 for equal inputs, about 1 for
     /// unrelated ones and 2 for opposite ones.
-    pub fn unexplained(&self, hypothesis: &Hypothesis) -> f64 {
+    pub(super) fn unexplained(&self, hypothesis: &Hypothesis) -> f64 {
         let n = self.robot.joint_count();
         let mut sums = vec![[0.0; 2]; n];
         for run in self.runs.iter().filter(|run| run.len() >= FEWEST) {

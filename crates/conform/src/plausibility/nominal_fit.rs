@@ -36,7 +36,7 @@ impl NominalFit {
     /// # Errors
     ///
     /// As [`Problem::run`]; a nominal solution that runs away.
-    pub fn new(problem: &Problem) -> Result<Self> {
+    pub(crate) fn new(problem: &Problem) -> Result<Self> {
         let n = problem.joints();
         let mut all = Sums::zero(n);
         for suite in 0..problem.recordings().suites.len() {

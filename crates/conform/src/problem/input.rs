@@ -65,7 +65,7 @@ pub(crate) struct SharedInput {
 impl SharedInput {
     /// Returns the input that both have in common; nothing where neither is the beginning of the
     /// other. The order of merging makes no difference.
-    pub fn merge(self, other: Self, joints: usize) -> Option<Self> {
+    pub(crate) fn merge(self, other: Self, joints: usize) -> Option<Self> {
         let shares = self.input.shares(&other.input, joints);
         let key = |of: &Self| (std::cmp::Reverse(of.input.grid.len()), of.run);
         shares.then(|| if key(&self) <= key(&other) { self } else { other })

@@ -16,7 +16,7 @@ pub(super) struct KeptRuns {
 
 impl KeptRuns {
     /// Keeps run `index` while there is room for it.
-    pub fn keep(&self, index: usize, run: Run) {
+    pub(super) fn keep(&self, index: usize, run: Run) {
         let values = run.times.len() + run.states.len() + run.torques.len();
         let bytes = values * size_of::<f64>();
         if self.bytes.fetch_add(bytes, Ordering::Relaxed) + bytes <= MOST_BYTES {
@@ -25,7 +25,7 @@ impl KeptRuns {
     }
 
     /// Ends the reading.
-    pub fn into_runs(self) -> HashMap<usize, Run> {
+    pub(super) fn into_runs(self) -> HashMap<usize, Run> {
         self.runs.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -21,7 +21,7 @@ pub(crate) enum Origin {
 
 impl Origin {
     /// Returns the entry of run `index`.
-    pub fn entry(&self, index: usize) -> &RunEntry {
+    pub(crate) fn entry(&self, index: usize) -> &RunEntry {
         match self {
             Self::Source(source) => &source.runs()[index],
             Self::Fold(entries) => &entries[&index],
@@ -29,7 +29,7 @@ impl Origin {
     }
 
     /// Returns the name of run `index` for messages.
-    pub fn run_name(&self, index: usize) -> PathBuf {
+    pub(crate) fn run_name(&self, index: usize) -> PathBuf {
         match self {
             Self::Source(source) => source.run_name(index),
             Self::Fold(entries) => PathBuf::from(&entries[&index].file),

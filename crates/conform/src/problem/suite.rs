@@ -158,7 +158,7 @@ impl SuiteReader<'_> {
     /// # Errors
     ///
     /// Every defect of every run.
-    pub fn read(
+    pub(super) fn read(
         &self,
         entry: &SuiteEntry,
         progress: &(dyn Fn(usize) + Sync),

@@ -35,7 +35,7 @@ pub(crate) struct Leaf<'a> {
 impl Tree {
     /// Adds the recording at a place; returns whether the place was free.
     #[must_use]
-    pub fn insert(&mut self, place: u32, leaf: Leaf) -> bool {
+    pub(crate) fn insert(&mut self, place: u32, leaf: Leaf) -> bool {
         let mut digest = Sha256::new();
         digest.update([0]);
         digest.update(u64::from(place).to_le_bytes());
@@ -48,7 +48,7 @@ impl Tree {
 
     /// Merges the tree of other recordings; returns whether all their places were free.
     #[must_use]
-    pub fn merge(&mut self, other: Self) -> bool {
+    pub(crate) fn merge(&mut self, other: Self) -> bool {
         let mut filled = other.filled.into_iter();
         filled.all(|(first, (level, hash))| self.insert_subtree(first, level, hash))
     }
@@ -56,7 +56,7 @@ impl Tree {
     /// Returns the hash of the whole tree, in lower-case hexadecimal; that of no bytes where there
     /// is no recording.
     #[must_use]
-    pub fn root(&self) -> String {
+    pub(crate) fn root(&self) -> String {
         let mut level = 0;
         let mut nodes: Vec<(u64, u8, Hash)> =
             self.filled.iter().map(|(first, (level, hash))| (*first, *level, *hash)).collect();
@@ -79,7 +79,7 @@ impl Tree {
     }
 
     /// Returns whether its subtrees are those of places, none of them of two subtrees, and joined.
-    pub fn is_valid(&self) -> bool {
+    pub(crate) fn is_valid(&self) -> bool {
         let is_place = |(first, (level, _)): (&u64, &(u8, Hash))| {
             *level <= 32 && first >> level << level == *first && *first < 1 << 32
         };

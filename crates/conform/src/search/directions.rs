@@ -70,7 +70,7 @@ impl Direction {
     /// Returns the row of the program. With x̂ the motion from the centres c of the round before,
     /// the new centres c' and radii r' must satisfy
     /// lᵀ x̂ + lᵀ E (c' - c) + a r' + further >= lᵀ x.
-    pub fn cut(
+    pub(super) fn cut(
         &mut self,
         row: &DirectionRow,
         sensitivity: &Sensitivity,

@@ -34,7 +34,7 @@ struct File<T> {
 
 impl<'a> Journal<'a> {
     /// Opens the journal of a problem at `path`, or none.
-    pub fn new(path: Option<&'a Path>, problem: &Problem) -> Self {
+    pub(super) fn new(path: Option<&'a Path>, problem: &Problem) -> Self {
         let mut digest = Sha256::new();
         let decides = serde_json::to_string(&(problem.settings(), problem.robot().description()));
         digest.update(decides.expect("settings have only finite numbers and string keys"));
@@ -50,7 +50,7 @@ impl<'a> Journal<'a> {
     /// # Errors
     ///
     /// A file that cannot be read or written, or is that of another job.
-    pub fn load<T: DeserializeOwned>(&self) -> Result<Option<T>> {
+    pub(super) fn load<T: DeserializeOwned>(&self) -> Result<Option<T>> {
         let Some(path) = self.path else { return Ok(None) };
         write::try_at(path)?;
         if !path.exists() {
@@ -79,7 +79,7 @@ impl<'a> Journal<'a> {
     /// # Errors
     ///
     /// Where it cannot be written; the file is as it was.
-    pub fn save(&self, progress: &impl Serialize) -> Result<()> {
+    pub(super) fn save(&self, progress: &impl Serialize) -> Result<()> {
         let Some(path) = self.path else { return Ok(()) };
         let text = json::to_lines(&File {
             format: FORMAT.into(),
@@ -93,7 +93,7 @@ impl<'a> Journal<'a> {
     }
 
     /// Removes the file: the job is done.
-    pub fn remove(&self) {
+    pub(super) fn remove(&self) {
         if let Some(path) = self.path {
             let _ = std::fs::remove_file(path);
         }

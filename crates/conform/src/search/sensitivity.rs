@@ -60,7 +60,7 @@ impl Sensitivity {
     /// # Errors
     ///
     /// The time, s, up to which the model could be followed, where it runs away.
-    pub fn new(
+    pub(super) fn new(
         model: &PolynomialModel,
         case: &Case,
         sets: &UncertaintySets,
@@ -106,7 +106,7 @@ impl Sensitivity {
     }
 
     /// Returns row i of E_k and of R_k, 3n entries each.
-    pub fn row(&self, joints: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+    pub(super) fn row(&self, joints: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
         let width = 3 * joints;
         let start = (k * 2 * joints + i) * 2 * width;
         self.coefficients[start..start + 2 * width].split_at(width)

@@ -58,7 +58,7 @@ pub(super) struct Margin {
 
 impl SearchState {
     /// Returns the state before the first round: no uncertainty.
-    pub fn start(joints: usize) -> Self {
+    pub(super) fn start(joints: usize) -> Self {
         let (initial_set, input_set) =
             (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
@@ -77,7 +77,7 @@ impl SearchState {
     /// Takes the sets that a program gave, with their cost, and returns whether they have settled.
     /// Where answers jump back and forth, as answers of the same cost may do, centres get less
     /// freedom.
-    pub fn take(&mut self, sets: &UncertaintySets, cost: f64) -> bool {
+    pub(super) fn take(&mut self, sets: &UncertaintySets, cost: f64) -> bool {
         let change = change(&self.sets, sets);
         if change > SHRINKS * self.change {
             self.freedom = 0.5 * self.freedom.min(change);
@@ -89,7 +89,7 @@ impl SearchState {
     }
 
     /// Returns the bounds of the centres of X0 and U in the next round; none when they are free.
-    pub fn centre_bounds(&self) -> Vec<[f64; 2]> {
+    pub(super) fn centre_bounds(&self) -> Vec<[f64; 2]> {
         if self.freedom == f64::MAX {
             return Vec::new();
         }
@@ -103,7 +103,7 @@ impl SearchState {
     }
 
     /// Adds margins; those of one row add up.
-    pub fn add(&mut self, missing: Vec<Margin>) {
+    pub(super) fn add(&mut self, missing: Vec<Margin>) {
         self.change = f64::MAX;
         let places = self.margins.iter().enumerate().map(|(at, margin)| (margin.row(), at));
         let known: HashMap<_, usize> = places.collect();

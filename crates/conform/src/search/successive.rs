@@ -75,7 +75,11 @@ impl SuccessiveLinearisation<'_> {
     ///
     /// When the model cannot be followed along a case, a program is not solved, or the journal
     /// cannot be written.
-    pub fn run(&self, journal: &Journal, progress: &dyn Progress) -> Result<SearchResult<'_>> {
+    pub(super) fn run(
+        &self,
+        journal: &Journal,
+        progress: &dyn Progress,
+    ) -> Result<SearchResult<'_>> {
         let mut state =
             journal.load()?.unwrap_or_else(|| SearchState::start(self.problem.joints()));
         loop {
@@ -136,7 +140,7 @@ impl SuccessiveLinearisation<'_> {
     /// # Errors
     ///
     /// As [`OuterSet::new`].
-    pub fn outer_sets(
+    pub(super) fn outer_sets(
         &self,
         sets: &UncertaintySets,
         directions: &[Direction],
@@ -181,7 +185,7 @@ impl SuccessiveLinearisation<'_> {
     /// # Errors
     ///
     /// As [`run`](Self::run).
-    pub fn round(&self, state: &mut SearchState) -> Result<Round<'_>> {
+    pub(super) fn round(&self, state: &mut SearchState) -> Result<Round<'_>> {
         let sets = &state.sets;
         let sensitivities = self.sensitivities(sets, &state.directions)?;
         let corrections = self.corrections(state, &sensitivities);

@@ -27,12 +27,12 @@ pub(super) struct Correction {
 
 impl Correction {
     /// Returns no correction, which is that of a linear model.
-    pub fn none(samples: usize, states: usize) -> Self {
+    pub(super) fn none(samples: usize, states: usize) -> Self {
         Self { further: vec![0.0; samples * states * 2], states, runs_away: None }
     }
 
     /// Returns the correction of one row, rad or rad/s.
-    pub fn at(&self, k: usize, i: usize, side: Side) -> f64 {
+    pub(super) fn at(&self, k: usize, i: usize, side: Side) -> f64 {
         self.further[(k * self.states + i) * 2 + usize::from(side == Side::Lower)]
     }
 
@@ -41,7 +41,7 @@ impl Correction {
     /// # Guarantee
     ///
     /// Inner, unrounded: at the nodes each corrected bound is the state of a motion of the model.
-    pub fn new(
+    pub(super) fn new(
         model: &PolynomialModel,
         case: &Case,
         sets: &UncertaintySets,

@@ -14,16 +14,16 @@ use reachtube_recordings::DataSet;
 use reachtube_robot::Robot;
 
 /// Returns a folder of real recordings. Tests that need one are ignored unless asked for.
-pub fn shared(folder: &str) -> PathBuf {
+pub(crate) fn shared(folder: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(folder)
 }
 
 /// Xorshift64*: enough for tests, the same everywhere.
-pub struct Random(pub u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
     /// Uniform in [-1, 1].
-    pub fn signed(&mut self) -> f64 {
+    pub(crate) fn signed(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
@@ -33,23 +33,23 @@ impl Random {
 }
 
 /// Reads the suites `names` of the data set in `folder` (all when none is named).
-pub fn read(robot: &Robot, folder: &Path, names: &[&str], settings: &Settings) -> Problem {
+pub(crate) fn read(robot: &Robot, folder: &Path, names: &[&str], settings: &Settings) -> Problem {
     read_with(Setup::new(robot.clone(), settings.clone()).unwrap(), folder, names)
 }
 
-pub fn read_with(setup: Setup, folder: &Path, names: &[&str]) -> Problem {
+pub(crate) fn read_with(setup: Setup, folder: &Path, names: &[&str]) -> Problem {
     let names: Vec<String> = names.iter().map(|name| name.to_string()).collect();
     let data = DataSet::open(folder).unwrap();
     Problem::read(setup, Box::new(data), &names, Keep::Needed, &Silent).unwrap()
 }
 
 /// Finds and proves the smallest sets.
-pub fn conform_all(problem: &Problem) -> Conformance {
+pub(crate) fn conform_all(problem: &Problem) -> Conformance {
     conform(problem, &Silent, None).unwrap()
 }
 
 /// Checks recordings against a model, as its file would.
-pub fn check_against(model: &Model, folder: &Path, names: &[&str]) -> Check {
+pub(crate) fn check_against(model: &Model, folder: &Path, names: &[&str]) -> Check {
     let robot = Robot::from_description(&model.robot).unwrap();
     let problem = read(&robot, folder, names, &model.settings);
     let hulls = Hulls::new(&problem, model.sets()).unwrap();
@@ -58,14 +58,14 @@ pub fn check_against(model: &Model, folder: &Path, names: &[&str]) -> Check {
 
 /// One run: times, states (K x 2n), torques (K x n).
 #[derive(Clone)]
-pub struct Recorded {
+pub(crate) struct Recorded {
     pub times: Vec<f64>,
     pub states: Vec<f64>,
     pub torques: Vec<f64>,
 }
 
 /// Friction that bends and joints that move each other.
-pub fn bent() -> Robot {
+pub(crate) fn bent() -> Robot {
     let joint = |name: &str, mass: f64, viscous: &str| {
         format!(
             "[[joint]]\nname = \"{name}\"\n\
@@ -84,7 +84,7 @@ pub fn bent() -> Robot {
 }
 
 /// What moves the virtual arm.
-pub struct Disturbed<'a> {
+pub(crate) struct Disturbed<'a> {
     pub robot: &'a Robot,
     pub times: &'a [f64],
     /// Radius of the initial states, rad and rad/s.
@@ -96,7 +96,7 @@ pub struct Disturbed<'a> {
 impl Disturbed<'_> {
     /// The recording of model 1 under a sine input that is the same for each `random`, and random
     /// disturbances.
-    pub fn record(&self, random: &mut Random) -> Recorded {
+    pub(crate) fn record(&self, random: &mut Random) -> Recorded {
         let n = self.robot.joint_count();
         let system = linear_model(self.robot, &ExpansionPoint::zero(n)).unwrap();
         let mut x = DVector::from_fn(2 * n, |_, _| self.start * random.signed());
@@ -115,7 +115,12 @@ impl Disturbed<'_> {
 }
 
 /// One step by a Taylor series of the augmented matrix, independent of the library's enclosures.
-pub fn step(system: &LinearSystem, h: f64, x: &DVector<f64>, u: &DVector<f64>) -> DVector<f64> {
+pub(crate) fn step(
+    system: &LinearSystem,
+    h: f64,
+    x: &DVector<f64>,
+    u: &DVector<f64>,
+) -> DVector<f64> {
     let mut term = (system.a() * x + system.b() * u) * h;
     let mut sum = x.clone();
     for i in 2..30 {
@@ -126,12 +131,12 @@ pub fn step(system: &LinearSystem, h: f64, x: &DVector<f64>, u: &DVector<f64>) -
 }
 
 /// The grid of every suite of a test.
-pub fn grid(step: f64, samples: usize) -> Vec<f64> {
+pub(crate) fn grid(step: f64, samples: usize) -> Vec<f64> {
     TimeGrid::uniform(step, samples).times().to_vec()
 }
 
 /// Writes suites, each with its runs, and runs.csv.
-pub fn write_data_set(folder: &Path, suites: &[(&str, Vec<Recorded>)]) {
+pub(crate) fn write_data_set(folder: &Path, suites: &[(&str, Vec<Recorded>)]) {
     let mut index = String::from("file,suite\n");
     for (suite, runs) in suites {
         for (repeat, run) in runs.iter().enumerate() {
@@ -162,7 +167,7 @@ fn csv(run: &Recorded) -> String {
 }
 
 /// Two coupled joints with viscous friction.
-pub fn two_joints() -> Robot {
+pub(crate) fn two_joints() -> Robot {
     let text = r#"
         schema_version = 1
         name = "two joints"

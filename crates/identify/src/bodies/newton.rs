@@ -18,7 +18,7 @@ impl NewtonStep {
     /// Solves for the step by Cholesky of the Hessian scaled to a unit diagonal.
     ///
     /// Parameters with a zero row in the Hessian stay where they are.
-    pub fn new(hessian: &DMatrix<f64>, gradient: &DVector<f64>) -> Option<Self> {
+    pub(super) fn new(hessian: &DMatrix<f64>, gradient: &DVector<f64>) -> Option<Self> {
         let n = gradient.len();
         let scale = DVector::from_fn(n, |i, _| {
             if hessian[(i, i)] > 0.0 { hessian[(i, i)].sqrt().recip() } else { 1.0 }

@@ -15,12 +15,12 @@ pub(super) struct FrictionModel {
 
 impl FrictionModel {
     /// Returns the number of columns.
-    pub fn columns(&self) -> usize {
+    pub(super) fn columns(&self) -> usize {
         self.form.columns() + usize::from(self.stribeck.is_some())
     }
 
     /// Returns the row of a sample: the columns of the form, then that of the Stribeck effect.
-    pub fn row(&self, s: &FrictionSample) -> Vec<f64> {
+    pub(super) fn row(&self, s: &FrictionSample) -> Vec<f64> {
         let mut row = self.form.row(s);
         row.extend(self.stribeck.map(|speed| s.factors[0] * rise(s, speed)));
         row
@@ -28,26 +28,26 @@ impl FrictionModel {
 
     /// Returns the derivative of a sample's torque with respect to the Stribeck speed, for a
     /// solution \[N s\].
-    pub fn speed_derivative(&self, s: &FrictionSample, x: &[f64]) -> f64 {
+    pub(super) fn speed_derivative(&self, s: &FrictionSample, x: &[f64]) -> f64 {
         let Some(speed) = self.stribeck else { return 0.0 };
         let slope = 2.0 * s.qd.powi(2) / speed.powi(3);
         x[self.columns() - 1] * s.factors[0] * rise(s, speed) * slope
     }
 
     /// Returns the index of the joint's inertia.
-    pub fn inertia(&self) -> usize {
+    pub(super) fn inertia(&self) -> usize {
         self.form.columns() - 1
     }
 
     /// Returns the friction of a solution.
-    pub fn description(&self, x: &[f64]) -> FrictionDescription {
+    pub(super) fn description(&self, x: &[f64]) -> FrictionDescription {
         let stribeck = self.stribeck.map(|speed| Stribeck { excess: x[self.columns() - 1], speed });
         FrictionDescription { stribeck, ..self.form.description(x) }
     }
 
     /// Returns the standard errors of the friction, given those of a solution and of the Stribeck
     /// speed \[rad/s\] as the last of them.
-    pub fn errors(&self, e: &[f64]) -> FrictionDescription {
+    pub(super) fn errors(&self, e: &[f64]) -> FrictionDescription {
         let last = self.columns();
         let stribeck = self.stribeck.map(|_| Stribeck { excess: e[last - 1], speed: e[last] });
         FrictionDescription { stribeck, ..self.form.errors(e) }

@@ -26,7 +26,7 @@ pub struct BaseParameter {
 }
 
 /// The base parameters with their errors, and how well the recordings determine them.
-pub struct BaseFit {
+pub(crate) struct BaseFit {
     /// The base parameters.
     pub parameters: Vec<BaseParameter>,
     /// Number of combinations that the recordings determine.
@@ -47,7 +47,7 @@ pub struct BaseFit {
 /// `physical`, so that no prior decides about it.
 ///
 /// [`reference_factor`]: crate::inertia::reference::reference_factor
-pub fn base_parameters(
+pub(crate) fn base_parameters(
     robot: &Robot,
     base: &BaseParameters,
     [fit, reference]: [&TriangularFactor; 2],

@@ -4,7 +4,7 @@ use reachtube_robot::{Parameter, ParameterKind, Robot};
 
 /// Columns of friction that are fitted together with the inertial parameters.
 #[derive(Debug, Clone, Copy)]
-pub struct FrictionColumns {
+pub(crate) struct FrictionColumns {
     /// Whether friction is fitted at all; for known friction the fit is a correction.
     pub fitted: bool,
     /// Whether viscous friction has a cubic term.
@@ -14,7 +14,7 @@ pub struct FrictionColumns {
 /// Returns the columns that are fitted to exciting motions.
 ///
 /// The correction of a known quadratic friction needs a column of its own.
-pub fn fitted_columns(
+pub(crate) fn fitted_columns(
     known: &Robot,
     model: &ModelSettings,
     friction: FrictionColumns,
@@ -45,7 +45,7 @@ fn is_inertia(column: &Parameter) -> bool {
 }
 
 /// Returns the columns of links and motors with their values, without those of friction.
-pub fn inertia_part(
+pub(crate) fn inertia_part(
     columns: &[Parameter],
     values: &DVector<f64>,
 ) -> (Vec<Parameter>, DVector<f64>) {

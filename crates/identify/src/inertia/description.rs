@@ -15,7 +15,7 @@ use reachtube_robot::{
 /// # Errors
 ///
 /// [`Error::Robot`](crate::Error::Robot) if the parameters give no robot.
-pub fn description(
+pub(crate) fn description(
     robot: &Robot,
     found: &InertiaFit,
     friction: &[FrictionDescription],
@@ -50,7 +50,7 @@ fn add_friction(friction: &mut FrictionDescription, column: &Parameter, value: f
 
 /// Returns the standard errors of the friction of joint `joint`, whose known friction has the
 /// standard errors `known`. A coefficient that was corrected by the fit has those of the fit.
-pub fn friction_errors(
+pub(crate) fn friction_errors(
     found: &InertiaFit,
     joint: usize,
     known: Option<&FrictionDescription>,

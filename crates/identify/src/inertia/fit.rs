@@ -57,7 +57,7 @@ pub struct InertiaFit {
 /// # Errors
 ///
 /// [`Error::NoMotion`], [`Error::NoPhysicalLinks`] or [`Error::Undetermined`].
-pub fn fit_inertia(
+pub(crate) fn fit_inertia(
     robot: &Robot,
     known: &Robot,
     [dynamic, rests]: [&[Log]; 2],

@@ -77,7 +77,7 @@ impl PhysicalFit {
 /// # Errors
 ///
 /// [`Error::NoPhysicalLinks`] if the program has no solution.
-pub fn nearest_bodies(
+pub(crate) fn nearest_bodies(
     [robot, known]: [&Robot; 2],
     columns: &[Parameter],
     fit: &Fit,
@@ -173,7 +173,7 @@ fn residual_sizes(moving: &Samples, x: &DVector<f64>) -> Vec<f64> {
 
 /// Returns why no physical robot has the given values: a negative motor inertia, or a mass matrix
 /// that is not positive definite.
-pub fn why_impossible(
+pub(crate) fn why_impossible(
     robot: &Robot,
     columns: &[Parameter],
     x: &DVector<f64>,

@@ -25,7 +25,7 @@ pub(super) struct LinkPrior {
 
 impl LinkPrior {
     /// Returns the prior before it is adapted: balls have the mean mass of the description's links.
-    pub fn new(robot: &Robot, prior: Prior) -> Self {
+    pub(super) fn new(robot: &Robot, prior: Prior) -> Self {
         let usable = |p: &Matrix4<f64>| prior == Prior::Description && Cholesky::new(*p).is_some();
         let described: Vec<Option<Matrix4<f64>>> = pseudo_inertias(&robot.inertial_parameters())
             .map(|p| usable(&p).then_some(p))
@@ -40,7 +40,7 @@ impl LinkPrior {
     /// Returns whether they changed. Among balls of one size these are the most likely ones for the
     /// links (a minimum of the divergence). Without this step, balls of 1 kg would outweigh the
     /// data of a heavy arm.
-    pub fn adapt(&mut self, x: &[f64]) -> bool {
+    pub(super) fn adapt(&mut self, x: &[f64]) -> bool {
         if self.described.iter().all(Option::is_some) {
             return false;
         }
@@ -54,14 +54,14 @@ impl LinkPrior {
     }
 
     /// Returns the pseudo-inertia of each link.
-    pub fn inertias(&self) -> Vec<Matrix4<f64>> {
+    pub(super) fn inertias(&self) -> Vec<Matrix4<f64>> {
         let ball =
             Matrix4::from_diagonal(&Vector4::new(self.second, self.second, self.second, self.mass));
         self.described.iter().map(|described| described.unwrap_or(ball)).collect()
     }
 
     /// Returns the names of the links that have a ball.
-    pub fn balls(&self, robot: &Robot) -> Vec<String> {
+    pub(super) fn balls(&self, robot: &Robot) -> Vec<String> {
         let links = robot.joints().iter().zip(&self.described);
         links.filter(|(_, p)| p.is_none()).map(|(joint, _)| joint.name.clone()).collect()
     }

@@ -23,7 +23,7 @@ const MIN_DEVIATION: f64 = 1e-6;
 /// the sizes that the recorded motions have. Each row is divided by its joint's standard deviation
 /// in `joints`. The torque of this motion is the same in all frames, so that two factors over the
 /// same motion differ between frames by the change of the parameters only.
-pub fn reference_factor(
+pub(super) fn reference_factor(
     robot: &Robot,
     columns: &[Parameter],
     logs: &[Log],

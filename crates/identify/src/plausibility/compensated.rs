@@ -21,7 +21,11 @@ const MOST_TIMES: f64 = 10.0;
 ///
 /// The logs have the gravity torque of the description added, in whose sum a wrong unit is hard to
 /// see: inputs in kN m hardly change it. There is no warning for a description without masses.
-pub fn input_unit_warning(robot: &Robot, logs: &[Log], sampling: &Sampling) -> Option<String> {
+pub(crate) fn input_unit_warning(
+    robot: &Robot,
+    logs: &[Log],
+    sampling: &Sampling,
+) -> Option<String> {
     let n = robot.joint_count();
     // Sums of squares of each joint's recorded and needed inputs.
     let mut sums = vec![[0.0; 2]; n];

@@ -29,7 +29,7 @@ pub(super) enum Columns {
 
 impl Columns {
     /// All cases.
-    pub const CASES: [Self; 3] = [Self::Torque, Self::Motion, Self::All];
+    pub(super) const CASES: [Self; 3] = [Self::Torque, Self::Motion, Self::All];
 
     fn words(self) -> &'static str {
         match self {
@@ -52,7 +52,7 @@ impl Columns {
 
 impl Fault {
     /// Returns the log of a robot without the fault.
-    pub fn corrected(&self, robot: &Robot, log: &Log) -> Log {
+    pub(super) fn corrected(&self, robot: &Robot, log: &Log) -> Log {
         let (mut out, n) = (log.clone(), log.joints);
         match *self {
             Self::Sign { joint, columns } => columns.change(&mut out, |values| {
@@ -76,7 +76,7 @@ impl Fault {
 
     /// Returns the sampling of recordings without the fault: limits of speed have the unit of the
     /// recordings.
-    pub fn corrected_sampling(&self, robot: &Robot, sampling: &Sampling) -> Sampling {
+    pub(super) fn corrected_sampling(&self, robot: &Robot, sampling: &Sampling) -> Sampling {
         let mut out = sampling.clone();
         if *self == Self::Degrees {
             scale(&mut out.slow, &factors_to_rad(robot));
@@ -85,7 +85,7 @@ impl Fault {
     }
 
     /// Returns the same fault with another size, for an offset or a lag.
-    pub fn with_size(&self, size: f64) -> Option<Self> {
+    pub(super) fn with_size(&self, size: f64) -> Option<Self> {
         match *self {
             Self::Offset { joint, .. } => Some(Self::Offset { joint, offset: size }),
             Self::Lag { joint, .. } => Some(Self::Lag { joint, delay: size }),
@@ -94,7 +94,7 @@ impl Fault {
     }
 
     /// Returns the size of an offset \[rad\] or a lag \[s\].
-    pub fn size(&self) -> Option<f64> {
+    pub(super) fn size(&self) -> Option<f64> {
         match *self {
             Self::Offset { offset, .. } => Some(offset),
             Self::Lag { delay, .. } => Some(delay),
@@ -105,7 +105,7 @@ impl Fault {
     /// Returns a warning.
     ///
     /// Without the fault, the sum of squared residuals of `joint` drops to `share` of its value.
-    pub fn warning(&self, robot: &Robot, (joint, share): (usize, f64)) -> String {
+    pub(super) fn warning(&self, robot: &Robot, (joint, share): (usize, f64)) -> String {
         let of_joint = &robot.joints()[joint].name;
         let name = |joint: usize| robot.joints()[joint].name.as_str();
         let [what, correction, remedy] = match *self {

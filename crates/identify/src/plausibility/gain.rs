@@ -36,7 +36,7 @@ pub struct Gain {
 ///
 /// A joint's noise is only known once its gain is right. Implausible gains are therefore applied,
 /// and all gains are estimated again.
-pub fn gains(robot: &Robot, samples: &Samples, first: &GainLikelihood) -> Vec<Gain> {
+pub(crate) fn gains(robot: &Robot, samples: &Samples, first: &GainLikelihood) -> Vec<Gain> {
     let mut found = first.gains(robot);
     let mut scaled = samples.clone();
     let mut latest = found.clone();
@@ -61,7 +61,7 @@ pub fn gains(robot: &Robot, samples: &Samples, first: &GainLikelihood) -> Vec<Ga
 ///
 /// The misfit of torques scaled by g is gᵀ S g. It measures how much the torques contradict each
 /// other.
-pub struct GainLikelihood {
+pub(crate) struct GainLikelihood {
     /// S, n x n.
     misfit: DMatrix<f64>,
     /// Number of independent samples of each joint.
@@ -72,7 +72,7 @@ pub struct GainLikelihood {
 
 impl GainLikelihood {
     /// Computes the likelihood from samples and the quality of their fit, one entry per joint.
-    pub fn new(samples: &Samples, joints: &[JointFit]) -> Self {
+    pub(crate) fn new(samples: &Samples, joints: &[JointFit]) -> Self {
         let size = |j: &usize| joints[*j].torque;
         let reference = (0..joints.len()).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
         Self::with_reference(samples, joints, reference)

@@ -100,7 +100,7 @@ pub(crate) struct OffsetSearch<'a> {
 
 impl<'a> OffsetSearch<'a> {
     /// Prepares a search with the columns of the fit and the torque that is known.
-    pub fn new(
+    pub(crate) fn new(
         robot: &'a Robot,
         columns: &[Parameter],
         logs: &[Log],
@@ -116,7 +116,7 @@ impl<'a> OffsetSearch<'a> {
     }
 
     /// Estimates the offset of each joint in all recordings, and in each recording alone.
-    pub fn run(&self) -> Offsets {
+    pub(crate) fn run(&self) -> Offsets {
         let none = Offsets { joints: vec![], found: None };
         let Some(fit) = Regression::new(self, &self.logs) else { return none };
         let own = if (2..=MOST_OWN).contains(&self.logs.len()) { self.logs.len() } else { 0 };
@@ -157,7 +157,7 @@ impl<'a> OffsetSearch<'a> {
     }
 
     /// Returns the recordings without the offset that is reported, and the warning about it.
-    pub fn reported(&self, offsets: &Offsets) -> Option<(Vec<Log>, String)> {
+    pub(crate) fn reported(&self, offsets: &Offsets) -> Option<(Vec<Log>, String)> {
         let (at, estimate) = offsets.found?;
         let joint = &self.robot.joints()[at.joint];
         let (name, unit, number) = (&joint.name, joint.kind.position_unit(), at.joint + 1);

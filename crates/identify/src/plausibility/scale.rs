@@ -102,7 +102,7 @@ impl Size {
 ///
 /// Both must be too large, or both too small: friction imitates one of them, and gravity is absent
 /// where a controller compensates it.
-pub fn torque_unit_warning(robot: &Robot, fit: &InertiaFit, logs: &[Log]) -> Option<String> {
+pub(super) fn torque_unit_warning(robot: &Robot, fit: &InertiaFit, logs: &[Log]) -> Option<String> {
     // Least squares: a prior far from the data would hide how far it is.
     let (columns, values) = inertia_part(&fit.columns, &fit.fit.solution.x);
     let found = Size::new(robot, &columns, &values, logs);
@@ -145,7 +145,7 @@ pub fn torque_unit_warning(robot: &Robot, fit: &InertiaFit, logs: &[Log]) -> Opt
 }
 
 /// Formats a positive number with three digits or so.
-pub fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     match value {
         100.0.. => format!("{value:.0}"),
         0.1..100.0 => format!("{value:.2}"),
@@ -156,7 +156,7 @@ pub fn number(value: f64) -> String {
 /// Returns the probable unit of the torques and the remedy.
 ///
 /// Gains would multiply the torque that controllers add as well.
-pub fn unit_words(side: Ordering, compensated: bool) -> String {
+pub(super) fn unit_words(side: Ordering, compensated: bool) -> String {
     let (unit, factor) = if side == Ordering::Greater { ("N mm", 0.001) } else { ("kN m", 1000.0) };
     let gains = if compensated { "" } else { ", for example with --gains or prepare.gains" };
     format!("tau is probably in {unit}, not in N m; multiply the torques by {factor}{gains}")

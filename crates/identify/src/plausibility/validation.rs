@@ -19,7 +19,7 @@ const NEGLIGIBLE: f64 = 0.05;
 
 /// Returns a warning for each joint of which more than 30 % of the torque in the validation
 /// recordings is not predicted.
-pub fn poor_prediction(robot: &Robot, validation: &[LogValidation]) -> Vec<String> {
+pub(crate) fn poor_prediction(robot: &Robot, validation: &[LogValidation]) -> Vec<String> {
     let joints = validation.last().map_or(&[][..], |all| &all.joints);
     let warning = |(joint, error): (_, &JointError)| {
         error.relative.filter(|relative| *relative > MAX_UNEXPLAINED).map(|relative| {
@@ -36,7 +36,7 @@ pub fn poor_prediction(robot: &Robot, validation: &[LogValidation]) -> Vec<Strin
 
 /// Returns a warning that names the joints whose torque in the validation recordings least squares
 /// predicts better than physical links do.
-pub fn costly_links(robot: &Robot, validation: &[LogValidation]) -> Option<String> {
+pub(crate) fn costly_links(robot: &Robot, validation: &[LogValidation]) -> Option<String> {
     let joints = validation.last().map_or(&[][..], |all| &all.joints);
     let costly = |(joint, error): (&String, &JointError)| {
         let (physical, plain) = (error.relative?, error.relative_plain?);
@@ -56,7 +56,7 @@ pub fn costly_links(robot: &Robot, validation: &[LogValidation]) -> Option<Strin
 }
 
 /// Returns a warning that names the validation recordings in which no joint moves.
-pub fn still_recordings(validation: &[LogValidation]) -> Option<String> {
+pub(crate) fn still_recordings(validation: &[LogValidation]) -> Option<String> {
     let still = |log: &&LogValidation| log.joints.iter().all(|joint| joint.samples == 0);
     let names: Vec<&str> = validation
         .iter()
@@ -76,7 +76,7 @@ pub fn still_recordings(validation: &[LogValidation]) -> Option<String> {
 
 /// Returns a warning for the shortest windows whose simulated motion ends further from the recorded
 /// one than the joint moved.
-pub fn useless_simulation(robot: &Robot, windows: &[WindowErrors]) -> Option<String> {
+pub(crate) fn useless_simulation(robot: &Robot, windows: &[WindowErrors]) -> Option<String> {
     let mut windows: Vec<&WindowErrors> = windows.iter().filter(|w| w.windows > 0).collect();
     windows.sort_by(|a, b| a.duration.total_cmp(&b.duration));
     windows.into_iter().find_map(|window| {

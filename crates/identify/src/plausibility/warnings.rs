@@ -16,7 +16,7 @@ const SIGNIFICANT: f64 = 4.0;
 const MAX_UNEXPLAINED: f64 = 0.3;
 
 /// The results of a fit to exciting motions whose plausibility is checked.
-pub struct Checked<'a> {
+pub(crate) struct Checked<'a> {
     /// The given robot.
     pub robot: &'a Robot,
     /// The fit.
@@ -43,7 +43,7 @@ impl Checked<'_> {
     /// does a wrong unit where the gravity torque of the description was added: the sum has no unit
     /// at all. A wrong gain may look like an `offset`, the recordings without it and the warning
     /// about it: it is one if the gains agree without it.
-    pub fn warnings(
+    pub(crate) fn warnings(
         &self,
         likelihood: &GainLikelihood,
         gains: &[Gain],

@@ -55,7 +55,7 @@ pub(crate) fn sources(entries: &[LogEntry], folder: &Path) -> Result<Vec<Source>
 
 impl Source {
     /// Reads the recording, with its columns in the order of the robot's joints.
-    pub fn read(&self, robot: &Robot, settings: &PrepareSettings) -> Result<RawLog> {
+    pub(crate) fn read(&self, robot: &Robot, settings: &PrepareSettings) -> Result<RawLog> {
         let order = column_order(robot, &settings.joints)?;
         let gap_limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
         let options =

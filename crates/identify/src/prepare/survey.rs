@@ -33,7 +33,7 @@ pub(crate) struct Survey {
 
 impl Survey {
     /// Surveys a recording.
-    pub fn of(log: &RawLog) -> Self {
+    pub(crate) fn of(log: &RawLog) -> Self {
         let run = &log.run;
         let ends = run.times.first().zip(run.times.last()).map(|(first, last)| [*first, *last]);
         let gap = |joint: usize| [integral_gap(run, joint), range(run, joint)];
@@ -51,7 +51,7 @@ impl Survey {
     }
 
     /// Returns whether two recordings have the same content and share more than one sample of it.
-    pub fn overlaps(&self, other: &Self) -> bool {
+    pub(crate) fn overlaps(&self, other: &Self) -> bool {
         let shared = |([a0, a1], [b0, b1]): ([f64; 2], [f64; 2])| a0.max(b0) < a1.min(b1);
         self.sha256 == other.sha256 && self.ends.zip(other.ends).is_some_and(shared)
     }

@@ -20,7 +20,7 @@ impl Singular {
     ///
     /// nalgebra's iteration may not converge to its own threshold, and would then never end. Wider
     /// thresholds follow, and at last the eigenvectors of AᵀA, which have half the digits.
-    pub fn of(matrix: &DMatrix<f64>) -> Self {
+    pub(crate) fn of(matrix: &DMatrix<f64>) -> Self {
         let steps = 100 * (1 + matrix.ncols());
         let attempt = |threshold: f64| {
             SVD::try_new_unordered(matrix.clone(), true, true, threshold * f64::EPSILON, steps)

@@ -40,7 +40,7 @@ pub struct WindowErrors {
 /// the final states with the recorded ones.
 ///
 /// Of more than 64 recordings, that many are simulated.
-pub fn simulate(robot: &Robot, logs: &[Log], durations: &[f64]) -> Vec<WindowErrors> {
+pub(crate) fn simulate(robot: &Robot, logs: &[Log], durations: &[f64]) -> Vec<WindowErrors> {
     let logs = &spread(logs, MOST_LOGS);
     durations.iter().map(|duration| simulate_windows(robot, logs, *duration)).collect()
 }

@@ -59,7 +59,7 @@ pub struct TorqueTrace {
 ///
 /// Least squares uses the solution of `fit` and the friction of `known`. The errors are listed per
 /// recording, and for more than one recording also over all of them.
-pub fn predict_torque(
+pub(crate) fn predict_torque(
     found: &Robot,
     known: &Robot,
     logs: &[Log],

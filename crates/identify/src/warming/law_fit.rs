@@ -16,7 +16,7 @@ const MOST_LOG: f64 = 3.0;
 
 /// Which friction changes with warmth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub(crate) enum Shape {
     /// No friction.
     Constant,
     /// Viscous friction.
@@ -31,7 +31,8 @@ pub enum Shape {
 
 impl Shape {
     /// All shapes that change.
-    pub const CHANGING: [Self; 4] = [Self::Viscous, Self::Coulomb, Self::Common, Self::Separate];
+    pub(crate) const CHANGING: [Self; 4] =
+        [Self::Viscous, Self::Coulomb, Self::Common, Self::Separate];
 
     /// Returns the rows of the map from free rates to those of Coulomb and viscous friction.
     fn rates(self) -> &'static [[f64; 2]] {
@@ -48,7 +49,7 @@ impl Shape {
 /// A law fitted to the friction of a joint: y = α_c f_c C + α_v f_v V + o, where C and V are
 /// Coulomb and viscous friction at the reference and f_c, f_v the factors of the law.
 #[derive(Debug, Clone)]
-pub struct LawFit {
+pub(super) struct LawFit {
     /// The law with the fitted rates.
     pub law: Warming,
     /// α_c, α_v and o \[N m\].
@@ -60,7 +61,7 @@ pub struct LawFit {
 impl LawFit {
     /// Fits the rates of `law` that `shape` frees, from rate 0. The result is `None` where the rows
     /// do not determine them.
-    pub fn new(shape: Shape, law: Warming, rows: &[FrictionRow]) -> Option<Self> {
+    pub(super) fn new(shape: Shape, law: Warming, rows: &[FrictionRow]) -> Option<Self> {
         let law = Warming { coulomb: 0.0, viscous: 0.0, ..law };
         let mut fit = Self { law, linear: [1.0, 1.0, 0.0], standard_errors: [0.0; 2] };
         let map = shape.rates();
@@ -113,7 +114,7 @@ impl LawFit {
     }
 
     /// Returns recorded minus predicted friction \[N m\].
-    pub fn residual(&self, row: &FrictionRow) -> f64 {
+    pub(super) fn residual(&self, row: &FrictionRow) -> f64 {
         let ([c, v], [coulomb, viscous]) = (self.factors(row), row.friction);
         let [alpha_c, alpha_v, offset] = self.linear;
         row.torque - alpha_c * c * coulomb - alpha_v * v * viscous - offset

@@ -11,7 +11,7 @@ const ENOUGH_LOGS: usize = 4;
 
 /// The friction of a joint at one sample.
 #[derive(Debug, Clone, Copy)]
-pub struct FrictionRow {
+pub(crate) struct FrictionRow {
     /// Temperature \[°C\] or number of the recording.
     pub value: f64,
     /// Coulomb and viscous friction at the reference \[N m\].
@@ -21,7 +21,7 @@ pub struct FrictionRow {
 }
 
 /// The rows of every joint, in the parts that are kept back in turn.
-pub struct FrictionRows {
+pub(crate) struct FrictionRows {
     /// Rows by joint and part.
     pub joints: Vec<Vec<Vec<FrictionRow>>>,
     /// Whether a part is a recording; otherwise it is a stretch of one.
@@ -31,7 +31,7 @@ pub struct FrictionRows {
 impl FrictionRows {
     /// Takes the rows of motions for a law that depends on `by`. The result is the name of a
     /// recording that does not know it, where there is one.
-    pub fn new(
+    pub(crate) fn new(
         found: &Robot,
         logs: &[&Log],
         sampling: &Sampling,

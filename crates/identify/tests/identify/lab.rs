@@ -6,14 +6,14 @@ use reachtube_robot::{Robot, RobotDescription};
 use std::path::{Path, PathBuf};
 
 /// Returns the LWA 4P with the same parameters for inertia and gravity.
-pub fn lwa4p() -> Robot {
+pub(crate) fn lwa4p() -> Robot {
     let mut description = Robot::lwa4p().description().clone();
     description.joints.iter_mut().for_each(|joint| joint.gravity_moments = None);
     Robot::from_description(&description).unwrap()
 }
 
 /// Returns the geometry of a robot, without masses, motors and friction.
-pub fn geometry(robot: &Robot) -> Robot {
+pub(crate) fn geometry(robot: &Robot) -> Robot {
     let mut description: RobotDescription = robot.description().clone();
     for joint in &mut description.joints {
         (joint.mass, joint.com, joint.first_moment) = (0.0, None, None);
@@ -24,18 +24,18 @@ pub fn geometry(robot: &Robot) -> Robot {
 }
 
 /// A folder for recordings.
-pub struct Lab {
+pub(crate) struct Lab {
     folder: tempfile::TempDir,
 }
 
 impl Lab {
     /// Returns an empty folder.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { folder: tempfile::tempdir().unwrap() }
     }
 
     /// Records three exciting motions and a validation motion.
-    pub fn excite(&self, robot: &Robot, noise: f64, gains: &[f64]) {
+    pub(crate) fn excite(&self, robot: &Robot, noise: f64, gains: &[f64]) {
         let mut recorder = Recorder { robot, noise, gains: gains.to_vec(), random: Random::new(5) };
         for seed in 1..=3 {
             let path = self.folder.path().join(format!("dynamic_{seed}.csv"));
@@ -49,7 +49,7 @@ impl Lab {
     }
 
     /// Returns settings for the recordings of [`Lab::excite`].
-    pub fn settings(&self) -> IdentifySettings {
+    pub(crate) fn settings(&self) -> IdentifySettings {
         let entry = |name: &str| PathBuf::from(name).into();
         let mut settings = IdentifySettings {
             dynamic: (1..=3).map(|k| entry(&format!("dynamic_{k}.csv"))).collect(),
@@ -61,7 +61,7 @@ impl Lab {
     }
 
     /// Records poses at rest and slow motions of each joint, and adds them to the settings.
-    pub fn record_slowly(&self, robot: &Robot, settings: &mut IdentifySettings) {
+    pub(crate) fn record_slowly(&self, robot: &Robot, settings: &mut IdentifySettings) {
         let mut recorder =
             Recorder { robot, noise: 0.1, gains: vec![1.0; 6], random: Random::new(3) };
         let mut random = Random::new(11);
@@ -81,19 +81,19 @@ impl Lab {
     }
 
     /// Returns the folder.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.folder.path()
     }
 
     /// Identifies a robot.
-    pub fn identify(&self, robot: &Robot, settings: &IdentifySettings) -> Identification {
+    pub(crate) fn identify(&self, robot: &Robot, settings: &IdentifySettings) -> Identification {
         identify(robot, settings, self.path(), &|_, _| {}).unwrap()
     }
 }
 
 /// Returns a robot with constant and linear friction, which the fit of the inertial parameters
 /// contains.
-pub fn simple_friction(robot: &Robot) -> Robot {
+pub(crate) fn simple_friction(robot: &Robot) -> Robot {
     let mut description = robot.description().clone();
     for (j, joint) in description.joints.iter_mut().enumerate() {
         let f = 2.0 + 0.3 * j as f64;

@@ -8,24 +8,24 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Time between samples \[s\].
-pub const STEP: f64 = 0.004;
+pub(crate) const STEP: f64 = 0.004;
 
 /// A generator of random numbers that gives the same numbers on every machine.
-pub struct Random(SplitMix64);
+pub(crate) struct Random(SplitMix64);
 
 impl Random {
     /// Returns a generator with a seed.
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
     /// Returns a uniform number in 0..1.
-    pub fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         self.0.random()
     }
 
     /// Returns a standard normal number (Box and Muller).
-    pub fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.uniform(), self.uniform());
         (-2.0 * u.ln()).sqrt() * (2.0 * std::f64::consts::PI * v).cos()
     }
@@ -35,7 +35,7 @@ impl Random {
 type State = [Vec<f64>; 3];
 
 /// Returns a motion of all joints, each a sum of three sines with frequencies of its own.
-pub fn excitation(joints: usize, seed: u64) -> impl Fn(f64) -> State {
+pub(crate) fn excitation(joints: usize, seed: u64) -> impl Fn(f64) -> State {
     let mut random = Random::new(seed);
     let waves: Vec<Vec<[f64; 3]>> = (0..joints)
         .map(|_| {
@@ -66,7 +66,7 @@ pub fn excitation(joints: usize, seed: u64) -> impl Fn(f64) -> State {
 }
 
 /// Returns a slow sine of one joint, with the other joints at rest at `pose` \[rad\].
-pub fn slow(joints: usize, moving: usize, pose: f64) -> impl Fn(f64) -> State {
+pub(crate) fn slow(joints: usize, moving: usize, pose: f64) -> impl Fn(f64) -> State {
     move |t| {
         let (a, w) = (1.4, 0.55);
         let mut state = [vec![pose; joints], vec![0.0; joints], vec![0.0; joints]];
@@ -78,12 +78,12 @@ pub fn slow(joints: usize, moving: usize, pose: f64) -> impl Fn(f64) -> State {
 }
 
 /// Returns a rest in a pose \[rad\].
-pub fn rest(q: Vec<f64>) -> impl Fn(f64) -> State {
+pub(crate) fn rest(q: Vec<f64>) -> impl Fn(f64) -> State {
     move |_| [q.clone(), vec![0.0; q.len()], vec![0.0; q.len()]]
 }
 
 /// A recorder of simulated motions.
-pub struct Recorder<'a> {
+pub(crate) struct Recorder<'a> {
     /// The robot.
     pub robot: &'a Robot,
     /// Standard deviation of the torque noise \[N m\].
@@ -96,7 +96,7 @@ pub struct Recorder<'a> {
 
 impl Recorder<'_> {
     /// Records a motion of a duration \[s\] as a CSV file.
-    pub fn record(&mut self, path: &Path, duration: f64, motion: impl Fn(f64) -> State) {
+    pub(crate) fn record(&mut self, path: &Path, duration: f64, motion: impl Fn(f64) -> State) {
         let n = self.robot.joint_count();
         let columns =
             ["q", "qd", "tau"].map(|c| (1..=n).map(|i| format!(",{c}{i}")).collect::<String>());
@@ -118,7 +118,7 @@ impl Recorder<'_> {
 }
 
 /// Changes the rows of a recording: t, q, q̇ and τ, 1 + 3 n entries each.
-pub fn edit(path: &Path, change: impl Fn(&mut Vec<Vec<f64>>)) {
+pub(crate) fn edit(path: &Path, change: impl Fn(&mut Vec<Vec<f64>>)) {
     let text = std::fs::read_to_string(path).unwrap();
     let (header, body) = text.split_once('\n').unwrap();
     let row = |line: &str| line.split(',').map(|value| value.parse().unwrap()).collect();

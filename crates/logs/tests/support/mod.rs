@@ -11,18 +11,18 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use reachtube_logs::{Log, LogOptions, Result};
 
-pub const JOINT_STATE: &str = "sensor_msgs/msg/JointState";
-pub const TOPIC: &str = "/joint_states";
-pub const SECOND: i64 = 1_000_000_000;
+pub(crate) const JOINT_STATE: &str = "sensor_msgs/msg/JointState";
+pub(crate) const TOPIC: &str = "/joint_states";
+pub(crate) const SECOND: i64 = 1_000_000_000;
 
 /// An encoder of CDR in either byte order.
-pub struct Encoder {
+pub(crate) struct Encoder {
     bytes: Vec<u8>,
     big: bool,
 }
 
 impl Encoder {
-    pub fn new(big: bool) -> Self {
+    pub(crate) fn new(big: bool) -> Self {
         Self { bytes: vec![0, u8::from(!big), 0, 0], big }
     }
 
@@ -32,19 +32,19 @@ impl Encoder {
         }
     }
 
-    pub fn u32(mut self, value: u32) -> Self {
+    pub(crate) fn u32(mut self, value: u32) -> Self {
         self.align(4);
         self.bytes.extend(if self.big { value.to_be_bytes() } else { value.to_le_bytes() });
         self
     }
 
-    pub fn string(mut self, text: &str) -> Self {
+    pub(crate) fn string(mut self, text: &str) -> Self {
         self = self.u32(text.len() as u32 + 1);
         self.bytes.extend(text.bytes().chain([0]));
         self
     }
 
-    pub fn doubles(mut self, values: &[f64]) -> Self {
+    pub(crate) fn doubles(mut self, values: &[f64]) -> Self {
         self = self.u32(values.len() as u32);
         for value in values {
             self.align(8);
@@ -53,19 +53,19 @@ impl Encoder {
         self
     }
 
-    pub fn byte(mut self, byte: u8) -> Self {
+    pub(crate) fn byte(mut self, byte: u8) -> Self {
         self.bytes.push(byte);
         self
     }
 
-    pub fn end(self) -> Vec<u8> {
+    pub(crate) fn end(self) -> Vec<u8> {
         self.bytes
     }
 }
 
 /// A joint state before it is encoded.
 #[derive(Debug, Clone)]
-pub struct State {
+pub(crate) struct State {
     /// Stamp, ns.
     pub stamp: i64,
     pub names: Vec<String>,
@@ -74,12 +74,12 @@ pub struct State {
 }
 
 impl State {
-    pub fn new(stamp: i64, names: &[&str], values: [&[f64]; 3]) -> Self {
+    pub(crate) fn new(stamp: i64, names: &[&str], values: [&[f64]; 3]) -> Self {
         let names = names.iter().map(|name| (*name).into()).collect();
         Self { stamp, names, values: values.map(<[f64]>::to_vec) }
     }
 
-    pub fn encode(&self, big: bool) -> Vec<u8> {
+    pub(crate) fn encode(&self, big: bool) -> Vec<u8> {
         let mut out = Encoder::new(big)
             .u32((self.stamp / SECOND) as u32)
             .u32((self.stamp % SECOND) as u32)
@@ -94,7 +94,7 @@ impl State {
 
 /// A message of a log.
 #[derive(Debug, Clone)]
-pub struct Message {
+pub(crate) struct Message {
     pub topic: String,
     pub kind: String,
     /// Time at which the log received it, ns.
@@ -103,18 +103,18 @@ pub struct Message {
 }
 
 impl Message {
-    pub fn new(topic: &str, kind: &str, received: i64, data: Vec<u8>) -> Self {
+    pub(crate) fn new(topic: &str, kind: &str, received: i64, data: Vec<u8>) -> Self {
         Self { topic: topic.into(), kind: kind.into(), received, data }
     }
 
-    pub fn string(received: i64, text: &str) -> Self {
+    pub(crate) fn string(received: i64, text: &str) -> Self {
         let data = Encoder::new(false).string(text).end();
         Self::new("/marker", "std_msgs/msg/String", received, data)
     }
 }
 
 /// Returns messages of [`TOPIC`], received 1 ms after their stamps.
-pub fn messages(states: &[State]) -> Vec<Message> {
+pub(crate) fn messages(states: &[State]) -> Vec<Message> {
     let message = |state: &State| {
         Message::new(TOPIC, JOINT_STATE, state.stamp + 1_000_000, state.encode(false))
     };
@@ -122,7 +122,7 @@ pub fn messages(states: &[State]) -> Vec<Message> {
 }
 
 /// Returns the options to write an MCAP file: `none`, `zstd`, `lz4`, or `unchunked`.
-pub fn mcap_options(compression: &str) -> WriteOptions {
+pub(crate) fn mcap_options(compression: &str) -> WriteOptions {
     let options = WriteOptions::new().chunk_size(Some(2000));
     match compression {
         "zstd" => options.compression(Some(Compression::Zstd)),
@@ -134,7 +134,7 @@ pub fn mcap_options(compression: &str) -> WriteOptions {
 }
 
 /// Returns the bytes of an MCAP file.
-pub fn mcap_bytes(compression: &str, messages: &[Message]) -> Vec<u8> {
+pub(crate) fn mcap_bytes(compression: &str, messages: &[Message]) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(vec![]);
     let mut writer = Writer::with_options(&mut bytes, mcap_options(compression)).unwrap();
     let mut channels = BTreeMap::new();
@@ -153,14 +153,14 @@ pub fn mcap_bytes(compression: &str, messages: &[Message]) -> Vec<u8> {
 }
 
 /// Writes an MCAP file.
-pub fn mcap(folder: &Path, compression: &str, messages: &[Message]) -> PathBuf {
+pub(crate) fn mcap(folder: &Path, compression: &str, messages: &[Message]) -> PathBuf {
     let path = folder.join(format!("{compression}.mcap"));
     std::fs::write(&path, mcap_bytes(compression, messages)).unwrap();
     path
 }
 
 /// The tables of rosbag2, schema version 4.
-pub const TABLES: &str = "
+pub(crate) const TABLES: &str = "
     CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);
     CREATE TABLE metadata(id INTEGER PRIMARY KEY, metadata_version INTEGER NOT NULL,
         metadata TEXT NOT NULL);
@@ -173,7 +173,7 @@ pub const TABLES: &str = "
     INSERT INTO schema(schema_version, ros_distro) VALUES (4, 'rolling');";
 
 /// Opens a new .db3 file with small pages and the tables of rosbag2.
-pub fn bag_connection(path: &Path, journal: &str) -> rusqlite::Connection {
+pub(crate) fn bag_connection(path: &Path, journal: &str) -> rusqlite::Connection {
     let connection = rusqlite::Connection::open(path).unwrap();
     let set_up = format!(
         "PRAGMA page_size = 512; PRAGMA journal_mode = {journal}; PRAGMA synchronous = OFF; \
@@ -184,7 +184,7 @@ pub fn bag_connection(path: &Path, journal: &str) -> rusqlite::Connection {
 }
 
 /// Adds messages to a .db3 file.
-pub fn add_to_bag(connection: &rusqlite::Connection, messages: &[Message]) {
+pub(crate) fn add_to_bag(connection: &rusqlite::Connection, messages: &[Message]) {
     let mut topics = BTreeMap::new();
     for message in messages {
         let next = topics.len() as i64 + 1;
@@ -199,7 +199,7 @@ pub fn add_to_bag(connection: &rusqlite::Connection, messages: &[Message]) {
 }
 
 /// Writes a .db3 file.
-pub fn bag(folder: &Path, messages: &[Message]) -> PathBuf {
+pub(crate) fn bag(folder: &Path, messages: &[Message]) -> PathBuf {
     let path = folder.join("bag.db3");
     let connection = bag_connection(&path, "DELETE");
     connection.execute_batch("BEGIN").unwrap();
@@ -209,7 +209,7 @@ pub fn bag(folder: &Path, messages: &[Message]) -> PathBuf {
 }
 
 /// Returns options for the joints a, b and c of [`TOPIC`].
-pub fn options() -> LogOptions {
+pub(crate) fn options() -> LogOptions {
     LogOptions {
         topics: vec![TOPIC.into()],
         joints: ["a", "b", "c"].map(String::from).into(),
@@ -217,18 +217,18 @@ pub fn options() -> LogOptions {
     }
 }
 
-pub fn read(path: &Path) -> Result<Log> {
+pub(crate) fn read(path: &Path) -> Result<Log> {
     Log::read(path, &options())
 }
 
 /// Returns the message of the error that reading gives.
-pub fn error(path: &Path) -> String {
+pub(crate) fn error(path: &Path) -> String {
     read(path).unwrap_err().to_string()
 }
 
 /// Returns `count` states at 100 Hz from 1.7e9 s, with numbers of all digits. The order of the
 /// joints is another in every message, and a gripper is among them.
-pub fn states(count: usize) -> Vec<State> {
+pub(crate) fn states(count: usize) -> Vec<State> {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
     let state = |k: usize| {
         let mut order = ["a", "b", "c", "gripper"];
@@ -241,7 +241,7 @@ pub fn states(count: usize) -> Vec<State> {
 }
 
 /// Returns the values of a state in the order of a, b and c: positions, velocities, efforts.
-pub fn expected(state: &State) -> Vec<f64> {
+pub(crate) fn expected(state: &State) -> Vec<f64> {
     let of = |quantity: usize, joint: &str| {
         let place = state.names.iter().position(|name| name == joint).unwrap();
         state.values[quantity][place]

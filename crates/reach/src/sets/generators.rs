@@ -27,16 +27,16 @@ pub(crate) struct Generators {
 }
 
 impl Generators {
-    pub fn new(n: usize) -> Self {
+    pub(crate) fn new(n: usize) -> Self {
         Self { n, count: 0, blocks: Vec::new(), partial: Vec::new() }
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.count
     }
 
     /// Appends a generator (n entries), unless it is zero.
-    pub fn push(&mut self, generator: impl Iterator<Item = f64> + Clone) {
+    pub(crate) fn push(&mut self, generator: impl Iterator<Item = f64> + Clone) {
         if generator.clone().all(|x| x == 0.0) {
             return;
         }
@@ -50,13 +50,13 @@ impl Generators {
     }
 
     /// Returns generator `index`, n entries.
-    pub fn get(&self, index: usize) -> impl Iterator<Item = f64> + Clone {
+    pub(crate) fn get(&self, index: usize) -> impl Iterator<Item = f64> + Clone {
         let block = index / LANES * self.n;
         self.blocks[block..block + self.n].iter().map(move |lanes| lanes[index % LANES])
     }
 
     /// Replaces every generator g by Φ g and sets `sums` (n) to Σ |Φ g|, both in floating point.
-    pub fn map(&mut self, phi: &SquareMatrix, sums: &mut [f64]) {
+    pub(crate) fn map(&mut self, phi: &SquareMatrix, sums: &mut [f64]) {
         let n = self.n;
         let rows = Rows::new(phi);
         let chunks = self.blocks.len().div_ceil(BLOCKS_PER_TASK * n.max(1));
@@ -76,7 +76,7 @@ impl Generators {
 
     /// Removes the first `surplus` generators, rounded down to whole blocks, and adds the radius of
     /// their box to `radius`, rounded upward.
-    pub fn absorb_oldest(&mut self, surplus: usize, radius: &mut [f64]) {
+    pub(crate) fn absorb_oldest(&mut self, surplus: usize, radius: &mut [f64]) {
         let blocks = surplus.min(self.count) / LANES;
         for (i, radius) in radius.iter_mut().enumerate() {
             let lanes = self.blocks[..blocks * self.n].iter().skip(i).step_by(self.n);

@@ -10,16 +10,16 @@ pub(crate) struct SquareMatrix {
 }
 
 impl SquareMatrix {
-    pub fn zero(n: usize) -> Self {
+    pub(crate) fn zero(n: usize) -> Self {
         Self { n, entries: vec![0.0; n * n] }
     }
 
-    pub fn row(&self, i: usize) -> &[f64] {
+    pub(crate) fn row(&self, i: usize) -> &[f64] {
         &self.entries[i * self.n..(i + 1) * self.n]
     }
 
     /// Sets `self` to `left` times `right`; each entry is a floating-point sum of n products.
-    pub fn set_product(&mut self, left: &Self, right: &Self) {
+    pub(crate) fn set_product(&mut self, left: &Self, right: &Self) {
         self.entries.fill(0.0);
         let n = self.n;
         for (i, sum) in self.entries.chunks_exact_mut(n.max(1)).enumerate() {
@@ -30,14 +30,14 @@ impl SquareMatrix {
     }
 
     /// Sets `out` to `self` times `column`, in floating point.
-    pub fn apply(&self, column: &[f64], out: &mut [f64]) {
+    pub(crate) fn apply(&self, column: &[f64], out: &mut [f64]) {
         for (i, out) in out.iter_mut().enumerate() {
             *out = self.row(i).iter().zip(column).map(|(x, y)| x * y).sum();
         }
     }
 
     /// Sets `out` to an upper bound of |self| times `column`, for a column >= 0.
-    pub fn apply_absolute(&self, column: &[f64], out: &mut [f64]) {
+    pub(crate) fn apply_absolute(&self, column: &[f64], out: &mut [f64]) {
         for (i, out) in out.iter_mut().enumerate() {
             let sum = self.row(i).iter().zip(column).map(|(x, y)| x.abs() * y).sum();
             *out = round_up_sum(sum, self.n);

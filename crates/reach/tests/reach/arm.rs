@@ -14,7 +14,7 @@ const FRICTION: [f64; 6] = [8.0, 9.0, 5.0, 2.0, 1.2, 0.9];
 /// M is symmetric and positive definite, since the diagonal dominates its scaled rows. Its
 /// couplings have both signs, so that e^{Aτ} and e^{Aτ} B have entries that are negative or change
 /// sign.
-pub fn arm() -> LinearSystem {
+pub(crate) fn arm() -> LinearSystem {
     let n = INERTIA.len();
     let sign = |i: usize, j: usize| if (i + j).is_multiple_of(3) { -1.0 } else { 1.0 };
     let coupling = |i: usize, j: usize| {

@@ -68,7 +68,7 @@ const FRICTION: [[f64; 3]; 6] = [
 ];
 
 /// Returns ẋ of the model in the variables (q, q̇, u).
-pub fn components() -> Vec<Polynomial> {
+pub(crate) fn components() -> Vec<Polynomial> {
     let z = variables(18, 3);
     let load = |j: usize| {
         let (v, [f1, f2, f3]) = (&z[6 + j], FRICTION[j]);
@@ -82,12 +82,12 @@ pub fn components() -> Vec<Polynomial> {
     z[6..12].iter().cloned().chain((0..6).map(row)).collect()
 }
 
-pub fn model1() -> PolynomialSystem {
+pub(crate) fn model1() -> PolynomialSystem {
     PolynomialSystem::new(12, 6, &components()).expect("12 components")
 }
 
 /// Returns X0 and U of the velocity-conformant model, as printed, times `scale`.
-pub fn table2(scale: f64) -> (Hyperrectangle, Hyperrectangle) {
+pub(crate) fn table2(scale: f64) -> (Hyperrectangle, Hyperrectangle) {
     let q = [0.0030, 0.0017, 0.0025, 0.0027, 0.0075, 0.0063].map(|q| [-q, q]);
     let velocity = [
         [-0.0317, 1.2140],

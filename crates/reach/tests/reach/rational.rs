@@ -7,10 +7,10 @@ use num_traits::{FromPrimitive, One, Signed, ToPrimitive, Zero};
 use reachtube_reach::{IntervalMatrix, LinearSystem};
 use reachtube_scalar::Interval;
 
-pub type Rational = BigRational;
-pub type RationalMatrix = Vec<Vec<Rational>>;
+pub(crate) type Rational = BigRational;
+pub(crate) type RationalMatrix = Vec<Vec<Rational>>;
 
-pub fn exact(x: f64) -> Rational {
+pub(crate) fn exact(x: f64) -> Rational {
     Rational::from_float(x).expect("a finite number")
 }
 
@@ -24,12 +24,12 @@ fn tiny() -> Rational {
 }
 
 /// Returns the largest multiple of 2⁻³²⁰ up to x, so that numerators do not grow with every step.
-pub fn rounded(x: &Rational) -> Rational {
+pub(crate) fn rounded(x: &Rational) -> Rational {
     let scale = num_traits::pow(integer(2), 320);
     (x * &scale).floor() / scale
 }
 
-pub fn multiply(left: &RationalMatrix, right: &RationalMatrix) -> RationalMatrix {
+pub(crate) fn multiply(left: &RationalMatrix, right: &RationalMatrix) -> RationalMatrix {
     let entry = |row: &Vec<Rational>, j: usize| {
         let terms = row.iter().zip(right).filter(|(x, _)| !x.is_zero());
         terms.fold(Rational::zero(), |sum, (x, other)| sum + x * &other[j])
@@ -78,7 +78,7 @@ fn exponential(matrix: &RationalMatrix, h: &Rational) -> RationalMatrix {
 
 /// Computes Φ = e^{Ah}, Γ(h) and γ(h) of the system as the rows [Φ Γ γ] of the exponential of
 /// [A B d; 0 0 0].
-pub fn exact_step(system: &LinearSystem, h: &Rational) -> RationalMatrix {
+pub(crate) fn exact_step(system: &LinearSystem, h: &Rational) -> RationalMatrix {
     let (n, m) = (system.states(), system.inputs());
     let entry = |i: usize, j: usize| match (i < n, j) {
         (false, _) => 0.0,
@@ -92,13 +92,13 @@ pub fn exact_step(system: &LinearSystem, h: &Rational) -> RationalMatrix {
 }
 
 /// Fails unless the interval contains the number, up to the precision of the reference.
-pub fn assert_holds(x: Interval, value: &Rational, what: &str) {
+pub(crate) fn assert_holds(x: Interval, value: &Rational, what: &str) {
     assert!(exact(x.lo()) <= value + tiny(), "{what}: {x:?} lies above {:?}", value.to_f64());
     assert!(exact(x.hi()) >= value - tiny(), "{what}: {x:?} lies below {:?}", value.to_f64());
 }
 
 /// Fails unless the matrix encloses columns `from..` of `rows`; returns its largest width.
-pub fn assert_encloses(
+pub(crate) fn assert_encloses(
     matrix: &IntervalMatrix,
     rows: &RationalMatrix,
     from: usize,
@@ -113,12 +113,12 @@ pub fn assert_encloses(
 }
 
 /// Returns the largest absolute entry.
-pub fn largest(matrix: &IntervalMatrix) -> f64 {
+pub(crate) fn largest(matrix: &IntervalMatrix) -> f64 {
     matrix.iter().map(|x| x.mag()).fold(0.0, f64::max)
 }
 
 /// Builds a system from the rows of its matrices.
-pub fn system(a: &[&[f64]], b: &[&[f64]], drift: &[f64]) -> LinearSystem {
+pub(crate) fn system(a: &[&[f64]], b: &[&[f64]], drift: &[f64]) -> LinearSystem {
     let matrix = |rows: &[&[f64]]| DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j]);
     LinearSystem::new(matrix(a), matrix(b), nalgebra::DVector::from_column_slice(drift))
         .expect("finite")

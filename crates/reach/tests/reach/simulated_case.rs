@@ -13,13 +13,13 @@ use reachtube_scalar::{Interval, Lanes, Lanewise, MapWorkspace, PolynomialMap, P
 use crate::random::Random;
 use crate::systems::{Polynomial, constant, variables};
 
-pub fn set(centre: &[f64], radius: &[f64]) -> Hyperrectangle {
+pub(crate) fn set(centre: &[f64], radius: &[f64]) -> Hyperrectangle {
     Hyperrectangle { centre: centre.to_vec(), radius: radius.to_vec() }
 }
 
 /// The vector field ẋ = f(x, u) over any lanes, with the sines and cosines of the first states as
 /// further variables.
-pub struct Field<'a, S> {
+pub(crate) struct Field<'a, S> {
     map: &'a PolynomialMap,
     angles: usize,
     ws: MapWorkspace<S>,
@@ -27,7 +27,7 @@ pub struct Field<'a, S> {
 }
 
 impl<'a, S: Lanewise + Powers> Field<'a, S> {
-    pub fn new(map: &'a PolynomialMap, angles: usize) -> Self {
+    pub(crate) fn new(map: &'a PolynomialMap, angles: usize) -> Self {
         Self { map, angles, ws: map.workspace(), at: Vec::new() }
     }
 }
@@ -43,13 +43,13 @@ impl<S: Lanewise + Powers> VectorField<S> for Field<'_, S> {
 }
 
 /// Returns f with the midpoints of its coefficients.
-pub fn map(variables: usize, f: &[Polynomial]) -> PolynomialMap {
+pub(crate) fn map(variables: usize, f: &[Polynomial]) -> PolynomialMap {
     let f: Vec<_> = f.iter().map(|f| f.map_coefficients(|c| c.mid())).collect();
     PolynomialMap::new(variables, &f)
 }
 
 /// A flowpipe and the settings of its simulations.
-pub struct Case {
+pub(crate) struct Case {
     pub map: PolynomialMap,
     /// Number of first states whose sines and cosines occur in f.
     pub angles: usize,
@@ -65,13 +65,13 @@ pub struct Case {
 
 /// Largest error of a simulation, relative to the size of the states; checked in
 /// `simulations_are_within_the_assumed_error`.
-pub const SLACK: f64 = 1e-7;
+pub(crate) const SLACK: f64 = 1e-7;
 
 impl Case {
     /// Simulates `runs` behaviours and fails where a state leaves the sets, at samples or between.
     ///
     /// Returns the largest ratio of the simulated width to the width of the set at the end.
-    pub fn simulate(&self, runs: usize, seed: u64) -> f64 {
+    pub(crate) fn simulate(&self, runs: usize, seed: u64) -> f64 {
         let mut random = Random::new(seed);
         let steps = self.flowpipe.len() - 1;
         let times: Vec<f64> =
@@ -137,7 +137,7 @@ fn random_polynomial(random: &mut Random, z: &[Polynomial]) -> Polynomial {
 
 /// Returns a case with random numbers of states and inputs, a random system with or without terms
 /// along common directions, and random sets.
-pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
+pub(crate) fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     let mut random = Random::new(seed);
     let (n, m) = (1 + random.bits() as usize % 4, random.bits() as usize % 3);
     // About half of the systems have sines and cosines, where the method supports them.
@@ -185,7 +185,7 @@ pub fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
 
 /// Computes the flowpipe of a published problem and checks that it contains 10,000 simulated
 /// trajectories.
-pub fn contain_ten_thousand(
+pub(crate) fn contain_ten_thousand(
     system: &PolynomialSystem,
     f: &[Polynomial],
     start: Hyperrectangle,
@@ -205,7 +205,7 @@ pub fn contain_ten_thousand(
 }
 
 /// Computes a flowpipe from 0 + `start`, and its zonotopes at all samples.
-pub fn with_zonotopes(
+pub(crate) fn with_zonotopes(
     system: &PolynomialSystem,
     grid: &TimeGrid,
     start: &Hyperrectangle,

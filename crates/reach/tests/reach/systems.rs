@@ -5,20 +5,20 @@ use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
 
 use crate::arm::arm;
 
-pub type Polynomial = TaylorPolynomial<Interval>;
+pub(crate) type Polynomial = TaylorPolynomial<Interval>;
 
-pub fn constant(x: f64) -> Polynomial {
+pub(crate) fn constant(x: f64) -> Polynomial {
     Polynomial::constant(Interval::point(x))
 }
 
 /// Returns the variables of a space of the given order.
-pub fn variables(count: usize, order: u32) -> Vec<Polynomial> {
+pub(crate) fn variables(count: usize, order: u32) -> Vec<Polynomial> {
     let space = TaylorSpace::new(count, order).unwrap();
     (0..count).map(|i| Polynomial::variable(&space, i)).collect()
 }
 
 /// Returns A x + B u + d as polynomials.
-pub fn linear(system: &LinearSystem) -> Vec<Polynomial> {
+pub(crate) fn linear(system: &LinearSystem) -> Vec<Polynomial> {
     let z = variables(system.states() + system.inputs(), 3);
     let row = |i: usize| {
         let coefficients =
@@ -32,12 +32,12 @@ pub fn linear(system: &LinearSystem) -> Vec<Polynomial> {
 /// Returns the arm with a cubic friction torque besides the viscous one.
 ///
 /// A positive `softening` weakens friction at speed, like the cubic term of the paper.
-pub fn cubic_arm(softening: f64) -> PolynomialSystem {
+pub(crate) fn cubic_arm(softening: f64) -> PolynomialSystem {
     PolynomialSystem::new(12, 6, &cubic_arm_components(softening)).unwrap()
 }
 
 /// Returns ẋ of [`cubic_arm`].
-pub fn cubic_arm_components(softening: f64) -> Vec<Polynomial> {
+pub(crate) fn cubic_arm_components(softening: f64) -> Vec<Polynomial> {
     let system = arm();
     let mut f = linear(&system);
     let z = variables(18, 3);
@@ -54,24 +54,24 @@ pub fn cubic_arm_components(softening: f64) -> Vec<Polynomial> {
 const FRICTION: [f64; 6] = [0.8, 1.0, 1.5, 0.1, 0.2, 0.1];
 
 /// Returns the Van der Pol oscillator ẋ = y, ẏ = (1 - x²) y - x.
-pub fn van_der_pol() -> PolynomialSystem {
+pub(crate) fn van_der_pol() -> PolynomialSystem {
     PolynomialSystem::new(2, 0, &van_der_pol_components()).unwrap()
 }
 
 /// Returns ẋ of [`van_der_pol`].
-pub fn van_der_pol_components() -> Vec<Polynomial> {
+pub(crate) fn van_der_pol_components() -> Vec<Polynomial> {
     let z = variables(2, 3);
     let (x, y) = (&z[0], &z[1]);
     vec![y.clone(), y - &(&(x * x) * y) - x.clone()]
 }
 
 /// Returns the enzymatic network of Laub and Loomis, 7 states.
-pub fn laub_loomis() -> PolynomialSystem {
+pub(crate) fn laub_loomis() -> PolynomialSystem {
     PolynomialSystem::new(7, 0, &laub_loomis_components()).unwrap()
 }
 
 /// Returns ẋ of [`laub_loomis`].
-pub fn laub_loomis_components() -> Vec<Polynomial> {
+pub(crate) fn laub_loomis_components() -> Vec<Polynomial> {
     let z = variables(7, 2);
     let x = |i: usize| &z[i - 1];
     let times = |c: f64, p: &Polynomial| &constant(c) * p;

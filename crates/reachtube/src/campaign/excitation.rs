@@ -36,7 +36,7 @@ pub(super) struct ExcitingMotion {
 
 impl ExcitingMotion {
     /// Draws centres, amplitudes and phases, and scales each joint to its speed and range.
-    pub fn random(robot: &Robot, random: &mut SplitMix64) -> Self {
+    pub(super) fn random(robot: &Robot, random: &mut SplitMix64) -> Self {
         let (mut centre, mut harmonics) = (Vec::new(), Vec::new());
         for joint in robot.joints() {
             let mut drawn: [Harmonic; HARMONICS] = std::array::from_fn(|l| {
@@ -57,12 +57,12 @@ impl ExcitingMotion {
     }
 
     /// Returns the number of cycles.
-    pub fn cycles() -> usize {
+    pub(super) fn cycles() -> usize {
         (DURATION / SAMPLE_TIME).round() as usize + 1
     }
 
     /// Returns the plan at time `t` \[s\].
-    pub fn at(&self, t: f64) -> Planned {
+    pub(super) fn at(&self, t: f64) -> Planned {
         let [w, rate, bend] = ramp(t);
         let (mut q, mut qd, mut qdd) = (Vec::new(), Vec::new(), Vec::new());
         for (centre, harmonics) in self.centre.iter().zip(&self.harmonics) {

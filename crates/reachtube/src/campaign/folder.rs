@@ -34,7 +34,11 @@ pub(super) struct Folder<'a> {
 
 impl<'a> Folder<'a> {
     /// Opens the folder of a campaign: a new one, or one in which the same campaign was stopped.
-    pub fn open(root: &'a Path, robot: &VirtualRobot, options: &CampaignOptions) -> Result<Self> {
+    pub(super) fn open(
+        root: &'a Path,
+        robot: &VirtualRobot,
+        options: &CampaignOptions,
+    ) -> Result<Self> {
         let mark = mark(robot.nominal(), options);
         let path = root.join(MARK);
         if path.exists() {
@@ -54,18 +58,18 @@ impl<'a> Folder<'a> {
     }
 
     /// Returns whether a job was done before the campaign was stopped.
-    pub fn has(&self, job: &Job) -> bool {
+    pub(super) fn has(&self, job: &Job) -> bool {
         job.files.iter().all(|file| self.root.join(file).exists())
     }
 
     /// Returns the text of a recording.
-    pub fn read(&self, file: &str) -> Result<String> {
+    pub(super) fn read(&self, file: &str) -> Result<String> {
         let bytes = reachtube_files::read(&self.root.join(file), REMEDY)?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
     /// Writes a file where there is none of this name.
-    pub fn write_new(&self, file: &str, text: &str) -> Result<()> {
+    pub(super) fn write_new(&self, file: &str, text: &str) -> Result<()> {
         let path = self.root.join(file);
         if !path.exists() {
             atomically(&path, |out| out.write_all(text.as_bytes()))?;
@@ -74,7 +78,7 @@ impl<'a> Folder<'a> {
     }
 
     /// Writes the index from the lines of all recordings.
-    pub fn finish(&self, lines: &[String]) -> Result<()> {
+    pub(super) fn finish(&self, lines: &[String]) -> Result<()> {
         self.write_new(INDEX, &(INDEX_HEADER.to_string() + &lines.concat()))
     }
 

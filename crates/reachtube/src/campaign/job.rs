@@ -42,7 +42,7 @@ pub(super) enum Work {
 
 impl Job {
     /// Returns the job of a test suite.
-    pub fn suite(motion_name: &str, motion: Motion, runs: SuiteRuns) -> Self {
+    pub(super) fn suite(motion_name: &str, motion: Motion, runs: SuiteRuns) -> Self {
         let name = &runs.name;
         let digits = runs.scatter.len().to_string().len().max(2);
         let file = |run: usize| format!("suites/{name}/{name}_{run:0digits$}.csv");
@@ -56,13 +56,13 @@ impl Job {
     }
 
     /// Returns the job of recording `index` (from 0) of a kind that identifies the robot.
-    pub fn identification(kind: &'static str, index: usize, work: Work) -> Self {
+    pub(super) fn identification(kind: &'static str, index: usize, work: Work) -> Self {
         let files = vec![format!("{kind}/{kind}_{:03}.csv", index + 1)];
         Self { kind, suite: None, files, first: index + 1, work }
     }
 
     /// Returns the plan of a suite.
-    pub fn planned(self) -> Option<PlannedSuite> {
+    pub(super) fn planned(self) -> Option<PlannedSuite> {
         let [name, motion_name] = self.suite?;
         match self.work {
             Work::Suite(motion, SuiteRuns { first, .. }) => {
@@ -73,7 +73,7 @@ impl Job {
     }
 
     /// Simulates the robot and returns the text of each file.
-    pub fn record(&self, robot: &VirtualRobot) -> Result<Vec<String>> {
+    pub(super) fn record(&self, robot: &VirtualRobot) -> Result<Vec<String>> {
         match &self.work {
             Work::Suite(motion, runs) => {
                 let recorded = PreRecorded::new(robot, motion);

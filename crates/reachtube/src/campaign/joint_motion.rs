@@ -20,7 +20,7 @@ pub(super) struct JointMotion {
 
 impl JointMotion {
     /// Draws the pose.
-    pub fn random(robot: &Robot, joint: usize, random: &mut SplitMix64) -> Self {
+    pub(super) fn random(robot: &Robot, joint: usize, random: &mut SplitMix64) -> Self {
         let mut start = Motion::random_pose(robot, random);
         let [low, high] = robot.joints()[joint].position_limits;
         let travel = TRAVEL.min(0.5 * (high - low));
@@ -41,17 +41,17 @@ impl JointMotion {
     }
 
     /// Returns the positions at the start \[rad\], n.
-    pub fn start(&self) -> &[f64] {
+    pub(super) fn start(&self) -> &[f64] {
         &self.motions[0].start
     }
 
     /// Returns the number of cycles.
-    pub fn cycles(&self) -> usize {
+    pub(super) fn cycles(&self) -> usize {
         self.motions.iter().map(Motion::cycles).sum::<usize>() + 1
     }
 
     /// Returns the plan at cycle `k`.
-    pub fn at(&self, k: usize) -> Planned {
+    pub(super) fn at(&self, k: usize) -> Planned {
         let mut first = 0;
         let current = self.motions.iter().find(|motion| {
             let ends = k < first + motion.cycles();

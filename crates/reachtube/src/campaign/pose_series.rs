@@ -41,7 +41,7 @@ struct Leg {
 impl PoseSeries {
     /// Draws the positions of `count` rests, at least 1, and the position at which the series
     /// starts.
-    pub fn random(robot: &Robot, count: usize, random: &mut SplitMix64) -> Self {
+    pub(super) fn random(robot: &Robot, count: usize, random: &mut SplitMix64) -> Self {
         let mut start = Motion::random_pose(robot, random);
         let mut legs: Vec<Leg> = Vec::new();
         let mut go = |end: Vec<f64>, peak: f64, rest: f64| {
@@ -63,17 +63,17 @@ impl PoseSeries {
     }
 
     /// Returns the positions at the start \[rad\], n.
-    pub fn start(&self) -> &[f64] {
+    pub(super) fn start(&self) -> &[f64] {
         &self.legs[0].motion.start
     }
 
     /// Returns the number of cycles.
-    pub fn cycles(&self) -> usize {
+    pub(super) fn cycles(&self) -> usize {
         self.legs.iter().map(Leg::cycles).sum()
     }
 
     /// Returns the plan at cycle `k`.
-    pub fn at(&self, mut k: usize) -> Planned {
+    pub(super) fn at(&self, mut k: usize) -> Planned {
         for leg in &self.legs {
             if k < leg.cycles() {
                 return leg.motion.at(k as f64 * SAMPLE_TIME);

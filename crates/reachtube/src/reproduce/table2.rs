@@ -110,7 +110,7 @@ pub fn table2(
 
 impl Found {
     /// Finds the sets of [`table2`].
-    pub fn new(
+    pub(super) fn new(
         folder: &Path,
         options: &Table2Options,
         progress: &(dyn Progress + Sync),
@@ -132,7 +132,7 @@ impl Found {
     }
 
     /// Returns the table.
-    pub fn table(&self, options: &Table2Options) -> Table2 {
+    pub(super) fn table(&self, options: &Table2Options) -> Table2 {
         Table2 {
             options: options.clone(),
             runs: self.problem.recordings().run_count(),
@@ -144,7 +144,7 @@ impl Found {
 
 impl FoundCase {
     /// Returns which states had to be enclosed.
-    pub fn states(&self) -> States {
+    pub(super) fn states(&self) -> States {
         self.setup.settings.states
     }
 

@@ -35,7 +35,7 @@ type Velocities = Vec<f64>;
 
 impl Trajectories {
     /// Returns motions along the paths of `motions`, with `slowness` times their duration.
-    pub fn new(robot: &Robot, motions: &[Motion], slowness: f64) -> Self {
+    pub(super) fn new(robot: &Robot, motions: &[Motion], slowness: f64) -> Self {
         let duration = slowness * motions[0].duration;
         let samples = (duration / SAMPLE_TIME).round() as usize;
         let input = |motion: &Motion| {
@@ -56,7 +56,7 @@ impl Trajectories {
 
     /// Simulates the robot over a block by Featherstone's articulated bodies, and returns the
     /// velocities of each motion.
-    pub fn robot_velocities(&self, robot: &Robot, block: usize) -> Vec<Velocities> {
+    pub(super) fn robot_velocities(&self, robot: &Robot, block: usize) -> Vec<Velocities> {
         let n = robot.joint_count();
         let start = |q: &Vec<f64>| [&q[..], &vec![0.0; n]].concat();
         let mut field = RobotField::<Number>::new(robot, DrivenBy::Input).by_articulated_bodies();
@@ -69,7 +69,7 @@ impl Trajectories {
     /// Simulates a model over a block and compares it with the velocities of the robot. Returns the
     /// mean |velocity error| over time and joints \[rad/s\] for each motion; none where the model
     /// diverges.
-    pub fn errors(
+    pub(super) fn errors(
         &self,
         model: &PolynomialModel,
         velocities: &[Velocities],

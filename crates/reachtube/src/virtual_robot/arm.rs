@@ -25,7 +25,7 @@ pub(crate) enum Logged {
 
 impl<'a> Arm<'a> {
     /// Returns the arm at rest at `q` \[rad\], with its joints at `temperatures` \[°C\].
-    pub fn at_rest(robot: &'a VirtualRobot, q: &[f64], temperatures: &[f64]) -> Self {
+    pub(crate) fn at_rest(robot: &'a VirtualRobot, q: &[f64], temperatures: &[f64]) -> Self {
         Self {
             plant: Plant::at_rest(robot, q, temperatures),
             sensors: Sensors::at_rest(robot.parameters(), q),
@@ -34,13 +34,13 @@ impl<'a> Arm<'a> {
     }
 
     /// Returns the temperatures of the joints \[°C\], n.
-    pub fn temperatures(&self) -> &[f64] {
+    pub(crate) fn temperatures(&self) -> &[f64] {
         &self.plant.temperatures
     }
 
     /// Follows a plan over `cycles` by computed-torque control. `plan` takes the number of the
     /// cycle, from 0. The recording has one sample per cycle, taken when it begins.
-    pub fn follow(
+    pub(crate) fn follow(
         &mut self,
         cycles: usize,
         logged: Logged,
@@ -53,7 +53,11 @@ impl<'a> Arm<'a> {
 
     /// Applies `inputs` \[N m\] open loop, row-major cycles x n. `planned` takes the number of the
     /// cycle and returns the planned velocities \[rad/s\], n.
-    pub fn open_loop(&mut self, inputs: &[f64], planned: impl Fn(usize) -> Vec<f64>) -> Recording {
+    pub(crate) fn open_loop(
+        &mut self,
+        inputs: &[f64],
+        planned: impl Fn(usize) -> Vec<f64>,
+    ) -> Recording {
         let n = self.plant.q.len();
         self.record(inputs.len() / n, Logged::Input, |controller, sensors, k| {
             controller.open_loop(&sensors.q, &planned(k), &inputs[k * n..(k + 1) * n]);

@@ -31,7 +31,7 @@ pub(super) struct Controller<'a> {
 impl<'a> Controller<'a> {
     /// Returns controllers that have held the arm at rest at `q` \[rad\] by the nominal gravity
     /// torque.
-    pub fn at_rest(robot: &'a VirtualRobot, q: &[f64]) -> Self {
+    pub(super) fn at_rest(robot: &'a VirtualRobot, q: &[f64]) -> Self {
         let (nominal, zeros) = (robot.nominal(), vec![0.0; q.len()]);
         let mut controller = Self {
             parameters: robot.parameters(),
@@ -53,7 +53,7 @@ impl<'a> Controller<'a> {
     /// Commands the torque that follows `plan` from measured q \[rad\] and q̇ \[rad/s\]:
     /// u = M_m (q̈_d + ω² e + 2 ζ ω ė) + c + τ_v, with gravity and with Coulomb friction at the
     /// planned velocity.
-    pub fn follow(&mut self, q: &[f64], qd: &[f64], plan: &Planned) {
+    pub(super) fn follow(&mut self, q: &[f64], qd: &[f64], plan: &Planned) {
         let (frequency, damping) =
             (self.parameters.natural_frequency, self.parameters.damping_ratio);
         for (i, desired) in self.desired.iter_mut().enumerate() {
@@ -74,7 +74,7 @@ impl<'a> Controller<'a> {
 
     /// Commands an input \[N m\] with gravity at measured q \[rad\], and with Coulomb friction at
     /// the planned velocity \[rad/s\].
-    pub fn open_loop(&mut self, q: &[f64], planned: &[f64], input: &[f64]) {
+    pub(super) fn open_loop(&mut self, q: &[f64], planned: &[f64], input: &[f64]) {
         self.input.copy_from_slice(input);
         sin_cos(self.nominal.joints(), q, &mut self.sin, &mut self.cos);
         self.nominal.gravity(&self.sin, &self.cos, &mut self.ws, &mut self.gravity);
@@ -98,13 +98,13 @@ impl<'a> Controller<'a> {
     }
 
     /// Returns the newest command \[N m\], n.
-    pub fn newest(&self) -> &[f64] {
+    pub(super) fn newest(&self) -> &[f64] {
         &self.commands[self.commands.len() - 1]
     }
 
     /// Returns the torques that act during a cycle \[N m\] and the part of the cycle at which the
     /// second replaces the first \[-\].
-    pub fn acting(&self) -> ([&[f64]; 2], f64) {
+    pub(super) fn acting(&self) -> ([&[f64]; 2], f64) {
         let whole = self.parameters.delay_cycles.floor();
         let newest = self.commands.len() - 1 - whole as usize;
         ([&self.commands[newest - 1], &self.commands[newest]], self.parameters.delay_cycles - whole)

@@ -17,13 +17,13 @@ pub(super) struct JointFriction {
 
 impl JointFriction {
     /// Returns the friction at the law's reference temperature.
-    pub fn new(joint: &Joint) -> Self {
+    pub(super) fn new(joint: &Joint) -> Self {
         let limit = joint.velocity_limit.unwrap_or(f64::INFINITY);
         Self { law: joint.friction, limit, factors: [1.0; 2] }
     }
 
     /// Takes over the temperature of the joint \[°C\].
-    pub fn warm_to(&mut self, temperature: f64) {
+    pub(super) fn warm_to(&mut self, temperature: f64) {
         let Some(warming) = self.law.warming else { return };
         let warmth = temperature - warming.reference;
         self.factors = [warming.coulomb, warming.viscous].map(|rate| exp(-rate * warmth));
@@ -32,7 +32,7 @@ impl JointFriction {
     /// Returns the limits of dry friction \[N m\] at a load \[N m\] and a speed |q̇| \[rad/s\]: the
     /// torque of a joint that moves backward and that of one that moves forward. A joint at rest
     /// has any torque between them.
-    pub fn limits(&self, load: f64, speed: f64) -> [f64; 2] {
+    pub(super) fn limits(&self, load: f64, speed: f64) -> [f64; 2] {
         let excess = self.law.stribeck.map_or(0.0, |stribeck| {
             let ratio = speed / stribeck.speed;
             stribeck.excess * exp(-ratio * ratio)
@@ -46,7 +46,7 @@ impl JointFriction {
     ///
     /// Beyond the joint's speed limit, where its cubic was not identified, it goes on along the
     /// tangent: a cubic that falls at last would drive the joint.
-    pub fn viscous(&self, qd: f64) -> f64 {
+    pub(super) fn viscous(&self, qd: f64) -> f64 {
         let (law, inside) = (&self.law.viscous, qd.clamp(-self.limit, self.limit));
         self.factors[1] * (law.torque(&inside) + law.slope(&inside) * (qd - inside))
     }

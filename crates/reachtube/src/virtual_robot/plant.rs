@@ -60,7 +60,7 @@ struct Scratch {
 
 impl<'a> Plant<'a> {
     /// Returns the arm at rest at `q` \[rad\] with its joints at `temperatures` \[°C\].
-    pub fn at_rest(robot: &'a VirtualRobot, q: &[f64], temperatures: &[f64]) -> Self {
+    pub(super) fn at_rest(robot: &'a VirtualRobot, q: &[f64], temperatures: &[f64]) -> Self {
         let (truth, zeros) = (robot.truth(), vec![0.0; q.len()]);
         let friction = truth.joints().iter().map(JointFriction::new);
         let mut plant = Self {
@@ -80,7 +80,7 @@ impl<'a> Plant<'a> {
     }
 
     /// Moves the arm over `duration` \[s\] under a motor torque \[N m\].
-    pub fn advance(&mut self, torque: &[f64], duration: f64) {
+    pub(super) fn advance(&mut self, torque: &[f64], duration: f64) {
         let steps = (duration / STEP - 1e-9).ceil().max(0.0);
         for _ in 0..steps as usize {
             self.step(torque, duration / steps);
@@ -89,7 +89,7 @@ impl<'a> Plant<'a> {
 
     /// Updates the temperatures \[°C\] after `duration` \[s\]: friction work heats each joint, and
     /// it cools toward the surroundings.
-    pub fn warm_up(&mut self, duration: f64) {
+    pub(super) fn warm_up(&mut self, duration: f64) {
         let parameters = self.parameters;
         for (i, temperature) in self.temperatures.iter_mut().enumerate() {
             let work = std::mem::take(&mut self.work[i]);

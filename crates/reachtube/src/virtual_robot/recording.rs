@@ -30,13 +30,13 @@ pub(crate) struct Recording {
 
 impl Recording {
     /// Returns an empty recording with room for `samples`.
-    pub fn new(joints: usize, samples: usize) -> Self {
+    pub(crate) fn new(joints: usize, samples: usize) -> Self {
         let room = || Vec::with_capacity(joints * samples);
         Self { joints, q: room(), qd: room(), torques: room(), temperatures: room() }
     }
 
     /// Appends a sample.
-    pub fn push(&mut self, q: &[f64], qd: &[f64], torque: &[f64], temperatures: &[f64]) {
+    pub(crate) fn push(&mut self, q: &[f64], qd: &[f64], torque: &[f64], temperatures: &[f64]) {
         let columns = [
             (&mut self.q, q, POSITION_DECIMALS),
             (&mut self.qd, qd, VELOCITY_DECIMALS),
@@ -49,25 +49,25 @@ impl Recording {
     }
 
     /// Returns the number of samples K.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.q.len() / self.joints
     }
 
     /// Returns whether all values are finite: whether the simulation did not diverge.
-    pub fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         [&self.q, &self.qd, &self.torques, &self.temperatures]
             .iter()
             .all(|values| values.iter().all(|x| x.is_finite()))
     }
 
     /// Returns the mean temperature of the joints at the first sample \[°C\].
-    pub fn first_temperature(&self) -> f64 {
+    pub(crate) fn first_temperature(&self) -> f64 {
         self.temperatures[..self.joints].iter().sum::<f64>() / self.joints as f64
     }
 
     /// Returns the recording as CSV with every `stride`-th sample; `sample_time` \[s\] is that
     /// between all samples.
-    pub fn to_csv(&self, sample_time: f64, stride: usize) -> String {
+    pub(crate) fn to_csv(&self, sample_time: f64, stride: usize) -> String {
         let n = self.joints;
         let mut text = String::with_capacity(36 * n * (self.len() / stride + 1));
         text.push('t');

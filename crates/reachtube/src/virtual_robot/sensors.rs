@@ -17,7 +17,7 @@ pub(super) struct Sensors {
 
 impl Sensors {
     /// Returns the sensors of an arm that has rested at `q` \[rad\].
-    pub fn at_rest(parameters: &VirtualRobotParameters, q: &[f64]) -> Self {
+    pub(super) fn at_rest(parameters: &VirtualRobotParameters, q: &[f64]) -> Self {
         let encoder_step = parameters.encoder_step;
         let gain = 1.0 - exp(-SAMPLE_TIME / parameters.velocity_filter_time);
         let read = q.iter().map(|q| encoder(*q, encoder_step)).collect();
@@ -25,7 +25,7 @@ impl Sensors {
     }
 
     /// Takes a measurement at position `q` \[rad\], one cycle after the last one.
-    pub fn measure(&mut self, q: &[f64]) {
+    pub(super) fn measure(&mut self, q: &[f64]) {
         for ((read, velocity), q) in self.q.iter_mut().zip(&mut self.qd).zip(q) {
             let before = std::mem::replace(read, encoder(*q, self.encoder_step));
             *velocity += self.gain * ((*read - before) / SAMPLE_TIME - *velocity);

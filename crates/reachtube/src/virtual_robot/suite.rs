@@ -17,12 +17,12 @@ pub(crate) struct PreRecorded {
 impl PreRecorded {
     /// Follows the whole motion with the joints at the nominal temperature; the last sample is at
     /// its end.
-    pub fn new(robot: &VirtualRobot, motion: &Motion) -> Self {
+    pub(crate) fn new(robot: &VirtualRobot, motion: &Motion) -> Self {
         Self::until(robot, motion, motion.cycles() + 1)
     }
 
     /// Follows the first `cycles` of the motion with the joints at the nominal temperature.
-    pub fn until(robot: &VirtualRobot, motion: &Motion, cycles: usize) -> Self {
+    pub(crate) fn until(robot: &VirtualRobot, motion: &Motion, cycles: usize) -> Self {
         let temperatures = vec![robot.parameters().nominal_temperature; motion.start.len()];
         let mut arm = Arm::at_rest(robot, &motion.start, &temperatures);
         let plan = |k: usize| motion.at(k as f64 * SAMPLE_TIME);
@@ -41,7 +41,7 @@ pub(crate) struct Scatter {
 
 impl Scatter {
     /// Draws a deviation within the robot's parameters.
-    pub fn random(robot: &VirtualRobot, random: &mut SplitMix64) -> Self {
+    pub(crate) fn random(robot: &VirtualRobot, random: &mut SplitMix64) -> Self {
         let parameters = robot.parameters();
         let mut draw = |width: f64| {
             (0..robot.nominal().joint_count()).map(|_| uniform(random, -width, width)).collect()

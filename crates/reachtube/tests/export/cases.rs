@@ -12,19 +12,19 @@ use reachtube::{
 };
 
 /// Models and orders that every test takes: affine, cubic, and with sines and cosines.
-pub const MODELS: [(ModelKind, u32); 3] =
+pub(crate) const MODELS: [(ModelKind, u32); 3] =
     [(ModelKind::One, 1), (ModelKind::One, 3), (ModelKind::Two, 3)];
 
 /// Numbers without short decimals, the same everywhere.
-pub struct Numbers(u64);
+pub(crate) struct Numbers(u64);
 
 impl Numbers {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(9)
     }
 
     /// Returns a number in (-1, 1).
-    pub fn signed(&mut self) -> f64 {
+    pub(crate) fn signed(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
@@ -32,13 +32,13 @@ impl Numbers {
         bits as f64 / (1u64 << 52) as f64 - 1.0
     }
 
-    pub fn vector(&mut self, count: usize, radius: f64) -> Vec<f64> {
+    pub(crate) fn vector(&mut self, count: usize, radius: f64) -> Vec<f64> {
         (0..count).map(|_| radius * self.signed()).collect()
     }
 }
 
 /// Returns the cases of a model over recordings, with sets of radius about 1e-4.
-pub fn cases_of(
+pub(crate) fn cases_of(
     robot: &Robot,
     (model, order): (ModelKind, u32),
     point: ExpansionPoint,
@@ -65,7 +65,7 @@ pub fn cases_of(
 }
 
 /// Returns two runs of `samples` samples at these times with the same made-up input.
-pub fn made_up(joints: usize, times: &[f64]) -> Box<dyn RunSource> {
+pub(crate) fn made_up(joints: usize, times: &[f64]) -> Box<dyn RunSource> {
     let mut numbers = Numbers::new();
     let inputs = numbers.vector(joints * times.len(), 3.0);
     let mut runs = MemoryRuns::default();
@@ -78,14 +78,14 @@ pub fn made_up(joints: usize, times: &[f64]) -> Box<dyn RunSource> {
 }
 
 /// Returns the embedded robot's model over a made-up recording.
-pub fn lwa4p(model: (ModelKind, u32)) -> ExportCase {
+pub(crate) fn lwa4p(model: (ModelKind, u32)) -> ExportCase {
     let point = ExpansionPoint::zero(6);
     let source = made_up(6, &[0.0, 0.004, 0.008, 0.012]);
     cases_of(&Robot::lwa4p(), model, point, source, [None; 2]).remove(0)
 }
 
 /// Returns a model about a point with velocities and inputs, so that its terms have origins.
-pub fn about_a_moving_point() -> ExportCase {
+pub(crate) fn about_a_moving_point() -> ExportCase {
     let mut numbers = Numbers::new();
     let point = ExpansionPoint::from_values(&numbers.vector(18, 0.4), 6).unwrap();
     let source = made_up(6, &[0.0, 0.004, 0.008]);
@@ -93,7 +93,7 @@ pub fn about_a_moving_point() -> ExportCase {
 }
 
 /// An arm with every kind of placement, a slide, tilted gravity and motors.
-pub fn every_kind() -> Robot {
+pub(crate) fn every_kind() -> Robot {
     let text = r#"
         schema_version = 1
         name = "every <kind>"
@@ -131,33 +131,33 @@ pub fn every_kind() -> Robot {
 }
 
 /// Returns a model with sines and cosines of an arm with a slide.
-pub fn sliding() -> ExportCase {
+pub(crate) fn sliding() -> ExportCase {
     let source = made_up(3, &[0.0, 0.004, 0.008]);
     cases_of(&every_kind(), MODELS[2], ExpansionPoint::zero(3), source, [None; 2]).remove(0)
 }
 
 /// Returns the affine model at samples that are not equally spaced.
-pub fn uneven() -> ExportCase {
+pub(crate) fn uneven() -> ExportCase {
     let source = made_up(6, &[0.0, 0.004, 0.0093, 0.012]);
     let robot = Robot::lwa4p();
     cases_of(&robot, MODELS[0], ExpansionPoint::zero(6), source, [None; 2]).remove(0)
 }
 
 /// Returns every model of the embedded robot, and of others, over made-up recordings.
-pub fn in_clean_clones() -> Vec<ExportCase> {
+pub(crate) fn in_clean_clones() -> Vec<ExportCase> {
     let mut cases: Vec<ExportCase> = MODELS.into_iter().map(lwa4p).collect();
     cases.push(about_a_moving_point());
     cases.push(sliding());
     cases
 }
 
-pub fn shared(path: &str) -> PathBuf {
+pub(crate) fn shared(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(path)
 }
 
 /// Returns every model of the paper's robot over its recordings, and of the UR10e over a made-up
 /// one.
-pub fn recorded() -> Vec<ExportCase> {
+pub(crate) fn recorded() -> Vec<ExportCase> {
     let ur10e = Robot::load(shared("data/ur10e/ur10e.urdf").to_str().unwrap()).unwrap();
     let of = |model| {
         let data = DataSet::open(shared("data/schunk_lwa4p")).unwrap();
@@ -172,7 +172,7 @@ pub fn recorded() -> Vec<ExportCase> {
 }
 
 /// Returns the text of one file of an export.
-pub fn text(case: &ExportCase, tool: Tool, form: InputForm, name: &str) -> String {
+pub(crate) fn text(case: &ExportCase, tool: Tool, form: InputForm, name: &str) -> String {
     let written = files(case, tool, form).unwrap();
     let found = written.into_iter().find(|file: &ExportFile| file.name == name);
     found.unwrap_or_else(|| panic!("no {name}")).text

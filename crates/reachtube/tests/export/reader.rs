@@ -3,7 +3,7 @@
 use reachtube::export::{Factor, Polynomial, Term};
 
 /// Reads a sum of terms such as `+ 1.5*qd1^2*(u1 - 0.25)`; `variable` knows the texts of variables.
-pub fn polynomial(text: &str, variable: &dyn Fn(&str) -> Option<usize>) -> Polynomial {
+pub(crate) fn polynomial(text: &str, variable: &dyn Fn(&str) -> Option<usize>) -> Polynomial {
     let mut terms = Vec::new();
     let mut sign = 1.0;
     for part in split(text, ' ') {
@@ -57,26 +57,26 @@ fn split(text: &str, separator: char) -> Vec<String> {
     parts
 }
 
-pub fn number(text: &str) -> f64 {
+pub(crate) fn number(text: &str) -> f64 {
     text.trim().parse().unwrap_or_else(|_| panic!("\"{text}\" is no number"))
 }
 
 /// Reads every number between `start` and `end`, in their order.
-pub fn numbers_between(text: &str, start: &str, end: &str) -> Vec<f64> {
+pub(crate) fn numbers_between(text: &str, start: &str, end: &str) -> Vec<f64> {
     let between = between(text, start, end);
     let words = between.split(|c: char| c.is_whitespace() || "[],;".contains(c));
     words.filter(|word| !word.is_empty()).map(number).collect()
 }
 
 /// Returns the text between `start` and the next `end`.
-pub fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
+pub(crate) fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
     let from = text.find(start).unwrap_or_else(|| panic!("no {start}")) + start.len();
     let length = text[from..].find(end).unwrap_or_else(|| panic!("no {end} after {start}"));
     &text[from..from + length]
 }
 
 /// Asserts that two lists have the same bits.
-pub fn assert_bits(read: &[f64], written: &[f64], what: &str) {
+pub(crate) fn assert_bits(read: &[f64], written: &[f64], what: &str) {
     let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(read), bits(written), "{what}: {read:?} is not {written:?}");
 }

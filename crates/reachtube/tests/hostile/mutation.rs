@@ -82,7 +82,7 @@ const NUMBERS: [&str; 20] = [
 
 /// Runs a reader on `count` inputs made from `seeds`. A panic or a slow input is reported with its
 /// number, which makes it again.
-pub fn attack(name: &str, seeds: &[Vec<u8>], count: u64, mut read: impl FnMut(&[u8])) {
+pub(crate) fn attack(name: &str, seeds: &[Vec<u8>], count: u64, mut read: impl FnMut(&[u8])) {
     for case in 0..count {
         let input = input(seeds, case);
         let start = Instant::now();

@@ -52,7 +52,7 @@ const URDF: &str = r#"<?xml version="1.0"?>
 </robot>
 "#;
 
-pub fn recordings() -> Vec<Vec<u8>> {
+pub(crate) fn recordings() -> Vec<Vec<u8>> {
     let line =
         |k: usize| format!("{:.3},{:?},-1.5e-3,0.25,1,2,3\n", k as f64 * 0.01, 0.1 * k as f64);
     let samples: String = (0..12).map(line).collect();
@@ -63,7 +63,7 @@ pub fn recordings() -> Vec<Vec<u8>> {
         .into()
 }
 
-pub fn indices() -> Vec<Vec<u8>> {
+pub(crate) fn indices() -> Vec<Vec<u8>> {
     [
         "file,suite\nrun.csv,A\n",
         "\u{feff}file,kind,suite,motion,temperature,sha256\r\nrun.csv,x,A,m,21.5,00ab\r\n",
@@ -72,27 +72,27 @@ pub fn indices() -> Vec<Vec<u8>> {
     .into()
 }
 
-pub fn robots() -> Vec<Vec<u8>> {
+pub(crate) fn robots() -> Vec<Vec<u8>> {
     vec![ROBOT.into(), Robot::lwa4p().description().to_toml().into_bytes()]
 }
 
-pub fn urdfs() -> Vec<Vec<u8>> {
+pub(crate) fn urdfs() -> Vec<Vec<u8>> {
     vec![URDF.into()]
 }
 
-pub fn companions() -> Vec<Vec<u8>> {
+pub(crate) fn companions() -> Vec<Vec<u8>> {
     let urdf = Urdf::parse(URDF, "pendulum.urdf", &Default::default()).unwrap();
     vec![urdf.companion(urdf.robot()).into_bytes(), b"base = \"base\"\ntip = \"tool\"\n".into()]
 }
 
-pub fn settings() -> Vec<Vec<u8>> {
+pub(crate) fn settings() -> Vec<Vec<u8>> {
     let text = "robot = \"arm.urdf\"\nstatic = [\"poses\"]\ndynamic = [\"a.csv\", { path = \
                 \"b.csv\", from = 2.0, until = 4.5 }]\n\n[prepare]\ncut_off = 5.0\ngains = [1.0, \
                 2]\n\n[model]\nmotor_inertia = false\nprior = \"none\"\nwindows = [0.5]\n";
     vec![text.into()]
 }
 
-pub fn models() -> Vec<Vec<u8>> {
+pub(crate) fn models() -> Vec<Vec<u8>> {
     let robot = Robot::from_toml(ROBOT, "arm").unwrap();
     let mut runs = MemoryRuns::default();
     for offset in [0.0, 0.001] {
@@ -105,7 +105,7 @@ pub fn models() -> Vec<Vec<u8>> {
     vec![Model::new(&problem, &conform(&problem, &Silent, None).unwrap()).to_json().into_bytes()]
 }
 
-pub fn abstractions() -> Vec<Vec<u8>> {
+pub(crate) fn abstractions() -> Vec<Vec<u8>> {
     let robot = Robot::from_toml(ROBOT, "arm").unwrap();
     let point = ExpansionPoint::from_values(&[], 2).unwrap();
     let make = |kind, order| PolynomialModel::new(&robot, kind, order, &point).unwrap();

@@ -29,7 +29,7 @@ pub(super) fn scaled_triangle(stacked: &DMatrix<f64>, tolerance: f64) -> (DMatri
 impl IndependentColumns {
     /// Selects the columns of R that are independent of the earlier ones, and expresses all columns
     /// by them; `norms` are the lengths before scaling.
-    pub fn of(r: &DMatrix<f64>, norms: &[f64], tolerance: f64) -> Self {
+    pub(super) fn of(r: &DMatrix<f64>, norms: &[f64], tolerance: f64) -> Self {
         let mut basis: Vec<DVector<f64>> = Vec::new();
         let mut indices = Vec::new();
         for (k, column) in r.column_iter().enumerate() {

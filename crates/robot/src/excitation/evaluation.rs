@@ -35,7 +35,11 @@ pub(super) struct Evaluator<'a> {
 }
 
 impl<'a> Evaluator<'a> {
-    pub fn new(robot: &'a Robot, base: &BaseParameters, settings: &ExcitationSettings) -> Self {
+    pub(super) fn new(
+        robot: &'a Robot,
+        base: &BaseParameters,
+        settings: &ExcitationSettings,
+    ) -> Self {
         let (n, points) = (robot.joint_count(), GRID * settings.harmonics);
         let weight = |i: usize| settings.torque_noise.get(i).map_or(1.0, |s| 1.0 / s);
         Self {
@@ -50,7 +54,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Returns the criterion, which is to be maximised.
-    pub fn value(&mut self, space: &SearchSpace, x: &[f64]) -> f64 {
+    pub(super) fn value(&mut self, space: &SearchSpace, x: &[f64]) -> f64 {
         self.stack(space, x);
         match self.criterion {
             Criterion::LogDeterminant => self.log_determinant(),
@@ -59,7 +63,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Returns the quality of the motion.
-    pub fn quality(&mut self, space: &SearchSpace, x: &[f64]) -> Quality {
+    pub(super) fn quality(&mut self, space: &SearchSpace, x: &[f64]) -> Quality {
         self.stack(space, x);
         Quality { log_determinant: self.log_determinant(), condition: self.condition() }
     }

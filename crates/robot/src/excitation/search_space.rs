@@ -27,7 +27,7 @@ struct Limits {
 }
 
 impl SearchSpace {
-    pub fn new(robot: &Robot, settings: &ExcitationSettings) -> Self {
+    pub(super) fn new(robot: &Robot, settings: &ExcitationSettings) -> Self {
         let limits = robot.joints().iter().enumerate().map(|(i, joint)| {
             let [low, high] = joint.position_limits;
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * settings.margin);
@@ -50,12 +50,12 @@ impl SearchSpace {
     }
 
     /// Returns the number of entries of a vector.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.limits.len() * (1 + 2 * self.harmonics)
     }
 
     /// Returns the motion of a vector.
-    pub fn trajectory(&self, x: &[f64]) -> FourierTrajectory {
+    pub(super) fn trajectory(&self, x: &[f64]) -> FourierTrajectory {
         let (mut centre, mut cosine, mut sine) = (Vec::new(), Vec::new(), Vec::new());
         for (x, limits) in x.chunks_exact(1 + 2 * self.harmonics).zip(&self.limits) {
             let (a, b) = x[1..].split_at(self.harmonics);
@@ -74,7 +74,7 @@ impl SearchSpace {
     }
 
     /// Writes the states (q, q̇, q̈) of a motion at the grid points, one entry per grid point.
-    pub fn states(&self, motion: &FourierTrajectory, out: &mut [[Vec<f64>; 3]]) {
+    pub(super) fn states(&self, motion: &FourierTrajectory, out: &mut [[Vec<f64>; 3]]) {
         for i in 0..self.limits.len() {
             for (state, values) in out.iter_mut().zip(self.grid(&motion.cosine[i], &motion.sine[i]))
             {
@@ -85,7 +85,7 @@ impl SearchSpace {
     }
 
     /// Returns the number of grid points.
-    pub fn points(&self) -> usize {
+    pub(super) fn points(&self) -> usize {
         self.circle.len()
     }
 

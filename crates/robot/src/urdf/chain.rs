@@ -13,7 +13,11 @@ pub(super) struct Chain<'a> {
 
 impl<'a> Tree<'a> {
     /// Returns the chain between two links. An end that is not given must be unambiguous.
-    pub fn chain(&self, base: Option<&str>, tip: Option<&str>) -> Result<Chain<'a>, RobotError> {
+    pub(super) fn chain(
+        &self,
+        base: Option<&str>,
+        tip: Option<&str>,
+    ) -> Result<Chain<'a>, RobotError> {
         self.check_cycles()?;
         let tip = match tip {
             Some(name) => self.link(name, "tip")?,
@@ -49,13 +53,13 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns the joints from a link towards the root.
-    pub fn above(&self, link: &'a str) -> impl Iterator<Item = usize> {
+    pub(super) fn above(&self, link: &'a str) -> impl Iterator<Item = usize> {
         let carrier = |link: &str| self.carrier.get(link).copied();
         core::iter::successors(carrier(link), move |k| carrier(self.joints[*k].parent))
     }
 
     /// Returns the joints whose parent is a link.
-    pub fn below(&self, link: &str) -> impl Iterator<Item = usize> {
+    pub(super) fn below(&self, link: &str) -> impl Iterator<Item = usize> {
         (0..self.joints.len()).filter(move |k| self.joints[*k].parent == link)
     }
 
@@ -138,7 +142,12 @@ impl<'a> Tree<'a> {
     }
 
     /// Makes the error for a joint that branches off the chain at a moving link.
-    pub fn branch_error(&self, joint: &TreeJoint<'a>, link: &str, chain: &Chain) -> RobotError {
+    pub(super) fn branch_error(
+        &self,
+        joint: &TreeJoint<'a>,
+        link: &str,
+        chain: &Chain,
+    ) -> RobotError {
         let is_branch = |k: &usize| {
             !self.joints[*k].is_fixed()
                 && !chain.joints.contains(k)

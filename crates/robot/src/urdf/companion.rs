@@ -47,7 +47,7 @@ struct Drive {
 impl Companion {
     /// Reads a companion. A text with a `schema_version` describes a robot of its own, for which
     /// the result is empty.
-    pub fn parse(text: &str, origin: &str) -> Result<Self, RobotError> {
+    pub(super) fn parse(text: &str, origin: &str) -> Result<Self, RobotError> {
         let syntax = |e: toml::de::Error| RobotError::Syntax {
             origin: origin.into(),
             message: e.to_string(),
@@ -61,14 +61,14 @@ impl Companion {
     }
 
     /// Returns the locks of the companion and `given`, which override them.
-    pub fn locks(&self, given: &[Lock]) -> Vec<Lock> {
+    pub(super) fn locks(&self, given: &[Lock]) -> Vec<Lock> {
         let own = self.lock.iter().filter(|(name, _)| given.iter().all(|l| l.joint != **name));
         let own = own.map(|(name, &position)| Lock { joint: name.clone(), position });
         own.chain(given.iter().cloned()).collect()
     }
 
     /// Writes the values into a description.
-    pub fn apply(&self, description: &mut RobotDescription) -> Result<(), RobotError> {
+    pub(super) fn apply(&self, description: &mut RobotDescription) -> Result<(), RobotError> {
         description.gravity = self.gravity.unwrap_or(description.gravity);
         description.parameters = self.parameters.unwrap_or(description.parameters);
         let names: Vec<_> = description.joints.iter().map(|j| format!("`{}`", j.name)).collect();
@@ -86,7 +86,7 @@ impl Companion {
     }
 
     /// Makes the companion with the motors and friction of a description.
-    pub fn from_description(
+    pub(super) fn from_description(
         description: &RobotDescription,
         base: Option<String>,
         tip: Option<String>,

@@ -23,7 +23,7 @@ pub(super) struct MovedLink {
 
 impl<'a> Tree<'a> {
     /// Returns the description of a chain, and its moving links.
-    pub fn describe(
+    pub(super) fn describe(
         &self,
         chain: &Chain<'a>,
     ) -> Result<(RobotDescription, Vec<MovedLink>), RobotError> {
@@ -160,7 +160,7 @@ impl<'a> Tree<'a> {
 
     /// Returns position and velocity limits. Zeros are fields that an exporter left empty, and mean
     /// no limit.
-    pub fn limits(
+    pub(super) fn limits(
         &self,
         joint: &TreeJoint<'a>,
     ) -> Result<(Option<[f64; 2]>, Option<f64>), RobotError> {
@@ -182,7 +182,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns origin and place of an invalid value in the URDF.
-    pub fn locate(&self, moved: &[MovedLink], value: &InvalidValue) -> (String, String) {
+    pub(super) fn locate(&self, moved: &[MovedLink], value: &InvalidValue) -> (String, String) {
         let root = self.document.root_element();
         let joint = value.joint.and_then(|i| self.joints.iter().find(|j| j.name == moved[i].joint));
         let inner =

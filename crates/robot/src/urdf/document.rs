@@ -33,7 +33,7 @@ pub(super) struct TreeJoint<'a> {
 
 impl TreeJoint<'_> {
     /// Returns whether the joint does not move: it is fixed or locked.
-    pub fn is_fixed(&self) -> bool {
+    pub(super) fn is_fixed(&self) -> bool {
         self.kind == "fixed" || self.locked.is_some()
     }
 }
@@ -58,7 +58,7 @@ pub(super) fn element<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>>
 
 impl<'a> Tree<'a> {
     /// Collects the links and joints of a document.
-    pub fn new(document: &'a Document<'a>, origin: &'a str) -> Result<Self, RobotError> {
+    pub(super) fn new(document: &'a Document<'a>, origin: &'a str) -> Result<Self, RobotError> {
         let mut tree = Self {
             document,
             origin,
@@ -140,7 +140,7 @@ impl<'a> Tree<'a> {
 
     /// Makes an error at an element, with file and line, the joint or link that it belongs to, and
     /// its tag.
-    pub fn error(&self, node: Node, problem: String, remedy: &str) -> RobotError {
+    pub(super) fn error(&self, node: Node, problem: String, remedy: &str) -> RobotError {
         let line = self.document.text_pos_at(node.range().start).row;
         let owner = node
             .ancestors()
@@ -165,23 +165,28 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns the first child element with a tag.
-    pub fn child(&self, node: Node<'a, 'a>, tag: &str) -> Result<Node<'a, 'a>, RobotError> {
+    pub(super) fn child(&self, node: Node<'a, 'a>, tag: &str) -> Result<Node<'a, 'a>, RobotError> {
         element(node, tag).ok_or_else(|| self.error(node, format!("<{tag}> is missing"), "add it"))
     }
 
     /// Returns the text of an attribute.
-    pub fn attribute(&self, node: Node<'a, 'a>, name: &str) -> Result<&'a str, RobotError> {
+    pub(super) fn attribute(&self, node: Node<'a, 'a>, name: &str) -> Result<&'a str, RobotError> {
         node.attribute(name)
             .ok_or_else(|| self.error(node, format!("the attribute `{name}` is missing"), "add it"))
     }
 
     /// Returns the number in an attribute, or `None` if the attribute is absent.
-    pub fn number(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<f64>, RobotError> {
+    pub(super) fn number(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<f64>, RobotError> {
         node.attribute(name).map(|text| self.to_number(node, name, text)).transpose()
     }
 
     /// Converts text to a finite number.
-    pub fn to_number(&self, node: Node<'a, 'a>, name: &str, text: &str) -> Result<f64, RobotError> {
+    pub(super) fn to_number(
+        &self,
+        node: Node<'a, 'a>,
+        name: &str,
+        text: &str,
+    ) -> Result<f64, RobotError> {
         let finite = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
         finite.ok_or_else(|| {
             self.error(
@@ -193,7 +198,11 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns the three numbers in an attribute, or `None` if the attribute is absent.
-    pub fn triple(&self, node: Node<'a, 'a>, name: &str) -> Result<Option<[f64; 3]>, RobotError> {
+    pub(super) fn triple(
+        &self,
+        node: Node<'a, 'a>,
+        name: &str,
+    ) -> Result<Option<[f64; 3]>, RobotError> {
         let Some(text) = node.attribute(name) else { return Ok(None) };
         let numbers: Vec<_> = text
             .split_whitespace()
@@ -210,14 +219,14 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns xyz \[m\] and rpy \[rad\] of the `<origin>` in an element; zeros if it is absent.
-    pub fn origin_of(&self, node: Node<'a, 'a>) -> Result<([f64; 3], [f64; 3]), RobotError> {
+    pub(super) fn origin_of(&self, node: Node<'a, 'a>) -> Result<([f64; 3], [f64; 3]), RobotError> {
         let Some(origin) = element(node, "origin") else { return Ok(Default::default()) };
         let get = |name| Ok(self.triple(origin, name)?.unwrap_or_default());
         Ok((get("xyz")?, get("rpy")?))
     }
 
     /// Returns the placement that the `<origin>` in an element describes.
-    pub fn placement_of(&self, node: Node<'a, 'a>) -> Result<Placement, RobotError> {
+    pub(super) fn placement_of(&self, node: Node<'a, 'a>) -> Result<Placement, RobotError> {
         let (translation, [roll, pitch, yaw]) = self.origin_of(node)?;
         let rotation = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();
         Ok(Placement { rotation, translation: translation.into() })

@@ -9,7 +9,7 @@ pub(super) struct Edits(Vec<(Range<usize>, String)>);
 
 impl Edits {
     /// Sets an attribute of an element, and adds the attribute if it is absent.
-    pub fn set(&mut self, node: Node, name: &str, value: &str) {
+    pub(super) fn set(&mut self, node: Node, name: &str, value: &str) {
         let edit = match node.attribute_node(name) {
             Some(attribute) => (attribute.range_value(), value.into()),
             None => {
@@ -25,7 +25,7 @@ impl Edits {
     }
 
     /// Sets attributes of the first child element with a tag, and adds the child if it is absent.
-    pub fn set_child(&mut self, node: Node<'_, '_>, tag: &str, values: &[(&str, String)]) {
+    pub(super) fn set_child(&mut self, node: Node<'_, '_>, tag: &str, values: &[(&str, String)]) {
         match node.children().find(|n| n.is_element() && n.tag_name().name() == tag) {
             Some(child) => values.iter().for_each(|(name, value)| self.set(child, name, value)),
             None => self.add(node, &empty_element(tag, values)),
@@ -33,7 +33,7 @@ impl Edits {
     }
 
     /// Adds an element at the end of another, with the indentation of its siblings.
-    pub fn add(&mut self, node: Node, new: &str) {
+    pub(super) fn add(&mut self, node: Node, new: &str) {
         let (text, range) = (node.document().input_text(), node.range());
         let line = text[..range.start].rfind('\n').map_or(0, |k| k + 1);
         let outer: String = text[line..].chars().take_while(|c| *c == ' ' || *c == '\t').collect();
@@ -62,7 +62,7 @@ impl Edits {
     }
 
     /// Applies all edits and returns the new text.
-    pub fn apply(mut self, text: &str) -> String {
+    pub(super) fn apply(mut self, text: &str) -> String {
         self.0.sort_by_key(|(range, _)| range.start);
         let (mut out, mut at) = (String::with_capacity(text.len()), 0);
         for (range, new) in self.0 {

@@ -12,12 +12,12 @@ const MOST_LEADERS: usize = 100;
 
 impl<'a> TreeJoint<'a> {
     /// Returns the name of the joint that this one mimics.
-    pub fn leader(&self) -> Option<&'a str> {
+    pub(super) fn leader(&self) -> Option<&'a str> {
         element(self.node, "mimic").map(|mimic| mimic.attribute("joint").unwrap_or(""))
     }
 
     /// Returns how the joint moves, if its position is one number.
-    pub fn motion(&self) -> Option<JointKind> {
+    pub(super) fn motion(&self) -> Option<JointKind> {
         match self.kind {
             "revolute" | "continuous" => Some(JointKind::Revolute),
             "prismatic" => Some(JointKind::Prismatic),
@@ -28,7 +28,7 @@ impl<'a> TreeJoint<'a> {
 
 impl<'a> Tree<'a> {
     /// Locks joints, and the joints that mimic them.
-    pub fn lock(&mut self, locks: &[Lock]) -> Result<(), RobotError> {
+    pub(super) fn lock(&mut self, locks: &[Lock]) -> Result<(), RobotError> {
         for lock in locks {
             let k = self.lockable(lock)?;
             self.joints[k].locked = Some(lock.position);
@@ -99,7 +99,10 @@ impl<'a> Tree<'a> {
 
     /// Returns the placement of the frame of a joint's child in its parent, for a joint that does
     /// not move.
-    pub fn placement_when_held(&self, joint: &TreeJoint<'a>) -> Result<Placement, RobotError> {
+    pub(super) fn placement_when_held(
+        &self,
+        joint: &TreeJoint<'a>,
+    ) -> Result<Placement, RobotError> {
         let placement = self.placement_of(joint.node)?;
         let (Some(position), Some(motion)) = (joint.locked, joint.motion()) else {
             return Ok(placement);
@@ -113,13 +116,13 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns the axis of a joint, of any length.
-    pub fn axis_of(&self, joint: &TreeJoint<'a>) -> Result<[f64; 3], RobotError> {
+    pub(super) fn axis_of(&self, joint: &TreeJoint<'a>) -> Result<[f64; 3], RobotError> {
         let axis = element(joint.node, "axis").map(|node| self.triple(node, "xyz"));
         Ok(axis.transpose()?.flatten().unwrap_or([1.0, 0.0, 0.0]))
     }
 
     /// Returns all joints that are locked, in the order of the file.
-    pub fn locked(&self) -> Vec<LockedJoint> {
+    pub(super) fn locked(&self) -> Vec<LockedJoint> {
         let record = |joint: &TreeJoint| {
             let (position, kind) = (joint.locked?, joint.motion()?);
             Some(LockedJoint { name: joint.name.into(), kind, position })
@@ -129,13 +132,13 @@ impl<'a> Tree<'a> {
 
     /// Returns the joint that decides the position of a joint: itself, or the one that it mimics
     /// in the end.
-    pub fn independent(&self, k: usize) -> usize {
+    pub(super) fn independent(&self, k: usize) -> usize {
         self.leaders(k).last().unwrap_or(k)
     }
 
     /// Returns the options that lock joints, such as `--lock finger=0`: at 0, or at the limit that
     /// is nearest to it.
-    pub fn lock_options(&self, joints: impl IntoIterator<Item = usize>) -> String {
+    pub(super) fn lock_options(&self, joints: impl IntoIterator<Item = usize>) -> String {
         let option = |k: usize| {
             let joint = &self.joints[k];
             let [low, high] = self.limits(joint).ok().and_then(|l| l.0).unwrap_or([0.0, 0.0]);

@@ -11,7 +11,10 @@ impl<'a> Tree<'a> {
     /// They are elements of the joint, or of a `<transmission>` that names the joint, or of its
     /// `<actuator>`: `mechanicalReduction` (ROS) or `gear_ratio`, and `rotor_inertia` (Drake), as
     /// text or as attribute `value`. A rotor inertia without a ratio is on the link side.
-    pub fn motor(&self, joint: &TreeJoint<'a>) -> Result<(Option<f64>, Option<f64>), RobotError> {
+    pub(super) fn motor(
+        &self,
+        joint: &TreeJoint<'a>,
+    ) -> Result<(Option<f64>, Option<f64>), RobotError> {
         let names = |t: &Node<'a, 'a>| {
             elements(*t, "joint").any(|j| j.attribute("name") == Some(joint.name))
         };

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use reachtube_robot::{Physicality, Robot, Workspace, ltdl};
 use reachtube_scalar::Interval;
 
-pub fn close(found: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
+pub(crate) fn close(found: &[f64], expected: &[f64]) -> Result<(), TestCaseError> {
     let scale = expected.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
     let worst = found.iter().zip(expected).fold(0.0, |a: f64, (f, e)| a.max((f - e).abs()));
     prop_assert!(worst <= 1e-9 * scale, "{found:?} is not {expected:?}");

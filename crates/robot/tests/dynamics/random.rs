@@ -39,7 +39,7 @@ fn joint(x: Vec<f64>, index: usize, by_dh: bool, kind: JointKind) -> JointDescri
 }
 
 /// Generates robots with 1 to 7 joints of both kinds and no friction.
-pub fn robots() -> impl Strategy<Value = Robot> {
+pub(crate) fn robots() -> impl Strategy<Value = Robot> {
     let kinds = prop_oneof![2 => Just(JointKind::Revolute), 1 => Just(JointKind::Prismatic)];
     let joints = prop::collection::vec(
         (prop::collection::vec(-1.0..1.0f64, 22), any::<bool>(), kinds),
@@ -64,7 +64,7 @@ pub fn robots() -> impl Strategy<Value = Robot> {
 }
 
 /// Generates a robot with three vectors: q, q̇, and q̈ or torque.
-pub fn robots_and_states() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>, Vec<f64>)> {
+pub(crate) fn robots_and_states() -> impl Strategy<Value = (Robot, Vec<f64>, Vec<f64>, Vec<f64>)> {
     robots().prop_flat_map(|robot| {
         let n = robot.joint_count();
         let vector = move |bound: f64| prop::collection::vec(-bound..bound, n);

@@ -7,16 +7,16 @@ use reachtube_robot::{
 use serde_json::Value;
 
 /// The folder of reference values, beside the repository.
-pub const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
+pub(crate) const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
 
 /// Reads a JSON file of the shared folder. Tests that need one are ignored unless asked for.
-pub fn oracle(path: &str) -> Value {
+pub(crate) fn oracle(path: &str) -> Value {
     let text = std::fs::read_to_string(format!("{FOLDER}{path}"));
     serde_json::from_str(&text.unwrap_or_else(|error| panic!("{path}: {error}"))).unwrap()
 }
 
 /// Returns the numbers of a JSON array.
-pub fn numbers(v: &Value) -> Vec<f64> {
+pub(crate) fn numbers(v: &Value) -> Vec<f64> {
     v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
 }
 
@@ -47,7 +47,7 @@ fn joint(link: &Value) -> JointDescription {
 }
 
 /// Describes the robot of an oracle by placements.
-pub fn description(oracle: &Value) -> RobotDescription {
+pub(crate) fn description(oracle: &Value) -> RobotDescription {
     RobotDescription {
         schema_version: SCHEMA_VERSION,
         name: oracle["name"].as_str().unwrap().into(),
@@ -60,6 +60,6 @@ pub fn description(oracle: &Value) -> RobotDescription {
 }
 
 /// Returns the robot of `shared/oracle/<name>.json`.
-pub fn oracle_robot(name: &str) -> Robot {
+pub(crate) fn oracle_robot(name: &str) -> Robot {
     Robot::from_description(&description(&oracle(&format!("oracle/{name}.json")))).unwrap()
 }

@@ -17,7 +17,7 @@ pub(super) struct DenseSeries<'a, C> {
 
 impl<'a, C: Scalar> DenseSeries<'a, C> {
     /// Wraps the coefficients and finds the zero blocks.
-    pub fn new(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
+    pub(super) fn new(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
         let mut series = Self::full(space, coefficients);
         for degree in 0..=degree(space, coefficients.len()) {
             if coefficients[space.block(degree)].iter().all(C::is_zero) {
@@ -28,13 +28,13 @@ impl<'a, C: Scalar> DenseSeries<'a, C> {
     }
 
     /// Wraps the coefficients without a search for zero blocks.
-    pub fn full(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
+    pub(super) fn full(space: &'a TaylorSpace, coefficients: &'a [C]) -> Self {
         Self { space, coefficients, zero_blocks: [0; 4] }
     }
 
     /// Returns the block of one degree. It is empty where the block is known to be zero or lies
     /// above the last stored degree.
-    pub fn block(&self, degree: u32) -> &'a [C] {
+    pub(super) fn block(&self, degree: u32) -> &'a [C] {
         let known_zero = self.zero_blocks[degree as usize / 64] >> (degree % 64) & 1 == 1;
         let block = self.space.block(degree);
         if known_zero || block.end > self.coefficients.len() {

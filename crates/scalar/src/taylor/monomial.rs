@@ -17,7 +17,7 @@ const DEGREE_SHIFT: u32 = 120;
 
 impl Packing {
     /// Returns the layout for 1 to 120 variables, else `None`.
-    pub fn new(variables: usize) -> Option<Self> {
+    pub(crate) fn new(variables: usize) -> Option<Self> {
         (1..=120).contains(&variables).then(|| {
             let bits = (120 / variables as u32).min(8);
             let odd_exponents = (0..variables as u32).map(|i| 1 << (bits * i)).sum();
@@ -26,59 +26,59 @@ impl Packing {
     }
 
     /// Returns the largest exponent that fits.
-    pub fn largest_exponent(self) -> u32 {
+    pub(crate) fn largest_exponent(self) -> u32 {
         (1 << self.bits) - 1
     }
 
     /// Returns the monomial x_i.
-    pub fn variable(self, i: usize) -> u128 {
+    pub(crate) fn variable(self, i: usize) -> u128 {
         1 << DEGREE_SHIFT | 1 << (self.bits * i as u32)
     }
 
     /// Returns the total degree of a monomial.
-    pub fn degree(self, monomial: u128) -> u32 {
+    pub(crate) fn degree(self, monomial: u128) -> u32 {
         (monomial >> DEGREE_SHIFT) as u32
     }
 
     /// Returns the exponent of variable i in a monomial.
-    pub fn exponent(self, monomial: u128, i: usize) -> u32 {
+    pub(crate) fn exponent(self, monomial: u128, i: usize) -> u32 {
         (monomial >> (self.bits * i as u32)) as u32 & self.largest_exponent()
     }
 
     /// Returns the mask of the bits that hold the exponent of variable i.
-    pub fn exponent_mask(self, i: usize) -> u128 {
+    pub(crate) fn exponent_mask(self, i: usize) -> u128 {
         u128::from(self.largest_exponent()) << (self.bits * i as u32)
     }
 
     /// Returns the monomial with the exponent of variable i set to 0.
-    pub fn without(self, monomial: u128, i: usize) -> u128 {
+    pub(crate) fn without(self, monomial: u128, i: usize) -> u128 {
         monomial - u128::from(self.exponent(monomial, i)) * self.variable(i)
     }
 
     /// Returns the highest variable that occurs in the monomial; `None` for the monomial 1.
-    pub fn last_variable(self, monomial: u128) -> Option<usize> {
+    pub(crate) fn last_variable(self, monomial: u128) -> Option<usize> {
         let exponents = exponents_only(monomial);
         (exponents != 0).then(|| ((127 - exponents.leading_zeros()) / self.bits) as usize)
     }
 
     /// Returns the lowest variable that occurs in the monomial; `None` for the monomial 1.
-    pub fn first_variable(self, monomial: u128) -> Option<usize> {
+    pub(crate) fn first_variable(self, monomial: u128) -> Option<usize> {
         let exponents = exponents_only(monomial);
         (exponents != 0).then(|| (exponents.trailing_zeros() / self.bits) as usize)
     }
 
     /// Packs a monomial given by the exponent of each variable.
-    pub fn pack_exponents(self, exponents: &[u8]) -> u128 {
+    pub(crate) fn pack_exponents(self, exponents: &[u8]) -> u128 {
         exponents.iter().enumerate().map(|(i, e)| u128::from(*e) * self.variable(i)).sum()
     }
 
     /// Packs a monomial given by its factors x_v, each with exponent 1.
-    pub fn pack_factors(self, factors: &[u8]) -> u128 {
+    pub(crate) fn pack_factors(self, factors: &[u8]) -> u128 {
         factors.iter().map(|v| self.variable(usize::from(*v))).sum()
     }
 
     /// Writes the factors x_v of the monomial into `out`, with descending v.
-    pub fn factors(self, monomial: u128, out: &mut Vec<u8>) {
+    pub(crate) fn factors(self, monomial: u128, out: &mut Vec<u8>) {
         out.clear();
         let mut rest = monomial;
         while let Some(v) = self.last_variable(rest) {

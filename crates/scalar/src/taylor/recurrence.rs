@@ -19,28 +19,34 @@ pub(super) struct PartialSeries<C> {
 
 impl<C: Scalar> PartialSeries<C> {
     /// Returns a series of which only the constant is known.
-    pub fn new(space: &TaylorSpace, constant: C) -> Self {
+    pub(super) fn new(space: &TaylorSpace, constant: C) -> Self {
         let mut coefficients = vec![C::zero(); space.dense_len(space.order())];
         coefficients[0] = constant;
         Self { coefficients }
     }
 
     /// Returns the constant coefficient.
-    pub fn constant(&self) -> &C {
+    pub(super) fn constant(&self) -> &C {
         &self.coefficients[0]
     }
 
     /// Adds Σ a_i x_{d-i} over 0 < i ≤ d to `out` for this series x and a known a.
     ///
     /// The part of degree d of the product a x lacks only a_0 x_d then.
-    pub fn convolve(&self, space: &TaylorSpace, d: u32, a: &DenseSeries<C>, out: &mut [C]) {
+    pub(super) fn convolve(&self, space: &TaylorSpace, d: u32, a: &DenseSeries<C>, out: &mut [C]) {
         let known = DenseSeries::full(space, &self.coefficients[..space.block(d).start]);
         add_inner_products(space, d, a, &known, out);
         add_scaled(out, self.constant(), a.block(d));
     }
 
     /// Sets the coefficients of degree d to `finish` of each entry of `block`.
-    pub fn set(&mut self, space: &TaylorSpace, d: u32, block: &[C], finish: impl Fn(&C) -> C) {
+    pub(super) fn set(
+        &mut self,
+        space: &TaylorSpace,
+        d: u32,
+        block: &[C],
+        finish: impl Fn(&C) -> C,
+    ) {
         let target = &mut self.coefficients[space.block(d)];
         target.iter_mut().zip(block).for_each(|(x, b)| *x = finish(b));
     }

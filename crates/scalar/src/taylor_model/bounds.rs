@@ -56,7 +56,7 @@ pub(super) struct Norms {
 
 impl Norms {
     /// Computes the norms of a polynomial.
-    pub fn new(p: &TaylorPolynomial<f64>) -> Self {
+    pub(super) fn new(p: &TaylorPolynomial<f64>) -> Self {
         let mut norms = Self { by_degree: [0.0; DEGREES], len: 1, terms: 1 };
         match &p.form {
             Form::Constant(c) => norms.by_degree[0] = c.abs(),
@@ -86,12 +86,12 @@ impl Norms {
     }
 
     /// Returns Σ |c| over all terms, rounded up.
-    pub fn total(&self) -> f64 {
+    pub(super) fn total(&self) -> f64 {
         inflated(self.by_degree[..self.len].iter().sum(), self.len - 1)
     }
 
     /// Returns Σ |c| over the terms of one degree, rounded up; 0 for the degrees from 31 on.
-    pub fn of_degree(&self, degree: u32) -> f64 {
+    pub(super) fn of_degree(&self, degree: u32) -> f64 {
         self.by_degree[..DEGREES - 1].get(degree as usize).copied().unwrap_or(0.0)
     }
 
@@ -99,7 +99,7 @@ impl Norms {
     ///
     /// It excludes products of two terms of degree `except` if [`of_degree`](Self::of_degree)
     /// returns their norm.
-    pub fn truncation(&self, other: &Self, order: u32, except: u32) -> f64 {
+    pub(super) fn truncation(&self, other: &Self, order: u32, except: u32) -> f64 {
         let (order, last) = (order as usize, DEGREES - 1);
         let except = if except as usize == last { usize::MAX } else { except as usize };
         let (mut sum, mut is_any) = (0.0, false);

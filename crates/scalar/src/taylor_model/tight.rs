@@ -102,7 +102,7 @@ pub(super) struct Part {
 
 impl<'a> PolynomialSearch<'a> {
     /// Prepares a search for a polynomial whose magnitudes of coefficients sum up to `total`.
-    pub fn new(space: &'a TaylorSpace, total: f64) -> Self {
+    pub(super) fn new(space: &'a TaylorSpace, total: f64) -> Self {
         let slopes = vec![Slope::default(); space.variables()];
         Self { space, total, attained: f64::NEG_INFINITY, slopes, factors: Vec::new() }
     }
@@ -122,7 +122,7 @@ impl<'a> PolynomialSearch<'a> {
     }
 
     /// Bounds a polynomial over a part, given by its terms in the part's coordinates.
-    pub fn part(&mut self, mut terms: Terms, mut error: f64) -> Part {
+    pub(super) fn part(&mut self, mut terms: Terms, mut error: f64) -> Part {
         // Fix the variables in which the polynomial is monotonic, until none is left.
         loop {
             self.differentiate(&terms);
@@ -144,7 +144,7 @@ impl<'a> PolynomialSearch<'a> {
     }
 
     /// Returns the bounds over the two halves of a part.
-    pub fn halves(&mut self, part: &Part, cut: usize) -> [Part; 2] {
+    pub(super) fn halves(&mut self, part: &Part, cut: usize) -> [Part; 2] {
         self.halved_terms(part, cut).map(|(terms, error)| {
             let half = self.part(terms, error);
             Part { bound: half.bound.min(part.bound), ..half }

@@ -7,33 +7,33 @@ use proptest::prelude::*;
 use reachtube_scalar::Interval;
 
 /// Returns a configuration with `count` cases and no file of failures.
-pub fn cases(count: u32) -> ProptestConfig {
+pub(crate) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(count) }
 }
 
 /// Converts x exactly; ±∞ becomes ±2¹⁰²⁴, the number after the largest.
-pub fn exact(x: f64) -> BigRational {
+pub(crate) fn exact(x: f64) -> BigRational {
     if x.is_infinite() {
         return power_of_two(1024) * BigRational::from_f64(x.signum()).unwrap();
     }
     BigRational::from_float(x).expect("x is not NaN")
 }
 
-pub fn integer(n: i64) -> BigRational {
+pub(crate) fn integer(n: i64) -> BigRational {
     BigRational::from_i64(n).unwrap()
 }
 
-pub fn power_of_two(k: i32) -> BigRational {
+pub(crate) fn power_of_two(k: i32) -> BigRational {
     num_traits::pow(if k < 0 { integer(2).recip() } else { integer(2) }, k.unsigned_abs() as usize)
 }
 
 /// Returns the number `count` steps above x, or below x where `count` is negative.
-pub fn steps_from(x: f64, count: i32) -> f64 {
+pub(crate) fn steps_from(x: f64, count: i32) -> f64 {
     (0..count.abs()).fold(x, |x, _| if count > 0 { x.next_up() } else { x.next_down() })
 }
 
 /// Fails unless x encloses [lo, hi].
-pub fn assert_encloses(x: Interval, lo: &BigRational, hi: &BigRational) {
+pub(crate) fn assert_encloses(x: Interval, lo: &BigRational, hi: &BigRational) {
     assert!(
         x.lo() == f64::NEG_INFINITY || exact(x.lo()) <= *lo,
         "lower end of {x:?} cuts off {lo}"
@@ -42,7 +42,7 @@ pub fn assert_encloses(x: Interval, lo: &BigRational, hi: &BigRational) {
 }
 
 /// Fails unless x encloses [lo, hi] and each end is within `slack` ulps of the tightest interval.
-pub fn assert_tight_enclosure(x: Interval, lo: &BigRational, hi: &BigRational, slack: i32) {
+pub(crate) fn assert_tight_enclosure(x: Interval, lo: &BigRational, hi: &BigRational, slack: i32) {
     assert_encloses(x, lo, hi);
     let (inner_lo, inner_hi) = (steps_from(x.lo(), slack + 1), steps_from(x.hi(), -slack - 1));
     assert!(
@@ -56,18 +56,18 @@ pub fn assert_tight_enclosure(x: Interval, lo: &BigRational, hi: &BigRational, s
 }
 
 /// Returns the smallest and the largest of some numbers.
-pub fn range(values: impl IntoIterator<Item = BigRational>) -> (BigRational, BigRational) {
+pub(crate) fn range(values: impl IntoIterator<Item = BigRational>) -> (BigRational, BigRational) {
     let values: Vec<_> = values.into_iter().collect();
     (values.iter().min().unwrap().clone(), values.iter().max().unwrap().clone())
 }
 
-pub fn ends(x: Interval) -> [BigRational; 2] {
+pub(crate) fn ends(x: Interval) -> [BigRational; 2] {
     [exact(x.lo()), exact(x.hi())]
 }
 
 /// Generates finite numbers: any bits, subnormal, huge, near a power of two, integer, moderate,
 /// zero.
-pub fn any_number() -> impl Strategy<Value = f64> {
+pub(crate) fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL | proptest::num::f64::ZERO,
         1 => proptest::num::f64::SUBNORMAL,
@@ -83,7 +83,7 @@ pub fn any_number() -> impl Strategy<Value = f64> {
 }
 
 /// Generates two numbers, often of nearly equal magnitude, so that their sum cancels.
-pub fn any_pair() -> impl Strategy<Value = (f64, f64)> {
+pub(crate) fn any_pair() -> impl Strategy<Value = (f64, f64)> {
     let nearly_opposite = (any_number(), -3..=3_i32).prop_map(|(a, n)| (a, steps_from(-a, n)));
     let finite = |&(a, b): &(f64, f64)| a.is_finite() && b.is_finite();
     prop_oneof![2 => (any_number(), any_number()), 1 => nearly_opposite]
@@ -91,7 +91,7 @@ pub fn any_pair() -> impl Strategy<Value = (f64, f64)> {
 }
 
 /// Generates bounded intervals: points, narrow and wide ones, with and without zero.
-pub fn any_interval() -> impl Strategy<Value = Interval> {
+pub(crate) fn any_interval() -> impl Strategy<Value = Interval> {
     let between = |a: f64, b: f64| Interval::new(a.min(b), a.max(b)).unwrap();
     prop_oneof![
         1 => any_number().prop_map(Interval::point),
@@ -103,13 +103,13 @@ pub fn any_interval() -> impl Strategy<Value = Interval> {
 }
 
 /// Generates an interval and a number in it.
-pub fn interval_and_member() -> impl Strategy<Value = (Interval, f64)> {
+pub(crate) fn interval_and_member() -> impl Strategy<Value = (Interval, f64)> {
     (any_interval(), 0.0..=1.0_f64)
         .prop_map(|(x, t)| (x, (x.lo() * (1.0 - t) + x.hi() * t).clamp(x.lo(), x.hi())))
 }
 
 /// Generates an interval and a subset of it.
-pub fn interval_and_part() -> impl Strategy<Value = (Interval, Interval)> {
+pub(crate) fn interval_and_part() -> impl Strategy<Value = (Interval, Interval)> {
     (interval_and_member(), 0.0..=1.0_f64).prop_map(|((x, a), t)| {
         let b = (x.lo() * (1.0 - t) + x.hi() * t).clamp(x.lo(), x.hi());
         (x, Interval::new(a.min(b), a.max(b)).unwrap())
@@ -117,16 +117,16 @@ pub fn interval_and_part() -> impl Strategy<Value = (Interval, Interval)> {
 }
 
 /// Rounds x down to a multiple of 2^-bits.
-pub fn truncated(x: &BigRational, bits: i32) -> BigRational {
+pub(crate) fn truncated(x: &BigRational, bits: i32) -> BigRational {
     (x * power_of_two(bits)).floor() * power_of_two(-bits)
 }
 
 /// Number of fractional bits of the references below.
-pub const REFERENCE_BITS: i32 = 300;
+pub(crate) const REFERENCE_BITS: i32 = 300;
 
 /// Returns an error bound of the references below: 2³⁰ units of their last bit cover every
 /// truncation.
-pub fn reference_error() -> BigRational {
+pub(crate) fn reference_error() -> BigRational {
     power_of_two(30 - REFERENCE_BITS)
 }
 
@@ -155,17 +155,17 @@ fn arctan_of_inverse(n: i64) -> BigRational {
 }
 
 /// Computes π by Machin's formula, within 2⁻⁴⁴⁰.
-pub fn pi() -> BigRational {
+pub(crate) fn pi() -> BigRational {
     integer(16) * arctan_of_inverse(5) - integer(4) * arctan_of_inverse(239)
 }
 
 /// Computes ln 2 = Σ 1 / (k 2ᵏ), within 2⁻⁴⁴⁰.
-pub fn ln_2() -> BigRational {
+pub(crate) fn ln_2() -> BigRational {
     (1..460).map(|k| truncated(&(power_of_two(-k) / integer(k.into())), 460)).sum()
 }
 
 /// Computes sin(x + quarter_turns · π/2) for |x| ≤ 2²⁰ rad, within [`reference_error`].
-pub fn reference_sin(x: f64, quarter_turns: i64, pi: &BigRational) -> BigRational {
+pub(crate) fn reference_sin(x: f64, quarter_turns: i64, pi: &BigRational) -> BigRational {
     let half_pi = pi / integer(2);
     let k = (exact(x) / &half_pi).round();
     let rest = truncated(&(exact(x) - &k * half_pi), REFERENCE_BITS);
@@ -181,7 +181,7 @@ pub fn reference_sin(x: f64, quarter_turns: i64, pi: &BigRational) -> BigRationa
 }
 
 /// Returns (m, k) with eˣ = m · 2ᵏ for |x| ≤ 800; m is within [`reference_error`].
-pub fn reference_exp(x: f64, ln_2: &BigRational) -> (BigRational, i32) {
+pub(crate) fn reference_exp(x: f64, ln_2: &BigRational) -> (BigRational, i32) {
     let k = (x / std::f64::consts::LN_2).round();
     let rest = truncated(&(exact(x) - exact(k) * ln_2), REFERENCE_BITS);
     assert!(rest.abs() < BigRational::one());

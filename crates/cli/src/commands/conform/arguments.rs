@@ -39,7 +39,7 @@ Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
 /// The sets are the initial set X0, the input set U and, with --noise, the measurement noise V.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(
         long,

@@ -12,7 +12,7 @@ use crate::table::{plural, table};
 const MOST_MOTIONS: usize = 12;
 
 /// Returns the sets without each motion, the runs that decide, and trends over the runs.
-pub fn dependence(model: &Model) -> String {
+pub(super) fn dependence(model: &Model) -> String {
     format!("{}{}{}", left_out(model), deciding_runs(model), trends(model))
 }
 

@@ -12,7 +12,7 @@ use crate::table::table;
 const MOST_FACTOR: f64 = 1.5;
 
 /// Returns how the nominal model was fitted, for a model that was.
-pub fn fit_summary(model: &Model) -> String {
+pub(super) fn fit_summary(model: &Model) -> String {
     let Some(record) = &model.fit else { return String::new() };
     let linear = if model.a.is_empty() { " of the linear model" } else { "" };
     let mut text = format!(
@@ -101,7 +101,7 @@ fn parameters(model: &Model, record: &FitRecord) -> String {
 }
 
 /// Returns what a user of the model must know of the run, and what holds without it.
-pub fn any_run(model: &Model) -> String {
+pub(super) fn any_run(model: &Model) -> String {
     let Some(any) = &model.any_run else { return String::new() };
     let radii = any.sets.input_set.radius.iter().map(|radius| format!("{radius:.3}"));
     format!(

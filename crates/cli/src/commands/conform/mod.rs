@@ -8,6 +8,6 @@ mod run;
 mod settings;
 mod summary;
 
-pub use arguments::Arguments;
-pub use run::{report, run};
-pub use summary::summary;
+pub(crate) use arguments::Arguments;
+pub(crate) use run::{report, run};
+pub(crate) use summary::summary;

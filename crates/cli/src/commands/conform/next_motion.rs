@@ -12,7 +12,7 @@ use crate::table::plural;
 const MOST_GAUGES: usize = 12;
 
 /// Returns how the sets were calibrated, and the strongest statement about the next motion.
-pub fn next_motion(model: &Model) -> String {
+pub(super) fn next_motion(model: &Model) -> String {
     let mut text = String::new();
     if let Some(calibration) = &model.calibration {
         let _ = writeln!(text, "\n{}", calibrated(calibration));

@@ -16,7 +16,7 @@ use crate::output;
 use crate::progress::Progress;
 use crate::report_files;
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let setup = setup(args)?;
     let source = Box::new(DataSet::open(&args.data.data)?);
     for path in args.out.iter().chain(&args.certificate) {
@@ -74,7 +74,7 @@ pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 }
 
 /// Writes the page about the recordings that the sets were found for, from what is in memory.
-pub fn report(
+pub(crate) fn report(
     problem: &Problem,
     model: &Model,
     found: &Conformance,

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// Returns the robot, its model and the settings; from the model file that `--abstraction` names if
 /// there is one.
-pub fn setup(args: &Arguments) -> Result<Setup> {
+pub(super) fn setup(args: &Arguments) -> Result<Setup> {
     let mut setup = match &args.abstraction {
         None => {
             let robot = args.lock.load(args.robot.as_deref().unwrap_or_default())?;

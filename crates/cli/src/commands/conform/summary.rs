@@ -19,7 +19,7 @@ use reachtube::number::{four_decimals, interval};
 const MOST_PLACES: usize = 6;
 
 /// Returns the result of `conform`, with a table like Table II of the paper.
-pub fn summary(model: &Model) -> String {
+pub(crate) fn summary(model: &Model) -> String {
     let mut text = verdict(model);
     let _ = writeln!(text, "{}\n", cost(model));
     text.push_str(&sets(model));

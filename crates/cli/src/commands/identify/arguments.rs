@@ -22,7 +22,7 @@ line override it.";
 /// with joint states. A folder stands for the CSV files in it.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file; required here or in the settings file
     #[arg(long)]
     pub robot: Option<String>,

@@ -10,7 +10,7 @@ use reachtube_robot::friction::WarmingBy;
 use crate::table::table;
 
 /// Returns the section about friction laws; it is empty where none was asked for.
-pub fn laws(found: &Identification) -> String {
+pub(super) fn laws(found: &Identification) -> String {
     let Some(gain) = &found.laws else { return String::new() };
     let stribeck = stribeck(found);
     let warming = found.warming.as_ref().map_or_else(String::new, |fit| warming(found, fit));

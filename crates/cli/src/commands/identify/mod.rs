@@ -5,5 +5,5 @@ mod laws;
 mod run;
 mod summary;
 
-pub use arguments::Arguments;
-pub use run::run;
+pub(crate) use arguments::Arguments;
+pub(crate) use run::run;

@@ -16,7 +16,7 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (mut settings, folder) = settings(args)?;
     let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);

@@ -17,7 +17,7 @@ use reachtube::number::four_decimals;
 const MOST_RECORDINGS: usize = 40;
 
 /// Returns the result of `identify`, with one section per step.
-pub fn summary(found: &Identification) -> String {
+pub(super) fn summary(found: &Identification) -> String {
     [
         format!("{}: identified\n", found.description.name),
         gravity(found),

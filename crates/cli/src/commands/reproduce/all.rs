@@ -33,7 +33,7 @@ everything else again. A run that was stopped can be started again, with the sam
 /// The whole experiment: every table and figure, on one page that reads like the paper's Sec. V
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Folder for the campaign, the tables, the figures and the page
     #[arg(long, value_name = "FOLDER", default_value = "reachtube-paper")]
     pub out: PathBuf,
@@ -64,7 +64,7 @@ struct Reproduced {
 }
 
 /// Runs `reproduce all`.
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let page_path = args.out.join("paper.html");
     let figure_path = |number: u8| args.out.join(format!("fig{number}.svg"));
     let numbers = args.out.join("paper.json");

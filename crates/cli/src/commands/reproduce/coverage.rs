@@ -22,7 +22,7 @@ Exit codes: 0 every bound holds within three standard errors, 1 one does not, 2 
 /// give the truth.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Number of campaigns, 1 or more
     #[arg(long, default_value_t = 200, value_name = "COUNT")]
     pub campaigns: usize,
@@ -35,7 +35,7 @@ pub struct Arguments {
 }
 
 /// Runs `reproduce coverage`.
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let bar = Progress::of("simulating");
     let options = CoverageOptions { campaigns: args.campaigns, next: args.next, seed: args.seed };
     let coverage = coverage(&options, &|done, total| bar.show(done, total))?;

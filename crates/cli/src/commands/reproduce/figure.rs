@@ -27,7 +27,7 @@ shows the fits of `reproduce table3`.";
 /// What a figure is drawn of.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Folder with runs.csv and the recordings; for fig3 and fig5, of a campaign
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
@@ -40,7 +40,7 @@ pub struct Arguments {
 }
 
 /// Runs `reproduce fig1` to `fig5`.
-pub fn run(number: u8, args: &Arguments, json: bool) -> Result<Outcome> {
+pub(super) fn run(number: u8, args: &Arguments, json: bool) -> Result<Outcome> {
     let path = args.out.clone().unwrap_or_else(|| format!("fig{number}.svg").into());
     output::claim(&path)?;
     let figure = draw(number, args)?;
@@ -75,7 +75,7 @@ fn draw(number: u8, args: &Arguments) -> Result<PaperFigure> {
 }
 
 /// Returns the caption, what the paper has, and the numbers.
-pub fn summary(figure: &PaperFigure) -> String {
+pub(super) fn summary(figure: &PaperFigure) -> String {
     let PaperFigure { number, caption, paper, table, .. } = figure;
     format!("Fig. {number}: {caption}\n{paper}\n\n{}", titled(table))
 }

@@ -15,7 +15,7 @@ use crate::outcome::Outcome;
 
 /// Reproduce a table or a figure of the paper, or put the bounds for the next motion to the test
 #[derive(Debug, Subcommand)]
-pub enum ReproduceCommand {
+pub(crate) enum ReproduceCommand {
     All(all::Arguments),
     Table1(table1::Arguments),
     Table2(table2::Arguments),
@@ -34,7 +34,7 @@ pub enum ReproduceCommand {
 }
 
 /// Runs what is reproduced.
-pub fn run(command: &ReproduceCommand, json: bool) -> Result<Outcome> {
+pub(crate) fn run(command: &ReproduceCommand, json: bool) -> Result<Outcome> {
     match command {
         ReproduceCommand::All(args) => all::run(args, json),
         ReproduceCommand::Table1(args) => table1::run(args, json),

@@ -27,7 +27,7 @@ The paper's trajectories are unpublished, so only the sizes and the order of the
 /// under the same inputs.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long, default_value = "lwa4p")]
     pub robot: String,
@@ -59,7 +59,7 @@ pub struct Arguments {
 }
 
 /// Runs `reproduce table1`.
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     robot.check_physical()?;
     if let Some(path) = &args.out {

@@ -33,7 +33,7 @@ Exit codes: 0 every set proved conformant, 1 one is not, 2 error.";
 /// positions. The sets contain the origin, as the paper's do. Torques are compensated.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Folder with runs.csv and the recordings
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
@@ -63,7 +63,7 @@ pub struct Arguments {
 }
 
 /// Runs `reproduce table2`.
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let options = Table2Options {
         suites: args.suites.clone(),
         notions: args.notions.clone(),

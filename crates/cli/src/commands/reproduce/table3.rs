@@ -27,14 +27,14 @@ show; the last column names the rows that this moves.";
 /// standard errors, and beside the paper's.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
-pub struct Arguments {
+pub(crate) struct Arguments {
     /// Folder of a campaign
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
 }
 
 /// Runs `reproduce table3`.
-pub fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let bar = Progress::of("identifying");
     let table3 = table3(&args.data, &|done, total| bar.show(done, total))?;
     drop(bar);

@@ -20,7 +20,7 @@ fn urdf(kind: &str) -> String {
 
 const SHOW: &str = "robot show arm.urdf";
 
-pub const CASES: &[Case] = &[
+pub(super) const CASES: &[Case] = &[
     Case::refused(
         "no robot file",
         |_| (),

@@ -19,7 +19,7 @@ const fn case(what: &'static str, command: &'static str, words: &'static [&'stat
     Case::refused(what, |_| (), command, words)
 }
 
-pub const CASES: &[Case] = &[
+pub(super) const CASES: &[Case] = &[
     case("no command", "", &["Usage: reachtube"]),
     case("an unknown command", "conforms", &["unrecognized subcommand 'conforms'", "conform"]),
     case(

@@ -26,7 +26,7 @@ const fn refused(what: &'static str, spoil: fn(&Lab), words: &'static [&'static 
     Case::refused(what, spoil, CONFORM, words)
 }
 
-pub const CASES: &[Case] = &[
+pub(super) const CASES: &[Case] = &[
     refused(
         "a value that is no number",
         |lab| lines(lab, |l| set_cell(&mut l[9], 3, "NaN")),

@@ -54,7 +54,7 @@ pub(super) struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    pub fn new(propagation: &'a Propagation) -> Self {
+    pub(super) fn new(propagation: &'a Propagation) -> Self {
         let (propagation, parts) = refine(propagation);
         let system = propagation.system();
         let longest = propagation.grid().longest_step();
@@ -96,7 +96,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Sums the cells up to each sample of the original grid.
-    pub fn gains(&self) -> Vec<IntervalMatrix> {
+    pub(super) fn gains(&self) -> Vec<IntervalMatrix> {
         let fine = running_sum(self.propagation.system(), self.propagation.grid().len(), |k| {
             ends(self.integrals[k].as_slice())
         });

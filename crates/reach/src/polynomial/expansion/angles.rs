@@ -34,7 +34,7 @@ pub(crate) struct Angles {
 impl Angles {
     /// Collects the highest exponents in polynomials with `plain` variables and two more per state
     /// in `states`.
-    pub fn new<'a>(
+    pub(crate) fn new<'a>(
         plain: usize,
         states: &[usize],
         terms: impl Iterator<Item = &'a TaylorTerm<Interval>>,
@@ -60,22 +60,22 @@ impl Angles {
     }
 
     /// Returns the indices of the variables sin and cos of angle i.
-    pub fn variables(&self, i: usize) -> [usize; 2] {
+    pub(crate) fn variables(&self, i: usize) -> [usize; 2] {
         [self.plain + i, self.plain + self.states.len() + i]
     }
 
     /// Returns the exponents of sine and cosine of angle i in a monomial.
-    pub fn exponents(&self, monomial: &[u8], i: usize) -> [u8; 2] {
+    pub(crate) fn exponents(&self, monomial: &[u8], i: usize) -> [u8; 2] {
         self.variables(i).map(|variable| monomial[variable])
     }
 
     /// Allocates the factors of a recentring: the plain variables, then the factors of each angle.
-    pub fn factors(&self) -> Vec<Interval> {
+    pub(crate) fn factors(&self) -> Vec<Interval> {
         vec![Interval::ZERO; self.starts[self.states.len()]]
     }
 
     /// Bounds the magnitudes of the factors at any angle; the plain variables have the bound 0.
-    pub fn magnitudes(&self) -> Vec<f64> {
+    pub(crate) fn magnitudes(&self) -> Vec<f64> {
         let (mut factors, any) = (self.factors(), Interval::centred(0.0, 1.0));
         (0..self.states.len())
             .for_each(|i| self.set_factors(i, [any, any, any.abs()], &mut factors));
@@ -83,7 +83,7 @@ impl Angles {
     }
 
     /// Returns the index of the factor of φ_l in sinᵃ cosᵇ of angle i.
-    pub fn factor(&self, i: usize, [sine, cosine]: [u8; 2], l: usize) -> usize {
+    pub(crate) fn factor(&self, i: usize, [sine, cosine]: [u8; 2], l: usize) -> usize {
         self.column(i, sine.into(), cosine.into()) + l
     }
 
@@ -98,7 +98,7 @@ impl Angles {
     /// # Guarantee
     ///
     /// Each factor encloses the exact one.
-    pub fn expand_at(&self, i: usize, q: f64, middle: f64, factors: &mut [Interval]) {
+    pub(crate) fn expand_at(&self, i: usize, q: f64, middle: f64, factors: &mut [Interval]) {
         let (sin, cos) = Interval::point(q).sin_cos();
         self.set_factors(i, [sin, cos, Interval::point(middle)], factors);
     }
@@ -128,7 +128,7 @@ impl Angles {
     ///
     /// The slope of an angle is that of its sine, times the slope of the line that stands for the
     /// sine.
-    pub fn chain_slope(
+    pub(crate) fn chain_slope(
         &self,
         variable: usize,
         slope: Interval,

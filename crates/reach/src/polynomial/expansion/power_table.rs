@@ -22,7 +22,7 @@ pub(crate) struct PowerTable {
 impl PowerTable {
     /// Allocates exponents from 1 up to `highest`, one entry per variable; each variable has at
     /// least the exponent 1.
-    pub fn new(highest: &[u32]) -> Self {
+    pub(crate) fn new(highest: &[u32]) -> Self {
         let mut starts = vec![0];
         for highest in highest {
             starts.push(starts[starts.len() - 1] + (*highest).max(1) as usize);
@@ -37,7 +37,7 @@ impl PowerTable {
     }
 
     /// Sets the powers of variable i over `side`.
-    pub fn set(&mut self, i: usize, side: Interval) {
+    pub(crate) fn set(&mut self, i: usize, side: Interval) {
         let own = &mut self.powers[self.starts[i]..self.starts[i + 1]];
         own.iter_mut().zip(1..).for_each(|(power, exponent)| *power = side.powi(exponent));
         self.waists[i] = is_nearly_symmetric(side).then_some(0.5);
@@ -45,7 +45,7 @@ impl PowerTable {
 
     /// Sets the φ_l of angle variable i over `side`, for a line of the given slope and the given
     /// middle of κ.
-    pub fn set_angle(&mut self, i: usize, side: Interval, [slope, middle]: [f64; 2]) {
+    pub(crate) fn set_angle(&mut self, i: usize, side: Interval, [slope, middle]: [f64; 2]) {
         let (sine, versine) = sine_and_versine(side);
         self.waists[i] = Some(1.0 / (2.0 - versine.hi()))
             .filter(|_| is_nearly_symmetric(side) && side.mag() < 1.5);
@@ -58,22 +58,22 @@ impl PowerTable {
     }
 
     /// Returns sin d minus its line for angle variable i.
-    pub fn defect(&self, i: usize) -> Interval {
+    pub(crate) fn defect(&self, i: usize) -> Interval {
         self.defects[i]
     }
 
     /// Returns variable i to an exponent, or φ of that index.
-    pub fn get(&self, i: usize, exponent: u32) -> Interval {
+    pub(crate) fn get(&self, i: usize, exponent: u32) -> Interval {
         self.at(self.index(i, exponent))
     }
 
     /// Returns the power stored at an index.
-    pub fn at(&self, index: usize) -> Interval {
+    pub(crate) fn at(&self, index: usize) -> Interval {
         self.powers[index]
     }
 
     /// Returns whether the power at an index is a variable itself, or φ₁.
-    pub fn is_first(&self, index: usize) -> bool {
+    pub(crate) fn is_first(&self, index: usize) -> bool {
         self.starts.binary_search(&index).is_ok()
     }
 
@@ -82,24 +82,24 @@ impl PowerTable {
     /// The result is the index of the square (or of κ - m) and the half-width of the trapezoid at
     /// the bottom relative to the top. It is `None` where the side is not nearly symmetric about
     /// zero, where the trapezoid does not exist, or where `index` is not that of a first power.
-    pub fn trapezoid(&self, index: usize) -> Option<(usize, f64)> {
+    pub(crate) fn trapezoid(&self, index: usize) -> Option<(usize, f64)> {
         let i = self.starts.binary_search(&index).ok()?;
         let has_square = *self.starts.get(i + 1)? > index + 1;
         self.waists[i].filter(|_| has_square).map(|waist| (index + 1, waist))
     }
 
     /// Returns the index of variable i to an exponent among all powers.
-    pub fn index(&self, i: usize, exponent: u32) -> usize {
+    pub(crate) fn index(&self, i: usize, exponent: u32) -> usize {
         self.starts[i] + exponent as usize - 1
     }
 
     /// Iterates over the lists of powers, one per variable, with the index of their first entry.
-    pub fn lists(&self) -> impl Iterator<Item = (usize, &[Interval])> {
+    pub(crate) fn lists(&self) -> impl Iterator<Item = (usize, &[Interval])> {
         self.starts.windows(2).map(|ends| (ends[0], &self.powers[ends[0]..ends[1]]))
     }
 
     /// Returns the number of powers of all variables.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.powers.len()
     }
 }

@@ -81,7 +81,7 @@ impl RecentredPolynomial {
 }
 
 impl Recentring {
-    pub fn new(angles: &Angles, terms: &[TaylorTerm<Interval>]) -> Self {
+    pub(crate) fn new(angles: &Angles, terms: &[TaylorTerm<Interval>]) -> Self {
         let (plain, variables) = (angles.plain, angles.plain + angles.states.len());
         // Monomials of the result and their indices.
         let stages = stages(angles, terms);
@@ -116,7 +116,7 @@ impl Recentring {
     }
 
     /// Allocates the recentred coefficients and scratch memory of this polynomial.
-    pub fn workspace(&self) -> RecentredPolynomial {
+    pub(crate) fn workspace(&self) -> RecentredPolynomial {
         let own = self.roundings.len();
         RecentredPolynomial {
             coefficients: self.start.clone(),
@@ -129,7 +129,7 @@ impl Recentring {
     }
 
     /// Raises `highest` to the highest exponent of each variable in this polynomial.
-    pub fn raise_exponents(&self, highest: &mut [u32]) {
+    pub(crate) fn raise_exponents(&self, highest: &mut [u32]) {
         for node in &self.nodes {
             let highest = &mut highest[node.variable as usize];
             *highest = (*highest).max(node.exponent);
@@ -143,7 +143,7 @@ impl Recentring {
     /// # Guarantee
     ///
     /// None by itself: [`bound_errors`](Self::bound_errors) bounds the error of each coefficient.
-    pub fn recentre(&self, factors: &[f64], radius: &[f64], work: &mut RecentredPolynomial) {
+    pub(crate) fn recentre(&self, factors: &[f64], radius: &[f64], work: &mut RecentredPolynomial) {
         work.coefficients.copy_from_slice(&self.start);
         let c = &mut work.coefficients;
         self.operate(factors, c);
@@ -170,7 +170,7 @@ impl Recentring {
     /// Each coefficient is a sum of products of factors and one initial coefficient. With N
     /// roundings per product at most, the error of the sum is at most γ_N times the same sum of
     /// magnitudes (Higham, section 3.1). The same operations propagate the initial errors.
-    pub fn bound_errors(&self, bounds: &[f64], work: &mut RecentredPolynomial) {
+    pub(crate) fn bound_errors(&self, bounds: &[f64], work: &mut RecentredPolynomial) {
         let mut magnitudes: Vec<f64> = self.start.iter().map(|x| x.abs()).collect();
         let mut carried = self.start_error.clone();
         self.operate(bounds, &mut magnitudes);
@@ -186,7 +186,7 @@ impl Recentring {
     }
 
     /// Encloses the value at the present centre.
-    pub fn constant(&self, work: &RecentredPolynomial) -> Interval {
+    pub(crate) fn constant(&self, work: &RecentredPolynomial) -> Interval {
         work.coefficient(0)
     }
 
@@ -194,7 +194,7 @@ impl Recentring {
     ///
     /// The slopes of one variable must be added up: its derivative, and the slope of its line. The
     /// slope of an angle is that of φ₁.
-    pub fn gradient<'a>(
+    pub(crate) fn gradient<'a>(
         &'a self,
         work: &'a RecentredPolynomial,
     ) -> impl Iterator<Item = (usize, Interval)> + 'a {
@@ -213,7 +213,7 @@ impl Recentring {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn remainder(
+    pub(crate) fn remainder(
         &self,
         powers: &PowerTable,
         vertices: &mut VertexBound,
@@ -274,7 +274,7 @@ impl Recentring {
 
     /// Chooses the factors whose vertices are enumerated from now on: the factors in the largest
     /// part of the sum over the last box.
-    pub fn choose_vertex_factors(
+    pub(crate) fn choose_vertex_factors(
         &self,
         powers: &PowerTable,
         vertices: &mut VertexBound,

@@ -19,7 +19,7 @@ pub(crate) struct Univariate {
 
 impl Univariate {
     /// Finds the powers of a variable among monomials; `None` if there are none.
-    pub fn find(variable: usize, index: &BTreeMap<&[u8], usize>) -> Option<Self> {
+    pub(crate) fn find(variable: usize, index: &BTreeMap<&[u8], usize>) -> Option<Self> {
         let mut monomial = index.keys().next()?.to_vec();
         let mut at = |exponent: u8| {
             monomial.fill(0);
@@ -34,7 +34,7 @@ impl Univariate {
     ///
     /// It is the slope of the first Chebyshev polynomial. For d³ it is 3/4 r², and the difference
     /// is at most r³/4.
-    pub fn slope(&self, coefficients: &[f64], r: f64) -> f64 {
+    pub(crate) fn slope(&self, coefficients: &[f64], r: f64) -> f64 {
         let (mut slope, mut factor) = (0.0, 1.0);
         // The term of odd e has the slope c_e C(e, (e - 1)/2) / 2^{e-1} r^{e-1}.
         for (index, exponent) in self.indices.iter().zip(2..).skip(1).step_by(2) {
@@ -49,7 +49,7 @@ impl Univariate {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn range(
+    pub(crate) fn range(
         &self,
         coefficient: &impl Fn(usize) -> Interval,
         slope: f64,

@@ -31,10 +31,10 @@ pub(crate) struct Monomial {
 }
 
 impl Monomial {
-    pub const ONE: Self = Self { chosen: 0, range: [1.0; 2] };
+    pub(crate) const ONE: Self = Self { chosen: 0, range: [1.0; 2] };
 
     #[inline]
-    pub fn times(self, other: Self) -> Self {
+    pub(crate) fn times(self, other: Self) -> Self {
         let ([a, b], [c, d]) = (self.range, other.range);
         let products = [a * c, a * d, b * c, b * d];
         let smaller = |x: f64, y: f64| if x < y { x } else { y };
@@ -45,7 +45,7 @@ impl Monomial {
     }
 
     #[inline]
-    pub fn magnitude(self) -> f64 {
+    pub(crate) fn magnitude(self) -> f64 {
         self.range[0].abs().max(self.range[1].abs())
     }
 }
@@ -77,7 +77,7 @@ pub(crate) struct VertexBound {
 
 impl VertexBound {
     /// Allocates memory for at most `most` factors and the powers of a table like `powers`.
-    pub fn new(most: usize, powers: &PowerTable) -> Self {
+    pub(crate) fn new(most: usize, powers: &PowerTable) -> Self {
         let most = most.min(MOST_FACTORS);
         Self {
             most,
@@ -89,7 +89,7 @@ impl VertexBound {
     }
 
     /// Starts a new sum and divides the powers into chosen factors and all others.
-    pub fn divide(&mut self, powers: &PowerTable, chosen: &[usize]) {
+    pub(crate) fn divide(&mut self, powers: &PowerTable, chosen: &[usize]) {
         self.factors.clear();
         self.values.clear();
         self.values.resize(1 << chosen.len(), [0.0; 2]);
@@ -114,13 +114,13 @@ impl VertexBound {
 
     /// Returns the power at an index as a part of a monomial.
     #[inline]
-    pub fn part(&self, index: usize) -> Monomial {
+    pub(crate) fn part(&self, index: usize) -> Monomial {
         self.parts[index]
     }
 
     /// Adds c times a monomial to the sum.
     #[inline]
-    pub fn add(&mut self, c: f64, monomial: Monomial) {
+    pub(crate) fn add(&mut self, c: f64, monomial: Monomial) {
         let [lo, hi] = monomial.range;
         let [middle, radius] = &mut self.values[monomial.chosen as usize];
         *middle += c * (0.5 * (lo + hi));
@@ -129,7 +129,7 @@ impl VertexBound {
 
     /// Returns the range of the sum, up to [`VERTEX_ROUNDINGS`] per factor of each term; `None`
     /// where it is not a number.
-    pub fn range(&mut self) -> Option<Interval> {
+    pub(crate) fn range(&mut self) -> Option<Interval> {
         for (i, Factor { ends, run }) in self.factors.iter().enumerate().rev() {
             for (values, ends) in self.values.chunks_exact_mut(*run).zip(ends.iter().cycle()) {
                 values.chunks_exact_mut(2 << i).for_each(|pair| evaluate_at_ends(pair, *ends));
@@ -143,7 +143,7 @@ impl VertexBound {
     }
 
     /// Adds to the weights of the factors of a power; `index` is that of the variable itself.
-    pub fn add_weight(&mut self, index: usize, exponent: u32, weight: f64) {
+    pub(crate) fn add_weight(&mut self, index: usize, exponent: u32, weight: f64) {
         if exponent % 2 == 1 {
             self.weights[index] += weight;
         }
@@ -153,7 +153,7 @@ impl VertexBound {
     }
 
     /// Replaces `chosen` by the factors of largest weight, squares last, and resets the weights.
-    pub fn choose(&mut self, powers: &PowerTable, chosen: &mut Vec<usize>) {
+    pub(crate) fn choose(&mut self, powers: &PowerTable, chosen: &mut Vec<usize>) {
         chosen.clear();
         for _ in 0..self.most {
             let weights = self.weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);

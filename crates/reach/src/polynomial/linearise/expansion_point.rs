@@ -29,7 +29,7 @@ pub(crate) struct ExpansionPoint {
 
 impl ExpansionPoint {
     /// Creates the point 0 with N + m `variables`.
-    pub fn new(angles: &Angles, variables: usize) -> Self {
+    pub(crate) fn new(angles: &Angles, variables: usize) -> Self {
         Self {
             coordinates: vec![0.0; variables],
             radius: vec![0.0; variables],
@@ -45,7 +45,7 @@ impl ExpansionPoint {
     /// grow.
     ///
     /// The factors of an angle so large that its sine is unknown become NaN.
-    pub fn update_factors(&mut self, angles: &Angles) -> bool {
+    pub(crate) fn update_factors(&mut self, angles: &Angles) -> bool {
         let variables = self.coordinates.len();
         self.factors[..variables].copy_from_slice(&self.coordinates);
         for (i, &state) in angles.states.iter().enumerate() {

@@ -27,7 +27,7 @@ pub(crate) struct LinearPart {
 
 impl LinearPart {
     /// Allocates the linear part for N states and m inputs.
-    pub fn new(n: usize, m: usize) -> Self {
+    pub(crate) fn new(n: usize, m: usize) -> Self {
         Self {
             rate: vec![Interval::ZERO; n],
             a: SquareMatrix::zero(n),
@@ -40,13 +40,13 @@ impl LinearPart {
     }
 
     /// Returns column j of B; zero for an input that a direction carries.
-    pub fn column(&self, j: usize) -> &[f64] {
+    pub(crate) fn column(&self, j: usize) -> &[f64] {
         let n = self.a.n;
         &self.b[j * n..(j + 1) * n]
     }
 
     /// Rounds f* and the enclosed `gradient`, N x (N + m), to their midpoints and keeps the errors.
-    pub fn round(&mut self, system: &PolynomialSystem, gradient: &[Interval]) {
+    pub(crate) fn round(&mut self, system: &PolynomialSystem, gradient: &[Interval]) {
         let n = self.a.n;
         let variables = n + self.input_radius.len();
         for i in 0..n {
@@ -68,7 +68,7 @@ impl LinearPart {
 
     /// Bounds the effect of the rounding errors in component i of ẋ, over the offsets `tube` (N)
     /// and the input.
-    pub fn rounding_error(&self, i: usize, tube: &[Interval]) -> f64 {
+    pub(crate) fn rounding_error(&self, i: usize, tube: &[Interval]) -> f64 {
         let (n, variables) = (tube.len(), tube.len() + self.input_radius.len());
         let errors = &self.slope_error[i * variables..(i + 1) * variables];
         let states = errors.iter().zip(tube).map(|(error, d)| error * d.mag());
@@ -78,7 +78,7 @@ impl LinearPart {
 
     /// Bounds the sum of inputs and remainder along direction g: the inputs that it carries plus
     /// the radius of its remainder.
-    pub fn along_direction(
+    pub(crate) fn along_direction(
         &self,
         system: &PolynomialSystem,
         g: usize,
@@ -100,7 +100,7 @@ impl LinearPart {
 
     /// Sets `out` to an upper bound of |B| r + |N| |l|, with the `size` of each entry l of the
     /// remainder and the columns N of the directions.
-    pub fn drive(
+    pub(crate) fn drive(
         &self,
         system: &PolynomialSystem,
         remainder: &[Interval],
@@ -121,7 +121,7 @@ impl LinearPart {
     }
 
     /// Encloses the middle of the remainder as a part of ẋ, N entries.
-    pub fn remainder_centre(
+    pub(crate) fn remainder_centre(
         &mut self,
         system: &PolynomialSystem,
         remainder: &[Interval],

@@ -46,7 +46,7 @@ struct Ranges {
 
 impl<'a> Linearisation<'a> {
     /// Prepares the linearisation of a system, with at most `vertex_variables` vertex factors.
-    pub fn new(system: &'a PolynomialSystem, vertex_variables: usize) -> Self {
+    pub(crate) fn new(system: &'a PolynomialSystem, vertex_variables: usize) -> Self {
         let (n, m) = (system.states(), system.inputs());
         let powers = PowerTable::new(&system.highest);
         let mut own = Self {
@@ -69,7 +69,7 @@ impl<'a> Linearisation<'a> {
     }
 
     /// Returns x*, N entries.
-    pub fn point(&self) -> &[f64] {
+    pub(crate) fn point(&self) -> &[f64] {
         &self.point.coordinates[..self.system.states()]
     }
 
@@ -82,7 +82,7 @@ impl<'a> Linearisation<'a> {
     ///
     /// f* and the slopes are enclosed for all coefficients within their intervals at each time.
     /// f*, A and B are midpoints, and exact as numbers.
-    pub fn linearise(
+    pub(crate) fn linearise(
         &mut self,
         point: impl Iterator<Item = f64>,
         radius: &[f64],
@@ -151,7 +151,7 @@ impl<'a> Linearisation<'a> {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn remainder(&mut self, tube: &[Interval], out: &mut [Interval]) {
+    pub(crate) fn remainder(&mut self, tube: &[Interval], out: &mut [Interval]) {
         let Self { system, point, linear, expansions, ranges, .. } = self;
         let (n, variables) = (tube.len(), point.coordinates.len());
         if tube.iter().any(|side| !side.mag().is_finite()) {

@@ -17,7 +17,7 @@ pub(crate) struct ZonotopePropagator<'a> {
 
 impl<'a> ZonotopePropagator<'a> {
     /// Starts from the box with the given sides.
-    pub fn new(
+    pub(crate) fn new(
         system: &'a PolynomialSystem,
         sides: &[Interval],
         vertex_variables: usize,

@@ -33,7 +33,12 @@ pub(crate) struct ReachableZonotope {
 
 impl ReachableZonotope {
     /// Creates the box {c + d : |d_i| <= r_i}.
-    pub fn new(centre: Vec<f64>, radius: Vec<f64>, inputs: usize, directions: usize) -> Self {
+    pub(crate) fn new(
+        centre: Vec<f64>,
+        radius: Vec<f64>,
+        inputs: usize,
+        directions: usize,
+    ) -> Self {
         let n = centre.len();
         Self {
             centre,
@@ -51,7 +56,7 @@ impl ReachableZonotope {
     ///
     /// An axis that Φ maps to itself stays recent. Adds Σ |Φ g| of the stored images to `sums`, in
     /// floating point.
-    pub fn store(
+    pub(crate) fn store(
         &mut self,
         phi: &SquareMatrix,
         directions: &[&[f64]],
@@ -76,7 +81,7 @@ impl ReachableZonotope {
     }
 
     /// Maps the recent generator along column j by Φ and stores the image.
-    pub fn store_column(
+    pub(crate) fn store_column(
         &mut self,
         j: usize,
         phi: &SquareMatrix,
@@ -91,7 +96,7 @@ impl ReachableZonotope {
     /// Computes the radii from `sums` = Σ |g| of the stored generators in floating point.
     ///
     /// Beyond `most` stored generators, the oldest become a box.
-    pub fn measure(&mut self, directions: &[&[f64]], sums: &[f64], most: usize) {
+    pub(crate) fn measure(&mut self, directions: &[&[f64]], sums: &[f64], most: usize) {
         self.measure_recent(directions);
         let terms = self.generators.len() + self.radius.len() + 64;
         for ((radius, recent), sum) in self.radius.iter_mut().zip(&self.recent_radius).zip(sums) {
@@ -123,7 +128,7 @@ impl ReachableZonotope {
     ///
     /// Outer: it contains this set. The rounding of the products of lengths and vectors goes along
     /// the axes.
-    pub fn zonotope(&self, directions: &[&[f64]]) -> Zonotope {
+    pub(crate) fn zonotope(&self, directions: &[&[f64]]) -> Zonotope {
         let n = self.centre.len();
         let mut generators: Vec<f64> =
             (0..self.generators.len()).flat_map(|i| self.generators.get(i)).collect();

@@ -41,7 +41,7 @@ pub(crate) struct RoundedExponential {
 }
 
 impl RoundedExponential {
-    pub fn new(n: usize) -> Self {
+    pub(crate) fn new(n: usize) -> Self {
         let zero = || SquareMatrix::zero(n);
         let (phi, phi1, bound, x, spare) = (zero(), zero(), zero(), zero(), zero());
         Self { phi, phi1, bound, bound_tail: 0.0, relative: 0.0, tail: 0.0, x, spare }
@@ -49,7 +49,7 @@ impl RoundedExponential {
 
     /// Computes the exponential for A and a step h >= 0 that is known to one rounding; returns
     /// whether its error is finite.
-    pub fn update(&mut self, a: &SquareMatrix, h: Interval) -> bool {
+    pub(crate) fn update(&mut self, a: &SquareMatrix, h: Interval) -> bool {
         let n = a.n;
         self.x.entries.iter_mut().zip(&a.entries).for_each(|(x, a)| *x = a * h.mid());
         let row_sum = |i: usize| round_up_sum(a.row(i).iter().map(|x| x.abs()).sum(), n);
@@ -87,14 +87,14 @@ impl RoundedExponential {
     }
 
     /// Sets `out` to an upper bound of P v for v >= 0.
-    pub fn bound_times(&self, v: &[f64], out: &mut [f64]) {
+    pub(crate) fn bound_times(&self, v: &[f64], out: &mut [f64]) {
         self.bound.apply_absolute(v, out);
         let truncated = round_up_sum(v.iter().sum::<f64>() * self.bound_tail, v.len());
         out.iter_mut().for_each(|out| *out = (*out + truncated) * (1.0 + f64::EPSILON));
     }
 
     /// Sets `out` to an upper bound of |error| v for v >= 0, for Φ and for φ₁.
-    pub fn error_times(&self, v: &[f64], out: &mut [f64]) {
+    pub(crate) fn error_times(&self, v: &[f64], out: &mut [f64]) {
         self.bound_times(v, out);
         let truncated = round_up_sum(v.iter().sum::<f64>() * self.tail, v.len());
         out.iter_mut().for_each(|out| *out = round_up_sum(*out * self.relative + truncated, 4));

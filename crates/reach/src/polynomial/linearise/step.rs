@@ -64,7 +64,7 @@ struct Scratch {
 }
 
 impl<'a> LinearisedStep<'a> {
-    pub fn new(linearisation: Linearisation<'a>, most_generators: usize) -> Self {
+    pub(crate) fn new(linearisation: Linearisation<'a>, most_generators: usize) -> Self {
         let system = linearisation.system;
         let n = system.states();
         let directions: Vec<&[f64]> =
@@ -93,12 +93,12 @@ impl<'a> LinearisedStep<'a> {
         }
     }
 
-    pub fn directions(&self) -> &[&'a [f64]] {
+    pub(crate) fn directions(&self) -> &[&'a [f64]] {
         &self.directions
     }
 
     /// Iterates over the ranges of the states over the last step, N intervals.
-    pub fn tube(&self) -> impl Iterator<Item = Interval> {
+    pub(crate) fn tube(&self) -> impl Iterator<Item = Interval> {
         self.linearisation.point().iter().zip(&self.tube).map(|(point, d)| *d + *point)
     }
 
@@ -117,7 +117,7 @@ impl<'a> LinearisedStep<'a> {
     ///
     /// since e^{As} b is within s (h - s)/2 sup |A² e^{Aσ} b| of its chord, whose two weights s/h
     /// and 1 - s/h have integrals of h/2.
-    pub fn advance(
+    pub(crate) fn advance(
         &mut self,
         set: &mut ReachableZonotope,
         h: Interval,

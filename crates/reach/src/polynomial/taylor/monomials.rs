@@ -19,7 +19,7 @@ pub(crate) struct Monomials {
 }
 
 impl Monomials {
-    pub fn new(variables: usize, components: &[TaylorPolynomial<Interval>]) -> Self {
+    pub(crate) fn new(variables: usize, components: &[TaylorPolynomial<Interval>]) -> Self {
         let unit = |i: usize| (0..variables).map(|j| u8::from(i == j)).collect::<Vec<_>>();
         let mut indices: BTreeMap<Vec<u8>, usize> = (0..variables).map(|i| (unit(i), i)).collect();
         let mut all = Self { variables, products: vec![], constants: vec![], rows: vec![] };
@@ -51,7 +51,7 @@ impl Monomials {
     }
 
     /// Returns the number of monomials.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.variables + self.products.len()
     }
 }

@@ -22,7 +22,7 @@ impl Offset {
     /// Creates the point 0 in n dimensions.
     ///
     /// Beyond `most_generators` generators, the oldest become a box.
-    pub fn zero(n: usize, most_generators: usize) -> Self {
+    pub(crate) fn zero(n: usize, most_generators: usize) -> Self {
         Self {
             generators: Generators::new(n),
             axis_lengths: vec![0.0; n],
@@ -32,17 +32,17 @@ impl Offset {
     }
 
     /// Returns the number of generators.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.generators.len()
     }
 
     /// Iterates over the entries of all generators, one generator after the other.
-    pub fn generators(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn generators(&self) -> impl Iterator<Item = f64> {
         (0..self.generators.len()).flat_map(|i| self.generators.get(i))
     }
 
     /// Returns the length along axis i.
-    pub fn along_axis(&self, i: usize) -> f64 {
+    pub(crate) fn along_axis(&self, i: usize) -> f64 {
         self.axis_lengths[i]
     }
 
@@ -55,7 +55,7 @@ impl Offset {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn map(&mut self, j: &IntervalMatrix, more: &[f64]) {
+    pub(crate) fn map(&mut self, j: &IntervalMatrix, more: &[f64]) {
         let n = self.axis_lengths.len();
         let mut middle = SquareMatrix::zero(n);
         let mut next = more.to_vec();
@@ -98,7 +98,7 @@ impl Offset {
     /// # Guarantee
     ///
     /// Outer.
-    pub fn hull(&self) -> impl Iterator<Item = Interval> {
+    pub(crate) fn hull(&self) -> impl Iterator<Item = Interval> {
         self.radius.iter().map(|radius| Interval::centred(0.0, *radius))
     }
 }

@@ -18,7 +18,7 @@ pub(crate) struct TaylorPropagator {
 
 impl TaylorPropagator {
     /// Starts from the box with the given sides.
-    pub fn new(
+    pub(crate) fn new(
         system: &PolynomialSystem,
         space: &Arc<TaylorSpace>,
         sides: &[Interval],

@@ -23,7 +23,11 @@ impl TaylorSet {
     /// Creates a box, with polynomials up to the order of `space`.
     ///
     /// Beyond `most_generators` generators of the offsets, the oldest become a box.
-    pub fn new(space: &Arc<TaylorSpace>, sides: &[Interval], most_generators: usize) -> Self {
+    pub(crate) fn new(
+        space: &Arc<TaylorSpace>,
+        sides: &[Interval],
+        most_generators: usize,
+    ) -> Self {
         let polynomials = TaylorBox::new(space, sides).variables();
         let ranges = polynomials.iter().map(TaylorModel::range).collect();
         Self { polynomials, ranges, offset: Offset::zero(sides.len(), most_generators) }
@@ -34,13 +38,13 @@ impl TaylorSet {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn hull(&self) -> impl Iterator<Item = Interval> {
+    pub(crate) fn hull(&self) -> impl Iterator<Item = Interval> {
         self.ranges.iter().zip(self.offset.hull()).map(|(p, e)| *p + e)
     }
 
     /// Returns an enclosing zonotope: the linear terms, the offsets, and a box for the nonlinear
     /// terms.
-    pub fn zonotope(&self) -> Zonotope {
+    pub(crate) fn zonotope(&self) -> Zonotope {
         let n = self.ranges.len();
         let (mut centre, mut columns) = (vec![0.0; n], vec![0.0; 2 * n * n]);
         for (i, model) in self.polynomials.iter().enumerate() {

@@ -39,7 +39,7 @@ struct Bounds {
 }
 
 impl TaylorStep {
-    pub fn new(system: &PolynomialSystem, order: u32) -> Self {
+    pub(crate) fn new(system: &PolynomialSystem, order: u32) -> Self {
         let variables = system.states() + system.inputs();
         let components = &system.components;
         let derivatives: Vec<_> =
@@ -51,7 +51,7 @@ impl TaylorStep {
     }
 
     /// Returns the ranges of the states over the last step, N intervals.
-    pub fn tube(&self) -> &[Interval] {
+    pub(crate) fn tube(&self) -> &[Interval] {
         &self.tube
     }
 
@@ -64,7 +64,7 @@ impl TaylorStep {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn advance(
+    pub(crate) fn advance(
         &mut self,
         set: &mut TaylorSet,
         h: Interval,

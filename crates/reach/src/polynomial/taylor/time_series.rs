@@ -29,7 +29,7 @@ pub(crate) struct TimeSeries {
 impl TimeSeries {
     /// Computes the series from the polynomials of `start` (N), under the fixed `input` (m), over a
     /// step of length h, to the order K = `order` in time.
-    pub fn new(
+    pub(crate) fn new(
         monomials: &Monomials,
         start: &TaylorSet,
         input: &[f64],
@@ -132,12 +132,12 @@ impl TimeSeries {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn range(&self, state: usize) -> Interval {
+    pub(crate) fn range(&self, state: usize) -> Interval {
         over_step(&self.ranges[state]) + self.tails[state].hull(Interval::ZERO)
     }
 
     /// Returns P of a state at the end of the step.
-    pub fn end(&self, state: usize) -> TaylorModel {
+    pub(crate) fn end(&self, state: usize) -> TaylorModel {
         self.terms[state].iter().rev().fold(TaylorModel::from(0.0), |sum, term| &sum + term)
     }
 
@@ -146,7 +146,7 @@ impl TimeSeries {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn defect(&self, state: usize) -> Interval {
+    pub(crate) fn defect(&self, state: usize) -> Interval {
         over_step(&self.defects[state]) + self.defect_tails[state].hull(Interval::ZERO)
     }
 
@@ -155,7 +155,7 @@ impl TimeSeries {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub fn defect_integral(&self, state: usize) -> Interval {
+    pub(crate) fn defect_integral(&self, state: usize) -> Interval {
         let terms = self.defects[state].iter().chain([&self.defect_tails[state]]).enumerate();
         terms.map(|(i, defect)| *defect / Interval::point(i as f64 + 1.0)).sum()
     }

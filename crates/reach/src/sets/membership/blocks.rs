@@ -18,7 +18,7 @@ pub(super) struct Blocks {
 impl Blocks {
     /// Lays out generators with each state multiplied by its `scale`, a power of two, which is
     /// exact.
-    pub fn new(rows: &GeneratorRows, scale: &[f64]) -> Self {
+    pub(super) fn new(rows: &GeneratorRows, scale: &[f64]) -> Self {
         let dimension = rows.dimension();
         let mut entries = vec![[0.0; LANES]; rows.count().div_ceil(LANES) * dimension];
         for (i, scale) in scale.iter().enumerate() {
@@ -30,7 +30,7 @@ impl Blocks {
     }
 
     /// Returns the number of blocks.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.entries.len() / self.dimension.max(1)
     }
 
@@ -39,7 +39,7 @@ impl Blocks {
     }
 
     /// Writes z = Gᵀ y to `along`.
-    pub fn along(&self, y: &[f64], along: &mut [Lanes]) {
+    pub(super) fn along(&self, y: &[f64], along: &mut [Lanes]) {
         for (block, along) in self.iter().zip(along) {
             *along = combine(block, y);
         }
@@ -47,7 +47,7 @@ impl Blocks {
 
     /// Writes z = Gᵀ y to `along`, the factors clip(z) to `factors` and G clip(z) to `product`, and
     /// returns Σ |z|.
-    pub fn pass(
+    pub(super) fn pass(
         &self,
         y: &[f64],
         along: &mut [Lanes],
@@ -70,14 +70,14 @@ impl Blocks {
     }
 
     /// Writes G α to `product`.
-    pub fn product(&self, factors: &[Lanes], product: &mut [Lanes]) {
+    pub(super) fn product(&self, factors: &[Lanes], product: &mut [Lanes]) {
         product.fill([0.0; LANES]);
         self.iter().zip(factors).for_each(|(block, factors)| add_products(product, block, factors));
     }
 
     /// Adds Σ w_j g_j g_jᵀ over the generators with weights w = 1 where |z| < 1, and 0 beyond, to
     /// the lower triangle of `sums`, row by row.
-    pub fn add_gram_of_free(&self, along: &[Lanes], sums: &mut [Lanes]) {
+    pub(super) fn add_gram_of_free(&self, along: &[Lanes], sums: &mut [Lanes]) {
         for (block, z) in self.iter().zip(along) {
             let free = z.map(|z| if z.abs() < 1.0 { 1.0 } else { 0.0 });
             if free == [0.0; LANES] {
