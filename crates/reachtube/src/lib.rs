@@ -5,14 +5,12 @@ pub mod demo;
 mod error;
 pub mod export;
 mod motion;
-pub mod number;
 mod random;
 mod random_motion;
 #[cfg(feature = "report")]
 pub mod report;
 #[cfg(feature = "report")]
 pub mod reproduce;
-pub mod units;
 pub mod virtual_robot;
 
 pub use error::{Error, Result};
@@ -31,5 +29,5 @@ pub use reachtube_reach::{
     TimeGrid, UncertainInput,
 };
 pub use reachtube_recordings::{self as recordings, DataSet, MemoryRuns, Run, RunSource, Torque};
-pub use reachtube_robot::{self as robot, Robot};
-pub use reachtube_scalar as scalar;
+pub use reachtube_robot::{self as robot, Robot, units};
+pub use reachtube_scalar::{self as scalar, number};

@@ -5,6 +5,7 @@ mod elementary;
 mod exact_sum;
 mod interval;
 mod lanes;
+pub mod number;
 mod powers;
 pub mod rounding;
 mod scalar;

@@ -20,7 +20,7 @@ const PAPER_DECIMALS: i32 = 4;
 /// # Examples
 ///
 /// ```
-/// use reachtube::number::four_decimals;
+/// use reachtube_scalar::number::four_decimals;
 ///
 /// assert_eq!([-0.25, 2.1e-9].map(four_decimals), ["-0.2500", "2.1e-9"]);
 /// ```
@@ -53,7 +53,7 @@ pub fn six_digits(value: f64) -> String {
 /// # Examples
 ///
 /// ```
-/// use reachtube::number::interval;
+/// use reachtube_scalar::number::interval;
 ///
 /// assert_eq!(interval((-0.10001, 0.25)), "[-0.1001, 0.2500]");
 /// assert_eq!(interval((0.5, 0.5)), "0.5000");
@@ -96,7 +96,7 @@ fn about(low: f64, high: f64, decimals: usize) -> String {
 /// # Examples
 ///
 /// ```
-/// use reachtube::number::at_least;
+/// use reachtube_scalar::number::at_least;
 ///
 /// assert_eq!([0.25, 0.00201, 2.14e-9].map(at_least), ["0.2500", "0.0021", "2.2e-9"]);
 /// ```
@@ -172,7 +172,7 @@ pub fn column_decimals(column: &[[f64; 2]]) -> usize {
 /// # Examples
 ///
 /// ```
-/// use reachtube::number::outward;
+/// use reachtube_scalar::number::outward;
 ///
 /// assert_eq!(outward([-0.00311, 0.00311], 4), ["-0.0032", "0.0032"]);
 /// ```

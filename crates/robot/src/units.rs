@@ -1,6 +1,6 @@
 //! Units of tables and figures with one row per joint.
 
-use reachtube_robot::JointKind;
+use crate::joint_kind::JointKind;
 
 /// The unit of a column of values, one per joint: it stands in the head where all joints share it,
 /// and beside each value otherwise.
@@ -8,8 +8,8 @@ use reachtube_robot::JointKind;
 /// # Examples
 ///
 /// ```
-/// use reachtube::robot::JointKind::{self, Prismatic, Revolute};
-/// use reachtube::units::ColumnUnit;
+/// use reachtube_robot::JointKind::{self, Prismatic, Revolute};
+/// use reachtube_robot::units::ColumnUnit;
 ///
 /// let arm = ColumnUnit::new(&[Revolute, Revolute], JointKind::position_unit);
 /// assert_eq!((arm.head("q"), arm.cell(1, "0.2")), ("q [rad]".into(), "0.2".into()));
