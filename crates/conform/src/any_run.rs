@@ -1,9 +1,9 @@
 use reachtube_scalar::ExactSum;
 use serde::{Deserialize, Serialize};
 
+use crate::data::condition::Condition;
+use crate::data::problem::{Problem, Setup};
 use crate::error::Result;
-use crate::problem::condition::Condition;
-use crate::problem::problem::{Problem, Setup};
 use crate::progress::Silent;
 use crate::sets::UncertaintySets;
 use crate::smallest_sets::smallest_sets;

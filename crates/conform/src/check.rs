@@ -1,14 +1,14 @@
 use serde::Serialize;
 
+use crate::data::problem::Problem;
+use crate::data::settings::Notion;
+use crate::data::suite::{RunSummary, Suite};
 use crate::error::Result;
 use crate::growth::Growth;
 use crate::hulls::Hulls;
 use crate::model::file::Model;
 use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
-use crate::problem::problem::Problem;
-use crate::problem::suite::{RunSummary, Suite};
-use crate::settings::Notion;
 use crate::verdict::{Verdict, Witness};
 
 /// The answer of a check.

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use crate::any_run::AnyRun;
+use crate::data::problem::Problem;
+use crate::data::settings::Notion;
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
 use crate::found::{Deciding, Found, SearchSummary};
@@ -15,10 +17,8 @@ use crate::next_motion::trust::Trust;
 use crate::nominal::input_error::InputError;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::{NominalFit, Warning, warnings};
-use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
-use crate::settings::Notion;
 use crate::smallest_sets::smallest_sets;
 use crate::verdict::{Verdict, Witness};
 

@@ -4,9 +4,9 @@
 use reachtube_reach::Trajectory;
 use reachtube_scalar::rounding::{sub_down, sub_up};
 
-use crate::envelope::Envelope;
+use crate::data::case::Case;
+use crate::data::envelope::Envelope;
 use crate::grids::Grids;
-use crate::problem::case::Case;
 
 /// The envelope of the deviations of one suite on one grid.
 #[derive(Debug, Clone)]

@@ -6,13 +6,13 @@ use reachtube_reach::{
     Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInput, Visit, Zonotope,
 };
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::data::settings::Notion;
 use crate::error::Result;
 use crate::notion::outer::{Asked, CasePoints, CaseRuns};
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::rows::rows;
 use crate::sets::UncertaintySets;
-use crate::settings::Notion;
 
 /// Variables over whose vertices remainders are bounded, one number after the other while a set is
 /// lost: with 14 a step takes four times as long as with 8, with 18 a hundred times.

@@ -2,10 +2,10 @@ use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::side::Side;
 use crate::hulls::Hulls;
 use crate::next_motion::left_out::LeftOut;
 use crate::rows::{Edge, Row};
-use crate::side::Side;
 use crate::verdict::Witness;
 
 /// Sets that were found for a problem, before the verdict.

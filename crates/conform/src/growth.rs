@@ -1,8 +1,8 @@
 use serde::Serialize;
 
+use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::linear::smallest_sets::program;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 
 /// What would have to grow, alone and by how much, so that a model encloses recordings that leave

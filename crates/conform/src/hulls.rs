@@ -3,10 +3,10 @@ use reachtube_reach::{Flowpipe, FlowpipeOutcome, ReachSets};
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::flowpipes::OuterSet;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::rows::{Row, rows};
 use crate::sets::UncertaintySets;
 

@@ -9,15 +9,12 @@
 mod any_run;
 mod check;
 mod conformance;
+mod data;
 mod deviation;
-mod dynamics;
-mod envelope;
 mod error;
 mod explain;
-
-mod fitting;
+mod fit;
 mod flowpipes;
-mod fold;
 mod found;
 mod grids;
 mod growth;
@@ -29,15 +26,11 @@ mod nominal;
 mod notion;
 mod optimality;
 mod plausibility;
-mod problem;
 mod progress;
 mod reach;
 mod rows;
 mod search;
-mod sensor_noise;
 mod sets;
-mod settings;
-mod side;
 mod smallest_sets;
 mod verdict;
 mod weights;
@@ -45,17 +38,34 @@ mod weights;
 pub use any_run::AnyRun;
 pub use check::{Check, check};
 pub use conformance::{Conformance, conform};
+pub use data::case::Case;
+pub use data::condition::Condition;
+pub use data::correction::{InputCorrection, JointCorrection};
+pub use data::dynamics::Dynamics;
+pub use data::envelope::Envelope;
+pub use data::fold::fold::Fold;
+pub use data::fold::of_fold::OnDefect;
+pub use data::input::RunInput;
+pub use data::marks::Marks;
+pub use data::problem::{Keep, Problem, Setup};
+pub use data::recordings::Recordings;
+pub use data::sensor_noise::SensorNoise;
+pub use data::settings::{
+    Centre, Equations, InitialLimit, Method, Noise, NominalStart, Notion, Settings, States,
+    Tolerance, Weights,
+};
+pub use data::side::Side;
+pub use data::suite::{RunSummary, Suite};
+pub use data::totals::Totals;
 pub use deviation::{Deviation, Nominal};
-pub use dynamics::Dynamics;
-pub use envelope::Envelope;
 pub use error::{Error, Result};
 pub use explain::trace::TraceVerdict;
 pub use explain::{Explanation, explain};
-pub use fitting::{
-    FitRecord, FitSettings, Fitted, FittedParameter, Group, GroupCost, MOST_ERRORS, PullCost,
-    TorquePrediction, UnseenMotion, fit,
+pub use fit::fit::{Fitted, fit};
+pub use fit::group::{FitSettings, Group};
+pub use fit::record::{
+    FitRecord, FittedParameter, GroupCost, MOST_ERRORS, PullCost, TorquePrediction, UnseenMotion,
 };
-pub use fold::{FleetProblem, Fold, OnDefect, PartPoints, PartReader};
 pub use found::SearchSummary;
 pub use grids::{Grid, Grids};
 pub use growth::Growth;
@@ -72,24 +82,15 @@ pub use next_motion::left_out::LeftOut;
 pub use next_motion::rates::{Rate, Rates};
 pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
-pub use nominal::correction::{InputCorrection, JointCorrection};
 pub use notion::certificate::{CERTIFICATE_FORMAT, Certificate};
 pub use notion::elsewhere::PointServer;
+pub use notion::part_points::{FleetProblem, PartPoints, PartReader};
 pub use notion::phase_plane::PhasePlane;
 pub use notion::verdict::{PointVerdict, PointWitness};
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
-pub use problem::{
-    Case, Condition, Keep, Marks, Problem, Recordings, RunInput, RunSummary, Setup, Suite, Totals,
-};
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use rows::{Edge, Hull, HullBounds, Row, rows};
-pub use sensor_noise::SensorNoise;
 pub use sets::UncertaintySets;
-pub use settings::{
-    Centre, Equations, InitialLimit, Method, Noise, NominalStart, Notion, Settings, States,
-    Tolerance, Weights,
-};
-pub use side::Side;
 pub use verdict::{SuiteVerdict, Verdict, Violations, Witness};

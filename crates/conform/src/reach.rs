@@ -6,14 +6,14 @@ use reachtube_reach::{Flowpipe, ReachSets, Trajectory, Tube, TubeRadii};
 use reachtube_recordings::State;
 use reachtube_scalar::rounding::{add_down, add_up};
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
 use crate::deviation::Nominal;
 use crate::error::Result;
 use crate::flowpipes::OuterSet;
 use crate::grids::Grid;
 use crate::hulls::{HullKind, Hulls, Lost};
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
-use crate::search::sensitivity::nominal;
+use crate::nominal::simulate::nominal;
 use crate::sets::UncertaintySets;
 
 /// The reachable set over one suite, or over one run that has its own nominal solution.

@@ -4,10 +4,10 @@
 use reachtube_reach::{Flowpipe, ReachSets};
 use reachtube_scalar::rounding::{add_down, sub_up};
 
-use crate::envelope::Envelope;
+use crate::data::envelope::Envelope;
+use crate::data::settings::States;
+use crate::data::side::Side;
 use crate::sets::UncertaintySets;
-use crate::settings::States;
-use crate::side::Side;
 
 /// A radius that nobody can tell from none, rad or rad/s.
 pub(crate) const NEGLIGIBLE_RADIUS: f64 = 1e-9;

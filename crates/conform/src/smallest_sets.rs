@@ -1,14 +1,14 @@
 use std::path::Path;
 
+use crate::data::problem::Problem;
+use crate::data::settings::Notion;
 use crate::error::Result;
 use crate::explain::trace;
 use crate::found::Found;
 use crate::linear::smallest_sets as linear;
 use crate::notion::smallest_sets as notion;
-use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets as search;
-use crate::settings::Notion;
 
 /// Finds the smallest sets for all recordings of a problem, by one program or by a search.
 ///

@@ -3,15 +3,15 @@
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
+use crate::data::problem::Problem;
+use crate::data::settings::{Notion, Settings, States};
+use crate::data::side::Side;
+use crate::data::suite::Suite;
 use crate::error::Result;
 use crate::explain::trace::{TraceVerdict, trace_factors};
 use crate::hulls::{Enclosure, Hulls, Lost};
 use crate::notion::verdict::{Judged, PointVerdict, judge};
-use crate::problem::problem::Problem;
-use crate::problem::suite::Suite;
 use crate::rows::{Edge, Row};
-use crate::settings::{Notion, Settings, States};
-use crate::side::Side;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
 /// the recordings of one suite at one time in one state (of one run, where it has a set of its

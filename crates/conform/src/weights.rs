@@ -1,5 +1,5 @@
-use crate::envelope::Envelope;
-use crate::settings::Weights;
+use crate::data::envelope::Envelope;
+use crate::data::settings::Weights;
 
 /// Returns the weight of each state in the cost, s, 2n, for these deviations.
 pub(crate) fn state_weights(

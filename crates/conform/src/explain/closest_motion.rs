@@ -5,11 +5,11 @@ use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::Run;
 use reachtube_scalar::rounding::{add_down, add_up, sub_up};
 
+use crate::data::case::Case;
 use crate::explain::chain::Chain;
 use crate::explain::regulate::regulate;
 use crate::explain::steps::{Step, Steps};
-use crate::problem::case::Case;
-use crate::search::sensitivity::{STEP_NORM, simulate};
+use crate::nominal::simulate::{STEP_NORM, simulate};
 use crate::sets::UncertaintySets;
 
 /// Linearised residuals that differ by this many units are the same.

@@ -1,9 +1,9 @@
 use rayon::prelude::*;
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 
 /// One unit of position, rad, and of velocity, rad/s, in which the largest residual is minimised.

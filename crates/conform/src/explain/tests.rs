@@ -15,13 +15,13 @@ use reachtube_reach::{Disturbance, Hyperrectangle, TimeGrid};
 use reachtube_recordings::Run;
 use reachtube_robot::Robot;
 
-use crate::envelope::Envelope;
+use crate::data::case::Case;
+use crate::data::condition::Condition;
+use crate::data::envelope::Envelope;
 use crate::explain::chain::Chain;
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::explain::regulate::regulate;
 use crate::linear::solver::{FINE, Triplets, solve_cone};
-use crate::problem::case::Case;
-use crate::problem::condition::Condition;
 use crate::sets::UncertaintySets;
 
 const SAMPLES: usize = 120;

@@ -9,17 +9,17 @@ use reachtube_recordings::Run;
 use reachtube_scalar::rounding::{add_down, sub_down, sub_up};
 use serde::{Deserialize, Serialize};
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::data::settings::{Noise, Notion, Settings};
 use crate::error::{Error, Result};
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::found::Found;
 use crate::hulls::Hulls;
 use crate::notion::smallest_sets as points;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets as search;
 use crate::sets::UncertaintySets;
-use crate::settings::{Noise, Notion, Settings};
 
 /// What the radii of U are widened by first, N m, so that doubles lie in u + U.
 const LEAST_RADIUS: f64 = 1e-9;

@@ -1,7 +1,7 @@
 use std::sync::Arc;
 
+use crate::data::envelope::Envelope;
 use crate::deviation::Deviation;
-use crate::envelope::Envelope;
 use crate::grids::Grid;
 
 /// The rows of one sample grid of one linear system, ready to be evaluated at the speed of memory.

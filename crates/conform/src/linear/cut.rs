@@ -1,10 +1,10 @@
 //! Rows of the program in other directions than those of the states.
 
+use crate::data::settings::Noise;
 use crate::linear::layout::Layout;
 use crate::linear::program::{Program, dot};
 use crate::linear::solver::Triplets;
 use crate::sets::UncertaintySets;
-use crate::settings::Noise;
 
 /// A row of the program in any direction l of the states:
 /// lᵀ E_k c + a(l) r + |l| r_v >= lᵀ d for the point d that is furthest along l.

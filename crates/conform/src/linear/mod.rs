@@ -4,6 +4,7 @@ pub(crate) mod block;
 pub(crate) mod costs;
 pub(crate) mod cut;
 pub(crate) mod layout;
+mod limits;
 mod other_recordings;
 mod paper;
 pub(crate) mod program;

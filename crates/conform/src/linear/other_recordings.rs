@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::data::envelope::Envelope;
 use crate::deviation::Deviation;
-use crate::envelope::Envelope;
 use crate::linear::program::{Program, RowIndex, dot};
 use crate::rows::NEGLIGIBLE_RADIUS;
 use crate::sets::UncertaintySets;

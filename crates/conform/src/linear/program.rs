@@ -14,6 +14,8 @@ use std::collections::{BTreeMap, HashSet};
 
 use reachtube_reach::Hyperrectangle;
 
+use crate::data::settings::{Noise, Settings};
+use crate::data::side::Side;
 use crate::error::{Error, Result};
 use crate::linear::block::Block;
 use crate::linear::costs::{cost, shares};
@@ -22,8 +24,6 @@ use crate::linear::layout::{Layout, Limits};
 use crate::linear::solver::{FINE, Triplets, polished, solve_cone};
 use crate::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
-use crate::settings::{Noise, Settings};
-use crate::side::Side;
 
 /// A row counts as violated beyond this part of its own size.
 const TOLERANCE: f64 = 1e-10;

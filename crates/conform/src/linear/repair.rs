@@ -67,12 +67,12 @@ mod tests {
     use reachtube_reach::Hyperrectangle;
     use reachtube_recordings::Torque;
 
-    use crate::envelope::Envelope;
+    use crate::data::envelope::Envelope;
+    use crate::data::settings::Settings;
     use crate::linear::block::Block;
     use crate::linear::layout::Limits;
     use crate::linear::program::Program;
     use crate::sets::UncertaintySets;
-    use crate::settings::Settings;
 
     /// A mass that is pushed for one second from rest, and comes 1 m and 1 m/s further than the
     /// nominal one. X0 may hardly be larger than nothing, so U has to cover it.

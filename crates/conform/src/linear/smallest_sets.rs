@@ -1,11 +1,11 @@
-use crate::envelope::Envelope;
+use crate::data::envelope::Envelope;
+use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::found::{Deciding, Found};
 use crate::hulls::Hulls;
 use crate::linear::block::Block;
 use crate::linear::program::{Program, TIGHT};
 use crate::optimality::optimality_gap;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::weights::state_weights;
 

@@ -14,8 +14,13 @@ use sha2::{Digest, Sha256};
 
 use crate::any_run::AnyRun;
 use crate::conformance::Conformance;
+use crate::data::correction::InputCorrection;
+use crate::data::problem::{Problem, Setup};
+use crate::data::recordings::Recordings;
+use crate::data::sensor_noise::SensorNoise;
+use crate::data::settings::{Notion, Settings};
 use crate::error::{Error, Result};
-use crate::fitting::record::FitRecord;
+use crate::fit::record::FitRecord;
 use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained};
 use crate::next_motion::calibration::Calibration;
@@ -23,14 +28,9 @@ use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::left_out::LeftOut;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
-use crate::nominal::correction::InputCorrection;
 use crate::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::plausibility::Warning;
-use crate::problem::problem::{Problem, Setup};
-use crate::problem::recordings::Recordings;
-use crate::sensor_noise::SensorNoise;
 use crate::sets::UncertaintySets;
-use crate::settings::{Notion, Settings};
 use crate::verdict::{Verdict, Witness};
 
 /// What the field `format` of every model file says.

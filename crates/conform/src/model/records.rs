@@ -6,11 +6,11 @@ use reachtube_robot::JointKind;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::data::problem::Problem;
+use crate::data::recordings::Recordings;
+use crate::data::settings::{NominalStart, Tolerance};
+use crate::data::suite::{RunSummary, Suite};
 use crate::explain::explanation::Explanation;
-use crate::problem::problem::Problem;
-use crate::problem::recordings::Recordings;
-use crate::problem::suite::{RunSummary, Suite};
-use crate::settings::{NominalStart, Tolerance};
 
 /// The recordings beside the closest motions of the model that were found: a start in X0 and an
 /// input in U, held over each sample.

@@ -5,11 +5,11 @@ use reachtube_abstraction::{PolynomialModel, Records};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_robot::Robot;
 
-use crate::dynamics::Dynamics;
+use crate::data::dynamics::Dynamics;
+use crate::data::problem::Setup;
+use crate::data::settings::Settings;
 use crate::model::file::Model;
 use crate::model::records::SuiteRecord;
-use crate::problem::problem::Setup;
-use crate::settings::Settings;
 use crate::verdict::SuiteVerdict;
 
 /// Relative difference up to which numbers that were computed twice count as the same.

@@ -4,6 +4,9 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::data::settings::{NominalStart, Notion};
 use crate::error::{Error, Result};
 use crate::flowpipes::{Effort, Enclosed, enclosed};
 use crate::found::{Deciding, Found};
@@ -11,12 +14,9 @@ use crate::hulls::Hulls;
 use crate::linear::program::{Program, TIGHT};
 use crate::linear::smallest_sets::{program, prove};
 use crate::next_motion::motions::Motions;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::smallest_sets::costs;
 use crate::sets::UncertaintySets;
-use crate::settings::{NominalStart, Notion};
 use crate::smallest_sets::smallest_sets;
 
 /// Ratio of the factors that are tried for a model that is not linear.

@@ -2,13 +2,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::envelope::Envelope;
+use crate::data::problem::Problem;
+use crate::data::suite::Suite;
 use crate::deviation::Deviation;
-use crate::envelope::Envelope;
 use crate::error::Result;
 use crate::linear::program::Program;
 use crate::linear::smallest_sets::program;
-use crate::problem::problem::Problem;
-use crate::problem::suite::Suite;
 use crate::verdict::Witness;
 
 /// Number of runs that are named.

@@ -1,6 +1,9 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::data::settings::{NominalStart, Notion};
 use crate::deviation::Deviation;
 use crate::error::Result;
 use crate::flowpipes::{Effort, rows_outside};
@@ -8,11 +11,8 @@ use crate::linear::program::Program;
 use crate::linear::smallest_sets::program;
 use crate::next_motion::calibration::{OuterGauge, outer_gauge};
 use crate::next_motion::motions::Motions;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
-use crate::settings::{NominalStart, Notion};
 
 /// Number of motions at most for which the program is solved again.
 const MOST_PROGRAMS: usize = 60;

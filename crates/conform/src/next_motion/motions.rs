@@ -1,6 +1,6 @@
 use std::collections::BTreeSet;
 
-use crate::problem::recordings::Recordings;
+use crate::data::recordings::Recordings;
 
 /// The motion of each suite: its own name where the source names none.
 pub(crate) struct Motions<'a> {

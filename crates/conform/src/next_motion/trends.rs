@@ -1,7 +1,7 @@
 use serde::{Deserialize, Serialize};
 
-use crate::problem::problem::Problem;
-use crate::problem::suite::{RunSummary, Suite};
+use crate::data::problem::Problem;
+use crate::data::suite::{RunSummary, Suite};
 
 /// The least rank correlation that is called a trend.
 const LEAST_CORRELATION: f64 = 0.7;

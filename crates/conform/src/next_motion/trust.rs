@@ -5,10 +5,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::recordings::Recordings;
 use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::motions::Motions;
-use crate::problem::recordings::Recordings;
 use crate::rows::NEGLIGIBLE_RADIUS;
 use crate::verdict::{Verdict, Witness};
 

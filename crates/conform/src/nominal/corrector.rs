@@ -3,10 +3,10 @@
 use reachtube_recordings::Torque;
 use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
+use crate::data::condition::Condition;
+use crate::data::correction::InputCorrection;
+use crate::data::settings::Settings;
 use crate::error::Result;
-use crate::nominal::correction::InputCorrection;
-use crate::problem::condition::Condition;
-use crate::settings::Settings;
 
 /// Evaluates a correction for one robot.
 #[derive(Debug, Clone)]

@@ -2,11 +2,11 @@
 
 use nalgebra::DVector;
 
+use crate::data::case::Case;
+use crate::data::correction::InputCorrection;
+use crate::data::problem::{Problem, Setup};
 use crate::error::Result;
-use crate::nominal::correction::InputCorrection;
 use crate::nominal::corrector::Corrector;
-use crate::problem::case::Case;
-use crate::problem::problem::{Problem, Setup};
 
 /// Accelerations are differences of velocities over at least this time to both sides, s.
 const SPAN: f64 = 0.02;

@@ -1,8 +1,9 @@
 //! The nominal motion of a case, and what is taken off its input along it.
 
-pub(crate) mod correction;
+mod cases;
 pub(crate) mod corrector;
 pub(crate) mod input_error;
 pub(crate) mod motion;
 mod robot_equations;
+pub(crate) mod simulate;
 pub(crate) mod steps;

@@ -2,15 +2,15 @@ use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, Outcome, Run};
 use reachtube_robot::Robot;
 
-use crate::dynamics::Dynamics;
+use crate::data::case::Case;
+use crate::data::correction::InputCorrection;
+use crate::data::dynamics::Dynamics;
+use crate::data::settings::{Equations, Settings};
 use crate::error::{Error, Result};
-use crate::nominal::correction::InputCorrection;
 use crate::nominal::corrector::Corrector;
 use crate::nominal::robot_equations::RobotEquations;
+use crate::nominal::simulate::{BOUND, runs_away, substeps};
 use crate::nominal::steps::Steps;
-use crate::problem::case::Case;
-use crate::search::sensitivity::{BOUND, runs_away, substeps};
-use crate::settings::{Equations, Settings};
 
 /// A nominal motion with the inputs that cause it, unrounded.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::notion::ask::{
     Answer, At, Near, Owner, PartVerdict, PointAlong, PointOutside, Points, Question,
@@ -10,7 +11,6 @@ use crate::notion::ask::{
 };
 use crate::notion::points::SamplePoints;
 use crate::notion::sweep::{OUTSIDE, Outside, Sweep};
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 
 /// For each sample, the points in a list; lists that were asked for stay.

@@ -7,13 +7,13 @@ use rayon::prelude::*;
 use reachtube_reach::Disturbance;
 use serde::Serialize;
 
+use crate::data::problem::Problem;
+use crate::data::settings::Notion;
 use crate::error::{Error, Result};
 use crate::model::file::Model;
 use crate::notion::proof::{Factors, ProjectedPoints};
 use crate::notion::sweep::{PARTS, Sweep};
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
-use crate::settings::Notion;
 
 /// What the field `format` of every certificate says.
 pub const CERTIFICATE_FORMAT: &str = "reachtube-certificate";

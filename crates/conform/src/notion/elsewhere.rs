@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::problem::Problem;
+use crate::data::tree::Tree;
 use crate::error::{Error, Result};
 use crate::notion::ask::{Answer, Points, Question};
-use crate::problem::problem::Problem;
-use crate::problem::tree::Tree;
 
 /// The version of questions and answers in bytes.
 const VERSION: u32 = 1;

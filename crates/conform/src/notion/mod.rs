@@ -6,6 +6,7 @@ mod ask;
 pub(crate) mod certificate;
 pub(crate) mod elsewhere;
 pub(crate) mod outer;
+pub(crate) mod part_points;
 pub(crate) mod phase_plane;
 pub(crate) mod points;
 mod proof;

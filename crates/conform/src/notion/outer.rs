@@ -10,12 +10,12 @@ use reachtube_reach::{
 };
 use reachtube_recordings::Run;
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::notion::points::projections;
 use crate::notion::proof::{SLACK, proves};
 use crate::notion::sweep::OUTSIDE;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 
 /// How accurately the growth of a set is known that a point outside needs.

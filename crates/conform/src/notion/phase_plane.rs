@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 use reachtube_recordings::State;
 
+use crate::data::problem::Problem;
+use crate::data::settings::{Notion, States};
 use crate::error::Result;
 use crate::notion::points::SamplePoints;
 use crate::notion::sweep::Sweep;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
-use crate::settings::{Notion, States};
 
 /// The reachable set of one joint's position and velocity at one sample, with the recordings
 /// there. All values are deviations from the nominal solution.

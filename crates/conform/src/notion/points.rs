@@ -5,12 +5,12 @@ use reachtube_recordings::Run;
 use reachtube_scalar::Interval;
 use serde::{Deserialize, Serialize};
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::data::settings::{Notion, States};
 use crate::deviation::Nominal;
 use crate::error::Result;
 use crate::notion::ask::At;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
-use crate::settings::{Notion, States};
 
 /// The points of runs at one sample of one grid.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -4,6 +4,8 @@
 //! row of this direction joins the program, which keeps its unknowns, and the program is solved
 //! again (docs/method.md, section 4).
 
+use crate::data::problem::Problem;
+use crate::data::settings::Noise;
 use crate::error::{Error, Result};
 use crate::found::{Deciding, Found};
 use crate::hulls::Hulls;
@@ -13,10 +15,8 @@ use crate::notion::answers::points_of;
 use crate::notion::ask::{Answer, At, Near, PointAlong, Points, Question, other_answer};
 use crate::notion::sweep::Sweep;
 use crate::optimality::optimality_gap;
-use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
-use crate::settings::Noise;
 
 /// The sets are taken when no point needs them to grow by more than this part.
 const TOLERANCE: f64 = 2e-5;

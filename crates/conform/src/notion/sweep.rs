@@ -7,14 +7,14 @@ use rayon::prelude::*;
 use reachtube_reach::{GeneratorRows, Membership, MembershipWorkspace, Place, SampleGenerators};
 use reachtube_scalar::Interval;
 
+use crate::data::problem::Problem;
+use crate::data::settings::Notion;
 use crate::error::Result;
 use crate::grids::Grid;
 use crate::linear::cut::Cut;
 use crate::notion::points::{SamplePoints, points, projections};
 use crate::notion::proof::Unproved;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
-use crate::settings::Notion;
 
 /// How accurately the growth of a set is known that a point outside needs, in parts of what is
 /// tolerated.

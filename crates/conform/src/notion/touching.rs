@@ -2,13 +2,13 @@
 
 use std::collections::HashSet;
 
+use crate::data::problem::Problem;
 use crate::found::TOUCHING;
 use crate::linear::program::Program;
 use crate::notion::ask::PointOutside;
 use crate::notion::smallest_sets::Added;
 use crate::notion::sweep::Sweep;
 use crate::notion::verdict::PointWitness;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
 use crate::verdict::Witness;
 

@@ -5,6 +5,10 @@ use std::fmt::Write;
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::data::settings::Notion;
+use crate::data::side::Side;
 use crate::error::Result;
 use crate::flowpipes::OuterSet;
 use crate::hulls::{HullKind, Hulls};
@@ -15,11 +19,7 @@ use crate::notion::ask::{
 use crate::notion::outer::{FurthestPoint, UnprovedPoint};
 use crate::notion::points::SamplePoints;
 use crate::notion::sweep::Sweep;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
-use crate::settings::Notion;
-use crate::side::Side;
 use crate::verdict::Witness;
 
 /// A state is named in a combination when its part is at least this of the largest.

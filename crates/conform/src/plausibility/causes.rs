@@ -3,11 +3,11 @@ use std::f64::consts::PI;
 use reachtube_abstraction::ModelKind;
 use reachtube_recordings::Torque;
 
+use crate::data::problem::Problem;
+use crate::data::settings::{Equations, Method};
 use crate::error::Result;
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::plausibility::evidence::{Evidence, Hypothesis};
-use crate::problem::problem::Problem;
-use crate::settings::{Equations, Method};
 
 /// A hypothesis is named when it lessens the unexplained part of the input by this much ...
 const LEAST_GAIN: f64 = 0.1;

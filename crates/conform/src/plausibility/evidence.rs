@@ -1,8 +1,8 @@
 use reachtube_recordings::{Run, Torque};
 use reachtube_robot::Robot;
 
+use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::problem::problem::Problem;
 
 /// Number of runs that are looked at, at most.
 const RUNS: usize = 8;

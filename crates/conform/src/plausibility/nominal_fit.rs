@@ -1,8 +1,8 @@
+use crate::data::case::Case;
+use crate::data::problem::Problem;
 use crate::deviation::Nominal;
 use crate::error::Result;
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
-use crate::search::sensitivity::nominal;
+use crate::nominal::simulate::nominal;
 
 /// How well the nominal solutions alone reproduce the recordings, and how far these move.
 #[derive(Debug, Clone)]

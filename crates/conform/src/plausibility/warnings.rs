@@ -1,13 +1,13 @@
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
+use crate::data::problem::Problem;
+use crate::data::settings::NominalStart;
 use crate::error::Result;
 use crate::next_motion::calibration::Calibration;
 use crate::plausibility::causes::likely_cause;
 use crate::plausibility::nominal_fit::NominalFit;
-use crate::problem::problem::Problem;
 use crate::sets::UncertaintySets;
-use crate::settings::NominalStart;
 
 /// X0 that reaches further than the recorded starts by more than this factor is remarked ...
 const FACTOR_OF_STARTS: f64 = 10.0;

@@ -4,10 +4,10 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::data::case::Case;
 use crate::error::Result;
 use crate::flowpipes::{Effort, Enclosed, enclosed};
 use crate::found::SearchSummary;
-use crate::problem::case::Case;
 use crate::progress::Progress;
 use crate::rows::{Edge, rows};
 use crate::search::journal::Journal;

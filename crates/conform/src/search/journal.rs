@@ -7,8 +7,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::data::problem::Problem;
 use crate::error::{Error, Result};
-use crate::problem::problem::Problem;
 
 /// The name of the file's format.
 const FORMAT: &str = "reachtube-progress";

@@ -1,19 +1,16 @@
 //! A model linearised along its nominal motion: how far X0 and U move each state, to first order.
 
 use nalgebra::{DMatrix, DVector};
-use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
-use reachtube_ode::{Ensemble, Outcome, Run};
+use reachtube_abstraction::{Linearisation, PolynomialModel};
 use reachtube_reach::Disturbance;
 use reachtube_scalar::Lanes;
 
-use crate::error::{Error, Result};
+use crate::data::case::Case;
+use crate::error::Result;
+use crate::nominal::simulate::{simulate, substeps};
 use crate::notion::outer::Asked;
-use crate::problem::case::Case;
 use crate::search::directions::DirectionRow;
 use crate::sets::UncertaintySets;
-
-/// Bound of h |A| for a Runge-Kutta step of length h: its error is then below 1e-7 of the change.
-pub(crate) const STEP_NORM: f64 = 0.1;
 
 /// Several motions that are simulated at once.
 pub(super) type Many = Lanes<8>;
@@ -49,9 +46,6 @@ pub(super) struct Node {
     /// that input over that sample: samples x n x 2n.
     pub input: Vec<f64>,
 }
-
-/// Beyond this |x| a motion counts as having run away, rad or rad/s.
-pub(crate) const BOUND: f64 = 1e4;
 
 impl Sensitivity {
     /// Linearises the model along `case` about the centres of `sets`, also in the directions
@@ -110,60 +104,6 @@ impl Sensitivity {
         let width = 3 * joints;
         let start = (k * 2 * joints + i) * 2 * width;
         self.coefficients[start..start + 2 * width].split_at(width)
-    }
-}
-
-/// Simulates a model along a case from its start under its inputs, without any uncertainty: samples
-/// x 2n, unrounded.
-///
-/// # Errors
-///
-/// [`Error::RunsAway`].
-pub(crate) fn nominal(model: &PolynomialModel, case: &Case) -> Result<Vec<f64>> {
-    let start = case.start.clone();
-    let substeps = substeps(&mut Linearisation::new(model), case, &start);
-    simulate(model, case.grid.times(), substeps, &start, &case.inputs)
-        .map_err(|time| runs_away(case, time))
-}
-
-/// Returns the number of Runge-Kutta steps from one sample to the next.
-pub(crate) fn substeps(linearisation: &mut Linearisation, case: &Case, start: &[f64]) -> usize {
-    let rest = vec![0.0; case.joints()];
-    let (a, _) = linearisation.at(start, case.inputs.get(..case.joints()).unwrap_or(&rest));
-    let norm = a.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
-    (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
-}
-
-/// Returns the error that the model runs away along a case after `time` (s).
-pub(crate) fn runs_away(case: &Case, time: f64) -> Error {
-    Error::RunsAway { case: case.name.clone(), time }
-}
-
-/// Simulates (q, q̇) at all samples under `inputs` from `start`, samples x 2n.
-///
-/// # Errors
-///
-/// The time, s, up to which the model could be followed, where it runs away.
-pub(crate) fn simulate(
-    model: &PolynomialModel,
-    times: &[f64],
-    substeps: usize,
-    start: &[f64],
-    inputs: &[f64],
-) -> Result<Vec<f64>, f64> {
-    let n = model.joints();
-    let start = model.state(&start[..n], &start[n..]);
-    let inputs = &inputs[..n * times.len().saturating_sub(1)];
-    let mut states = Vec::with_capacity(times.len() * 2 * n);
-    let run = [Run { start: &start, inputs }];
-    let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
-    let outcomes =
-        ensemble.integrate(&mut ModelField::new(model), times, substeps, &run, |_, _, x| {
-            states.extend(&x[..2 * n]);
-        });
-    match outcomes[0] {
-        Outcome::Reached => Ok(states),
-        Outcome::Diverged { time, .. } => Err(time),
     }
 }
 

@@ -1,24 +1,24 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use crate::envelope::Envelope;
+use crate::data::case::Case;
+use crate::data::envelope::Envelope;
+use crate::data::problem::Problem;
+use crate::data::settings::{Method, Notion, Weights};
 use crate::error::{Error, Result};
 use crate::flowpipes::OuterSet;
 use crate::found::{Deciding, Found, TOUCHING};
 use crate::hulls::{HullKind, Hulls};
 use crate::linear::costs::shares;
 use crate::next_motion::left_out::leave_each_out_of_search;
+use crate::nominal::simulate::nominal;
 use crate::notion::verdict::{PointWitness, SeparatedPoint};
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
 use crate::progress::Progress;
 use crate::search::bisection;
 use crate::search::directions::Direction;
 use crate::search::journal::Journal;
-use crate::search::sensitivity::nominal;
 use crate::search::successive::{SearchResult, SuccessiveLinearisation};
 use crate::sets::UncertaintySets;
-use crate::settings::{Method, Notion, Weights};
 use crate::verdict::Witness;
 use crate::weights::state_weights;
 

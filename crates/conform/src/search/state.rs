@@ -6,9 +6,9 @@ use std::ops::Range;
 use reachtube_reach::Hyperrectangle;
 use serde::{Deserialize, Serialize};
 
+use crate::data::side::Side;
 use crate::search::directions::Direction;
 use crate::sets::UncertaintySets;
-use crate::side::Side;
 
 /// Part of the largest radius or centre below which a change counts as settled.
 const SETTLED: f64 = 1e-5;

@@ -9,23 +9,24 @@
 
 use rayon::prelude::*;
 
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::data::side::Side;
 use crate::error::Result;
 use crate::flowpipes::OuterSet;
 use crate::found::SearchSummary;
 use crate::linear::block::Block;
 use crate::linear::cut::Cut;
 use crate::linear::program::{Program, RowIndex, Solution};
-use crate::problem::case::Case;
-use crate::problem::problem::Problem;
+use crate::nominal::simulate::runs_away;
 use crate::progress::Progress;
 use crate::rows::rows;
 use crate::search::directions::{self, Direction};
 use crate::search::journal::Journal;
-use crate::search::sensitivity::{Sensitivity, runs_away};
+use crate::search::sensitivity::Sensitivity;
 use crate::search::state::{Margin, SearchState};
 use crate::search::worst_case::Correction;
 use crate::sets::UncertaintySets;
-use crate::side::Side;
 
 /// Rounds of linearisation after which the sets are taken as they are; with margins at most twice
 /// as many.

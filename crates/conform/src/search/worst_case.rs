@@ -5,10 +5,11 @@ use rayon::prelude::*;
 use reachtube_abstraction::{ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, Run};
 
-use crate::problem::case::Case;
-use crate::search::sensitivity::{BOUND, Many, Node, Sensitivity};
+use crate::data::case::Case;
+use crate::data::side::Side;
+use crate::nominal::simulate::BOUND;
+use crate::search::sensitivity::{Many, Node, Sensitivity};
 use crate::sets::UncertaintySets;
-use crate::side::Side;
 
 /// Rows whose recordings stay below this part of the linearised radius get no correction: a small
 /// one would not make them decide.

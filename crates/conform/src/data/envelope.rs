@@ -1,0 +1,229 @@
+use serde::{Deserialize, Serialize};
+
+use crate::data::side::Side;
+
+/// An envelope: the highest and lowest value over many runs, for each sample and state, and the run
+/// that has it. It takes runs one by one, two envelopes merge into the envelope of the whole, and
+/// its size is that of one run.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_conform::Envelope;
+///
+/// let mut envelope = Envelope::new(1);
+/// envelope.include(7, &[1.0, 5.0]);
+/// envelope.include(8, &[2.0, 3.0]);
+/// assert_eq!((envelope.upper(0, 0), envelope.upper(1, 0)), (2.0, 5.0));
+/// assert_eq!((envelope.upper_run(0, 0), envelope.upper_run(1, 0)), (8, 7));
+/// ```
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Envelope {
+    dimension: usize,
+    upper: Vec<f64>,
+    lower: Vec<f64>,
+    upper_run: Vec<u32>,
+    lower_run: Vec<u32>,
+}
+
+impl Envelope {
+    /// Returns the envelope of no run, for states of `dimension` entries.
+    pub fn new(dimension: usize) -> Self {
+        Self { dimension, ..Self::default() }
+    }
+
+    /// Returns the number of samples K of the longest run so far.
+    pub fn len(&self) -> usize {
+        self.upper.len() / self.dimension.max(1)
+    }
+
+    /// Returns whether there is no sample.
+    pub fn is_empty(&self) -> bool {
+        self.upper.is_empty()
+    }
+
+    /// Returns the number of states.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Includes run number `run` with the values `states`, row-major, samples x dimension. Ties
+    /// keep the run of the smaller number, whatever the order of the runs.
+    pub fn include(&mut self, run: u32, states: &[f64]) {
+        self.include_bounds(run, states, states);
+    }
+
+    /// Includes a run whose values are known to lie between `lower` and `upper`, so that the
+    /// envelope bounds the exact one from outside.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer: exact comparisons, no rounding.
+    pub fn include_bounds(&mut self, run: u32, lower: &[f64], upper: &[f64]) {
+        self.extend(upper.len());
+        extend_bounds(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new >= old);
+        extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new <= old);
+    }
+
+    /// Merges another envelope of the same states. Ties keep the run of the smaller number,
+    /// whatever the order of merging.
+    pub fn merge(&mut self, other: &Self) {
+        self.extend(other.upper.len());
+        for i in 0..other.upper.len() {
+            let (run, old) = (other.upper_run[i], self.upper_run[i]);
+            if other.upper[i] > self.upper[i] || (other.upper[i] == self.upper[i] && run < old) {
+                (self.upper[i], self.upper_run[i]) = (other.upper[i], run);
+            }
+            let (run, old) = (other.lower_run[i], self.lower_run[i]);
+            if other.lower[i] < self.lower[i] || (other.lower[i] == self.lower[i] && run < old) {
+                (self.lower[i], self.lower_run[i]) = (other.lower[i], run);
+            }
+        }
+    }
+
+    /// Returns the highest value at sample k in state i.
+    pub fn upper(&self, k: usize, i: usize) -> f64 {
+        self.upper[k * self.dimension + i]
+    }
+
+    /// Returns the lowest value at sample k in state i.
+    pub fn lower(&self, k: usize, i: usize) -> f64 {
+        self.lower[k * self.dimension + i]
+    }
+
+    /// Returns the run that has the highest value.
+    pub fn upper_run(&self, k: usize, i: usize) -> u32 {
+        self.upper_run[k * self.dimension + i]
+    }
+
+    /// Returns the run that has the lowest value.
+    pub fn lower_run(&self, k: usize, i: usize) -> u32 {
+        self.lower_run[k * self.dimension + i]
+    }
+
+    /// Returns the runs that have a bound, some of them more than once.
+    pub(crate) fn owners(&self) -> impl Iterator<Item = u32> {
+        self.upper_run.iter().chain(&self.lower_run).copied()
+    }
+
+    /// Returns whether its parts fit together and are those of states of `dimension` entries.
+    pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
+        let entries = self.upper.len();
+        let lengths = [self.lower.len(), self.upper_run.len(), self.lower_run.len()];
+        self.dimension == dimension && entries.is_multiple_of(dimension) && lengths == [entries; 3]
+    }
+
+    /// Returns the envelope with each bound replaced by a function of (k, i, bound).
+    pub(crate) fn map(
+        &self,
+        upper: impl Fn(usize, usize, f64) -> f64,
+        lower: impl Fn(usize, usize, f64) -> f64,
+    ) -> Self {
+        let dimension = self.dimension;
+        let shift = |values: &[f64], f: &dyn Fn(usize, usize, f64) -> f64| {
+            values.iter().enumerate().map(|(at, &v)| f(at / dimension, at % dimension, v)).collect()
+        };
+        Self {
+            upper: shift(&self.upper, &upper),
+            lower: shift(&self.lower, &lower),
+            ..self.clone()
+        }
+    }
+
+    /// Moves one bound outward.
+    pub(crate) fn widen(&mut self, k: usize, i: usize, side: Side, by: f64) {
+        let at = k * self.dimension + i;
+        match side {
+            Side::Upper => self.upper[at] += by,
+            Side::Lower => self.lower[at] -= by,
+        }
+    }
+
+    fn extend(&mut self, entries: usize) {
+        if entries > self.upper.len() {
+            self.upper.resize(entries, f64::NEG_INFINITY);
+            self.lower.resize(entries, f64::INFINITY);
+            self.upper_run.resize(entries, u32::MAX);
+            self.lower_run.resize(entries, u32::MAX);
+        }
+    }
+}
+
+/// Moves bounds outward where `values` lie beyond them, and hands bounds that `values` reach to the
+/// run of the smaller number: 0 and -0 are equal, and the bits of a bound are those of its run. The
+/// pass has no branch, so that the compiler can use vector registers.
+fn extend_bounds(
+    bounds: &mut [f64],
+    runs: &mut [u32],
+    values: &[f64],
+    run: u32,
+    reaches: impl Fn(f64, f64) -> bool,
+) {
+    for ((bound, owner), &value) in bounds.iter_mut().zip(runs.iter_mut()).zip(values) {
+        let takes = reaches(value, *bound) & ((value != *bound) | (run < *owner));
+        *bound = if takes { value } else { *bound };
+        *owner = if takes { run } else { *owner };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn envelope_of(runs: &[(u32, Vec<f64>)]) -> Envelope {
+        let mut envelope = Envelope::new(2);
+        runs.iter().for_each(|(run, values)| envelope.include(*run, values));
+        envelope
+    }
+
+    proptest! {
+        #[test]
+        fn merging_parts_in_any_order_is_the_whole(
+            values in prop::collection::vec(prop::collection::vec(-3i8..3, 2..20), 1..8),
+            cut in 0usize..8,
+            order in Just((0..8).collect::<Vec<usize>>()).prop_shuffle(),
+        ) {
+            let runs: Vec<(u32, Vec<f64>)> = values
+                .iter()
+                .enumerate()
+                .map(|(run, v)| {
+                    let even = v.len() / 2 * 2;
+                    (run as u32, v.iter().map(|&x| f64::from(x)).take(even).collect())
+                })
+                .collect();
+            let (first, second) = runs.split_at(cut.min(runs.len()));
+            let (mut a, mut b) = (envelope_of(first), envelope_of(second));
+            let (first, second) = (a.clone(), b.clone());
+            a.merge(&second);
+            b.merge(&first);
+            prop_assert_eq!(&a, &envelope_of(&runs));
+            prop_assert_eq!(&a, &b);
+            let shuffled = order.iter().filter_map(|&run| runs.get(run)).cloned();
+            prop_assert_eq!(a, envelope_of(&shuffled.collect::<Vec<_>>()));
+        }
+    }
+
+    /// 0 and -0 are equal, but a file of the envelope shows which it was.
+    #[test]
+    fn the_bits_of_a_tie_are_those_of_the_run_of_the_smaller_number() {
+        let runs = [(3, vec![-0.0, 0.0]), (1, vec![0.0, -0.0])];
+        let mut merged = envelope_of(&runs[..1]);
+        merged.merge(&envelope_of(&runs[1..]));
+        for envelope in
+            [envelope_of(&runs), envelope_of(&[runs[1].clone(), runs[0].clone()]), merged]
+        {
+            assert_eq!((envelope.upper_run(0, 0), envelope.lower_run(0, 1)), (1, 1));
+            assert!(envelope.upper(0, 0).is_sign_positive());
+            assert!(envelope.lower(0, 1).is_sign_negative());
+        }
+    }
+
+    #[test]
+    fn runs_of_different_lengths_share_the_samples_they_have() {
+        let envelope = envelope_of(&[(0, vec![1.0, 1.0]), (1, vec![0.0, 2.0, -1.0, 3.0])]);
+        assert_eq!(envelope.len(), 2);
+        assert_eq!((envelope.upper(0, 0), envelope.lower(0, 0)), (1.0, 0.0));
+        assert_eq!((envelope.upper_run(1, 1), envelope.lower_run(1, 1)), (1, 1));
+    }
+}

@@ -1,0 +1,153 @@
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use reachtube_recordings::{Run, RunEntry, State};
+
+use crate::data::envelope::Envelope;
+use crate::data::fold::context::Context;
+use crate::data::fold::whole_runs::{WholeRun, WholeRuns};
+use crate::data::input::{RunInput, SharedInput};
+use crate::data::suite::{RunSummary, SAMPLE, sampled};
+use crate::data::totals::Totals;
+use crate::error::{Error, Result};
+
+/// Summaries of runs beyond the sample that may stay for a while.
+const SUPERFLUOUS: usize = SAMPLE / 4;
+
+/// Names that may be superfluous before they are looked through.
+const MOST_SUPERFLUOUS: usize = 256;
+
+/// What the runs of one suite are folded into.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SuiteFold {
+    /// The motion that the first run names which names one, with its place.
+    pub motion: Option<(u32, String)>,
+    /// What is known of all runs together.
+    pub totals: Totals,
+    /// The measured states.
+    pub envelope: Envelope,
+    /// The input that all runs share, if they do.
+    pub shared: Option<SharedInput>,
+    /// The runs that stay whole.
+    pub whole: WholeRuns,
+    /// What was read of each run, where that is kept: of all, while the data set lists its runs or
+    /// all stay whole, and otherwise of the sample.
+    pub runs: BTreeMap<u32, RunSummary>,
+    /// File, and place in the order of the suite, of every run that anything may name.
+    pub names: BTreeMap<u32, (String, u64)>,
+    /// The first run that starts outside the operating box: state and value.
+    pub outside: Option<(u32, usize, f64)>,
+    /// Number of names that were looked through last.
+    pub settled: usize,
+}
+
+impl SuiteFold {
+    /// Folds one run, whose measured states `envelope` has already, or the envelope of the suite
+    /// that it will be merged with.
+    pub(super) fn of(
+        place: u32,
+        entry: &RunEntry,
+        run: Run,
+        input: RunInput,
+        context: &Context,
+        envelope: Envelope,
+    ) -> Self {
+        let summary = RunSummary::new(place as usize, entry, &run, Arc::clone(&input.grid));
+        let outside = context.start_box.iter().flatten().zip(run.state(0)).enumerate();
+        let mut outside = outside.filter(|(_, ([low, high], x))| !(low..=high).contains(x));
+        Self {
+            motion: entry.motion.clone().map(|motion| (place, motion)),
+            totals: Totals::of(&summary),
+            envelope,
+            shared: Some(SharedInput { run: place, input: input.clone() }),
+            names: [(place, (entry.file.clone(), entry.order))].into(),
+            outside: outside.next().map(|(state, (_, value))| (place, state, *value)),
+            runs: [(place, summary)].into(),
+            whole: WholeRuns::one(place, WholeRun { run, input }),
+            settled: 0,
+        }
+    }
+
+    /// Merges the fold of other runs.
+    pub(super) fn merge(&mut self, other: Self, context: &Context, most_bytes: usize) {
+        let joints = context.robot.joint_count();
+        let motions = self.motion.take().into_iter().chain(other.motion);
+        self.motion = motions.min_by_key(|(place, _)| *place);
+        self.totals.merge(other.totals);
+        self.envelope.merge(&other.envelope);
+        let shared = self.shared.take().zip(other.shared);
+        self.shared = shared.and_then(|(own, other)| own.merge(other, joints));
+        replace(&mut self.whole, |whole| whole.merge(other.whole, context, most_bytes));
+        self.runs.extend(other.runs);
+        self.names.extend(other.names);
+        let outside = self.outside.into_iter().chain(other.outside);
+        self.outside = outside.min_by_key(|(place, ..)| *place);
+    }
+
+    /// Lets go of what is superfluous; `are_listed` says whether the data set lists its runs. With
+    /// `now`, nothing superfluous stays.
+    pub(super) fn settle(&mut self, are_listed: bool, now: bool) {
+        let keeps_all = are_listed || self.whole.are_all();
+        let marked = self.runs.values().filter(|run| !run.marks.is_empty()).count();
+        if now || marked.max(if keeps_all { 0 } else { self.runs.len() }) > SAMPLE + SUPERFLUOUS {
+            let sample: BTreeSet<usize> = sampled(self.runs.values()).map(|r| r.index).collect();
+            let others = self.runs.values_mut().filter(|run| !sample.contains(&run.index));
+            others.for_each(|run| run.marks.clear());
+            self.runs.retain(|_, run| keeps_all || sample.contains(&run.index));
+        }
+        if now || self.names.len() > 2 * self.settled + MOST_SUPERFLUOUS {
+            let mut needed: Vec<u32> = self.envelope.owners().collect();
+            needed.extend(self.runs.keys().chain(self.outside.iter().map(|(place, ..)| place)));
+            needed.extend(self.whole.iter().map(|(place, _)| place));
+            needed.sort_unstable();
+            self.names.retain(|place, _| needed.binary_search(place).is_ok());
+            self.settled = self.names.len();
+        }
+    }
+
+    /// Returns whether a problem can be made of the suite, which is called `name`.
+    ///
+    /// # Errors
+    ///
+    /// Runs with nominal solutions of their own that could not be kept.
+    pub(super) fn check(&self, name: &str, context: &Context, most_bytes: usize) -> Result<()> {
+        let can_share = self.shared.is_some() && !context.is_own;
+        if can_share || self.whole.are_all() {
+            return Ok(());
+        }
+        let (count, most) = (self.totals.count, most_bytes >> 20);
+        let why = if context.is_own {
+            "each has a nominal solution of its own, because the nominal start is that of the run \
+             or friction depends on it"
+        } else {
+            "they differ in input or sample times"
+        };
+        Err(Error::Fold(format!(
+            "suite {name}: of its {count} recordings {why}, so each is needed sample by sample, \
+             and a fold keeps them only where no two share their input, up to {most} MiB: give \
+             recordings of different inputs suites of their own (--torque compensated where the \
+             input was recorded), fold fewer, or read them on one machine"
+        )))
+    }
+
+    /// Returns the first run that starts outside the operating box.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::StartsOutsideBox`].
+    pub(super) fn check_starts(&self, context: &Context) -> Result<()> {
+        let (Some((place, state, value)), Some(sides)) = (self.outside, &context.start_box) else {
+            return Ok(());
+        };
+        let [low, high] = sides[state];
+        let file = self.names[&place].0.clone();
+        let state = State::from_index(state, context.robot.joint_count());
+        Err(Error::StartsOutsideBox { file, state, value, low, high })
+    }
+}
+
+/// Replaces a value by what becomes of it.
+fn replace(value: &mut WholeRuns, with: impl FnOnce(WholeRuns) -> WholeRuns) {
+    let taken = std::mem::replace(value, WholeRuns::All(BTreeMap::new()));
+    *value = with(taken);
+}

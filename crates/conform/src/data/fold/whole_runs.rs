@@ -1,0 +1,83 @@
+use std::collections::BTreeMap;
+
+use reachtube_recordings::Run;
+
+use crate::data::fold::context::Context;
+use crate::data::input::RunInput;
+
+/// The runs of a suite that stay whole in its fold.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum WholeRuns {
+    /// All: each is a case of its own, or there is only one.
+    All(BTreeMap<u32, WholeRun>),
+    /// The first of the manifest alone.
+    First(u32, WholeRun),
+}
+
+/// A run with its input.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct WholeRun {
+    pub run: Run,
+    pub input: RunInput,
+}
+
+impl WholeRun {
+    /// Returns the size of the samples in memory.
+    fn bytes(&self) -> usize {
+        let Run { times, states, torques, temperatures, .. } = &self.run;
+        let values = times.len() + states.len() + torques.len() + temperatures.len();
+        values * size_of::<f64>()
+    }
+}
+
+impl WholeRuns {
+    /// Returns the runs of one part.
+    pub(super) fn one(place: u32, run: WholeRun) -> Self {
+        Self::All([(place, run)].into())
+    }
+
+    /// Merges those of another part. All stay whole where no two share their input, or where all
+    /// are cases of their own anyway, up to `most_bytes`. Both depend on the runs only, and what
+    /// holds for all holds for every part, so that the order makes no difference.
+    pub(super) fn merge(self, other: Self, context: &Context, most_bytes: usize) -> Self {
+        let joints = context.robot.joint_count();
+        match (self, other) {
+            (Self::All(mut own), Self::All(other)) => {
+                let shares = |a: &WholeRun, b: &WholeRun| a.input.shares(&b.input, joints);
+                let any_shares = || own.values().any(|a| other.values().any(|b| shares(a, b)));
+                let bytes: usize = own.values().chain(other.values()).map(WholeRun::bytes).sum();
+                let stay = bytes <= most_bytes && (context.is_own || !any_shares());
+                own.extend(other);
+                let all = Self::All(own);
+                if stay { all } else { all.first() }
+            }
+            (own, other) => match (own.first(), other.first()) {
+                (Self::First(a, run), Self::First(b, _)) if a < b => Self::First(a, run),
+                (_, other) => other,
+            },
+        }
+    }
+
+    /// Returns the runs that stay, by their places.
+    pub(super) fn iter(&self) -> Box<dyn Iterator<Item = (u32, &WholeRun)> + '_> {
+        match self {
+            Self::All(runs) => Box::new(runs.iter().map(|(place, run)| (*place, run))),
+            Self::First(place, run) => Box::new(std::iter::once((*place, run))),
+        }
+    }
+
+    /// Returns whether all runs stay.
+    pub(super) fn are_all(&self) -> bool {
+        matches!(self, Self::All(_))
+    }
+
+    fn first(self) -> Self {
+        match self {
+            Self::All(mut runs) => {
+                let (place, run) = runs.pop_first().expect("a suite has one run at least");
+                Self::First(place, run)
+            }
+            first => first,
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! A model, settings and recordings that are read once: what every step of a conformance takes.
+
+pub(crate) mod case;
+pub(crate) mod condition;
+pub(crate) mod correction;
+pub(crate) mod dynamics;
+pub(crate) mod envelope;
+pub(crate) mod fold;
+pub(crate) mod input;
+pub(crate) mod kept;
+pub(crate) mod marks;
+pub(crate) mod origin;
+pub(crate) mod problem;
+pub(crate) mod recordings;
+pub(crate) mod sensor_noise;
+pub(crate) mod settings;
+pub(crate) mod side;
+mod subset;
+pub(crate) mod suite;
+pub(crate) mod totals;
+pub(crate) mod tree;

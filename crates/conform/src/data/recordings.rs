@@ -1,0 +1,141 @@
+use reachtube_recordings::{Defect, RunSource, SuiteEntry, copies_note};
+
+use crate::data::origin::Origin;
+use crate::data::problem::Setup;
+use crate::data::settings::NominalStart;
+use crate::data::suite::{Suite, SuiteReader};
+use crate::data::tree::{Leaf, Tree};
+use crate::error::Result;
+use crate::progress::Progress;
+
+/// A model file lists each recording of a source of fewer recordings.
+const LISTED_BELOW: usize = 10_000;
+
+/// The suites of a source, read once, checked and folded.
+#[derive(Debug)]
+pub struct Recordings {
+    /// The suites, in the order asked for.
+    pub suites: Vec<Suite>,
+    /// What a user should know about the data, in words.
+    pub notes: Vec<String>,
+    /// The root of the Merkle tree over the recordings' entries, in lower-case hexadecimal.
+    pub root: String,
+    /// Whether a model file lists each recording: those of a source of fewer than 10,000, and of a
+    /// fold of fewer than 1000.
+    pub(crate) are_listed: bool,
+    /// What a fold has found that was made to check a model: the digest of the model's recordings,
+    /// and how many recordings are among them.
+    pub(crate) compared: Option<(String, u64)>,
+    /// Number of recordings that were left out because they have defects: only a fold leaves out
+    /// any.
+    pub skipped: usize,
+}
+
+impl Recordings {
+    /// Reads the suites named.
+    ///
+    /// # Errors
+    ///
+    /// Every defect of every run, or an unknown suite.
+    pub(super) fn read(
+        reader: &SuiteReader,
+        names: &[String],
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let source = reader.source;
+        let entries = source.select(names)?;
+        let total = entries.iter().map(|entry| entry.runs.len()).sum();
+        let notes = index_notes(source, &entries);
+        let (mut suites, mut defects, mut done) = (Vec::new(), Vec::<Defect>::new(), 0);
+        for entry in entries {
+            progress.go_on()?;
+            let counted = |within: usize| progress.recordings_read(done + within, total);
+            match reader.read(&entry, &counted) {
+                Ok(suite) => suites.push(suite),
+                Err(found) => defects.extend(found),
+            }
+            done += entry.runs.len();
+        }
+        if defects.is_empty() {
+            let root = root(source, &suites);
+            let are_listed = total < LISTED_BELOW;
+            Ok(Self { suites, notes, root, are_listed, compared: None, skipped: 0 })
+        } else {
+            Err(reachtube_recordings::Error::Defects(defects).into())
+        }
+    }
+
+    /// Returns the number of runs.
+    #[must_use]
+    pub fn run_count(&self) -> usize {
+        self.suites.iter().map(Suite::run_count).sum()
+    }
+
+    /// Returns what a user should know about the data of the suites.
+    pub(crate) fn data_notes(&self, setup: &Setup, origin: &Origin) -> Vec<String> {
+        let of_suites = self.suites.iter().flat_map(|suite| suite_notes(suite, setup));
+        let runs = self.suites.iter().flat_map(Suite::sample);
+        let named = runs.map(|run| (origin.entry(run.index).file.as_str(), run.sha256.as_str()));
+        of_suites.chain(copies_note(named)).collect()
+    }
+}
+
+fn index_notes(source: &dyn RunSource, chosen: &[SuiteEntry]) -> Vec<String> {
+    let (used, all) = (chosen.iter().map(|entry| entry.runs.len()).sum::<usize>(), source.runs());
+    let mut notes = Vec::new();
+    if used < all.len() {
+        let without = all.iter().filter(|run| run.suite.is_none()).count();
+        notes.push(format!(
+            "{used} of the {} runs in {} are used: {} belong to suites that were not asked for, \
+             {without} to no suite",
+            all.len(),
+            source.index_name().display(),
+            all.len() - used - without,
+        ));
+    }
+    notes.extend(source.notes());
+    notes
+}
+
+/// Returns the root of the Merkle tree over the entries of the runs of `suites`.
+fn root(source: &dyn RunSource, suites: &[Suite]) -> String {
+    let mut tree = Tree::default();
+    for suite in suites {
+        for run in &suite.runs {
+            let (file, suite) = (source.runs()[run.index].file.as_str(), &*suite.entry.name);
+            let place = u32::try_from(run.index).expect("an envelope numbers runs with 32 bits");
+            let is_new = tree.insert(place, Leaf { file, suite, sha256: &run.sha256 });
+            debug_assert!(is_new, "a run belongs to one suite");
+        }
+    }
+    tree.root()
+}
+
+fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
+    let Setup { settings, nominal_starts, .. } = setup;
+    let (nominal, count) = (settings.nominal, suite.run_count());
+    let mut notes: Vec<String> = suite.totals.run_notes().collect();
+    let [shortest, longest] = suite.totals.samples;
+    let name = &suite.entry.name;
+    if shortest < longest {
+        notes.push(format!(
+            "suite {name}: its runs have {shortest} to {longest} samples; each run counts up to \
+             its own end"
+        ));
+    }
+    if suite.shared.is_none() && count > 1 && nominal == NominalStart::Mean {
+        notes.push(format!(
+            "suite {name}: its runs differ in input or sample times, so each run has its own \
+             nominal solution"
+        ));
+    }
+    let is_known = nominal_starts.is_empty() || nominal_starts.contains_key(name);
+    if nominal == NominalStart::Mean && !is_known {
+        notes.push(format!(
+            "suite {name}: the model has no nominal initial state for it, so its nominal solution \
+             starts at the mean of the first states of its {count} recordings; the verdict on one \
+             of them depends on the others"
+        ));
+    }
+    notes
+}

@@ -1,0 +1,300 @@
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use reachtube_reach::TimeGrid;
+use reachtube_recordings::{
+    Defect, ReadOptions, Run, RunEntry, RunSource, SuiteEntry, Torque, noise_deviations, run_notes,
+};
+use reachtube_robot::Robot;
+
+use crate::data::condition::Condition;
+use crate::data::envelope::Envelope;
+use crate::data::input::{RunInput, SharedInput};
+use crate::data::kept::KeptRuns;
+use crate::data::marks::Marks;
+use crate::data::settings::NominalStart;
+use crate::data::totals::Totals;
+use crate::error::{Error, Result as AnyResult};
+
+/// Number of runs of a suite whose marks are kept and which its statistics are of: that many are
+/// drawn from a larger suite.
+pub(crate) const SAMPLE: usize = 256;
+
+/// One test suite after reading.
+#[derive(Debug, Clone)]
+pub struct Suite {
+    /// The suite's name and runs.
+    pub entry: SuiteEntry,
+    /// What was read of each run, in the order of `entry.runs`: of all runs of a source. A fold of
+    /// many runs keeps 256 of them, as random as their SHA-256.
+    pub runs: Vec<RunSummary>,
+    /// What is known of all runs together.
+    pub totals: Totals,
+    /// The nominal initial state, 2n: the one that was given for the suite's name, or the mean of
+    /// the runs' first states, rounded to nearest.
+    pub nominal_start: Vec<f64>,
+    /// The one input of all runs (Definition 2), where they share it and their nominal start: that
+    /// of the longest run, of which the others' are the beginning.
+    pub shared: Option<RunInput>,
+    /// Envelope of the measured states, with run indices of the source.
+    pub envelope: Arc<Envelope>,
+}
+
+/// What is kept of every run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSummary {
+    /// Index in the source.
+    pub index: usize,
+    /// Number of samples.
+    pub samples: usize,
+    /// Time from the first to the last sample, s.
+    pub duration: f64,
+    /// The run's grid, or a longer one of the suite that it is the beginning of: runs of one rate
+    /// share one.
+    pub grid: Arc<TimeGrid>,
+    /// The first state, 2n.
+    pub start: Vec<f64>,
+    /// Some of its states; none where the run is not drawn from a suite of more than 256.
+    pub marks: Marks,
+    /// What friction may depend on.
+    pub condition: Condition,
+    /// SHA-256 of the recording.
+    pub sha256: String,
+    /// The standard deviation of the noise in each state, 2n, as
+    /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it.
+    pub noise: Option<Vec<f64>>,
+    /// What a user should know about the run.
+    pub notes: Vec<String>,
+}
+
+impl Suite {
+    /// Returns the number of runs.
+    #[must_use]
+    pub fn run_count(&self) -> usize {
+        self.totals.count
+    }
+
+    /// Returns what was read of each run.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fold`] where a fold has not kept it.
+    pub(crate) fn every_run(&self) -> AnyResult<&[RunSummary]> {
+        if self.runs.len() == self.totals.count {
+            return Ok(&self.runs);
+        }
+        Err(Error::Fold(format!(
+            "suite {}: this step needs each of its {} recordings, of which it has kept {}; read \
+             them on one machine for it",
+            self.entry.name,
+            self.totals.count,
+            self.runs.len()
+        )))
+    }
+
+    /// Returns the runs that statistics are of, in their order: all, or 256 of more.
+    pub(crate) fn sample(&self) -> impl Iterator<Item = &RunSummary> {
+        sampled(&self.runs)
+    }
+
+    /// Returns whether the sample is all runs.
+    pub(crate) fn is_small(&self) -> bool {
+        self.totals.count <= SAMPLE
+    }
+}
+
+/// Returns the 256 runs with the lowest SHA-256, or all of fewer, in the order of their indices. A
+/// sample of the samples of parts is that of the whole, and copies of a run are drawn with it.
+pub(crate) fn sampled<'a>(
+    runs: impl IntoIterator<Item = &'a RunSummary>,
+) -> impl Iterator<Item = &'a RunSummary> {
+    let mut sample: Vec<&RunSummary> = runs.into_iter().collect();
+    if sample.len() > SAMPLE {
+        sample.sort_unstable_by_key(|run| (&run.sha256, run.index));
+        sample.truncate(SAMPLE);
+        sample.sort_unstable_by_key(|run| run.index);
+    }
+    sample.into_iter()
+}
+
+impl RunSummary {
+    /// Sums up run `index` of a source, whose entry there is `entry`.
+    pub(crate) fn new(index: usize, entry: &RunEntry, run: &Run, grid: Arc<TimeGrid>) -> Self {
+        let end = run.len().saturating_sub(1);
+        Self {
+            index,
+            samples: run.len(),
+            duration: grid.times().get(end).copied().unwrap_or(0.0),
+            grid,
+            start: run.state(0).to_vec(),
+            marks: Marks::new(run),
+            condition: Condition::of(entry.order, run),
+            sha256: run.sha256.clone(),
+            noise: noise_deviations(run),
+            notes: run_notes(entry, run),
+        }
+    }
+}
+
+/// What reading a suite depends on.
+pub(super) struct SuiteReader<'a> {
+    pub source: &'a dyn RunSource,
+    pub options: ReadOptions,
+    pub robot: &'a Robot,
+    pub torque: Torque,
+    pub nominal: NominalStart,
+    pub nominal_starts: &'a BTreeMap<String, Vec<f64>>,
+    pub kept: &'a KeptRuns,
+    /// Whether every run is kept, and not only those that later steps need one by one.
+    pub keep_all: bool,
+}
+
+impl SuiteReader<'_> {
+    /// Reads the runs of a suite on all cores and folds them. The fold's size does not grow with
+    /// the number of runs, except for the summaries; `progress` takes how many runs are done.
+    ///
+    /// # Errors
+    ///
+    /// Every defect of every run.
+    pub(super) fn read(
+        &self,
+        entry: &SuiteEntry,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<Suite, Vec<Defect>> {
+        let n = self.robot.joint_count();
+        let done = AtomicUsize::new(0);
+        let take = |mut part: Part, (place, &index): (usize, &usize)| {
+            match self.read_run(index) {
+                Ok((run, input)) => self.take(&mut part, place, index, run, input),
+                Err(defects) => part.defects.push((place, defects)),
+            }
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
+            part
+        };
+        let parts = entry.runs.par_iter().enumerate().fold(|| Part::new(n), take);
+        let whole = parts.reduce(|| Part::new(n), |a, b| a.merge(b, n, self.kept));
+        self.suite(entry, whole)
+    }
+
+    fn read_run(&self, index: usize) -> Result<(Run, RunInput), Vec<Defect>> {
+        let run = self.source.read(index, &self.options)?;
+        let input = RunInput::new(&self.source.run_name(index), &run, self.robot, self.torque)?;
+        Ok((run, input))
+    }
+
+    /// Folds one run into `part`. A run is kept when the suite's runs are known to be cases of
+    /// their own, or when it may turn out so: the first one, until a second shares its input.
+    fn take(&self, part: &mut Part, place: usize, index: usize, run: Run, input: RunInput) {
+        let n = run.joints;
+        part.envelope.include(index as u32, &run.states);
+        let entry = &self.source.runs()[index];
+        let summary = RunSummary::new(index, entry, &run, part.grid(&input.grid));
+        part.runs.push((place, summary));
+        let is_first = part.is_empty;
+        part.share(Some(SharedInput { run: index as u32, input }), n);
+        if self.keep_all || self.nominal == NominalStart::Own || part.shared.is_none() {
+            self.kept.keep(index, run);
+        } else if is_first {
+            part.first = Some((index, run));
+            return;
+        }
+        let first = part.first.take();
+        part.keep_if_own(first, self.kept);
+    }
+
+    fn suite(&self, entry: &SuiteEntry, mut whole: Part) -> Result<Suite, Vec<Defect>> {
+        if !whole.defects.is_empty() {
+            whole.defects.sort_by_key(|(place, _)| *place);
+            return Err(whole.defects.into_iter().flat_map(|(_, defects)| defects).collect());
+        }
+        whole.runs.sort_by_key(|(place, _)| *place);
+        let mut runs: Vec<RunSummary> = whole.runs.into_iter().map(|(_, run)| run).collect();
+        let totals = Totals::of_all(&runs).expect("a suite has one run at least");
+        let sample: BTreeSet<usize> = sampled(&runs).map(|run| run.index).collect();
+        let others = runs.iter_mut().filter(|run| !sample.contains(&run.index));
+        others.for_each(|run| run.marks.clear());
+        let own_start = self.nominal == NominalStart::Own;
+        Ok(Suite {
+            entry: entry.clone(),
+            nominal_start: match self.nominal_starts.get(&entry.name) {
+                Some(given) => given.clone(),
+                None => totals.mean_start(),
+            },
+            runs,
+            totals,
+            shared: whole.shared.filter(|_| !own_start).map(|shared| shared.input),
+            envelope: Arc::new(whole.envelope),
+        })
+    }
+}
+
+/// What a part of a suite's runs is folded into.
+struct Part {
+    runs: Vec<(usize, RunSummary)>,
+    /// The input that all runs so far share, if they do.
+    shared: Option<SharedInput>,
+    /// Whether no run has been taken in yet, so that `shared` is not yet known.
+    is_empty: bool,
+    /// The first run, while it is the only one.
+    first: Option<(usize, Run)>,
+    envelope: Envelope,
+    grids: Vec<Arc<TimeGrid>>,
+    defects: Vec<(usize, Vec<Defect>)>,
+}
+
+impl Part {
+    fn new(joints: usize) -> Self {
+        Self {
+            runs: Vec::new(),
+            shared: None,
+            is_empty: true,
+            first: None,
+            envelope: Envelope::new(2 * joints),
+            grids: Vec::new(),
+            defects: Vec::new(),
+        }
+    }
+
+    fn grid(&mut self, grid: &Arc<TimeGrid>) -> Arc<TimeGrid> {
+        if let Some(known) = self.grids.iter().find(|known| grid.is_prefix_of(known)) {
+            return Arc::clone(known);
+        }
+        self.grids.push(Arc::clone(grid));
+        Arc::clone(grid)
+    }
+
+    fn share(&mut self, other: Option<SharedInput>, joints: usize) {
+        self.shared = if self.is_empty {
+            other
+        } else {
+            self.shared.take().zip(other).and_then(|(a, b)| a.merge(b, joints))
+        };
+        self.is_empty = false;
+    }
+
+    /// Keeps a first run that turned out to be a case of its own.
+    fn keep_if_own(&self, first: Option<(usize, Run)>, kept: &KeptRuns) {
+        if let (Some((index, run)), None) = (first, &self.shared) {
+            kept.keep(index, run);
+        }
+    }
+
+    fn merge(mut self, other: Self, joints: usize, kept: &KeptRuns) -> Self {
+        if self.is_empty {
+            self.first = other.first;
+        } else if !other.is_empty {
+            let firsts = [self.first.take(), other.first];
+            self.share(other.shared.clone(), joints);
+            firsts.into_iter().for_each(|first| self.keep_if_own(first, kept));
+        }
+        if self.is_empty && !other.is_empty {
+            self.share(other.shared, joints);
+        }
+        self.runs.extend(other.runs);
+        self.defects.extend(other.defects);
+        self.envelope.merge(&other.envelope);
+        self
+    }
+}

@@ -1,0 +1,208 @@
+//! The program of one choice of the parameters.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use reachtube_reach::{Disturbance, TimeGrid};
+
+use crate::data::correction::InputCorrection;
+use crate::data::envelope::Envelope;
+use crate::data::problem::Setup;
+use crate::data::settings::Settings;
+use crate::error::{Error, Result};
+use crate::fit::data::Data;
+use crate::fit::parameters::Parameters;
+use crate::linear::block::Block;
+use crate::linear::layout::Limits;
+use crate::linear::program::{Program, RowIndex};
+use crate::nominal::motion::Corrected;
+use crate::nominal::steps::Steps;
+use crate::sets::UncertaintySets;
+
+/// Rows within this part of the largest deviation are kept for the next program.
+const CLOSE: f64 = 0.02;
+
+/// What does not change during a fit.
+#[derive(Clone)]
+pub(crate) struct Fit<'a> {
+    pub parameters: &'a Parameters<'a>,
+    pub data: &'a Data,
+    /// Every how many samples rows are taken.
+    pub stride: usize,
+    /// The weights of the states, s, 2n.
+    pub weights: Vec<f64>,
+    pub settings: &'a Settings,
+    pub limits: Limits,
+}
+
+/// The model of one choice of the parameters beside the recordings.
+pub(crate) struct Model {
+    /// For each grid, the entries of E_k and R_k at the samples that are rows, as in a [`Block`].
+    pub coefficients: Vec<Arc<Vec<f64>>>,
+    /// For each track, the nominal motion at the samples that are rows, samples x 2n; empty for a
+    /// track that was not asked for.
+    pub motions: Vec<Vec<f64>>,
+}
+
+/// The smallest sets of one choice of the parameters.
+pub(crate) struct Smallest {
+    pub sets: UncertaintySets,
+    pub cost: f64,
+}
+
+impl Fit<'_> {
+    /// Returns the number of joints.
+    pub(crate) fn joints(&self) -> usize {
+        self.weights.len() / 2
+    }
+
+    /// Returns the model with these numbers and its nominal motions of `tracks`; `known` is one
+    /// whose E_k and R_k are the same.
+    ///
+    /// # Errors
+    ///
+    /// A robot that is not physical, a model that is not linear.
+    pub(crate) fn model(
+        &self,
+        numbers: &[f64],
+        tracks: &[usize],
+        known: Option<&Model>,
+    ) -> Result<Model> {
+        let setup = self.parameters.apply(numbers)?;
+        let system = setup.dynamics.linear_system().ok_or(Error::NotLinear)?;
+        let grids = self.data.grids.iter();
+        let steps: Vec<Steps> = grids.map(|grid| Steps::new(system, grid.times())).collect();
+        let coefficients = match known {
+            Some(model) => model.coefficients.clone(),
+            None => self.coefficients(&steps),
+        };
+        Ok(Model { coefficients, motions: self.motions(&setup, &steps, tracks)? })
+    }
+
+    fn coefficients(&self, steps: &[Steps]) -> Vec<Arc<Vec<f64>>> {
+        let constant = self.settings.disturbance == Disturbance::Constant;
+        let of = |(steps, grid): (&Steps, &Arc<TimeGrid>)| {
+            Arc::new(steps.coefficients(grid.len(), self.stride, constant))
+        };
+        steps.iter().zip(&self.data.grids).map(of).collect()
+    }
+
+    fn motions(&self, setup: &Setup, steps: &[Steps], tracks: &[usize]) -> Result<Vec<Vec<f64>>> {
+        let none = InputCorrection::none(self.joints());
+        let correction = setup.correction.as_ref().unwrap_or(&none);
+        let (robot, dynamics) = (&setup.robot, &setup.dynamics);
+        let corrected = Corrected { robot, dynamics, correction, settings: self.settings };
+        let width = 2 * self.joints();
+        let of = |&t: &usize| {
+            let track = &self.data.tracks[t];
+            let states = corrected.motion(&track.case, Some(&steps[track.grid]))?.states;
+            let rows = states.chunks_exact(width).step_by(self.stride);
+            Ok((t, rows.flatten().copied().collect()))
+        };
+        let found: Vec<(usize, Vec<f64>)> = tracks.par_iter().map(of).collect::<Result<_>>()?;
+        let mut motions = vec![Vec::new(); self.data.tracks.len()];
+        for (t, motion) in found {
+            motions[t] = motion;
+        }
+        Ok(motions)
+    }
+
+    /// Returns the program of `model` for the tracks named.
+    pub(crate) fn program(&self, model: &Model, tracks: &[usize]) -> Program<'_> {
+        let (stride, states) = (self.stride, 2 * self.joints());
+        let mut blocks: Vec<Block> = Vec::new();
+        for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
+            let times = grid.times().iter().step_by(stride).copied().collect();
+            let envelope = Envelope::new(states);
+            blocks.push(Block { times, coefficients: Arc::clone(coefficients), envelope });
+        }
+        for &t in tracks {
+            let (track, motion) = (&self.data.tracks[t], &model.motions[t]);
+            let off = |bound: fn(&Envelope, usize, usize) -> f64| -> Vec<f64> {
+                track
+                    .samples(stride)
+                    .flat_map(|k| {
+                        let row = &motion[k / stride * states..][..states];
+                        let value = move |i| bound(&track.case.measured, k, i) - row[i];
+                        (0..states).map(value)
+                    })
+                    .collect()
+            };
+            let (lower, upper) = (off(Envelope::lower), off(Envelope::upper));
+            blocks[track.grid].envelope.include_bounds(t as u32, &lower, &upper);
+        }
+        blocks.retain(|block| !block.envelope.is_empty());
+        for block in &mut blocks {
+            let samples = block.envelope.len();
+            block.times.truncate(samples);
+        }
+        Program::new(self.settings, &self.weights, blocks).with_limits(self.limits.clone())
+    }
+
+    /// Returns the smallest sets of `model` for the tracks named.
+    ///
+    /// # Errors
+    ///
+    /// As [`Program::solve`].
+    pub(crate) fn smallest(&self, model: &Model, tracks: &[usize]) -> Result<Smallest> {
+        self.smallest_from(model, tracks, &mut Vec::new())
+    }
+
+    /// Returns the smallest sets as [`smallest`](Self::smallest) does, with the rows `rows` first;
+    /// they become those that nearly decide the sets.
+    ///
+    /// # Errors
+    ///
+    /// As [`Program::solve`].
+    pub(crate) fn smallest_from(
+        &self,
+        model: &Model,
+        tracks: &[usize],
+        rows: &mut Vec<RowIndex>,
+    ) -> Result<Smallest> {
+        let program = self.program(model, tracks);
+        if rows.is_empty() {
+            *rows = program.first_rows();
+        }
+        let solution = program.solve_from(rows)?;
+        let sets = program.repaired(&solution.sets);
+        program.keep_close(rows, &sets, CLOSE);
+        Ok(Smallest { cost: program.cost(&sets), sets })
+    }
+
+    /// Returns the cost of the smallest sets of all tracks at every sample; nothing where a nominal
+    /// motion runs away.
+    ///
+    /// # Errors
+    ///
+    /// As [`model`](Self::model) and [`Program::solve`].
+    pub(crate) fn whole_cost(&self, numbers: &[f64]) -> Result<Option<f64>> {
+        let whole = Self { stride: 1, ..self.clone() };
+        let tracks = whole.tracks(None);
+        match whole.model(numbers, &tracks, None) {
+            Ok(model) => Ok(Some(whole.smallest(&model, &tracks)?.cost)),
+            Err(Error::RunsAway { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Returns at most `few` tracks of each suite, from the first to the last, of all motions but
+    /// `left_out`.
+    pub(crate) fn few_tracks(&self, left_out: Option<usize>, few: usize) -> Vec<usize> {
+        let suite = |t: &usize| self.data.tracks[*t].case.suite;
+        let all = self.tracks(left_out);
+        let of_suite = |tracks: &[usize]| {
+            let last = tracks.len() - 1;
+            let mut chosen: Vec<usize> = (0..few).map(|i| tracks[i * last / (few - 1)]).collect();
+            chosen.dedup();
+            chosen
+        };
+        all.chunk_by(|a, b| suite(a) == suite(b)).flat_map(of_suite).collect()
+    }
+
+    /// Returns the tracks of all motions but `left_out`.
+    pub(crate) fn tracks(&self, left_out: Option<usize>) -> Vec<usize> {
+        let tracks = self.data.tracks.iter().enumerate();
+        tracks.filter(|(_, track)| Some(track.motion) != left_out).map(|(t, _)| t).collect()
+    }
+}

@@ -1,0 +1,263 @@
+use rayon::prelude::*;
+use reachtube_abstraction::Abstraction;
+
+use crate::data::dynamics::Dynamics;
+use crate::data::envelope::Envelope;
+use crate::data::problem::{Problem, Setup};
+use crate::data::settings::{Method, Weights};
+use crate::error::{Error, Result};
+use crate::fit::data::Data;
+use crate::fit::evaluation::Fit;
+use crate::fit::group::{FitSettings, Group};
+use crate::fit::parameters::{Parameter, Parameters, Quantity};
+use crate::fit::pull::{PullChoice, choose};
+use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
+use crate::fit::search::{Effort, Optimum, Search};
+use crate::linear::smallest_sets::program;
+use crate::next_motion::calibration::{calibrate, without_kept_back};
+use crate::nominal::input_error::InputError;
+use crate::progress::{Progress, Silent};
+use crate::weights::state_weights;
+
+/// Tracks of a suite that decide where the search starts.
+const FEWEST: usize = 4;
+
+/// Tracks of a suite that the search goes on with.
+const FEW: usize = 8;
+
+/// What a fit found.
+#[derive(Debug)]
+pub struct Fitted {
+    /// The problem with the fitted model, ready for [`conform`](crate::conform).
+    pub problem: Problem,
+    /// How the model was fitted.
+    pub record: FitRecord,
+}
+
+/// Finds the parameters of the nominal model for which its sets cost least.
+///
+/// Motions that calibrate the sets are kept back from this fit too.
+///
+/// The answer is a model, not a claim: [`conform`](crate::conform) finds and proves its sets as it
+/// does for any other. A model that is not linear is given the parameters that suit the linear
+/// model of the same robot about the same point; the costs of the record are those of the linear
+/// model.
+///
+/// # Errors
+///
+/// As [`FitSettings::check`]; [`Error::Fit`] with fewer than two motions, without any parameter,
+/// with points that other processes hold, and where the fitted robot is not physical;
+/// [`Error::Fold`] for warm-up where a fold has not kept the recordings; as [`Problem::run`] and
+/// [`conform`](crate::conform).
+pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
+    refuse(problem, settings)?;
+    let kept = without_kept_back(problem)?;
+    let fit_problem = kept.as_ref().unwrap_or(problem);
+    let linear;
+    let steering = match problem.dynamics().linear_system() {
+        Some(_) => fit_problem,
+        None => {
+            linear = fit_problem.with_setup(linear_setup(problem.setup())?);
+            &linear
+        }
+    };
+    let (setup, joints) = (steering.setup(), steering.joints());
+    let by_run = settings.groups.contains(&Group::WarmUp);
+    let data = Data::new(steering, by_run)?;
+    if data.motions.len() < 2 {
+        return Err(Error::Fit(one_motion(kept.is_some())));
+    }
+    let parameters = Parameters::new(setup, &settings.groups);
+    if parameters.len() == 0 {
+        return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
+    }
+    let envelopes: Vec<&Envelope> = steering.deviations()?.iter().map(|d| &d.envelope).collect();
+    let fit = Fit {
+        parameters: &parameters,
+        data: &data,
+        stride: data.stride(),
+        weights: state_weights(&setup.settings.weights, &envelopes, joints),
+        settings: &setup.settings,
+        limits: steering.limits(),
+    };
+    let choice = choose(&fit, settings.pull)?;
+    progress.finished(&format!("the weight of the pull is {}", choice.pull));
+    progress.go_on()?;
+    let found = search(&fit, &settings.distinct_groups(), choice.pull)?;
+    progress.finished(&format!("the fit took {} steps", found.steps));
+    let with_numbers = |problem: &Problem| -> Result<Problem> {
+        let own = Parameters::new(problem.setup(), &settings.groups);
+        let mut setup = own.apply(&found.numbers)?;
+        if setup.settings.weights == Weights::Spread {
+            setup.settings.weights = Weights::Given(fit.weights.clone());
+        }
+        Ok(problem.with_setup(setup))
+    };
+    let fitted = with_numbers(steering)?;
+    if let Err(error) = fitted.robot().check_physical() {
+        return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
+    }
+    let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
+    let mut record = record(&fit, settings, choice, &found.numbers, costs)?;
+    record.identified_calibrated_cost = calibrated_cost(problem);
+    // The numbers go to the model that was asked for, with all motions.
+    let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
+    Ok(Fitted { problem, record })
+}
+
+/// Searches with `pull` in parts of the identified model's cost: few runs of each suite show where
+/// to go, and all of them decide the end.
+///
+/// The cost has more than one local optimum. One search moves all groups from the beginning, and
+/// one for each group first the others; the best answer counts.
+fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
+    let (start, tracks) = (vec![0.0; fit.parameters.len()], fit.tracks(None));
+    let pull = pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
+    let search = |tracks: &[usize], held, effort| {
+        let tracks = tracks.to_vec();
+        Search { fit, tracks, pull, held, effort }
+    };
+    let fewest = fit.few_tracks(None, FEWEST);
+    let of_held = |held: Option<Group>| {
+        let first = match held {
+            Some(_) => search(&fewest, held, Effort::START).run(&start)?.numbers,
+            None => start.clone(),
+        };
+        search(&fewest, None, Effort::START).run(&first)
+    };
+    let held = groups.iter().map(|group| Some(*group)).filter(|_| groups.len() > 1);
+    let starts: Vec<Option<Group>> = std::iter::once(None).chain(held).collect();
+    let mut answers: Vec<Result<Optimum>> = starts.into_par_iter().map(of_held).collect();
+    let mut best = answers.remove(0)?;
+    for other in answers.into_iter().flatten() {
+        if other.value < best.value {
+            best = other;
+        }
+    }
+    let few = fit.few_tracks(None, FEW);
+    let found = search(&few, None, Effort::WHOLE).run(&best.numbers)?;
+    let steps = best.steps + found.steps;
+    if few.len() == tracks.len() {
+        return Ok(Optimum { steps, ..found });
+    }
+    let last = search(&tracks, None, Effort::LAST).run(&found.numbers)?;
+    Ok(Optimum { steps: steps + last.steps, ..last })
+}
+
+/// Refuses what cannot be fitted, whatever the recordings are.
+fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
+    settings.check(problem.setup())?;
+    if problem.points_elsewhere().is_some() {
+        return Err(Error::Fit(
+            "a fit moves the nominal motions, and the points that other processes hold are \
+             deviations from those before it; fit for the notion hull"
+                .into(),
+        ));
+    }
+    Ok(())
+}
+
+fn one_motion(others_are_kept_back: bool) -> String {
+    let remedy = if others_are_kept_back {
+        "keep fewer motions back for the calibration"
+    } else {
+        "record a second motion, or name the motions in the column motion of runs.csv"
+    };
+    format!(
+        "there is only one motion to fit to, and a model that is chosen for one motion holds for \
+         no other; {remedy}"
+    )
+}
+
+/// The cost of the smallest sets of a linear model, as [`conform`](crate::conform) finds it.
+fn smallest_cost(problem: &Problem) -> Result<f64> {
+    let program = program(problem)?;
+    let solution = program.solve()?;
+    Ok(program.cost(&program.repaired(&solution.sets)))
+}
+
+/// The cost of a linear model's calibrated sets, where they are to be calibrated and can be.
+fn calibrated_cost(problem: &Problem) -> Option<f64> {
+    let is_calibrated = !problem.settings().calibrate.is_empty();
+    let is_linear = problem.dynamics().linear_system().is_some();
+    let found = (is_calibrated && is_linear).then(|| calibrate(problem, &Silent, None));
+    found?.ok().map(|calibrated| calibrated.found.cost)
+}
+
+/// The linear model of the same robot about the same point.
+fn linear_setup(setup: &Setup) -> Result<Setup> {
+    let mut linear = setup.clone();
+    linear.settings.abstraction = Abstraction::default();
+    linear.settings.method = Method::Program;
+    linear.dynamics = Dynamics::new(&linear.robot, &linear.settings)?;
+    Ok(linear)
+}
+
+fn record(
+    fit: &Fit,
+    settings: &FitSettings,
+    choice: PullChoice,
+    numbers: &[f64],
+    [identified_cost, cost]: [f64; 2],
+) -> Result<FitRecord> {
+    let setup = fit.parameters.setup();
+    let cost_without = |group: &Group| {
+        let kept = |(x, parameter): (&f64, &Parameter)| match parameter.quantity.group() {
+            of if of == *group => 0.0,
+            _ => *x,
+        };
+        let numbers: Vec<f64> = numbers.iter().zip(&fit.parameters.list).map(kept).collect();
+        Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&numbers)? })
+    };
+    let groups = settings.distinct_groups();
+    let cases = || fit.data.tracks.iter().map(|track| &track.case);
+    let before = InputError::of_cases(setup, cases())?;
+    let after = InputError::of_cases(&fit.parameters.apply(numbers)?, cases())?;
+    let torque = before.into_iter().zip(after).enumerate();
+    Ok(FitRecord {
+        pull: choice.pull,
+        identified_cost,
+        cost,
+        groups: groups.par_iter().map(cost_without).collect::<Result<_>>()?,
+        leave_one_out: choice.left_out,
+        identified_calibrated_cost: None,
+        pulls: choice.tried,
+        parameters: parameters_of(fit, numbers, setup),
+        torque: torque
+            .map(|(j, (identified, fitted))| TorquePrediction { joint: j + 1, identified, fitted })
+            .collect(),
+    })
+}
+
+fn coulomb_name(quadrants: [bool; 4]) -> &'static str {
+    match quadrants {
+        [true, false, false, false] => "Coulomb friction, driving forward",
+        [false, true, false, false] => "Coulomb friction, driving backward",
+        [false, false, true, false] => "Coulomb friction, braking backward",
+        [false, false, false, true] => "Coulomb friction, braking forward",
+        _ => "Coulomb friction",
+    }
+}
+
+fn parameters_of(fit: &Fit, numbers: &[f64], setup: &Setup) -> Vec<FittedParameter> {
+    let of = |p: usize| {
+        let Parameter { quantity, joint, .. } = fit.parameters.list[p];
+        let kind = setup.robot.joints()[joint].kind;
+        let (identified, fitted, factor) = fit.parameters.values(p, numbers[p]);
+        let of_velocity =
+            |power| format!("{}/({}){power}", kind.force_unit(), kind.velocity_unit());
+        let (name, unit) = match quantity {
+            Quantity::MotorInertia => ("inertia at the motor", kind.inertia_unit().into()),
+            Quantity::Density => ("mass of the link", "kg".into()),
+            Quantity::Viscous => ("viscous friction", of_velocity("")),
+            Quantity::Cubic => ("cubic friction", of_velocity("³")),
+            Quantity::Coulomb(quadrants) => (coulomb_name(quadrants), kind.force_unit().into()),
+            Quantity::WarmUp => ("viscous friction per unit of ln(run)", of_velocity("")),
+            Quantity::Payload => ("payload", "kg".into()),
+        };
+        let (group, joint) = (quantity.group(), joint + 1);
+        let (name, standard_error) = (name.into(), fit.parameters.standard_error(p));
+        FittedParameter { group, name, joint, unit, identified, standard_error, fitted, factor }
+    };
+    (0..numbers.len()).map(of).collect()
+}

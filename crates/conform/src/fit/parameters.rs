@@ -1,0 +1,294 @@
+use std::f64::consts::LN_10;
+
+use reachtube_robot::{GravityMoments, ParameterKind, Robot, RobotDescription};
+
+use crate::data::correction::InputCorrection;
+use crate::data::dynamics::Dynamics;
+use crate::data::problem::Setup;
+use crate::data::settings::Equations;
+use crate::error::Result;
+use crate::fit::group::Group;
+
+/// The number of inertial parameters of a link.
+const INERTIAL: usize = ParameterKind::INERTIAL.len();
+
+/// What a number of a fit changes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Quantity {
+    /// The motor inertia: the number is half the logarithm of the factor on the inertia that the
+    /// motor feels at the expansion point. Half, because a velocity that is scaled by a factor
+    /// scales its inertia by the square.
+    MotorInertia,
+    /// The density of a link: half the logarithm of a factor.
+    Density,
+    /// v1: the logarithm of a factor.
+    Viscous,
+    /// v2 and v3: a factor minus 1.
+    Cubic,
+    /// Coulomb friction in these quadrants: a factor minus 1.
+    Coulomb([bool; 4]),
+    /// The change of v1 with ln(run), in parts of v1.
+    WarmUp,
+    /// A mass, kg.
+    Payload,
+}
+
+/// One number that a fit moves. The number 0 stands for the identified value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Parameter {
+    pub quantity: Quantity,
+    /// The joint, from 0.
+    pub joint: usize,
+    /// The lowest and the highest number allowed.
+    pub bounds: [f64; 2],
+}
+
+/// The parameters of a fit, and the model that they give.
+pub(crate) struct Parameters<'a> {
+    setup: &'a Setup,
+    /// The diagonal of the mass matrix at the expansion point, n, kg m².
+    inertia: Vec<f64>,
+    /// The inertial parameters of each link, 10 n.
+    links: Vec<f64>,
+    pub list: Vec<Parameter>,
+}
+
+/// Numbers of logarithms lie within this distance from 0: a factor of 10.
+const WIDEST: f64 = LN_10;
+
+/// Highest number of the inertia that a motor feels: a factor of 100. Where torque is measured
+/// behind the gear, the links alone may have nearly none.
+const LARGEST_INERTIA: f64 = LN_10;
+
+/// The least factor on the inertia that a motor feels.
+const LEAST_INERTIA: f64 = 0.1;
+
+/// The largest payload that is tried, kg.
+const LARGEST_PAYLOAD: f64 = 100.0;
+
+impl Quantity {
+    /// Returns the group.
+    pub(crate) fn group(self) -> Group {
+        match self {
+            Self::MotorInertia | Self::Density => Group::Inertia,
+            Self::Viscous => Group::Viscous,
+            Self::Cubic => Group::Cubic,
+            Self::Coulomb(_) => Group::Coulomb,
+            Self::WarmUp => Group::WarmUp,
+            Self::Payload => Group::Payload,
+        }
+    }
+}
+
+impl<'a> Parameters<'a> {
+    /// Lists the parameters of `groups` that the robot has.
+    pub(crate) fn new(setup: &'a Setup, groups: &[Group]) -> Self {
+        let robot = &setup.robot;
+        let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
+        let inertia = mass_matrix.diagonal().iter().copied().collect();
+        let (links, list) = (robot.inertial_parameters(), Vec::new());
+        let mut parameters = Self { setup, inertia, links, list };
+        for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
+            for joint in 0..robot.joint_count() {
+                let of_joint = parameters.of_joint(group, joint);
+                let make = |(quantity, bounds)| Parameter { quantity, joint, bounds };
+                parameters.list.extend(of_joint.into_iter().map(make));
+            }
+        }
+        parameters
+    }
+
+    /// Returns the identified model.
+    pub(crate) fn setup(&self) -> &'a Setup {
+        self.setup
+    }
+
+    /// Returns the number of parameters.
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    fn of_joint(&self, group: Group, joint: usize) -> Vec<(Quantity, [f64; 2])> {
+        let drive = &self.setup.robot.joints()[joint];
+        let viscous = &drive.friction.viscous;
+        let is_last = joint + 1 == self.inertia.len();
+        let if_any =
+            |any: bool, quantity, bounds| if any { vec![(quantity, bounds)] } else { Vec::new() };
+        match group {
+            Group::Inertia => {
+                // The motor inertia must not become negative.
+                let rest = (1.0 - drive.armature / self.inertia[joint]).max(LEAST_INERTIA);
+                let motor = (Quantity::MotorInertia, [half(rest.ln().min(0.0)), LARGEST_INERTIA]);
+                let link = self.link(joint).iter().any(|x| *x != 0.0);
+                let density = if_any(link, Quantity::Density, [-WIDEST, WIDEST].map(half));
+                [vec![motor], density].concat()
+            }
+            Group::Viscous => if_any(viscous.v1 > 0.0, Quantity::Viscous, [-WIDEST, WIDEST]),
+            Group::Cubic => {
+                if_any(viscous.v2 != 0.0 || viscous.v3 != 0.0, Quantity::Cubic, [-1.0, 5.0])
+            }
+            Group::Coulomb => self.coulomb(joint),
+            Group::WarmUp => if_any(viscous.v1 > 0.0, Quantity::WarmUp, [-0.9, 2.0]),
+            Group::Payload => if_any(is_last, Quantity::Payload, [0.0, LARGEST_PAYLOAD]),
+        }
+    }
+
+    /// One parameter per quadrant where the quadrants differ, one for all where they do not, none
+    /// without Coulomb friction.
+    fn coulomb(&self, joint: usize) -> Vec<(Quantity, [f64; 2])> {
+        let a = self.setup.robot.description().joints[joint].friction.coulomb;
+        let is_plain = a[1..].iter().step_by(2).all(|slope| *slope == 0.0)
+            && a.iter().step_by(2).all(|offset| offset.abs() == a[0].abs());
+        let quadrants: Vec<[bool; 4]> = if a == [0.0; 8] {
+            Vec::new()
+        } else if is_plain {
+            vec![[true; 4]]
+        } else {
+            (0..4).map(|at| [0, 1, 2, 3].map(|quadrant| quadrant == at)).collect()
+        };
+        quadrants.into_iter().map(|of| (Quantity::Coulomb(of), [-1.0, 5.0])).collect()
+    }
+
+    fn link(&self, joint: usize) -> &[f64] {
+        &self.links[INERTIAL * joint..INERTIAL * (joint + 1)]
+    }
+
+    /// Returns whether parameter `p` changes A and B, and not only the nominal motions.
+    pub(crate) fn changes_model(&self, p: usize) -> bool {
+        match self.list[p].quantity {
+            Quantity::Cubic => self.setup.settings.abstraction.order >= 2,
+            Quantity::Coulomb(_) | Quantity::WarmUp => false,
+            _ => true,
+        }
+    }
+
+    /// Returns the identified and the fitted value of parameter `p`, and what multiplies the
+    /// identified value where that is how it changes.
+    pub(crate) fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {
+        let Parameter { quantity, joint, .. } = self.list[p];
+        let viscous = &self.setup.robot.joints()[joint].friction.viscous;
+        let times = |identified: f64, factor: f64| (identified, identified * factor, Some(factor));
+        match quantity {
+            Quantity::MotorInertia => times(self.inertia[joint], (2.0 * number).exp()),
+            Quantity::Density => times(self.link(joint)[0], (2.0 * number).exp()),
+            Quantity::Viscous => times(viscous.v1, number.exp()),
+            Quantity::Cubic => times(viscous.v3, 1.0 + number),
+            Quantity::Coulomb(quadrants) => {
+                let a = self.setup.robot.description().joints[joint].friction.coulomb;
+                times(a[2 * first(quadrants)], 1.0 + number)
+            }
+            Quantity::WarmUp => (0.0, viscous.v1 * number, None),
+            Quantity::Payload => (0.0, number, None),
+        }
+    }
+
+    /// Returns the standard error of the identified value of parameter `p`, where the robot's
+    /// description has it.
+    pub(crate) fn standard_error(&self, p: usize) -> Option<f64> {
+        let Parameter { quantity, joint, .. } = self.list[p];
+        let errors = self.setup.robot.description().joints[joint].friction.standard_errors?;
+        let error = match quantity {
+            Quantity::Viscous => errors.viscous[0],
+            Quantity::Cubic => errors.viscous[2],
+            Quantity::Coulomb(quadrants) => errors.coulomb[2 * first(quadrants)],
+            _ => 0.0,
+        };
+        (error > 0.0).then_some(error)
+    }
+
+    /// Returns the model with these numbers, one per parameter.
+    ///
+    /// # Errors
+    ///
+    /// When the robot is not physical at the expansion point.
+    pub(crate) fn apply(&self, numbers: &[f64]) -> Result<Setup> {
+        let Setup { robot, settings, nominal_starts, .. } = self.setup;
+        let mut correction = InputCorrection::none(robot.joint_count());
+        let (mut changed, mut values, mut links) = (Vec::new(), Vec::new(), self.links.clone());
+        let mut change = |joint, kind, value| {
+            changed.push(reachtube_robot::Parameter { joint, kind });
+            values.push(value);
+        };
+        for (parameter, &number) in self.list.iter().zip(numbers) {
+            let Parameter { quantity, joint, .. } = *parameter;
+            let drive = &robot.joints()[joint];
+            let viscous = &drive.friction.viscous;
+            let corrected = &mut correction.joints[joint];
+            match quantity {
+                Quantity::MotorInertia => {
+                    let armature = drive.armature + self.inertia[joint] * (2.0 * number).exp_m1();
+                    change(joint, ParameterKind::MotorInertia, armature.max(0.0));
+                }
+                Quantity::Density => {
+                    let link = &mut links[INERTIAL * joint..INERTIAL * (joint + 1)];
+                    link.iter_mut().for_each(|value| *value *= (2.0 * number).exp());
+                }
+                Quantity::Viscous => {
+                    change(joint, ParameterKind::Viscous1, viscous.v1 * number.exp());
+                }
+                Quantity::Cubic => {
+                    let [v2, v3] = [viscous.v2, viscous.v3].map(|v| v * (1.0 + number));
+                    change(joint, ParameterKind::Viscous2, v2);
+                    change(joint, ParameterKind::Viscous3, v3);
+                    [corrected.quadratic, corrected.cubic] = self.left_out(joint, v2, v3);
+                }
+                Quantity::Coulomb(quadrants) => {
+                    let parts = corrected.coulomb.iter_mut().zip(quadrants);
+                    parts.filter(|(_, is)| *is).for_each(|(part, _)| *part = number);
+                }
+                Quantity::WarmUp => corrected.warm_up = viscous.v1 * number,
+                Quantity::Payload => {
+                    correction.payload = number;
+                    links[INERTIAL * joint] += number;
+                }
+            }
+        }
+        for (at, (new, old)) in links.iter().zip(&self.links).enumerate() {
+            if new != old {
+                change(at / INERTIAL, ParameterKind::INERTIAL[at % INERTIAL], *new);
+            }
+        }
+        let mut description = robot.description().with_values(&changed, &values)?;
+        if links != self.links {
+            keep_weight(robot, &mut description);
+        }
+        let robot = Robot::from_description(&description)?;
+        let dynamics = Dynamics::new(&robot, settings)?;
+        let (settings, nominal_starts) = (settings.clone(), nominal_starts.clone());
+        let correction = Some(correction);
+        Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition: None })
+    }
+
+    /// The quadratic and cubic viscous friction that the order of the model leaves out, about the
+    /// velocity of the expansion point. The robot's own equations leave nothing out.
+    fn left_out(&self, joint: usize, v2: f64, v3: f64) -> [f64; 2] {
+        if self.setup.settings.equations == Equations::Robot {
+            return [0.0, 0.0];
+        }
+        let origin = self.setup.settings.expansion_point.qd[joint];
+        match self.setup.settings.abstraction.order {
+            1 => [v2 + 3.0 * v3 * origin, v3],
+            2 => [0.0, v3],
+            _ => [0.0, 0.0],
+        }
+    }
+}
+
+fn half(x: f64) -> f64 {
+    0.5 * x
+}
+
+/// The first of some quadrants.
+fn first(quadrants: [bool; 4]) -> usize {
+    quadrants.iter().position(|is| *is).unwrap_or(0)
+}
+
+/// Gives the links of a description the weight they have in `robot`: what is added to them is not
+/// in the recorded inputs.
+fn keep_weight(robot: &Robot, description: &mut RobotDescription) {
+    let links = robot.inertial_parameters();
+    for (joint, link) in description.joints.iter_mut().zip(links.chunks_exact(INERTIAL)) {
+        let weight = GravityMoments { mass: link[0], first_moment: [link[1], link[2], link[3]] };
+        joint.gravity_moments.get_or_insert(weight);
+    }
+}

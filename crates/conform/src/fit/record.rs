@@ -1,0 +1,152 @@
+use serde::{Deserialize, Serialize};
+
+use crate::fit::group::Group;
+use crate::plausibility::{Warning, WarningKind};
+
+/// Number of standard errors by which a fit may move a value that is still a measurement.
+pub const MOST_ERRORS: f64 = 3.0;
+
+/// How the nominal model was fitted, for people and for the model file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitRecord {
+    /// The weight of the pull toward the identified values, in parts of the identified model's cost
+    /// per unit of the logarithm of a factor.
+    pub pull: f64,
+    /// Cost of the smallest sets of the identified model.
+    pub identified_cost: f64,
+    /// Cost of the smallest sets of the fitted model.
+    pub cost: f64,
+    /// What each group is worth. These costs, and those of the motions left out, are approximate
+    /// where the times between samples differ.
+    pub groups: Vec<GroupCost>,
+    /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
+    /// compare with `identified_cost`.
+    pub leave_one_out: Vec<UnseenMotion>,
+    /// Cost of the identified model's sets when they are calibrated with the same motions; nothing
+    /// without calibration, for a model that is not linear, and where no factor calibrates them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub identified_calibrated_cost: Option<f64>,
+    /// The weights of the pull that were tried.
+    pub pulls: Vec<PullCost>,
+    /// The parameters.
+    pub parameters: Vec<FittedParameter>,
+    /// How well both models predict the input, joint by joint.
+    pub torque: Vec<TorquePrediction>,
+}
+
+/// What a group of parameters is worth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GroupCost {
+    /// The group.
+    pub group: Group,
+    /// Cost of the sets with this group at its identified values and all others as fitted; nothing
+    /// where a nominal motion runs away.
+    pub cost_without: Option<f64>,
+}
+
+/// A fit without one motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UnseenMotion {
+    /// The motion.
+    pub motion: String,
+    /// Cost of the sets of all motions for the nominal model that was fitted without it; nothing
+    /// where a nominal motion runs away.
+    pub cost: Option<f64>,
+}
+
+/// A weight of the pull that was tried.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PullCost {
+    /// The weight.
+    pub pull: f64,
+    /// The mean cost over the motions left out; nothing where a nominal motion runs away.
+    pub cost: Option<f64>,
+}
+
+impl FitRecord {
+    /// Returns the mean cost over the motions left out, with the weight that was chosen; nothing
+    /// where a nominal motion runs away.
+    #[must_use]
+    pub fn left_out_mean(&self) -> Option<f64> {
+        let sum: Option<f64> = self.leave_one_out.iter().map(|left| left.cost).sum();
+        sum.map(|sum| sum / self.leave_one_out.len() as f64)
+    }
+
+    /// Returns why the fit suits its motions only, if it does. `calibrated_cost` is the cost of the
+    /// fitted model's calibrated sets, where they are calibrated.
+    pub(crate) fn overfitted(&self, calibrated_cost: Option<f64>) -> Option<Warning> {
+        let costs = self.identified_calibrated_cost.zip(calibrated_cost);
+        let fact = match (costs.filter(|(before, after)| after > before), self.left_out_mean()) {
+            (Some((before, after)), _) => format!(
+                "calibrated sets cost {after:.0} with the fitted nominal model and {before:.0} \
+                 with the identified one"
+            ),
+            (None, Some(mean)) if mean <= self.identified_cost => return None,
+            (None, _) => "with a motion left out the fitted nominal model needs larger sets than \
+                          the identified one"
+                .into(),
+        };
+        let text = format!(
+            "{fact}: the fit suits its own motions only, so fit to more of them, fit fewer groups \
+             (--fit), or give a larger weight to the pull (--pull)"
+        );
+        Some(Warning { kind: WarningKind::Overfitted, joints: Vec::new(), text })
+    }
+}
+
+/// A parameter before and after.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FittedParameter {
+    /// Its group.
+    pub group: Group,
+    /// What it is.
+    pub name: String,
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The unit of the values.
+    pub unit: String,
+    /// The identified value.
+    pub identified: f64,
+    /// Its standard error, where the robot's description has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub standard_error: Option<f64>,
+    /// The fitted value.
+    pub fitted: f64,
+    /// What the identified value is multiplied by, where the parameter is a factor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub factor: Option<f64>,
+}
+
+impl FittedParameter {
+    /// Returns whether the fit moved the value further than the recordings of the identification
+    /// allow: it covers something that the model leaves out, and measures nothing.
+    #[must_use]
+    pub fn is_beyond_error(&self) -> bool {
+        let moved = (self.fitted - self.identified).abs();
+        self.standard_error.is_some_and(|error| moved > MOST_ERRORS * error)
+    }
+
+    /// Returns whether the fit moved the value by more than 0.05 % of it.
+    #[must_use]
+    pub fn has_changed(&self) -> bool {
+        let size = self.identified.abs().max(self.fitted.abs()).max(1e-6);
+        (self.fitted - self.identified).abs() > 5e-4 * size
+    }
+}
+
+/// The error of the predicted input of one joint along the recordings, N m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TorquePrediction {
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The root mean square with the identified model.
+    pub identified: f64,
+    /// The root mean square with the fitted model.
+    pub fitted: f64,
+}

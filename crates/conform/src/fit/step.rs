@@ -1,0 +1,335 @@
+//! One step of a fit: a linear program in the sets and the parameters together.
+//!
+//! With the nominal motion x̂ and the rows E, R at the present parameters, and their derivatives
+//! along the present sets (c, r), the sets (c', r') and a change p of the parameters must satisfy,
+//! for each case, sample and state,
+//!
+//! ± E c' + R r' + (± ∂x̂ ± ∂E c + ∂R r) p >= ± (x_m - x̂),
+//!
+//! and cost w r' + (∂w r) p plus the pull, within the trust region.
+
+use std::collections::{BTreeMap, HashSet};
+
+use rayon::prelude::*;
+
+use crate::data::settings::Noise;
+use crate::data::side::Side;
+use crate::error::Result;
+use crate::fit::evaluation::{Fit, Model, Smallest};
+use crate::fit::group::Group;
+use crate::fit::slopes::Slope;
+use crate::linear::layout::Layout;
+use crate::linear::program::{Program, dot};
+use crate::linear::solver::{Triplets, solve_cone};
+
+/// A row counts as violated beyond this part of the largest row.
+const TOLERANCE: f64 = 1e-7;
+
+/// Windows of the horizon; each adds its worst violated row.
+const WINDOWS: usize = 24;
+
+/// Tracks that the first rows are taken from at most.
+const FIRST_TRACKS: usize = 4;
+
+/// Rounds of row generation at most.
+const ROUNDS: usize = 25;
+
+/// Rows within this part of the largest deviation are kept for the next step.
+const CLOSE: f64 = 0.005;
+
+/// The weight of the pull at least, in parts of the cost: without any, the program has no unique
+/// answer where a parameter does nothing.
+const LEAST_PULL: f64 = 1e-6;
+
+/// How much each of the sets' numbers may cost more or less after a step, in parts of the cost and
+/// per unit of the trust region. The derivatives of the rows are those along the present sets.
+/// Where other sets cost nearly as little, a step that left them would promise what no step gains.
+const SET_TRUST: f64 = 0.1;
+
+/// The tolerance of the solver. A step need not be exact: the cost at its end decides.
+const SOLVER_TOLERANCE: f64 = 1e-8;
+
+/// Track, sample among the rows, state, side.
+pub(crate) type StepRow = (usize, usize, usize, Side);
+
+/// One step.
+pub(crate) struct Step<'a> {
+    pub fit: &'a Fit<'a>,
+    pub model: &'a Model,
+    pub slopes: &'a [Slope],
+    /// The program at the present parameters.
+    pub program: &'a Program<'a>,
+    /// The tracks whose rows count.
+    pub tracks: &'a [usize],
+    /// The present numbers.
+    pub numbers: &'a [f64],
+    /// The smallest sets at the present parameters.
+    pub smallest: &'a Smallest,
+    /// How far each number may move.
+    pub trust: f64,
+    /// A group whose numbers may not move.
+    pub held: Option<Group>,
+    /// Cost of a number's distance from 0.
+    pub pull: f64,
+}
+
+/// Where a step leads.
+pub(crate) struct Answer {
+    pub numbers: Vec<f64>,
+    /// The cost and the pull that the linearised program foretells.
+    pub cost: f64,
+}
+
+impl Step<'_> {
+    /// Solves the step by row generation. `rows` are the first rows, and become those that nearly
+    /// decide the answer.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Program`](crate::Error::Program).
+    pub(crate) fn solve(&self, rows: &mut Vec<StepRow>) -> Result<Answer> {
+        if rows.is_empty() {
+            rows.extend(self.first_rows());
+        }
+        let mut found = self.solve_rows(rows)?;
+        for _ in 0..ROUNDS {
+            let added = self.violated(&found.0, rows);
+            if added.is_empty() {
+                break;
+            }
+            rows.extend(added);
+            found = self.solve_rows(rows)?;
+        }
+        let (unknowns, cost) = found;
+        let numbers = self.numbers_of(&unknowns);
+        self.keep_tight(&unknowns, rows);
+        Ok(Answer { numbers, cost })
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::new(self.fit.settings, &self.program.cost, &self.program.noise_cost)
+    }
+
+    /// The parameters that may move. After the sets, the unknowns are their numbers, and then
+    /// bounds of the absolute values of these numbers.
+    fn free(&self) -> Vec<usize> {
+        let list = self.fit.parameters.list.iter().enumerate();
+        let free = list.filter(|(_, p)| Some(p.quantity.group()) != self.held);
+        free.map(|(p, _)| p).collect()
+    }
+
+    /// The numbers among the unknowns.
+    fn numbers_of(&self, unknowns: &[f64]) -> Vec<f64> {
+        let free = self.free();
+        let mut numbers = self.numbers.to_vec();
+        for (p, x) in free.iter().zip(&unknowns[unknowns.len() - 2 * free.len()..]) {
+            numbers[*p] = *x;
+        }
+        numbers
+    }
+
+    fn moved(&self, unknowns: &[f64]) -> Vec<f64> {
+        let pairs = self.numbers_of(unknowns).into_iter().zip(self.numbers);
+        pairs.map(|(new, here)| new - here).collect()
+    }
+
+    fn first_rows(&self) -> Vec<StepRow> {
+        let mut rows = Vec::new();
+        let stride = self.tracks.len().div_ceil(FIRST_TRACKS).max(1);
+        for &t in self.tracks.iter().step_by(stride) {
+            let samples = self.samples(t);
+            for k in (0..samples).step_by((samples / 4).max(1)) {
+                let states = self.fit.settings.states.rows(self.fit.joints());
+                let of_sample = (0..states).flat_map(|i| Side::BOTH.map(|side| (t, k, i, side)));
+                rows.extend(of_sample);
+            }
+        }
+        rows
+    }
+
+    fn samples(&self, track: usize) -> usize {
+        self.model.motions[track].len() / (2 * self.fit.joints())
+    }
+
+    /// The entries of E and of R in one row.
+    fn reach(&self, track: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+        let n = self.fit.joints();
+        let grid = self.fit.data.tracks[track].grid;
+        let start = (k * 2 * n + i) * 6 * n;
+        self.model.coefficients[grid][start..start + 6 * n].split_at(3 * n)
+    }
+
+    /// The derivative of a row with respect to parameter `p`.
+    fn slope(&self, p: usize, (t, k, i, side): StepRow) -> f64 {
+        let states = 2 * self.fit.joints();
+        let slope = &self.slopes[p];
+        let motion = side.sign() * slope.motions[t][k * states + i];
+        slope.reach.as_ref().map_or(motion, |reach| {
+            let [centre, radius] = reach[self.fit.data.tracks[t].grid][k * states + i];
+            motion + side.sign() * centre + radius
+        })
+    }
+
+    /// What a row must reach at the present parameters.
+    fn deviation(&self, (t, k, i, side): StepRow) -> f64 {
+        let track = &self.fit.data.tracks[t];
+        let (sample, states) = (k * self.fit.stride, 2 * self.fit.joints());
+        let nominal = self.model.motions[t][k * states + i];
+        let known = match &self.fit.settings.noise {
+            Noise::Fixed(radii) => radii[i],
+            Noise::None | Noise::Fitted => 0.0,
+        };
+        match side {
+            Side::Upper => track.case.measured.upper(sample, i) - nominal - known,
+            Side::Lower => nominal - track.case.measured.lower(sample, i) - known,
+        }
+    }
+
+    /// The derivative of the cost of the present sets with respect to each parameter.
+    fn cost_slopes(&self) -> Vec<f64> {
+        let n = self.fit.joints();
+        let of = |slope: &Slope| {
+            let Some(reach) = &slope.reach else { return 0.0 };
+            let used: Vec<&Vec<[f64; 2]>> = reach
+                .iter()
+                .enumerate()
+                .filter(|(g, _)| self.tracks.iter().any(|t| self.fit.data.tracks[*t].grid == *g))
+                .map(|(_, reach)| reach)
+                .collect();
+            let blocks = used.iter().zip(&self.program.shares);
+            blocks
+                .map(|(reach, shares)| {
+                    let samples = reach.chunks_exact(2 * n).zip(shares);
+                    samples
+                        .map(|(rows, share)| {
+                            let states = rows.iter().zip(&self.fit.weights);
+                            2.0 * share * states.map(|([_, r], s)| s * r).sum::<f64>()
+                        })
+                        .sum::<f64>()
+                })
+                .sum()
+        };
+        self.slopes.iter().map(of).collect()
+    }
+
+    fn entries(&self, row: StepRow, layout: &Layout, free: &[usize]) -> Vec<(usize, f64)> {
+        let (t, k, i, side) = row;
+        let (centre, radius) = self.reach(t, k, i);
+        let mut entries = layout.entries(centre, radius, i, side);
+        let slopes = free.iter().map(|&p| self.slope(p, row));
+        entries.extend(slopes.enumerate().map(|(at, slope)| (layout.cost.len() + at, slope)));
+        entries
+    }
+
+    /// Solves with these rows only; returns the unknowns and their cost.
+    fn solve_rows(&self, rows: &[StepRow]) -> Result<(Vec<f64>, f64)> {
+        let (layout, free) = (self.layout(), self.free());
+        let (sets, count) = (layout.cost.len(), free.len());
+        let scale = self.program.scale();
+        let units = self.program.units(&layout, Some(&self.smallest.sets));
+        let units = units.into_iter().map(|unit| unit * scale);
+        let unit: Vec<f64> = units.chain(std::iter::repeat_n(1.0, 2 * count)).collect();
+        let (mut matrix, mut bounds) = (Triplets::default(), Vec::new());
+        for &row in rows {
+            let entries = self.entries(row, &layout, &free);
+            let size = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
+            matrix.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / size)));
+            let present = free.iter().map(|&p| self.slope(p, row) * self.numbers[p]);
+            bounds.push(-(self.deviation(row) + present.sum::<f64>()) / size);
+        }
+        layout.restrict(self.fit.settings.centre, &mut matrix, &mut bounds, &unit);
+        layout.limit(&self.fit.limits, &mut matrix, &mut bounds, &unit);
+        let total = self.smallest.cost.max(self.program.negligible_cost());
+        let present = layout.unknowns(&self.smallest.sets);
+        for (j, (here, w)) in present.iter().zip(&layout.cost).enumerate() {
+            let most = self.trust * SET_TRUST * total / w;
+            matrix.row([(j, 1.0)]);
+            matrix.row([(j, -1.0)]);
+            bounds.extend([(here + most) / unit[j], (most - here) / unit[j]]);
+        }
+        for (at, &p) in free.iter().enumerate() {
+            let (number, size) = (sets + at, sets + count + at);
+            let [low, high] = self.fit.parameters.list[p].bounds;
+            matrix.row([(number, 1.0), (size, -1.0)]);
+            matrix.row([(number, -1.0), (size, -1.0)]);
+            matrix.row([(number, 1.0)]);
+            matrix.row([(number, -1.0)]);
+            let (top, bottom) = (self.numbers[p] + self.trust, self.numbers[p] - self.trust);
+            bounds.extend([0.0, 0.0, top.min(high), -bottom.max(low)]);
+        }
+        let slopes = self.cost_slopes();
+        let pull = self.pull.max(LEAST_PULL * total);
+        let of_set = |(j, w): (usize, &f64)| {
+            if j < layout.centres() { 0.0 } else { w * unit[j] / total }
+        };
+        let mut objective: Vec<f64> = layout.cost.iter().enumerate().map(of_set).collect();
+        objective.extend(free.iter().map(|&p| slopes[p] / total));
+        objective.extend(free.iter().map(|_| pull / total));
+        let found = solve_cone(&objective, &matrix, &bounds, SOLVER_TOLERANCE)?.found;
+        let value: f64 = found.iter().zip(&objective).map(|(x, w)| x * w).sum();
+        let present: f64 = free.iter().map(|&p| slopes[p] * self.numbers[p]).sum();
+        let held = (0..self.numbers.len()).filter(|p| !free.contains(p));
+        let held: f64 = held.map(|p| pull * self.numbers[p].abs()).sum();
+        let unknowns = found.iter().zip(&unit).map(|(x, unit)| x * unit).collect();
+        Ok((unknowns, value * total - present + held))
+    }
+
+    /// Deviation minus reach of a row after the parameters changed by `moved`.
+    fn excess(&self, row: StepRow, layout: &Layout, unknowns: &[f64], moved: &[f64]) -> f64 {
+        let (t, k, i, side) = row;
+        let (centre, radius) = self.reach(t, k, i);
+        let (n, centres) = (self.fit.joints(), layout.centres());
+        let mut reach = dot(radius, &unknowns[centres..centres + 3 * n]);
+        reach += side.sign() * dot(centre, &unknowns[..centres]);
+        if layout.cost.len() > centres + 3 * n {
+            reach += unknowns[centres + 3 * n + i];
+        }
+        let change: f64 = moved.iter().enumerate().map(|(p, x)| self.slope(p, row) * x).sum();
+        self.deviation(row) - change - reach
+    }
+
+    /// The worst violated row of each grid, window, state and side that is not among `known`.
+    fn violated(&self, unknowns: &[f64], known: &[StepRow]) -> Vec<StepRow> {
+        let (layout, moved) = (self.layout(), self.moved(unknowns));
+        let known: HashSet<StepRow> = known.iter().copied().collect();
+        let states = self.fit.settings.states.rows(self.fit.joints());
+        let limit = TOLERANCE * self.program.scale();
+        type Worst = BTreeMap<(usize, usize, usize, bool), (f64, StepRow)>;
+        let take = |worst: &mut Worst, key, excess: f64, row| {
+            let entry = worst.entry(key).or_insert((excess, row));
+            if excess > entry.0 {
+                *entry = (excess, row);
+            }
+        };
+        let of_track = |&t: &usize| {
+            let mut worst = Worst::new();
+            let (samples, grid) = (self.samples(t), self.fit.data.tracks[t].grid);
+            for k in 0..samples {
+                for i in 0..states {
+                    for side in Side::BOTH {
+                        let row = (t, k, i, side);
+                        let excess = self.excess(row, &layout, unknowns, &moved);
+                        if excess > limit && !known.contains(&row) {
+                            let key = (grid, k * WINDOWS / samples, i, side == Side::Upper);
+                            take(&mut worst, key, excess, row);
+                        }
+                    }
+                }
+            }
+            worst
+        };
+        let parts: Vec<Worst> = self.tracks.par_iter().map(of_track).collect();
+        let mut all = Worst::new();
+        for (key, (excess, row)) in parts.into_iter().flatten() {
+            take(&mut all, key, excess, row);
+        }
+        all.into_values().map(|(_, row)| row).collect()
+    }
+
+    /// Keeps the rows that nearly decide the answer, for the next step.
+    fn keep_tight(&self, unknowns: &[f64], rows: &mut Vec<StepRow>) {
+        let (layout, moved) = (self.layout(), self.moved(unknowns));
+        let limit = -CLOSE * self.program.scale();
+        rows.retain(|row| self.excess(*row, &layout, unknowns, &moved) > limit);
+    }
+}

@@ -1,0 +1,139 @@
+//! The cases of a problem, and the correction of their inputs.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use reachtube_recordings::Torque;
+
+use crate::data::case::Case;
+use crate::data::condition::Condition;
+use crate::data::correction::InputCorrection;
+use crate::data::envelope::Envelope;
+use crate::data::input::RunInput;
+use crate::data::problem::Problem;
+use crate::data::settings::NominalStart;
+use crate::data::suite::{RunSummary, Suite};
+use crate::error::Result;
+use crate::nominal::motion::Corrected;
+use crate::nominal::steps::Steps;
+
+impl Problem {
+    /// Returns the cases of all suites, in their order. They are made when first asked for and
+    /// stay in memory.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn cases(&self) -> Result<&[Case]> {
+        if let Some(cases) = self.cases.get() {
+            return Ok(cases);
+        }
+        let suites = 0..self.recordings().suites.len();
+        let parts: Vec<Vec<Case>> =
+            suites.map(|suite| self.cases_of(suite, Ok)).collect::<Result<_>>()?;
+        Ok(self.cases.get_or_init(|| parts.concat()))
+    }
+
+    /// Hands each case of suite `index` to `visit`, on all cores, without keeping it; returns the
+    /// answers in the order of the cases.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and those of `visit`.
+    pub(crate) fn cases_of<T: Send>(
+        &self,
+        index: usize,
+        visit: impl Fn(Case) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let suite = &self.recordings().suites[index];
+        self.recorded_cases_of(suite, index, self.differs_by_run(), |case| {
+            visit(self.corrected(case)?)
+        })
+    }
+
+    /// Hands each case of a suite with its recorded inputs to `visit`, on all cores; a case is one
+    /// run when `by_run`, or when the runs of the suite do not share their inputs.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run), and those of `visit`.
+    pub(crate) fn recorded_cases_of<T: Send>(
+        &self,
+        suite: &Suite,
+        index: usize,
+        by_run: bool,
+        visit: impl Fn(Case) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let knows_run = self.setup().condition.is_none();
+        let by_run = knows_run && (by_run || !self.robot().warms_by().is_empty());
+        match suite.shared.as_ref().filter(|_| !by_run && self.inputs_are_current()) {
+            Some(input) => Ok(vec![visit(Case {
+                name: format!("suite {}", suite.entry.name),
+                suite: index,
+                run: None,
+                grid: Arc::clone(&input.grid),
+                inputs: Arc::clone(&input.inputs),
+                start: suite.nominal_start.clone(),
+                measured: Arc::clone(&suite.envelope),
+                condition: self.setup().condition.clone().unwrap_or_else(Condition::first),
+            })?]),
+            None => {
+                let own = |summary: &RunSummary| visit(self.case_of_run(suite, index, summary)?);
+                suite.every_run()?.par_iter().map(own).collect()
+            }
+        }
+    }
+
+    /// Returns whether the correction of the inputs is another for each run.
+    pub(crate) fn differs_by_run(&self) -> bool {
+        self.setup().correction.as_ref().is_some_and(|c| c.differs_by_run())
+    }
+
+    /// Returns whether the inputs that were computed at reading are those of the problem's robot in
+    /// the problem's condition: friction is in the input of motor and link torques, and viscous
+    /// friction in that of link torques may have been fitted since.
+    fn inputs_are_current(&self) -> bool {
+        let is_warm = self.setup().condition.is_some() && !self.robot().warms_by().is_empty();
+        match self.settings().torque {
+            Torque::Compensated => true,
+            Torque::Motor => !is_warm,
+            Torque::Link => !is_warm && self.read.robot == *self.robot().description(),
+        }
+    }
+
+    fn case_of_run(&self, suite: &Suite, index: usize, summary: &RunSummary) -> Result<Case> {
+        let run = summary.index;
+        let recorded = self.run(run)?;
+        let path = self.read.origin.run_name(run);
+        let condition = self.setup().condition.as_ref().unwrap_or(&summary.condition).clone();
+        let warm = condition.warm(self.robot());
+        let robot = warm.as_ref().unwrap_or(self.robot());
+        let RunInput { grid, inputs } =
+            RunInput::new(&path, &recorded, robot, self.settings().torque)
+                .map_err(reachtube_recordings::Error::Defects)?;
+        let mut measured = Envelope::new(2 * recorded.joints);
+        measured.include(run as u32, &recorded.states);
+        let start = match self.settings().nominal {
+            NominalStart::Mean => suite.nominal_start.clone(),
+            NominalStart::Own => recorded.state(0).to_vec(),
+        };
+        let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
+        let measured = Arc::new(measured);
+        Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, condition })
+    }
+
+    /// Takes the correction of the problem's model off the inputs of a case.
+    fn corrected(&self, case: Case) -> Result<Case> {
+        let (robot, dynamics) = (self.robot(), self.dynamics());
+        let none = InputCorrection::none(robot.joint_count());
+        let correction = match &self.setup().correction {
+            Some(correction) => correction,
+            None if !self.setup().is_recorded_input() => &none,
+            None => return Ok(case),
+        };
+        let model = Corrected { robot, dynamics, correction, settings: self.settings() };
+        let steps = dynamics.linear_system().map(|system| Steps::new(system, case.grid.times()));
+        let inputs = model.motion(&case, steps.as_ref())?.inputs.into();
+        Ok(Case { inputs, ..case })
+    }
+}
