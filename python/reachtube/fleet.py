@@ -21,7 +21,7 @@ from ._model import Check, Model, text_of
 from ._points import Points
 from ._progress import Progress, shown
 from ._robot import Robot
-from ._settings import Group, Torque, differing, of_conformance
+from ._settings import Group, Notion, Torque, differing, of_conformance
 from .errors import ReachtubeError, SettingError
 
 if TYPE_CHECKING:
@@ -172,6 +172,7 @@ def check(
     resume: str | PathLike[str] | None = None,
     summaries: str | PathLike[str] | None = None,
     storage_options: Mapping[str, Any] | None = None,
+    notion: Notion | None = None,
     until: float | None = None,
     max_gap: float | None = None,
     progress: Progress = None,
@@ -184,14 +185,15 @@ def check(
         The model.
     manifest, robots, client, runs_per_task, on_defect, resume, summaries, storage_options, progress
         As for `conform`.
-    until, max_gap
-        As for `reachtube.check`.
+    notion, until, max_gap
+        As for `reachtube.check`: they are the model's own where they are not given. Points of the
+        notions ``"phase-plane"`` and ``"exact"`` are asked as by `conform`.
 
     Returns
     -------
     Check
     """
-    job = Job("model", text_of(model), differing("hull", until, max_gap))
+    job = Job("model", text_of(model), differing(notion, until, max_gap))
     fleet_of(job).fold()
     parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
     whole, points = _folded(job, parts, client, progress, "fleet.check")

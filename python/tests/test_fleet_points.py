@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import reachtube as rt
@@ -56,6 +57,47 @@ def test_points_that_workers_hold_give_the_same_bits(
     assert fleet.conform(robot, few, client=client, runs_per_task=3, **arguments) == alone
     verdict = fleet.check(alone, few, runs_per_task=9)
     assert verdict and verdict == fleet.check(alone, few, client=client, runs_per_task=4)
+
+
+def at_a_corner(model: rt.Model, manifest: Path) -> Path:
+    """Write a manifest whose first recording ends at a corner of the hull of the reachable set.
+
+    The corner has the highest positions and the lowest velocities.
+    """
+    rows = {row.file: row for row in fleet.read_manifest(manifest)}
+    row, other = rows["0_1.csv"], rows["0_2.csv"]
+    numbers = np.loadtxt(manifest.parent / row.file, delimiter=",", skiprows=1)
+    parts = np.split(numbers[:, 1:], 3, axis=1)
+    [tube] = rt.reach(model, rt.Run(numbers[:, 0], *parts, suite="S0"))
+    last, n = len(tube.t) - 1, 6
+    # A part of a percent inside the hull, so that only the points can be outside.
+    inside = 1e-3 * (tube.upper[last] - tube.lower[last])
+    numbers[last, 1 : 1 + n] = (tube.upper[last] - inside)[:n]
+    numbers[last, 1 + n : 1 + 2 * n] = (tube.lower[last] + inside)[n:]
+    names = ["t", *(f"{part}{j + 1}" for part in ("q", "qd", "tau") for j in range(n))]
+    head = ",".join(names)
+    np.savetxt(
+        manifest.parent / "corner.csv", numbers, fmt="%.17g", delimiter=",", header=head, comments=""
+    )
+    altered = [row._replace(file="corner.csv"), other]
+    fleet.write_manifest(manifest.parent / "corner.parquet", altered)
+    return manifest.parent / "corner.parquet"
+
+
+def test_a_check_asks_the_points_of_an_exact_model(few: Path, client: Any) -> None:
+    model = fleet.conform(rt.Robot.lwa4p(), few, **of_points("exact"))
+    corner = at_a_corner(model, few)
+    inside = fleet.check(model, few)
+    assert inside and inside.to_dict()["points"]["unproved"] == 0
+    # The hull holds the point that the set itself does not hold.
+    hull = fleet.check(model, corner, notion="hull")
+    assert hull and "points" not in hull.to_dict()
+    found = fleet.check(model, corner, client=client, runs_per_task=1)
+    assert not found and found == fleet.check(model, corner)
+    points = found.to_dict()["points"]
+    assert points["unproved"] == 1
+    worst = points["worst"]
+    assert (worst["suite"], worst["run"]) == ("S0", "corner.csv")
 
 
 def test_jobs_leave_nothing_but_the_futures_of_others(few: Path, client: Any) -> None:
