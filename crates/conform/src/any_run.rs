@@ -2,7 +2,8 @@ use reachtube_scalar::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::data::condition::Condition;
-use crate::data::problem::{Problem, Setup};
+use crate::data::problem::Problem;
+use crate::data::setup::Setup;
 use crate::error::Result;
 use crate::progress::Silent;
 use crate::sets::UncertaintySets;

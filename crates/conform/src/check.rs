@@ -2,7 +2,8 @@ use serde::Serialize;
 
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
-use crate::data::suite::{RunSummary, Suite};
+use crate::data::suite::Suite;
+use crate::data::summary::RunSummary;
 use crate::error::Result;
 use crate::growth::Growth;
 use crate::hulls::Hulls;

@@ -47,15 +47,17 @@ pub use data::fold::fold::Fold;
 pub use data::fold::of_fold::OnDefect;
 pub use data::input::RunInput;
 pub use data::marks::Marks;
-pub use data::problem::{Keep, Problem, Setup};
+pub use data::problem::{Keep, Problem};
 pub use data::recordings::Recordings;
 pub use data::sensor_noise::SensorNoise;
 pub use data::settings::{
     Centre, Equations, InitialLimit, Method, Noise, NominalStart, Notion, Settings, States,
     Tolerance, Weights,
 };
+pub use data::setup::Setup;
 pub use data::side::Side;
-pub use data::suite::{RunSummary, Suite};
+pub use data::suite::Suite;
+pub use data::summary::RunSummary;
 pub use data::totals::Totals;
 pub use deviation::{Deviation, Nominal};
 pub use error::{Error, Result};

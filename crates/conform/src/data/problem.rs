@@ -1,93 +1,25 @@
-use std::collections::{BTreeMap, HashMap};
+use std::borrow::Cow;
+use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
-use reachtube_abstraction::{OperatingBox, PolynomialModel};
-use reachtube_recordings::{ReadOptions, Run, RunSource, State};
-use reachtube_robot::friction::WarmingBy;
+use reachtube_recordings::{Run, RunEntry, RunSource, State};
 use reachtube_robot::{Robot, RobotDescription};
 
 use crate::data::case::Case;
-use crate::data::condition::Condition;
-use crate::data::correction::InputCorrection;
 use crate::data::dynamics::Dynamics;
 use crate::data::kept::KeptRuns;
+use crate::data::notes::recording_notes;
 use crate::data::origin::Origin;
 use crate::data::recordings::Recordings;
 use crate::data::sensor_noise::SensorNoise;
-use crate::data::settings::{Equations, Notion, Settings};
-use crate::data::suite::{Suite, SuiteReader};
+use crate::data::settings::{Notion, Settings};
+use crate::data::setup::{Setup, read_options, side};
+use crate::data::suite::SuiteReader;
 use crate::deviation::Deviation;
 use crate::error::{Error, Result};
-use crate::explain::trace;
 use crate::grids::Grids;
 use crate::notion::elsewhere::PointServer;
 use crate::progress::Progress;
-
-/// What decides a conformance besides the recordings: the robot, its model and the settings.
-///
-/// The robot names the joints, turns recorded torques into inputs and is written into the model
-/// file; all that follows the reading uses only the model.
-#[derive(Debug, Clone)]
-pub struct Setup {
-    /// The robot.
-    pub robot: Robot,
-    /// The model of its motion.
-    pub dynamics: Dynamics,
-    /// The settings.
-    pub settings: Settings,
-    /// The nominal initial states of suites by their name, 2n each, where they are known. Any
-    /// other suite starts at the mean of the recordings at hand.
-    pub nominal_starts: BTreeMap<String, Vec<f64>>,
-    /// What is taken off the recorded inputs along the nominal motions, where anything is.
-    pub correction: Option<InputCorrection>,
-    /// The condition that friction is taken in, whatever that of a run is; nothing where each run
-    /// has its own.
-    pub condition: Option<Condition>,
-}
-
-impl Setup {
-    /// Makes the model of `robot` that `settings` ask for.
-    ///
-    /// # Errors
-    ///
-    /// Settings that do not fit the robot, a robot that is not physical at the expansion point.
-    pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
-        settings.validate(robot.joint_count())?;
-        let dynamics = Dynamics::new(&robot, &settings)?;
-        Self::of(robot, dynamics, settings)
-    }
-
-    /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
-    /// operating box.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unbounded`] when the model's error was found to have no bound over its box, and
-    /// settings that do not fit.
-    pub fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
-        let settings = settings.with_abstraction(&model)?;
-        settings.validate(model.joints())?;
-        let robot = Robot::from_description(model.robot())?;
-        let dynamics = Dynamics::of(model, settings.method);
-        Self::of(robot, dynamics, settings)
-    }
-
-    fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Result<Self> {
-        if settings.equations == Equations::Robot && dynamics.linear_system().is_none() {
-            return Err(Error::Equations);
-        }
-        let nominal_starts = BTreeMap::new();
-        Ok(Self { robot, dynamics, settings, nominal_starts, correction: None, condition: None })
-    }
-
-    /// Returns whether the model's input is the recorded one, with nothing taken off it along the
-    /// nominal motion.
-    pub(crate) fn is_recorded_input(&self) -> bool {
-        self.correction.is_none()
-            && self.robot.warms_by().is_empty()
-            && self.settings.equations == Equations::Model
-    }
-}
 
 /// Which runs stay in memory, sample by sample, after they were folded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -162,7 +94,7 @@ impl Problem {
     ) -> Result<Self> {
         let Setup { robot, settings, .. } = &setup;
         settings.validate(robot.joint_count())?;
-        trace::check_settings(settings)?;
+        settings.check_trace()?;
         let kept = KeptRuns::default();
         let reader = SuiteReader {
             source: source.as_ref(),
@@ -188,10 +120,8 @@ impl Problem {
         mut recordings: Recordings,
         kept: HashMap<usize, Run>,
     ) -> Self {
-        let notes = recordings.data_notes(&setup, &origin);
+        let notes = recording_notes(&setup, &origin, &recordings);
         recordings.notes.extend(notes);
-        recordings.notes.extend(leaving_notes(&setup, &recordings));
-        recordings.notes.extend(unknown_temperature(&setup, &recordings));
         let sensor_noise = sensor_noise(&setup, &recordings);
         let (robot, kept) = (setup.robot.description().clone(), Arc::new(kept));
         Self::of(setup, Arc::new(Read { origin, recordings, kept, sensor_noise, robot }))
@@ -252,6 +182,46 @@ impl Problem {
         self.setup.robot.joint_count()
     }
 
+    /// Returns the source's entry of run `index`.
+    ///
+    /// # Panics
+    ///
+    /// Where the source has no run `index`, or the fold that the problem was made of has not kept
+    /// its entry; it keeps those of the runs in [`Suite::runs`](crate::Suite::runs) and of the runs
+    /// that have a bound of an envelope.
+    #[must_use]
+    pub fn entry(&self, index: usize) -> &RunEntry {
+        self.read.origin.entry(index)
+    }
+
+    /// Returns the samples of run `index`: those in memory, or read once more where they were not
+    /// kept.
+    ///
+    /// # Errors
+    ///
+    /// Defects, [`Error::Changed`] when the recording is not the one that was read first, or
+    /// [`Error::Fold`] when the problem was made of a fold that has not kept them.
+    pub fn run(&self, index: usize) -> Result<Cow<'_, Run>> {
+        if let Some(run) = self.read.kept.get(&index) {
+            return Ok(Cow::Borrowed(run));
+        }
+        let Origin::Source(source) = &self.read.origin else {
+            return Err(Error::Fold(format!(
+                "it has not kept the samples of run {index}, and this step needs them; read the \
+                 recordings on one machine for it"
+            )));
+        };
+        let run = source
+            .read(index, &read_options(self.setup()))
+            .map_err(reachtube_recordings::Error::Defects)?;
+        let summaries = self.read.recordings.suites.iter().flat_map(|suite| &suite.runs);
+        let read_first = summaries.into_iter().find(|summary| summary.index == index);
+        if read_first.is_some_and(|summary| summary.sha256 != run.sha256) {
+            return Err(Error::Changed { path: source.run_name(index) });
+        }
+        Ok(Cow::Owned(run))
+    }
+
     /// Returns the sample grids of the recordings, with e^{At}, Γ(t) and κ(t) of the linear model.
     /// They are computed when first asked for.
     ///
@@ -291,6 +261,14 @@ impl Problem {
     }
 }
 
+/// The noise of the sensors, as the settings give it or these recordings show it.
+pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNoise {
+    match &setup.settings.sensor_noise {
+        Some(radius) => SensorNoise::given(radius.clone()),
+        None => SensorNoise::estimate(recordings, setup.robot.joint_count()),
+    }
+}
+
 /// Refuses recordings that start outside the box over which the model's error was bounded: an
 /// initial set that holds them would leave it too.
 fn check_starts(setup: &Setup, source: &dyn RunSource, recordings: &Recordings) -> Result<()> {
@@ -306,59 +284,4 @@ fn check_starts(setup: &Setup, source: &dyn RunSource, recordings: &Recordings) 
         }
     }
     Ok(())
-}
-
-/// Names, for each suite that leaves the box, where it does so first.
-fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
-    let Some(operating_box) = &setup.settings.operating_box else { return Vec::new() };
-    let leaves = |suite: &Suite| {
-        let envelope = &suite.envelope;
-        let outside = |k: usize, i: usize| {
-            let [low, high] = side(operating_box, i);
-            envelope.upper(k, i) > high || envelope.lower(k, i) < low
-        };
-        let states = envelope.dimension();
-        let mut places = (0..envelope.len()).flat_map(|k| (0..states).map(move |i| (k, i)));
-        let (k, i) = places.find(|&(k, i)| outside(k, i))?;
-        Some(format!(
-            "suite {}: {} leaves the operating box at sample {k}. The model error has no proved \
-             bound outside the box; there it is covered only by these recordings",
-            suite.entry.name,
-            State::from_index(i, setup.robot.joint_count())
-        ))
-    };
-    recordings.suites.iter().filter_map(leaves).collect()
-}
-
-/// Says where friction depends on a temperature that a recording does not have.
-fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
-    let by_temperature = setup.robot.warms_by().contains(&WarmingBy::Temperature);
-    let with: usize = recordings.suites.iter().map(|s| s.totals.with_temperature()).sum();
-    let without = recordings.run_count() - with;
-    (by_temperature && without > 0).then(|| {
-        format!(
-            "friction of the robot depends on temperature, and {without} of the {} recordings \
-             have no columns temp1 to tempn; they are taken at the reference temperature",
-            recordings.run_count()
-        )
-    })
-}
-
-/// The noise of the sensors, as the settings give it or these recordings show it.
-pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNoise {
-    match &setup.settings.sensor_noise {
-        Some(radius) => SensorNoise::given(radius.clone()),
-        None => SensorNoise::estimate(recordings, setup.robot.joint_count()),
-    }
-}
-
-pub(crate) fn read_options(setup: &Setup) -> ReadOptions {
-    let Settings { gap_limit, until, .. } = setup.settings;
-    ReadOptions { joints: Some(setup.robot.joint_count()), gap_limit, until }
-}
-
-/// The side of the box for state `i`, q then q̇.
-pub(crate) fn side(operating_box: &OperatingBox, i: usize) -> [f64; 2] {
-    let n = operating_box.q.len();
-    if i < n { operating_box.q[i] } else { operating_box.qd[i - n] }
 }

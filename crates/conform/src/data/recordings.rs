@@ -1,8 +1,5 @@
-use reachtube_recordings::{Defect, RunSource, SuiteEntry, copies_note};
+use reachtube_recordings::{Defect, RunSource, SuiteEntry};
 
-use crate::data::origin::Origin;
-use crate::data::problem::Setup;
-use crate::data::settings::NominalStart;
 use crate::data::suite::{Suite, SuiteReader};
 use crate::data::tree::{Leaf, Tree};
 use crate::error::Result;
@@ -70,16 +67,9 @@ impl Recordings {
     pub fn run_count(&self) -> usize {
         self.suites.iter().map(Suite::run_count).sum()
     }
-
-    /// Returns what a user should know about the data of the suites.
-    pub(crate) fn data_notes(&self, setup: &Setup, origin: &Origin) -> Vec<String> {
-        let of_suites = self.suites.iter().flat_map(|suite| suite_notes(suite, setup));
-        let runs = self.suites.iter().flat_map(Suite::sample);
-        let named = runs.map(|run| (origin.entry(run.index).file.as_str(), run.sha256.as_str()));
-        of_suites.chain(copies_note(named)).collect()
-    }
 }
 
+/// Returns what a user should know about the choice of suites and about the source.
 fn index_notes(source: &dyn RunSource, chosen: &[SuiteEntry]) -> Vec<String> {
     let (used, all) = (chosen.iter().map(|entry| entry.runs.len()).sum::<usize>(), source.runs());
     let mut notes = Vec::new();
@@ -109,33 +99,4 @@ fn root(source: &dyn RunSource, suites: &[Suite]) -> String {
         }
     }
     tree.root()
-}
-
-fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
-    let Setup { settings, nominal_starts, .. } = setup;
-    let (nominal, count) = (settings.nominal, suite.run_count());
-    let mut notes: Vec<String> = suite.totals.run_notes().collect();
-    let [shortest, longest] = suite.totals.samples;
-    let name = &suite.entry.name;
-    if shortest < longest {
-        notes.push(format!(
-            "suite {name}: its runs have {shortest} to {longest} samples; each run counts up to \
-             its own end"
-        ));
-    }
-    if suite.shared.is_none() && count > 1 && nominal == NominalStart::Mean {
-        notes.push(format!(
-            "suite {name}: its runs differ in input or sample times, so each run has its own \
-             nominal solution"
-        ));
-    }
-    let is_known = nominal_starts.is_empty() || nominal_starts.contains_key(name);
-    if nominal == NominalStart::Mean && !is_known {
-        notes.push(format!(
-            "suite {name}: the model has no nominal initial state for it, so its nominal solution \
-             starts at the mean of the first states of its {count} recordings; the verdict on one \
-             of them depends on the others"
-        ));
-    }
-    notes
 }

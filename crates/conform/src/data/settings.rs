@@ -9,6 +9,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 
+/// What the notion trace asks of the settings.
+pub(crate) const NEEDS_NOISE: &str = "needs a measurement noise V in every state, because no motion of a \
+                           model meets measured states exactly; a model gets V by conform \
+                           --noise, for example --noise 0.001,0.01";
+
 /// How the smallest sets are found (docs/method.md, correction K).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -246,6 +251,20 @@ impl Settings {
     /// Returns whether the noise of the sensors limits V or X0.
     pub(crate) fn are_limited_by_noise(&self) -> bool {
         self.noise == Noise::Fitted || self.nominal == NominalStart::Own
+    }
+
+    /// Checks that traces can be asked for, where they are.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Trace`] with the remedy.
+    pub(crate) fn check_trace(&self) -> Result<()> {
+        match &self.noise {
+            _ if self.notion != Notion::Trace => Ok(()),
+            Noise::None => Err(Error::Trace(NEEDS_NOISE)),
+            Noise::Fixed(radii) if radii.contains(&0.0) => Err(Error::Trace(NEEDS_NOISE)),
+            Noise::Fixed(_) | Noise::Fitted => Ok(()),
+        }
     }
 
     /// Takes model, expansion point and operating box from an abstraction.

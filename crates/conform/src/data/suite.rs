@@ -4,23 +4,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
-use reachtube_recordings::{
-    Defect, ReadOptions, Run, RunEntry, RunSource, SuiteEntry, Torque, noise_deviations, run_notes,
-};
+use reachtube_recordings::{Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque};
 use reachtube_robot::Robot;
 
-use crate::data::condition::Condition;
 use crate::data::envelope::Envelope;
 use crate::data::input::{RunInput, SharedInput};
 use crate::data::kept::KeptRuns;
-use crate::data::marks::Marks;
 use crate::data::settings::NominalStart;
+use crate::data::summary::{RunSummary, SAMPLE, sampled};
 use crate::data::totals::Totals;
 use crate::error::{Error, Result as AnyResult};
-
-/// Number of runs of a suite whose marks are kept and which its statistics are of: that many are
-/// drawn from a larger suite.
-pub(crate) const SAMPLE: usize = 256;
 
 /// One test suite after reading.
 #[derive(Debug, Clone)]
@@ -40,33 +33,6 @@ pub struct Suite {
     pub shared: Option<RunInput>,
     /// Envelope of the measured states, with run indices of the source.
     pub envelope: Arc<Envelope>,
-}
-
-/// What is kept of every run.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RunSummary {
-    /// Index in the source.
-    pub index: usize,
-    /// Number of samples.
-    pub samples: usize,
-    /// Time from the first to the last sample, s.
-    pub duration: f64,
-    /// The run's grid, or a longer one of the suite that it is the beginning of: runs of one rate
-    /// share one.
-    pub grid: Arc<TimeGrid>,
-    /// The first state, 2n.
-    pub start: Vec<f64>,
-    /// Some of its states; none where the run is not drawn from a suite of more than 256.
-    pub marks: Marks,
-    /// What friction may depend on.
-    pub condition: Condition,
-    /// SHA-256 of the recording.
-    pub sha256: String,
-    /// The standard deviation of the noise in each state, 2n, as
-    /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it.
-    pub noise: Option<Vec<f64>>,
-    /// What a user should know about the run.
-    pub notes: Vec<String>,
 }
 
 impl Suite {
@@ -102,39 +68,6 @@ impl Suite {
     /// Returns whether the sample is all runs.
     pub(crate) fn is_small(&self) -> bool {
         self.totals.count <= SAMPLE
-    }
-}
-
-/// Returns the 256 runs with the lowest SHA-256, or all of fewer, in the order of their indices. A
-/// sample of the samples of parts is that of the whole, and copies of a run are drawn with it.
-pub(crate) fn sampled<'a>(
-    runs: impl IntoIterator<Item = &'a RunSummary>,
-) -> impl Iterator<Item = &'a RunSummary> {
-    let mut sample: Vec<&RunSummary> = runs.into_iter().collect();
-    if sample.len() > SAMPLE {
-        sample.sort_unstable_by_key(|run| (&run.sha256, run.index));
-        sample.truncate(SAMPLE);
-        sample.sort_unstable_by_key(|run| run.index);
-    }
-    sample.into_iter()
-}
-
-impl RunSummary {
-    /// Sums up run `index` of a source, whose entry there is `entry`.
-    pub(crate) fn new(index: usize, entry: &RunEntry, run: &Run, grid: Arc<TimeGrid>) -> Self {
-        let end = run.len().saturating_sub(1);
-        Self {
-            index,
-            samples: run.len(),
-            duration: grid.times().get(end).copied().unwrap_or(0.0),
-            grid,
-            start: run.state(0).to_vec(),
-            marks: Marks::new(run),
-            condition: Condition::of(entry.order, run),
-            sha256: run.sha256.clone(),
-            noise: noise_deviations(run),
-            notes: run_notes(entry, run),
-        }
     }
 }
 

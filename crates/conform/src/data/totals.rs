@@ -2,7 +2,7 @@ use std::collections::BTreeMap;
 
 use reachtube_scalar::ExactSum;
 
-use crate::data::suite::RunSummary;
+use crate::data::summary::RunSummary;
 
 /// Number of runs of a suite whose notes are given in full.
 pub(crate) const MOST_NOTED: usize = 20;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
-use crate::data::settings::{Noise, Notion, Settings};
+use crate::data::settings::NEEDS_NOISE;
 use crate::error::{Error, Result};
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::found::Found;
@@ -44,10 +44,6 @@ const PARTS: [usize; 3] = [1, 8, 64];
 
 /// A motion that comes as close as this part of V is close enough.
 const ENOUGH: f64 = 0.98;
-
-const NEEDS_NOISE: &str = "needs a measurement noise V in every state, because no motion of a \
-                           model meets measured states exactly; a model gets V by conform \
-                           --noise, for example --noise 0.001,0.01";
 
 /// Whether each recording is, up to the measurement noise V, one motion of the model: its start
 /// lies in X0, its disturbance in U, held from each sample to the next, or throughout where the
@@ -94,20 +90,6 @@ impl TraceVerdict {
                 .filter(|worst| !worst.holds())
                 .map(|worst| problem.entry(worst.run).file.clone()),
         }
-    }
-}
-
-/// Checks that traces can be asked for under some settings.
-///
-/// # Errors
-///
-/// [`Error::Trace`] with the remedy.
-pub(crate) fn check_settings(settings: &Settings) -> Result<()> {
-    match &settings.noise {
-        _ if settings.notion != Notion::Trace => Ok(()),
-        Noise::None => Err(Error::Trace(NEEDS_NOISE)),
-        Noise::Fixed(radii) if radii.contains(&0.0) => Err(Error::Trace(NEEDS_NOISE)),
-        Noise::Fixed(_) | Noise::Fitted => Ok(()),
     }
 }
 

@@ -7,8 +7,8 @@ use reachtube_reach::{Disturbance, TimeGrid};
 
 use crate::data::correction::InputCorrection;
 use crate::data::envelope::Envelope;
-use crate::data::problem::Setup;
 use crate::data::settings::Settings;
+use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
 use crate::fit::parameters::Parameters;

@@ -3,8 +3,9 @@ use reachtube_abstraction::Abstraction;
 
 use crate::data::dynamics::Dynamics;
 use crate::data::envelope::Envelope;
-use crate::data::problem::{Problem, Setup};
+use crate::data::problem::Problem;
 use crate::data::settings::{Method, Weights};
+use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
 use crate::fit::evaluation::Fit;

@@ -1,7 +1,7 @@
 use reachtube_recordings::Torque;
 use serde::{Deserialize, Serialize};
 
-use crate::data::problem::Setup;
+use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 
 /// A group of parameters of the nominal model that a fit may move.

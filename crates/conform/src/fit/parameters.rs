@@ -4,8 +4,8 @@ use reachtube_robot::{GravityMoments, ParameterKind, Robot, RobotDescription};
 
 use crate::data::correction::InputCorrection;
 use crate::data::dynamics::Dynamics;
-use crate::data::problem::Setup;
 use crate::data::settings::Equations;
+use crate::data::setup::Setup;
 use crate::error::Result;
 use crate::fit::group::Group;
 

@@ -9,7 +9,8 @@ use sha2::{Digest, Sha256};
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
 use crate::data::settings::{NominalStart, Tolerance};
-use crate::data::suite::{RunSummary, Suite};
+use crate::data::suite::Suite;
+use crate::data::summary::RunSummary;
 use crate::explain::explanation::Explanation;
 
 /// The recordings beside the closest motions of the model that were found: a start in X0 and an

@@ -6,8 +6,8 @@ use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_robot::Robot;
 
 use crate::data::dynamics::Dynamics;
-use crate::data::problem::Setup;
 use crate::data::settings::Settings;
+use crate::data::setup::Setup;
 use crate::model::file::Model;
 use crate::model::records::SuiteRecord;
 use crate::verdict::SuiteVerdict;

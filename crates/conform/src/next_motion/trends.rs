@@ -1,7 +1,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
-use crate::data::suite::{RunSummary, Suite};
+use crate::data::suite::Suite;
+use crate::data::summary::RunSummary;
 
 /// The least rank correlation that is called a trend.
 const LEAST_CORRELATION: f64 = 0.7;

@@ -4,7 +4,8 @@ use nalgebra::DVector;
 
 use crate::data::case::Case;
 use crate::data::correction::InputCorrection;
-use crate::data::problem::{Problem, Setup};
+use crate::data::problem::Problem;
+use crate::data::setup::Setup;
 use crate::error::Result;
 use crate::nominal::corrector::Corrector;
 

@@ -11,7 +11,7 @@ use crate::data::fold::defects::Defects;
 use crate::data::fold::fold::{Fold, State, other_setup};
 use crate::data::fold::stored::StoredSuite;
 use crate::data::fold::suite_fold::SuiteFold;
-use crate::data::problem::Setup;
+use crate::data::setup::Setup;
 use crate::data::tree::Tree;
 use crate::error::{Error, Result};
 

@@ -5,8 +5,8 @@ use reachtube_robot::Robot;
 use sha2::{Digest, Sha256};
 
 use crate::data::input::RunInput;
-use crate::data::problem::{Setup, read_options, side};
 use crate::data::settings::{NominalStart, Notion, Settings};
+use crate::data::setup::{Setup, read_options, side};
 use crate::error::{Error, Result};
 
 /// What the reading of recordings depends on.

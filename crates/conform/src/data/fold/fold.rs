@@ -10,7 +10,7 @@ use crate::data::fold::context::Context;
 use crate::data::fold::defects::Defects;
 use crate::data::fold::suite_fold::SuiteFold;
 use crate::data::kept::MOST_BYTES;
-use crate::data::problem::Setup;
+use crate::data::setup::Setup;
 use crate::data::tree::{Leaf, Tree};
 use crate::error::{Error, Result};
 use crate::model::Model;

@@ -7,9 +7,10 @@ use crate::data::fold::context::Context;
 use crate::data::fold::fold::{Fold, other_setup};
 use crate::data::fold::suite_fold::SuiteFold;
 use crate::data::origin::Origin;
-use crate::data::problem::{Problem, Setup};
+use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
 use crate::data::settings::NominalStart;
+use crate::data::setup::Setup;
 use crate::data::suite::Suite;
 use crate::error::{Error, Result};
 

@@ -15,7 +15,7 @@ use crate::data::fold::suite_fold::SuiteFold;
 use crate::data::fold::whole_runs::{WholeRun, WholeRuns};
 use crate::data::input::{RunInput, SharedInput};
 use crate::data::marks::Marks;
-use crate::data::suite::RunSummary;
+use crate::data::summary::RunSummary;
 use crate::data::totals::Totals;
 
 /// A suite.

@@ -7,7 +7,7 @@ use crate::data::envelope::Envelope;
 use crate::data::fold::context::Context;
 use crate::data::fold::whole_runs::{WholeRun, WholeRuns};
 use crate::data::input::{RunInput, SharedInput};
-use crate::data::suite::{RunSummary, SAMPLE, sampled};
+use crate::data::summary::{RunSummary, SAMPLE, sampled};
 use crate::data::totals::Totals;
 use crate::error::{Error, Result};
 

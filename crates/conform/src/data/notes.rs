@@ -1,0 +1,94 @@
+//! What a user should know about recordings, in words.
+
+use reachtube_recordings::{State, copies_note};
+use reachtube_robot::friction::WarmingBy;
+
+use crate::data::origin::Origin;
+use crate::data::recordings::Recordings;
+use crate::data::settings::NominalStart;
+use crate::data::setup::{Setup, side};
+use crate::data::suite::Suite;
+
+/// Returns what a user should know about the recordings that were read.
+pub(super) fn recording_notes(
+    setup: &Setup,
+    origin: &Origin,
+    recordings: &Recordings,
+) -> Vec<String> {
+    let mut notes = data_notes(setup, origin, recordings);
+    notes.extend(leaving_notes(setup, recordings));
+    notes.extend(unknown_temperature(setup, recordings));
+    notes
+}
+
+fn data_notes(setup: &Setup, origin: &Origin, recordings: &Recordings) -> Vec<String> {
+    let of_suites = recordings.suites.iter().flat_map(|suite| suite_notes(suite, setup));
+    let runs = recordings.suites.iter().flat_map(Suite::sample);
+    let named = runs.map(|run| (origin.entry(run.index).file.as_str(), run.sha256.as_str()));
+    of_suites.chain(copies_note(named)).collect()
+}
+
+fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
+    let Setup { settings, nominal_starts, .. } = setup;
+    let (nominal, count) = (settings.nominal, suite.run_count());
+    let mut notes: Vec<String> = suite.totals.run_notes().collect();
+    let [shortest, longest] = suite.totals.samples;
+    let name = &suite.entry.name;
+    if shortest < longest {
+        notes.push(format!(
+            "suite {name}: its runs have {shortest} to {longest} samples; each run counts up to \
+             its own end"
+        ));
+    }
+    if suite.shared.is_none() && count > 1 && nominal == NominalStart::Mean {
+        notes.push(format!(
+            "suite {name}: its runs differ in input or sample times, so each run has its own \
+             nominal solution"
+        ));
+    }
+    let is_known = nominal_starts.is_empty() || nominal_starts.contains_key(name);
+    if nominal == NominalStart::Mean && !is_known {
+        notes.push(format!(
+            "suite {name}: the model has no nominal initial state for it, so its nominal solution \
+             starts at the mean of the first states of its {count} recordings; the verdict on one \
+             of them depends on the others"
+        ));
+    }
+    notes
+}
+
+/// Names, for each suite that leaves the box, where it does so first.
+fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
+    let Some(operating_box) = &setup.settings.operating_box else { return Vec::new() };
+    let leaves = |suite: &Suite| {
+        let envelope = &suite.envelope;
+        let outside = |k: usize, i: usize| {
+            let [low, high] = side(operating_box, i);
+            envelope.upper(k, i) > high || envelope.lower(k, i) < low
+        };
+        let states = envelope.dimension();
+        let mut places = (0..envelope.len()).flat_map(|k| (0..states).map(move |i| (k, i)));
+        let (k, i) = places.find(|&(k, i)| outside(k, i))?;
+        Some(format!(
+            "suite {}: {} leaves the operating box at sample {k}. The model error has no proved \
+             bound outside the box; there it is covered only by these recordings",
+            suite.entry.name,
+            State::from_index(i, setup.robot.joint_count())
+        ))
+    };
+    recordings.suites.iter().filter_map(leaves).collect()
+}
+
+/// Says where friction depends on a temperature that a recording does not have.
+fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
+    let by_temperature = setup.robot.warms_by().contains(&WarmingBy::Temperature);
+    let with: usize = recordings.suites.iter().map(|s| s.totals.with_temperature()).sum();
+    let without = recordings.run_count() - with;
+    (by_temperature && without > 0).then(|| {
+        format!(
+            "friction of the robot depends on temperature, and {without} of the {} recordings \
+             have no columns temp1 to tempn; they are taken at the reference temperature",
+            recordings.run_count()
+        )
+    })
+}

@@ -1,0 +1,88 @@
+use std::collections::BTreeMap;
+
+use reachtube_abstraction::{OperatingBox, PolynomialModel};
+use reachtube_recordings::ReadOptions;
+use reachtube_robot::Robot;
+
+use crate::data::condition::Condition;
+use crate::data::correction::InputCorrection;
+use crate::data::dynamics::Dynamics;
+use crate::data::settings::{Equations, Settings};
+use crate::error::{Error, Result};
+
+/// What decides a conformance besides the recordings: the robot, its model and the settings.
+///
+/// The robot names the joints, turns recorded torques into inputs and is written into the model
+/// file; all that follows the reading uses only the model.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// The robot.
+    pub robot: Robot,
+    /// The model of its motion.
+    pub dynamics: Dynamics,
+    /// The settings.
+    pub settings: Settings,
+    /// The nominal initial states of suites by their name, 2n each, where they are known. Any
+    /// other suite starts at the mean of the recordings at hand.
+    pub nominal_starts: BTreeMap<String, Vec<f64>>,
+    /// What is taken off the recorded inputs along the nominal motions, where anything is.
+    pub correction: Option<InputCorrection>,
+    /// The condition that friction is taken in, whatever that of a run is; nothing where each run
+    /// has its own.
+    pub condition: Option<Condition>,
+}
+
+impl Setup {
+    /// Makes the model of `robot` that `settings` ask for.
+    ///
+    /// # Errors
+    ///
+    /// Settings that do not fit the robot, a robot that is not physical at the expansion point.
+    pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
+        settings.validate(robot.joint_count())?;
+        let dynamics = Dynamics::new(&robot, &settings)?;
+        Self::of(robot, dynamics, settings)
+    }
+
+    /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
+    /// operating box.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unbounded`] when the model's error was found to have no bound over its box, and
+    /// settings that do not fit.
+    pub fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
+        let settings = settings.with_abstraction(&model)?;
+        settings.validate(model.joints())?;
+        let robot = Robot::from_description(model.robot())?;
+        let dynamics = Dynamics::of(model, settings.method);
+        Self::of(robot, dynamics, settings)
+    }
+
+    fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Result<Self> {
+        if settings.equations == Equations::Robot && dynamics.linear_system().is_none() {
+            return Err(Error::Equations);
+        }
+        let nominal_starts = BTreeMap::new();
+        Ok(Self { robot, dynamics, settings, nominal_starts, correction: None, condition: None })
+    }
+
+    /// Returns whether the model's input is the recorded one, with nothing taken off it along the
+    /// nominal motion.
+    pub(crate) fn is_recorded_input(&self) -> bool {
+        self.correction.is_none()
+            && self.robot.warms_by().is_empty()
+            && self.settings.equations == Equations::Model
+    }
+}
+
+pub(crate) fn read_options(setup: &Setup) -> ReadOptions {
+    let Settings { gap_limit, until, .. } = setup.settings;
+    ReadOptions { joints: Some(setup.robot.joint_count()), gap_limit, until }
+}
+
+/// The side of the box for state `i`, q then q̇.
+pub(crate) fn side(operating_box: &OperatingBox, i: usize) -> [f64; 2] {
+    let n = operating_box.q.len();
+    if i < n { operating_box.q[i] } else { operating_box.qd[i - n] }
+}
