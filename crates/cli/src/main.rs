@@ -17,7 +17,6 @@ mod reference;
 mod report_files;
 mod settings_file;
 mod table;
-mod verdict;
 mod virtual_robot_arguments;
 
 use std::process::ExitCode;

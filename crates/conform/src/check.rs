@@ -10,6 +10,8 @@ use crate::hulls::Hulls;
 use crate::model::file::Model;
 use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
+use crate::result::code::Code;
+use crate::result::finding::Finding;
 use crate::verdict::{Verdict, Witness};
 
 /// The answer of a check.
@@ -31,6 +33,8 @@ pub struct Check {
     pub growth: Option<Growth>,
     /// What a user should know about the data.
     pub notes: Vec<String>,
+    /// What the answer says, statement by statement: the verdict first.
+    pub findings: Vec<Finding>,
 }
 
 /// Checks the recordings of a problem against reachable sets of `model` over them.
@@ -59,7 +63,7 @@ pub fn check(model: &Model, problem: &Problem, hulls: &Hulls) -> Result<Check> {
     let is_hull = problem.settings().notion == Notion::Hull;
     let can_grow = is_hull && !verdict.conformant && excess.iter().all(|excess| excess.is_finite());
     let growth = can_grow.then(|| Growth::new(problem, &hulls.sets, &excess)).transpose()?;
-    Ok(Check { worst_by_state, growth, ..Check::new(model, problem, verdict) })
+    Ok(Check { worst_by_state, growth, ..Check::new(model, problem, verdict) }.with_findings(model))
 }
 
 impl Check {
@@ -71,32 +75,67 @@ impl Check {
         let is_held_out = is_used == Some(false);
         let trust = is_held_out.then(|| Trust::of_check(recordings, &verdict));
         let rates = is_held_out.then(|| Rates::new(recordings, &verdict));
-        let mut notes = recordings.notes.clone();
-        notes.extend(is_used.is_none().then(|| unknown_use(model)));
-        notes.extend(recordings.suites.iter().filter_map(|suite| other_start_note(model, suite)));
-        let worst_by_state = Vec::new();
-        Self { verdict, trust, rates, worst_by_state, growth: None, notes }
+        let mut noted: Vec<Finding> =
+            recordings.notes.iter().map(|note| Finding::recordings(note)).collect();
+        noted.extend(is_used.is_none().then(|| Finding::use_unknown(model.data.are_listed())));
+        let starts_elsewhere =
+            recordings.suites.iter().filter(|suite| !may_start_near(model, suite));
+        noted.extend(starts_elsewhere.map(|suite| Finding::other_start(&suite.entry.name)));
+        Self {
+            notes: noted.iter().map(|finding| finding.text.clone()).collect(),
+            verdict,
+            trust,
+            rates,
+            worst_by_state: Vec::new(),
+            growth: None,
+            findings: noted,
+        }
+        .with_findings(model)
+    }
+
+    /// Returns whether the model was proved to enclose all recordings.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.verdict.conformant
+    }
+
+    /// Words the answer.
+    fn with_findings(mut self, model: &Model) -> Self {
+        let (verdict, kinds) = (&self.verdict, model.robot.kinds());
+        let set = verdict.enclosure.set_name();
+        let mut findings = vec![Finding::verdict_of_check(verdict)];
+        if let Some(points) = &verdict.points {
+            let are_lost = !verdict.lost.is_empty();
+            findings.push(Finding::points(points, verdict.enclosure, are_lost));
+            let worst = points.worst.as_ref();
+            findings.extend(worst.map(|worst| Finding::furthest_point(worst, &kinds)));
+        }
+        if let Some(traces) = &verdict.traces {
+            findings.push(Finding::traces(traces, verdict.runs, model.settings.disturbance));
+        }
+        let worst = verdict.violations.worst.as_ref();
+        findings.extend(worst.map(|worst| Finding::furthest_value(worst, &kinds)));
+        findings.extend(verdict.lost.iter().map(Finding::from));
+        findings.extend(self.growth.as_ref().map(|growth| Finding::growth_needed(growth, &kinds)));
+        findings.push(match &self.trust {
+            Some(held_out) => Finding::next_motion(held_out, set, "left it"),
+            None => Finding::fitted_to_these(),
+        });
+        findings.extend(self.rates.as_ref().map(Finding::held_out_rates));
+        let noted = [Code::Recordings, Code::UseUnknown, Code::OtherStart];
+        findings.extend(self.findings.into_iter().filter(|f| noted.contains(&f.code)));
+        self.findings = findings;
+        self
     }
 }
 
-/// Says why nobody knows whether the recordings were used in the fit.
-fn unknown_use(model: &Model) -> String {
-    let why = if model.data.are_listed() {
-        "the fold does not have the SHA-256 of each; fold them to check this model"
-    } else {
-        "its file counts its recordings and does not list them; fit it to fewer to have them listed"
-    };
-    format!(
-        "whether a recording was used in the fit of the model cannot be known, so they count as \
-         used and nothing is said of the next motion: {why}"
-    )
-}
-
-/// Says where no recording of a suite starts near the nominal initial state that the model has for
-/// a suite of that name.
-fn other_start_note(model: &Model, suite: &Suite) -> Option<String> {
-    let name = &suite.entry.name;
-    model.data.suites.iter().find(|known| known.name == *name)?.nominal_start.as_ref()?;
+/// Returns whether some recording of a suite may start near the nominal initial state that the
+/// model has for a suite of that name, if it has one.
+fn may_start_near(model: &Model, suite: &Suite) -> bool {
+    let known = model.data.suites.iter().find(|known| known.name == suite.entry.name);
+    if known.is_none_or(|known| known.nominal_start.is_none()) {
+        return true;
+    }
     let sets = model.sets();
     let near = |i: usize| {
         let (low, high) = sets.initial_set.bounds(i);
@@ -116,12 +155,5 @@ fn other_start_note(model: &Model, suite: &Suite) -> Option<String> {
             last - nominal >= low && first - nominal <= high
         })
     };
-    let any_near = if suite.is_small() { suite.runs.iter().any(is_near) } else { may_be_near() };
-    (!any_near).then(|| {
-        format!(
-            "suite {name}: none of its recordings starts near the nominal initial state that the \
-             model has for a suite of this name; if this is another motion, give the suite \
-             another name"
-        )
-    })
+    if suite.is_small() { suite.runs.iter().any(is_near) } else { may_be_near() }
 }

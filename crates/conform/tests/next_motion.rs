@@ -5,7 +5,7 @@ mod common;
 use common::{Disturbed, Random, Recorded, conform_all, grid, read, two_joints, write_data_set};
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::{
-    Check, Error, Hulls, Keep, Model, NominalStart, Problem, Settings, Setup, Silent, Trust,
+    Check, Code, Error, Hulls, Keep, Model, NominalStart, Problem, Settings, Setup, Silent, Trust,
     WarningKind, Witness, check, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
@@ -93,7 +93,9 @@ fn a_calibrated_model_is_read_again_and_bounds_other_recordings_as_any_model() {
     assert!(trust.basis.starts_with("hold-out bound") && trust.average_probability.is_none());
     let rates = held_out.rates.unwrap();
     assert_eq!((rates.motions, rates.rows.of, rates.suites.of), (1, 160, 1));
-    assert!(rates.words().contains("1 motion is too few"), "{}", rates.words());
+    let finding = held_out.findings.iter().find(|found| found.code == Code::HeldOutRates).unwrap();
+    assert_eq!((finding.numbers["motions"], finding.numbers["rows"]), (1.0, 160.0));
+    assert!(finding.text.contains("1 motion is too few"), "{finding}");
     // The motion that calibrated the sets is no other one.
     let known = check_of(&folder, &model, &["c"]);
     assert!(known.trust.is_none() && known.rates.is_none() && known.verdict.conformant);

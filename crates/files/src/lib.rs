@@ -23,12 +23,14 @@ mod digest;
 mod error;
 pub mod json;
 mod overwrite;
+mod printable;
 mod read;
 pub mod write;
 
 pub use digest::hex;
 pub use error::{Error, Result};
 pub use overwrite::{MARK, Overwrite};
+pub use printable::printable;
 pub use read::{bytes, read, read_text};
 
 /// Name and version of the program, which every file that it writes records.

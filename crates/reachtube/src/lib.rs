@@ -22,7 +22,7 @@ pub use reachtube_conform::{
     Progress, Settings, Setup, Silent, SuiteReach, UncertaintySets, Verdict, Witness, check,
     conform, explain, reach,
 };
-pub use reachtube_files::{TOOL, write};
+pub use reachtube_files::{TOOL, printable, write};
 pub use reachtube_identify::{self as identify, Identification, IdentifySettings, identify};
 pub use reachtube_reach::{
     self as reach, Disturbance, Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem,

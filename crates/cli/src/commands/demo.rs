@@ -15,7 +15,6 @@ use reachtube::{Model, write};
 use reachtube_robot::Robot;
 use serde_json::json;
 
-use super::check;
 use super::conform as conform_command;
 use crate::data_arguments::DataArguments;
 use crate::error::Result;
@@ -103,10 +102,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     } else {
         let text = format!(
             "{}\n{}\n{}\n{}",
-            conform_command::summary(&model),
+            model.report(),
             story(&before, &model),
             held_out_heading(&recorded),
-            check::summary(&held_out, &model)
+            held_out.report(&model.robot.kinds())
         );
         output::print(&text)?;
     }

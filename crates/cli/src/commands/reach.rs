@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::conform::{Keep, SuiteReach};
+use reachtube::conform::{Finding, Keep, SuiteReach};
 use reachtube::report::{Sources, page};
 use reachtube::write;
 use serde_json::json;
@@ -16,7 +16,6 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::report_files;
 use crate::table::table;
-use crate::verdict::lost;
 use reachtube::number::at_least;
 use reachtube_robot::JointKind;
 
@@ -83,7 +82,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         ))?;
     }
     for lost in reach.iter().filter_map(|reach| reach.lost.as_ref()) {
-        output::note(&self::lost(lost));
+        output::note(&Finding::from(lost).to_string());
     }
     Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
 }

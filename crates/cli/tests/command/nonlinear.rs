@@ -45,7 +45,7 @@ fn a_nonlinear_model_goes_through_every_command() {
         "for the linearised sets",
         "decide X0 and U",
         "a motion of the model itself (start in X0, input in U, held over each sample) was found \
-         within 0.001 rad and 0.01 rad/s of",
+         within 0.001 rad and 0.01 rad/s.",
     ] {
         assert!(run.stdout.contains(part), "{part:?} is not in\n{}", run.stdout);
     }
@@ -70,7 +70,7 @@ fn a_nonlinear_model_goes_through_every_command() {
         }
     }
     let page = lab.read("report/report.html");
-    for part in ["computed outer set", "outer enclosure", "Explanations were searched for"] {
+    for part in ["computed outer set", "outer enclosure", "Searched for, not proved"] {
         assert!(page.contains(part), "{part}");
     }
 }

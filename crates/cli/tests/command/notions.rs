@@ -30,10 +30,16 @@ fn a_point_outside_is_named_with_the_states_that_show_it() {
     });
     let check = "check --model model.json --data data --torque compensated --suites A";
     let run = lab.run(&format!("{check} --notion exact")).exits(1);
-    for part in ["recorded points (all states together) outside the set", "furthest outside", "q1"]
+    for part in ["recorded points (all states together) proved", "Furthest outside: A_1.csv", "q1"]
     {
         assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
     }
+    let answer = lab.run(&format!("{check} --notion exact --json")).exits(1).json();
+    let findings = answer["findings"].as_array().unwrap();
+    let of = |code: &str| findings.iter().find(|finding| finding["code"] == code).unwrap();
+    assert_eq!(of("not-conformant")["severity"], "failure");
+    assert!(of("points")["numbers"]["outside"].as_f64().unwrap() >= 1.0, "{findings:?}");
+    assert_eq!(of("furthest-outside")["place"], "A_1.csv");
     let run = lab.run(&format!("{check} --notion phase-plane")).exits(1);
     assert!(run.stdout.contains("position and velocity of each joint"), "{}", run.stdout);
     // By default a model is checked in its own notion, the hull.

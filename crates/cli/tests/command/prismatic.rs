@@ -238,7 +238,7 @@ fn a_nonlinear_model_of_a_scara_conforms() {
     let run = lab
         .run("conform --abstraction two.json --data runs --torque motor --out scara.json")
         .exits(0);
-    contains(&run.stdout, &["conformant: 6 recordings", "rad or m and", "rad/s or m/s of"]);
+    contains(&run.stdout, &["conformant: 6 recordings", "rad or m and", "rad/s or m/s."]);
     fits_the_schema(&lab.read("scara.json"), "model.schema.json");
     lab.run("check --model scara.json --data runs --torque motor").exits(0);
     let both = lab

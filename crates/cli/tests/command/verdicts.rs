@@ -160,7 +160,7 @@ fn motions_that_are_kept_back_calibrate_the_sets() {
         "(calibrated, not the smallest)",
         "for 1 motion was scaled about the centres by",
         "leaves the reachable set with probability at most 0.500 (1 in 2)",
-        "basis: split conformal calibration",
+        "Basis: split conformal calibration",
     ] {
         assert!(text.contains(words), "{words} is not in\n{text}");
     }
@@ -173,7 +173,7 @@ fn motions_that_are_kept_back_calibrate_the_sets() {
 fn what_each_motion_decides_is_a_table() {
     let lab = Lab::new();
     let text = lab.conform("").exits(0).stdout;
-    for words in ["without motion", "growth that holds it", "a description of these motions"] {
+    for words in ["without motion", "factor needed", "describe these motions"] {
         assert!(text.contains(words), "{words} is not in\n{text}");
     }
     let text = lab.conform("--suites A").exits(0).stdout;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use reachtube_robot::JointKind;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -90,43 +89,6 @@ pub struct RunRecord {
 }
 
 impl Explained {
-    /// Sums the search up in one sentence, for people; `tolerance` is that of the settings, and
-    /// `kinds` are the kinds of the joints.
-    #[must_use]
-    pub fn words(&self, tolerance: Tolerance, kinds: &[JointKind]) -> String {
-        let worst = self
-            .residuals
-            .iter()
-            .max_by(|a, b| a.in_tolerances(tolerance).total_cmp(&b.in_tolerances(tolerance)));
-        let Some(worst) = worst else { return "no recording to explain".into() };
-        let median = |of: fn(&Residual) -> Option<f64>| {
-            let mut values: Vec<f64> =
-                self.residuals.iter().map(|r| of(r).unwrap_or(f64::INFINITY)).collect();
-            values.sort_by(f64::total_cmp);
-            format!("{:.2e}", values[values.len() / 2])
-        };
-        let of = |value: Option<f64>| {
-            value.map_or_else(|| "infinitely far".into(), |value| format!("{value:.2e}"))
-        };
-        let q = JointKind::any_unit(kinds, JointKind::position_unit);
-        let qd = JointKind::any_unit(kinds, JointKind::velocity_unit);
-        format!(
-            "a motion of the model itself (start in X0, input in U, held over each sample) was \
-             found within {} {q} and {} {qd} of {} of the {} recordings; the closest motions \
-             found differ by {} {q} and {} {qd} in the median, and by {} {q} \
-             and {} {qd} for {}",
-            tolerance.position,
-            tolerance.velocity,
-            self.runs,
-            self.residuals.len(),
-            median(|r| r.position),
-            median(|r| r.velocity),
-            of(worst.position),
-            of(worst.velocity),
-            worst.file
-        )
-    }
-
     pub(super) fn new(problem: &Problem, tolerance: Tolerance, all: &[Explanation]) -> Self {
         let is_within =
             |e: &&Explanation| e.position <= tolerance.position && e.velocity <= tolerance.velocity;
@@ -145,7 +107,7 @@ impl Explained {
 
 impl Residual {
     /// Returns the larger difference in parts of the tolerance.
-    fn in_tolerances(&self, tolerance: Tolerance) -> f64 {
+    pub(crate) fn in_tolerances(&self, tolerance: Tolerance) -> f64 {
         let part = |value: Option<f64>, of: f64| {
             value.unwrap_or(f64::INFINITY) / of.max(f64::MIN_POSITIVE)
         };

@@ -14,7 +14,7 @@ const RESAMPLES: usize = 10_000;
 const SEED: u64 = 1;
 
 /// With fewer motions the draws are so few that an interval means nothing.
-const FEWEST_MOTIONS: usize = 4;
+pub(crate) const FEWEST_MOTIONS: usize = 4;
 
 /// How often recordings that were kept back leave the sets. A description of these recordings with
 /// the spread over their motions, and no guarantee for others.
@@ -65,38 +65,6 @@ impl Rates {
         }
         let [rows, suites] = rates(&counts);
         Self { motions: names.len(), rows, suites, level: CONFIDENCE, resamples: RESAMPLES }
-    }
-
-    /// Describes the rates in words.
-    #[must_use]
-    pub fn words(&self) -> String {
-        let percent = |part: f64| format!("{:.1}", 100.0 * part);
-        let rate = |rate: &Rate| {
-            let part = percent(rate.outside as f64 / rate.of.max(1) as f64);
-            match rate.interval {
-                Some([low, high]) => format!("{part} % ({} to {} %)", percent(low), percent(high)),
-                None => format!("{part} %"),
-            }
-        };
-        let intervals = if self.motions < FEWEST_MOTIONS {
-            let (plural, are) = if self.motions == 1 { ("", "is") } else { ("s", "are") };
-            format!("no interval: {} motion{plural} {are} too few for one", self.motions)
-        } else if self.rows.interval.is_none() {
-            "no interval: there is no spread".into()
-        } else {
-            format!(
-                "in brackets the spread over {} motions ({:.0} % cluster bootstrap)",
-                self.motions,
-                100.0 * self.level
-            )
-        };
-        format!(
-            "kept-back rates, a description and no guarantee: {} of the rows and {} of the {} \
-             suites outside; {intervals}",
-            rate(&self.rows),
-            rate(&self.suites),
-            self.suites.of
-        )
     }
 }
 

@@ -15,9 +15,6 @@ use crate::verdict::{Verdict, Witness};
 /// Confidence of the bounds that are reported.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// A bound above this probability says nothing.
-const LARGEST_BOUND: f64 = 0.999;
-
 /// A statement about the next motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -123,39 +120,6 @@ impl Trust {
         let violating = motions.count_of(violating.map(|suite| suite.suite.as_str()));
         let bound = clopper_pearson(motions.count(), violating, 1.0 - CONFIDENCE);
         Self::new(&motions, violating, bound, "hold-out bound (Clopper and Pearson 1934)")
-    }
-
-    /// Says in words what is known of the next motion, for people; `set` names the set and `role`
-    /// says what the deciding motions did.
-    #[must_use]
-    pub fn words(&self, set: &str, role: &str) -> String {
-        let Self { motions, deciding, violation_probability: bound, confidence, basis, .. } = self;
-        let plural = if *motions == 1 { "motion" } else { "motions" };
-        if let Some(average) = self.average_probability {
-            return format!(
-                "the next motion leaves the {set} with probability at most {average:.3} (1 in \
-                 {}), on average over the {motions} kept-back {plural}; given these, at most \
-                 {bound:.3} at confidence {:.0} %; basis: {basis}",
-                motions + 1,
-                100.0 * confidence
-            );
-        }
-        if *bound > LARGEST_BOUND && *deciding == 0 {
-            return format!("nothing is known of the next motion: {basis}");
-        }
-        let counted = format!("{deciding} of {motions} independent {plural} {role}");
-        if *bound > LARGEST_BOUND {
-            return format!(
-                "nothing is known of the next motion: these recordings give no bound below 99.9 % \
-                 for the probability that it leaves the {set} ({counted}); more motions may give \
-                 one, more runs of the same motions do not; basis: {basis}"
-            );
-        }
-        format!(
-            "the next motion leaves the {set} with probability at most {bound:.3}, at confidence \
-             {:.0} %: {counted}; basis: {basis}",
-            100.0 * confidence
-        )
     }
 
     fn new(motions: &Motions, deciding: usize, bound: f64, name: &str) -> Self {

@@ -1,8 +1,8 @@
 //! Assembly of a page from a model and recordings.
 
 use reachtube_conform::{
-    self as conform, Check, Enclosure, Equations, LeftOut, Lost, Model, Notion, Problem, States,
-    SuiteReach,
+    self as conform, Check, Code, Enclosure, Equations, Finding, LeftOut, Model, Notion, Problem,
+    States, SuiteReach,
 };
 use reachtube_reach::Hyperrectangle;
 
@@ -111,15 +111,9 @@ fn verdict(model: &Model, check: &Check) -> Verdict {
         },
     ];
     let proved = traces(answer).into_iter().chain(points).chain(rows_hold).collect();
-    let end = |lost: &Lost| {
-        format!(
-            "{}: the {set} could not be computed beyond {:.3} s ({}).",
-            lost.case, lost.time, lost.state
-        )
-    };
     let mut not_proved = not_proved(model, answer, outer);
-    not_proved.extend(answer.lost.iter().map(end));
-    let warnings = model.warnings.iter().map(|warning| sentence(&warning.text)).collect();
+    not_proved.extend(answer.lost.iter().map(|lost| sentence(&Finding::from(lost))));
+    let warnings = model.warnings.iter().map(|warning| sentence(&Finding::from(warning))).collect();
     Verdict { ok: answer.conformant, words, warnings, proved, not_proved }
 }
 
@@ -159,10 +153,8 @@ fn not_proved(model: &Model, answer: &conform::Verdict, outer: bool) -> Vec<Stri
                 .into(),
         );
     }
-    if let Some((explained, tolerance)) = model.explained.as_ref().zip(model.settings.explain) {
-        let found = explained.words(tolerance, &model.robot.kinds());
-        words.push(format!("Explanations were searched for, not proved: {found}."));
-    }
+    let explanations = of_codes(&model.findings(), &[Code::Explanations]);
+    words.extend(explanations.map(|found| format!("Searched for, not proved: {found}")));
     words
 }
 
@@ -244,18 +236,21 @@ fn word(setting: impl serde::Serialize) -> String {
 }
 
 fn trust(model: &Model, check: &Check) -> String {
-    let set = check.verdict.enclosure.set_name();
-    let words = match &check.trust {
-        Some(held_out) => held_out.words(set, "left it"),
-        None => model.trust.words(set, "touched it"),
-    };
-    sentence(&words)
+    let bounds = [Code::NextMotion, Code::NoGuarantee];
+    let of_check = of_codes(&check.findings, &bounds).filter(|_| check.trust.is_some());
+    of_check.or_else(|| of_codes(&model.findings(), &bounds)).unwrap_or_default()
 }
 
-/// Returns words as a sentence.
-fn sentence(words: &str) -> String {
+/// Returns the first finding of some codes as a sentence.
+fn of_codes(findings: &[Finding], codes: &[Code]) -> Option<String> {
+    findings.iter().find(|finding| codes.contains(&finding.code)).map(sentence)
+}
+
+/// Returns a finding as a sentence.
+fn sentence(finding: &Finding) -> String {
+    let words = finding.to_string();
     let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
-    format!("{}{rest}.", first.to_uppercase())
+    format!("{}{rest}", first.to_uppercase())
 }
 
 fn caution(model: &Model) -> Vec<String> {
@@ -264,19 +259,8 @@ fn caution(model: &Model) -> Vec<String> {
          certain about motions, payloads or temperatures that were not recorded."
             .to_string(),
     ];
-    if let (Some(gap), Notion::Trace) = (model.gap_of_not_minimal(), model.settings.notion) {
-        words.push(format!(
-            "The sets enclose the recordings but are not the smallest: all of U was widened by \
-             one factor until motions of the model passed through the recordings, to a cost that \
-             is {gap:.1e} of its lower bound above it."
-        ));
-    } else if let Some(gap) = model.gap_of_not_minimal() {
-        words.push(format!(
-            "The sets enclose the recordings but are not the smallest: the solver of the linear \
-             program stopped at a cost that is {gap:.1e} of its lower bound above it. Smaller sets \
-             may do. Check that torques, units and robot belong together."
-        ));
-    }
+    let findings = model.findings();
+    words.extend(of_codes(&findings, &[Code::NotSmallest]));
     if model.trust.violation_probability > 0.5 {
         words.push(
             "There are too few independent motions for a useful bound on the next motion. Record \
@@ -286,7 +270,7 @@ fn caution(model: &Model) -> Vec<String> {
     }
     words.extend(nominal_caution(model));
     words.extend(furthest_motion(model));
-    words.extend(changed_robot(model));
+    words.extend(of_codes(&findings, &[Code::RobotChanged]));
     words
 }
 
@@ -310,17 +294,4 @@ fn furthest_motion(model: &Model) -> Option<String> {
         "{words} Another motion may lie as far out. This describes the recorded motions and bounds \
          no probability."
     ))
-}
-
-/// Names the suites whose runs change with their order.
-fn changed_robot(model: &Model) -> Option<String> {
-    let mut suites: Vec<&str> = model.trends.iter().map(|trend| trend.suite.as_str()).collect();
-    suites.dedup();
-    (!suites.is_empty()).then(|| {
-        format!(
-            "The robot changed while it was recorded, for example by warming up: in {}, joints \
-             follow the order of the runs. A later motion may lie further out.",
-            suites.join(", ")
-        )
-    })
 }

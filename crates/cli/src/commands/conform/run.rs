@@ -9,7 +9,6 @@ use reachtube::{Model, write};
 
 use super::arguments::Arguments;
 use super::settings::setup;
-use super::summary::summary;
 use crate::error::Result;
 use crate::outcome::Outcome;
 use crate::output;
@@ -64,7 +63,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if json {
         output::print_json_text(&model.to_json())?;
     } else {
-        output::print(&summary(&model))?;
+        output::print(&model.report().to_string())?;
     }
     if let Some(folder) = &args.report {
         let page = report(&problem, &model, &found, folder)?;

@@ -1,0 +1,52 @@
+//! The report of a check.
+
+use reachtube_robot::JointKind;
+
+use crate::check::Check;
+use crate::result::code::Code;
+use crate::result::finding::Finding;
+use crate::result::report::{Report, Section};
+use crate::result::table::Table;
+use crate::verdict::SuiteVerdict;
+
+impl Check {
+    /// Returns the answer for people, with one row for each suite; `kinds` are those of the joints.
+    #[must_use]
+    pub fn report(&self, kinds: &[JointKind]) -> Report {
+        let of = |codes: &[Code]| -> Vec<Finding> {
+            let is_of = |finding: &&Finding| codes.contains(&finding.code);
+            self.findings.iter().filter(is_of).cloned().collect()
+        };
+        let verdict = [Code::Conformant, Code::NotConformant, Code::Points, Code::Traces];
+        let mut first = Section { findings: of(&verdict), ..Section::default() };
+        let furthest = self.findings.iter().filter(|finding| {
+            finding.code == Code::FurthestOutside && !finding.numbers.contains_key("joint")
+        });
+        // The table has the furthest values, but not the furthest points.
+        first.findings.extend(furthest.cloned());
+        let rows = self.verdict.suites.iter().map(|suite| row(suite, kinds)).collect();
+        let header = ["suite", "runs", "rows", "outside", "furthest outside"];
+        let suites = Section { tables: vec![Table::new(header, rows)], ..Section::default() };
+        let others = [
+            &[Code::SetLost] as &[_],
+            &[Code::GrowthNeeded],
+            &[Code::NextMotion, Code::NoGuarantee],
+            &[Code::HeldOutRates],
+        ];
+        let others = others.map(|codes| Section { findings: of(codes), ..Section::default() });
+        let mut sections = vec![first, suites];
+        sections.extend(others.into_iter().filter(|section| !section.is_empty()));
+        Report { sections }
+    }
+}
+
+fn row(suite: &SuiteVerdict, kinds: &[JointKind]) -> Vec<String> {
+    let worst = suite.violations.worst.as_ref();
+    vec![
+        suite.suite.clone(),
+        suite.runs.to_string(),
+        suite.rows.to_string(),
+        suite.violations.count.to_string(),
+        worst.map_or_else(|| "-".into(), |place| Finding::place_outside(place, kinds)),
+    ]
+}

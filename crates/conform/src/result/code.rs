@@ -1,0 +1,114 @@
+use serde::{Deserialize, Serialize};
+
+/// Defines the codes, their names and the list of all.
+macro_rules! codes {
+    ($($(#[doc = $doc:literal])* $code:ident = $name:literal,)*) => {
+        /// What a [`Finding`](crate::Finding) is about. Codes are stable; the words of a finding
+        /// are not. They are listed in docs/findings.md.
+        #[derive(
+            Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+        )]
+        #[non_exhaustive]
+        pub enum Code {
+            $($(#[doc = $doc])* #[serde(rename = $name)] $code,)*
+        }
+
+        impl Code {
+            /// All codes.
+            pub const ALL: &[Self] = &[$(Self::$code),*];
+
+            /// Returns the name of the code, as in JSON.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$code => $name,)*
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    /// Every recording was proved to be enclosed.
+    Conformant = "conformant",
+    /// Some recordings were not proved to be enclosed.
+    NotConformant = "not-conformant",
+    /// How many recorded points were proved to lie in the reachable set.
+    Points = "points",
+    /// How many recordings were proved to be motions of the model.
+    Traces = "traces",
+    /// A reachable set could not be computed to the end.
+    SetLost = "set-lost",
+    /// A simulated motion of the model diverged.
+    Unstable = "unstable",
+    /// The point that lies furthest outside.
+    FurthestOutside = "furthest-outside",
+    /// What the sets cost.
+    Cost = "cost",
+    /// The sets are not the smallest.
+    NotSmallest = "not-smallest",
+    /// The reachable set is more than twice as wide as the recorded motion.
+    ReachableSetSize = "reachable-set-size",
+    /// X0 is wider than the recorded motion.
+    InitialSetSize = "initial-set-size",
+    /// The positions of X0 reach much further than the recorded starts.
+    InitialSetStarts = "initial-set-starts",
+    /// X0 does not contain 0.
+    InitialSetOffset = "initial-set-offset",
+    /// U reaches beyond the recorded input.
+    InputSetSize = "input-set-size",
+    /// V is nearly as wide as the recorded motion.
+    NoiseSetSize = "noise-set-size",
+    /// The nominal motion explains little of the recorded one.
+    Unexplained = "unexplained",
+    /// The most likely cause of other warnings.
+    Cause = "cause",
+    /// The fitted model needs larger sets for motions that it was not fitted to.
+    Overfitted = "overfitted",
+    /// What the fit of the nominal model changed.
+    Fitted = "fitted",
+    /// Fitted values compensate for model error.
+    ParametersMoved = "parameters-moved",
+    /// The sets that hold for every run.
+    AnyRun = "any-run",
+    /// How many recorded values touch the reachable set.
+    Touching = "touching",
+    /// How close motions of the model come to the recordings.
+    Explanations = "explanations",
+    /// How held-out motions scaled the sets.
+    Calibrated = "calibrated",
+    /// A bound of the probability that the next motion leaves the sets.
+    NextMotion = "next-motion",
+    /// There is no guarantee for new motions.
+    NoGuarantee = "no-guarantee",
+    /// The sets without each motion.
+    LeftOut = "left-out",
+    /// The runs that decide the sets.
+    DecidingRuns = "deciding-runs",
+    /// Joints follow the order of the runs.
+    RobotChanged = "robot-changed",
+    /// What would have to grow to enclose the recordings.
+    GrowthNeeded = "growth-needed",
+    /// How often held-out recordings leave the sets.
+    HeldOutRates = "held-out-rates",
+    /// Whether recordings were used in the fit cannot be known.
+    UseUnknown = "use-unknown",
+    /// No recording of a suite starts near the model's nominal start.
+    OtherStart = "other-start",
+    /// A note on the recordings.
+    Recordings = "recordings",
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Code;
+
+    #[test]
+    fn every_code_is_in_the_docs() {
+        let docs = include_str!("../../../../docs/findings.md");
+        for code in Code::ALL {
+            assert!(docs.contains(&format!("| `{}` |", code.name())), "{}", code.name());
+            assert_eq!(serde_json::to_value(code).unwrap(), code.name());
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! What a report says of single motions and runs.
+
+use reachtube_scalar::number::{at_least, four_decimals, significant};
+
+use crate::model::file::Model;
+use crate::next_motion::left_out::LeftOut;
+use crate::next_motion::trends::Trend;
+use crate::result::finding::Finding;
+use crate::result::report::Section;
+use crate::result::table::Table;
+
+/// Largest number of motions in the table.
+const MOST_MOTIONS: usize = 12;
+
+/// Returns the sets without each motion, the runs that decide, and trends over the runs.
+pub(super) fn dependence(model: &Model) -> [Section; 3] {
+    let mut left_out = Section::default();
+    left_out.findings.extend(Finding::left_out(model));
+    left_out.tables.extend((!model.left_out.is_empty()).then(|| table_of_left_out(model)));
+    let mut runs = Section::default();
+    runs.findings.extend(Finding::deciding_runs(&model.deciding_runs, model.data.run_count()));
+    let mut changed = Section::default();
+    changed.findings.extend(Finding::robot_changed(&model.trends));
+    for of_suite in model.trends.chunk_by(|a, b| a.suite == b.suite) {
+        let (name, value) = trend(model, of_suite);
+        changed.fact(name, value);
+    }
+    [left_out, runs, changed]
+}
+
+/// Returns the table of the sets without each motion, those that need the most growth first.
+fn table_of_left_out(model: &Model) -> Table {
+    let is_linear = model.acceleration.is_empty();
+    let mut all: Vec<&LeftOut> = model.left_out.iter().collect();
+    // What was not computed goes last.
+    let size = |left: &LeftOut| match left.cost {
+        Some(_) => left.gauge.unwrap_or(f64::INFINITY),
+        None => 0.0,
+    };
+    all.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let row = |left: &&LeftOut| {
+        let or = |value: Option<String>, other: &str| value.unwrap_or_else(|| other.into());
+        let none = match left.cost {
+            None => "not computed",
+            Some(_) if is_linear => "none suffices",
+            Some(_) => "none found",
+        };
+        let outside = left.outside.map(|outside| format!("{outside} of {}", left.rows));
+        vec![
+            left.motion.clone(),
+            or(left.cost.map(four_decimals), "not computed"),
+            or(outside, "not computed"),
+            or(left.gauge.map(|gauge| format!("x {}", at_least(gauge))), none),
+        ]
+    };
+    let cost = if is_linear { "cost of the sets" } else { "cost of the linearised sets" };
+    let header = ["without motion", cost, "its rows outside", "factor needed"];
+    Table::new(header, all.iter().map(row).collect()).cut_to(MOST_MOTIONS)
+}
+
+/// Returns the joints of one suite that follow the order of the runs.
+fn trend(model: &Model, of_suite: &[Trend]) -> (String, String) {
+    let kinds = model.robot.kinds();
+    let joint = |trend: &Trend| {
+        format!(
+            "{} {:+.2} ({} {})",
+            model.robot.joints[trend.joint - 1].name,
+            trend.correlation,
+            significant(trend.range, 2),
+            kinds[trend.joint - 1].position_unit()
+        )
+    };
+    let list: Vec<String> = of_suite.iter().map(joint).collect();
+    let Trend { suite, runs, .. } = &of_suite[0];
+    let name = format!(
+        "suite {suite}, rank correlation of the last position with the order of {runs} runs \
+         (largest difference)"
+    );
+    (name, list.join(", "))
+}

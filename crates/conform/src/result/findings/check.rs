@@ -1,0 +1,108 @@
+//! What a check says beside its verdict.
+
+use reachtube_robot::JointKind;
+use reachtube_scalar::number::at_least;
+
+use crate::growth::Growth;
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+
+/// Factor beyond which widening a set is no remedy.
+const MOST_GROWTH: f64 = 100.0;
+
+impl Finding {
+    /// Which set would have to grow to enclose the recordings, and by how much.
+    pub(crate) fn growth_needed(growth: &Growth, kinds: &[JointKind]) -> Self {
+        let noise = format!(
+            "V is wider by {} {} and {} {}",
+            at_least(growth.noise_position),
+            JointKind::any_unit(kinds, JointKind::position_unit),
+            at_least(growth.noise_velocity),
+            JointKind::any_unit(kinds, JointKind::velocity_unit)
+        );
+        let sets = [
+            ("U is", growth.input_set),
+            ("X0 is", growth.initial_set),
+            ("X0 and U are", growth.both_sets),
+        ];
+        let helps = |factor: &f64| *factor <= MOST_GROWTH;
+        let wide = |(name, factor): &(&str, Option<f64>)| {
+            let factor = factor.filter(helps)?;
+            Some(format!("{name} {} times as wide", at_least(factor)))
+        };
+        let useless = |(name, factor): &(&str, Option<f64>)| {
+            let set = name.split_once(' ').map_or(*name, |(set, _)| set);
+            let is_single = !name.contains("and");
+            let is_useless = factor.is_none_or(|factor| !helps(&factor));
+            (growth.both_sets.is_some() && is_single && is_useless).then(|| set.to_string())
+        };
+        let mut ways: Vec<String> = sets.iter().filter_map(wide).collect();
+        ways.push(noise);
+        let mut text = format!("The recordings are covered if {}.", ways.join(", or if "));
+        let useless: Vec<String> = sets.iter().filter_map(useless).collect();
+        if !useless.is_empty() {
+            text += &format!(" Widening {} alone does not help.", useless.join(" or "));
+        }
+        text += " This is not proved.";
+        let infinite = |factor: Option<f64>| factor.unwrap_or(f64::INFINITY);
+        Self::new(Severity::Info, Code::GrowthNeeded, text)
+            .with("input_set", infinite(growth.input_set))
+            .with("initial_set", infinite(growth.initial_set))
+            .with("both_sets", infinite(growth.both_sets))
+            .with("noise_position", growth.noise_position)
+            .with("noise_velocity", growth.noise_velocity)
+    }
+
+    /// Why it cannot be known whether the recordings were used in the fit.
+    pub(crate) fn use_unknown(are_listed: bool) -> Self {
+        let why = if are_listed {
+            "The fold does not have the SHA-256 of each recording; fold the recordings to check \
+             this model."
+        } else {
+            "The model file counts its recordings and does not list them; fit the model to fewer \
+             to have them listed."
+        };
+        let text = format!(
+            "The model may have been fitted to some of these recordings, so they count as used \
+             and give no guarantee for new motions. {why}"
+        );
+        Self::new(Severity::Info, Code::UseUnknown, text)
+    }
+
+    /// That no recording of a suite starts near the model's nominal initial state.
+    pub(crate) fn other_start(suite: &str) -> Self {
+        let text = format!(
+            "suite {suite}: none of its recordings starts near the nominal initial state that the \
+             model has for a suite of this name. If this is another motion, give the suite another \
+             name."
+        );
+        Self::new(Severity::Warning, Code::OtherStart, text).at(format!("suite {suite}"))
+    }
+
+    /// A note on the recordings.
+    pub(crate) fn recordings(note: &str) -> Self {
+        Self::new(Severity::Info, Code::Recordings, note)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_that_cannot_grow_enough_is_no_remedy() {
+        let growth = Growth {
+            initial_set: Some(1.5e6),
+            input_set: Some(1.25),
+            both_sets: Some(1.2),
+            noise_position: 0.1,
+            noise_velocity: 0.2,
+        };
+        let finding = Finding::growth_needed(&growth, &[JointKind::Revolute]);
+        assert_eq!(finding.numbers["input_set"], 1.25);
+        let text = finding.text;
+        assert!(text.contains("covered if U is 1.2500 times as wide, or if X0 and U"), "{text}");
+        assert!(text.contains("Widening X0 alone does not help"), "{text}");
+        assert!(!text.contains("X0 is"), "{text}");
+    }
+}

@@ -1,0 +1,81 @@
+//! How far the sets depend on single motions and runs.
+
+use crate::model::file::Model;
+use crate::next_motion::deciding_runs::DecidingRuns;
+use crate::next_motion::trends::Trend;
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+use crate::result::findings::words::{counted, listed, plural};
+
+impl Finding {
+    /// What the table of the sets without each motion says, and what it does not; nothing where
+    /// there is no table to expect.
+    pub(crate) fn left_out(model: &Model) -> Option<Self> {
+        let is_linear = model.acceleration.is_empty();
+        let text = match (model.left_out.is_empty(), model.data.motions()) {
+            (true, 0 | 1) => return None,
+            (true, _) if is_linear => return None,
+            (true, _) => {
+                "The sets without each motion are computed for --method program and --notion hull \
+                 only. For others, find the sets with --suites of the other motions, and check \
+                 the motion that was left out."
+            }
+            (false, _) if model.fit.is_some() => {
+                "The sets were found without each motion, for a nominal model that was fitted to \
+                 all. They describe these motions and bound no other."
+            }
+            (false, _) => {
+                "The sets were found without each motion. They describe these motions and bound \
+                 no other."
+            }
+        };
+        let motions = model.left_out.len() as f64;
+        Some(Self::new(Severity::Info, Code::LeftOut, text).with("motions", motions))
+    }
+
+    /// The runs that decide the sets, and what they cost; nothing where none does.
+    pub(crate) fn deciding_runs(runs: &DecidingRuns, all: usize) -> Option<Self> {
+        let first = runs.most.first()?;
+        let mut text = format!(
+            "{} of {all} {} the sets, most of all {} with {}",
+            runs.count,
+            match (all, runs.count) {
+                (1, _) => "run decides",
+                (_, 1) => "runs decides",
+                _ => "runs decide",
+            },
+            first.file,
+            counted(first.values, "value"),
+        );
+        if let Some(cost) = runs.cost_without {
+            let named = match runs.most.len() {
+                1 => "one that decides".into(),
+                named => format!("{named} that decide"),
+            };
+            text += &format!(
+                "; without the {named} most the sets would cost about {cost:.0} (estimated from \
+                 at most 64 samples of each run)"
+            );
+        }
+        let finding = Self::new(Severity::Info, Code::DecidingRuns, text + ".");
+        Some(
+            finding
+                .at(&first.file)
+                .with("runs", runs.count as f64)
+                .with("cost_without", runs.cost_without.unwrap_or(f64::NAN)),
+        )
+    }
+
+    /// That the robot changed while it was recorded; nothing where it did not.
+    pub(crate) fn robot_changed(trends: &[Trend]) -> Option<Self> {
+        let mut suites: Vec<String> = trends.iter().map(|trend| trend.suite.clone()).collect();
+        suites.dedup();
+        let place = format!("{} {}", plural(suites.len(), "suite"), listed(&suites));
+        let text = format!(
+            "The robot changed while it was recorded: in {place}, joints follow the order of the \
+             runs, as a robot that warms up does. A later motion may lie further out."
+        );
+        let finding = Self::new(Severity::Warning, Code::RobotChanged, text).at(place);
+        (!suites.is_empty()).then(|| finding.with("joints", trends.len() as f64))
+    }
+}

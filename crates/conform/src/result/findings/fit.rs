@@ -1,0 +1,78 @@
+//! What a fit of the nominal model changed.
+
+use reachtube_scalar::number::four_decimals;
+
+use crate::any_run::AnyRun;
+use crate::fit::record::{FitRecord, FittedParameter, MOST_ERRORS};
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+use crate::result::findings::words::counted;
+
+/// A parameter beyond this factor, or below 1 over it, no longer is what its name says.
+const MOST_FACTOR: f64 = 1.5;
+
+impl Finding {
+    /// What the fit is worth.
+    pub(crate) fn fitted(record: &FitRecord, is_linear: bool) -> Self {
+        let FitRecord { pull, identified_cost, cost, .. } = record;
+        let text = format!(
+            "The nominal model was fitted for small sets: cost{} {} before, {} after ({:+.1} %), \
+             with a pull of {pull} toward the identified values.",
+            if is_linear { "" } else { " of the linear model" },
+            four_decimals(*identified_cost),
+            four_decimals(*cost),
+            100.0 * (cost / identified_cost - 1.0),
+        );
+        Self::new(Severity::Info, Code::Fitted, text)
+            .with("cost_before", *identified_cost)
+            .with("cost", *cost)
+            .with("pull", *pull)
+    }
+
+    /// That fitted values compensate for model error, if some do.
+    pub(crate) fn parameters_moved(record: &FitRecord) -> Option<Self> {
+        let changed = || record.parameters.iter().filter(|p| p.has_changed());
+        let is_far = |p: &&FittedParameter| {
+            p.factor.is_some_and(|factor| !(1.0 / MOST_FACTOR..=MOST_FACTOR).contains(&factor))
+        };
+        let beyond = changed().filter(|p| p.is_beyond_error()).count();
+        let far = changed().filter(is_far).count();
+        let mut words = Vec::new();
+        if beyond > 0 {
+            words.push(format!(
+                "{} moved by more than {MOST_ERRORS} standard errors",
+                counted(beyond, "value")
+            ));
+        }
+        if far > 0 {
+            words.push(format!(
+                "{} changed by a factor beyond {MOST_FACTOR}",
+                counted(far, "value")
+            ));
+        }
+        let text = format!(
+            "{}. Such a value compensates for model error; do not read it as a measurement.",
+            words.join(", and ")
+        );
+        (!words.is_empty()).then(|| {
+            Self::new(Severity::Info, Code::ParametersMoved, text)
+                .with("beyond_error", beyond as f64)
+                .with("beyond_factor", far as f64)
+        })
+    }
+
+    /// What holds where the run is unknown, of a model whose friction depends on it.
+    pub(crate) fn any_run(any: &AnyRun) -> Self {
+        let radii = any.sets.input_set.radius.iter().map(|radius| format!("{radius:.3}"));
+        let text = format!(
+            "Friction depends on the run: this model needs the order of the run in its suite, or \
+             the temperatures. If the run is unknown, the sets cost {}, around the nominal motion \
+             of run {} ({}; radii of U {}). The model file has these sets as any_run.",
+            four_decimals(any.cost),
+            any.condition.place,
+            if any.verified { "proved" } else { "NOT proved" },
+            radii.collect::<Vec<_>>().join(" ")
+        );
+        Self::new(Severity::Info, Code::AnyRun, text).with("cost", any.cost)
+    }
+}

@@ -1,0 +1,263 @@
+//! What was proved, what speaks against it, and what the sets cost.
+
+use reachtube_reach::Disturbance;
+use reachtube_robot::JointKind;
+use reachtube_scalar::number::{at_least, four_decimals};
+
+use crate::data::settings::Notion;
+use crate::explain::trace::TraceVerdict;
+use crate::found::SearchSummary;
+use crate::hulls::{Enclosure, Lost};
+use crate::model::file::Model;
+use crate::notion::verdict::{PointVerdict, PointWitness};
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+use crate::result::findings::words::{counted, notion_words, plural};
+use crate::result::remedy::Remedy;
+use crate::verdict::{Verdict, Witness};
+
+/// Returns the code and the severity of a verdict.
+fn outcome(is_conformant: bool) -> (Severity, Code) {
+    match is_conformant {
+        true => (Severity::Info, Code::Conformant),
+        false => (Severity::Failure, Code::NotConformant),
+    }
+}
+
+impl From<&Lost> for Finding {
+    /// Reports where a reachable set ends before its suite.
+    fn from(lost: &Lost) -> Self {
+        let Lost { case, time, state } = lost;
+        let text = format!(
+            "{case}: the reachable set could not be computed beyond {time:.3} s, where {state} \
+             grew fastest; later samples are not enclosed."
+        );
+        Self::new(Severity::Failure, Code::SetLost, text)
+            .at(case)
+            .with("time", *time)
+            .remedied_by(Remedy::until(*time))
+    }
+}
+
+impl Finding {
+    /// The verdict on the recordings that a model was made from.
+    pub(crate) fn verdict_of_fit(model: &Model) -> Self {
+        let Verdict { enclosure, rows, violations, runs, .. } = &model.proof;
+        let how = match enclosure {
+            Enclosure::Inner => "proved with directed rounding",
+            Enclosure::Outer => {
+                "lie in the computed outer set, an enclosure with directed rounding"
+            }
+        };
+        let outcome_words = match (model.verified, model.gap_of_not_minimal()) {
+            (false, _) => "NOT PROVED conformant",
+            (true, Some(_)) => "conformant, not minimal",
+            (true, None) => "conformant",
+        };
+        let text = format!(
+            "{outcome_words}: {} in {}; {} of {rows} rows (suite, sample, state) {how}, at samples",
+            counted(model.data.run_count(), "recording"),
+            counted(model.data.suites.len(), "suite"),
+            rows - violations.count,
+        );
+        let (severity, code) = outcome(model.verified);
+        Self::new(severity, code, text)
+            .with("recordings", *runs as f64)
+            .with("rows", *rows as f64)
+            .with("rows_outside", violations.count as f64)
+    }
+
+    /// The verdict on recordings that are compared with a model.
+    pub(crate) fn verdict_of_check(verdict: &Verdict) -> Self {
+        let Verdict { runs, rows, violations, .. } = verdict;
+        let (severity, code) = outcome(verdict.conformant);
+        let text = format!(
+            "{}: {}; {} of {rows} rows (suite, sample, state) outside the {}, at samples",
+            if verdict.conformant { "conformant" } else { "not conformant" },
+            counted(*runs, "recording"),
+            violations.count,
+            verdict.enclosure.set_name()
+        );
+        Self::new(severity, code, text)
+            .with("recordings", *runs as f64)
+            .with("rows", *rows as f64)
+            .with("rows_outside", violations.count as f64)
+    }
+
+    /// How many recorded points were proved to lie in the reachable set.
+    pub(crate) fn points(verdict: &PointVerdict, enclosure: Enclosure, are_lost: bool) -> Self {
+        let PointVerdict { points, unproved, outside, notion, .. } = verdict;
+        let set = enclosure.set_name();
+        let rest = match (unproved - outside, outside) {
+            (0, 0) => String::new(),
+            (0, outside) => format!("; {outside} lie outside"),
+            (lost, outside) if are_lost => {
+                format!(
+                    "; {outside} lie outside, and {lost} were not judged because a set was lost"
+                )
+            }
+            (close, outside) => format!(
+                "; {outside} lie outside, and {close} lie too close to the boundary to be proved \
+                 (sets that were found for this notion leave room for a proof)"
+            ),
+        };
+        let severity = if *unproved == 0 { Severity::Info } else { Severity::Failure };
+        let text = format!(
+            "{} of {points} recorded points ({}) proved to lie in the {set}{rest}",
+            points - unproved,
+            notion_words(*notion),
+        );
+        Self::new(severity, Code::Points, text)
+            .with("points", *points as f64)
+            .with("unproved", *unproved as f64)
+            .with("outside", *outside as f64)
+    }
+
+    /// The point that lies furthest outside.
+    pub(crate) fn furthest_point(worst: &PointWitness, kinds: &[JointKind]) -> Self {
+        let PointWitness { run, time, combination, value, reach, .. } = worst;
+        let state = worst.leading_state();
+        let text = format!(
+            "Furthest outside: {run} at {time:.3} s, where {combination} is {} {unit} from the \
+             centre of the set, which reaches {} {unit}.",
+            four_decimals(*value),
+            four_decimals(*reach),
+            unit = state.kind.unit(kinds[state.joint]),
+        );
+        Self::new(Severity::Failure, Code::FurthestOutside, text)
+            .at(run)
+            .with("time", *time)
+            .with("value", *value)
+            .with("reach", *reach)
+    }
+
+    /// The value that lies furthest outside.
+    pub(crate) fn furthest_value(worst: &Witness, kinds: &[JointKind]) -> Self {
+        let text = format!("Furthest outside: {}.", Self::place_outside(worst, kinds));
+        Self::new(Severity::Failure, Code::FurthestOutside, text)
+            .at(&worst.run)
+            .with("time", worst.time)
+            .with("joint", worst.joint as f64)
+            .with("excess", worst.excess)
+    }
+
+    /// Describes a value outside the reachable set in one line.
+    pub(crate) fn place_outside(place: &Witness, kinds: &[JointKind]) -> String {
+        let unit = place.state.kind.unit(kinds[place.state.joint]);
+        format!(
+            "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
+            place.run,
+            place.time,
+            place.joint,
+            place.state,
+            four_decimals(place.excess),
+            format!("{:?}", place.side).to_lowercase()
+        )
+    }
+
+    /// How many recordings are motions of the model, and what U lacks for the others.
+    pub(crate) fn traces(traces: &TraceVerdict, runs: usize, disturbance: Disturbance) -> Self {
+        let mut text = format!(
+            "{} of {runs} recordings proved to be one motion of the model each, within V",
+            runs - traces.unproved
+        );
+        let mut remedy = None;
+        if let Some(worst) = &traces.worst {
+            text += &match traces.factor {
+                Some(factor) => format!(
+                    "; U must be {} times as large for all, as {worst} needs",
+                    at_least(factor)
+                ),
+                None => {
+                    remedy = Some(Remedy::new("noise", ""));
+                    format!(
+                        "; no U up to 1024 times as large suffices for {worst}: {}its start may \
+                         lie at the edges of X0 and V, or its positions and velocities may not \
+                         agree, and then a larger V helps.",
+                        match disturbance {
+                            Disturbance::Constant => {
+                                remedy = Some(Remedy::new("disturbance", "sample"));
+                                "a disturbance that never changes cannot follow what changes \
+                                 during the motion; or "
+                            }
+                            Disturbance::Sample | Disturbance::Measurable => "",
+                        }
+                    )
+                }
+            };
+        }
+        let severity = if traces.unproved == 0 { Severity::Info } else { Severity::Failure };
+        let finding =
+            Self { place: traces.worst.clone(), ..Self::new(severity, Code::Traces, text) };
+        finding
+            .with("unproved", traces.unproved as f64)
+            .with("factor", traces.factor.unwrap_or(f64::INFINITY))
+            .remedied_by(remedy)
+    }
+
+    /// Where a simulated motion diverged.
+    pub(crate) fn unstable(case: &str, time: f64) -> Self {
+        let text = format!(
+            "{case}: a simulated motion under nearly these sets diverged before {time:.3} s; the \
+             model is unstable there."
+        );
+        Self::new(Severity::Warning, Code::Unstable, text).at(case).with("time", time)
+    }
+
+    /// What the sets cost, and how far that is from the optimum, where it is known.
+    pub(crate) fn cost(model: &Model) -> Self {
+        let Some(cost) = model.cost else {
+            let text = "no cost: a reachable set could not be computed to the end";
+            return Self::new(Severity::Info, Code::Cost, text);
+        };
+        let quality = match (model.cost_lower_bound, &model.search) {
+            (Some(bound), _) => {
+                let optimal = match (model.gap_of_not_minimal(), model.optimality_gap) {
+                    (Some(_), _) => "NOT optimal".into(),
+                    (None, Some(gap)) if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
+                    (None, _) => "optimal".into(),
+                };
+                format!(" ({optimal}; lower bound {})", four_decimals(bound))
+            }
+            (None, Some(search)) => format!(" ({})", search_words(search)),
+            (None, None) if model.calibration.is_some() => " (calibrated, not the smallest)".into(),
+            (None, None) => String::new(),
+        };
+        let text = format!(
+            "cost {}{quality}: weighted widths of the reachable sets, summed over states and \
+             samples",
+            four_decimals(cost)
+        );
+        Self::new(Severity::Info, Code::Cost, text)
+            .with("cost", cost)
+            .with("lower_bound", model.cost_lower_bound.unwrap_or(f64::NAN))
+    }
+
+    /// That the sets are not the smallest.
+    pub(crate) fn not_smallest(notion: Notion, gap: f64) -> Self {
+        let why = match notion {
+            Notion::Trace => {
+                "all of U was widened by one factor until motions of the model passed through the \
+                 recordings"
+            }
+            _ => "the solver stopped above its lower bound",
+        };
+        let text = format!(
+            "The sets enclose the recordings but are not the smallest: {why} (relative gap \
+             {gap:.1e})."
+        );
+        Self::new(Severity::Warning, Code::NotSmallest, text).with("gap", gap)
+    }
+}
+
+fn search_words(search: &SearchSummary) -> String {
+    let SearchSummary { linearised_cost, rounds, reachable_sets, .. } = search;
+    let linearised = linearised_cost
+        .map(|cost| format!("{} for the linearised sets; ", four_decimals(cost)))
+        .unwrap_or_default();
+    format!(
+        "{linearised}{}, the reachable sets of all suites computed {reachable_sets} {}",
+        counted(*rounds, "round"),
+        plural(*reachable_sets, "time")
+    )
+}

@@ -1,0 +1,172 @@
+//! The report of a model: what was proved, the sets, and what follows for other motions.
+
+use reachtube_recordings::State;
+use reachtube_robot::JointKind;
+use reachtube_robot::units::ColumnUnit;
+use reachtube_scalar::number::interval;
+
+use crate::data::settings::Equations;
+use crate::model::file::Model;
+use crate::result::dependence_report::dependence;
+use crate::result::finding::Finding;
+use crate::result::fit_report::fit;
+use crate::result::report::{Report, Section};
+use crate::result::table::Table;
+use crate::verdict::Witness;
+
+/// Largest number of touching values in the table.
+const MOST_PLACES: usize = 6;
+
+impl Model {
+    /// Returns what the answer says, statement by statement: the verdict first.
+    #[must_use]
+    pub fn findings(&self) -> Vec<Finding> {
+        self.report().findings()
+    }
+
+    /// Returns the answer for people. A table of the sets is like Table II of the paper.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let mut sections = vec![verdict(self), sets(self), fit(self)];
+        if let Some(any) = &self.any_run {
+            sections.push(Section { findings: vec![Finding::any_run(any)], ..Section::default() });
+        }
+        sections.extend([touching(self), explanations(self), new_motions(self)]);
+        sections.extend(dependence(self));
+        sections.retain(|section| !section.is_empty());
+        Report { sections }
+    }
+}
+
+/// Returns the verdict, what speaks against it, and the cost.
+fn verdict(model: &Model) -> Section {
+    let proof = &model.proof;
+    let mut findings = vec![Finding::verdict_of_fit(model)];
+    if let Some(points) = &proof.points {
+        findings.push(Finding::points(points, proof.enclosure, !proof.lost.is_empty()));
+    }
+    if let Some(traces) = &proof.traces {
+        let runs = model.data.run_count();
+        findings.push(Finding::traces(traces, runs, model.settings.disturbance));
+    }
+    findings.extend(proof.lost.iter().map(Finding::from));
+    let runs_away = model.search.as_ref().and_then(|search| search.runs_away.as_ref());
+    findings.extend(runs_away.map(|(case, time)| Finding::unstable(case, *time)));
+    findings.push(Finding::cost(model));
+    let gap = model.gap_of_not_minimal();
+    findings.extend(gap.map(|gap| Finding::not_smallest(model.settings.notion, gap)));
+    Section { findings, ..Section::default() }
+}
+
+/// Returns the sets, how much of the motion the nominal solutions explain, and warnings.
+fn sets(model: &Model) -> Section {
+    let mut section = Section {
+        tables: vec![table_of_sets(model)],
+        findings: model.warnings.iter().map(Finding::from).collect(),
+        ..Section::default()
+    };
+    if let Some(noise) = &model.sensor_noise {
+        let (q, qd) = noise.radius.split_at(model.joints());
+        let kinds = model.robot.kinds();
+        let [position, velocity] = [JointKind::position_unit, JointKind::velocity_unit]
+            .map(|unit| JointKind::units(&kinds, unit));
+        let list = |radii: &[f64]| spaced(radii.iter().map(|radius| format!("{radius:.1e}")));
+        let source = match noise.estimated {
+            true => "estimated from the recordings, 5 standard deviations",
+            false => "given",
+        };
+        let radii = format!("q {} {position}; qd {} {velocity}", list(q), list(qd));
+        section.fact(format!("sensor noise ({source})"), radii);
+    }
+    let (q, qd) = model.nominal_explains.split_at(model.joints());
+    let percent = |part: &Option<f64>| match part {
+        Some(part) if *part > 0.0 => format!("{:.1}", 100.0 * part),
+        Some(_) => "0".into(),
+        None => "-".into(),
+    };
+    let list = |parts: &[Option<f64>]| spaced(parts.iter().map(percent));
+    let by = match model.settings.equations {
+        Equations::Model => "",
+        Equations::Robot => ", by the robot's own equations",
+    };
+    section.fact(
+        format!("variance explained by the nominal motions{by}"),
+        format!("q {} %; qd {} %", list(q), list(qd)),
+    );
+    if !model.input_error.is_empty() {
+        let unit = JointKind::units(&model.robot.kinds(), JointKind::force_unit);
+        let errors = spaced(model.input_error.iter().map(|error| format!("{error:.2}")));
+        section.fact("RMS torque error", format!("{errors} {unit}"));
+    }
+    section
+}
+
+/// Returns the sets joint by joint.
+fn table_of_sets(model: &Model) -> Table {
+    let n = model.joints();
+    let kinds = model.robot.kinds();
+    let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
+    let [q, qd, u] = units.map(|unit| ColumnUnit::new(&kinds, unit));
+    let mut header = vec!["joint".into(), q.head("X0 q"), qd.head("X0 qd"), u.head("U")];
+    if model.noise_set.is_some() {
+        header.extend([q.head("V q"), qd.head("V qd")]);
+    }
+    let row = |joint: usize| {
+        let mut row = vec![
+            model.robot.joints[joint].name.clone(),
+            q.cell(joint, interval(model.initial_set.bounds(joint))),
+            qd.cell(joint, interval(model.initial_set.bounds(n + joint))),
+            u.cell(joint, interval(model.input_set.bounds(joint))),
+        ];
+        if let Some(noise) = &model.noise_set {
+            row.push(q.cell(joint, interval(noise.bounds(joint))));
+            row.push(qd.cell(joint, interval(noise.bounds(n + joint))));
+        }
+        row
+    };
+    Table::new(header, (0..n).map(row).collect())
+}
+
+/// Returns the recorded values that touch the reachable sets.
+fn touching(model: &Model) -> Section {
+    let kinds = model.robot.kinds();
+    // Margins of both units stand in one column.
+    let is_plain = kinds.iter().all(|kind| *kind == JointKind::Revolute);
+    let unit = |state: &State| match is_plain {
+        true => String::new(),
+        false => format!(" {}", state.kind.unit(kinds[state.joint])),
+    };
+    let row = |place: &Witness| {
+        vec![
+            place.run.clone(),
+            format!("{:.3} s", place.time),
+            place.state.to_string(),
+            format!("{:?}", place.side).to_lowercase(),
+            format!("{:.1e}{}", 0.0 - place.excess, unit(&place.state)),
+        ]
+    };
+    let margin = if is_plain { "margin [rad, rad/s]" } else { "margin" };
+    let rows: Vec<_> = model.tight.iter().map(row).collect();
+    let table = Table::new(["run", "time", "state", "side", margin], rows).cut_to(MOST_PLACES);
+    let tables = if model.tight.is_empty() { Vec::new() } else { vec![table] };
+    Section { findings: vec![Finding::touching(model)], tables, ..Section::default() }
+}
+
+fn explanations(model: &Model) -> Section {
+    let searched = model.explained.as_ref().zip(model.settings.explain);
+    let finding = searched.map(|(explained, tolerance)| {
+        Finding::explanations(explained, tolerance, &model.robot.kinds())
+    });
+    Section { findings: finding.into_iter().collect(), ..Section::default() }
+}
+
+/// Returns how the sets were calibrated, and the strongest statement about the next motion.
+fn new_motions(model: &Model) -> Section {
+    let calibrated = model.calibration.as_ref().map(Finding::calibrated);
+    let bound = Finding::next_motion_of_fit(model);
+    Section { findings: calibrated.into_iter().chain([bound]).collect(), ..Section::default() }
+}
+
+fn spaced(values: impl Iterator<Item = String>) -> String {
+    values.collect::<Vec<_>>().join(" ")
+}

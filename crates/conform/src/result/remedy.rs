@@ -1,0 +1,69 @@
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use crate::result::front_end::{FrontEnd, mentions};
+
+/// A setting that helps, and what it does. Each front end writes it in its own form.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Remedy {
+    /// The name of the setting, as on the command line but without dashes in front.
+    pub setting: Cow<'static, str>,
+    /// Its value; empty where the user has to choose one.
+    pub value: String,
+    /// What the setting does: the rest of a sentence whose subject is the setting.
+    pub effect: Cow<'static, str>,
+}
+
+/// What the settings that help do.
+const EFFECTS: &[(&str, &str)] = &[
+    ("until", "uses only the samples before."),
+    ("torque", "reads the recorded torques as such."),
+    ("expansion", "expands the model there."),
+    ("equations", "lets the nominal motions follow the robot's own equations."),
+    ("fit", "fits the nominal model for small sets."),
+    ("pull", "keeps the fitted values closer to the identified ones."),
+    ("initial-limit", "limits X0 to the recorded starts."),
+    ("disturbance", "lets the disturbance change during the motion."),
+    ("noise", "adds measurement noise V."),
+    (
+        "calibrate",
+        "holds motions out of the fit, for a guarantee: with n of them the next motion \
+                   leaves the sets with probability at most 1 in n + 1.",
+    ),
+];
+
+impl Remedy {
+    /// Makes the remedy that gives `setting` a value, or leaves its value to the user.
+    ///
+    /// # Panics
+    ///
+    /// Panics for a setting whose effect is not listed.
+    pub(crate) fn new(setting: &str, value: impl Into<String>) -> Self {
+        let known = EFFECTS.iter().find(|(name, _)| *name == setting);
+        let (name, effect) = known.expect("the effect of each remedy is listed");
+        Self { setting: Cow::Borrowed(name), value: value.into(), effect: Cow::Borrowed(effect) }
+    }
+
+    /// Makes the remedy that uses only the samples before `time`, s.
+    #[must_use]
+    pub fn until(time: f64) -> Self {
+        Self::new("until", format!("{time:.3}"))
+    }
+
+    /// Returns the first remedy that a text mentions as users of the command write it.
+    pub(crate) fn mentioned_in(text: &str) -> Option<Self> {
+        let is_known = |setting: &str| EFFECTS.iter().any(|(name, _)| *name == setting);
+        let mut all = mentions(text).into_iter().filter(|found| is_known(found.setting));
+        all.next().map(|found| Self::new(found.setting, found.value.unwrap_or_default()))
+    }
+
+    /// Returns the remedy as a sentence, as users of a front end write settings.
+    #[must_use]
+    pub fn written_for(&self, front_end: FrontEnd) -> String {
+        let Self { setting, value, effect } = self;
+        let value = Some(value.as_str()).filter(|value| !value.is_empty());
+        format!("`{}` {effect}", front_end.setting(setting, value))
+    }
+}
