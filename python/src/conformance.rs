@@ -9,8 +9,8 @@ use reachtube::conform::{
     self as product, Check, FitSettings, Group, Hulls, Keep, Model, Problem, Settings, Setup,
     SuiteReach, Tolerance,
 };
+use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
 use reachtube::recordings::GapLimit;
-use reachtube::report::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
 use reachtube::{Progress, Robot, Torque, write};
 use serde_json::{Map, Value};
 

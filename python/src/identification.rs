@@ -6,8 +6,8 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use reachtube::identify::IdentifySettings;
 use reachtube::identify::prepare::LogEntry;
+use reachtube::page::write_identified_html;
 use reachtube::recordings::column_names;
-use reachtube::report::write_identified_html;
 use reachtube::{Robot, Run};
 use serde_json::{Map, Value};
 

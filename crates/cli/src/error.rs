@@ -262,7 +262,7 @@ from_library!(
     reachtube::export::ExportError,
     reachtube::identify::Error,
     reachtube::recordings::Error,
-    reachtube::report::ReportError,
+    reachtube::page::Error,
     reachtube::robot::RobotError,
     reachtube_files::Error,
 );

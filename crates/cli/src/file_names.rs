@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use reachtube::conform::SuiteReach;
 use reachtube::export::ExportCase;
-use reachtube::report::SuiteFigure;
+use reachtube::page::SuiteFigure;
 
 /// Returns one file name for each reachable set: the suite's name, with the run's where runs have
 /// nominal solutions of their own. The names are distinct and contain no path separators.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use reachtube::report::{
+use reachtube::page::{
     Assets, LIBRARY_FILE, Page, Sources, page, suite_svg, write_html, write_library,
 };
 use reachtube::write;

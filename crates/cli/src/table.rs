@@ -1,8 +1,8 @@
 //! Tables and plurals.
 
 use reachtube::conform::Table;
+use reachtube::page::TextTable;
 use reachtube::printable;
-use reachtube::report::TextTable;
 
 /// Returns the word in the number that `count` asks for.
 pub(crate) fn plural(count: usize, word: &str) -> String {

@@ -1,7 +1,7 @@
 //! The report page of a virtual arm, written to the folder `reachtube-report`.
 
 use reachtube::demo::{DemoOptions, record};
-use reachtube::report::{Assets, Sources, page, write_html};
+use reachtube::page::{Assets, Sources, page, write_html};
 use reachtube::{
     Check, DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, conform, reach,
     write,

@@ -1,19 +1,7 @@
 #![doc = include_str!("../README.md")]
 
-pub mod campaign;
-pub mod demo;
-mod error;
 pub mod export;
-mod motion;
-mod random;
-mod random_motion;
-#[cfg(feature = "report")]
-pub mod report;
-#[cfg(feature = "report")]
-pub mod reproduce;
-pub mod virtual_robot;
 
-pub use error::{Error, Result};
 pub use reachtube_abstraction::{
     self as abstraction, Abstraction, ExpansionPoint, ModelKind, OperatingBox, PolynomialModel,
 };
@@ -22,8 +10,14 @@ pub use reachtube_conform::{
     Progress, Settings, Setup, Silent, SuiteReach, UncertaintySets, Verdict, Witness, check,
     conform, explain, reach,
 };
+#[cfg(feature = "report")]
+pub use reachtube_experiment::{
+    self as experiment, Error, Result, campaign, demo, reproduce, virtual_robot,
+};
 pub use reachtube_files::{TOOL, printable, write};
 pub use reachtube_identify::{self as identify, Identification, IdentifySettings, identify};
+#[cfg(feature = "report")]
+pub use reachtube_page as page;
 pub use reachtube_reach::{
     self as reach, Disturbance, Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem,
     TimeGrid, UncertainInput,

@@ -9,8 +9,8 @@ use reachtube::conform::{
 };
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::number::{at_least, four_decimals};
+use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};
-use reachtube::report::{Assets, Sources};
 use reachtube::{Model, write};
 use reachtube_robot::Robot;
 use serde_json::json;

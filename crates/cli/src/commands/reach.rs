@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::conform::{Finding, Keep, SuiteReach};
-use reachtube::report::{Sources, page};
+use reachtube::page::{Sources, page};
 use reachtube::write;
 use serde_json::json;
 

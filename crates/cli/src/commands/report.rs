@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use reachtube::conform::Keep;
-use reachtube::report::{Assets, Sources};
+use reachtube::page::{Assets, Sources};
 use serde_json::json;
 
 use crate::data_arguments::ModelArguments;

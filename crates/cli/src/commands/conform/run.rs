@@ -3,8 +3,8 @@ use std::path::{Path, PathBuf};
 use reachtube::conform::{
     Certificate, Check, Conformance, FitSettings, Group, Keep, Notion, Problem, conform, fit, reach,
 };
+use reachtube::page::{Assets, Sources};
 use reachtube::recordings::DataSet;
-use reachtube::report::{Assets, Sources};
 use reachtube::{Model, write};
 
 use super::arguments::Arguments;

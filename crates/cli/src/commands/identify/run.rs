@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
-use reachtube::report::write_identified_html;
+use reachtube::page::write_identified_html;
 use reachtube::write;
 use reachtube_files::MARK;
 use reachtube_logs::LogOptions;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use reachtube::campaign::{self, CampaignOptions};
 use reachtube::conform::Notion;
-use reachtube::report::TextTable;
+use reachtube::page::TextTable;
 use reachtube::reproduce::{
     Claim, Coverage, CoverageOptions, Exemplary, PaperFigure, PaperPage, Table1, Table1Options,
     Table2, Table2Options, Table3, coverage, fig1, fig2, fig3, fig4, table1, table2_and_suite,

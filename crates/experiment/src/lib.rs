@@ -1,0 +1,12 @@
+#![doc = include_str!("../README.md")]
+
+pub mod campaign;
+pub mod demo;
+mod error;
+mod motion;
+mod random;
+mod random_motion;
+pub mod reproduce;
+pub mod virtual_robot;
+
+pub use error::{Error, Result};

@@ -1,0 +1,158 @@
+//! One suite under the sets of both halves of Table II, as Figs. 1, 2 and 4 show one.
+
+use std::path::Path;
+
+use reachtube_conform::{
+    Check, Conformance, Hulls, Keep, Model, Problem, Progress, Setup, Silent, States, Trend,
+    Verdict, reach,
+};
+use reachtube_recordings::DataSet;
+
+use super::error::ReproduceError;
+use super::table2::{Found, Table2, Table2Options};
+use crate::error::Result;
+use reachtube_page::{Sources, SuiteFigure, suite_figures};
+
+/// One suite with its recordings, its input, and the reachable sets of both cases of Table II.
+#[derive(Debug, Clone)]
+pub struct Exemplary {
+    /// The recordings in the reachable set of the velocity conformant case; the second band is the
+    /// set of the position conformant case.
+    pub figure: SuiteFigure,
+    /// The input of the first recording \[N m\], row-major samples x n.
+    pub inputs: Vec<f64>,
+    /// Number of suites of which one joint at least follows the order of the runs, and of all.
+    pub drifting: [usize; 2],
+    /// The joints of this suite that follow the order of the runs.
+    pub trends: Vec<Trend>,
+}
+
+/// Makes Table II for recordings, and takes one suite under the sets of its first two cases; where
+/// none is named, the one whose runs end furthest apart in all joints.
+///
+/// # Errors
+///
+/// As [`table2`](super::table2); [`ReproduceError::NoSuite`].
+pub fn table2_and_suite(
+    folder: &Path,
+    options: &Table2Options,
+    suite: Option<&str>,
+    progress: &(dyn Progress + Sync),
+) -> Result<(Table2, Exemplary)> {
+    let found = Found::new(folder, options, progress)?;
+    let exemplary = Exemplary::new(folder, &found, suite)?;
+    Ok((found.table(options), exemplary))
+}
+
+impl Exemplary {
+    /// Takes a suite of the recordings for which `found` holds the sets; where none is named, the
+    /// one whose runs end furthest apart.
+    ///
+    /// # Errors
+    ///
+    /// [`ReproduceError::NoSuite`]; as [`Problem::read`] and [`reach`].
+    pub(super) fn new(folder: &Path, found: &Found, suite: Option<&str>) -> Result<Self> {
+        let name = match suite {
+            Some(name) => name.to_string(),
+            None => furthest_apart(&found.problem).ok_or(ReproduceError::NoSuite)?,
+        };
+        let of_case = |states: States| {
+            let case = found.cases.iter().find(|case| case.states() == states);
+            let case = case.expect("both cases were found");
+            suite_under(folder, &name, case.setup.clone(), &case.found)
+        };
+        let (mut figure, inputs) = of_case(States::All)?;
+        figure.band.label = VELOCITY.into();
+        let mut inner = of_case(States::Positions)?.0.band;
+        inner.label = POSITION.into();
+        figure.inner = Some(inner);
+        figure.tight.clear();
+        let all = &found.cases[0].found.trends;
+        let mut suites: Vec<&str> = all.iter().map(|trend| trend.suite.as_str()).collect();
+        suites.dedup();
+        let trends = all.iter().filter(|trend| trend.suite == name).cloned().collect();
+        let drifting = [suites.len(), found.problem.recordings().suites.len()];
+        Ok(Self { figure, inputs, drifting, trends })
+    }
+
+    /// Returns the number of joints.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.figure.joints.len()
+    }
+
+    /// Returns the joint (from 0) whose position spreads furthest over the runs.
+    #[must_use]
+    pub fn widest_joint(&self) -> usize {
+        let wider = |a: &usize, b: &usize| self.spread(*a).total_cmp(&self.spread(*b));
+        (0..self.joints()).max_by(wider).unwrap_or(0)
+    }
+
+    /// Returns how far the runs lie apart in a state at most, at one sample, rad or rad/s.
+    #[must_use]
+    pub fn spread(&self, state: usize) -> f64 {
+        let samples = self.figure.runs.iter().map(|run| run.times.len()).max().unwrap_or(0);
+        let at = |k: usize| {
+            let values = self.figure.runs.iter().filter_map(|run| run.states[state].get(k));
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(*x), high.max(*x))
+            });
+            high - low
+        };
+        (0..samples).map(at).fold(0.0, f64::max)
+    }
+
+    /// Returns the largest width of the reachable set in a state, of the velocity conformant case
+    /// and of the position conformant one, rad or rad/s.
+    #[must_use]
+    pub fn widths(&self, state: usize) -> [f64; 2] {
+        let SuiteFigure { band, inner, .. } = &self.figure;
+        [Some(band), inner.as_ref()].map(|band| {
+            let edges = band.map(|band| band.lower[state].iter().zip(&band.upper[state]));
+            edges.into_iter().flatten().map(|(low, high)| high - low).fold(0.0, f64::max)
+        })
+    }
+}
+
+const VELOCITY: &str = "reachable set, position and velocity conformant";
+const POSITION: &str = "reachable set, position conformant";
+
+/// Spread below which a joint counts as one that does not spread \[rad\].
+const LEAST_SPREAD: f64 = 0.01;
+
+/// Returns the suite whose runs' positions end furthest apart in all joints, by the product over
+/// the joints, of those with two samples or more.
+fn furthest_apart(problem: &Problem) -> Option<String> {
+    let suites = problem.recordings().suites.iter().filter(|suite| suite.envelope.len() > 1);
+    let spread = |suite: &reachtube_conform::Suite| {
+        let last = suite.envelope.len() - 1;
+        let width = |i: usize| suite.envelope.upper(last, i) - suite.envelope.lower(last, i);
+        (0..problem.joints()).map(|i| (width(i) + LEAST_SPREAD).ln()).sum::<f64>()
+    };
+    let widest = suites.max_by(|a, b| spread(a).total_cmp(&spread(b)))?;
+    Some(widest.entry.name.clone())
+}
+
+/// Returns a suite in its reachable set under sets that were found, and the input of its first run.
+fn suite_under(
+    folder: &Path,
+    name: &str,
+    setup: Setup,
+    found: &Conformance,
+) -> Result<(SuiteFigure, Vec<f64>)> {
+    let source = Box::new(DataSet::open(folder)?);
+    let problem = Problem::read(setup, source, &[name.into()], Keep::All, &Silent)?;
+    let hulls = Hulls::new(&problem, found.sets.clone())?;
+    let sets = reach(&problem, &hulls)?;
+    let model = Model::new(&problem, found);
+    let verdict = Verdict::new(&problem, &hulls, |_, _, _| ())?;
+    let check = Check::new(&model, &problem, verdict);
+    let figure =
+        suite_figures(&Sources { model: &model, problem: &problem, reach: &sets, check: &check })?
+            .pop();
+    let figure = figure.ok_or(ReproduceError::NoSuite)?;
+    let first = problem.recordings().suites[0].runs[0].index;
+    let run = problem.run(first)?;
+    let inputs = (0..run.len()).flat_map(|k| run.torque(k).to_vec()).collect();
+    Ok((figure, inputs))
+}

@@ -1,0 +1,344 @@
+//! Figs. 1 to 4 of the paper, drawn again.
+
+use std::path::Path;
+
+use reachtube_identify::Identification;
+use reachtube_identify::friction::FrictionFit;
+use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource};
+use reachtube_robot::JointKind;
+use serde::Serialize;
+
+use super::error::ReproduceError;
+use super::exemplary::Exemplary;
+use crate::campaign::{PlannedSuite, planned_suites};
+use crate::error::Result;
+use crate::motion::{Motion, SAMPLE_TIME};
+use reachtube_page::{
+    Chart, Nominal, RunTrace, Series, SuiteFigure, TextTable, View, charts_svg, load_chart,
+    suite_svg, viscous_chart,
+};
+use reachtube_scalar::number::significant;
+
+/// Red, of recordings.
+const RECORDED: [u8; 3] = [222, 30, 30];
+/// Grey, of reachable sets and marks.
+const SET: [u8; 3] = [140, 149, 159];
+/// Dark grey, of what was planned.
+const PLANNED: [u8; 3] = [31, 35, 40];
+
+/// A figure of the paper, drawn again.
+#[derive(Debug, Clone, Serialize)]
+pub struct PaperFigure {
+    /// Its number in the paper.
+    pub number: u8,
+    /// What ours shows.
+    pub caption: String,
+    /// What the paper's shows.
+    pub paper: String,
+    /// Its numbers.
+    pub table: TextTable,
+    /// The drawing, a complete SVG document.
+    #[serde(skip)]
+    pub svg: String,
+}
+
+/// Draws Fig. 1: recorded behaviour inside the reachable set, for the joint that spreads most.
+///
+/// # Errors
+///
+/// As [`suite_svg`].
+pub fn fig1(suite: &Exemplary) -> Result<PaperFigure> {
+    let joint = suite.widest_joint();
+    let figure = SuiteFigure { inner: None, ..of_joint(&suite.figure, joint) };
+    let (runs, name) = (figure.runs.len(), &figure.suite);
+    Ok(PaperFigure {
+        number: 1,
+        caption: format!(
+            "{} of suite {name}: {runs} recordings of the same open-loop input (lines) lie in the \
+             reachable set of the model (grey) at every sample.",
+            figure.joints[0]
+        ),
+        paper: "The paper shows its arm, and recordings (red) inside the reachable set (grey)."
+            .into(),
+        table: widths(suite, joint..joint + 1),
+        svg: suite_svg(&figure, View::Motion)?,
+    })
+}
+
+/// Draws Fig. 2: the same input moves the robot, whose runs differ, and the model, whose reachable
+/// set encloses them.
+///
+/// # Errors
+///
+/// As [`suite_svg`].
+pub fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
+    let (joint, n) = (suite.widest_joint(), suite.joints());
+    let SuiteFigure { times, band, runs, joints, .. } = &suite.figure;
+    let line = |times: &[f64], values: &[f64], colour| Series {
+        points: times.iter().copied().zip(values.iter().copied()).collect(),
+        dots: false,
+        colour,
+    };
+    let inputs: Vec<f64> = suite.inputs.iter().skip(joint).step_by(n).copied().collect();
+    let recorded = || runs.iter().map(|run| line(&run.times, &run.states[joint], RECORDED));
+    let edges = [&band.lower, &band.upper].map(|edge| line(times, &edge[joint], SET));
+    let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
+        title: title.into(),
+        x: "time [s]".into(),
+        y: y.into(),
+        series,
+    };
+    let position = "position [rad]";
+    let charts = [
+        chart("input u of all runs", "torque [N m]", vec![line(times, &inputs, PLANNED)]),
+        chart("robot: its recordings", position, recorded().collect()),
+        chart("model: its reachable set", position, recorded().chain(edges).collect()),
+    ];
+    let caption = format!(
+        "{} of suite {}: open-loop control with compensated gravity and Coulomb friction. One \
+         input (left) moves the robot, whose {} runs diverge (middle, red), and the model, whose \
+         reachable set (right, grey) encloses them.",
+        joints[joint],
+        suite.figure.suite,
+        runs.len()
+    );
+    Ok(PaperFigure {
+        number: 2,
+        paper: "The paper shows the same as a diagram, without numbers.".into(),
+        table: widths(suite, joint..joint + 1),
+        svg: charts_svg(&charts, 3, &caption)?,
+        caption,
+    })
+}
+
+/// Draws Fig. 3: the points of the motion of `suite` at which the controller switches to open loop,
+/// and the runs from there.
+///
+/// # Errors
+///
+/// [`CampaignError`](crate::campaign::CampaignError) for a folder that is not a campaign's;
+/// [`ReproduceError::UnknownSuite`]; as [`suite_svg`].
+pub fn fig3(campaign: &Path, suite: &str) -> Result<PaperFigure> {
+    let planned = planned_suites(campaign)?;
+    let of_suite = planned.iter().find(|plan| plan.name == suite);
+    let of_suite = of_suite.ok_or_else(|| ReproduceError::UnknownSuite { suite: suite.into() })?;
+    let motion = &of_suite.motion;
+    let same = planned.iter().filter(|plan| plan.motion_name == of_suite.motion_name);
+    let data = DataSet::open(campaign)?;
+    let starts: Vec<OpenLoop> =
+        same.map(|plan| OpenLoop::new(&data, plan)).collect::<Result<_>>()?;
+    let joints = motion.start.len();
+    let charts: Vec<Chart> =
+        (0..joints).map(|joint| planned_chart(motion, &starts, joint)).collect();
+    let row = |open: &OpenLoop| {
+        let last =
+            open.runs.iter().filter_map(|run| run.times.last()).fold(0.0, |a: f64, b| a.max(*b));
+        vec![
+            open.suite.clone(),
+            format!("{:.2}", open.start),
+            format!("{last:.2}"),
+            open.runs.len().to_string(),
+        ]
+    };
+    let header = ["suite", "open loop from [s]", "for [s]", "runs"];
+    let caption = format!(
+        "Random point-to-point motion {} (black) of {:.2} s. At {} points (dashed) the controller \
+         switches from closed loop to open loop; from there the runs (red) diverge.",
+        of_suite.motion_name,
+        motion.duration,
+        starts.len()
+    );
+    Ok(PaperFigure {
+        number: 3,
+        paper: "The paper shows one motion with four points, and neither times nor scales.".into(),
+        table: TextTable {
+            title: "Where the open loop begins".into(),
+            header: header.map(String::from).to_vec(),
+            rows: starts.iter().map(row).collect(),
+        },
+        svg: charts_svg(&charts, 3, &caption)?,
+        caption,
+    })
+}
+
+/// The runs from one point of a motion.
+struct OpenLoop {
+    suite: String,
+    /// Time of the motion at which the open loop begins \[s\].
+    start: f64,
+    runs: Vec<Run>,
+}
+
+impl OpenLoop {
+    fn new(data: &DataSet, plan: &PlannedSuite) -> Result<Self> {
+        let suites = data.suites();
+        let of_suite = suites.iter().filter(|entry| entry.name == plan.name);
+        let indices = of_suite.flat_map(|entry| entry.runs.iter().copied());
+        let read = |index: usize| data.read(index, &ReadOptions::default());
+        let runs = indices.map(read).collect::<Result<_, _>>();
+        let runs = runs.map_err(reachtube_recordings::Error::Defects)?;
+        Ok(Self { suite: plan.name.clone(), start: plan.first as f64 * SAMPLE_TIME, runs })
+    }
+}
+
+/// Returns the plan of a joint over time, and the runs from the points at which the open loop
+/// begins.
+fn planned_chart(motion: &Motion, starts: &[OpenLoop], joint: usize) -> Chart {
+    let run = |run: &Run, start: f64| {
+        let point = |k: usize| (start + run.times[k], run.q(k)[joint]);
+        Series { points: (0..run.len()).map(point).collect(), dots: false, colour: RECORDED }
+    };
+    let mut series: Vec<Series> = starts
+        .iter()
+        .flat_map(|open| open.runs.iter().map(move |of| run(of, open.start)))
+        .collect();
+    let plan = (0..=motion.cycles()).map(|k| {
+        let t = k as f64 * SAMPLE_TIME;
+        (t, motion.at(t).q[joint])
+    });
+    series.push(Series { points: plan.collect(), dots: false, colour: PLANNED });
+    let heights = || series.iter().flat_map(|series| &series.points).map(|point| point.1);
+    let ends = [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::MIN, f64::max)];
+    series.extend(starts.iter().flat_map(|open| dashed(open.start, ends)));
+    Chart {
+        title: format!("joint{}", joint + 1),
+        x: "time [s]".into(),
+        y: "position [rad]".into(),
+        series,
+    }
+}
+
+/// Draws Fig. 4: the reachable sets of both cases with all recordings of a suite.
+///
+/// # Errors
+///
+/// As [`suite_svg`].
+pub fn fig4(suite: &Exemplary) -> Result<PaperFigure> {
+    let by = if suite.figure.runs.iter().all(|run| run.temperature.is_some()) {
+        "temperature"
+    } else {
+        "order"
+    };
+    Ok(PaperFigure {
+        number: 4,
+        caption: format!(
+            "Suite {}: reachable sets of model 1. Light grey: position and velocity conformant. \
+             Dark grey: position conformant. The {} recordings are coloured by {by}.",
+            suite.figure.suite,
+            suite.figure.runs.len()
+        ),
+        paper: "The paper's figure has the same content for a suite of its own. Hot runs lie on \
+                one side of cold ones there."
+            .into(),
+        table: widths(suite, 0..suite.joints()),
+        svg: suite_svg(&suite.figure, View::Motion)?,
+    })
+}
+
+/// Draws Fig. 5 for every joint: Coulomb friction over the load, and viscous friction over the
+/// velocity.
+///
+/// # Errors
+///
+/// Fails for numbers that cannot be drawn.
+pub(super) fn fig5(found: &Identification) -> Result<PaperFigure> {
+    let fits = found.friction.iter().zip(found.description.kinds());
+    let fits: Vec<_> = fits.collect();
+    // The charts of three joints in a row, viscous friction below Coulomb friction.
+    let mut charts = Vec::new();
+    for row in fits.chunks(3) {
+        charts.extend(row.iter().map(|(fit, kind)| load_chart(fit, *kind)));
+        charts.extend(row.iter().map(|(fit, kind)| viscous_chart(fit, *kind)));
+    }
+    let row = |(fit, _): &(&FrictionFit, JointKind)| {
+        let squares: f64 = fit.residuals.iter().map(|residual| residual * residual).sum();
+        let rms = (squares / fit.residuals.len().max(1) as f64).sqrt();
+        vec![fit.joint.joint.clone(), fit.samples.len().to_string(), significant(rms, 3)]
+    };
+    let header = ["joint", "samples", "residual, root mean square [N m]"];
+    let caption = "Fits (orange) of load-dependent Coulomb friction and of viscous friction, for \
+                   every joint. Blue: the recorded torque without the other parts."
+        .to_string();
+    Ok(PaperFigure {
+        number: 5,
+        paper: "The paper shows joint 2. Its Coulomb friction runs from 4 to 10 N m over loads of \
+                both signs, and its viscous friction bends down toward high speeds."
+            .into(),
+        table: TextTable {
+            title: "What the fits leave".into(),
+            header: header.map(String::from).to_vec(),
+            rows: fits.iter().map(row).collect(),
+        },
+        svg: charts_svg(&charts, 3, &caption)?,
+        caption,
+    })
+}
+
+/// Returns the part of a figure that shows one joint.
+fn of_joint(figure: &SuiteFigure, joint: usize) -> SuiteFigure {
+    let n = figure.joints.len();
+    let pick = |rows: &[Vec<f64>]| vec![rows[joint].clone(), rows[n + joint].clone()];
+    let band = |band: &reachtube_page::Band| reachtube_page::Band {
+        label: band.label.clone(),
+        lower: pick(&band.lower),
+        upper: pick(&band.upper),
+    };
+    SuiteFigure {
+        suite: figure.suite.clone(),
+        joints: vec![figure.joints[joint].clone()],
+        kinds: figure.kinds.get(joint).copied().into_iter().collect(),
+        times: figure.times.clone(),
+        band: band(&figure.band),
+        inner: figure.inner.as_ref().map(band),
+        nominal: match &figure.nominal {
+            Nominal::Shared(nominal) => Nominal::Shared(pick(nominal)),
+            other => other.clone(),
+        },
+        runs: figure
+            .runs
+            .iter()
+            .map(|run| RunTrace { states: pick(&run.states), ..run.clone() })
+            .collect(),
+        ..figure.clone()
+    }
+}
+
+/// Returns a dashed vertical line at `x` between two heights.
+fn dashed(x: f64, [low, high]: [f64; 2]) -> impl Iterator<Item = Series> {
+    const DASHES: usize = 25;
+    let height = move |part: f64| low + (high - low) * part / DASHES as f64;
+    (0..DASHES).map(move |k| {
+        let k = k as f64;
+        Series { points: vec![(x, height(k)), (x, height(k + 0.5))], dots: false, colour: SET }
+    })
+}
+
+/// Returns how far the runs spread and how wide the reachable sets are, for some joints.
+fn widths(suite: &Exemplary, joints: std::ops::Range<usize>) -> TextTable {
+    let n = suite.joints();
+    let digits = |value: f64| significant(value, 3);
+    let row = |joint: usize| {
+        let cells = [joint, n + joint].into_iter().flat_map(|state| {
+            let [velocity, position] = suite.widths(state);
+            [suite.spread(state), velocity, position].map(digits)
+        });
+        std::iter::once(suite.figure.joints[joint].clone()).chain(cells).collect()
+    };
+    let header = [
+        "joint",
+        "runs q [rad]",
+        "set (q, qd) [rad]",
+        "set (q) [rad]",
+        "runs qd [rad/s]",
+        "set (q, qd) [rad/s]",
+        "set (q) [rad/s]",
+    ];
+    TextTable {
+        title: format!(
+            "Largest spread of the runs of suite {}, and largest width of its reachable sets",
+            suite.figure.suite
+        ),
+        header: header.map(String::from).to_vec(),
+        rows: joints.map(row).collect(),
+    }
+}

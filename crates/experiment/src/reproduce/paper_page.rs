@@ -1,0 +1,234 @@
+//! One page that reads like Sec. V and the appendix of the paper.
+
+use std::io::Write;
+
+use maud::{Markup, PreEscaped, html};
+
+use super::claims::Claim;
+use super::coverage::Coverage;
+use super::exemplary::Exemplary;
+use super::figures::PaperFigure;
+use super::table1::Table1;
+use super::table2::Table2;
+use super::table3::Table3;
+use reachtube_page::{Error, TextTable, charts_svg, document, long_table, section};
+
+/// What the page shows.
+#[derive(Debug, Clone)]
+pub struct PaperPage<'a> {
+    /// Table I.
+    pub table1: &'a Table1,
+    /// Table II.
+    pub table2: &'a Table2,
+    /// Table III.
+    pub table3: &'a Table3,
+    /// The suite of Figs. 1, 2 and 4.
+    pub exemplary: &'a Exemplary,
+    /// The figures.
+    pub figures: &'a [PaperFigure],
+    /// The bounds for the next motion.
+    pub coverage: &'a Coverage,
+    /// How the page was made: name and value.
+    pub facts: Vec<(String, String)>,
+}
+
+impl PaperPage<'_> {
+    /// Returns what the paper claims beside ours.
+    #[must_use]
+    pub fn claims(&self) -> Vec<Claim> {
+        [
+            self.table1.claims(),
+            self.table2.claims(),
+            self.exemplary.claims(),
+            self.table3.claims(),
+            self.coverage.claims(),
+        ]
+        .concat()
+    }
+
+    /// Writes the page as one HTML file that needs no other file.
+    ///
+    /// # Errors
+    ///
+    /// Fails for numbers that cannot be drawn, and where `out` fails.
+    pub fn write_html(&self, out: &mut impl Write) -> Result<(), Error> {
+        let body = html! {
+            (section("What came out", &self.summary()))
+            (section("Model abstractions in simulation", &self.abstractions()))
+            (section("Conformance testing and optimal uncertainty sets", &self.conformance()))
+            (section("Bounds for unseen motions", &self.unseen()?))
+            (section("Appendix: dynamic parameter identification", &self.identification()))
+            (section("How this page was made", &self.made()))
+        };
+        let title = "Reachset conformance of forward dynamic models, reproduced";
+        let subtitle = "The experiment of Liu and Althoff (IROS 2018), Sec. V, on a virtual \
+                        Schunk LWA 4P";
+        out.write_all(document(title, subtitle, &body, &Markup::default()).as_bytes())?;
+        Ok(())
+    }
+
+    fn summary(&self) -> Markup {
+        let claims = self.claims();
+        let hold = claims.iter().filter(|claim| claim.holds).count();
+        let row = |claim: &Claim| {
+            let holds = if claim.holds { "yes" } else { "no" };
+            [&claim.place, holds, &claim.claim, &claim.ours, &claim.paper]
+                .map(String::from)
+                .to_vec()
+        };
+        let table = TextTable {
+            title: format!("{hold} of {} statements hold here", claims.len()),
+            header: ["", "holds", "statement", "here", "paper"].map(String::from).to_vec(),
+            rows: claims.iter().map(row).collect(),
+        };
+        let others = || claims.iter().filter(|claim| !claim.holds && !claim.why.is_empty());
+        html! {
+            p {
+                "The paper\u{2019}s recordings are not public but for four suites, so a virtual \
+                 arm records the whole experiment again. Its truth differs from the nominal model \
+                 in friction, warming, payload, inertia and delay. Numbers can agree in size and \
+                 order only. Every enclosure on this page is proved with directed rounding."
+            }
+            (long_table(&table))
+            @for claim in others() {
+                p { b { (claim.place) ": " (claim.claim) "." } " Not here. " (claim.why) }
+            }
+        }
+    }
+
+    fn abstractions(&self) -> Markup {
+        let options = &self.table1.options;
+        html! {
+            p {
+                "Models 1, 2 and 3 of several orders and the rigid-body dynamics (Featherstone's \
+                 articulated bodies) move under the same inputs. A model whose state leaves \
+                 100 rad or rad/s has diverged (\u{221e})."
+            }
+            (long_table(&TextTable {
+                title: format!(
+                    "Table I: simulation error of the model abstractions. {} over {} random \
+                     motions of {:.2} s (slow) and {:.2} s (fast)",
+                    self.table1.table().title,
+                    options.motions,
+                    self.table1.durations[0],
+                    self.table1.durations[1]
+                ),
+                ..self.table1.table()
+            }))
+            p {
+                "Fast errors are larger than the paper's because every joint reaches its speed \
+                 limit at once. Far from the expansion point every polynomial about it loses."
+            }
+        }
+    }
+
+    fn conformance(&self) -> Markup {
+        let Table2 { runs, suites, cases, .. } = self.table2;
+        html! {
+            p {
+                "The arm follows random point-to-point motions closed loop, and its input is \
+                 recorded. Each test suite applies this input open loop, from one of four points \
+                 of the motion (Fig. 3), " (runs) " runs in " (suites) " suites. The input is the \
+                 motor torque without gravity and Coulomb friction (Fig. 2)."
+            }
+            (self.figure(1)) (self.figure(2)) (self.figure(3))
+            p {
+                "Table II has the smallest sets of the linear model 1 (p = 1) for all suites \
+                 together, once for positions and velocities, once for positions only. X0 and U \
+                 contain the origin. The positions of X0 reach no further than the recorded \
+                 starts. In the paper\u{2019}s notion, each state by itself lies in the interval \
+                 hull of the reachable set. In the notion exact, all states together lie in the \
+                 set itself."
+            }
+            @for case in cases {
+                (long_table(&TextTable {
+                    title: format!("Table II, {}", case.table().title),
+                    ..case.table()
+                }))
+                @if !case.warnings.is_empty() {
+                    p.hint { "Warnings: " (case.warnings.join(". ")) "." }
+                }
+            }
+            p {
+                "Where only positions have to be enclosed, the disturbance that the paper takes as \
+                 constant cannot change positions at once. Wide initial velocities do that for \
+                 less, in the paper\u{2019}s table and in ours."
+            }
+            (self.figure(4))
+        }
+    }
+
+    /// Returns a figure with its caption and its numbers.
+    fn figure(&self, number: u8) -> Markup {
+        let Some(figure) = self.figures.iter().find(|figure| figure.number == number) else {
+            return Markup::default();
+        };
+        html! {
+            figure {
+                (wide_figure(&format!("Fig. {number}"), &figure.svg))
+                figcaption { b { "Fig. " (number) ". " } (figure.caption) " " (figure.paper) }
+            }
+            (long_table(&figure.table))
+        }
+    }
+
+    fn unseen(&self) -> Result<Markup, Error> {
+        let charts = self.coverage.charts();
+        let svg = charts_svg(&charts, charts.len(), "Stated and true probabilities")?;
+        Ok(html! {
+            p {
+                "Sets that enclose the recordings say nothing certain of the next motion. Three \
+                 bounds say how likely it leaves them (docs/next-motion.md). Small campaigns of "
+                (self.coverage.motions) " independent motions put them to the test: each bound may \
+                 be wrong in 5 % of the campaigns."
+            }
+            (long_table(&self.coverage.table()))
+            (wide_figure("Stated and true probabilities", &svg))
+            p.hint { "Each dot is a campaign. Its bound is wrong where the dot is above the line." }
+        })
+    }
+
+    fn identification(&self) -> Markup {
+        html! {
+            p {
+                "Gravity is identified from " (self.table3.poses) " static poses, friction from \
+                 slow motions of single joints with gravity as the load, and the inertial \
+                 parameters from exciting motions by linear regression."
+            }
+            (self.figure(5))
+            p {
+                "Table III lays the estimates beside the arm that moved, which no real experiment \
+                 can, and beside the paper\u{2019}s. The arm has a Stribeck effect, warms up, and \
+                 its torque acts late. The law of the table has none of this, so the rows that it \
+                 moves are named. The arm of this page is not the paper\u{2019}s: its links are \
+                 heavier, and it carries a payload."
+            }
+            @for part in self.table3.tables() { (long_table(&part)) }
+            @if !self.table3.warnings.is_empty() {
+                p.hint { "Warnings: " (self.table3.warnings.join(". ")) "." }
+            }
+        }
+    }
+
+    fn made(&self) -> Markup {
+        let table = TextTable {
+            title: "Settings".into(),
+            header: vec!["".into(), "".into()],
+            rows: self
+                .facts
+                .iter()
+                .map(|(name, value)| vec![name.clone(), value.clone()])
+                .collect(),
+        };
+        html! { (long_table(&table)) }
+    }
+}
+
+/// Returns a drawing that scrolls sideways on a narrow screen.
+fn wide_figure(label: &str, svg: &str) -> Markup {
+    html! {
+        div.wide tabindex="0" role="region" aria-label=(label) style="--width:56rem" {
+            (PreEscaped(svg))
+        }
+    }
+}

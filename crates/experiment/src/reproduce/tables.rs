@@ -1,0 +1,199 @@
+//! The tables as texts, in the paper's layout, with its numbers beside ours.
+
+use reachtube_abstraction::ModelKind;
+use reachtube_conform::Notion;
+use reachtube_reach::Disturbance;
+
+use super::coverage::{Coverage, CoverageRow};
+use super::paper::Paper;
+use super::speed::Speed;
+use super::table1::{Cell, Table1};
+use super::table2::Table2Case;
+use super::table3::{Effect, Part, Table3, Table3Row};
+use reachtube_page::{Chart, Series, TextTable};
+use reachtube_scalar::number::{four_decimals, interval, significant};
+
+/// Blue, of single campaigns.
+const CAMPAIGN: [u8; 3] = [18, 70, 200];
+/// Grey, of the line between wrong and right.
+const EQUAL: [u8; 3] = [140, 149, 159];
+
+/// A parameter of the arm below this is rounding of the combination it is part of, in SI units.
+const ROUNDING: f64 = 1e-12;
+
+impl Table1 {
+    /// Returns the table.
+    #[must_use]
+    pub fn table(&self) -> TextTable {
+        let rows = self.options.orders.iter();
+        let rows = rows.flat_map(|order| Speed::ALL.map(|speed| self.row(*order, speed)));
+        let header = ["p", "speed", "model 1", "paper", "model 2", "paper", "model 3", "paper"];
+        TextTable {
+            title: "Mean |velocity error| over time and joints [rad/s], mean ± standard deviation \
+                    over the motions"
+                .into(),
+            header: header.map(String::from).to_vec(),
+            rows: rows.collect(),
+        }
+    }
+
+    fn row(&self, order: u32, speed: Speed) -> Vec<String> {
+        let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];
+        let cells = kinds.map(|kind| cell_pair(self.cell(kind, order, speed)));
+        let names = [order.to_string(), speed.name().into()];
+        names.into_iter().chain(cells.into_iter().flatten()).collect()
+    }
+}
+
+/// Returns the simulated error and the paper's error.
+fn cell_pair(cell: Option<&Cell>) -> [String; 2] {
+    let Some(cell) = cell else { return ["-".into(), String::new()] };
+    let spread =
+        cell.spread.map(|spread| format!(" ± {}", four_decimals(spread))).unwrap_or_default();
+    let simulated = match (cell.mean, cell.diverged) {
+        (None, diverged) => format!("∞ ({diverged} diverged)"),
+        (Some(mean), 0) => format!("{}{spread}", four_decimals(mean)),
+        (Some(mean), diverged) => format!("{}{spread} ({diverged} diverged)", four_decimals(mean)),
+    };
+    let paper = match cell.paper {
+        Some(Paper::Error(error)) => format!("{error:.4}"),
+        Some(Paper::Diverged) => "∞".into(),
+        None => String::new(),
+    };
+    [simulated, paper]
+}
+
+impl Table2Case {
+    /// Returns the half of the table, with the paper's bounds beside ours.
+    #[must_use]
+    pub fn table(&self) -> TextTable {
+        let row = |joint: usize| {
+            let papers = [self.paper.x0_q, self.paper.x0_qd, self.paper.u].map(|sets| sets[joint]);
+            let pairs = self.bounds(joint).into_iter().zip(papers);
+            let cells = pairs
+                .flat_map(|(ours, [low, high])| [interval(ours), format!("[{low:.4}, {high:.4}]")]);
+            std::iter::once(format!("joint{}", joint + 1)).chain(cells).collect()
+        };
+        let header = ["joint", "X0 q [rad]", "paper", "X0 qd [rad/s]", "paper", "U [N m]", "paper"];
+        let (notion, disturbance) = match (self.notion, self.disturbance) {
+            (Notion::Hull, by) => ("each state by itself", by),
+            (Notion::PhasePlane, by) => ("position and velocity of each joint together", by),
+            (_, by) => ("all states together", by),
+        };
+        let disturbance = match disturbance {
+            Disturbance::Constant => "constant disturbance",
+            Disturbance::Sample => "disturbance held over samples",
+            Disturbance::Measurable => "measurable disturbance",
+        };
+        let proved = if self.conformant { "proved" } else { "NOT PROVED" };
+        TextTable {
+            title: format!(
+                "{}, {notion}, {disturbance}: {proved}, cost {}",
+                self.name(),
+                four_decimals(self.cost)
+            ),
+            header: header.map(String::from).to_vec(),
+            rows: (0..6).map(row).collect(),
+        }
+    }
+}
+
+impl Table3 {
+    /// Returns the three parts of the table: friction, gravity, inertial parameters.
+    #[must_use]
+    pub fn tables(&self) -> [TextTable; 3] {
+        let parts = [
+            (Part::Friction, "friction parameters"),
+            (Part::Gravity, "gravity model"),
+            (Part::Inertia, "inertial parameters"),
+        ];
+        let header = [
+            "",
+            "ours",
+            "standard error",
+            "of the arm",
+            "error / standard error",
+            "paper",
+            "biased by",
+        ];
+        parts.map(|(part, name)| TextTable {
+            title: format!("Table III, {name} (SI units)"),
+            header: header.map(String::from).to_vec(),
+            rows: self.part(part).map(Table3Row::cells).collect(),
+        })
+    }
+}
+
+impl Table3Row {
+    fn cells(&self) -> Vec<String> {
+        let effect = |effect: &Effect| match effect {
+            Effect::Stribeck => "Stribeck effect",
+            Effect::Warming => "warming",
+            Effect::Ripple => "ripple",
+            Effect::Delay => "delay of the torque",
+        };
+        let effects: Vec<&str> = self.effects.iter().map(effect).collect();
+        vec![
+            self.name.clone(),
+            four_decimals(self.estimate),
+            self.standard_error.map_or("-".into(), |error| significant(error, 2)),
+            four_decimals(if self.truth.abs() < ROUNDING { 0.0 } else { self.truth }),
+            self.deviation.map_or("-".into(), |deviation| format!("{deviation:+.1}")),
+            self.paper.map_or(String::new(), four_decimals),
+            if self.deviation.is_some() { effects.join(", ") } else { String::new() },
+        ]
+    }
+}
+
+impl Coverage {
+    /// Returns the table: how often each statement was wrong, beside how often it may be.
+    #[must_use]
+    pub fn table(&self) -> TextTable {
+        let row = |row: &CoverageRow| {
+            vec![
+                row.statement.clone(),
+                format!("{:.3}", row.mean_bound),
+                format!("{:.3}", row.mean_truth),
+                format!("{:.3}", row.nominal),
+                format!("{:.3} ± {:.3}", row.observed, row.standard_error),
+                if row.holds() { "yes".into() } else { "NO".into() },
+            ]
+        };
+        let header =
+            ["statement", "mean bound", "mean truth", "may be wrong", "was wrong", "holds"];
+        TextTable {
+            title: format!(
+                "{} campaigns of {} random motions: the stated probability that the next motion \
+                 leaves the sets, and the part of {} further motions that leave them",
+                self.options.campaigns, self.motions, self.options.next
+            ),
+            header: header.map(String::from).to_vec(),
+            rows: self.rows.iter().map(row).collect(),
+        }
+    }
+
+    /// Returns a chart for each statement at confidence: one dot per campaign, its true probability
+    /// over the stated one. The statement is wrong above the line.
+    #[must_use]
+    pub fn charts(&self) -> Vec<Chart> {
+        let at_confidence = self.rows.iter().filter(|row| row.is_at_confidence());
+        let chart = |row: &CoverageRow| {
+            let all = row.campaigns.iter().flat_map(|(bound, truth)| [*bound, *truth]);
+            let end = all.fold(0.0, f64::max);
+            let line = Series { points: vec![(0.0, 0.0), (end, end)], dots: false, colour: EQUAL };
+            let dots = Series { points: row.campaigns.clone(), dots: true, colour: CAMPAIGN };
+            let name = row.statement.split(',').next().unwrap_or_default();
+            Chart {
+                title: format!(
+                    "{name}: wrong in {:.1} %, may be in {:.0} %",
+                    100.0 * row.observed,
+                    100.0 * row.nominal
+                ),
+                x: "stated probability".into(),
+                y: "true probability".into(),
+                series: vec![line, dots],
+            }
+        };
+        at_confidence.map(chart).collect()
+    }
+}

@@ -1,0 +1,204 @@
+//! What the cost of the sets comes from: joints, runs and motions.
+
+use reachtube_conform::{Model, Weights};
+
+use crate::chart::{Chart, Series};
+use crate::page::TextTable;
+use crate::suite_figure::{Band, Nominal, RunTrace, SuiteFigure};
+use reachtube_scalar::number::{at_least, four_decimals};
+
+/// Blue.
+const RUN: [u8; 3] = [18, 70, 200];
+/// Grey.
+const EDGE: [u8; 3] = [140, 149, 159];
+
+/// Number of runs and of motions that are listed.
+const MOST_ROWS: usize = 20;
+
+/// Returns the tables of the shares of the joints, of the runs that decide, and of the motions.
+pub(super) fn cost_tables(model: &Model, figures: &[SuiteFigure]) -> Vec<TextTable> {
+    let tables = [by_joint(model, figures), by_run(model, figures), by_motion(model)];
+    tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
+}
+
+/// Returns charts of the part of the set that each run uses, over its order and its temperature:
+/// the runs at 1 decide the sets. There is none where nothing differs.
+pub(super) fn cost_charts(figures: &[SuiteFigure]) -> Vec<Chart> {
+    let runs = || figures.iter().flat_map(|figure| &figure.gauges);
+    let over_order = runs().map(|run| (run.order as f64 + 1.0, run.gauge));
+    let over_temperature = runs().filter_map(|run| Some((run.temperature?, run.gauge)));
+    let chart = |title: &str, x: &str, points: Vec<(f64, f64)>| Chart {
+        title: format!("Part of the set that each run uses, {title}"),
+        x: x.into(),
+        y: "part of the radius".into(),
+        series: vec![
+            Series { points: edge(&points), dots: false, colour: EDGE },
+            Series { points, dots: true, colour: RUN },
+        ],
+    };
+    let charts = [
+        chart("by order", "run of its suite", over_order.collect()),
+        chart("by temperature", "temperature [°C]", over_temperature.collect()),
+    ];
+    let differs = |chart: &Chart| {
+        let points = &chart.series[1].points;
+        points.iter().any(|point| point.0 != points[0].0)
+    };
+    charts.into_iter().filter(differs).collect()
+}
+
+/// Returns a line at 1 below some points.
+fn edge(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let ends = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
+        [low.min(point.0), high.max(point.0)]
+    });
+    if points.is_empty() { Vec::new() } else { ends.map(|end| (end, 1.0)).to_vec() }
+}
+
+/// Returns the share of each state in the weighted widths of the bands over the drawn suites.
+fn by_joint(model: &Model, figures: &[SuiteFigure]) -> TextTable {
+    let n = model.joints();
+    let shares: Vec<f64> = (0..2 * n)
+        .map(|state| weight(model, figures, state) * widths(model, figures, state))
+        .collect();
+    let all: f64 = shares.iter().sum();
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share / all);
+    let row = |joint: usize| {
+        let (q, qd) = (shares[joint], shares[n + joint]);
+        vec![model.robot.joints[joint].name.clone(), percent(q), percent(qd), percent(q + qd)]
+    };
+    TextTable {
+        title: "Share of the cost per joint: weighted width of the set over the drawn suites"
+            .into(),
+        header: ["Joint", "Position", "Velocity", "Both"].map(String::from).to_vec(),
+        rows: if all > 0.0 { (0..n).map(row).collect() } else { Vec::new() },
+    }
+}
+
+/// Returns the weight of a state in the cost.
+fn weight(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {
+    match &model.settings.weights {
+        Weights::Unit => 1.0,
+        Weights::Given(weights) => weights[state],
+        Weights::Spread => {
+            let largest = figures.iter().map(|figure| largest_deviation(figure, state));
+            let largest = largest.fold(0.0, f64::max);
+            if largest > 0.0 { 1.0 / largest } else { 1.0 }
+        }
+    }
+}
+
+/// Returns the largest deviation of a recording from the nominal solution at the samples.
+fn largest_deviation(figure: &SuiteFigure, state: usize) -> f64 {
+    let nominal = match &figure.nominal {
+        Nominal::Shared(rows) => rows[state].as_slice(),
+        _ => &[],
+    };
+    let range = figure.inner.iter().flat_map(|band| [&band.lower[state], &band.upper[state]]);
+    let lines = figure.runs.iter().map(|run| &run.states[state]).chain(range);
+    let deviation = |(k, x): (usize, &f64)| (x - nominal.get(k).copied().unwrap_or(0.0)).abs();
+    lines
+        .flat_map(|line| line.iter().take(figure.times.len()).enumerate().map(deviation))
+        .fold(0.0, f64::max)
+}
+
+fn widths(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {
+    let noise = model.noise_set.as_ref().map_or(0.0, |noise| {
+        let [low, high] = <[f64; 2]>::from(noise.bounds(state));
+        high - low
+    });
+    let width = |Band { lower, upper, .. }: &Band| -> f64 {
+        lower[state].iter().zip(&upper[state]).map(|(low, high)| high - low + noise).sum()
+    };
+    figures.iter().map(|figure| width(&figure.band)).sum()
+}
+
+/// Returns the runs that decide the most rows.
+fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
+    let runs = figures.iter().flat_map(|figure| figure.runs.iter().map(move |run| (figure, run)));
+    let mut runs: Vec<_> = runs.filter(|(_, run)| run.touches > 0).collect();
+    runs.sort_by_key(|(_, run)| std::cmp::Reverse(run.touches));
+    let degrees =
+        |t: Option<f64>| t.map_or_else(|| "-".into(), |degrees| format!("{degrees:.1} °C"));
+    let row = |(figure, run): &(&SuiteFigure, &RunTrace)| {
+        vec![
+            run.name.clone(),
+            figure.suite.clone(),
+            run.touches.to_string(),
+            (run.order + 1).to_string(),
+            degrees(run.temperature),
+        ]
+    };
+    let without = model.deciding_runs.cost_without.zip(model.cost);
+    let without = without.map_or_else(String::new, |(without, cost)| {
+        format!(
+            "; without the first {} the sets would cost about {} instead of {}",
+            model.deciding_runs.most.len(),
+            four_decimals(without),
+            four_decimals(cost)
+        )
+    });
+    let mut table = TextTable {
+        title: format!("Runs that decide the most rows{without}"),
+        header: ["Run", "Suite", "Rows", "Order", "Temperature"].map(String::from).to_vec(),
+        rows: runs.iter().take(MOST_ROWS).map(row).collect(),
+    };
+    if runs.iter().all(|(_, run)| run.temperature.is_none()) {
+        table.header.truncate(4);
+        table.rows.iter_mut().for_each(|row| row.truncate(4));
+    }
+    table
+}
+
+/// Returns what the sets cost without each motion, the cheapest first.
+fn by_motion(model: &Model) -> TextTable {
+    // Sets of a model that is not linear are linearised ones.
+    let linearised = model.search.as_ref().and_then(|search| search.linearised_cost);
+    let Some(cost) = linearised.or(model.cost) else { return TextTable::default() };
+    let mut motions: Vec<_> =
+        model.left_out.iter().filter_map(|left| Some((left, left.cost?))).collect();
+    motions.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let row = |(left, without): &(&reachtube_conform::LeftOut, f64)| {
+        vec![
+            left.motion.clone(),
+            four_decimals(*without),
+            format!("{:+.1} %", 100.0 * (without / cost - 1.0)),
+            left.gauge.map_or_else(|| "none found".into(), at_least),
+        ]
+    };
+    TextTable {
+        title: format!(
+            "{} found without a motion, and the factor by which they must grow to hold it",
+            if linearised.is_some() { "Linearised sets" } else { "Sets" }
+        ),
+        header: ["Without", "Cost", "Change", "Factor"].map(String::from).to_vec(),
+        rows: motions.iter().take(MOST_ROWS).map(row).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+    use crate::suite_figure::RunGauge;
+
+    #[test]
+    fn every_run_is_a_dot_over_its_order_and_its_temperature() {
+        let run = |order: usize, temperature: Option<f64>| RunGauge {
+            order,
+            temperature,
+            gauge: 0.1 * order as f64,
+        };
+        let figure = SuiteFigure {
+            gauges: vec![run(0, Some(20.0)), run(1, Some(25.0)), run(2, None)],
+            ..sample::suite("S", 1)
+        };
+        let charts = cost_charts(&[figure.clone(), figure]);
+        let dots: Vec<usize> = charts.iter().map(|chart| chart.series[1].points.len()).collect();
+        assert_eq!(dots, [6, 4]);
+        assert_eq!(charts[0].series[1].points[2], (3.0, 0.2));
+        assert_eq!(charts[1].series[0].points, [(20.0, 1.0), (25.0, 1.0)]);
+        let alone = SuiteFigure { gauges: vec![run(4, None)], ..sample::suite("S", 1) };
+        assert!(cost_charts(&[alone]).is_empty());
+    }
+}

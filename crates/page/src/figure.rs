@@ -1,0 +1,201 @@
+//! One figure of one suite as SVG, after Fig. 4: positions above velocities, one column per joint.
+
+use super::canvas::{Canvas, DrawResult, svg_document};
+use super::error::Error;
+use super::layout::{BESIDE_PLOT, Layout, Rect, units};
+use super::legend::Legend;
+use super::panel::{self, Content};
+use super::style::{centred, font};
+use super::suite_figure::{SuiteFigure, View};
+use super::text::clean;
+use super::{check, colour};
+use plotters::prelude::*;
+
+/// Draws a suite as a complete SVG document of at most 1,240 px width.
+///
+/// Each joint has a plot of the position \[rad\] above a plot of the velocity \[rad/s\] over time
+/// \[s\]. The reachable set is grey, the runs on it are coloured by temperature or order, and rings
+/// mark the tight spots.
+///
+/// Lines are thinned to what the plot can show: in each pixel column a line passes the lowest and
+/// the highest sample within a quarter of a pixel. Between samples the edges of the bands are
+/// joined by straight lines, which claims nothing about the reachable set there.
+///
+/// # Errors
+///
+/// Fails for shapes that do not match, times that do not increase, numbers that are not finite, and
+/// a view that the suite does not have.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_page::{Band, SuiteFigure, View, suite_svg};
+///
+/// let figure = SuiteFigure {
+///     suite: "swing".into(),
+///     joints: vec!["elbow".into()],
+///     times: vec![0.0, 1.0],
+///     band: Band {
+///         label: "reachable set".into(),
+///         lower: vec![vec![-0.1, 0.8], vec![0.9, 0.7]],
+///         upper: vec![vec![0.1, 1.2], vec![1.1, 1.3]],
+///     },
+///     ..SuiteFigure::default()
+/// };
+/// let svg = suite_svg(&figure, View::Motion)?;
+/// assert!(svg.starts_with("<svg") && svg.contains("elbow"));
+/// # Ok::<(), reachtube_page::Error>(())
+/// ```
+pub fn suite_svg(figure: &SuiteFigure, view: View) -> Result<String, Error> {
+    check::suite(figure)?;
+    if !figure.views().contains(&view) {
+        return Err(Error::View { suite: figure.suite.clone(), view });
+    }
+    let heat = colour::heat(&figure.runs);
+    let colours: Vec<RGBColor> = heat.values.iter().map(|&heat| colour::colour(heat)).collect();
+    // The width decides the rows of the legend, and these the height.
+    let layout = Layout::new(figure.joints.len());
+    let legend = Legend::new(figure, view, &heat, layout.width());
+    let layout = layout.below(legend.rows());
+    let size = [layout.width(), layout.height()];
+    svg_document(size, &description(figure, view), |canvas| {
+        legend.draw(canvas)?;
+        panels(canvas, figure, view, &layout, &colours)
+    })
+    .map_err(|cause| Error::Draw {
+        figure: format!("suite {}", figure.suite),
+        cause: cause.to_string(),
+    })
+}
+
+fn panels(
+    canvas: &Canvas,
+    figure: &SuiteFigure,
+    view: View,
+    layout: &Layout,
+    colours: &[RGBColor],
+) -> DrawResult {
+    for state in 0..2 * figure.joints.len() {
+        let content = Content::new(figure, view, state).thinned(layout.plot());
+        panel::draw(canvas, layout, state, &content, colours)?;
+        labels(canvas, figure, layout, state)?;
+    }
+    Ok(())
+}
+
+/// Writes the joint's name above, the quantity beside the row, and the time below.
+fn labels(canvas: &Canvas, figure: &SuiteFigure, layout: &Layout, state: usize) -> DrawResult {
+    let Rect { x, y, height, .. } = layout.panel(state);
+    let (width, plot) = layout.plot();
+    let n = figure.joints.len();
+    let label = font(11.0, FontStyle::Normal);
+    let middle = units(x + BESIDE_PLOT + width / 2.0);
+    if state < n {
+        let name = centred(font(12.5, FontStyle::Bold));
+        let place = (middle, units(layout.block_top(state) + 10.0));
+        let unit = figure.shared_unit(state).is_none().then(|| figure.state_unit(state));
+        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}, {unit}/s]"));
+        canvas.draw_text(&clean(&format!("{}{unit}", figure.joints[state])), &name, place)?;
+    } else {
+        let place = (middle, units(y + height - 8.0));
+        canvas.draw_text("time [s]", &centred(label.clone()), place)?;
+    }
+    if layout.starts_row(state) {
+        let quantity = if state < n { "position" } else { "velocity" };
+        let unit = figure.shared_unit(state).map_or_else(String::new, |unit| format!(" [{unit}]"));
+        let turned = centred(label.transform(FontTransform::Rotate270));
+        canvas.draw_text(
+            &format!("{quantity}{unit}"),
+            &turned,
+            (units(x - 8.0), units(y + plot / 2.0)),
+        )?;
+    }
+    Ok(())
+}
+
+/// Describes the figure in a sentence, for readers who do not see it.
+fn description(figure: &SuiteFigure, view: View) -> String {
+    let what = match view {
+        View::Motion => "reachable set",
+        View::Deviation => "reachable set of the deviation from the nominal solution",
+    };
+    let span = figure.times[figure.times.len() - 1] - figure.times[0];
+    let (runs, joints) = (figure.runs.len(), figure.joints.len());
+    format!("Suite {}: {what} and {runs} runs of {joints} joints over {span:.3} s", figure.suite)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+    use crate::suite_figure::Nominal;
+    use roxmltree::{Document, Node};
+
+    /// Returns the elements with a tag name.
+    fn elements<'a>(svg: &'a Document, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
+        svg.descendants()
+            .filter(move |node| node.has_tag_name(("http://www.w3.org/2000/svg", name)))
+    }
+
+    #[test]
+    fn figures_are_well_formed_for_one_to_ten_joints() {
+        for joints in 1..=10 {
+            let figure = sample::suite("a <suite> & \"more\"", joints);
+            for &view in figure.views() {
+                let svg = suite_svg(&figure, view).unwrap();
+                let document = Document::parse(&svg).unwrap();
+                let label = document.root_element().attribute("aria-label").unwrap();
+                assert!(label.starts_with("Suite a <suite> & \"more\": "));
+                let texts = elements(&document, "text").filter_map(|node| node.text());
+                assert_eq!(texts.filter(|text| text.trim() == "time [s]").count(), joints);
+                assert!(!svg.contains("<suite>") && !svg.contains("NaN") && !svg.contains("inf"));
+            }
+        }
+    }
+
+    #[test]
+    fn the_check_of_form_can_fail() {
+        assert!(Document::parse("<svg><g></svg>").is_err());
+        assert!(Document::parse("<svg a=\"1></svg>").is_err());
+        assert!(Document::parse("<svg>").is_err());
+    }
+
+    #[test]
+    fn every_run_is_drawn_in_every_panel_in_its_colour() {
+        let figure = sample::suite("S", 2);
+        let svg = suite_svg(&figure, View::Motion).unwrap();
+        let document = Document::parse(&svg).unwrap();
+        for heat in colour::heat(&figure.runs).values {
+            let stroke = colour::hex(colour::colour(heat));
+            let lines = elements(&document, "polyline")
+                .filter(|line| line.attribute("stroke") == Some(&stroke));
+            assert_eq!(lines.count(), 4);
+        }
+    }
+
+    #[test]
+    fn a_view_that_needs_a_nominal_is_refused_without_one() {
+        let figure = SuiteFigure { nominal: Nominal::Unknown, ..sample::suite("S", 1) };
+        let error = suite_svg(&figure, View::Deviation).unwrap_err();
+        assert!(error.to_string().starts_with("suite S has no Deviation view"));
+    }
+
+    #[test]
+    fn the_same_input_gives_the_same_bytes() {
+        let draw = || suite_svg(&sample::suite("S", 3), View::Deviation).unwrap();
+        assert_eq!(draw(), draw());
+    }
+
+    #[test]
+    fn a_joint_that_does_not_move_is_drawn() {
+        let mut figure = sample::suite("still", 1);
+        figure.inner = None;
+        figure.runs.clear();
+        figure.tight.clear();
+        figure.nominal = Nominal::Unknown;
+        let flat = vec![vec![0.0; figure.times.len()]; 2];
+        figure.band.lower = flat.clone();
+        figure.band.upper = flat;
+        Document::parse(&suite_svg(&figure, View::Motion).unwrap()).unwrap();
+    }
+}

@@ -1,0 +1,54 @@
+#![doc = include_str!("../README.md")]
+
+mod assemble;
+mod canvas;
+mod chart;
+mod check;
+mod colour;
+mod cost;
+mod decimate;
+mod error;
+mod figure;
+mod figures;
+mod html;
+mod identified;
+mod identified_arm;
+mod identified_charts;
+mod identified_parameters;
+mod interactive;
+mod layout;
+mod legend;
+mod library;
+mod nominal;
+mod notion;
+mod packed;
+mod page;
+mod panel;
+mod scripts;
+mod skeleton;
+mod style;
+mod suite_figure;
+mod suites;
+mod tables;
+mod text;
+
+#[cfg(test)]
+mod browser;
+#[cfg(test)]
+mod devtools;
+#[cfg(test)]
+mod sample;
+
+pub use assemble::{Sources, page};
+pub use chart::{Chart, Series, chart_svg, charts_svg};
+pub use error::{Error, Result};
+pub use figure::suite_svg;
+pub use html::write_html;
+pub use identified::write_identified_html;
+pub use identified_charts::{load_chart, viscous_chart};
+pub use library::{Assets, LIBRARY_FILE, write_library};
+pub use page::{Bounds, JointSets, Page, SetsTable, TextTable, Verdict};
+pub use reachtube_conform::Side;
+pub use skeleton::{document, long_table, section};
+pub use suite_figure::{Band, Nominal, RunGauge, RunTrace, SuiteFigure, TightSpot, View};
+pub use suites::suite_figures;

@@ -1,0 +1,111 @@
+//! What a page says of a nominal model that was fitted, and of calibrated sets.
+
+use reachtube_conform::{FitRecord, FittedParameter, MOST_ERRORS, Model};
+
+use crate::page::TextTable;
+use reachtube_scalar::number::{at_least, four_decimals};
+
+/// The column of standard errors in the table of parameters.
+const STANDARD_ERROR: usize = 2;
+
+/// Returns the facts about the calibration and the sets for any run: name and value.
+pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
+    let mut facts = Vec::new();
+    let mut add = |name: &str, value: String| facts.push((name.to_string(), value));
+    if let Some(calibration) = &model.calibration {
+        let gauge = |g: &reachtube_conform::Gauge| format!("{} {}", g.motion, at_least(g.gauge));
+        let gauges: Vec<String> = calibration.gauges.iter().map(gauge).collect();
+        add(
+            "Calibration",
+            format!(
+                "the smallest sets of {} motions, scaled by {}, the largest that a motion kept \
+                 back needs: {}",
+                calibration.fitted.len(),
+                at_least(calibration.factor),
+                gauges.join(", ")
+            ),
+        );
+    }
+    if let Some(any) = &model.any_run {
+        add("Cost of the sets for any run", four_decimals(any.cost));
+    }
+    facts
+}
+
+/// Returns the tables about a fitted nominal model: what the sets cost, and its parameters.
+pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
+    let Some(fit) = &model.fit else { return Vec::new() };
+    let changed = fit.parameters.iter().filter(|p| p.has_changed());
+    let mut parameters = TextTable {
+        title: "Parameters that changed".into(),
+        header: ["Parameter", "Identified", "Standard error", "Fitted", "Factor"]
+            .map(String::from)
+            .to_vec(),
+        rows: changed.map(|p| parameter(model, p)).collect(),
+    };
+    if fit.parameters.iter().all(|p| p.standard_error.is_none()) {
+        parameters.header.remove(STANDARD_ERROR);
+        parameters.rows.iter_mut().for_each(|row| drop(row.remove(STANDARD_ERROR)));
+    }
+    vec![costs(fit), parameters]
+}
+
+/// Returns the costs of the smallest sets for all motions, for several nominal models.
+fn costs(fit: &FitRecord) -> TextTable {
+    let row = |name: String, cost: Option<f64>| {
+        let change = |cost| format!("{:+.1} %", 100.0 * (cost / fit.identified_cost - 1.0));
+        let none = || "a nominal motion runs away".into();
+        vec![name, cost.map_or_else(none, four_decimals), cost.map_or_else(String::new, change)]
+    };
+    let first = [("Identified", fit.identified_cost), ("Fitted", fit.cost)];
+    let groups = fit.groups.iter().map(|group| {
+        row(format!("Fitted, {} as identified", group.group.name()), group.cost_without)
+    });
+    let left_out = fit
+        .leave_one_out
+        .iter()
+        .map(|left| row(format!("Fitted without motion {}", left.motion), left.cost));
+    let mean = row("Mean of the fits without a motion".into(), fit.left_out_mean());
+    let calibrated = fit
+        .identified_calibrated_cost
+        .map(|cost| row("Identified, calibrated (not the smallest)".into(), Some(cost)));
+    TextTable {
+        title: "Cost of the smallest sets".into(),
+        header: ["Nominal model", "Cost", "Change"].map(String::from).to_vec(),
+        rows: first
+            .map(|(name, cost)| row(name.into(), Some(cost)))
+            .into_iter()
+            .chain(groups)
+            .chain(left_out)
+            .chain([mean])
+            .chain(calibrated)
+            .collect(),
+    }
+}
+
+/// Returns what must not be concluded from a fitted nominal model.
+pub(super) fn nominal_caution(model: &Model) -> Option<String> {
+    let fit = model.fit.as_ref()?;
+    let beyond = fit.parameters.iter().filter(|p| p.is_beyond_error()).count();
+    let beyond = match beyond {
+        0 => String::new(),
+        count => format!(
+            " Of these, {count} moved by more than {MOST_ERRORS} standard errors, and cover what \
+             the model leaves out."
+        ),
+    };
+    Some(format!(
+        "The parameters of the nominal model were chosen for small sets. They are no measurements \
+         of the robot, and predict its torque worse than the identified ones may.{beyond}"
+    ))
+}
+
+fn parameter(model: &Model, p: &FittedParameter) -> Vec<String> {
+    vec![
+        format!("{}: {} [{}]", model.robot.joints[p.joint - 1].name, p.name, p.unit),
+        four_decimals(p.identified),
+        p.standard_error.map_or_else(|| "-".into(), four_decimals),
+        four_decimals(p.fitted),
+        p.factor.map_or_else(|| "-".into(), |factor| format!("{factor:.3}")),
+    ]
+}

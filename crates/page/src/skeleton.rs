@@ -1,0 +1,107 @@
+//! The parts that all pages share: the document around a page, sections, and lists.
+
+use super::page::TextTable;
+use super::text::Text;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("page.css");
+/// The browser enforces that the page loads nothing from anywhere, but for a library that is a file
+/// beside it. Figures are saved from blobs.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; \
+                      script-src 'unsafe-inline' 'self' file:; img-src data: blob:";
+
+/// Returns a page as one HTML document. The scripts stand at its end.
+pub fn document(title: &str, subtitle: &str, body: &Markup, scripts: &Markup) -> String {
+    let document = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                (own_mark())
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                link rel="icon" href="data:,";
+                title { (Text(title)) }
+                style { (PreEscaped("\n")) (PreEscaped(STYLE)) }
+            }
+            body {
+                main {
+                    header {
+                        h1 { (Text(title)) }
+                        p { (Text(subtitle)) }
+                    }
+                    (body)
+                }
+                (scripts)
+            }
+        }
+    };
+    document.into_string() + "\n"
+}
+
+/// Returns the comment by which a later command recognises a file that it may replace.
+pub(super) fn own_mark() -> Markup {
+    PreEscaped(format!("<!-- {} -->", reachtube_files::MARK))
+}
+
+/// Returns a section under a heading.
+pub fn section(title: &str, body: &Markup) -> Markup {
+    html! {
+        section id=(anchor(title)) { h2 { (title) } (body) }
+    }
+}
+
+/// Returns the name by which a link finds the section of a title.
+pub(super) fn anchor(title: &str) -> String {
+    title.to_lowercase().replace(' ', "-")
+}
+
+/// Returns two lists of points side by side, each with its title and class; nothing of an empty
+/// list.
+pub(super) fn pair_of_lists(lists: [(&str, &str, &[String]); 2]) -> Markup {
+    html! {
+        div.pair {
+            @for (title, class, points) in lists {
+                @if !points.is_empty() {
+                    div {
+                        h3 { (title) }
+                        ul class=(class) {
+                            @for point in points { li { (Text(point)) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns a table in a region that scrolls sideways on a narrow screen, named by its caption. The
+/// class decides whether its cells are broken into lines: `sets` are not, `long` are.
+pub(super) fn wide_table(class: &str, caption: &str, head: &Markup, rows: &Markup) -> Markup {
+    html! {
+        div.wide tabindex="0" role="region" aria-label=(Text(caption)) {
+            table class=(class) {
+                caption { (Text(caption)) }
+                thead { tr { (head) } }
+                tbody { (rows) }
+            }
+        }
+    }
+}
+
+/// Returns a table of texts whose cells are broken into lines.
+pub fn long_table(table: &TextTable) -> Markup {
+    let head = html! {
+        @for name in &table.header { th scope="col" { (Text(name)) } }
+    };
+    let rows = html! {
+        @for cells in &table.rows {
+            tr {
+                th scope="row" { (Text(&cells[0])) }
+                @for cell in &cells[1..] { td { (Text(cell)) } }
+            }
+        }
+    };
+    wide_table("long", &table.title, &head, &rows)
+}

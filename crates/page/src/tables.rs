@@ -1,0 +1,221 @@
+//! The tables of the page: the uncertainty sets, the tight spots, the settings.
+
+use super::page::{Bounds, JointSets, Page, SetsTable, TextTable};
+use super::skeleton::wide_table;
+use super::suite_figure::{SuiteFigure, TightSpot};
+use super::text::Text;
+use maud::{Markup, PreEscaped, html};
+use reachtube_conform::Side;
+use reachtube_robot::JointKind;
+use reachtube_robot::units::ColumnUnit;
+use reachtube_scalar::number::{column_decimals, outward, significant};
+
+/// A column of a table of sets.
+struct Column {
+    /// The set, as HTML.
+    set: &'static str,
+    /// The quantity.
+    quantity: &'static str,
+    unit: ColumnUnit,
+    /// One interval per joint.
+    intervals: Vec<Bounds>,
+}
+
+/// Returns the uncertainty sets per joint, as Table II.
+pub(super) fn sets(table: &SetsTable) -> Markup {
+    let columns = columns(table);
+    let cells: Vec<Vec<Markup>> = columns.iter().map(interval_cells).collect();
+    let head = html! {
+        th scope="col" { "Joint" }
+        @for column in &columns { (column_head(column)) }
+    };
+    let rows = html! {
+        @for (row, joint) in table.joints.iter().enumerate() {
+            tr {
+                th scope="row" { (Text(&joint.joint)) }
+                @for column in &cells { (column[row]) }
+            }
+        }
+    };
+    wide_table("sets", &table.notion, &head, &rows)
+}
+
+fn columns(table: &SetsTable) -> Vec<Column> {
+    let kinds: Vec<_> = table.joints.iter().map(|joint| joint.kind).collect();
+    let column = |set, quantity, unit, pick: fn(&JointSets) -> Bounds| Column {
+        set,
+        quantity,
+        unit: ColumnUnit::new(&kinds, unit),
+        intervals: table.joints.iter().map(pick).collect(),
+    };
+    let mut columns = vec![
+        column("X<sub>0</sub>", ": q", JointKind::position_unit, |joint| joint.x0_q),
+        column("X<sub>0</sub>", ": q̇", JointKind::velocity_unit, |joint| joint.x0_qd),
+        column("U", "", JointKind::force_unit, |joint| joint.u),
+    ];
+    if table.joints.iter().any(|joint| joint.noise.is_some()) {
+        let position = |joint: &JointSets| joint.noise.unwrap_or_default()[0];
+        let velocity = |joint: &JointSets| joint.noise.unwrap_or_default()[1];
+        columns.push(column("V", ": q", JointKind::position_unit, position));
+        columns.push(column("V", ": q̇", JointKind::velocity_unit, velocity));
+    }
+    columns
+}
+
+fn column_head(column: &Column) -> Markup {
+    html! {
+        th scope="col" {
+            (PreEscaped(column.set)) (column.quantity)
+            @if let Some(shared) = column.unit.shared() { " " (unit(shared)) }
+        }
+    }
+}
+
+fn unit(unit: &str) -> Markup {
+    html! { span.unit { "[" (unit) "]" } }
+}
+
+/// Returns the cells of a column: each interval in digits, and as a bar on the scale of the
+/// column's largest bound.
+fn interval_cells(column: &Column) -> Vec<Markup> {
+    let intervals = &column.intervals;
+    let decimals = column_decimals(intervals);
+    let largest =
+        intervals.iter().flatten().fold(f64::MIN_POSITIVE, |most, bound| most.max(bound.abs()));
+    let cell = |(joint, bounds): (usize, &Bounds)| {
+        let [lower, upper] = outward(*bounds, decimals);
+        let text = column.unit.cell(joint, format!("[{lower}, {upper}]"));
+        let [from, to] = bounds.map(|bound| 50.0 + 50.0 * bound / largest);
+        let bar = format!("left:{from:.1}%;width:{:.1}%", to - from);
+        html! {
+            td { (text) span.bar { i style=(bar) {} } }
+        }
+    };
+    intervals.iter().enumerate().map(cell).collect()
+}
+
+/// Returns the tight spots of all suites, in the order given.
+pub(super) fn tight(page: &Page) -> Markup {
+    if page.suites.iter().all(|suite| suite.tight.is_empty()) {
+        return html! { p { "No tight spots were listed." } };
+    }
+    html! {
+        div.tall tabindex="0" role="region" aria-label="Tight spots" {
+            table {
+                thead {
+                    tr {
+                        th scope="col" { "Suite" }
+                        th scope="col" { "Run" }
+                        th.number scope="col" { "Time " (unit("s")) }
+                        th scope="col" { "State" }
+                        th scope="col" { "Side" }
+                        th.number scope="col" { "Margin" }
+                        th scope="col" { "Unit" }
+                    }
+                }
+                tbody {
+                    @for (index, suite) in page.suites.iter().enumerate() {
+                        @for spot in &suite.tight { (spot_row(index, suite, spot)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn spot_row(index: usize, suite: &SuiteFigure, spot: &TightSpot) -> Markup {
+    let side = match spot.side {
+        Side::Lower => "lower",
+        Side::Upper => "upper",
+    };
+    let outside = spot.margin < 0.0;
+    html! {
+        tr class=[outside.then_some("outside")] data-suite-index=(index) data-run=(spot.run)
+            data-time=(spot.time_s) data-state=(spot.state) {
+            td { (Text(&suite.suite)) }
+            td { (Text(&suite.runs[spot.run].name)) }
+            td.number { (significant(spot.time_s, 6)) }
+            td { (Text(&suite.state_label(spot.state))) }
+            td { (side) }
+            td.number { (significant(spot.margin, 3)) @if outside { " outside" } }
+            td { (suite.state_unit(spot.state)) }
+        }
+    }
+}
+
+/// Returns a table of texts; all columns but the first are numbers.
+pub(super) fn texts(table: &TextTable) -> Markup {
+    let head = html! {
+        @for (column, name) in table.header.iter().enumerate() {
+            th.number[column > 0] scope="col" { (Text(name)) }
+        }
+    };
+    let rows = html! {
+        @for row in &table.rows {
+            tr {
+                @for (column, cell) in row.iter().enumerate() {
+                    @if column == 0 { th scope="row" { (Text(cell)) } }
+                    @else { td.number { (Text(cell)) } }
+                }
+            }
+        }
+    };
+    wide_table("sets", &table.title, &head, &rows)
+}
+
+/// Returns a table of names and values.
+pub(super) fn facts(facts: &[(String, String)]) -> Markup {
+    html! {
+        table.facts {
+            tbody {
+                @for (name, value) in facts {
+                    tr {
+                        th scope="row" { (Text(name)) }
+                        td { (Text(value)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn sets_print_their_intervals_and_units() {
+        let html = sets(&sample::sets(3)).into_string();
+        assert_eq!(html.matches("<td>[-2.7201, 3.6017]").count(), 3);
+        assert_eq!(html.matches("scope=\"row\"").count(), 3);
+        assert!(html.contains("V: q ") && html.contains("[N m]"));
+    }
+
+    #[test]
+    fn sets_of_a_scara_print_the_unit_of_each_joint() {
+        let mut table = sample::sets(3);
+        table.joints[1].kind = JointKind::Prismatic;
+        let html = sets(&table).into_string();
+        for part in ["[-2.7201, 3.6017] N m<", "[-2.7201, 3.6017] N<", "] rad<", "] m<", "] m/s<"] {
+            assert!(html.contains(part), "{part} is not in {html}");
+        }
+        assert!(!html.contains("[N m]") && !html.contains("[rad]"));
+    }
+
+    #[test]
+    fn noise_has_no_columns_where_none_was_modelled() {
+        let mut table = sample::sets(1);
+        table.joints[0].noise = None;
+        assert!(!sets(&table).into_string().contains("V: q"));
+    }
+
+    #[test]
+    fn a_sample_outside_is_marked() {
+        let mut page = sample::page();
+        assert!(!tight(&page).into_string().contains("outside"));
+        page.suites[0].tight[0].margin = -0.01;
+        let html = tight(&page).into_string();
+        assert!(html.contains("class=\"outside\"") && html.contains("-0.01 outside"));
+    }
+}
