@@ -300,9 +300,9 @@ pub(crate) fn report(
         let (mut html, mut library) = (Vec::new(), Vec::new());
         let assets = if beside { Assets::Beside } else { Assets::Inside };
         let page = page(&sources)?;
-        write_html(&page, assets, &mut html).map_err(reachtube::Error::from)?;
+        write_html(&page, assets, &mut html)?;
         if beside {
-            write_library(&mut library).map_err(reachtube::Error::from)?;
+            write_library(&mut library)?;
         }
         Ok((html, library))
     })?;

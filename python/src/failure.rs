@@ -160,6 +160,7 @@ macro_rules! others {
 
 others!(
     reachtube::Error,
+    reachtube::page::Error,
     reachtube::reach::ReachError,
     reachtube_files::Error,
     reachtube_logs::Error,

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use reachtube::export::ExportError;
 use reachtube::recordings::Refusal;
 use thiserror::Error;
 
@@ -175,6 +176,9 @@ pub(crate) enum Error {
     /// A log could not be read or cut.
     #[error(transparent)]
     Log(#[from] reachtube_logs::Error),
+    /// A model or robot could not be exported.
+    #[error(transparent)]
+    Export(ExportError),
     /// The library reported an error.
     #[error(transparent)]
     Library(Box<reachtube::Error>),
@@ -188,6 +192,7 @@ impl Error {
             Self::Output(_) => "file",
             Self::Refused { .. } => "recordings",
             Self::Log(error) => log_kind(error),
+            Self::Export(_) => "export",
             Self::Library(error) => kind(error),
             _ => "setting",
         }
@@ -229,8 +234,7 @@ fn kind(error: &reachtube::Error) -> &'static str {
         E::VirtualRobot(_) => "virtual-robot",
         E::Demo(_) => "demo",
         E::Reproduce(_) => "reproduce",
-        E::Report(_) => "report",
-        E::Export(_) => "export",
+        E::Page(_) => "report",
         _ => "other",
     }
 }
@@ -243,6 +247,24 @@ fn usage_words(error: &clap::Error) -> String {
 
 /// A result of the command line.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl From<ExportError> for Error {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Conform(error) => error.into(),
+            error => Self::Export(error),
+        }
+    }
+}
+
+impl From<reachtube::page::Error> for Error {
+    fn from(error: reachtube::page::Error) -> Self {
+        match error {
+            reachtube::page::Error::Conform(error) => error.into(),
+            error => Self::Library(Box::new(error.into())),
+        }
+    }
+}
 
 /// Lets `?` pass on the errors of the library's crates.
 macro_rules! from_library {
@@ -259,10 +281,8 @@ from_library!(
     reachtube::Error,
     reachtube::abstraction::Error,
     reachtube::conform::Error,
-    reachtube::export::ExportError,
     reachtube::identify::Error,
     reachtube::recordings::Error,
-    reachtube::page::Error,
     reachtube::robot::RobotError,
     reachtube_files::Error,
 );

@@ -11,9 +11,7 @@ pub use reachtube_conform::{
     conform, explain, reach,
 };
 #[cfg(feature = "report")]
-pub use reachtube_experiment::{
-    self as experiment, Error, Result, campaign, demo, reproduce, virtual_robot,
-};
+pub use reachtube_experiment::{Error, Result, campaign, demo, reproduce, virtual_robot};
 pub use reachtube_files::{TOOL, printable, write};
 pub use reachtube_identify::{self as identify, Identification, IdentifySettings, identify};
 #[cfg(feature = "report")]

@@ -8,7 +8,6 @@ use reachtube_scalar::Interval;
 use super::system::System;
 use super::text::harmless;
 use super::{ExportError, InputForm, Tool};
-use crate::error::Result;
 
 /// A model over one suite, or over one run with a nominal motion of its own.
 #[derive(Debug, Clone)]
@@ -49,15 +48,20 @@ impl ExportCase {
     /// # Errors
     ///
     /// As [`Problem::cases`] and [`reach`](reach()); a suite of a single sample.
-    pub fn all(problem: &Problem, hulls: &Hulls) -> Result<Vec<Self>> {
+    pub fn all(problem: &Problem, hulls: &Hulls) -> Result<Vec<Self>, ExportError> {
         let reached = reach(problem, hulls)?;
         let cases = problem.cases()?.iter().zip(reached);
         cases.map(|(case, reach)| Self::new(problem, hulls, case, reach)).collect()
     }
 
-    fn new(problem: &Problem, hulls: &Hulls, case: &Case, reach: SuiteReach) -> Result<Self> {
+    fn new(
+        problem: &Problem,
+        hulls: &Hulls,
+        case: &Case,
+        reach: SuiteReach,
+    ) -> Result<Self, ExportError> {
         if case.grid.len() < 2 {
-            return Err(ExportError::NoTime { case: case.name.clone() }.into());
+            return Err(ExportError::NoTime { case: case.name.clone() });
         }
         let settings = problem.settings();
         let abstraction = settings.abstraction;

@@ -6,6 +6,9 @@ use super::{InputForm, Tool};
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
+    /// The model's reachable sets could not be computed.
+    #[error(transparent)]
+    Conform(#[from] reachtube_conform::Error),
     /// The tool takes affine systems only.
     #[error(
         "{tool} takes affine systems only, but {model} has terms of degree {degree}; export it to \

@@ -32,6 +32,7 @@
 
 mod case;
 mod cora;
+mod draws;
 pub(crate) mod error;
 mod flowstar;
 mod hylaa;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use super::ExportFile;
 use super::case::ExportCase;
+use super::draws::Draws;
 use super::text::{number, numbers};
-use crate::random::{SeedableRng, SplitMix64, uniform};
 
 /// Number of points at which `check_points.csv` has ẋ.
 const CHECK_POINTS: usize = 1000;
@@ -37,10 +37,8 @@ fn inputs(case: &ExportCase) -> String {
 /// column per state, input and derivative.
 pub(super) fn check_points(case: &ExportCase) -> ExportFile {
     let (n, system) = (case.joints(), &case.system);
-    let mut random = SplitMix64::seed_from_u64(1);
-    let mut draw = |radius: f64| -> Vec<f64> {
-        (0..n).map(|_| uniform(&mut random, -radius, radius)).collect()
-    };
+    let mut draws = Draws::seeded(1);
+    let mut draw = |radius: f64| draws.vector(n, radius);
     let rates = system.states.iter().map(|name| format!("{name}_rate"));
     let head: Vec<String> =
         system.states.iter().chain(&system.inputs).cloned().chain(rates).collect();

@@ -7,7 +7,7 @@ use reachtube_identify::regression::TriangularFactor;
 use reachtube_robot::{LinkInertia, Parameter, ParameterKind, Placement, Regressor, Robot};
 
 use crate::export::ExportError;
-use crate::random::{SeedableRng, SplitMix64, uniform};
+use crate::export::draws::Draws;
 
 /// Number of random states whose torques must agree.
 const STATES: usize = 200;
@@ -113,10 +113,8 @@ fn torques(robot: &Robot) -> (DMatrix<f64>, DVector<f64>) {
     let n = robot.joint_count();
     let mut parameters = Parameter::of_joints(n, &ParameterKind::INERTIAL);
     parameters.extend(Parameter::of_joints(n, &[ParameterKind::MotorInertia]));
-    let mut random = SplitMix64::seed_from_u64(2);
-    let mut draw = |radius: f64| -> Vec<f64> {
-        (0..n).map(|_| uniform(&mut random, -radius, radius)).collect()
-    };
+    let mut draws = Draws::seeded(2);
+    let mut draw = |radius: f64| draws.vector(n, radius);
     let states: Vec<[Vec<f64>; 3]> =
         (0..STATES).map(|_| [draw(3.0), draw(2.0), draw(5.0)]).collect();
     let matrix = Regressor::new(robot, &parameters).stacked(&states);

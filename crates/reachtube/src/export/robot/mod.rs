@@ -18,7 +18,7 @@ pub use urdf::{UrdfFiles, urdf};
 
 use super::text::{harmless, numbers};
 use super::{ExportError, ExportFile};
-use crate::random::{SeedableRng, SplitMix64, uniform};
+use crate::export::draws::Draws;
 
 /// Number of states at which [`check_torques`] has torques.
 const CHECK_STATES: usize = 1000;
@@ -61,10 +61,8 @@ pub fn check_torques(robot: &Robot) -> String {
     let names = ["q", "qd", "qdd", "tau"].iter();
     let names = names.flat_map(|name| (1..=n).map(move |j| format!("{name}{j}")));
     let mut text = names.collect::<Vec<_>>().join(",") + "\n";
-    let mut random = SplitMix64::seed_from_u64(3);
-    let mut draw = |radius: f64| -> Vec<f64> {
-        (0..n).map(|_| uniform(&mut random, -radius, radius)).collect()
-    };
+    let mut draws = Draws::seeded(3);
+    let mut draw = |radius: f64| draws.vector(n, radius);
     for _ in 0..CHECK_STATES {
         let (q, qd, qdd) = (draw(3.0), draw(2.0), draw(5.0));
         let tau = robot.inverse_dynamics(&q, &qd, &qdd);
