@@ -2,8 +2,8 @@
 
 #[path = "../../reachtube/tests/hostile/mutation.rs"]
 mod mutation;
+#[path = "logs/support.rs"]
 mod support;
-
 use std::path::Path;
 
 use mutation::attack;

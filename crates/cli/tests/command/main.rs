@@ -20,7 +20,7 @@ mod overwrite;
 mod prismatic;
 mod reach;
 mod reproduce;
-#[path = "../../../logs/tests/support/mod.rs"]
+#[path = "../../../logs/tests/logs/support.rs"]
 mod robot_logs;
 mod robots;
 mod schema;

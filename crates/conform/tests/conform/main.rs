@@ -1,0 +1,19 @@
+//! Tests of conformance: the sets, the proof, the notions, and what is reported about them.
+
+mod badly_scaled;
+mod common;
+mod equations;
+mod fit;
+mod fold;
+mod model_file;
+mod next_motion;
+mod nonlinear;
+mod notion;
+mod part_points;
+mod plausibility;
+mod read_once;
+mod sampled_states;
+mod schunk;
+mod synthetic;
+mod traces;
+mod warmth;

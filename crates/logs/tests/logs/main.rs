@@ -1,0 +1,7 @@
+//! Tests of logs: reading, cutting, refusals, damage and hostile input.
+
+mod cutting;
+mod damage;
+mod refused;
+mod routes;
+mod support;
