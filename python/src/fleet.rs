@@ -8,12 +8,13 @@ use pyo3::pybacked::PyBackedBytes;
 use reachtube::conform::{
     self as product, FleetProblem, Fold, Hulls, Model, Notion, OnDefect, Problem, Setup,
 };
-use reachtube::recordings::{Defect, DefectKind, ReadOptions, RunEntry, parse_csv};
+use reachtube::recordings::{Defect, DefectKind};
 use serde_json::{Map, Value};
 
 use crate::abstraction::NativeAbstraction;
 use crate::conformance::{Basis, differing, fit_settings, setup, smallest_sets};
 use crate::failure::{Failure, Result};
+use crate::manifest::{Entry, entry, read_csv, read_run};
 use crate::points::{Asked, NativeFleetProblem, asking};
 use crate::recordings::NativeRun;
 use crate::robot::NativeRobot;
@@ -32,29 +33,11 @@ pub struct NativeFold {
     fold: Mutex<Fold>,
 }
 
-/// An entry of a manifest: its place, file, suite, motion, order, the SHA-256 that the file should
-/// have, and the temperature of all joints, °C.
-pub(crate) type Entry = (u64, String, String, Option<String>, u64, Option<String>, Option<f64>);
-
 /// SHA-256, number of samples and duration of a recording; or its defects.
 type Summary = std::result::Result<(String, usize, f64), Vec<String>>;
 
 /// The same as Python has it.
 type Taken = (Option<(String, usize, f64)>, Vec<String>);
-
-pub(crate) fn entry(row: &Entry) -> RunEntry {
-    let (index, file, suite, motion, order, sha256, temperature) = row.clone();
-    RunEntry {
-        file,
-        suite: Some(suite),
-        motion,
-        kind: None,
-        temperature,
-        sha256,
-        order,
-        line: index + 1,
-    }
-}
 
 #[pymethods]
 impl NativeFleet {
@@ -219,36 +202,6 @@ fn problem(
         None => problem,
     })
 }
-
-/// Reads the recording in the content of a CSV file.
-pub(crate) fn read_csv(row: &Entry, content: &[u8], options: &ReadOptions) -> Read {
-    let name = Path::new(&row.1);
-    let run = parse_csv(name, content, options)?;
-    match &row.5 {
-        Some(expected) if !expected.eq_ignore_ascii_case(&run.sha256) => {
-            let problem =
-                format!("its SHA-256 is {}, but the manifest says {expected}", run.sha256);
-            let remedy = "the file was changed or damaged: restore it, or write the manifest again";
-            Err(vec![Defect::new(name, None, problem, remedy).of_kind(DefectKind::File)])
-        }
-        _ => Ok(as_warm(row, run)),
-    }
-}
-
-/// Checks a recording in memory as one that is read.
-pub(crate) fn read_run(row: &Entry, run: &reachtube::Run, options: &ReadOptions) -> Read {
-    as_warm(row, run.clone()).checked(Path::new(&row.1), options)
-}
-
-/// Gives a run without temperatures that of the manifest.
-fn as_warm(row: &Entry, run: reachtube::Run) -> reachtube::Run {
-    let Some(temperature) = row.6.filter(|_| run.temperatures.is_empty()) else { return run };
-    let temperatures = vec![temperature; run.len() * run.joints];
-    run.with_temperatures(temperatures).expect("the manifest's temperature is finite")
-}
-
-/// A recording, or its defects.
-pub(crate) type Read = std::result::Result<reachtube::Run, Vec<Defect>>;
 
 impl NativeFold {
     fn lock(&self) -> MutexGuard<'_, Fold> {

@@ -11,6 +11,7 @@ mod fleet;
 mod flowpipe;
 mod identification;
 mod logs;
+mod manifest;
 mod points;
 mod recordings;
 mod robot;

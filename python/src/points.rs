@@ -8,7 +8,7 @@ use pyo3::types::PyBytes;
 use reachtube::conform::{FleetProblem, PartPoints, PartReader, PointServer};
 
 use crate::failure::Failure;
-use crate::fleet::{Entry, Read, entry, read_csv, read_run};
+use crate::manifest::{Entry, Read, entry, read_csv, read_run};
 use crate::recordings::NativeRun;
 
 /// What every part of a fleet needs to find its points.

@@ -1,6 +1,6 @@
 //! The command line: its commands and the global options.
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
@@ -98,7 +98,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Outcome> {
         Command::Export(args) => export::run(args, json),
         Command::Report(args) => report::run(args, json),
         Command::Reproduce(command) => reproduce::run(command, json),
-        Command::Completions(args) => completions::run(args),
-        Command::Man(args) => man::run(args),
+        Command::Completions(args) => completions::run(args, Cli::command()),
+        Command::Man(args) => man::run(args, Cli::command()),
     }
 }

@@ -18,6 +18,7 @@ use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
 use crate::variant::with_gravity_of_links;
 use crate::warming::choice::WarmingFit;
 use crate::warming::laws::{fit_warming, law_warnings};
+use reachtube_robot::friction::Warming;
 use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
 use std::path::Path;
 
@@ -80,43 +81,25 @@ pub fn identify(
 ) -> Result<Identification> {
     settings.validate(robot.joint_count())?;
     let model = &settings.model;
-
     // Recordings, filtered and downsampled.
     let mut inputs = Inputs::read(robot, settings, folder)?;
     let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
     progress(1, STEPS);
 
-    // Gravity and friction in alternation, then the inertial parameters.
+    // Gravity and friction in turn, then the inertial parameters.
     let plain = ModelSettings { stribeck: false, ..model.clone() };
     let mut fitted = Fitted::new(robot, &inputs, &plain)?;
     progress(2, STEPS);
 
     // Friction laws, and everything anew with the ones that were chosen.
-    let before = (plain != *model || model.warming != WarmingChoice::None)
-        .then(|| kept_back_residuals(&fitted, &inputs));
-    if model.stribeck && !inputs.friction.is_empty() {
-        fitted = Fitted::new(robot, &inputs, model)?;
-    }
-    let warming = fit_warming(robot, &mut inputs, model, &mut fitted)?;
-    let laws = before.map(|before| {
-        let after = kept_back_residuals(&fitted, &inputs);
-        LawGain { kept_back: inputs.validation().0, before, after }
-    });
+    let (warming, laws) = fit_laws(robot, &mut inputs, model, &mut fitted, &plain)?;
     let Plausibility { gains, offsets, warnings: implausible } = fitted.check(robot, &inputs);
     let sides = fitted.first.gravity.as_ref().map_or(&[][..], |gravity| &gravity.poses.sides);
     inputs.changes.extend(unknown_sides(sides, robot.joint_count()));
-    let mut law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
-    law_warnings.extend(laws.iter().flat_map(|laws| laws.warnings(robot)));
+    let law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
+    let gain_warnings = laws.iter().flat_map(|laws| laws.warnings(robot)).collect();
     let Fitted { first, friction, known, inertia, mut description, found } = fitted;
-    for (joint, law) in description.joints.iter_mut().zip(&inputs.sampling.laws) {
-        joint.friction.warming = *law;
-    }
-    for (j, joint) in description.joints.iter_mut().enumerate() {
-        let is_known = friction[j] != FrictionDescription::default();
-        let slow = first.friction.iter().find(|fit| fit.joint.joint == joint.name && is_known);
-        let known = slow.map(|fit| &fit.joint.standard_errors);
-        joint.friction.standard_errors = friction_errors(&inertia, j, known);
-    }
+    add_friction(&mut description, &inputs.sampling.laws, &friction, &first.friction, &inertia);
     let warming_robot = Robot::from_description(&description)?;
     progress(3, STEPS);
 
@@ -124,16 +107,12 @@ pub fn identify(
     let (kept_back, tried) = inputs.validation();
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
     let windows = simulate(&warming_robot, tried, &model.windows);
-    let mut warnings = inputs.warnings;
-    warnings.extend(first.warnings);
-    warnings.extend(law_warnings);
-    warnings.extend(implausible);
+    let mut warnings =
+        [inputs.warnings, first.warnings, law_warnings, gain_warnings, implausible].concat();
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
-    if kept_back && inertia.physical.is_some() && !model.separate_gravity {
-        warnings.extend(costly_links(robot, &validation));
-    }
-    warnings.extend(validation_warnings(robot, &validation, &windows, kept_back));
+    let links = inertia.physical.is_some() && !model.separate_gravity;
+    warnings.extend(validation_warnings(robot, &validation, &windows, kept_back, links));
     progress(STEPS, STEPS);
     Ok(Identification {
         description,
@@ -154,17 +133,61 @@ pub fn identify(
     })
 }
 
-/// Returns warnings about the validation; only held-out recordings show how well torque is
-/// predicted.
+/// Fits the friction laws that `model` asks for beyond `plain`, and everything anew with the ones
+/// that were chosen. Returns them with what they gain.
+fn fit_laws(
+    robot: &Robot,
+    inputs: &mut Inputs,
+    model: &ModelSettings,
+    fitted: &mut Fitted,
+    plain: &ModelSettings,
+) -> Result<(Option<WarmingFit>, Option<LawGain>)> {
+    let before = (plain != model || model.warming != WarmingChoice::None)
+        .then(|| kept_back_residuals(fitted, inputs));
+    if model.stribeck && !inputs.friction.is_empty() {
+        *fitted = Fitted::new(robot, inputs, model)?;
+    }
+    let warming = fit_warming(robot, inputs, model, fitted)?;
+    let laws = before.map(|before| {
+        let after = kept_back_residuals(fitted, inputs);
+        LawGain { kept_back: inputs.validation().0, before, after }
+    });
+    Ok((warming, laws))
+}
+
+/// Writes the laws of warming up and the standard errors of friction into the description.
+fn add_friction(
+    description: &mut RobotDescription,
+    laws: &[Option<Warming>],
+    friction: &[FrictionDescription],
+    slow: &[FrictionFit],
+    inertia: &InertiaFit,
+) {
+    for (joint, law) in description.joints.iter_mut().zip(laws) {
+        joint.friction.warming = *law;
+    }
+    for (j, joint) in description.joints.iter_mut().enumerate() {
+        let is_known = friction[j] != FrictionDescription::default();
+        let slow = slow.iter().find(|fit| fit.joint.joint == joint.name && is_known);
+        let known = slow.map(|fit| &fit.joint.standard_errors);
+        joint.friction.standard_errors = friction_errors(inertia, j, known);
+    }
+}
+
+/// Returns warnings about the validation. Only held-out recordings show how well torque is
+/// predicted, and what physical links cost.
 fn validation_warnings(
     robot: &Robot,
     validation: &[LogValidation],
     windows: &[WindowErrors],
     kept_back: bool,
+    links: bool,
 ) -> Vec<String> {
     let held_out = if kept_back { validation } else { &[] };
-    let still = still_recordings(held_out).into_iter();
-    still
+    let costly = if kept_back && links { costly_links(robot, validation) } else { None };
+    costly
+        .into_iter()
+        .chain(still_recordings(held_out))
         .chain(poor_prediction(robot, held_out))
         .chain(useless_simulation(robot, windows))
         .collect()

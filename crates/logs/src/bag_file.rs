@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Connection, OpenFlags, limits::Limit};
 
 use crate::bag_state::{Journal, State};
-use crate::container::{Contents, Damage, Loss, RawMessage, Receive, Role, Topic, Wanted};
+use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, Wanted};
 use crate::error::{Error, Result};
+use crate::loss::Loss;
 
 /// Longest message that is read, bytes.
 const LARGEST: i32 = 1 << 26;

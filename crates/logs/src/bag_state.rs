@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::container::Loss;
+use crate::loss::Loss;
 
 /// Length of the header of a SQLite file, bytes.
 const HEADER: usize = 100;

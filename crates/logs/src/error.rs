@@ -2,7 +2,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::container::Loss;
+use crate::loss::Loss;
 
 /// Why a log cannot be used.
 #[derive(Debug, Error)]

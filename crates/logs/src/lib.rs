@@ -21,6 +21,7 @@ mod error;
 mod files;
 mod intervals;
 mod log;
+mod loss;
 #[cfg(feature = "mcap")]
 mod mcap_file;
 #[cfg(feature = "mcap")]
@@ -30,14 +31,15 @@ mod message;
 mod recorded;
 mod repeats;
 mod sample;
+mod seconds;
 mod segments;
 mod series;
 
-pub use container::Loss;
 pub use cut::{Cut, marked_runs, whole_logs};
 pub use error::{Error, Result};
 pub use intervals::Intervals;
 pub use log::{Log, LogOptions, LogTime};
+pub use loss::Loss;
 pub use recorded::{Recorded, RecordedRun, convert};
 pub use repeats::{Repeats, find_repeats};
 pub use segments::motions;

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 
 use reachtube_recordings::{Defect, Run};
 
-use crate::container::{Contents, Loss, Role, Topic, Wanted, decimal};
+use crate::container::{Contents, Role, Topic, Wanted};
 use crate::error::{Error, Result};
 use crate::files::{files_of, scan};
+use crate::loss::Loss;
 use crate::merge::{Merged, merge};
 use crate::sample::{Labels, Sample, defects};
+use crate::seconds::decimal;
 use crate::series::Series;
 
 /// Which times the samples have.

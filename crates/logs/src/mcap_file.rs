@@ -9,8 +9,9 @@ use mcap::records::{ChunkHeader, MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{McapError, parse_record};
 
-use crate::container::{Contents, Damage, Loss, RawMessage, Receive, Role, Topic, Wanted};
+use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, Wanted};
 use crate::error::{Error, Result};
+use crate::loss::Loss;
 use crate::mcap_records::{HEAD, LARGEST, Piece, Records, records_of};
 
 /// Reads a file and passes the messages of the topics `wanted` on, in the order of the file.

@@ -187,7 +187,7 @@ fn time_defect(before: &Sample, sample: &Sample, defect: &dyn Fn(&str, &str) -> 
     } else {
         "earlier than the message before"
     };
-    let problem = format!("t = {} s is {what}", crate::container::decimal(sample.time));
+    let problem = format!("t = {} s is {what}", crate::seconds::decimal(sample.time));
     let remedy = "times must increase strictly: cut the run before this message, or record again \
                   with one publisher and one clock";
     defect(&problem, remedy).of_kind(DefectKind::Time)

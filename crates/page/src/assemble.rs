@@ -1,8 +1,7 @@
 //! Assembly of a page from a model and recordings.
 
 use reachtube_conform::{
-    self as conform, Check, Code, Enclosure, Equations, Finding, LeftOut, Model, Notion, Problem,
-    States, SuiteReach,
+    self as conform, Check, Code, Enclosure, Equations, Finding, LeftOut, Model, Notion, States,
 };
 use reachtube_reach::Hyperrectangle;
 
@@ -11,21 +10,9 @@ use crate::error::Result;
 use crate::nominal::{nominal_caution, nominal_facts, nominal_tables};
 use crate::notion::{outside_points, phase_planes, place, together, traces};
 use crate::page::{JointSets, Page, SetsTable, Verdict};
+use crate::sources::{Sources, joint_name};
 use crate::suites::suite_figures;
 use reachtube_scalar::number::at_least;
-
-/// The sources of a page.
-#[derive(Debug, Clone, Copy)]
-pub struct Sources<'a> {
-    /// The model.
-    pub model: &'a Model,
-    /// The recordings that are drawn.
-    pub problem: &'a Problem,
-    /// The reachable sets over them.
-    pub reach: &'a [SuiteReach],
-    /// Whether the recordings lie in the sets.
-    pub check: &'a Check,
-}
 
 /// Makes the page of a model over recordings: those that it was made from, or others.
 ///
@@ -177,14 +164,6 @@ fn sets_table(model: &Model) -> SetsTable {
         States::Positions => "Position conformant",
     };
     SetsTable { notion: notion.into(), joints: (0..n).map(row).collect() }
-}
-
-pub(super) fn joint_name(model: &Model, joint: usize) -> String {
-    model
-        .robot
-        .joints
-        .get(joint)
-        .map_or_else(|| format!("{}", joint + 1), |description| description.name.clone())
 }
 
 fn facts(model: &Model) -> Vec<(String, String)> {

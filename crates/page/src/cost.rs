@@ -3,8 +3,8 @@
 use reachtube_conform::{Model, Weights};
 
 use crate::chart::{Chart, Series};
-use crate::page::TextTable;
 use crate::suite_figure::{Band, Nominal, RunTrace, SuiteFigure};
+use crate::text_table::TextTable;
 use reachtube_scalar::number::{at_least, four_decimals};
 
 /// Blue.

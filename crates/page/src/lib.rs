@@ -26,11 +26,13 @@ mod page;
 mod panel;
 mod scripts;
 mod skeleton;
+mod sources;
 mod style;
 mod suite_figure;
 mod suites;
 mod tables;
 mod text;
+mod text_table;
 
 #[cfg(test)]
 mod browser;
@@ -39,7 +41,7 @@ mod devtools;
 #[cfg(test)]
 mod sample;
 
-pub use assemble::{Sources, page};
+pub use assemble::page;
 pub use chart::{Chart, Series, chart_svg, charts_svg};
 pub use error::{Error, Result};
 pub use figure::suite_svg;
@@ -47,8 +49,10 @@ pub use html::write_html;
 pub use identified::write_identified_html;
 pub use identified_charts::{load_chart, viscous_chart};
 pub use library::{Assets, LIBRARY_FILE, write_library};
-pub use page::{Bounds, JointSets, Page, SetsTable, TextTable, Verdict};
+pub use page::{Bounds, JointSets, Page, SetsTable, Verdict};
 pub use reachtube_conform::Side;
 pub use skeleton::{document, long_table, section};
+pub use sources::Sources;
 pub use suite_figure::{Band, Nominal, RunGauge, RunTrace, SuiteFigure, TightSpot, View};
 pub use suites::suite_figures;
+pub use text_table::TextTable;

@@ -2,7 +2,7 @@
 
 use reachtube_conform::{FitRecord, FittedParameter, MOST_ERRORS, Model};
 
-use crate::page::TextTable;
+use crate::text_table::TextTable;
 use reachtube_scalar::number::{at_least, four_decimals};
 
 /// The column of standard errors in the table of parameters.

@@ -2,8 +2,8 @@
 
 use super::chart::Chart;
 use super::suite_figure::SuiteFigure;
+use super::text_table::TextTable;
 use reachtube_robot::JointKind;
-use serde::Serialize;
 
 /// A closed interval `[lower, upper]`, in the unit that the field holding it names.
 pub type Bounds = [f64; 2];
@@ -37,17 +37,6 @@ pub struct Page {
     pub caution: Vec<String>,
     /// Further remarks, one paragraph each.
     pub notes: Vec<String>,
-}
-
-/// A table of texts: the first column names the row.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct TextTable {
-    /// What the table shows.
-    pub title: String,
-    /// The names of the columns.
-    pub header: Vec<String>,
-    /// The rows, each as long as the header.
-    pub rows: Vec<Vec<String>>,
 }
 
 /// The outcome in words.

@@ -1,8 +1,9 @@
 //! A small invented result, for the tests of this module.
 
 use super::chart::{Chart, Series};
-use super::page::{JointSets, Page, SetsTable, TextTable, Verdict};
+use super::page::{JointSets, Page, SetsTable, Verdict};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
+use super::text_table::TextTable;
 use reachtube_conform::Side;
 use reachtube_robot::JointKind;
 

@@ -1,7 +1,7 @@
 //! The parts that all pages share: the document around a page, sections, and lists.
 
-use super::page::TextTable;
 use super::text::Text;
+use super::text_table::TextTable;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");

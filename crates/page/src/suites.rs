@@ -2,11 +2,11 @@
 
 use reachtube_conform::{Problem, Suite, SuiteReach, Witness};
 
-use crate::assemble::{Sources, joint_name};
 use crate::error::Error;
 use crate::error::Result;
 use crate::figures::MOST_STATIC;
 use crate::panel::interpolate;
+use crate::sources::{Sources, joint_name};
 use crate::suite_figure::{Band, Nominal, RunGauge, RunTrace, SAME_TIME, SuiteFigure, TightSpot};
 
 /// Number of runs up to which all of them are drawn.
@@ -62,16 +62,7 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     let longest = longest.ok_or_else(|| Error::NoReachableSet { suite: name.clone() })?;
     let shared = longest.run.is_none();
     let band = band(&own, longest, joints, check.verdict.enclosure.set_name());
-    // The samples that decide the sets, and the worst one outside.
-    let place =
-        |file: &String| suite.runs.iter().position(|run| problem.entry(run.index).file == *file);
-    let tight = model.tight.iter().filter(|witness| witness.suite == *name);
-    let verdicts = check.verdict.suites.iter().filter(|verdict| verdict.suite == *name);
-    let worst = verdicts.filter_map(|verdict| verdict.violations.worst.as_ref());
-    let mut spots: Vec<TightSpot> = tight
-        .chain(worst)
-        .filter_map(|witness| Some(spot(witness, place(&witness.run)?, joints)))
-        .collect();
+    let mut spots = spots(sources, suite);
     let chosen = if are_many { deciding(&spots) } else { (0..suite.runs.len()).collect() };
     spots.retain(|spot| chosen.contains(&spot.run));
     // Each run as a line, relative to its own nominal solution where it has one.
@@ -115,6 +106,21 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
         furthest: gauges.iter().map(|run| run.gauge).reduce(f64::max),
         gauges,
     })
+}
+
+/// Returns the samples of a suite that decide the sets, and the worst one outside.
+fn spots(sources: &Sources, suite: &Suite) -> Vec<TightSpot> {
+    let Sources { model, problem, check, .. } = *sources;
+    let (joints, name) = (model.joints(), &suite.entry.name);
+    let place =
+        |file: &String| suite.runs.iter().position(|run| problem.entry(run.index).file == *file);
+    let tight = model.tight.iter().filter(|witness| witness.suite == *name);
+    let verdicts = check.verdict.suites.iter().filter(|verdict| verdict.suite == *name);
+    let worst = verdicts.filter_map(|verdict| verdict.violations.worst.as_ref());
+    tight
+        .chain(worst)
+        .filter_map(|witness| Some(spot(witness, place(&witness.run)?, joints)))
+        .collect()
 }
 
 /// Keeps the runs that lie outside or decide the most rows, at most `most` of all suites, and their

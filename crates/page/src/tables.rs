@@ -1,9 +1,10 @@
 //! The tables of the page: the uncertainty sets, the tight spots, the settings.
 
-use super::page::{Bounds, JointSets, Page, SetsTable, TextTable};
+use super::page::{Bounds, JointSets, Page, SetsTable};
 use super::skeleton::wide_table;
 use super::suite_figure::{SuiteFigure, TightSpot};
 use super::text::Text;
+use super::text_table::TextTable;
 use maud::{Markup, PreEscaped, html};
 use reachtube_conform::Side;
 use reachtube_robot::JointKind;

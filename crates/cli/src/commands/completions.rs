@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 use reachtube::write;
 
-use crate::cli::Cli;
 use crate::commands::man;
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
@@ -42,20 +41,20 @@ const PLACES: [(Shell, &str); 5] = [
     (Shell::Zsh, "zsh/site-functions/_reachtube"),
 ];
 
-pub(crate) fn run(args: &Arguments) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, command: Command) -> Result<Outcome> {
     if let Some(folder) = &args.out {
-        write_all(folder)?;
+        write_all(folder, command)?;
     } else if let Some(shell) = args.shell {
-        output::write_out(script(shell).as_bytes())?;
+        output::write_out(script(shell, command).as_bytes())?;
     }
     Ok(Outcome::Done)
 }
 
 /// Writes what a package installs beside the command itself.
-fn write_all(folder: &Path) -> Result<()> {
-    let mut files: Vec<(PathBuf, Vec<u8>)> =
-        PLACES.map(|(shell, place)| (folder.join(place), script(shell).into_bytes())).into();
-    let pages = man::pages().map_err(Error::Output)?;
+fn write_all(folder: &Path, command: Command) -> Result<()> {
+    let of = |(shell, place)| (folder.join(place), script(shell, command.clone()).into_bytes());
+    let mut files: Vec<(PathBuf, Vec<u8>)> = PLACES.map(of).into();
+    let pages = man::pages(command).map_err(Error::Output)?;
     let manual = folder.join("man/man1");
     files.extend(pages.into_iter().map(|(name, page)| (manual.join(name), page)));
     output::claim_all(files.iter().map(|(path, _)| path))?;
@@ -70,9 +69,9 @@ fn write_all(folder: &Path) -> Result<()> {
 
 /// Returns the script of a shell, with the comment by which a later command knows that it may
 /// replace it. The comment is the second line, because zsh reads the first.
-fn script(shell: Shell) -> String {
+fn script(shell: Shell, mut command: Command) -> String {
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut Cli::command(), "reachtube", &mut script);
+    clap_complete::generate(shell, &mut command, "reachtube", &mut script);
     let script = String::from_utf8_lossy(&script);
     let mark = format!("# {}", reachtube_files::MARK);
     match script.split_once('\n') {

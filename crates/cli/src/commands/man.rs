@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use clap_mangen::Man;
 use reachtube::write;
 
-use crate::cli::Cli;
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
 use crate::{output, reference};
@@ -30,11 +29,11 @@ pub(crate) struct Arguments {
     pub markdown: bool,
 }
 
-pub(crate) fn run(args: &Arguments) -> Result<Outcome> {
+pub(crate) fn run(args: &Arguments, command: Command) -> Result<Outcome> {
     if args.markdown {
-        output::write_out(reference::markdown(built()).as_bytes())?;
+        output::write_out(reference::markdown(built(command)).as_bytes())?;
     } else if let Some(folder) = &args.out {
-        let pages = pages().map_err(Error::Output)?;
+        let pages = pages(command).map_err(Error::Output)?;
         let paths: Vec<PathBuf> = pages.iter().map(|(name, _)| folder.join(name)).collect();
         output::claim_all(&paths)?;
         for ((_, page), path) in pages.iter().zip(&paths) {
@@ -42,24 +41,24 @@ pub(crate) fn run(args: &Arguments) -> Result<Outcome> {
         }
         output::note(&format!("wrote {} pages to {}", paths.len(), folder.display()));
     } else {
-        output::write_out(&page(built()).map_err(Error::Output)?)?;
+        output::write_out(&page(built(command)).map_err(Error::Output)?)?;
     }
     Ok(Outcome::Done)
 }
 
 /// Returns the manual page of each command under its file's name.
-pub(crate) fn pages() -> std::io::Result<Vec<(String, Vec<u8>)>> {
+pub(crate) fn pages(command: Command) -> std::io::Result<Vec<(String, Vec<u8>)>> {
     let named = |command: Command| {
         let name = format!("{}.1", command.get_display_name().unwrap_or(command.get_name()));
         Ok((name, page(command)?))
     };
-    all(built()).into_iter().map(named).collect()
+    all(built(command)).into_iter().map(named).collect()
 }
 
 /// Returns the command line. Building gives each command below the first its name in full, as in
 /// "reachtube-conform".
-fn built() -> Command {
-    let mut command = Cli::command().disable_help_subcommand(true);
+fn built(command: Command) -> Command {
+    let mut command = command.disable_help_subcommand(true);
     command.build();
     command
 }

@@ -38,7 +38,7 @@ pub enum CampaignError {
         "{}: the folder holds a campaign with other options, another robot or another version of \
          the program: {} names them; give the same, or an empty folder",
         folder.display(),
-        super::folder::MARK
+        super::mark::MARK
     )]
     OtherCampaign {
         /// The folder.
@@ -49,7 +49,7 @@ pub enum CampaignError {
         "{}: the folder has no {} of `reachtube campaign`, from which the planned motion follows; \
          give the folder of a campaign",
         folder.display(),
-        super::folder::MARK
+        super::mark::MARK
     )]
     NotACampaign {
         /// The folder.

@@ -11,13 +11,11 @@ use sha2::{Digest, Sha256};
 
 use super::error::CampaignError;
 use super::job::Job;
+use super::mark::MARK;
 use super::options::CampaignOptions;
 use super::readme::readme;
 use crate::error::Result;
 use crate::virtual_robot::VirtualRobot;
-
-/// The file that marks the folder of a campaign and holds its options.
-pub(super) const MARK: &str = "campaign.json";
 
 /// The index of the data set.
 const INDEX: &str = "runs.csv";

@@ -8,7 +8,6 @@ use crate::virtual_robot::{
 
 use super::excitation::ExcitingMotion;
 use super::joint_motion::JointMotion;
-use super::planned::PlannedSuite;
 use super::pose_series::PoseSeries;
 
 /// Samples of a recording of poses between two that are logged: 50 Hz suffice for an arm that
@@ -38,6 +37,18 @@ pub(super) enum Work {
     Friction(JointMotion),
     /// An exciting motion.
     Excitation(ExcitingMotion),
+}
+
+/// A suite of a campaign before it was recorded.
+pub(crate) struct PlannedSuite {
+    /// Its name.
+    pub name: String,
+    /// Name of the motion that it is part of.
+    pub motion_name: String,
+    /// That motion.
+    pub motion: Motion,
+    /// Cycle of the motion at which the open loop begins.
+    pub first: usize,
 }
 
 impl Job {

@@ -16,6 +16,7 @@ mod excitation;
 mod folder;
 mod job;
 mod joint_motion;
+mod mark;
 mod options;
 mod plan;
 mod planned;
@@ -26,6 +27,7 @@ mod record;
 mod tests;
 
 pub use error::CampaignError;
+pub(crate) use job::PlannedSuite;
 pub use options::CampaignOptions;
-pub(crate) use planned::{PlannedSuite, planned_suites};
+pub(crate) use planned::planned_suites;
 pub use record::{RecordedCampaign, record};

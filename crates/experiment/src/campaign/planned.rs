@@ -6,24 +6,12 @@ use reachtube_robot::Robot;
 use serde::Deserialize;
 
 use super::error::CampaignError;
-use super::folder::MARK;
+use super::job::PlannedSuite;
+use super::mark::MARK;
 use super::options::CampaignOptions;
 use super::plan;
 use crate::error::Result;
-use crate::motion::Motion;
 use crate::virtual_robot::VirtualRobot;
-
-/// A suite of a campaign before it was recorded.
-pub(crate) struct PlannedSuite {
-    /// Its name.
-    pub name: String,
-    /// Name of the motion that it is part of.
-    pub motion_name: String,
-    /// That motion.
-    pub motion: Motion,
-    /// Cycle of the motion at which the open loop begins.
-    pub first: usize,
-}
 
 /// What is read of the file that marks a campaign.
 #[derive(Deserialize)]

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::folder::MARK;
+use super::mark::MARK;
 use super::options::CampaignOptions;
 use crate::virtual_robot::VirtualRobot;
 

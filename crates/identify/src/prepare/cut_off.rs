@@ -1,11 +1,8 @@
 use crate::error::{Error, Result};
 use crate::prepare::raw_log::RawLog;
-use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::PrepareSettings;
-use crate::prepare::spectrum::motion_bandwidth;
 use crate::prepare::survey::Survey;
 use rayon::prelude::*;
-use reachtube_recordings::Run;
 
 /// Ratio of the cut-off to the bandwidth of the motion.
 const BANDWIDTH_FACTOR: f64 = 1.5;
@@ -48,21 +45,6 @@ pub(crate) fn chosen_cut_off(logs: &[Survey], settings: &PrepareSettings) -> Res
     }
     let bandwidths = logs.iter().flat_map(|log| log.bandwidths.iter().copied()).collect();
     Ok(chosen(bandwidths, lowest_rate))
-}
-
-/// Returns the bandwidth \[Hz\] and the weight of each joint's motion in a log.
-pub(super) fn bandwidths(log: &RawLog) -> Vec<(f64, f64)> {
-    let Some(step) = median_step(&log.run.times) else { return Vec::new() };
-    let column = |which, joint| resampled(&log.run.times, log.column(which, joint), step);
-    let bandwidth = |joint: usize| {
-        let q = column(Run::q, joint);
-        let mean = q.iter().sum::<f64>() / q.len() as f64;
-        (
-            motion_bandwidth(&q, &column(Run::qd, joint), step),
-            q.iter().map(|q| step * (q - mean).powi(2)).sum(),
-        )
-    };
-    (0..log.run.joints).map(bandwidth).collect()
 }
 
 /// Returns the cut-off \[Hz\] for bandwidths with weights and the lowest sample rate \[Hz\].

@@ -1,9 +1,9 @@
 //! What is known of a recording without keeping its samples.
 
 use crate::error::{Error, Result};
-use crate::prepare::cut_off::bandwidths;
 use crate::prepare::raw_log::RawLog;
-use crate::prepare::resample::median_step;
+use crate::prepare::resample::{median_step, resampled};
+use crate::prepare::spectrum::motion_bandwidth;
 use reachtube_recordings::{Run, integral_gap};
 use std::path::PathBuf;
 
@@ -79,4 +79,19 @@ pub(crate) fn check_held_out(validate: &[Survey], fitted: &[&Survey]) -> Result<
 fn range(run: &Run, joint: usize) -> f64 {
     let positions = (0..run.len()).map(|k| run.q(k)[joint]);
     positions.clone().fold(f64::MIN, f64::max) - positions.fold(f64::MAX, f64::min)
+}
+
+/// Returns the bandwidth \[Hz\] and the weight of each joint's motion in a log.
+fn bandwidths(log: &RawLog) -> Vec<(f64, f64)> {
+    let Some(step) = median_step(&log.run.times) else { return Vec::new() };
+    let column = |which, joint| resampled(&log.run.times, log.column(which, joint), step);
+    let bandwidth = |joint: usize| {
+        let q = column(Run::q, joint);
+        let mean = q.iter().sum::<f64>() / q.len() as f64;
+        (
+            motion_bandwidth(&q, &column(Run::qd, joint), step),
+            q.iter().map(|q| step * (q - mean).powi(2)).sum(),
+        )
+    };
+    (0..log.run.joints).map(bandwidth).collect()
 }

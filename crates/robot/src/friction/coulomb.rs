@@ -1,7 +1,10 @@
 //! Coulomb friction.
 
-use super::joint_friction::NEAR_STANDSTILL;
 use reachtube_scalar::Lanewise;
+
+/// Speed below which a joint is near standstill, rad/s or m/s. The steps of dry friction are
+/// softened there.
+pub const NEAR_STANDSTILL: f64 = 0.02;
 
 /// Load below which [`Coulomb::softened_torque`] passes from braking to driving, in parts of the
 /// mean friction at no load.

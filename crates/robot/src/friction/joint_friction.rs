@@ -1,6 +1,6 @@
 //! All friction of one joint.
 
-use super::coulomb::{Coulomb, LoadLine};
+use super::coulomb::{Coulomb, LoadLine, NEAR_STANDSTILL};
 use super::stribeck::Stribeck;
 use super::viscous::Viscous;
 use super::warming::Warming;
@@ -24,10 +24,6 @@ pub struct Friction {
     /// [`Robot::at_run`](crate::Robot::at_run) apply the law.
     pub warming: Option<Warming>,
 }
-
-/// Speed below which a joint is near standstill, rad/s or m/s. The steps of dry friction are
-/// softened there.
-pub const NEAR_STANDSTILL: f64 = 0.02;
 
 impl Friction {
     /// Returns dry friction \[N m\] where it holds a joint near standstill, at a load torque
