@@ -102,7 +102,7 @@ def conform(manifest: Path, size: int, **options: Any) -> rt.Model:
 
 
 def in_a_new_process(job: Callable[..., dict[str, Any]], *arguments: Any) -> dict[str, Any]:
-    """Run a job in a process of its own, so that its peak memory is that of the job."""
+    """Run a job in a process of its own, so that its peak memory is the job's."""
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
         return pool.submit(job, *arguments).result()

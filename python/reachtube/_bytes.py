@@ -35,7 +35,7 @@ def without_head(kind: type, data: bytes) -> tuple[dict[str, Any], bytes]:
         head, found = {}, None
     if found != (f"reachtube-python-{kind.__name__}", VERSION):
         raise ModelFileError(
-            f"these bytes are not those of {kind.__name__}, version {VERSION}, but of {found}"
+            f"these bytes hold {found}, not {kind.__name__}, version {VERSION}"
         )
     return head, content
 

@@ -86,7 +86,7 @@ def conform(
     weights
         Weights of the states in the cost: 1, the reciprocal of the spread, or 2 or 2n numbers.
     noise, sensor_noise
-        Measurement noise V, or its radii, 2 or 2n numbers; and those of the sensors, which limit
+        Measurement noise V, or its radii, 2 or 2n numbers; and the sensors' radii, which limit
         it, estimated from the recordings where they are not given.
     nominal
         Where nominal motions start: at the mean of a suite's first states, or at each run's own.
@@ -162,7 +162,7 @@ def conform(
 
 
 def told(text: str, notes: list[str], level: int) -> Model:
-    """Return the model, and say what is to be said of it to the caller `level` frames above."""
+    """Return the model, and report its notes and warnings to the caller `level` frames above."""
     for note in notes:
         log.info(note)
     found = Model(text)
@@ -191,7 +191,7 @@ def check(
     model, data
         The model, and the recordings.
     suites, until, max_gap, progress
-        As for `conform`; ``until`` is that of the model where it is not given.
+        As for `conform`; ``until`` is the model's if it is not given.
     notion
         Directions in which recordings must lie in the set; the model's own where not given.
 

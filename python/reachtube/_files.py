@@ -26,7 +26,7 @@ def write_new(path: Path, text: str, *, force: bool) -> None:
                 file.write(text)
                 file.flush()
                 os.fsync(file.fileno())
-            # Those of mkstemp are for its owner alone.
+            # The permissions of mkstemp are for its owner alone.
             mask = os.umask(0)
             os.umask(mask)
             os.chmod(temporary, 0o666 & ~mask)

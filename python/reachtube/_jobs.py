@@ -162,7 +162,7 @@ def on_dask(job: Job, parts: list[Part], client: Any, count: Any) -> tuple[bytes
     shared = client.submit(same, job, pure=False, retries=3)
     folds = [client.submit(fold_of, shared, part, pure=False, retries=3) for part in parts]
     last = as_tree(functools.partial(client.submit, _merge, shared), folds)
-    # Nothing here keeps a fold, so that a worker lets go of it when it is merged.
+    # Nothing here keeps a fold, so that a worker drops it when it is merged.
     waiting: Any = as_completed(folds)  # type: ignore[no-untyped-call]
     del folds
     done = 0

@@ -87,7 +87,7 @@ class Points:
         return _merge_answers(answers)
 
     def close(self) -> None:
-        """Let go of the points; a question that waits ends."""
+        """Drop the points; a question that waits ends."""
         self._is_over = True
         if self._client is None:
             _problem.cache_clear()

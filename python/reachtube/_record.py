@@ -46,7 +46,7 @@ class Record:
         Raises
         ------
         ModelFileError
-            For other bytes, damaged ones, or those of another version.
+            For other bytes, damaged bytes, or bytes of another version.
         """
         _, text = without_head(cls, data)
         with reading(cls):

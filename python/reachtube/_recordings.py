@@ -25,7 +25,7 @@ class Run:
     q, qd : array of shape (K, n)
         Positions and velocities, rad and rad/s (m and m/s for prismatic joints).
     tau : array of shape (K, n)
-        Torques, N m; what they mean is said where the run is used.
+        Torques, N m; the caller that uses the run states what they mean.
     suite
         The test suite: runs that start from one state under one input.
     motion

@@ -93,7 +93,7 @@ def of_conformance(
     }
     if isinstance(robot, Abstraction):
         if (model, order, expansion) != (1, 1, None):
-            raise SettingError("model, order and expansion are those of the abstraction")
+            raise SettingError("the abstraction has its own model, order and expansion")
     else:
         kind = whole("model", model, 1, 3)
         settings["abstraction"] = {"model": kind, "order": whole("order", order, 1, 255)}

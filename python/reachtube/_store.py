@@ -12,7 +12,7 @@ TRIES, WAIT = 6, 0.2
 
 
 def read(address: str, storage: dict[str, Any]) -> bytes | None:
-    """Return a file's content, or nothing where there is no such file.
+    """Return a file's content, or `None` if there is no such file.
 
     A store that answers slowly or with errors is asked again.
     """

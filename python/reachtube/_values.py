@@ -62,7 +62,7 @@ class Values:
         Raises
         ------
         ModelFileError
-            For other bytes, damaged ones, or those of another version.
+            For other bytes, damaged bytes, or bytes of another version.
         """
         head, rest = without_head(cls, data)
         with reading(cls):

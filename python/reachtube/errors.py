@@ -60,8 +60,8 @@ class SettingError(ReachtubeError, ValueError):
 
 
 class ModelFileError(ReachtubeError):
-    """A file or text that is not that of a model, or one of another version."""
+    """A file or text that is no model, or a model of another version."""
 
 
 class ReachtubeWarning(UserWarning):
-    """An answer that can hardly be right; the text says why, and the most likely cause."""
+    """An implausible answer; the text gives the reason and the most likely cause."""

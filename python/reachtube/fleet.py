@@ -100,7 +100,7 @@ def conform(
 ) -> Model:
     """Find the smallest sets for a fleet's recordings.
 
-    The model is that of `reachtube.conform` over the same recordings, to the last bit, whatever
+    The model equals `reachtube.conform`'s over the same recordings, to the last bit, whatever
     the number of workers and the order in which they finish.
 
     Parameters

@@ -70,12 +70,12 @@ def bag(
     marker
         A topic that marks runs: a suite's name starts a run, empty text ends it.
     repeats, rest_speed
-        Whether motions between rests are runs, and those that repeat suites; and the speed below
+        Whether motions between rests are runs, and repeated motions suites; and the speed below
         which a joint rests.
     time
         The stamps in the messages' headers, or the times at which the log received them.
     recover
-        Whether the whole parts of a damaged log are read; what is lost is warned of.
+        Whether the whole parts of a damaged log are read; lost parts produce a warning.
     suite, motion
         Suite and motion of runs that are not cut by markers or repeats.
     max_gap
@@ -86,7 +86,7 @@ def bag(
     DefectsError
         Values that are missing or not finite, and gaps.
     ReachtubeError
-        A damaged file, with the byte; a joint that is not in the log, with those that are.
+        A damaged file, with the byte; a joint that is not in the log, with the joints that are.
     """
     files = [paths] if isinstance(paths, (str, PathLike)) else list(paths)
     found, notes, lost = _reachtube.read_log(
@@ -191,7 +191,7 @@ def parquet(
         Names of the robot's joints, in its order, where the columns are ``position.NAME``,
         ``velocity.NAME`` and ``effort.NAME``, in any order.
     suite, motion
-        Those of the run.
+        Suite and motion of the run.
     """
     from pyarrow import parquet as files
 
@@ -217,7 +217,7 @@ def npz(
     joints
         Names of the robot's joints, in its order; the file must name its own then.
     suite, motion
-        Those of the run.
+        Suite and motion of the run.
     """
     with _opened(path), np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
@@ -315,7 +315,7 @@ def ros1(
     joints
         Names of the robot's joints, in its order; messages may have them in any other.
     suite, motion
-        Those of the run.
+        Suite and motion of the run.
     """
     from rosbags.highlevel import AnyReader
 

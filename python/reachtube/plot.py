@@ -31,7 +31,7 @@ def reachable_set(
     found
         What `reach` returned.
     data
-        Recordings; those of other suites, and of other runs where the set is that of one, are
+        Recordings. Other suites, and other runs if the set belongs to one run, are
         left out.
     deviation
         Whether the nominal motion is taken off.

@@ -21,7 +21,7 @@ use crate::recordings::{NativeSource, SharedSource};
 use crate::robot::NativeRobot;
 use crate::watched::{Watch, watched};
 
-/// Returns settings from the defaults and a JSON object with those that differ.
+/// Returns settings from the defaults and a JSON object with the settings that differ.
 fn settings(text: &str, joints: usize) -> Result<Settings> {
     let mut given: Map<String, Value> = serde_json::from_str(text).map_err(Failure::setting)?;
     let torque = given.remove("torque").unwrap_or_default();

@@ -16,7 +16,7 @@ pub(crate) enum Failure {
     Defects(Vec<Defect>, String),
     /// A wrong argument.
     Setting(String),
-    /// A file that is not that of a model.
+    /// A file that is no model.
     ModelFile(String),
     /// Anything else.
     Other(String),

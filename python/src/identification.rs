@@ -46,7 +46,7 @@ fn entries(
     Ok(entries)
 }
 
-/// Returns the settings of a JSON object, over those that `basis` has as TOML.
+/// Returns the settings of a JSON object, over the settings that `basis` has as TOML.
 fn settings(basis: Option<&str>, given: &str) -> Result<IdentifySettings> {
     let basis = basis.map_or(Ok(IdentifySettings::default()), |text| {
         IdentifySettings::from_toml(text, "settings")

@@ -45,7 +45,7 @@ pub(crate) fn read_run(row: &Entry, run: &reachtube::Run, options: &ReadOptions)
     as_warm(row, run.clone()).checked(Path::new(&row.1), options)
 }
 
-/// Gives a run without temperatures that of the manifest.
+/// Gives a run without temperatures the temperature in the manifest.
 fn as_warm(row: &Entry, run: reachtube::Run) -> reachtube::Run {
     let Some(temperature) = row.6.filter(|_| run.temperatures.is_empty()) else { return run };
     let temperatures = vec![temperature; run.len() * run.joints];

@@ -122,7 +122,7 @@ impl PointServer for Asked {
     }
 }
 
-/// Runs a job that may ask points. An exception of the function that asks is that of the job.
+/// Runs a job that may ask points. The job raises the exception of the function that asks.
 pub(crate) fn asking<T>(
     ask: Option<Py<PyAny>>,
     job: impl FnOnce(Option<Arc<Asked>>) -> PyResult<T>,

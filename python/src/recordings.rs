@@ -18,7 +18,7 @@ pub struct NativeRun {
     pub run: Arc<Run>,
 }
 
-/// Returns the times since the first, s, as those of a CSV file with the same numbers: differences
+/// Returns the times since the first, s, as a CSV file with the same numbers has them: differences
 /// of the shortest decimals, to the picosecond.
 fn relative(times: &[f64]) -> Result<Vec<f64>> {
     let wrong = |k: usize| {

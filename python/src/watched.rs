@@ -20,7 +20,7 @@ const POLL: Duration = Duration::from_millis(50);
 /// nothing interrupts ends by itself, and its result is dropped.
 const GRACE: Duration = Duration::from_millis(80);
 
-/// Stack of a job, bytes, as that of a main thread.
+/// Stack of a job, bytes, as large as a main thread's.
 const STACK: usize = 8 << 20;
 
 /// What a job says of itself, and whether it is still wanted.

@@ -41,7 +41,7 @@ def test_nominal_motions_may_follow_the_robot(robot: rt.Robot) -> None:
     )
     assert by_robot.to_dict()["settings"]["equations"] == "robot"
     assert rt.check(by_robot, exact)
-    # The torques are those of the robot, whose inertia is another than at q = 0.
+    # The robot itself gives the torques, and its inertia is another than at q = 0.
     assert by_robot.cost is not None and model.cost is not None
     assert by_robot.cost < 0.5 * model.cost, (by_robot.cost, model.cost)
     with pytest.raises(rt.ReachtubeError, match="need a linear model"):

@@ -29,7 +29,7 @@ def test_algorithms_agree_with_each_other(robot: rt.Robot, shape: tuple[int, ...
     by_parts = np.einsum("...ij,...j->...i", mass, qdd) + robot.coriolis(q, qd) + robot.gravity(q)
     assert np.allclose(tau, by_parts, rtol=0, atol=1e-10)
     parameters = robot.regressor(q, qd, qdd) @ robot.parameter_values
-    # This robot's gravity has parameters of its own, so that of its links is taken off.
+    # This robot's gravity has parameters of its own, so the links' gravity is taken off.
     still = robot.regressor(q, 0 * qd, 0 * qdd) @ robot.parameter_values
     assert np.abs(tau - robot.gravity(q)).max() > 1.0
     assert np.allclose(parameters - still, tau - robot.gravity(q), rtol=0, atol=1e-9)

@@ -99,7 +99,7 @@ def test_bytes_of_other_results_are_refused(values: list[Any]) -> None:
     with pytest.raises(rt.ModelFileError, match="Flowpipe, version 1, but of .*Excitation"):
         rt.Flowpipe.from_bytes(motion)
     for wrong in (b"", b"nonsense", b"[]\n", pipe.replace(b'"version": 1', b'"version": 2')):
-        with pytest.raises(rt.ModelFileError, match="not those of Flowpipe"):
+        with pytest.raises(rt.ModelFileError, match="not Flowpipe"):
             rt.Flowpipe.from_bytes(wrong)
     for damaged in (pipe[:-1], pipe[:-8], pipe + bytes(8), pipe.replace(b"upper", b"uper", 1),
                     pipe.replace(b'"values"', b'"value"')):

@@ -45,7 +45,7 @@ def faults_of(package, folder):
             if licence not in files:
                 yield f"{name}: {licence} is missing; link it: ln -s ../../{licence}"
             elif text(licence) != (ROOT / licence).read_text():
-                yield f"{name}: {licence} is not that of the repository"
+                yield f"{name}: {licence} differs from the repository's"
         if "README.md" not in files:
             yield f"{name}: README.md is missing"
             return

@@ -148,7 +148,7 @@ pub(crate) enum Error {
         /// One entry for each kind of defect.
         refused: Vec<Refusal>,
     },
-    /// The recordings' torques mean something else than those that a model was found for.
+    /// The recordings' torques mean something else than the torques that a model was found for.
     #[error(
         "--torque {given}, but the model was found with --torque {model}, and its input set covers \
          that only; give --torque {model}, or run conform on recordings with --torque {given}"

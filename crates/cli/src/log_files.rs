@@ -40,7 +40,7 @@ impl LogFiles {
         Ok(Self { options, folder, count: 0 })
     }
 
-    /// Replaces the path of a log, whole or an interval of it, by that of the same recording as
+    /// Replaces the path of a log, whole or an interval of it, by the path of the recording as
     /// CSV. Paths are relative to `folder`, and other paths stay as they are.
     pub(crate) fn convert(&mut self, entry: &mut LogEntry, folder: &Path) -> Result<()> {
         let (LogEntry::Path(path) | LogEntry::Stretch { path, .. }) = entry;
@@ -67,7 +67,7 @@ impl LogFiles {
     }
 }
 
-/// Returns whether a path is that of a log, by its ending.
+/// Returns whether a path names a log, by its ending.
 fn is_log(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "mcap" || extension == "db3")
 }

@@ -19,7 +19,7 @@ pub(crate) struct Opened {
 
 impl Opened {
     /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
-    /// judged by `notion`, or by that of the file.
+    /// judged by `notion`, or by the notion in the file.
     pub(crate) fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {
         let (model, mut setup) = Model::open(&args.model)?;
         setup.settings.notion = notion.unwrap_or(setup.settings.notion);

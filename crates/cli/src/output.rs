@@ -32,7 +32,7 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     print_json_text(&(text + "\n"))
 }
 
-/// Prints text that is JSON already. JSON escapes control characters itself, but for those from
+/// Prints text that is JSON already. JSON escapes control characters itself, except for codes from
 /// U+007F to U+009F, which terminals obey too.
 pub(crate) fn print_json_text(text: &str) -> Result<()> {
     let escaped = |c: char| match c {
@@ -71,7 +71,7 @@ pub(crate) fn wrote(path: &Path) {
     note(&format!("wrote {}", path.display()));
 }
 
-/// Prints a note on standard error. A closed standard error is ignored: nobody reads it.
+/// Prints a note on standard error. A closed standard error is ignored.
 pub(crate) fn note(text: &str) {
     if !global().quiet {
         line("note", text);

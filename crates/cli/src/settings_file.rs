@@ -1,6 +1,6 @@
 //! A settings file: TOML whose keys are the options of a command.
 //!
-//! The values become arguments in front of those on the command line, so that both are parsed,
+//! The values become arguments in front of the ones on the command line, so that both are parsed,
 //! checked and documented in one place. `identify` has settings that are no options, and reads its
 //! own file.
 

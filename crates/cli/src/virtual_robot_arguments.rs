@@ -14,7 +14,7 @@ const REMEDY: &str =
 /// How the virtual robot differs from its nominal model.
 #[derive(Debug, Args)]
 pub(crate) struct VirtualRobotArguments {
-    /// Parameters of the virtual robot, a TOML file as docs/campaign.md describes; those that it
+    /// Parameters of the virtual robot, a TOML file as docs/campaign.md describes. Parameters that it
     /// does not have keep their defaults
     #[arg(long, value_name = "FILE")]
     pub parameters: Option<PathBuf>,

@@ -29,7 +29,7 @@ from .verdict import Tally, Verdict, of_margin
 
 
 class Certificate:
-    """Judges the points of a certificate, and misses those that it does not have."""
+    """Judges the points of a certificate, and counts the points that it does not have."""
 
     def __init__(self, model, system, path, every, cases):
         self.model, self.system, self.path, self.every = model, system, path, every
@@ -141,7 +141,7 @@ class Certificate:
         return found
 
     def _take(self, sample, point, runs, by_states):
-        """Adds a point of these runs to those with the same states."""
+        """Adds a point of these runs to the points with the same states."""
         try:
             suite, file, states = point["suite"], point["run"], tuple(point["states"])
             y, held = [float(x) for x in point["y"]], point.get("held", 1)

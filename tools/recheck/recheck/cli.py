@@ -41,16 +41,16 @@ def parser():
     add = found.add_argument
     add("model", help="model file that `reachtube conform` wrote")
     add("--data", required=True, metavar="FOLDER", help="recordings with their runs.csv")
-    add("--suites", metavar="A,B", help="suites to check; by default those of the model file")
+    add("--suites", metavar="A,B", help="suites to check; by default the model file's")
     add("--any-run", action="store_true",
-        help="check the sets any_run, for which nobody knows which run it is")
+        help="check the sets any_run, which hold for every run")
     add("--inputs", metavar="FILE", help="inputs u that define the model, as CSV: file,k,u1,...")
     add("--reach", metavar="FOLDER", help="CSV files of `reachtube reach`, to be checked too")
     add("--certificate", metavar="FILE", help="certificate of `conform`, for points in the set")
     add("--every", type=int, default=1, metavar="N",
         help="check only every N-th sample of a certificate (default %(default)s)")
     add("--input-error", type=float, default=1e-12, metavar="U",
-        help="how far inputs computed here may be from those that define the model, N m "
+        help="how far inputs computed here may be from the inputs that define the model, N m "
         "(default %(default)s)")
     add("--list", type=int, default=5, metavar="N",
         help="findings to print for each suite (default %(default)s)")
@@ -130,7 +130,7 @@ def read_cases(model, inputs, arguments, notes):
         changed = [r["file"] for r in listed.get(name, []) if hashes.get(r["file"]) != r["sha256"]]
         if changed:
             notes.append(
-                f"suite {name}: {len(changed)} recordings are not those that the model file "
+                f"suite {name}: {len(changed)} recordings differ from the ones that the model file "
                 f"lists; the first is {changed[0]}"
             )
         if name not in listed and model.settings["nominal"] == "mean":
@@ -144,7 +144,7 @@ def read_cases(model, inputs, arguments, notes):
         here = [(places[file], file, *rest) for file, *rest in entries if rest[0] in listed]
         if root(here) != model.root:
             notes.append(
-                "the recordings are not those of the model file, which does not list them: the "
+                "the recordings differ from the model file's, which does not list them: the "
                 "root over their entries is another one"
             )
     return cases

@@ -48,7 +48,7 @@ class UnevenSamples:
         self.increments = arb_mat(system.states, 0)
 
     def advance(self, e, step, span):
-        """Moves the increments on by one span and appends that of the span itself."""
+        """Moves the increments on by one span and appends the span's own increment."""
         width, m = self.increments.ncols(), self.inputs
         old, new = (step.phi * self.increments).entries(), step.gamma.entries()
         rows = (

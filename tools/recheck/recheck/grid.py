@@ -1,6 +1,6 @@
 """Sample times.
 
-The definition is that of docs/method.md, section 3: times count since the first sample, to a
+The definition is in docs/method.md, section 3: times count since the first sample, to a
 picosecond. Where all of them fit k h to a picosecond, t_k is exactly k h for the double h: the
 reciprocal of a whole number of hertz, or a number of 12 significant digits. Otherwise t_k is the
 double nearest to the recorded time.

@@ -30,14 +30,14 @@ class Case:
     runs: list
     inputs: list
     start: list
-    # How far each joint's inputs may be from those that define the model, N m.
+    # How far each joint's inputs may be from the inputs that define the model, N m.
     doubt: list
     # The run where the suite's runs have nominal solutions of their own.
     own: Run | None
 
     @property
     def grid(self):
-        """The sample times: those of the longest run."""
+        """The sample times of the longest run."""
         return self.runs[0].grid
 
 
@@ -257,7 +257,7 @@ def _factors(law, j, place, temperatures):
 
 
 def _groups(recorded):
-    """Runs whose inputs and times are the beginning of those of the first in their group."""
+    """Groups runs: the first has the inputs and times of each other one, and maybe more."""
     groups = []
     for one in sorted(recorded, key=lambda one: -len(one.run.grid)):
         acting = len(one.run.grid) - 1

@@ -1,7 +1,7 @@
 """Integrals of |f| over a span, for each entry f of e^{As} C, with proved bounds.
 
 f is its Taylor polynomial of a high order, and a remainder that the norm of A bounds. Where a ball
-around f over the span excludes 0, the integral of |f| is |that of f|. Other spans are halved until
+around f over the span excludes 0, the integral of |f| is |∫ f|. Other spans are halved until
 the rest cannot matter.
 """
 

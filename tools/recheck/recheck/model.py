@@ -39,7 +39,7 @@ class Model:
     root: str | None
     sha256: str
     notes: tuple
-    # The one condition that friction is taken in, whatever that of a run is: its place in the order
+    # The one condition for friction, whatever a run's own condition is: its place in the order
     # of a suite, and temperatures. None where each run has its own.
     condition: dict | None = None
 
@@ -159,11 +159,11 @@ def _noise(value, joints):
 
 
 def _seal_notes(content, text):
-    """Returns a note where the SHA-256 in the file is not that of its content: the digest is over
+    """Returns a note if the SHA-256 in the file differs from its content's: the digest is over
     the JSON without spaces and with an empty last entry."""
     compact = re.sub(r'("(?:[^"\\]|\\.)*")|\s+', lambda match: match.group(1) or "", text)
     ending = f'"sha256":"{content["sha256"]}"}}'
     unsealed = compact.removesuffix(ending) + '"sha256":""}'
     if hashlib.sha256(unsealed.encode()).hexdigest() == content["sha256"]:
         return ()
-    return ("the SHA-256 in the model file is not that of its content: the file was changed",)
+    return ("the SHA-256 in the model file differs from its content's: the file was changed",)

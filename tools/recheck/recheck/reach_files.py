@@ -1,6 +1,6 @@
 """The CSV files of `reachtube reach`: each printed bound must be outside the exact one.
 
-Bounds at samples are compared there. Those of the tube, which hold over a whole step, are compared
+Bounds at samples are compared there. Bounds of the tube hold over a whole step and are compared
 at both ends of the step; between them nothing is checked.
 """
 
@@ -62,7 +62,7 @@ class ReachFiles:
 
 
 def read_bounds(model, folder, case):
-    """Returns the name of a case's files, and their rows: those at samples and those of the tube.
+    """Returns the name of a case's files, and their rows: at samples, and of the tube.
     """
     name = _name(case)
     path = Path(folder) / f"{name}.csv"
@@ -91,7 +91,7 @@ def _read(path, header, count):
         with open(path, encoding="utf-8", newline="") as file:
             rows = list(csv.reader(file))
         if rows[0] != header or any(len(row) != len(header) for row in rows):
-            raise BadInput(f"{path}: the columns are not those of `reachtube reach`")
+            raise BadInput(f"{path}: `reachtube reach` writes other columns")
         values = [[float(x) for x in row] for row in rows[1:]]
     except (OSError, ValueError, IndexError) as error:
         raise BadInput(f"{path}: {error}") from error

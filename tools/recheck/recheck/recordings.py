@@ -100,7 +100,7 @@ def read_run(folder, file, place, joints, until):
     header, lines = _table(path)
     names = ["t", *(f"{kind}{j}" for kind in ("q", "qd", "tau") for j in range(1, joints + 1))]
     if header[: len(names)] != names or f"q{joints + 1}" in header:
-        raise BadInput(f"{path}:1: the header is not that of {joints} joints: {','.join(names)}")
+        raise BadInput(f"{path}:1: the header for {joints} joints would be {','.join(names)}")
     if not lines:
         raise BadInput(f"{path}: there is no sample")
     times, states, torques, temperatures = [], [], [], []
@@ -113,7 +113,7 @@ def read_run(folder, file, place, joints, until):
         values = [_double(cell, place_of) for cell in cells[1 : 1 + 3 * joints]]
         times.append(float(now - first) / 1e12)
         if len(times) > 1 and times[-1] <= times[-2]:
-            raise BadInput(f"{place_of}: the time is not later than that of the line above")
+            raise BadInput(f"{place_of}: the time is not later than in the line above")
         states.append(values[: 2 * joints])
         torques.append(values[2 * joints :])
         if warm is not None:

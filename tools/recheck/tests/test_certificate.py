@@ -63,7 +63,7 @@ def generators(model, k, h):
 
 def write_certificate(folder, model, h, notion, samples, held=1):
     """Writes a certificate for the toy's recordings, with generators from the closed form. The
-    disturbance is held over so many steps, counted back from the sample."""
+    disturbance is held over `held` steps, counted back from the sample."""
     start = numpy.array(model["data"]["suites"][0]["nominal_start"])
     projections = [[0, 1, 2, 3]] if notion == "exact" else [[0, 2], [1, 3]]
     header = {"format": "reachtube-certificate", "version": 1, "notion": notion,

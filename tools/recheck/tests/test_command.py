@@ -228,4 +228,4 @@ def test_recordings_that_are_counted_are_compared_by_their_root(tmp_path, capsys
         model["data"]["root"] = root([*leaves[:-1], (3, "r3.csv", "S", last)])
         (tmp_path / "model.json").write_text(json.dumps(model))
         assert main([str(tmp_path / "model.json"), "--data", str(tmp_path / "data")]) == 0
-        assert ("are not those of the model file" in capsys.readouterr().err) == is_noted
+        assert ("differ from the model file's" in capsys.readouterr().err) == is_noted

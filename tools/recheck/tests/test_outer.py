@@ -23,7 +23,7 @@ def acceleration(x, u):
 
 
 def content():
-    """A model file whose polynomials are those of `acceleration`."""
+    """A model file with the polynomials of `acceleration`."""
     def term(coefficient, **exponents):
         return [[exponents.get(name, 0) for name in NAMES], coefficient]
 

@@ -93,7 +93,7 @@ def test_the_classes_grow_in_their_order():
 
 
 def test_a_double_root_is_integrated():
-    """q'' = u with u switching late: the kernel of the position is t, that of q' is 1."""
+    """q'' = u with u switching late: the kernel of the position is t, the kernel of q' is 1."""
     model = model_of([[0.0, 1.0], [0.0, 0.0]], [[0.0], [1.0]], "measurable", r_u=3.0)
     found = last(model, Grid((0.0, 0.5, 2.0), None))
     assert abs(found.radius[0, 0] - 6) < arb(2) ** -100

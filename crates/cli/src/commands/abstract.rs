@@ -31,7 +31,7 @@ Examples:
 
 /// Make a simple model of a robot's forward dynamics
 ///
-/// The models are those of Liu and Althoff (2018), Sec. IV-B. --box proves a bound of the model
+/// Liu and Althoff (2018), Sec. IV-B, define the models. --box proves a bound of the model
 /// error, the forward dynamics minus the model.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]

@@ -187,8 +187,8 @@ fn summary(written: &[RecordedRun], found: Option<&[Repeats]>) -> String {
 }
 
 const LEGEND: &str = "
-correlation: lowest one of a run's velocities with those of the first run; 1 for equal ones
-start: largest difference of a first position from that of the first run [rad or m]
+correlation: lowest one of a run's velocities with the first run's; 1 for equal velocities
+start: largest difference of a first position from the first run's [rad or m]
 lag: largest time by which a run lags behind the first or leads
 ";
 

@@ -30,7 +30,7 @@ Tools, what they can mean, and what they cannot:
   juliareach  affine models without a recorded input; of polynomial ones only constant inputs
   mjcf, urdf  the robot; of its friction a viscous and a Coulomb coefficient. urdf has no
               motor inertia, and one set of masses for weight and inertia
-What a tool cannot mean is an error. The first lines of each file say what the tool computes.
+Unsupported models are refused. The first lines of each file state what the tool computes.
 
 Examples:
   reachtube export --model model.json --to cora --data recordings --suites A --out cora
@@ -127,7 +127,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     }
 }
 
-/// Writes a robot, that of a model or one that is named.
+/// Writes a robot: the robot of a model, or a robot that is named.
 fn robot(
     args: &Arguments,
     files: fn(&Robot) -> Result<Vec<ExportFile>, ExportError>,

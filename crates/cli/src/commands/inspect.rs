@@ -159,7 +159,7 @@ fn temperature(joint: &JointSummary) -> String {
     joint.temperature.map_or_else(|| "-".into(), |[low, high]| format!("[{low:.1}, {high:.1}]"))
 }
 
-/// Returns a table row about a joint (from 0); the units are those of q, q̇ and τ.
+/// Returns a table row about a joint (from 0). `units` has the units of q, q̇ and τ.
 fn joint_row(index: usize, joint: &JointSummary, units: &[ColumnUnit; 3]) -> Vec<String> {
     let [q, qd, tau] = units;
     vec![

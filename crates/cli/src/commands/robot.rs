@@ -140,7 +140,7 @@ fn dynamics(robot: &Robot, q: &[f64], mass: &DMatrix<f64>) -> String {
     )
 }
 
-/// Returns a table row about a joint; the units are those of limits, speed and motor inertia.
+/// Returns a table row about a joint. `units` has the units of limits, speed and motor inertia.
 fn joint_row(joint: &Joint, units: &[(&ColumnUnit, usize); 3]) -> Vec<String> {
     let with_unit = |k: usize, text: String| units[k].0.cell(units[k].1, text);
     let viscous = &joint.friction.viscous;

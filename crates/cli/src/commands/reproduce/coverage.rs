@@ -48,8 +48,8 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 fn summary(coverage: &Coverage) -> String {
     let Coverage { options, motions, held_out, calibrating, .. } = coverage;
     format!(
-        "{} campaigns of {motions} random motions (seed {}); the hold-out bound is that of sets \
-         for {} of them, by the other {held_out}; the calibration bounds are those of sets for {}, \
+        "{} campaigns of {motions} random motions (seed {}); the hold-out bound is for sets found \
+         on {} of them, by the other {held_out}; the calibration bounds are for sets found on {}, \
          scaled to hold the other {calibrating}; the truth is the part of {} further motions that \
          leave the sets\n\n{}",
         options.campaigns,

@@ -21,7 +21,7 @@ Example:
   reachtube campaign --out campaign
   reachtube reproduce fig4 --data campaign --out fig4.svg
 
-The sets are those of `reproduce table2`: smallest for all suites of the folder, in the hull. fig5
+The figures show the sets of `reproduce table2`: smallest for all suites, in the hull. fig5
 shows the fits of `reproduce table3`.";
 
 /// What a figure is drawn of.
