@@ -141,7 +141,7 @@ def of_robots(
         if len(counts) > 1:
             raise SettingError(
                 f"{address}: the recordings are of several robots: {listed}. Sets are of one "
-                "robot; choose it with robots=NAME, or the robots that share them with a list of names"
+                "robot; choose it with robots=NAME, or give a list of the robots that share them"
             )
         return list(rows)
     chosen = [robots] if isinstance(robots, str) else list(robots)

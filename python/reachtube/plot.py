@@ -31,8 +31,7 @@ def reachable_set(
     found
         What `reach` returned.
     data
-        Recordings. Other suites, and other runs if the set belongs to one run, are
-        left out.
+        Recordings. Other suites, and other runs if the set belongs to one run, are left out.
     deviation
         Whether the nominal motion is taken off.
     figure
