@@ -77,7 +77,12 @@ def at_a_corner(model: rt.Model, manifest: Path) -> Path:
     names = ["t", *(f"{part}{j + 1}" for part in ("q", "qd", "tau") for j in range(n))]
     head = ",".join(names)
     np.savetxt(
-        manifest.parent / "corner.csv", numbers, fmt="%.17g", delimiter=",", header=head, comments=""
+        manifest.parent / "corner.csv",
+        numbers,
+        fmt="%.17g",
+        delimiter=",",
+        header=head,
+        comments="",
     )
     altered = [row._replace(file="corner.csv"), other]
     fleet.write_manifest(manifest.parent / "corner.parquet", altered)

@@ -195,8 +195,8 @@ def size(crate):
     """Returns name, lines, public items, exported names and the median length of a function."""
     texts = [file.read_text() for file in sorted((crate / "src").rglob("*.rs"))]
     sources = read(crate / "src")
-    exported = reexports((crate / "src/lib.rs").read_text(), ()) if (crate / "src/lib.rs").exists() \
-        else {}
+    library = crate / "src/lib.rs"
+    exported = reexports(library.read_text(), ()) if library.exists() else {}
     lengths = [length for text in sources.values() for _, _, length in functions(text)]
     items = sum(len(ITEM.findall(text)) for text in texts)
     return (crate.name, sum(text.count("\n") for text in texts), items, len(exported),
