@@ -1,17 +1,16 @@
 //! Sets, verdicts and reachable sets.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use pyo3::prelude::*;
 use reachtube::abstraction::ExpansionPoint;
 use reachtube::conform::{
-    self as product, Check, FitSettings, Group, Hulls, Keep, Model, Problem, Settings, Setup,
+    Answer, Basis, CheckJob, FitSettings, Group, Job, Keep, Model, Opened, Settings, Setup,
     SuiteReach, Tolerance,
 };
 use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
 use reachtube::recordings::GapLimit;
-use reachtube::{Progress, Robot, Torque, write};
+use reachtube::{Progress, Torque, write};
 use serde_json::{Map, Value};
 
 use crate::abstraction::NativeAbstraction;
@@ -19,16 +18,18 @@ use crate::arrays::{Output, array};
 use crate::failure::{Failure, Result};
 use crate::recordings::{NativeSource, SharedSource};
 use crate::robot::NativeRobot;
-use crate::watched::{Watch, watched};
+use crate::watched::watched;
 
-/// Returns settings from the defaults and a JSON object with the settings that differ.
-fn settings(text: &str, joints: usize) -> Result<Settings> {
+/// Returns settings from the defaults and a JSON object with the settings that differ, and the
+/// tolerance of explanations if it is given.
+fn settings(text: &str, joints: usize) -> Result<(Settings, Option<Option<Tolerance>>)> {
     let mut given: Map<String, Value> = serde_json::from_str(text).map_err(Failure::setting)?;
     let torque = given.remove("torque").unwrap_or_default();
     let torque: Torque = serde_json::from_value(torque)
         .map_err(|error| Failure::Setting(format!("torque: {error}")))?;
     let expansion = take::<Vec<f64>>(&mut given, "expansion")?.unwrap_or_default();
     let max_gap = take::<f64>(&mut given, "max_gap")?;
+    let chooses_explain = given.contains_key("explain");
     let defaults = Settings {
         expansion_point: ExpansionPoint::from_values(&expansion, joints)?,
         ..Settings::new(torque, joints)
@@ -43,7 +44,8 @@ fn settings(text: &str, joints: usize) -> Result<Settings> {
     let settings: Settings = serde_json::from_value(all).map_err(Failure::setting)?;
     let settings = Settings { gap_limit: gap_limit(max_gap), ..settings };
     settings.validate(joints)?;
-    Ok(settings)
+    let explain = chooses_explain.then_some(settings.explain);
+    Ok((settings, explain))
 }
 
 fn take<T: serde::de::DeserializeOwned>(
@@ -59,45 +61,22 @@ fn gap_limit(max_gap: Option<f64>) -> GapLimit {
     max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
 }
 
-/// What a nominal model is made of.
-pub(crate) enum Basis {
-    Robot(Arc<Robot>),
-    Abstraction(Box<reachtube::PolynomialModel>),
-}
-
-impl Basis {
-    pub(crate) fn new(
-        robot: Option<PyRef<'_, NativeRobot>>,
-        abstraction: Option<PyRef<'_, NativeAbstraction>>,
-    ) -> Result<Self> {
-        match (robot, abstraction) {
-            (_, Some(model)) => Ok(Self::Abstraction(Box::new((*model.model).clone()))),
-            (Some(robot), None) => Ok(Self::Robot(Arc::clone(&robot.robot))),
-            (None, None) => Err(Failure::Setting("give a robot".into())),
-        }
+/// Returns what a nominal model is made of.
+pub(crate) fn basis(
+    robot: Option<PyRef<'_, NativeRobot>>,
+    abstraction: Option<PyRef<'_, NativeAbstraction>>,
+) -> Result<Basis> {
+    match (robot, abstraction) {
+        (_, Some(model)) => Ok((*model.model).clone().into()),
+        (Some(robot), None) => Ok((*robot.robot).clone().into()),
+        (None, None) => Err(Failure::Setting("give a robot".into())),
     }
 }
 
 /// Returns the setup of a conformance, whose settings are the defaults but for those given.
 pub(crate) fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
-    let mut setup = match basis {
-        Basis::Robot(robot) => {
-            robot.check_physical()?;
-            let settings = settings(settings_text, robot.joint_count())?;
-            Setup::new((*robot).clone(), settings)?
-        }
-        Basis::Abstraction(model) => {
-            let settings = settings(settings_text, model.joints())?;
-            let setup = Setup::with_abstraction(*model, settings)?;
-            setup.robot.check_physical()?;
-            setup
-        }
-    };
-    // As the command does: the verdict on an outer enclosure needs explanations more.
-    if setup.dynamics.linear_system().is_none() && !settings_text.contains("\"explain\"") {
-        setup.settings.explain = Some(Tolerance::default());
-    }
-    Ok(setup)
+    let (settings, explain) = settings(settings_text, basis.joints())?;
+    Ok(basis.setup(settings, explain)?)
 }
 
 /// Finds the smallest sets, and returns the model file's text and notes about the recordings.
@@ -118,16 +97,26 @@ pub(crate) fn conform(
     resume: Option<PathBuf>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(String, Vec<String>)> {
-    let basis = Basis::new(robot, abstraction).map_err(|failure| failure.raised(py))?;
+    let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
     let source = source.source.clone();
     watched(py, progress.as_ref(), move |watch| {
-        let fit = fit_settings(&fit, pull)?;
-        let setup = setup(basis, &settings)?;
-        let by_run = fit.as_ref().is_some_and(|fit| fit.groups.contains(&Group::WarmUp));
-        let keep = if by_run { Keep::All } else { Keep::Needed };
-        let problem = Problem::read(setup, Box::new(source), &suites, keep, watch)?;
-        smallest_sets(problem, fit.as_ref(), watch, resume.as_deref())
+        let (settings, explain) = self::settings(&settings, basis.joints())?;
+        let torque = settings.torque;
+        let mut job = Job::new(basis, source, torque)
+            .settings(settings)
+            .suites(suites)
+            .fit(fit_settings(&fit, pull)?)
+            .resume(resume);
+        if let Some(tolerance) = explain {
+            job = job.explain(tolerance);
+        }
+        Ok(told(&job.run(watch)?))
     })
+}
+
+/// Returns the model file's text, and notes about the recordings.
+pub(crate) fn told(answer: &Answer) -> (String, Vec<String>) {
+    (answer.model.to_json(), answer.problem.recordings().notes.clone())
 }
 
 /// Returns what is to be fitted; nothing without any group.
@@ -143,39 +132,10 @@ pub(crate) fn fit_settings(groups: &[String], pull: Option<f64>) -> Result<Optio
     }
 }
 
-/// Finds the smallest sets, of a fitted nominal model where `fit` is given, and returns the model
-/// file's text and notes about the recordings.
-pub(crate) fn smallest_sets(
-    mut problem: Problem,
-    fit: Option<&FitSettings>,
-    watch: &Watch,
-    resume: Option<&Path>,
-) -> Result<(String, Vec<String>)> {
-    let mut record = None;
-    if let Some(settings) = fit {
-        let fitted = product::fit(&problem, settings, watch)?;
-        (problem, record) = (fitted.problem, Some(fitted.record));
-    }
-    let found = product::conform(&problem, watch, resume)?;
-    let model = Model::new(&problem, &found);
-    let model = match record {
-        Some(record) => model.with_fit(record),
-        None => model,
-    };
-    Ok((model.to_json(), problem.recordings().notes.clone()))
-}
-
 /// Checks the text of a model file; errors name it `origin`.
 #[pyfunction]
 pub(crate) fn check_model(py: Python<'_>, text: String, origin: String) -> PyResult<()> {
     watched(py, None, move |_| Ok(Model::parse(&text, Path::new(&origin)).map(|_| ())?))
-}
-
-/// A model, and recordings read for it.
-struct Opened {
-    model: Model,
-    problem: Problem,
-    hulls: Hulls,
 }
 
 /// Sets what differs from a model's settings.
@@ -197,23 +157,16 @@ struct Wanted {
 
 impl Wanted {
     fn open(self, watch: &dyn Progress) -> Result<Opened> {
-        let (model, mut setup) = Model::parse(&self.model, Path::new("model"))?;
-        let given: Map<String, Value> =
+        let (model, setup) = Model::parse(&self.model, Path::new("model"))?;
+        let mut given: Map<String, Value> =
             serde_json::from_str(&self.settings).map_err(Failure::setting)?;
-        differing(&mut setup.settings, given)?;
-        let problem = Problem::read(setup, Box::new(self.source), &self.suites, self.keep, watch)?;
-        let hulls = Hulls::new(&problem, model.sets())?;
-        Ok(Opened { model, problem, hulls })
-    }
-}
-
-impl Opened {
-    fn check(&self) -> Result<Check> {
-        Ok(product::check(&self.model, &self.problem, &self.hulls)?)
-    }
-
-    fn reach(&self) -> Result<Vec<SuiteReach>> {
-        Ok(product::reach(&self.problem, &self.hulls)?)
+        let job = CheckJob::new(model, setup, self.source)
+            .suites(self.suites)
+            .notion(take(&mut given, "notion")?)
+            .until(take(&mut given, "until")?)
+            .gap_limit(gap_limit(take(&mut given, "max_gap")?))
+            .keep(self.keep);
+        Ok(job.open(watch)?)
     }
 }
 
@@ -254,7 +207,7 @@ pub(crate) fn reach<'py>(
 ) -> PyResult<Vec<NativeReach<'py>>> {
     let source = source.source.clone();
     let wanted = Wanted { model, source, suites, settings, keep: Keep::Needed };
-    let found = watched(py, progress.as_ref(), move |watch| wanted.open(watch)?.reach())?;
+    let found = watched(py, progress.as_ref(), move |watch| Ok(wanted.open(watch)?.reach()?))?;
     Ok(found.into_iter().map(|reach| arrays_of(py, reach)).collect())
 }
 

@@ -6,13 +6,13 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use reachtube::conform::{
-    self as product, FleetProblem, Fold, Hulls, Model, Notion, OnDefect, Problem, Setup,
+    self as product, Answer, FleetProblem, Fold, Hulls, Model, Notion, OnDefect, Problem, Setup,
 };
 use reachtube::recordings::{Defect, DefectKind};
 use serde_json::{Map, Value};
 
 use crate::abstraction::NativeAbstraction;
-use crate::conformance::{Basis, differing, fit_settings, setup, smallest_sets};
+use crate::conformance::{basis, differing, fit_settings, setup, told};
 use crate::failure::{Failure, Result};
 use crate::manifest::{Entry, entry, read_csv, read_run};
 use crate::points::{Asked, NativeFleetProblem, asking};
@@ -50,7 +50,7 @@ impl NativeFleet {
         abstraction: Option<PyRef<'_, NativeAbstraction>>,
         settings: String,
     ) -> PyResult<Self> {
-        let basis = Basis::new(robot, abstraction).map_err(|failure| failure.raised(py))?;
+        let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
         let setup = watched(py, None, move |_| {
             let mut setup = setup(basis, &settings)?;
             // No single recording is there for it.
@@ -152,7 +152,8 @@ impl NativeFleet {
         asking(ask, |server| {
             watched(py, progress.as_ref(), move |watch| {
                 let problem = problem(&setup, &fold, report, server)?;
-                smallest_sets(problem, fit_settings(&fit, pull)?.as_ref(), watch, None)
+                let fit = fit_settings(&fit, pull)?;
+                Ok(told(&Answer::new(problem, fit.as_ref(), None, watch)?))
             })
         })
     }

@@ -1,7 +1,9 @@
 //! A model and the recordings it is compared with.
 
 use reachtube::Model;
-use reachtube::conform::{Check, Hulls, Keep, Notion, Problem, Setup, SuiteReach, check, reach};
+use reachtube::conform::{
+    self, Check, CheckJob, Hulls, Keep, Notion, Problem, Setup, SuiteReach, check, reach,
+};
 use reachtube::export::ExportCase;
 use reachtube::recordings::DataSet;
 
@@ -21,19 +23,19 @@ impl Opened {
     /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
     /// judged by `notion`, or by the notion in the file.
     pub(crate) fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {
-        let (model, mut setup) = Model::open(&args.model)?;
-        setup.settings.notion = notion.unwrap_or(setup.settings.notion);
-        Self::with(model, setup, &args.data, keep)
+        let (model, setup) = Model::open(&args.model)?;
+        Self::with(model, setup, &args.data, notion, keep)
     }
 
     /// Reads the recordings and computes the reachable sets of a model in memory.
     pub(crate) fn with(
         model: Model,
-        mut setup: Setup,
+        setup: Setup,
         args: &DataArguments,
+        notion: Option<Notion>,
         keep: Keep,
     ) -> Result<Self> {
-        let settings = &mut setup.settings;
+        let settings = &setup.settings;
         if let (None, Some(until)) = (args.until, settings.until) {
             output::note(&format!(
                 "samples later than {until} s after the first are not used, as when the sets were \
@@ -45,12 +47,14 @@ impl Opened {
             let (given, model) = (name(args.torque), name(settings.torque));
             return Err(Error::OtherTorque { given, model });
         }
-        settings.until = args.until.or(settings.until);
-        settings.gap_limit = gap_limit(args.max_gap);
-        let source = Box::new(DataSet::open(&args.data)?);
+        let job = CheckJob::new(model, setup, DataSet::open(&args.data)?)
+            .suites(&args.suites)
+            .notion(notion)
+            .until(args.until)
+            .gap_limit(gap_limit(args.max_gap))
+            .keep(keep);
         let bar = Progress::new();
-        let problem = Problem::read(setup, source, &args.suites, keep, &bar)?;
-        let hulls = Hulls::new(&problem, model.sets())?;
+        let conform::Opened { model, problem, hulls } = job.open(&bar)?;
         Ok(Self { model, problem, hulls })
     }
 

@@ -6,8 +6,10 @@
 //! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
 //! [`explain()`] searches for the motion of the model closest to each run.
 
+mod answer;
 mod any_run;
 mod check;
+mod check_job;
 mod conformance;
 mod data;
 mod deviation;
@@ -19,6 +21,7 @@ mod found;
 mod grids;
 mod growth;
 mod hulls;
+mod job;
 mod linear;
 mod model;
 mod next_motion;
@@ -36,8 +39,10 @@ mod smallest_sets;
 mod verdict;
 mod weights;
 
+pub use answer::Answer;
 pub use any_run::AnyRun;
 pub use check::{Check, check};
+pub use check_job::{CheckJob, Opened};
 pub use conformance::{Conformance, conform};
 pub use data::case::Case;
 pub use data::condition::Condition;
@@ -73,6 +78,7 @@ pub use found::SearchSummary;
 pub use grids::{Grid, Grids};
 pub use growth::Growth;
 pub use hulls::{Enclosure, HullKind, Hulls, Lost};
+pub use job::{Basis, Job};
 pub use linear::block::Block;
 pub use linear::program::{Program, Solution};
 pub use model::{

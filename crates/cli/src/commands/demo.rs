@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use reachtube::Model;
 use reachtube::conform::{
-    Calibration, Check, Conformance, FitSettings, Fitted, Group, Keep, Problem, Settings, Setup,
-    conform, fit,
+    Answer, Calibration, Check, Conformance, FitSettings, Group, Job, Keep, Settings, Setup,
+    conform,
 };
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::number::{at_least, four_decimals};
 use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};
-use reachtube::{Model, write};
 use reachtube_robot::Robot;
 use serde_json::json;
 
@@ -77,22 +77,23 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         calibrate: recorded.calibration.clone(),
         ..Settings::new(Torque::Compensated, robot.joint_count())
     };
-    let setup = Setup::new(robot, settings)?;
     let bar = Progress::new();
-    let source = Box::new(DataSet::open(&folder)?);
-    let nominal = Problem::read(setup, source, &recorded.training, Keep::All, &bar)?;
+    let nominal = Job::new(robot, DataSet::open(&folder)?, Torque::Compensated)
+        .settings(settings)
+        .suites(&recorded.training)
+        .keep_runs(true)
+        .read(&bar)?;
     let before = conform(&nominal, &bar, None)?;
     // The same with a model that is fitted for small sets.
-    let settings = FitSettings { groups: GROUPS.to_vec(), pull: Some(PULL) };
-    let Fitted { problem, record } = fit(&nominal, &settings, &bar)?;
-    let found = conform(&problem, &bar, None)?;
+    let fit = FitSettings { groups: GROUPS.to_vec(), pull: Some(PULL) };
+    let answer = Answer::new(nominal, Some(&fit), None, &bar)?;
     drop(bar);
-    let model = Model::new(&problem, &found).with_fit(record);
-    write::atomically(&path, |out| out.write_all(model.to_json().as_bytes()))?;
+    answer.model.save(&path)?;
     output::wrote(&path);
-    let page = conform_command::report(&problem, &model, &found, &pages[0])?;
+    let page = conform_command::report(&answer, &pages[0])?;
     output::wrote(&page);
     // Try them on the motions held out.
+    let Answer { model, problem, .. } = answer;
     let setup = problem.setup().clone();
     let (model, held_out) = check_held_out(model, setup, &folder, &recorded.check, &pages[1])?;
     if json {
@@ -138,7 +139,7 @@ fn check_held_out(
         until: None,
         max_gap: None,
     };
-    let opened = Opened::with(model, setup, &args, Keep::All)?;
+    let opened = Opened::with(model, setup, &args, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
     let sources = Sources { model, problem, reach: &reach, check: &check };

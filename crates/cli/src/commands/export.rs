@@ -176,7 +176,7 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
         until: args.until,
         max_gap: args.max_gap,
     };
-    let opened = Opened::with(model, setup, &data, Keep::Needed)?;
+    let opened = Opened::with(model, setup, &data, None, Keep::Needed)?;
     output::notes(&opened.problem.recordings().notes);
     let cases = opened.export_cases()?;
     let names = file_names::of_cases(&cases);

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use nalgebra::DMatrix;
 use reachtube_abstraction::{Records, TermRecord};
-use reachtube_files::json;
+use reachtube_files::{json, write};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_robot::RobotDescription;
 use serde::{Deserialize, Serialize};
@@ -255,6 +255,26 @@ impl Model {
         })?;
         let setup = model.check_sizes().and_then(|()| model.check_parts()).map_err(wrong)?;
         Ok((model, setup))
+    }
+
+    /// Returns what a problem with other recordings needs of the model, as [`open`](Self::open).
+    ///
+    /// # Errors
+    ///
+    /// [`Error::ModelFile`] for a model whose parts contradict each other.
+    pub fn setup(&self) -> Result<Setup> {
+        let wrong = |problem| Error::ModelFile { path: "the model".into(), problem };
+        self.check_parts().map_err(wrong)
+    }
+
+    /// Writes the model file. A file that exists is replaced.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::File`] where the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let text = self.to_json();
+        Ok(write::atomically(path.as_ref(), |out| out.write_all(text.as_bytes()))?)
     }
 
     /// Returns the file's text: JSON, ending with a newline.

@@ -1,51 +1,35 @@
 //! The settings of `conform` from its arguments.
 
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
-use reachtube::conform::{Noise, Settings, Setup, Tolerance, Weights};
+use reachtube::conform::{Basis, Noise, Settings, Tolerance, Weights};
 
 use super::arguments::Arguments;
 use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
 
-/// Returns the robot, its model and the settings; from the model file that `--abstraction` names if
-/// there is one.
-pub(super) fn setup(args: &Arguments) -> Result<Setup> {
-    let mut setup = match &args.abstraction {
-        None => {
-            let robot = args.lock.load(args.robot.as_deref().unwrap_or_default())?;
-            robot.check_physical()?;
-            let settings = settings(args, robot.joint_count())?;
-            Setup::new(robot, settings)?
-        }
-        Some(path) => {
-            let model = PolynomialModel::load(path)?;
-            let settings = settings(args, model.joints())?;
-            let setup = Setup::with_abstraction(model, settings)?;
-            setup.robot.check_physical()?;
-            setup
-        }
-    };
-    setup.settings.explain = explain(args, &setup)?;
-    Ok(setup)
+/// Returns the robot, or the model in the file that `--abstraction` names.
+pub(super) fn basis(args: &Arguments) -> Result<Basis> {
+    Ok(match &args.abstraction {
+        None => args.lock.load(args.robot.as_deref().unwrap_or_default())?.into(),
+        Some(path) => PolynomialModel::load(path)?.into(),
+    })
 }
 
-/// Returns the tolerance of `--explain`. Its default searches for explanations only for nonlinear
-/// models: the verdict on an outer enclosure needs them more, and their cost is small beside the
-/// search for the sets.
-fn explain(args: &Arguments, setup: &Setup) -> Result<Option<Tolerance>> {
-    match args.explain.as_deref() {
-        Some("none") => Ok(None),
+/// Returns the tolerance of `--explain`, where it is given.
+pub(super) fn explain(args: &Arguments) -> Result<Option<Option<Tolerance>>> {
+    Ok(match args.explain.as_deref() {
+        Some("none") => Some(None),
         Some(list) => {
             let wrong = || Error::ExplainTolerance { given: list.into() };
             let (position, velocity) = list.split_once(',').ok_or_else(wrong)?;
             let parse = |text: &str| text.trim().parse().map_err(|_| wrong());
-            Ok(Some(Tolerance { position: parse(position)?, velocity: parse(velocity)? }))
+            Some(Some(Tolerance { position: parse(position)?, velocity: parse(velocity)? }))
         }
-        None => Ok(setup.dynamics.linear_system().is_none().then(Tolerance::default)),
-    }
+        None => None,
+    })
 }
 
-fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
+pub(super) fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
     let settings = Settings {
         abstraction: Abstraction { model: args.model, order: args.order },
         expansion_point: ExpansionPoint::from_values(&args.expansion, joints)?,

@@ -1,0 +1,106 @@
+//! The answer of a conformance.
+
+use std::path::Path;
+
+use crate::check::Check;
+use crate::conformance::{Conformance, conform};
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::fit::fit::fit;
+use crate::fit::group::FitSettings;
+use crate::model::file::Model;
+use crate::notion::certificate::Certificate;
+use crate::progress::Progress;
+use crate::reach::{SuiteReach, reach};
+use crate::result::finding::Finding;
+use crate::result::report::Report;
+
+/// The answer of a [`Job`](crate::Job): a model, the recordings it was made from, and all that was
+/// found.
+#[derive(Debug)]
+pub struct Answer {
+    /// The model with its sets.
+    pub model: Model,
+    /// The recordings.
+    pub problem: Problem,
+    /// What was found for them.
+    pub found: Conformance,
+}
+
+impl Answer {
+    /// Fits the nominal model of a problem if `fit` asks for it, finds the smallest sets and proves
+    /// them; `resume` is the file of a search that is continued.
+    ///
+    /// # Errors
+    ///
+    /// As [`fit`](fn@crate::fit) and [`conform`](crate::conform).
+    pub fn new(
+        problem: Problem,
+        fit: Option<&FitSettings>,
+        resume: Option<&Path>,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let (problem, record) = match fit {
+            None => (problem, None),
+            Some(settings) => {
+                let fitted = self::fit(&problem, settings, progress)?;
+                (fitted.problem, Some(fitted.record))
+            }
+        };
+        let found = conform(&problem, progress, resume)?;
+        let model = Model::new(&problem, &found);
+        let model = match record {
+            Some(record) => model.with_fit(record),
+            None => model,
+        };
+        Ok(Self { model, problem, found })
+    }
+
+    /// Returns whether the sets were proved to enclose every recording.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.model.verified
+    }
+
+    /// Returns what the answer says, statement by statement: the verdict first, notes on the
+    /// recordings last.
+    #[must_use]
+    pub fn findings(&self) -> Vec<Finding> {
+        let notes = self.problem.recordings().notes.iter();
+        let mut findings = self.model.findings();
+        findings.extend(notes.map(|note| Finding::recordings(note)));
+        findings
+    }
+
+    /// Returns the answer for people.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        self.model.report()
+    }
+
+    /// Returns what another program needs to prove that every recorded point lies in the reachable
+    /// set.
+    ///
+    /// # Errors
+    ///
+    /// As [`Certificate::new`].
+    pub fn certificate(&self) -> Result<Certificate> {
+        Certificate::new(&self.problem, &self.model)
+    }
+
+    /// Returns the verdict as a check of the model on its own recordings, without computing it
+    /// again.
+    #[must_use]
+    pub fn check(&self) -> Check {
+        Check::new(&self.model, &self.problem, self.found.verdict.clone())
+    }
+
+    /// Returns the reachable set of each suite, at samples and between them.
+    ///
+    /// # Errors
+    ///
+    /// As [`reach()`](crate::reach()).
+    pub fn reach(&self) -> Result<Vec<SuiteReach>> {
+        reach(&self.problem, &self.found.hulls)
+    }
+}
