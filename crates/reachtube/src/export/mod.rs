@@ -34,6 +34,7 @@ mod case;
 mod cora;
 mod draws;
 pub(crate) mod error;
+mod file;
 mod flowstar;
 mod hylaa;
 mod juliareach;
@@ -43,55 +44,14 @@ mod spaceex;
 mod system;
 mod tables;
 mod text;
-
-use std::fmt;
-
-use serde::{Deserialize, Serialize};
+mod tool;
 
 pub use case::{ExportCase, InitialState, bounds};
 pub use error::ExportError;
+pub use file::ExportFile;
 pub use meaning::Meaning;
 pub use system::{Factor, Polynomial, System, Term};
-
-/// A tool that computes reachable sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Tool {
-    /// CORA, in MATLAB.
-    Cora,
-    /// SpaceEx.
-    SpaceEx,
-    /// Flow* 2.1.
-    FlowStar,
-    /// HyLAA 2, in Python.
-    HyLaa,
-    /// XSpeed, which reads SpaceEx files with one location.
-    XSpeed,
-    /// ReachabilityAnalysis.jl, in Julia.
-    JuliaReach,
-}
-
-/// How the recorded input enters an exported model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum InputForm {
-    /// The recorded input, held from sample to sample, plus U.
-    Recorded,
-    /// Only the deviations from the nominal motion, for affine models: no input but U. The tool's
-    /// set plus the nominal motion is the reachable set.
-    Deviation,
-    /// Any input that stays in the box of all recorded inputs plus U.
-    Range,
-}
-
-/// A text file of an export.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ExportFile {
-    /// Its name in the folder of the case.
-    pub name: String,
-    /// Its text.
-    pub text: String,
-}
+pub use tool::{InputForm, Tool};
 
 impl Tool {
     /// Returns the form of the input that [`files`] takes without a wish: the tightest that the
@@ -161,33 +121,4 @@ pub fn files(
     };
     files.extend(tables::files(case));
     Ok(files)
-}
-
-impl fmt::Display for Tool {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Cora => "CORA",
-            Self::SpaceEx => "SpaceEx",
-            Self::FlowStar => "Flow*",
-            Self::HyLaa => "HyLAA",
-            Self::XSpeed => "XSpeed",
-            Self::JuliaReach => "JuliaReach",
-        })
-    }
-}
-
-impl fmt::Display for InputForm {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Recorded => "recorded",
-            Self::Deviation => "deviation",
-            Self::Range => "range",
-        })
-    }
-}
-
-impl ExportFile {
-    fn new(name: &str, text: String) -> Self {
-        Self { name: name.into(), text }
-    }
 }

@@ -6,8 +6,8 @@ use nalgebra::{Rotation3, UnitQuaternion};
 use reachtube_files::{MARK, TOOL};
 use reachtube_robot::{JointKind, LinkInertia, Placement, Robot};
 
+use super::attributes::{LEFT_OUT, attribute, friction};
 use super::bodies::{Body, bodies};
-use super::{LEFT_OUT, attribute, friction};
 use crate::export::ExportError;
 use crate::export::text::{comment, harmless, number, numbers};
 

@@ -5,27 +5,24 @@
 //! is all that their formats express. Links that cannot exist, as those of base parameters, are
 //! replaced by bodies with the same torques, or refused where none were found.
 
+mod attributes;
 mod bodies;
 mod mjcf;
 mod urdf;
 
 use std::fmt::Write;
 
-use reachtube_robot::{Parameter, ParameterKind, Robot};
+use reachtube_robot::Robot;
 
 pub use mjcf::mjcf;
 pub use urdf::{UrdfFiles, urdf};
 
-use super::text::{harmless, numbers};
+use super::text::numbers;
 use super::{ExportError, ExportFile};
 use crate::export::draws::Draws;
 
 /// Number of states at which [`check_torques`] has torques.
 const CHECK_STATES: usize = 1000;
-
-/// What the files leave out.
-const LEFT_OUT: &str = "Friction is the viscous coefficient v1 and one Coulomb magnitude at no \
-load; v2, v3, the dependence on the load and the Stribeck effect are left out.";
 
 /// Returns `robot.xml` for MuJoCo and `check_torques.csv`.
 ///
@@ -70,16 +67,4 @@ pub fn check_torques(robot: &Robot) -> String {
         let _ = writeln!(text, "{}", numbers(row, ","));
     }
     text
-}
-
-/// Returns the viscous coefficient and the Coulomb magnitude of joint `j`.
-fn friction(robot: &Robot, j: usize) -> [f64; 2] {
-    let kinds = [ParameterKind::Viscous1, ParameterKind::Coulomb];
-    let values = robot.parameter_values(&kinds.map(|kind| Parameter { joint: j, kind }));
-    [values[0].max(0.0), values[1].max(0.0)]
-}
-
-/// Returns a name as an XML attribute, without quotes and control characters.
-fn attribute(name: &str) -> String {
-    harmless(name).replace('&', "&amp;").replace('<', "&lt;")
 }

@@ -5,8 +5,8 @@ use std::fmt::Write;
 use reachtube_files::{MARK, TOOL};
 use reachtube_robot::{JointKind, Placement, Robot, Urdf, UrdfOptions};
 
+use super::attributes::{LEFT_OUT, attribute, friction};
 use super::bodies::{Body, bodies};
-use super::{LEFT_OUT, attribute, friction};
 use crate::export::ExportError;
 use crate::export::text::{comment, harmless, number, numbers};
 

@@ -1,0 +1,65 @@
+"""Tests of the check on small crates that are written for them."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import check
+import rust
+
+
+def modules(files):
+    """Returns the modules of a crate with these files."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files.items():
+            file = Path(folder, "src", name)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+        return rust.crate(Path(folder))
+
+
+def names_in_circles(files):
+    return [sorted(file.name for file in circle) for circle, _ in check.circles(modules(files))]
+
+
+class Circles(unittest.TestCase):
+    def test_a_circle_through_a_group_and_a_name_exported_again(self):
+        files = {
+            "lib.rs": "mod a; mod b;",
+            "a.rs": "use crate::{\n    b::{deep::{D, E}},\n};\npub struct A;",
+            "b/mod.rs": "mod deep; mod user; pub use user::U;",
+            "b/deep.rs": "use super::U; pub struct D; pub struct E;",
+            "b/user.rs": "fn f() { crate::a::A; } pub struct U;",
+        }
+        self.assertEqual(names_in_circles(files), [["a.rs", "deep.rs", "user.rs"]])
+
+    def test_a_parent_that_calls_its_child(self):
+        files = {
+            "lib.rs": "mod a;",
+            "a/mod.rs": "mod b; pub struct A; fn f() { b::g() }",
+            "a/b.rs": "use super::A; pub fn g() {}",
+        }
+        (circle, steps), = check.circles(modules(files))
+        self.assertEqual(len(circle), 2)
+        self.assertEqual(sorted((one.name, line) for one, line, _ in steps),
+                         [("b.rs", 1), ("mod.rs", 1)])
+
+    def test_tests_comments_and_strings_import_nothing(self):
+        files = {
+            "lib.rs": "mod a; mod b;",
+            "a.rs": "use crate::b::B;\npub struct A;",
+            "b.rs": 'pub struct B; // crate::a::A\nconst C: &str = "crate::a::A";\n'
+                    "#[cfg(test)]\nmod tests { use crate::a::A; }",
+        }
+        self.assertEqual(names_in_circles(files), [])
+
+
+class Functions(unittest.TestCase):
+    def test_lengths_count_from_fn_to_the_closing_brace(self):
+        text = rust.code("trait T { fn a(); }\nfn b<'a>(c: char) -> [u8; 2]\nwhere\n"
+                         "    T: 'a,\n{\n    let d = '}';\n    c\n}\n")
+        self.assertEqual(list(rust.functions(text)), [("b", 2, 7)])
+
+
+if __name__ == "__main__":
+    unittest.main()
