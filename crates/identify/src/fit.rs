@@ -64,7 +64,7 @@ impl Fit {
     ///
     /// Each group and joint has its own standard deviation. Outliers lose weight by Huber's
     /// function unless `plain` is set. The final weights count independent samples only.
-    pub fn of_groups(groups: &[&Samples], plain: bool) -> Self {
+    pub(crate) fn of_groups(groups: &[&Samples], plain: bool) -> Self {
         // First weights: the reciprocal size of each joint's torque.
         let first = |samples: &&Samples| {
             let size = |joint: usize| {

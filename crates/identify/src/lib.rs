@@ -35,7 +35,7 @@
 //!
 //! 1. [`prepare`] reads recordings, samples them evenly, filters them without phase shift,
 //!    differentiates them, and cuts them into windows.
-//! 2. Gravity is fitted to poses at rest and slow motions ([`GravityFit`]). [`friction`] fits
+//! 2. Gravity is fitted to poses at rest and slow motions ([`GravityFit`]). `friction` fits
 //!    friction (5) to (9) to slow motions, with the gravity torque as its load. The two alternate.
 //! 3. The inertial parameters are fitted to exciting motions ([`InertiaFit`]). [`bodies`] finds the
 //!    physically consistent links nearest to the data.
@@ -43,13 +43,13 @@
 //!    their motion ([`WindowErrors`]). Implausible signs, gains ([`Gain`]) and residuals give
 //!    warnings.
 //!
-//! [`regression`] is the least squares underneath.
+//! `regression` is the least squares underneath; [`TriangularFactor`] holds its rows.
 
 pub mod bodies;
 mod error;
 mod fit;
 mod fitted;
-pub mod friction;
+mod friction;
 mod gravity;
 mod identification;
 mod inertia;
@@ -58,7 +58,7 @@ mod kept_back;
 mod law_gain;
 mod plausibility;
 pub mod prepare;
-pub mod regression;
+mod regression;
 mod samples;
 mod settings;
 mod stiction;
@@ -69,12 +69,15 @@ mod warming;
 
 pub use error::{Error, Result};
 pub use fit::{Fit, JointFit};
-pub use friction::{FrictionFit, JointFriction};
+pub use friction::fit::{FrictionFit, JointFriction};
+pub use friction::form::CoulombForm;
+pub use friction::stribeck::StribeckTrial;
 pub use gravity::GravityFit;
 pub use identification::{Identification, identify};
 pub use inertia::{BaseParameter, InertiaFit, PhysicalFit};
 pub use law_gain::LawGain;
 pub use plausibility::{Gain, PositionOffset};
+pub use regression::triangular_factor::TriangularFactor;
 pub use settings::{IdentifySettings, ModelSettings, Prior, WarmingChoice};
 pub use summary::Summary;
 pub use validate::{JointError, LogValidation, TorqueTrace, WindowErrors};

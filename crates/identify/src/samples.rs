@@ -22,7 +22,7 @@ pub(crate) fn most_samples(total: usize) -> usize {
 
 /// Rows of the regression τ = Y θ for a group of logs: n rows per sample, one per joint.
 #[derive(Debug, Clone)]
-pub struct Samples {
+pub(crate) struct Samples {
     /// Number of joints n.
     pub joints: usize,
     /// The columns of Y.
@@ -44,7 +44,7 @@ pub struct Samples {
 
 /// Rules for taking samples from logs.
 #[derive(Debug, Clone)]
-pub struct Sampling {
+pub(crate) struct Sampling {
     /// Rate to which logs are downsampled \[Hz\].
     pub rate: f64,
     /// Speed below which a joint's row is not used \[rad/s\], n entries.
@@ -57,7 +57,7 @@ pub struct Sampling {
 
 impl Sampling {
     /// Returns the number of samples of a log from one that is used to the next.
-    pub fn stride(&self, log: &Log) -> usize {
+    pub(crate) fn stride(&self, log: &Log) -> usize {
         (1.0 / (self.rate * log.step)).floor().max(1.0) as usize
     }
 
@@ -65,7 +65,7 @@ impl Sampling {
     /// nothing without laws.
     ///
     /// Friction has its value at the reference where a log does not know its warmth.
-    pub fn factors(&self, log: &Log, k: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn factors(&self, log: &Log, k: usize) -> Vec<[f64; 2]> {
         let of_joint = |(joint, law): (usize, &Option<Warming>)| {
             let known = law.and_then(|law| Some(law.factors(log.warmth_value(law.by, joint, k)?)));
             known.unwrap_or([1.0; 2])
@@ -76,7 +76,7 @@ impl Sampling {
 
 impl Samples {
     /// Takes samples from logs of motions and subtracts the known torque.
-    pub fn in_motion(
+    pub(crate) fn in_motion(
         robot: &Robot,
         columns: &[Parameter],
         logs: &[Log],
@@ -119,7 +119,7 @@ impl Samples {
     ///
     /// Columns of friction are 0. What friction that the joints keep may explain is taken out of
     /// the rows, see [`stiction`](crate::stiction). Returns the rests as well.
-    pub fn at_rest(
+    pub(crate) fn at_rest(
         robot: &Robot,
         columns: &[Parameter],
         logs: &[Log],
@@ -251,34 +251,34 @@ impl Samples {
     }
 
     /// Returns the number of rows.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.torque.len()
     }
 
     /// Returns whether there is no row.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.torque.is_empty()
     }
 
     /// Returns row r of Y.
-    pub fn row(&self, r: usize) -> &[f64] {
+    pub(crate) fn row(&self, r: usize) -> &[f64] {
         let width = self.columns.len();
         &self.regressor[r * width..(r + 1) * width]
     }
 
     /// Returns Y θ \[N m\], one entry per row.
-    pub fn predicted(&self, theta: &DVector<f64>) -> Vec<f64> {
+    pub(crate) fn predicted(&self, theta: &DVector<f64>) -> Vec<f64> {
         let row = |r: usize| self.row(r).iter().zip(theta.iter()).map(|(y, t)| y * t).sum();
         (0..self.len()).into_par_iter().map(row).collect()
     }
 
     /// Returns the torque minus Y θ \[N m\], one entry per row.
-    pub fn residuals(&self, theta: &DVector<f64>) -> Vec<f64> {
+    pub(crate) fn residuals(&self, theta: &DVector<f64>) -> Vec<f64> {
         self.torque.iter().zip(self.predicted(theta)).map(|(tau, y)| tau - y).collect()
     }
 
     /// Returns the triangular factor of the used rows, each multiplied by its entry of `weights`.
-    pub fn weighted_factor(&self, weights: &[f64]) -> TriangularFactor {
+    pub(crate) fn weighted_factor(&self, weights: &[f64]) -> TriangularFactor {
         let used: Vec<usize> =
             (0..self.len()).filter(|r| self.used[*r] && weights[*r] > 0.0).collect();
         let p = self.columns.len();
@@ -289,7 +289,7 @@ impl Samples {
     }
 
     /// Returns the values of one joint's used rows, one list per log.
-    pub fn joint_values(&self, values: &[f64], joint: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn joint_values(&self, values: &[f64], joint: usize) -> Vec<Vec<f64>> {
         let in_log = |rows: &Range<usize>| {
             let rows = rows.clone().skip(joint).step_by(self.joints);
             rows.filter(|r| self.used[*r]).map(|r| values[r]).collect()
@@ -300,7 +300,7 @@ impl Samples {
 
 /// Torque that is known before a fit and subtracted from the recorded torque.
 #[derive(Debug, Clone, Copy)]
-pub enum KnownTorque<'a> {
+pub(crate) enum KnownTorque<'a> {
     /// No torque.
     None,
     /// The friction of a robot, with the robot's gravity torque as its load.

@@ -24,7 +24,7 @@ const FEWEST_RESTS: usize = 10;
 
 /// A robot with the friction and the gravity that are known so far.
 #[derive(Clone, Copy)]
-pub struct KnownFriction<'a> {
+pub(crate) struct KnownFriction<'a> {
     /// The robot.
     pub robot: &'a Robot,
     /// Standard deviation of the torque of each joint at rest \[N m\].
@@ -43,7 +43,7 @@ pub(crate) fn sides(log: &Log, rest: usize, speed: f64) -> Vec<f64> {
 
 /// The rests of all joints in recordings.
 #[derive(Debug, Clone, Default)]
-pub struct Rests {
+pub(crate) struct Rests {
     /// Number of joints n.
     pub joints: usize,
     /// Mean positions \[rad\], row-major rests x n.
@@ -56,7 +56,7 @@ pub struct Rests {
 }
 
 /// Friction that one joint may keep at its rests.
-pub struct Kept {
+pub(crate) struct Kept {
     /// Its mean \[N m\], one entry per rest.
     pub mean: Vec<f64>,
     /// Columns by which it may differ, with coefficients of variance 1, in units of the noise.
@@ -65,12 +65,12 @@ pub struct Kept {
 
 impl Rests {
     /// Returns the number of rests.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.q.len() / self.joints.max(1)
     }
 
     /// Returns the positions at a rest \[rad\], n entries.
-    pub fn q(&self, rest: usize) -> &[f64] {
+    pub(crate) fn q(&self, rest: usize) -> &[f64] {
         &self.q[rest * self.joints..(rest + 1) * self.joints]
     }
 
@@ -79,7 +79,7 @@ impl Rests {
     }
 
     /// Returns the friction that a joint may keep. Without known friction it may have any size.
-    pub fn kept(&self, known: Option<KnownFriction>, joint: usize) -> Kept {
+    pub(crate) fn kept(&self, known: Option<KnownFriction>, joint: usize) -> Kept {
         let nothing = || Kept {
             mean: vec![0.0; self.len()],
             columns: DMatrix::from_fn(self.len(), 1, |k, _| ANY_SIZE * self.side(k, joint)),

@@ -10,10 +10,9 @@ use super::skeleton::{document, pair_of_lists, section, wide_table};
 use super::tables;
 use super::text::Text;
 use maud::{Markup, PreEscaped, html};
-use reachtube_identify::friction::FrictionFit;
 use reachtube_identify::{
-    BaseParameter, Gain, Identification, InertiaFit, JointError, JointFit, LogValidation,
-    WindowErrors,
+    BaseParameter, FrictionFit, Gain, Identification, InertiaFit, JointError, JointFit,
+    LogValidation, WindowErrors,
 };
 use reachtube_robot::units::ColumnUnit;
 use reachtube_robot::{FrictionDescription, JointKind, Robot};

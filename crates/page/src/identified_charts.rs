@@ -1,8 +1,7 @@
 //! The charts of an identified robot: torque over time, and friction over load and velocity.
 
 use super::chart::{Chart, Series};
-use reachtube_identify::TorqueTrace;
-use reachtube_identify::friction::FrictionFit;
+use reachtube_identify::{FrictionFit, TorqueTrace};
 use reachtube_robot::JointKind;
 use reachtube_robot::friction::{Coulomb, Viscous};
 

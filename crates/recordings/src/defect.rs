@@ -58,7 +58,7 @@ impl DefectKind {
 
     /// Returns whether both are of one kind; gaps of any length are.
     #[must_use]
-    pub fn is_like(self, other: Self) -> bool {
+    pub(crate) fn is_like(self, other: Self) -> bool {
         std::mem::discriminant(&self) == std::mem::discriminant(&other)
     }
 }

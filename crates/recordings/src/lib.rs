@@ -61,7 +61,7 @@ pub use gap_limit::GapLimit;
 pub use index::RunEntry;
 pub use inspect::{Group, Inspection, JointSummary, inspect};
 pub use memory::MemoryRuns;
-pub use notes::{copies_note, run_notes, temperature_notes};
+pub use notes::{copies_note, run_notes};
 pub use reading::{parse_csv, read_csv};
 pub use refusal::{Place, Refusal};
 pub use run::{Run, RunError, column_names};

@@ -70,7 +70,7 @@ impl LinkInertia {
     ///
     /// Up to rounding, it is zero or more if and only if some distribution of positive mass has
     /// these ten parameters.
-    pub fn smallest_relative_eigenvalue(&self) -> f64 {
+    pub(crate) fn smallest_relative_eigenvalue(&self) -> f64 {
         let mut pseudo = Matrix4::zeros();
         pseudo.fixed_view_mut::<3, 3>(0, 0).copy_from(&self.second_moments);
         pseudo.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.first_moment);

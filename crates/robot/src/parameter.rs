@@ -81,7 +81,7 @@ impl ParameterKind {
 
     /// Returns the part of the name before the joint's number: `m`, `mx`, `Ixx`, `J`, `v1_`, `fc`,
     /// `o`.
-    pub fn symbol(self) -> &'static str {
+    pub(crate) fn symbol(self) -> &'static str {
         match self {
             Self::Mass => "m",
             Self::MomentX => "mx",

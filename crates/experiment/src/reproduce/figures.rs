@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use reachtube_identify::Identification;
-use reachtube_identify::friction::FrictionFit;
+use reachtube_identify::{FrictionFit, Identification};
 use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource};
 use reachtube_robot::JointKind;
 use serde::Serialize;

@@ -174,7 +174,7 @@ fn friction(
     };
     let names = (1..=8).map(|k| format!("a{k}")).chain((1..=3).map(|k| format!("v{k}")));
     let names: Vec<String> = names.collect();
-    let of_joint = |fit: &reachtube_identify::friction::FrictionFit| {
+    let of_joint = |fit: &reachtube_identify::FrictionFit| {
         let joint = &fit.joint;
         let (found, errors) = (joint.coefficients, joint.standard_errors);
         let found = [&found.coulomb[..], &found.viscous[..]].concat();

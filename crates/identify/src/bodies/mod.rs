@@ -9,4 +9,4 @@ pub(crate) mod program;
 pub(crate) mod pseudo_inertia;
 
 pub use program::{BodyProgram, BodySolution, PositiveColumn};
-pub use pseudo_inertia::{PER_LINK, link_parameters, pseudo_inertia};
+pub use pseudo_inertia::{PER_LINK, pseudo_inertia};

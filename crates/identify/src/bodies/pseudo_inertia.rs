@@ -30,7 +30,7 @@ pub fn pseudo_inertia(link: &[f64]) -> Matrix4<f64> {
 
 /// Returns the ten parameters of a pseudo-inertia.
 #[must_use]
-pub fn link_parameters(p: &Matrix4<f64>) -> [f64; PER_LINK] {
+pub(crate) fn link_parameters(p: &Matrix4<f64>) -> [f64; PER_LINK] {
     let trace = p[(0, 0)] + p[(1, 1)] + p[(2, 2)];
     let [xx, yy, zz] = [0, 1, 2].map(|i| trace - p[(i, i)]);
     [p[(3, 3)], p[(0, 3)], p[(1, 3)], p[(2, 3)], xx, -p[(0, 1)], yy, -p[(0, 2)], -p[(1, 2)], zz]

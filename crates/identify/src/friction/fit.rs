@@ -81,7 +81,7 @@ impl FrictionFit {
 /// Coulomb friction has the richest [`CoulombForm`] that the samples determine. The result is
 /// `None` for fewer than 50 samples.
 #[must_use]
-pub fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
+pub(crate) fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
     if samples.len() < MIN_SAMPLES {
         return None;
     }
@@ -93,7 +93,7 @@ pub fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
 ///
 /// The effect becomes part of the friction if it predicts kept-back slow motions better.
 #[must_use]
-pub fn fit_with_stribeck(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
+pub(crate) fn fit_with_stribeck(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
     let mut found = fit(name, samples)?;
     let form = found.joint.form;
     let (_, weights) = robust_solution(FrictionModel { form, stribeck: None }, samples);

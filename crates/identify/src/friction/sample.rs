@@ -4,7 +4,7 @@ use reachtube_robot::Robot;
 
 /// One sample of a moving joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrictionSample {
+pub(crate) struct FrictionSample {
     /// Velocity \[rad/s\], not 0.
     pub qd: f64,
     /// Acceleration \[rad/s²\].

@@ -143,7 +143,7 @@ impl InertiaFit {
     /// Returns a warning that names the combinations that only the prior determines, if there are
     /// any.
     #[must_use]
-    pub fn undetermined_warning(&self) -> Option<String> {
+    pub(crate) fn undetermined_warning(&self) -> Option<String> {
         let names: Vec<&str> = self
             .parameters
             .iter()

@@ -13,7 +13,7 @@ const MAX_COMPARED: usize = 2000;
 ///
 /// The result is `None` if the logs do not overlap.
 #[must_use]
-pub fn delay(reference: &Log, run: &Log) -> Option<f64> {
+pub(crate) fn delay(reference: &Log, run: &Log) -> Option<f64> {
     let most = (reference.len().min(run.len()) / 2) as isize;
     let cost = |shift: isize| difference(reference, run, shift);
     let best = (-most..=most).min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;

@@ -3,7 +3,7 @@
 /// Central differences of fourth order are used inside, of second order next to the ends, and
 /// one-sided differences at the ends.
 #[must_use]
-pub fn derivative(values: &[f64], step: f64) -> Vec<f64> {
+pub(crate) fn derivative(values: &[f64], step: f64) -> Vec<f64> {
     let n = values.len();
     let slope = |k: usize| match k {
         _ if n < 2 => 0.0,

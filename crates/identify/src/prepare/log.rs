@@ -32,7 +32,7 @@ pub struct Log {
 impl Log {
     /// Returns a log whose samples are zero.
     #[must_use]
-    pub fn zeros(name: &str, joints: usize, samples: usize, step: f64) -> Self {
+    pub(crate) fn zeros(name: &str, joints: usize, samples: usize, step: f64) -> Self {
         let zeros = vec![0.0; joints * samples];
         let [q, qd, qdd, tau] = [zeros.clone(), zeros.clone(), zeros.clone(), zeros];
         Self {
@@ -53,7 +53,7 @@ impl Log {
     /// Returns the log with every `stride`-th sample. It remembers the least speed within `margin`
     /// \[s\] of each sample, so that [`Log::moving_mask`] knows the samples between.
     #[must_use]
-    pub fn thinned(&self, stride: usize, margin: f64) -> Self {
+    pub(crate) fn thinned(&self, stride: usize, margin: f64) -> Self {
         if stride <= 1 {
             return self.clone();
         }
@@ -126,7 +126,7 @@ impl Log {
     /// temperature \[°C\] or the number of the recording. The result is `None` where the recording
     /// does not know it.
     #[must_use]
-    pub fn warmth_value(&self, by: WarmingBy, joint: usize, k: usize) -> Option<f64> {
+    pub(crate) fn warmth_value(&self, by: WarmingBy, joint: usize, k: usize) -> Option<f64> {
         match by {
             WarmingBy::Temperature => self.temperatures.get(k * self.joints + joint).copied(),
             WarmingBy::Runs | WarmingBy::Thermal => self.order.map(|order| order as f64),
@@ -139,7 +139,7 @@ impl Log {
     /// \[s\] before and after the sample. The margin is needed because a low-pass spreads the step
     /// of Coulomb friction at a reversal over about half a period of its cut-off.
     #[must_use]
-    pub fn moving_mask(&self, slow: &[f64], margin: f64) -> Vec<bool> {
+    pub(crate) fn moving_mask(&self, slow: &[f64], margin: f64) -> Vec<bool> {
         if !self.slowest.is_empty() {
             let fast = |(at, slowest): (usize, &f64)| *slowest >= slow[at % self.joints];
             return self.slowest.iter().enumerate().map(fast).collect();

@@ -24,17 +24,11 @@ mod time_unit;
 pub(crate) mod velocity;
 mod windows;
 
-pub use align::delay;
 pub use cut_off::cut_off;
-pub use derivative::derivative;
 pub use entry::LogEntry;
 pub use log::Log;
-pub use low_pass::LowPass;
 pub use prepared::{Prepared, prepare};
 pub use raw_log::RawLog;
 pub use read::read;
-pub use resample::{median_step, resampled};
-pub use rest::rest_intervals;
 pub use settings::{PrepareSettings, VelocitySource};
-pub use spectrum::motion_bandwidth;
 pub use windows::{Window, Windows, windows};

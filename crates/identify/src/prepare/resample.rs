@@ -1,6 +1,6 @@
 /// Returns the median time between samples \[s\], or `None` for fewer than two samples.
 #[must_use]
-pub fn median_step(times: &[f64]) -> Option<f64> {
+pub(crate) fn median_step(times: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
@@ -10,7 +10,7 @@ pub fn median_step(times: &[f64]) -> Option<f64> {
 ///
 /// `times` must increase, and `values` gives the value at each of their indices. The new times are
 /// `times[0] + k * step` up to the last of `times`.
-pub fn resampled(times: &[f64], values: impl Fn(usize) -> f64, step: f64) -> Vec<f64> {
+pub(crate) fn resampled(times: &[f64], values: impl Fn(usize) -> f64, step: f64) -> Vec<f64> {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else { return Vec::new() };
     let count = ((last - first) / step + 1e-9).floor() as usize + 1;
     let mut after = 1;

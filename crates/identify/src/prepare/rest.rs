@@ -4,17 +4,13 @@ use std::ops::Range;
 ///
 /// `qd` holds velocities \[rad/s\], row-major samples x `joints`. Intervals of fewer than
 /// `shortest` samples are omitted.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_identify::prepare::rest_intervals;
-///
-/// let qd = [0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.0];
-/// assert_eq!(rest_intervals(&qd, 1, 0.1, 2), [0..2, 4..7]);
-/// ```
 #[must_use]
-pub fn rest_intervals(qd: &[f64], joints: usize, speed: f64, shortest: usize) -> Vec<Range<usize>> {
+pub(crate) fn rest_intervals(
+    qd: &[f64],
+    joints: usize,
+    speed: f64,
+    shortest: usize,
+) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = 0;
     let mut close = |range: Range<usize>| {
@@ -30,4 +26,15 @@ pub fn rest_intervals(qd: &[f64], joints: usize, speed: f64, shortest: usize) ->
     }
     close(start..qd.len() / joints);
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_rests_are_left_out() {
+        let qd = [0.0, 0.0, 0.5, 0.5, 0.0, 0.0, 0.0];
+        assert_eq!(rest_intervals(&qd, 1, 0.1, 2), [0..2, 4..7]);
+    }
 }

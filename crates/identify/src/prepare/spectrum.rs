@@ -12,7 +12,7 @@ const POWER_SHARE: f64 = 0.999;
 /// recorded velocity and the differentiated position, because noise affects one of them more than
 /// the other.
 #[must_use]
-pub fn motion_bandwidth(q: &[f64], qd: &[f64], step: f64) -> f64 {
+pub(crate) fn motion_bandwidth(q: &[f64], qd: &[f64], step: f64) -> f64 {
     let slope = derivative(q, step);
     bandwidth(&slope, step).min(bandwidth(qd, step))
 }

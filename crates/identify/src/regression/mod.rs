@@ -1,7 +1,7 @@
 //! Least squares over many rows.
 //!
-//! [`TriangularFactor`] condenses any number of rows to a triangular matrix, and factors of parts
-//! are joined. [`Solution`] holds the parameters with their covariance and names those that the
+//! `TriangularFactor` condenses any number of rows to a triangular matrix, and factors of parts
+//! are joined. `Solution` holds the parameters with their covariance and names those that the
 //! rows do not determine. Residuals give the weights of a robust fit and the number of independent
 //! samples.
 
@@ -9,10 +9,3 @@ pub(crate) mod residuals;
 pub(crate) mod singular;
 pub(crate) mod solution;
 pub(crate) mod triangular_factor;
-
-pub use residuals::{
-    HUBER_DEVIATIONS, autocorrelation_time, huber_row_factor, robust_standard_deviation,
-    root_mean_square,
-};
-pub use solution::Solution;
-pub use triangular_factor::TriangularFactor;

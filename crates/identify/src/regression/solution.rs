@@ -14,7 +14,7 @@ const MIN_ENTRY: f64 = 0.05;
 /// Where the rows do not determine a direction, the solution has the smallest norm in columns
 /// scaled to unit length.
 #[derive(Debug, Clone)]
-pub struct Solution {
+pub(crate) struct Solution {
     /// Parameters x, p entries.
     pub x: DVector<f64>,
     /// Covariance of x for rows with errors of variance 1, p x p.
@@ -35,7 +35,7 @@ impl TriangularFactor {
     ///
     /// Directions that only rounding determines count as undetermined.
     #[must_use]
-    pub fn solve(&self) -> Solution {
+    pub(crate) fn solve(&self) -> Solution {
         self.solve_within(RANK_TOLERANCE)
     }
 
@@ -44,7 +44,7 @@ impl TriangularFactor {
     ///
     /// Directions whose singular value is at most `tolerance` times the largest are undetermined.
     #[must_use]
-    pub fn solve_within(&self, tolerance: f64) -> Solution {
+    pub(crate) fn solve_within(&self, tolerance: f64) -> Solution {
         let p = self.r.ncols();
         let scale: Vec<f64> = self.r.column_iter().map(|column| column.norm()).collect();
         let largest_scale = scale.iter().copied().fold(0.0, f64::max);
@@ -86,7 +86,7 @@ impl TriangularFactor {
 impl Solution {
     /// Returns the standard error of each parameter, for rows with errors of variance 1.
     #[must_use]
-    pub fn standard_errors(&self) -> Vec<f64> {
+    pub(crate) fn standard_errors(&self) -> Vec<f64> {
         self.covariance.diagonal().iter().map(|variance| variance.sqrt()).collect()
     }
 }

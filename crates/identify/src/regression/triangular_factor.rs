@@ -30,7 +30,7 @@ impl TriangularFactor {
     }
 
     /// Factors the rows [a, y] that `write` fills in, one for each index.
-    pub fn from_written_rows(
+    pub(crate) fn from_written_rows(
         indices: &[usize],
         columns: usize,
         write: impl Fn(usize, &mut [f64]) + Sync,
@@ -48,7 +48,7 @@ impl TriangularFactor {
     }
 
     /// Joins the rows of several factors into one factor.
-    pub fn joined<'a>(factors: impl IntoIterator<Item = &'a Self>) -> Self {
+    pub(crate) fn joined<'a>(factors: impl IntoIterator<Item = &'a Self>) -> Self {
         let parts: Vec<_> = factors.into_iter().map(Self::augmented).collect();
         let width = parts.first().map_or(1, DMatrix::ncols);
         Self::from_parts(parts, width)
@@ -83,7 +83,7 @@ impl TriangularFactor {
 
     /// Returns the factor of the rows [A · `map`, y], where `map` is p x k.
     #[must_use]
-    pub fn with_mapped_columns(&self, map: &DMatrix<f64>) -> Self {
+    pub(crate) fn with_mapped_columns(&self, map: &DMatrix<f64>) -> Self {
         let (p, k) = map.shape();
         let mut rows = DMatrix::zeros(p + 1, k + 1);
         rows.view_mut((0, 0), (p, k)).copy_from(&(&self.r * map));
@@ -94,7 +94,7 @@ impl TriangularFactor {
 
     /// Returns the sum of squares ‖A x - y‖².
     #[must_use]
-    pub fn sum_of_squares(&self, x: &DVector<f64>) -> f64 {
+    pub(crate) fn sum_of_squares(&self, x: &DVector<f64>) -> f64 {
         (&self.r * x - &self.z).norm_squared() + self.residual * self.residual
     }
 }

@@ -2,8 +2,7 @@
 
 use crate::lab::{Lab, geometry, lwa4p, simple_friction};
 use crate::virtual_robot::{Random, Recorder, excitation, slow};
-use reachtube_identify::friction::CoulombForm;
-use reachtube_identify::{Identification, IdentifySettings, identify};
+use reachtube_identify::{CoulombForm, Identification, IdentifySettings, identify};
 use reachtube_robot::{BaseParameters, Robot};
 use std::path::PathBuf;
 

@@ -79,7 +79,11 @@ impl BaseParameters {
     /// # Panics
     ///
     /// Panics if the regressor does not have one column per parameter.
-    pub fn of_regressor(parameters: &[Parameter], stacked: &DMatrix<f64>, tolerance: f64) -> Self {
+    pub(crate) fn of_regressor(
+        parameters: &[Parameter],
+        stacked: &DMatrix<f64>,
+        tolerance: f64,
+    ) -> Self {
         assert_eq!(stacked.ncols(), parameters.len(), "one column per parameter");
         let (r, norms) = scaled_triangle(stacked, tolerance);
         let singular_values = singular_values(&r);

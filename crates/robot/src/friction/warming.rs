@@ -19,7 +19,7 @@ pub enum WarmingBy {
 impl WarmingBy {
     /// Returns the unit of the rates.
     #[must_use]
-    pub fn rate_unit(self) -> &'static str {
+    pub(crate) fn rate_unit(self) -> &'static str {
         match self {
             Self::Temperature => "1/K",
             Self::Runs | Self::Thermal => "-",

@@ -203,11 +203,6 @@ impl TaylorSpace {
         })
     }
 
-    /// Returns the memory for one dense series of `f64`, in bytes, without product tables.
-    pub fn dense_bytes(&self) -> u128 {
-        dense_size(self.variables, self.order).0.saturating_mul(8)
-    }
-
     pub(super) fn fits_dense(&self) -> bool {
         !self.offsets.is_empty()
     }

@@ -1,7 +1,8 @@
 //! What `identify` prints about friction laws.
 
-use reachtube::identify::friction::{FrictionFit, StribeckTrial};
-use reachtube::identify::{Identification, JointWarming, LawGain, WarmingCandidate, WarmingFit};
+use reachtube::identify::{
+    FrictionFit, Identification, JointWarming, LawGain, StribeckTrial, WarmingCandidate, WarmingFit,
+};
 use reachtube::number::four_decimals;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;

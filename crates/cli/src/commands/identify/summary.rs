@@ -1,11 +1,10 @@
 //! The text that `identify` prints.
 
 use reachtube::identify::{
-    BaseParameter, Identification, InertiaFit, JointError, JointFit, JointFriction, LogValidation,
-    PhysicalFit, PositionOffset, WindowErrors,
+    BaseParameter, FrictionFit, Identification, InertiaFit, JointError, JointFit, JointFriction,
+    LogValidation, PhysicalFit, PositionOffset, WindowErrors,
 };
 
-use reachtube::identify::friction::FrictionFit;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 

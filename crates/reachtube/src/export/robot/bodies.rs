@@ -2,8 +2,8 @@
 //! with the same torques.
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
+use reachtube_identify::TriangularFactor;
 use reachtube_identify::bodies::{BodyProgram, PER_LINK, PositiveColumn, pseudo_inertia};
-use reachtube_identify::regression::TriangularFactor;
 use reachtube_robot::{LinkInertia, Parameter, ParameterKind, Placement, Regressor, Robot};
 
 use crate::export::ExportError;
