@@ -5,7 +5,7 @@ use reachtube_robot::Robot;
 use reachtube_scalar::{Interval, TaylorModel};
 
 use crate::cut::{halves, most_curved, stiffest};
-use crate::equations::{Angles, Equations, Scratch};
+use crate::equations::{Equations, EquationsWorkspace, SinesCosines};
 use crate::error::Result;
 use crate::operating_box::OperatingBox;
 use crate::polynomial_model::PolynomialModel;
@@ -120,7 +120,7 @@ impl PolynomialModel {
 }
 
 /// A part of the operating box, with all its velocities and inputs.
-struct Cell {
+struct BoxPart {
     /// Sides of the positions, n, rad.
     sides: Vec<Interval>,
     /// Bounds of the truncation error, n, rad/s²; `None` where there is no proof of a bound.
@@ -139,7 +139,7 @@ struct BranchAndBound<'a> {
 
 impl BranchAndBound<'_> {
     /// Cuts the cells with the largest ratios until there are `max_boxes` or all are tight.
-    fn refined(&self, whole: Vec<Interval>, max_boxes: usize) -> Vec<Cell> {
+    fn refined(&self, whole: Vec<Interval>, max_boxes: usize) -> Vec<BoxPart> {
         let mut cells = self.cells_of(vec![whole]);
         while cells.len() < max_boxes {
             cells.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
@@ -161,18 +161,18 @@ impl BranchAndBound<'_> {
     }
 
     /// Bounds the truncation error over each of `parts`, in parallel.
-    fn cells_of(&self, parts: Vec<Vec<Interval>>) -> Vec<Cell> {
+    fn cells_of(&self, parts: Vec<Vec<Interval>>) -> Vec<BoxPart> {
         parts
             .into_par_iter()
             .map_init(|| self.equations.scratch(), |scratch, sides| self.cell(sides, scratch))
             .collect()
     }
 
-    fn cell(&self, sides: Vec<Interval>, scratch: &mut Scratch) -> Cell {
+    fn cell(&self, sides: Vec<Interval>, scratch: &mut EquationsWorkspace) -> BoxPart {
         let angles = self.equations.angles(&sides);
         match self.preconditioned(&sides, &angles, scratch) {
             Ok(mass) => self.bounded(sides, &angles, &mass, scratch),
-            Err(cut) => Cell { sides, bounds: None, cut, ratio: f64::INFINITY },
+            Err(cut) => BoxPart { sides, bounds: None, cut, ratio: f64::INFINITY },
         }
     }
 
@@ -181,8 +181,8 @@ impl BranchAndBound<'_> {
     fn preconditioned(
         &self,
         sides: &[Interval],
-        angles: &Angles,
-        scratch: &mut Scratch,
+        angles: &SinesCosines,
+        scratch: &mut EquationsWorkspace,
     ) -> core::result::Result<Preconditioned, usize> {
         let mass = self.equations.mass_matrix(angles, scratch);
         let cut = stiffest(&mass, sides);
@@ -194,10 +194,10 @@ impl BranchAndBound<'_> {
     fn bounded(
         &self,
         sides: Vec<Interval>,
-        angles: &Angles,
+        angles: &SinesCosines,
         mass: &Preconditioned,
-        scratch: &mut Scratch,
-    ) -> Cell {
+        scratch: &mut EquationsWorkspace,
+    ) -> BoxPart {
         let load = self.equations.load(angles, scratch);
         let acceleration = self.equations.acceleration(angles, scratch);
         let residual = mass.residual(&load, &acceleration);
@@ -217,7 +217,7 @@ impl BranchAndBound<'_> {
         };
         let worst = (0..sides.len()).max_by(|i, j| ratio(*i).total_cmp(&ratio(*j))).unwrap_or(0);
         let (cut, ratio) = (most_curved(&models[worst], &sides), ratio(worst));
-        Cell { sides, bounds, cut, ratio }
+        BoxPart { sides, bounds, cut, ratio }
     }
 
     /// Cuts a box of positions into parts, on each of which M_m is proved to be invertible, or

@@ -31,14 +31,14 @@ pub(crate) struct Equations<'a> {
 }
 
 /// Scratch memory of one thread.
-pub(crate) struct Scratch {
+pub(crate) struct EquationsWorkspace {
     mass: Workspace<TaylorModel>,
     coriolis: Workspace<InputPolynomial>,
     rate: ModelWorkspace<InputPolynomial>,
 }
 
 /// sin q and cos q over a box of positions, n of each.
-pub(crate) struct Angles {
+pub(crate) struct SinesCosines {
     sin: Vec<TaylorModel>,
     cos: Vec<TaylorModel>,
 }
@@ -71,8 +71,8 @@ impl<'a> Equations<'a> {
         })
     }
 
-    pub(crate) fn scratch(&self) -> Scratch {
-        Scratch {
+    pub(crate) fn scratch(&self) -> EquationsWorkspace {
+        EquationsWorkspace {
             mass: Workspace::new(self.robot),
             coriolis: Workspace::new(self.robot),
             rate: self.model.workspace(),
@@ -85,18 +85,22 @@ impl<'a> Equations<'a> {
     }
 
     /// Returns sin q and cos q over a box of positions, n sides.
-    pub(crate) fn angles(&self, q: &[Interval]) -> Angles {
+    pub(crate) fn angles(&self, q: &[Interval]) -> SinesCosines {
         let variables = position_variables(q.len());
         let sides: Vec<Interval> = variables.clone().map(|i| q[i]).collect();
         let mut models: Vec<TaylorModel> = q.iter().map(|side| TaylorModel::from(*side)).collect();
         let positions = TaylorBox::new(&self.positions, &sides).variables();
         models.splice(variables, positions);
         let (sin, cos) = self.robot.sin_cos(&models);
-        Angles { sin, cos }
+        SinesCosines { sin, cos }
     }
 
     /// Returns M_m, row-major n x n.
-    pub(crate) fn mass_matrix(&self, angles: &Angles, scratch: &mut Scratch) -> Vec<TaylorModel> {
+    pub(crate) fn mass_matrix(
+        &self,
+        angles: &SinesCosines,
+        scratch: &mut EquationsWorkspace,
+    ) -> Vec<TaylorModel> {
         let n = self.robot.joint_count();
         let mut mass = vec![TaylorModel::from(0.0); n * n];
         self.robot.crba(&angles.sin, &angles.cos, &mut scratch.mass, &mut mass);
@@ -104,7 +108,11 @@ impl<'a> Equations<'a> {
     }
 
     /// Returns u - c - τ_v, n: M_m times the acceleration of the robot.
-    pub(crate) fn load(&self, angles: &Angles, scratch: &mut Scratch) -> Vec<InputPolynomial> {
+    pub(crate) fn load(
+        &self,
+        angles: &SinesCosines,
+        scratch: &mut EquationsWorkspace,
+    ) -> Vec<InputPolynomial> {
         let n = self.robot.joint_count();
         let mut coriolis = vec![InputPolynomial::from(0.0); n];
         let [sin, cos] = [&angles.sin, &angles.cos].map(|models| constants(models));
@@ -119,8 +127,8 @@ impl<'a> Equations<'a> {
     /// Returns f_p, n: the acceleration of the model.
     pub(crate) fn acceleration(
         &self,
-        angles: &Angles,
-        scratch: &mut Scratch,
+        angles: &SinesCosines,
+        scratch: &mut EquationsWorkspace,
     ) -> Vec<InputPolynomial> {
         let n = self.robot.joint_count();
         // The accelerations depend on q by its sines and cosines only.

@@ -10,13 +10,13 @@ use crate::polynomial_model::{ModelWorkspace, PolynomialModel};
 ///
 /// ```
 /// use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
-/// use reachtube_ode::{DormandPrince, Run, Tolerance};
+/// use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 /// use reachtube_robot::Robot;
 ///
 /// let point = ExpansionPoint::zero(6);
 /// let model = PolynomialModel::new(&Robot::lwa4p(), ModelKind::Two, 12, &point)?;
 /// let start = model.state(&[0.3; 6], &[0.0; 6]);
-/// let run = Run { start: &start, inputs: &[1.0; 2 * 6] };
+/// let run = InitialValueProblem { start: &start, inputs: &[1.0; 2 * 6] };
 /// let mut solver = DormandPrince::new(model.states(), Tolerance::default());
 /// let mut field = ModelField::new(&model);
 /// let outcome = solver.simulate(&mut field, &[0.0, 0.004, 0.008], run, |_sample, x| {

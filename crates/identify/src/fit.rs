@@ -118,8 +118,8 @@ fn flat(samples: &Samples, values: &[f64], joint: usize) -> Vec<f64> {
 /// `inflation` is the number of rows that count as one independent row. All joints share it:
 /// residuals that last are errors of the model, and a joint with such errors is not less important.
 fn reweighted(samples: &Samples, residuals: &[f64], plain: bool, inflation: f64) -> Vec<f64> {
-    let noise: Vec<Noise> = (0..samples.joints)
-        .map(|joint| Noise::of_joint(samples, residuals, joint, plain))
+    let noise: Vec<TorqueNoise> = (0..samples.joints)
+        .map(|joint| TorqueNoise::of_joint(samples, residuals, joint, plain))
         .collect();
     let weight = |(r, residual): (usize, &f64)| {
         let noise = &noise[r % samples.joints];
@@ -129,14 +129,14 @@ fn reweighted(samples: &Samples, residuals: &[f64], plain: bool, inflation: f64)
 }
 
 /// The noise of one joint's torque.
-struct Noise {
+struct TorqueNoise {
     /// Size beyond which a residual is an outlier \[N m\]; infinite for a plain fit.
     outlier: f64,
     /// Root mean square of the residuals, outliers with less weight \[N m\].
     deviation: f64,
 }
 
-impl Noise {
+impl TorqueNoise {
     fn of_joint(samples: &Samples, residuals: &[f64], joint: usize, plain: bool) -> Self {
         let torque = flat(samples, &samples.torque, joint);
         let residuals = flat(samples, residuals, joint);

@@ -11,7 +11,7 @@ use crate::plausibility::compensated::input_unit_warning;
 use crate::plausibility::gain::{Gain, GainLikelihood, gains};
 use crate::plausibility::offset::{OffsetSearch, PositionOffset};
 use crate::plausibility::warnings::Checked;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, Samples};
 use crate::settings::ModelSettings;
 use crate::stiction::KnownFriction;
@@ -116,7 +116,7 @@ fn fit_links(
         fitted: model.refit_friction || known_count < slow.len(),
         cubic: model.cubic.unwrap_or(known_count > 0),
     };
-    let rest: &[Log] = if model.separate_gravity { &[] } else { &inputs.rest };
+    let rest: &[PreparedLog] = if model.separate_gravity { &[] } else { &inputs.rest };
     let logs = [&inputs.dynamic[..], rest];
     let fit = |friction: Vec<FrictionDescription>| {
         let known = with_friction(load, &friction)?;

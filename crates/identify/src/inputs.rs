@@ -2,7 +2,7 @@ use crate::error::{Error, Result};
 use crate::prepare::changes::described as described_changes;
 use crate::prepare::cut_off::chosen_cut_off;
 use crate::prepare::entry::LogEntry;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::prepare::prepared::{common_step, prepare_one};
 use crate::prepare::read::{Source, sources};
 use crate::prepare::survey::{Survey, check_held_out};
@@ -36,13 +36,13 @@ const MOST_NUMBERS: usize = 8_000_000;
 /// The prepared recordings of an identification, and how samples are taken from them.
 pub(crate) struct Inputs {
     /// Poses at rest.
-    pub rest: Vec<Log>,
+    pub rest: Vec<PreparedLog>,
     /// Slow motions of one joint at a time.
-    pub friction: Vec<Log>,
+    pub friction: Vec<PreparedLog>,
     /// Exciting motions.
-    pub dynamic: Vec<Log>,
+    pub dynamic: Vec<PreparedLog>,
     /// Validation recordings.
-    validate: Vec<Log>,
+    validate: Vec<PreparedLog>,
     /// The rules for taking samples.
     pub sampling: Sampling,
     /// Whether torques of exciting motions contain the gravity torque of the description.
@@ -89,10 +89,10 @@ impl Inputs {
             short += few;
             samples += done.iter().map(|(count, ..)| count).sum::<usize>();
             changes.extend(done.iter().map(|(.., change)| *change));
-            logs.push(done.into_iter().map(|(_, log, _)| log).collect::<Vec<Log>>());
+            logs.push(done.into_iter().map(|(_, log, _)| log).collect::<Vec<PreparedLog>>());
         }
         let [rest, friction, dynamic, validate] = logs.try_into().expect("four groups");
-        let moving: Vec<&Log> = friction.iter().chain(&dynamic).collect();
+        let moving: Vec<&PreparedLog> = friction.iter().chain(&dynamic).collect();
         let sampling = Sampling {
             rate: SAMPLES_PER_CUT_OFF * cut_off,
             slow: slow_speeds(&moving, robot.joint_count(), model.slow),
@@ -115,7 +115,7 @@ impl Inputs {
 
     /// Returns whether there are validation recordings, and the recordings for the validation:
     /// these or else the exciting motions.
-    pub(crate) fn validation(&self) -> (bool, &[Log]) {
+    pub(crate) fn validation(&self) -> (bool, &[PreparedLog]) {
         let kept_back = !self.validate.is_empty();
         (kept_back, if kept_back { &self.validate } else { &self.dynamic })
     }
@@ -145,7 +145,7 @@ fn stride(surveys: &[Survey]) -> usize {
 }
 
 /// Describes in a sentence which samples of the exciting motions are used, if not all.
-fn thinning(dynamic: &[Log], stride: usize, sampling: &Sampling) -> Option<String> {
+fn thinning(dynamic: &[PreparedLog], stride: usize, sampling: &Sampling) -> Option<String> {
     let total: usize = dynamic.iter().map(|log| log.len().div_ceil(sampling.stride(log))).sum();
     let used = total.div_ceil(most_samples(total));
     (stride > 1 || used > 1).then(|| {
@@ -171,9 +171,9 @@ fn described(sampling: &Sampling, robot: &Robot) -> String {
 
 /// Returns the speed limit of slow samples \[rad/s\] for each joint: the one given, or else 2 % of
 /// the 99th percentile of the joint's speed.
-fn slow_speeds(moving: &[&Log], joints: usize, given: Option<f64>) -> Vec<f64> {
+fn slow_speeds(moving: &[&PreparedLog], joints: usize, given: Option<f64>) -> Vec<f64> {
     let of_joint = |joint: usize| {
-        let in_log = |log: &&Log| {
+        let in_log = |log: &&PreparedLog| {
             log.qd.iter().skip(joint).step_by(joints).map(|v| v.abs()).collect::<Vec<_>>()
         };
         let mut speeds: Vec<f64> = moving.iter().flat_map(in_log).collect();

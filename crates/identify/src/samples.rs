@@ -1,4 +1,4 @@
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::prepare::rest::rest_intervals;
 use crate::regression::triangular_factor::TriangularFactor;
 use crate::stiction::{self, KnownFriction, Rests};
@@ -57,7 +57,7 @@ pub(crate) struct Sampling {
 
 impl Sampling {
     /// Returns the number of samples of a log from one that is used to the next.
-    pub(crate) fn stride(&self, log: &Log) -> usize {
+    pub(crate) fn stride(&self, log: &PreparedLog) -> usize {
         (1.0 / (self.rate * log.step)).floor().max(1.0) as usize
     }
 
@@ -65,7 +65,7 @@ impl Sampling {
     /// nothing without laws.
     ///
     /// Friction has its value at the reference where a log does not know its warmth.
-    pub(crate) fn factors(&self, log: &Log, k: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn factors(&self, log: &PreparedLog, k: usize) -> Vec<[f64; 2]> {
         let of_joint = |(joint, law): (usize, &Option<Warming>)| {
             let known = law.and_then(|law| Some(law.factors(log.warmth_value(law.by, joint, k)?)));
             known.unwrap_or([1.0; 2])
@@ -79,7 +79,7 @@ impl Samples {
     pub(crate) fn in_motion(
         robot: &Robot,
         columns: &[Parameter],
-        logs: &[Log],
+        logs: &[PreparedLog],
         sampling: &Sampling,
         known: &KnownTorque,
     ) -> Self {
@@ -97,7 +97,7 @@ impl Samples {
     fn from_log(
         robot: &Robot,
         columns: &[Parameter],
-        log: &Log,
+        log: &PreparedLog,
         kept: impl Iterator<Item = usize>,
         sampling: &Sampling,
         known: &KnownTorque,
@@ -122,7 +122,7 @@ impl Samples {
     pub(crate) fn at_rest(
         robot: &Robot,
         columns: &[Parameter],
-        logs: &[Log],
+        logs: &[PreparedLog],
         [speed, margin]: [f64; 2],
         known: Option<KnownFriction>,
     ) -> (Self, Rests) {

@@ -8,7 +8,7 @@
 //! each quadrant. The rows of a joint at rest are weighted for that, so that what these can explain
 //! counts for less, and the standard errors of a regression on the rows cover them.
 
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::regression::singular::Singular;
 use nalgebra::DMatrix;
 use reachtube_robot::Robot;
@@ -33,7 +33,7 @@ pub(crate) struct KnownFriction<'a> {
 
 /// Returns the sign of the last velocity of each joint before sample `rest` that was above `speed`
 /// \[rad/s\], n entries; 0 where the recording has none.
-pub(crate) fn sides(log: &Log, rest: usize, speed: f64) -> Vec<f64> {
+pub(crate) fn sides(log: &PreparedLog, rest: usize, speed: f64) -> Vec<f64> {
     let of_joint = |joint: usize| {
         let before = (0..rest).rev().map(|k| log.qd(k)[joint]);
         before.into_iter().find(|qd| qd.abs() > speed).map_or(0.0, f64::signum)
@@ -190,7 +190,7 @@ mod tests {
 
     #[test]
     fn the_side_is_that_of_the_last_motion() {
-        let mut log = Log::zeros("rest", 2, 6, 0.1);
+        let mut log = PreparedLog::zeros("rest", 2, 6, 0.1);
         log.qd = vec![0.5, 0.0, -0.2, 0.0, -0.001, 0.3, 0.0, 0.002, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(sides(&log, 4, 0.01), [-1.0, 1.0]);
         assert_eq!(sides(&log, 2, 0.01), [-1.0, 0.0]);

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags, limits::Limit};
 
-use crate::bag_state::{Journal, State};
-use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, Wanted};
+use crate::bag_state::{BagJournal, BagState};
+use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::loss::Loss;
 
@@ -22,11 +22,11 @@ const LARGEST: i32 = 1 << 26;
 /// are listed in the result.
 pub(crate) fn scan(
     path: &Path,
-    wanted: Wanted<'_>,
+    wanted: WantedTopics<'_>,
     recover: bool,
     receive: &mut Receive<'_>,
 ) -> Result<Contents> {
-    let state = State::of(path)?;
+    let state = BagState::of(path)?;
     let mut damage = Damage::new(recover);
     state.losses(path).into_iter().try_for_each(|loss| damage.add(loss))?;
     // SQLite works on a copy where it has to undo or to apply a journal, or to end earlier.
@@ -54,12 +54,12 @@ struct Copy {
 }
 
 impl Copy {
-    fn of(path: &Path, state: State) -> Result<Self> {
+    fn of(path: &Path, state: BagState) -> Result<Self> {
         let copy = || {
             let folder = tempfile::tempdir()?;
             let file = folder.path().join("bag.db3");
             std::fs::copy(path, &file)?;
-            if state.journal != Journal::None {
+            if state.journal != BagJournal::None {
                 std::fs::copy(state.journal.beside(path), state.journal.beside(&file))?;
             }
             OpenOptions::new().write(true).open(&file)?.set_len(state.whole_pages())?;
@@ -114,7 +114,7 @@ impl Scan<'_> {
         &mut self,
         connection: &Connection,
         topics: Vec<(i64, Topic)>,
-        wanted: Wanted<'_>,
+        wanted: WantedTopics<'_>,
         receive: &mut Receive<'_>,
     ) -> Result<()> {
         let mut roles = BTreeMap::new();

@@ -15,7 +15,7 @@ const WRITE_AHEAD: u8 = 2;
 
 /// A file beside a SQLite file in which a recorder that was cut off left something to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Journal {
+pub(crate) enum BagJournal {
     /// There is none.
     None,
     /// A rollback journal, which undoes an unfinished transaction.
@@ -24,7 +24,7 @@ pub(crate) enum Journal {
     WriteAhead,
 }
 
-impl Journal {
+impl BagJournal {
     /// Returns the path of this journal beside the file `path`.
     pub(crate) fn beside(self, path: &Path) -> PathBuf {
         let mut name = OsString::from(path);
@@ -47,18 +47,18 @@ impl Journal {
 
 /// The state of a file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct State {
+pub(crate) struct BagState {
     /// Size of a page, bytes.
     pub(crate) page: u64,
     /// What lies beside the file.
-    pub(crate) journal: Journal,
+    pub(crate) journal: BagJournal,
     /// Size that the header announces, where it does, bytes.
     announced: Option<u64>,
     length: u64,
     write_ahead: bool,
 }
 
-impl State {
+impl BagState {
     /// Reads the header of a file and looks for its journal.
     pub(crate) fn of(path: &Path) -> Result<Self, reachtube_files::Error> {
         let read = || {
@@ -83,11 +83,11 @@ impl State {
         // The number of pages counts where the two change counters agree.
         let counts = got == HEADER && number(24) == number(92) && number(28) > 0;
         let announced = counts.then(|| number(28) * page);
-        let hot = |journal: &Journal| journal.is_hot(path);
-        let journal = [Journal::Rollback, Journal::WriteAhead].into_iter().find(hot);
+        let hot = |journal: &BagJournal| journal.is_hot(path);
+        let journal = [BagJournal::Rollback, BagJournal::WriteAhead].into_iter().find(hot);
         Ok(Self {
             page,
-            journal: journal.unwrap_or(Journal::None),
+            journal: journal.unwrap_or(BagJournal::None),
             announced,
             length,
             write_ahead: header[18] == WRITE_AHEAD,
@@ -102,7 +102,7 @@ impl State {
 
     /// Returns whether the file cannot be read in its place.
     pub(crate) fn needs_copy(self) -> bool {
-        self.journal != Journal::None || self.whole_pages() != self.length
+        self.journal != BagJournal::None || self.whole_pages() != self.length
     }
 
     /// Returns what the header and the journal show to be lost.
@@ -110,7 +110,7 @@ impl State {
         let mut losses = vec![];
         if let Some(announced) = self.announced.filter(|announced| *announced > self.length)
             // The write-ahead log may hold the rest.
-            && self.journal != Journal::WriteAhead
+            && self.journal != BagJournal::WriteAhead
         {
             let problem = format!(
                 "the file ends here, but its header announces {announced} bytes, so it was cut \
@@ -120,7 +120,7 @@ impl State {
             loss.bytes = Some(announced - self.length);
             losses.push(loss);
         }
-        if self.journal == Journal::Rollback {
+        if self.journal == BagJournal::Rollback {
             let journal = self.journal.beside(path);
             let problem = format!(
                 "the recorder was stopped in the middle of a write, which {} undoes (in a copy)",
@@ -133,10 +133,10 @@ impl State {
 
     /// Returns notes about the write-ahead log.
     pub(crate) fn notes(self, path: &Path) -> Vec<String> {
-        let wal = Journal::WriteAhead.beside(path);
+        let wal = BagJournal::WriteAhead.beside(path);
         let (path, wal) = (path.display(), wal.display());
         match self.journal {
-            Journal::WriteAhead => {
+            BagJournal::WriteAhead => {
                 vec![format!("{path}: messages in {wal} were read too, in a copy of both")]
             }
             _ if self.write_ahead => vec![format!(

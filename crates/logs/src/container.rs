@@ -19,7 +19,7 @@ pub(crate) struct Topic {
 
 /// The topics that are read, by the role of their messages.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Wanted<'a> {
+pub(crate) struct WantedTopics<'a> {
     /// Topics of joint states.
     pub(crate) joints: &'a [String],
     /// Topic of the markers of runs.
@@ -29,13 +29,13 @@ pub(crate) struct Wanted<'a> {
 /// What the messages of a topic are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// Joint states; the number of the topic in [`Wanted::joints`].
+    /// Joint states; the number of the topic in [`WantedTopics::joints`].
     Joints(usize),
     /// Markers of runs.
     Marker(MarkerKind),
 }
 
-impl Wanted<'_> {
+impl WantedTopics<'_> {
     /// Returns the role of a topic, `None` where it is not read.
     ///
     /// # Errors

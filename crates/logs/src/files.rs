@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use crate::container::{Contents, Receive, Wanted};
+use crate::container::{Contents, Receive, WantedTopics};
 use crate::error::{Error, Result};
 
 /// Starts of files, with what they are.
@@ -54,7 +54,7 @@ fn number_of(path: &Path) -> Option<u64> {
 /// Reads a file of any format that was built in.
 pub(crate) fn scan(
     path: &Path,
-    wanted: Wanted<'_>,
+    wanted: WantedTopics<'_>,
     recover: bool,
     receive: &mut Receive<'_>,
 ) -> Result<Contents> {
@@ -86,12 +86,12 @@ use crate::mcap_file::scan as mcap;
 use crate::bag_file::scan as sqlite;
 
 #[cfg(not(feature = "mcap"))]
-fn mcap(path: &Path, _: Wanted<'_>, _: bool, _: &mut Receive<'_>) -> Result<Contents> {
+fn mcap(path: &Path, _: WantedTopics<'_>, _: bool, _: &mut Receive<'_>) -> Result<Contents> {
     Err(not_built_in(path, "mcap"))
 }
 
 #[cfg(not(feature = "rosbag"))]
-fn sqlite(path: &Path, _: Wanted<'_>, _: bool, _: &mut Receive<'_>) -> Result<Contents> {
+fn sqlite(path: &Path, _: WantedTopics<'_>, _: bool, _: &mut Receive<'_>) -> Result<Contents> {
     Err(not_built_in(path, "rosbag"))
 }
 

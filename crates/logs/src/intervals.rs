@@ -18,12 +18,12 @@ const REMEDY: &str = "the list of intervals needs a header with the columns star
 #[derive(Debug, Clone)]
 pub struct Intervals {
     path: PathBuf,
-    rows: Vec<Interval>,
+    rows: Vec<RunInterval>,
 }
 
 /// An interval, both ends included.
 #[derive(Debug, Clone)]
-struct Interval {
+struct RunInterval {
     line: u64,
     /// Start and end, ps; without an end, it lasts until the log ends.
     start: i128,
@@ -37,7 +37,7 @@ struct Interval {
 }
 
 #[derive(Deserialize)]
-struct Row {
+struct IntervalRow {
     start: Option<String>,
     end: Option<String>,
     start_stamp: Option<String>,
@@ -71,9 +71,9 @@ impl Intervals {
             let line = |error: &csv::Error| error.position().map_or(1, csv::Position::line);
             let record = record.map_err(|error| wrong(line(&error), error.to_string()))?;
             let line = record.position().map_or(1, csv::Position::line);
-            let row = record.deserialize::<Row>(Some(&header));
+            let row = record.deserialize::<IntervalRow>(Some(&header));
             let row = row.map_err(|error| wrong(line, error.to_string()))?;
-            rows.push(Interval::of(row, line).map_err(|problem| wrong(line, problem))?);
+            rows.push(RunInterval::of(row, line).map_err(|problem| wrong(line, problem))?);
         }
         if rows.is_empty() {
             return Err(wrong(1, "no interval is listed; add one per line".into()));
@@ -129,7 +129,7 @@ impl Intervals {
     }
 
     /// Returns the run of an interval in a log.
-    fn run(&self, row: &Interval, number: usize, log: &Log) -> Result<Option<Cut>> {
+    fn run(&self, row: &RunInterval, number: usize, log: &Log) -> Result<Option<Cut>> {
         let [Some(first), Some(last)] = [log.samples.first(), log.samples.last()] else {
             return Ok(None);
         };
@@ -166,9 +166,9 @@ impl Intervals {
     }
 }
 
-impl Interval {
+impl RunInterval {
     /// Reads a line.
-    fn of(row: Row, line: u64) -> Result<Self, String> {
+    fn of(row: IntervalRow, line: u64) -> Result<Self, String> {
         let filled = |text: Option<String>| text.filter(|text| !text.is_empty());
         let relative = row.start.is_some();
         let (start, end) =

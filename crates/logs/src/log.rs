@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use reachtube_recordings::{Defect, Run};
 
-use crate::container::{Contents, Role, Topic, Wanted};
+use crate::container::{Contents, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::files::{files_of, scan};
 use crate::loss::Loss;
 use crate::merge::{Merged, merge};
 use crate::sample::{Labels, Sample, defects};
 use crate::seconds::decimal;
-use crate::series::Series;
+use crate::series::TopicStates;
 
 /// Which times the samples have.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -84,7 +84,7 @@ pub struct Log {
 /// What is collected while the files of a log are read.
 #[derive(Debug)]
 struct Collected {
-    series: Vec<Series>,
+    series: Vec<TopicStates>,
     markers: Vec<Marker>,
     topics: Vec<Topic>,
     notes: Vec<String>,
@@ -239,9 +239,9 @@ fn check_options(options: &LogOptions) -> Result<()> {
 
 /// Reads all files of a log.
 fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
-    let wanted = Wanted { joints: &options.topics, marker: options.marker.as_deref() };
+    let wanted = WantedTopics { joints: &options.topics, marker: options.marker.as_deref() };
     let mut all = Collected {
-        series: (0..options.topics.len()).map(Series::new).collect(),
+        series: (0..options.topics.len()).map(TopicStates::new).collect(),
         markers: vec![],
         topics: vec![],
         notes: vec![],
@@ -276,7 +276,12 @@ fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
 }
 
 /// Checks that a topic has joint states of the robot with stamps.
-fn check_series(path: &Path, topic: &str, series: &Series, options: &LogOptions) -> Result<()> {
+fn check_series(
+    path: &Path,
+    topic: &str,
+    series: &TopicStates,
+    options: &LogOptions,
+) -> Result<()> {
     if series.messages == 0 {
         return Err(Error::NoMessages { path: path.into(), topic: topic.into() });
     }
@@ -296,7 +301,7 @@ fn check_series(path: &Path, topic: &str, series: &Series, options: &LogOptions)
 }
 
 /// Says which times were taken.
-fn time_note(path: &Path, series: &Series, time: LogTime) -> String {
+fn time_note(path: &Path, series: &TopicStates, time: LogTime) -> String {
     let path = path.display();
     match time {
         LogTime::Receipt => {
@@ -317,7 +322,12 @@ fn time_note(path: &Path, series: &Series, time: LogTime) -> String {
 }
 
 /// Says where the joints were found.
-fn series_notes(path: &Path, topic: &str, series: &Series, options: &LogOptions) -> Vec<String> {
+fn series_notes(
+    path: &Path,
+    topic: &str,
+    series: &TopicStates,
+    options: &LogOptions,
+) -> Vec<String> {
     let path = path.display();
     let place = |(joint, place): (usize, &Option<usize>)| {
         let name = &options.joints[joint];

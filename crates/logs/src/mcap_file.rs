@@ -9,10 +9,10 @@ use mcap::records::{ChunkHeader, MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{McapError, parse_record};
 
-use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, Wanted};
+use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::loss::Loss;
-use crate::mcap_records::{HEAD, LARGEST, Piece, Records, records_of};
+use crate::mcap_records::{HEAD, LARGEST, McapRecords, Piece, records_of};
 
 /// Reads a file and passes the messages of the topics `wanted` on, in the order of the file.
 ///
@@ -22,7 +22,7 @@ use crate::mcap_records::{HEAD, LARGEST, Piece, Records, records_of};
 /// are listed in the result.
 pub(crate) fn scan(
     path: &Path,
-    wanted: Wanted<'_>,
+    wanted: WantedTopics<'_>,
     recover: bool,
     receive: &mut Receive<'_>,
 ) -> Result<Contents> {
@@ -41,7 +41,7 @@ pub(crate) fn scan(
         topics: vec![],
         numbers: BTreeMap::new(),
     };
-    let mut records = Records::open(path).map_err(unreadable)?;
+    let mut records = McapRecords::open(path).map_err(unreadable)?;
     while let Some(piece) = records.next().map_err(unreadable)? {
         scan.piece(piece)?;
     }
@@ -51,7 +51,7 @@ pub(crate) fn scan(
 /// The state of reading a file.
 struct Scan<'a, 'b> {
     path: &'a Path,
-    wanted: Wanted<'a>,
+    wanted: WantedTopics<'a>,
     receive: &'a mut Receive<'b>,
     damage: Damage,
     /// Names of the types, by the number of their schema.

@@ -27,14 +27,14 @@ pub(crate) struct Piece {
 /// The records of a file that matter: schemas, channels, messages and chunks, up to the end of
 /// the data.
 #[derive(Debug)]
-pub(crate) struct Records {
+pub(crate) struct McapRecords {
     file: BufReader<File>,
     position: u64,
     length: u64,
     finished: bool,
 }
 
-impl Records {
+impl McapRecords {
     /// Opens a file that starts with the magic of MCAP.
     pub(crate) fn open(path: &Path) -> Result<Self> {
         let file = File::open(path)?;

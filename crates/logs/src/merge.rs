@@ -3,8 +3,8 @@
 use reachtube_recordings::{Defect, DefectKind, Error as RecordingsError};
 
 use crate::error::Result;
-use crate::sample::{Labels, Problem, Quantity, Sample, defects};
-use crate::series::Series;
+use crate::sample::{JointQuantity, Labels, MessageFault, Sample, defects};
+use crate::series::TopicStates;
 
 /// The samples of all topics.
 #[derive(Debug, Default)]
@@ -22,9 +22,9 @@ pub(crate) struct Merged {
 /// # Errors
 ///
 /// The defects of topics whose stamps do not increase.
-pub(crate) fn merge(mut series: Vec<Series>, labels: &Labels<'_>) -> Result<Merged> {
+pub(crate) fn merge(mut series: Vec<TopicStates>, labels: &Labels<'_>) -> Result<Merged> {
     if series.len() == 1 {
-        let Series { samples, values, .. } = series.remove(0);
+        let TopicStates { samples, values, .. } = series.remove(0);
         return Ok(Merged { samples, values, unmatched: 0 });
     }
     let unsorted: Vec<Defect> = series
@@ -49,7 +49,7 @@ pub(crate) fn merge(mut series: Vec<Series>, labels: &Labels<'_>) -> Result<Merg
                     parts.push((sample, &from.values[at..at + width]));
                     next[topic] += 1;
                 }
-                None => problems.push(Problem::Alone { topic }),
+                None => problems.push(MessageFault::Alone { topic }),
             }
         }
         let matched = problems.is_empty();
@@ -67,22 +67,23 @@ fn joined(
     parts: &[(&Sample, &[f64])],
     matched: bool,
     joints: usize,
-    problems: &mut Vec<Problem>,
+    problems: &mut Vec<MessageFault>,
 ) -> Vec<f64> {
-    let is_hard =
-        |problem: &&Problem| !matches!(problem, Problem::Missing { .. } | Problem::Empty { .. });
+    let is_hard = |problem: &&MessageFault| {
+        !matches!(problem, MessageFault::Missing { .. } | MessageFault::Empty { .. })
+    };
     problems.extend(parts.iter().flat_map(|(sample, _)| sample.problems.iter().filter(is_hard)));
-    let place = |slot: usize| (Quantity::ALL[slot / joints], slot % joints);
+    let place = |slot: usize| (JointQuantity::ALL[slot / joints], slot % joints);
     let mut join = |slot: usize| {
         let mut given =
             parts.iter().map(|(_, values)| values[slot]).filter(|value| !value.is_nan());
         let value = given.next();
         let (quantity, joint) = place(slot);
         if given.next().is_some() {
-            problems.push(Problem::Twice { quantity, joint });
+            problems.push(MessageFault::Twice { quantity, joint });
         }
         if value.is_none() && matched {
-            problems.push(Problem::Absent { quantity, joint });
+            problems.push(MessageFault::Absent { quantity, joint });
         }
         value.unwrap_or(f64::NAN)
     };
@@ -93,7 +94,7 @@ impl Merged {
     /// Leaves out the samples before all topics have begun and after one has ended.
     fn trim(&mut self, width: usize) {
         let alone = |sample: &Sample| {
-            sample.problems.iter().any(|problem| matches!(problem, Problem::Alone { .. }))
+            sample.problems.iter().any(|problem| matches!(problem, MessageFault::Alone { .. }))
         };
         let first = self.samples.iter().take_while(|sample| alone(sample)).count();
         let last = self.samples[first..].iter().rev().take_while(|sample| alone(sample)).count();

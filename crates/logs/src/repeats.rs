@@ -35,7 +35,7 @@ pub struct Repeats {
 }
 
 /// A suite while runs are added to it.
-struct Group {
+struct RepeatGroup {
     /// Indices of its runs.
     members: Vec<usize>,
     found: Repeats,
@@ -56,7 +56,7 @@ struct Likeness {
 ///
 /// Returns what was found, in the order of the suites' first runs.
 pub fn find_repeats(logs: &[Log], cuts: &mut [Cut], align: bool) -> Vec<Repeats> {
-    let mut groups: Vec<Group> = vec![];
+    let mut groups: Vec<RepeatGroup> = vec![];
     for index in (0..cuts.len()).filter(|index| cuts[*index].suite.is_none()).collect::<Vec<_>>() {
         let best = groups
             .iter()
@@ -73,7 +73,7 @@ pub fn find_repeats(logs: &[Log], cuts: &mut [Cut], align: bool) -> Vec<Repeats>
                 }
                 groups[number].add(index, &likeness);
             }
-            None => groups.push(Group::new(index)),
+            None => groups.push(RepeatGroup::new(index)),
         }
     }
     groups.retain(|group| group.members.len() > 1);
@@ -86,7 +86,7 @@ pub fn find_repeats(logs: &[Log], cuts: &mut [Cut], align: bool) -> Vec<Repeats>
     groups.into_iter().map(|group| group.found).collect()
 }
 
-impl Group {
+impl RepeatGroup {
     fn new(index: usize) -> Self {
         let suite = String::new();
         let found = Repeats { suite, runs: 1, correlation: 1.0, start_spread: 0.0, lag: 0.0 };

@@ -8,13 +8,13 @@ use reachtube_recordings::{Defect, DefectKind};
 
 /// A quantity of a joint state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Quantity {
+pub(crate) enum JointQuantity {
     Position,
     Velocity,
     Effort,
 }
 
-impl Quantity {
+impl JointQuantity {
     /// All quantities in the order of messages and of recordings.
     pub(crate) const ALL: [Self; 3] = [Self::Position, Self::Velocity, Self::Effort];
 
@@ -29,26 +29,26 @@ impl Quantity {
 
 /// What is wrong with a sample. Joints count from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Problem {
+pub(crate) enum MessageFault {
     /// The message does not name the joint.
     Missing { joint: usize },
     /// The message names the joint twice.
     Repeated { joint: usize },
     /// The message has no values of the quantity.
-    Empty { quantity: Quantity },
+    Empty { quantity: JointQuantity },
     /// The message has another number of values than of names.
-    Length { quantity: Quantity, values: usize, names: usize },
+    Length { quantity: JointQuantity, values: usize, names: usize },
     /// The value is not a finite number.
-    NotFinite { quantity: Quantity, joint: usize, value: f64 },
+    NotFinite { quantity: JointQuantity, joint: usize, value: f64 },
     /// Several topics have the value.
-    Twice { quantity: Quantity, joint: usize },
+    Twice { quantity: JointQuantity, joint: usize },
     /// No topic has the value.
-    Absent { quantity: Quantity, joint: usize },
+    Absent { quantity: JointQuantity, joint: usize },
     /// A topic has no message with this stamp; its number among the topics.
     Alone { topic: usize },
 }
 
-impl Problem {
+impl MessageFault {
     fn joint(self) -> Option<usize> {
         match self {
             Self::Missing { joint }
@@ -60,7 +60,7 @@ impl Problem {
         }
     }
 
-    fn quantity(self) -> Option<Quantity> {
+    fn quantity(self) -> Option<JointQuantity> {
         match self {
             Self::Empty { quantity }
             | Self::Length { quantity, .. }
@@ -74,7 +74,7 @@ impl Problem {
     /// Returns the problem of a message, and what to do.
     fn words(self, labels: &Labels<'_>) -> (String, &'static str) {
         let joint = self.joint().map_or("", |joint| &labels.joints[joint]);
-        let what = self.quantity().map_or("", Quantity::name);
+        let what = self.quantity().map_or("", JointQuantity::name);
         match self {
             Self::Missing { .. } => (
                 format!("it does not name the joint {joint}"),
@@ -125,7 +125,7 @@ pub(crate) struct Sample {
     /// Number of the message in its topic, from 1.
     pub(crate) message: u64,
     /// What is wrong with it.
-    pub(crate) problems: Box<[Problem]>,
+    pub(crate) problems: Box<[MessageFault]>,
 }
 
 /// Names for messages to the user.

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use crate::container::RawMessage;
 use crate::message::JointState;
-use crate::sample::{Problem, Quantity, Sample};
+use crate::sample::{JointQuantity, MessageFault, Sample};
 
 /// Where a message names a joint of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum JointPlace {
     At(usize),
     Missing,
     Repeated,
@@ -16,7 +16,7 @@ enum Place {
 
 /// The joint states of one topic.
 #[derive(Debug, Default)]
-pub(crate) struct Series {
+pub(crate) struct TopicStates {
     /// Number of the topic among those of joint states.
     topic: usize,
     /// The samples, in the order of the log.
@@ -35,10 +35,10 @@ pub(crate) struct Series {
     /// Place of each joint in the first message that is used, from 1.
     pub(crate) first_places: Vec<Option<usize>>,
     names: Vec<String>,
-    places: Vec<Place>,
+    places: Vec<JointPlace>,
 }
 
-impl Series {
+impl TopicStates {
     /// Returns an empty series of a topic.
     pub(crate) fn new(topic: usize) -> Self {
         Self { topic, ..Self::default() }
@@ -60,13 +60,13 @@ impl Series {
         if self.places.is_empty() || !state.names.iter().eq(self.names.iter()) {
             self.arrange(&state.names, joints);
         }
-        if self.places.iter().all(|place| *place == Place::Missing) {
+        if self.places.iter().all(|place| *place == JointPlace::Missing) {
             self.foreign += 1;
             return Ok(());
         }
         if self.first_places.is_empty() {
-            let number = |place: &Place| match place {
-                Place::At(index) => Some(index + 1),
+            let number = |place: &JointPlace| match place {
+                JointPlace::At(index) => Some(index + 1),
                 _ => None,
             };
             self.first_places = self.places.iter().map(number).collect();
@@ -87,13 +87,13 @@ impl Series {
         let place = |joint: &String| {
             let mut places = names.iter().enumerate().filter(|(_, name)| *name == joint);
             match (places.next(), places.next()) {
-                (Some((index, _)), None) => Place::At(index),
-                (None, _) => Place::Missing,
-                _ => Place::Repeated,
+                (Some((index, _)), None) => JointPlace::At(index),
+                (None, _) => JointPlace::Missing,
+                _ => JointPlace::Repeated,
             }
         };
-        let places: Vec<Place> = joints.iter().map(place).collect();
-        let used = |places: &[Place]| places.iter().any(|place| *place != Place::Missing);
+        let places: Vec<JointPlace> = joints.iter().map(place).collect();
+        let used = |places: &[JointPlace]| places.iter().any(|place| *place != JointPlace::Missing);
         if used(&places) && used(&self.places) && places != self.places {
             self.changes += 1;
         }
@@ -106,32 +106,32 @@ impl Series {
     }
 
     /// Adds the values of a message in the robot's order, and returns what is wrong with them.
-    fn values_of(&mut self, state: &JointState<'_>) -> Vec<Problem> {
+    fn values_of(&mut self, state: &JointState<'_>) -> Vec<MessageFault> {
         let mut problems = vec![];
         for (joint, place) in self.places.iter().enumerate() {
             match place {
-                Place::At(_) => {}
-                Place::Missing => problems.push(Problem::Missing { joint }),
-                Place::Repeated => problems.push(Problem::Repeated { joint }),
+                JointPlace::At(_) => {}
+                JointPlace::Missing => problems.push(MessageFault::Missing { joint }),
+                JointPlace::Repeated => problems.push(MessageFault::Repeated { joint }),
             }
         }
         let names = state.names.len();
-        for (quantity, given) in Quantity::ALL.into_iter().zip(state.values) {
+        for (quantity, given) in JointQuantity::ALL.into_iter().zip(state.values) {
             match given.len() {
-                0 => problems.push(Problem::Empty { quantity }),
+                0 => problems.push(MessageFault::Empty { quantity }),
                 values if values != names => {
-                    problems.push(Problem::Length { quantity, values, names });
+                    problems.push(MessageFault::Length { quantity, values, names });
                 }
                 _ => {}
             }
             let sound = given.len() == names;
             for (joint, place) in self.places.iter().enumerate() {
                 let value = match place {
-                    Place::At(index) if sound => given.get(*index),
+                    JointPlace::At(index) if sound => given.get(*index),
                     _ => None,
                 };
                 if let Some(value) = value.filter(|value| !value.is_finite()) {
-                    problems.push(Problem::NotFinite { quantity, joint, value });
+                    problems.push(MessageFault::NotFinite { quantity, joint, value });
                 }
                 self.values.push(value.filter(|value| value.is_finite()).unwrap_or(f64::NAN));
             }

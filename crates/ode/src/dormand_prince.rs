@@ -2,7 +2,7 @@
 
 use crate::dense_step::DenseStep;
 use crate::outcome::{Cause, Outcome, is_within};
-use crate::run::Run;
+use crate::run::InitialValueProblem;
 use crate::runge_kutta::add_scaled;
 use crate::step_control::{StepControl, Tolerance};
 use crate::tableau::{ERROR_WEIGHTS, NODES, STAGES, weighted_sum};
@@ -179,7 +179,7 @@ impl DormandPrince {
         &mut self,
         field: &mut F,
         times: &[f64],
-        run: Run<'_>,
+        run: InitialValueProblem<'_>,
         mut observe: impl FnMut(usize, &[f64]),
     ) -> Outcome {
         self.control = StepControl::new();

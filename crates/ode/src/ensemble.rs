@@ -3,7 +3,7 @@
 use reachtube_scalar::Lanewise;
 
 use crate::outcome::{Cause, Outcome, is_within};
-use crate::run::Run;
+use crate::run::InitialValueProblem;
 use crate::runge_kutta::RungeKutta4;
 use crate::vector_field::VectorField;
 
@@ -16,7 +16,7 @@ use crate::vector_field::VectorField;
 /// # Examples
 ///
 /// ```
-/// use reachtube_ode::{Ensemble, Run, VectorField};
+/// use reachtube_ode::{Ensemble, InitialValueProblem, VectorField};
 /// use reachtube_scalar::{Lanes, Lanewise};
 ///
 /// /// A pendulum under a torque, over any number of lanes.
@@ -29,7 +29,10 @@ use crate::vector_field::VectorField;
 ///
 /// let times: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
 /// let starts: Vec<_> = (0..1000).map(|r| [1e-3 * f64::from(r), 0.0]).collect();
-/// let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &[0.0; 100] }).collect();
+/// let runs: Vec<_> = starts
+///     .iter()
+///     .map(|start| InitialValueProblem { start, inputs: &[0.0; 100] })
+///     .collect();
 /// let mut highest = 0.0_f64;
 /// let mut ensemble = Ensemble::<Lanes<8>>::new(2);
 /// let outcomes = ensemble.integrate(&mut Pendulum, &times, 1, &runs, |_run, _sample, x| {
@@ -85,7 +88,7 @@ impl<S: Lanewise> Ensemble<S> {
         field: &mut F,
         times: &[f64],
         substeps: usize,
-        runs: &[Run<'_>],
+        runs: &[InitialValueProblem<'_>],
         mut observe: impl FnMut(usize, usize, &[f64]),
     ) -> Vec<Outcome> {
         let mut outcomes = vec![Outcome::Reached; runs.len()];
@@ -113,7 +116,7 @@ impl<S: Lanewise> Ensemble<S> {
     }
 
     /// Loads the starts of a block of runs. Lanes beyond the last run repeat it.
-    fn start(&mut self, runs: &[Run<'_>]) {
+    fn start(&mut self, runs: &[InitialValueProblem<'_>]) {
         let n = self.x.len();
         assert!(
             runs.iter().all(|run| run.start.len() == n),
@@ -125,7 +128,7 @@ impl<S: Lanewise> Ensemble<S> {
     }
 
     /// Loads the inputs from sample k on.
-    fn hold(&mut self, times: &[f64], runs: &[Run<'_>], k: usize) {
+    fn hold(&mut self, times: &[f64], runs: &[InitialValueProblem<'_>], k: usize) {
         let m = runs[0].input_dimension(times);
         self.u.resize(m, S::zero());
         for (i, u) in self.u.iter_mut().enumerate() {

@@ -14,7 +14,7 @@ pub use dense_step::DenseStep;
 pub use dormand_prince::DormandPrince;
 pub use ensemble::Ensemble;
 pub use outcome::{Cause, Outcome};
-pub use run::Run;
+pub use run::InitialValueProblem;
 pub use runge_kutta::RungeKutta4;
 pub use step_control::Tolerance;
 pub use vector_field::VectorField;

@@ -2,7 +2,7 @@
 ///
 /// Runs with the same start or inputs can borrow the same slice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Run<'a> {
+pub struct InitialValueProblem<'a> {
     /// State x at the first sample (n).
     pub start: &'a [f64],
     /// Inputs u, row-major, with one row of m entries per sample except the last. Row k acts from
@@ -10,7 +10,7 @@ pub struct Run<'a> {
     pub inputs: &'a [f64],
 }
 
-impl<'a> Run<'a> {
+impl<'a> InitialValueProblem<'a> {
     /// Returns the input dimension m for samples at `times`.
     ///
     /// # Panics

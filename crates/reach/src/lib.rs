@@ -10,8 +10,8 @@ mod upward;
 pub use error::ReachError;
 pub use grid::TimeGrid;
 pub use linear::{
-    Disturbance, LinearSystem, Propagation, ReachSets, SampleGenerators, Step, Trajectory, Tube,
-    TubeRadii, step,
+    Disturbance, LinearSystem, Propagation, PropagationStep, ReachSets, SampleGenerators,
+    Trajectory, Tube, TubeRadii, step,
 };
 pub use polynomial::{
     Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,

@@ -24,7 +24,7 @@ pub struct Inspection {
     /// Number of recordings in the index.
     pub runs: usize,
     /// Test suites, then one group for each kind of the recordings without a suite.
-    pub groups: Vec<Group>,
+    pub groups: Vec<RunGroup>,
     /// Recordings that were refused are in no group; one entry for each kind of defect.
     pub refused: Vec<Refusal>,
     /// Notes for the user.
@@ -33,7 +33,7 @@ pub struct Inspection {
 
 /// A group of recordings: a test suite, or the recordings of one kind that have no suite.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Group {
+pub struct RunGroup {
     /// Name of the suite or of the kind.
     pub name: String,
     /// Whether it is a test suite.
@@ -110,7 +110,7 @@ pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Inspection {
             .filter_map(|(name, suite, members)| {
                 let motion = data.runs()[members[0]].motion.clone();
                 let runs: Vec<_> = members.iter().filter_map(|&i| sound[i].as_ref()).collect();
-                (!runs.is_empty()).then(|| Group::new(name, suite, motion, &runs))
+                (!runs.is_empty()).then(|| RunGroup::new(name, suite, motion, &runs))
             })
             .collect(),
         refused,
@@ -179,7 +179,7 @@ fn notes(data: &DataSet, runs: &[Option<RunSummary>]) -> Vec<String> {
     notes
 }
 
-impl Group {
+impl RunGroup {
     fn new(name: String, suite: bool, motion: Option<String>, runs: &[&RunSummary]) -> Self {
         let shortest = runs.iter().map(|run| run.steps[0]).fold(f64::INFINITY, f64::min);
         let longest = runs.iter().map(|run| run.steps[1]).fold(0.0, f64::max);

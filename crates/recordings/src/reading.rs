@@ -85,7 +85,7 @@ fn read_samples(
 }
 
 /// A line with a sample.
-struct Row {
+struct CsvRow {
     /// Line in the file, from 1.
     line: u64,
     /// Time in picoseconds, where it is a number.
@@ -98,7 +98,7 @@ struct Reading<'a> {
     run: Run,
     /// Column of `temp1`, from 0, where there is one.
     temperatures_at: Option<usize>,
-    rows: Vec<Row>,
+    rows: Vec<CsvRow>,
     defects: Vec<Defect>,
 }
 
@@ -220,7 +220,7 @@ impl Reading<'_> {
         values: &mut [f64],
     ) {
         if record.len() != fields {
-            self.rows.push(Row { line, time: None });
+            self.rows.push(CsvRow { line, time: None });
             let problem =
                 format!("the line has {} fields, but the header has {fields}", record.len());
             let remedy =
@@ -282,7 +282,7 @@ impl Reading<'_> {
     fn time(&mut self, line: u64, value: f64, text: &str) -> Option<i128> {
         let time = value.is_finite().then(|| picoseconds(text).unwrap_or((value * 1e12) as i128));
         let above = self.rows.last().and_then(|row| row.time);
-        self.rows.push(Row { line, time });
+        self.rows.push(CsvRow { line, time });
         let follows = above.zip(time).is_none_or(|(above, time)| time > above);
         if !follows {
             let what = if above == time {
@@ -312,7 +312,7 @@ impl Reading<'_> {
 
     /// Finds steps that are too long. Steps to and from a line whose time is unknown are not known.
     fn gaps(&mut self, limit: GapLimit) {
-        let step = |pair: &[Row]| {
+        let step = |pair: &[CsvRow]| {
             let step = seconds(pair[1].time?.saturating_sub(pair[0].time?));
             (step > 0.0).then_some((pair[1].line, step))
         };

@@ -16,7 +16,7 @@ pub struct Refusal {
     /// Number of recordings that have them.
     pub recordings: usize,
     /// The first of them.
-    pub first: Place,
+    pub first: DefectPlace,
     /// What to do.
     pub remedy: String,
     /// The option that accepts all of them, where there is one.
@@ -27,7 +27,7 @@ pub struct Refusal {
 
 /// Where a defect is, and what is wrong there.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Place {
+pub struct DefectPlace {
     /// Path of the file.
     pub file: String,
     /// Line in the file, from 1.
@@ -56,7 +56,7 @@ impl Refusal {
             accepted_by: acceptance(defect.kind),
             widest: defect.kind,
             remedy: defect.remedy,
-            first: Place {
+            first: DefectPlace {
                 file: defect.file.display().to_string(),
                 line: defect.line,
                 joint: defect.joint,
@@ -100,7 +100,7 @@ fn acceptance(kind: DefectKind) -> Option<String> {
 
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Place { file, line, joint, problem } = &self.first;
+        let DefectPlace { file, line, joint, problem } = &self.first;
         write!(f, "{file}")?;
         line.map_or(Ok(()), |line| write!(f, ":{line}"))?;
         joint.map_or(Ok(()), |joint| write!(f, ": joint {joint}"))?;

@@ -2,7 +2,7 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use reachtube_ode::{DormandPrince, Ensemble, Run, Tolerance};
+use reachtube_ode::{DormandPrince, Ensemble, InitialValueProblem, Tolerance};
 use reachtube_robot::{DrivenBy, Robot, RobotField};
 use reachtube_scalar::{Lanes, Lanewise};
 
@@ -30,7 +30,8 @@ fn recorded() -> (Vec<f64>, Vec<Vec<f64>>, Vec<f64>) {
 )]
 fn fixed<S: Lanewise>(bencher: Bencher, driven_by: DrivenBy) {
     let (robot, (times, starts, inputs)) = (Robot::lwa4p(), recorded());
-    let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &inputs }).collect();
+    let runs: Vec<_> =
+        starts.iter().map(|start| InitialValueProblem { start, inputs: &inputs }).collect();
     let mut field = RobotField::<S>::new(&robot, driven_by).regularised_below(0.01);
     let mut ensemble = Ensemble::new(12);
     bencher.counter(ItemsCount::new(RUNS)).bench_local(|| {
@@ -48,10 +49,14 @@ fn adaptive<const MOTOR: bool>(bencher: Bencher, tolerance: f64) {
     let mut solver = DormandPrince::new(12, Tolerance { relative: tolerance, absolute: tolerance });
     bencher.counter(ItemsCount::new(RUNS)).bench_local(|| {
         for start in &starts {
-            let outcome =
-                solver.simulate(&mut field, &times, Run { start, inputs: &inputs }, |_, x| {
+            let outcome = solver.simulate(
+                &mut field,
+                &times,
+                InitialValueProblem { start, inputs: &inputs },
+                |_, x| {
                     black_box(x);
-                });
+                },
+            );
             assert!(outcome.is_reached(), "{outcome:?}");
         }
     });

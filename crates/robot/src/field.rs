@@ -31,13 +31,13 @@ pub enum DrivenBy {
 /// # Examples
 ///
 /// ```
-/// use reachtube_ode::{DormandPrince, Run, Tolerance};
+/// use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 /// use reachtube_robot::{DrivenBy, Robot, RobotField};
 ///
 /// let robot = Robot::lwa4p();
 /// let mut field = RobotField::new(&robot, DrivenBy::Input);
 /// let times = [0.0, 0.004, 0.009]; // s, as recorded
-/// let run = Run { start: &[0.0; 12], inputs: &[10.0; 12] };
+/// let run = InitialValueProblem { start: &[0.0; 12], inputs: &[10.0; 12] };
 /// let mut solver = DormandPrince::new(12, Tolerance::default());
 /// let outcome = solver.simulate(&mut field, &times, run, |sample, x| {
 ///     assert_eq!(x[0] > 0.0, sample > 0);

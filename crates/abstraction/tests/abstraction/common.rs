@@ -1,5 +1,5 @@
 use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
-use reachtube_ode::{Ensemble, Run};
+use reachtube_ode::{Ensemble, InitialValueProblem};
 use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::{Lanewise, Powers};
 
@@ -43,7 +43,7 @@ pub(crate) fn model(robot: &Robot, kind: ModelKind, order: u32) -> PolynomialMod
 pub(crate) fn simulated<S: Lanewise + Powers>(
     model: &PolynomialModel,
     times: &[f64],
-    runs: &[Run<'_>],
+    runs: &[InitialValueProblem<'_>],
 ) -> Vec<f64> {
     let mut states = vec![0.0; runs.len() * times.len() * model.states()];
     let place = |run: usize, sample: usize| (run * times.len() + sample) * model.states();

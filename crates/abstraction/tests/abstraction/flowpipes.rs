@@ -1,5 +1,5 @@
 use reachtube_abstraction::ModelKind;
-use reachtube_ode::Run;
+use reachtube_ode::InitialValueProblem;
 use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, TimeGrid, UncertainInput};
 use reachtube_robot::Robot;
 
@@ -37,8 +37,11 @@ fn flowpipes_of_the_models_enclose_their_runs() {
             let start =
                 model.state(&moved(&q, &mut seed, initial), &moved(&qd, &mut seed, initial));
             let inputs = moved(&nominal, &mut seed, disturbance);
-            let behaviour =
-                simulated::<f64>(&model, &times, &[Run { start: &start, inputs: &inputs }]);
+            let behaviour = simulated::<f64>(
+                &model,
+                &times,
+                &[InitialValueProblem { start: &start, inputs: &inputs }],
+            );
             for (k, x) in behaviour.chunks(model.states()).enumerate() {
                 for (value, set) in x.iter().zip(flowpipe.sample(k)) {
                     // The integrator is exact to 1e-9 here.

@@ -1,5 +1,5 @@
 use reachtube_abstraction::{ModelField, ModelKind};
-use reachtube_ode::{DormandPrince, Run, Tolerance};
+use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_robot::{DrivenBy, Robot, RobotField};
 use reachtube_scalar::Lanes;
 
@@ -15,7 +15,8 @@ fn integrators_and_lanes_agree_on_the_motion_of_a_model() {
         let starts: Vec<Vec<f64>> = (0..6)
             .map(|_| model.state(&numbers(&mut seed, 6, 0.1), &numbers(&mut seed, 6, 0.1)))
             .collect();
-        let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &inputs }).collect();
+        let runs: Vec<_> =
+            starts.iter().map(|start| InitialValueProblem { start, inputs: &inputs }).collect();
         let alone = simulated::<f64>(&model, &times, &runs);
         assert_eq!(alone, simulated::<Lanes<4>>(&model, &times, &runs), "{kind:?}");
         let states = model.states();
@@ -41,11 +42,11 @@ fn a_simulated_model_3_moves_as_the_robot() {
     let (start, body) = (model.state(&q, &qd), [q, qd].concat());
     let mut motion = Vec::new();
     let mut solver = DormandPrince::new(12, Tolerance::default());
-    let run = Run { start: &body, inputs: &inputs };
+    let run = InitialValueProblem { start: &body, inputs: &inputs };
     let mut field = RobotField::new(&robot, DrivenBy::Input);
     assert!(solver.simulate(&mut field, &times, run, |_, x| motion.push(x.to_vec())).is_reached());
     let mut solver = DormandPrince::new(24, Tolerance::default());
-    let run = Run { start: &start, inputs: &inputs };
+    let run = InitialValueProblem { start: &start, inputs: &inputs };
     let outcome = solver.simulate(&mut ModelField::new(&model), &times, run, |sample, x| {
         let error = largest(x.iter().zip(&motion[sample]).map(|(a, b)| a - b));
         assert!(error < 1e-4, "{error} at sample {sample}");

@@ -3,7 +3,7 @@
 use reachtube_abstraction::{
     ExpansionPoint, Linearisation, ModelKind, OperatingBox, PolynomialModel,
 };
-use reachtube_ode::Run;
+use reachtube_ode::InitialValueProblem;
 use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, TimeGrid, UncertainInput};
 use reachtube_robot::Robot;
 
@@ -176,7 +176,11 @@ fn flowpipes_enclose_runs() {
             let start = moved(&centre, initial);
             let inputs = moved(&nominal, disturbance);
             let start = model.state(&start[..2], &start[2..]);
-            let run = simulated::<f64>(&model, &times, &[Run { start: &start, inputs: &inputs }]);
+            let run = simulated::<f64>(
+                &model,
+                &times,
+                &[InitialValueProblem { start: &start, inputs: &inputs }],
+            );
             for (k, x) in run.chunks(model.states()).enumerate() {
                 for (value, set) in x.iter().zip(flowpipe.sample(k)) {
                     // The integrator is exact to 1e-9 here.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::recordings::{DataSet, Group, Inspection, JointSummary, inspect};
+use reachtube::recordings::{DataSet, Inspection, JointSummary, RunGroup, inspect};
 
 use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
@@ -96,7 +96,7 @@ q - int qd: largest difference between q and the integral of qd [as q]
 ";
 
 /// Describes the runs of a group in one line.
-fn heading(group: &Group) -> String {
+fn heading(group: &RunGroup) -> String {
     let kind = if group.suite { "suite" } else { "no suite:" };
     let motion =
         group.motion.as_ref().map_or_else(String::new, |motion| format!(" (motion {motion})"));
@@ -124,7 +124,7 @@ fn heading(group: &Group) -> String {
 }
 
 /// Describes the number of samples per run and the time between them.
-fn samples(group: &Group) -> String {
+fn samples(group: &RunGroup) -> String {
     let [fewest, most] = group.samples;
     let count = if fewest == most { most.to_string() } else { format!("{fewest} to {most}") };
     let step = match group.step {
@@ -139,7 +139,7 @@ fn samples(group: &Group) -> String {
     format!("{count} {}{step}", plural(most, "sample"))
 }
 
-fn joint_table(group: &Group, kinds: &[JointKind]) -> String {
+fn joint_table(group: &RunGroup, kinds: &[JointKind]) -> String {
     let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
     let units = units.map(|unit| ColumnUnit::new(kinds, unit));
     let warm = group.joints.iter().any(|joint| joint.temperature.is_some());

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::identify::prepare::{
-    Log, LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, windows,
+    LogEntry, PrepareSettings, PreparedLog, RawLog, cut_off, prepare, read, windows,
 };
 use serde_json::json;
 
@@ -99,8 +99,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 }
 
 /// Returns the error of windows that no recording fills.
-fn nothing_left(args: &Arguments, logs: &[Log]) -> Error {
-    let duration = |log: &Log| log.len().saturating_sub(1) as f64 * log.step;
+fn nothing_left(args: &Arguments, logs: &[PreparedLog]) -> Error {
+    let duration = |log: &PreparedLog| log.len().saturating_sub(1) as f64 * log.step;
     Error::NothingPrepared {
         window: args.window,
         longest: logs.iter().map(duration).fold(0.0, f64::max),

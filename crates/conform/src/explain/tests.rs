@@ -10,7 +10,7 @@ use rand::RngExt;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::SeedableRng;
 use reachtube_abstraction::{ExpansionPoint, ModelField, ModelKind, PolynomialModel};
-use reachtube_ode::{DormandPrince, Run as Motion, Tolerance};
+use reachtube_ode::{DormandPrince, InitialValueProblem as Motion, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle, TimeGrid};
 use reachtube_recordings::Run;
 use reachtube_robot::Robot;

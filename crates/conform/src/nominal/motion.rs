@@ -1,5 +1,5 @@
 use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
-use reachtube_ode::{Ensemble, Outcome, Run};
+use reachtube_ode::{Ensemble, InitialValueProblem, Outcome};
 use reachtube_robot::Robot;
 
 use crate::data::case::Case;
@@ -99,7 +99,7 @@ fn polynomial(
     for k in 0..times.len().saturating_sub(1) {
         let u = &mut inputs[k * n..(k + 1) * n];
         correct(&x[..2 * n], u);
-        let (run, mut next) = ([Run { start: &x, inputs: u }], x.clone());
+        let (run, mut next) = ([InitialValueProblem { start: &x, inputs: u }], x.clone());
         let outcomes =
             ensemble.integrate(&mut field, &times[k..k + 2], substeps, &run, |_, _, x| {
                 next.copy_from_slice(x);

@@ -1,7 +1,7 @@
 //! The motion of a model under known inputs, in floating point.
 
 use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
-use reachtube_ode::{Ensemble, Outcome, Run};
+use reachtube_ode::{Ensemble, InitialValueProblem, Outcome};
 
 use crate::data::case::Case;
 use crate::error::{Error, Result};
@@ -54,7 +54,7 @@ pub(crate) fn simulate(
     let start = model.state(&start[..n], &start[n..]);
     let inputs = &inputs[..n * times.len().saturating_sub(1)];
     let mut states = Vec::with_capacity(times.len() * 2 * n);
-    let run = [Run { start: &start, inputs }];
+    let run = [InitialValueProblem { start: &start, inputs }];
     let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
     let outcomes =
         ensemble.integrate(&mut ModelField::new(model), times, substeps, &run, |_, _, x| {

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 use reachtube_abstraction::{ModelField, PolynomialModel};
-use reachtube_ode::{Ensemble, Run};
+use reachtube_ode::{Ensemble, InitialValueProblem};
 
 use crate::data::case::Case;
 use crate::data::side::Side;
@@ -94,7 +94,8 @@ fn at_node(
     let places: Vec<(usize, Side)> = all.filter(is_near).collect();
     let motions: Vec<_> =
         places.iter().map(|&(i, side)| worst_case(model, case, sets, node, i, side)).collect();
-    let runs: Vec<Run> = motions.iter().map(|(start, inputs)| Run { start, inputs }).collect();
+    let runs: Vec<InitialValueProblem> =
+        motions.iter().map(|(start, inputs)| InitialValueProblem { start, inputs }).collect();
     let mut further = vec![0.0; 2 * states];
     let mut ensemble = Ensemble::<Many>::new(model.states()).bounded_by(BOUND);
     let times = &case.grid.times()[..=k];

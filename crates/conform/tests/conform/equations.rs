@@ -8,7 +8,7 @@ use reachtube_conform::{
     Conformance, Equations, Error, FitSettings, Group, Keep, Method, Model, Problem, Settings,
     Setup, Silent, check, fit, reach,
 };
-use reachtube_ode::{DormandPrince, Run as Simulated, Tolerance};
+use reachtube_ode::{DormandPrince, InitialValueProblem as Simulated, Tolerance};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::{DrivenBy, Parameter, ParameterKind, Robot, RobotField};
 

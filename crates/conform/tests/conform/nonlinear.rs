@@ -13,7 +13,7 @@ use reachtube_conform::{
     Conformance, Dynamics, Enclosure, Error, Hulls, Method, Model, Notion, Progress, Settings,
     Setup, Silent, UncertaintySets, Verdict, check, conform,
 };
-use reachtube_ode::{DormandPrince, Run, Tolerance};
+use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
@@ -48,7 +48,7 @@ fn recorded(
             torques[..2 * (times.len() - 1)].iter().map(|u| u + input * random.signed()).collect();
         let mut states = Vec::new();
         let start = model.state(&x0[..2], &x0[2..]);
-        let run = Run { start: &start, inputs: &inputs };
+        let run = InitialValueProblem { start: &start, inputs: &inputs };
         let mut solver = DormandPrince::new(model.states(), Tolerance::default());
         let outcome =
             solver.simulate(&mut ModelField::new(model), times, run, |_, x| states.extend(&x[..4]));

@@ -11,7 +11,7 @@ use reachtube_conform::{
     Error, Hulls, Keep, Model, Noise, Notion, Problem, Settings, Setup, Silent, UncertaintySets,
     Verdict,
 };
-use reachtube_ode::{DormandPrince, Run, Tolerance};
+use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
@@ -78,7 +78,7 @@ fn motions(robot: &Robot, settings: &Settings, runs: usize) -> Vec<Recorded> {
         let outcome = DormandPrince::new(model.states(), Tolerance::default()).simulate(
             &mut ModelField::new(&model),
             &times,
-            Run { start: &start, inputs: &inputs },
+            InitialValueProblem { start: &start, inputs: &inputs },
             |_, x| states.extend(&x[..4]),
         );
         assert!(outcome.is_reached());

@@ -1,7 +1,7 @@
 //! Motions of the robot and of its models under the same inputs.
 
 use reachtube_abstraction::{ModelField, PolynomialModel};
-use reachtube_ode::{Ensemble, Outcome, Run, VectorField};
+use reachtube_ode::{Ensemble, InitialValueProblem, Outcome, VectorField};
 use reachtube_robot::{DrivenBy, Robot, RobotField};
 use reachtube_scalar::{Lanes, Lanewise};
 
@@ -103,8 +103,11 @@ impl Trajectories {
         let block = self.block(block);
         let starts: Vec<Vec<f64>> = self.starts[block.clone()].iter().map(start).collect();
         let inputs = &self.inputs[block];
-        let runs: Vec<_> =
-            starts.iter().zip(inputs).map(|(start, inputs)| Run { start, inputs }).collect();
+        let runs: Vec<_> = starts
+            .iter()
+            .zip(inputs)
+            .map(|(start, inputs)| InitialValueProblem { start, inputs })
+            .collect();
         let mut ensemble = Ensemble::new(starts[0].len()).bounded_by(BOUND);
         ensemble.integrate(field, &self.times, SUBSTEPS, &runs, observe)
     }
@@ -127,7 +130,7 @@ mod tests {
     ) -> Vec<f64> {
         let fine = Tolerance { relative: 1e-10, absolute: 1e-10 };
         let mut velocities = Vec::new();
-        let run = Run { start, inputs: &motions.inputs[0] };
+        let run = InitialValueProblem { start, inputs: &motions.inputs[0] };
         let outcome =
             DormandPrince::new(start.len(), fine).simulate(field, &motions.times, run, |_, x| {
                 velocities.extend_from_slice(&x[6..12]);

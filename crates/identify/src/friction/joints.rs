@@ -1,7 +1,7 @@
 use crate::fit::CONDITION_LIMIT;
 use crate::friction::fit::{FrictionFit, fit, fit_with_stribeck};
 use crate::friction::sample::{FrictionSample, isolated_samples};
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::Sampling;
 use reachtube_robot::{FrictionDescription, Robot};
 
@@ -11,7 +11,7 @@ use reachtube_robot::{FrictionDescription, Robot};
 /// fit.
 pub(crate) fn fit_joints(
     robot: &Robot,
-    slow: &[Log],
+    slow: &[PreparedLog],
     sampling: &Sampling,
     stribeck: bool,
 ) -> (Vec<FrictionFit>, Vec<String>) {

@@ -7,5 +7,5 @@ pub(crate) mod fit;
 pub(crate) mod form;
 pub(crate) mod joints;
 mod model;
-mod sample;
+pub(crate) mod sample;
 pub(crate) mod stribeck;

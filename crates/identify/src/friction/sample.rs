@@ -1,10 +1,10 @@
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::Sampling;
 use reachtube_robot::Robot;
 
 /// One sample of a moving joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FrictionSample {
+pub struct FrictionSample {
     /// Velocity \[rad/s\], not 0.
     pub qd: f64,
     /// Acceleration \[rad/s²\].
@@ -40,7 +40,7 @@ pub(super) fn quadrant_counts(samples: &[FrictionSample]) -> [usize; 4] {
 /// Takes the samples of a log in which `joint` moves and all other joints are at rest.
 pub(super) fn isolated_samples(
     robot: &Robot,
-    log: &Log,
+    log: &PreparedLog,
     joint: usize,
     sampling: &Sampling,
 ) -> Vec<FrictionSample> {

@@ -42,7 +42,7 @@ pub(super) fn try_stribeck(
     weights: &[f64],
 ) -> (StribeckTrial, Option<f64>) {
     let range = scan_range(samples);
-    let scan = Scan::new(form, samples, weights, &geometric(range));
+    let scan = StribeckScan::new(form, samples, weights, &geometric(range));
     let (without, with) = scan.kept_back();
     let size = |squares: &[f64]| (squares.iter().sum::<f64>() / samples.len() as f64).sqrt();
     let kept_back = [size(&without), size(&with)];
@@ -62,7 +62,7 @@ pub(super) fn try_stribeck(
         ));
     }
     let near = [scan.speeds[best - 1], scan.speeds[(best + 1).min(SPEEDS - 1)]];
-    let fine = Scan::new(form, samples, weights, &geometric(near));
+    let fine = StribeckScan::new(form, samples, weights, &geometric(near));
     let speed = fine.best(&fine.total()).map_or(scan.speeds[best], |(at, _)| fine.speeds[at]);
     let slower = |forward: bool| {
         let slow = |s: &&FrictionSample| s.qd.abs() < speed && (s.qd > 0.0) == forward;
@@ -91,7 +91,7 @@ fn geometric([low, high]: [f64; 2]) -> Vec<f64> {
 }
 
 /// The normal equations of every stretch of the samples at every speed of a scan.
-struct Scan {
+struct StribeckScan {
     speeds: Vec<f64>,
     /// Columns without the Stribeck effect.
     columns: usize,
@@ -99,7 +99,7 @@ struct Scan {
     grams: Vec<Vec<DMatrix<f64>>>,
 }
 
-impl Scan {
+impl StribeckScan {
     fn new(form: CoulombForm, samples: &[FrictionSample], weights: &[f64], speeds: &[f64]) -> Self {
         let length = samples.len().div_ceil(STRETCHES);
         let gram = |speed: f64, stretch: usize| {

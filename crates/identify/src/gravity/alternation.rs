@@ -2,7 +2,7 @@ use crate::error::Result;
 use crate::friction::fit::FrictionFit;
 use crate::friction::joints::{coefficients, fit_joints};
 use crate::gravity::fit::{GravityFit, fit_gravity};
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::Sampling;
 use crate::settings::ModelSettings;
 use crate::stiction::{KnownFriction, one_sided};
@@ -28,8 +28,8 @@ pub(crate) struct GravityAndFriction {
 /// Fits gravity to poses at rest and slow motions, and friction to slow motions, in alternation.
 pub(crate) fn fit_gravity_and_friction(
     robot: &Robot,
-    rests: &[Log],
-    slow: &[Log],
+    rests: &[PreparedLog],
+    slow: &[PreparedLog],
     sampling: &Sampling,
     model: &ModelSettings,
 ) -> Result<GravityAndFriction> {

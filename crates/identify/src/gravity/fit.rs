@@ -1,7 +1,7 @@
 use crate::error::{Error, Result};
 use crate::fit::{Fit, JointFit};
 use crate::inertia::base::BaseParameter;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, SHORTEST_REST, Samples, Sampling};
 use crate::settings::ModelSettings;
 use crate::stiction::{KnownFriction, Rests};
@@ -60,8 +60,8 @@ pub struct GravityFit {
 /// [`Error::NoPose`] if the recordings of rests have no pose.
 pub(super) fn fit_gravity(
     robot: &Robot,
-    rests: &[Log],
-    slow: &[Log],
+    rests: &[PreparedLog],
+    slow: &[PreparedLog],
     sampling: &Sampling,
     model: &ModelSettings,
     known: Option<KnownFriction>,

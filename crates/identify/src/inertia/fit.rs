@@ -4,7 +4,7 @@ use crate::inertia::base::{BaseParameter, base_parameters};
 use crate::inertia::columns::{FrictionColumns, fitted_columns};
 use crate::inertia::physical::{PhysicalFit, nearest_bodies, why_impossible};
 use crate::inertia::reference::reference_factor;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use crate::settings::ModelSettings;
 use crate::stiction::KnownFriction;
@@ -60,7 +60,7 @@ pub struct InertiaFit {
 pub(crate) fn fit_inertia(
     robot: &Robot,
     known: &Robot,
-    [dynamic, rests]: [&[Log]; 2],
+    [dynamic, rests]: [&[PreparedLog]; 2],
     kept: Option<KnownFriction>,
     sampling: &Sampling,
     model: &ModelSettings,

@@ -2,7 +2,7 @@
 //! the frames of the links.
 
 use crate::fit::JointFit;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::regression::residuals::root_mean_square;
 use crate::regression::triangular_factor::TriangularFactor;
 use reachtube_robot::{Parameter, Regressor, Robot};
@@ -26,7 +26,7 @@ const MIN_DEVIATION: f64 = 1e-6;
 pub(super) fn reference_factor(
     robot: &Robot,
     columns: &[Parameter],
-    logs: &[Log],
+    logs: &[PreparedLog],
     joints: &[JointFit],
 ) -> TriangularFactor {
     let n = robot.joint_count();
@@ -73,7 +73,7 @@ fn spread(k: usize, index: usize) -> f64 {
 /// Returns the range of values of each joint that has the root mean square of the recorded ones.
 ///
 /// A joint at rest gets a share of the largest range, so that the reference shows its inertia.
-fn ranges(logs: &[Log], n: usize, values: impl Fn(&Log) -> &Vec<f64>) -> Vec<f64> {
+fn ranges(logs: &[PreparedLog], n: usize, values: impl Fn(&PreparedLog) -> &Vec<f64>) -> Vec<f64> {
     let of_joint = |joint: usize| {
         let all: Vec<f64> = logs
             .iter()

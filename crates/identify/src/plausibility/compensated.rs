@@ -1,7 +1,7 @@
 //! The size of compensated inputs, which shows a wrong unit.
 
 use crate::plausibility::scale::{number, unit_words};
-use crate::prepare::log::{Log, spread};
+use crate::prepare::log::{PreparedLog, spread};
 use crate::samples::Sampling;
 use reachtube_robot::Robot;
 use std::cmp::Ordering;
@@ -23,7 +23,7 @@ const MOST_TIMES: f64 = 10.0;
 /// see: inputs in kN m hardly change it. There is no warning for a description without masses.
 pub(crate) fn input_unit_warning(
     robot: &Robot,
-    logs: &[Log],
+    logs: &[PreparedLog],
     sampling: &Sampling,
 ) -> Option<String> {
     let n = robot.joint_count();

@@ -1,4 +1,4 @@
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::Sampling;
 use reachtube_robot::{JointKind, Robot};
 use std::f64::consts::PI;
@@ -40,7 +40,7 @@ impl Columns {
     }
 
     /// Applies `change` to these columns of a log.
-    fn change(self, log: &mut Log, change: impl Fn(&mut [f64])) {
+    fn change(self, log: &mut PreparedLog, change: impl Fn(&mut [f64])) {
         if self != Self::Torque {
             [&mut log.q, &mut log.qd, &mut log.qdd].into_iter().for_each(|values| change(values));
         }
@@ -52,7 +52,7 @@ impl Columns {
 
 impl Fault {
     /// Returns the log of a robot without the fault.
-    pub(super) fn corrected(&self, robot: &Robot, log: &Log) -> Log {
+    pub(super) fn corrected(&self, robot: &Robot, log: &PreparedLog) -> PreparedLog {
         let (mut out, n) = (log.clone(), log.joints);
         match *self {
             Self::Sign { joint, columns } => columns.change(&mut out, |values| {
@@ -176,7 +176,7 @@ fn scale(values: &mut [f64], factors: &[f64]) {
 /// Returns a log with the torque of one joint, or of all, advanced by `delay` \[s\].
 ///
 /// Samples without a torque are cut.
-fn advanced(log: &Log, joint: Option<usize>, delay: f64) -> Log {
+fn advanced(log: &PreparedLog, joint: Option<usize>, delay: f64) -> PreparedLog {
     let (n, samples) = (log.joints, log.len() as isize);
     let shift = (delay / log.step).round() as isize;
     let first = (-shift).clamp(0, samples);
@@ -193,10 +193,10 @@ fn advanced(log: &Log, joint: Option<usize>, delay: f64) -> Log {
 mod tests {
     use super::*;
 
-    fn log() -> Log {
+    fn log() -> PreparedLog {
         let values = |scale: f64| (0..12).map(|k| scale * f64::from(k)).collect::<Vec<_>>();
         let (q, qd, tau) = (values(1.0), values(10.0), values(100.0));
-        Log { q, qd, tau, ..Log::zeros("log", 2, 6, 0.1) }
+        PreparedLog { q, qd, tau, ..PreparedLog::zeros("log", 2, 6, 0.1) }
     }
 
     /// The faults of the tests look at no joint of the robot.

@@ -2,7 +2,7 @@
 
 use crate::plausibility::fault::Fault;
 use crate::plausibility::search::independent_columns;
-use crate::prepare::log::{Log, spread};
+use crate::prepare::log::{PreparedLog, spread};
 use crate::regression::residuals::{autocorrelation_time, root_mean_square};
 use crate::samples::{KnownTorque, Samples, Sampling};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -93,7 +93,7 @@ pub(crate) struct Offsets {
 pub(crate) struct OffsetSearch<'a> {
     robot: &'a Robot,
     columns: Vec<Parameter>,
-    logs: Vec<Log>,
+    logs: Vec<PreparedLog>,
     sampling: Sampling,
     known: &'a KnownTorque<'a>,
 }
@@ -103,12 +103,12 @@ impl<'a> OffsetSearch<'a> {
     pub(crate) fn new(
         robot: &'a Robot,
         columns: &[Parameter],
-        logs: &[Log],
+        logs: &[PreparedLog],
         sampling: &Sampling,
         known: &'a KnownTorque<'a>,
     ) -> Self {
-        let logs: Vec<Log> = spread(logs, MOST_LOGS).into_iter().cloned().collect();
-        let samples = |log: &Log| log.len().div_ceil(sampling.stride(log));
+        let logs: Vec<PreparedLog> = spread(logs, MOST_LOGS).into_iter().cloned().collect();
+        let samples = |log: &PreparedLog| log.len().div_ceil(sampling.stride(log));
         let total: usize = logs.iter().map(samples).sum();
         let thinned = (MOST_SAMPLES / total.max(1) as f64).min(1.0);
         let sampling = Sampling { rate: sampling.rate * thinned, ..sampling.clone() };
@@ -157,7 +157,7 @@ impl<'a> OffsetSearch<'a> {
     }
 
     /// Returns the recordings without the offset that is reported, and the warning about it.
-    pub(crate) fn reported(&self, offsets: &Offsets) -> Option<(Vec<Log>, String)> {
+    pub(crate) fn reported(&self, offsets: &Offsets) -> Option<(Vec<PreparedLog>, String)> {
         let (at, estimate) = offsets.found?;
         let joint = &self.robot.joints()[at.joint];
         let (name, unit, number) = (&joint.name, joint.kind.position_unit(), at.joint + 1);
@@ -183,9 +183,9 @@ impl<'a> OffsetSearch<'a> {
     }
 
     /// Returns logs without an offset.
-    fn corrected(&self, logs: &[Log], at: Candidate, offset: f64) -> Vec<Log> {
+    fn corrected(&self, logs: &[PreparedLog], at: Candidate, offset: f64) -> Vec<PreparedLog> {
         let fault = Fault::Offset { joint: at.joint, offset };
-        let of_log = |(k, log): (usize, &Log)| match at.log {
+        let of_log = |(k, log): (usize, &PreparedLog)| match at.log {
             Some(own) if own != k => log.clone(),
             _ => fault.corrected(self.robot, log),
         };
@@ -211,7 +211,7 @@ struct Regression {
 
 impl Regression {
     /// Fits the columns to recordings; `None` for too few samples.
-    fn new(search: &OffsetSearch, logs: &[Log]) -> Option<Self> {
+    fn new(search: &OffsetSearch, logs: &[PreparedLog]) -> Option<Self> {
         let OffsetSearch { robot, columns, sampling, known, .. } = search;
         let samples = Samples::in_motion(robot, columns, logs, sampling, known);
         let (n, p) = (samples.joints, columns.len());
@@ -244,7 +244,7 @@ impl Regression {
 
     /// Returns the change of the weighted torque by an offset of 1 rad or m of a joint in all
     /// recordings, m entries.
-    fn effect(&self, search: &OffsetSearch, logs: &[Log], joint: usize) -> DVector<f64> {
+    fn effect(&self, search: &OffsetSearch, logs: &[PreparedLog], joint: usize) -> DVector<f64> {
         let OffsetSearch { robot, columns, sampling, .. } = search;
         let predicted = |offset: f64| {
             let logs = search.corrected(logs, Candidate { joint, log: None }, offset);

@@ -2,7 +2,7 @@
 
 use crate::inertia::columns::inertia_part;
 use crate::inertia::fit::InertiaFit;
-use crate::prepare::log::{Log, spread};
+use crate::prepare::log::{PreparedLog, spread};
 use crate::regression::residuals::root_mean_square;
 use nalgebra::DVector;
 use reachtube_robot::{JointKind, Parameter, Regressor, Robot};
@@ -36,7 +36,12 @@ struct Size {
 
 impl Size {
     /// Returns the size for values of parameters of links and motors.
-    fn new(robot: &Robot, columns: &[Parameter], values: &DVector<f64>, logs: &[Log]) -> Self {
+    fn new(
+        robot: &Robot,
+        columns: &[Parameter],
+        values: &DVector<f64>,
+        logs: &[PreparedLog],
+    ) -> Self {
         let n = robot.joint_count();
         let unit = |j: Option<usize>| (0..n).map(|k| f64::from(u8::from(Some(k) == j))).collect();
         // Each position at rest, then with an acceleration of each joint alone.
@@ -102,7 +107,11 @@ impl Size {
 ///
 /// Both must be too large, or both too small: friction imitates one of them, and gravity is absent
 /// where a controller compensates it.
-pub(super) fn torque_unit_warning(robot: &Robot, fit: &InertiaFit, logs: &[Log]) -> Option<String> {
+pub(super) fn torque_unit_warning(
+    robot: &Robot,
+    fit: &InertiaFit,
+    logs: &[PreparedLog],
+) -> Option<String> {
     // Least squares: a prior far from the data would hide how far it is.
     let (columns, values) = inertia_part(&fit.columns, &fit.fit.solution.x);
     let found = Size::new(robot, &columns, &values, logs);
@@ -178,9 +187,10 @@ fn length(robot: &Robot) -> f64 {
 }
 
 /// Returns at least [`POSITIONS`] positions, evenly spread over the logs \[rad\].
-fn positions(logs: &[Log]) -> Vec<&[f64]> {
-    let logs: Vec<&Log> = spread(logs, POSITIONS).into_iter().filter(|l| !l.is_empty()).collect();
+fn positions(logs: &[PreparedLog]) -> Vec<&[f64]> {
+    let logs: Vec<&PreparedLog> =
+        spread(logs, POSITIONS).into_iter().filter(|l| !l.is_empty()).collect();
     let each = POSITIONS.div_ceil(logs.len().max(1));
-    let position = |log: &'_ Log, k: usize| (2 * k + 1) * log.len() / (2 * each);
+    let position = |log: &'_ PreparedLog, k: usize| (2 * k + 1) * log.len() / (2 * each);
     logs.into_iter().flat_map(|log| (0..each).map(move |k| log.q(position(log, k)))).collect()
 }

@@ -1,5 +1,5 @@
 use crate::plausibility::fault::{Columns, Fault};
-use crate::prepare::log::{Log, spread};
+use crate::prepare::log::{PreparedLog, spread};
 use crate::regression::residuals::root_mean_square;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use rayon::prelude::*;
@@ -26,7 +26,7 @@ const LAGS: [f64; 8] = [0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.2, -0.2];
 const REFINEMENTS: usize = 7;
 
 /// A fault and what remains of the squared residuals without it.
-pub(super) struct Found {
+pub(super) struct LikeliestFault {
     /// The fault.
     pub fault: Fault,
     /// Logarithm of the product of the joints' shares.
@@ -44,26 +44,26 @@ pub(super) struct Found {
 /// parameters adapt to it. Only degrees are then looked for.
 pub(super) fn find_fault(
     robot: &Robot,
-    logs: &[Log],
+    logs: &[PreparedLog],
     samples: &Samples,
     sampling: &Sampling,
     is_determined: bool,
-) -> Option<Found> {
+) -> Option<LikeliestFault> {
     let thinned = ENOUGH_SAMPLES * samples.joints as f64 / samples.len().max(1) as f64;
     let sampling = Sampling { rate: sampling.rate * thinned.min(1.0), ..sampling.clone() };
     let columns = independent_columns(robot, &samples.columns);
-    let logs: Vec<Log> = spread(logs, MOST_LOGS).into_iter().cloned().collect();
+    let logs: Vec<PreparedLog> = spread(logs, MOST_LOGS).into_iter().cloned().collect();
     let here = residual_sizes(robot, &columns, &logs, &sampling)?;
     let without = |fault: Fault| {
-        let logs: Vec<Log> = logs.iter().map(|log| fault.corrected(robot, log)).collect();
+        let logs: Vec<PreparedLog> = logs.iter().map(|log| fault.corrected(robot, log)).collect();
         let sampling = fault.corrected_sampling(robot, &sampling);
         let sizes = residual_sizes(robot, &columns, &logs, &sampling)?;
         let shares = sizes.iter().zip(&here).map(|(size, here)| (size / here).powi(2));
         let score = shares.clone().map(f64::ln).sum();
         let clearest = shares.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(Found { fault, score, clearest })
+        Some(LikeliestFault { fault, score, clearest })
     };
-    let better = |a: &Found, b: &Found| a.score.total_cmp(&b.score);
+    let better = |a: &LikeliestFault, b: &LikeliestFault| a.score.total_cmp(&b.score);
     let candidates = if is_determined { candidates(robot) } else { vec![Fault::Degrees] };
     let mut best = candidates.into_par_iter().filter_map(without).min_by(better)?;
     // The size of an offset or lag.
@@ -107,7 +107,7 @@ pub(super) fn independent_columns(robot: &Robot, columns: &[Parameter]) -> Vec<P
 fn residual_sizes(
     robot: &Robot,
     columns: &[Parameter],
-    logs: &[Log],
+    logs: &[PreparedLog],
     sampling: &Sampling,
 ) -> Option<Vec<f64>> {
     let samples = Samples::in_motion(robot, columns, logs, sampling, &KnownTorque::None);

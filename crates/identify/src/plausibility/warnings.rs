@@ -5,7 +5,7 @@ use crate::plausibility::fault::{Columns, Fault};
 use crate::plausibility::gain::{self, Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
 use crate::plausibility::scale::torque_unit_warning;
 use crate::plausibility::search::find_fault;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
@@ -24,7 +24,7 @@ pub(crate) struct Checked<'a> {
     /// Friction that was known before the fit, one entry per joint.
     pub friction: &'a [FrictionDescription],
     /// The exciting motions.
-    pub logs: &'a [Log],
+    pub logs: &'a [PreparedLog],
     /// Their samples.
     pub samples: &'a Samples,
     /// The rules by which the samples were taken.
@@ -47,7 +47,7 @@ impl Checked<'_> {
         &self,
         likelihood: &GainLikelihood,
         gains: &[Gain],
-        offset: impl FnOnce() -> Option<(Vec<Log>, String)>,
+        offset: impl FnOnce() -> Option<(Vec<PreparedLog>, String)>,
     ) -> Vec<String> {
         let driving: Vec<String> = self.driving_friction().collect();
         let gains: Vec<String> = gains.iter().filter_map(wrong_gain).collect();
@@ -86,7 +86,7 @@ impl Checked<'_> {
     }
 
     /// Returns whether other recordings of the same motions have plausible gains.
-    fn gains_agree(&self, logs: &[Log]) -> bool {
+    fn gains_agree(&self, logs: &[PreparedLog]) -> bool {
         let columns = &self.fit.columns;
         let samples = Samples::in_motion(self.robot, columns, logs, self.sampling, self.known);
         let joints = &Fit::of_groups(&[&samples], false).joints[0];

@@ -1,4 +1,4 @@
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 
 /// Samples that are compared for one shift, at most about this many.
 const MAX_COMPARED: usize = 2000;
@@ -13,7 +13,7 @@ const MAX_COMPARED: usize = 2000;
 ///
 /// The result is `None` if the logs do not overlap.
 #[must_use]
-pub(crate) fn delay(reference: &Log, run: &Log) -> Option<f64> {
+pub(crate) fn delay(reference: &PreparedLog, run: &PreparedLog) -> Option<f64> {
     let most = (reference.len().min(run.len()) / 2) as isize;
     let cost = |shift: isize| difference(reference, run, shift);
     let best = (-most..=most).min_by(|a, b| cost(*a).total_cmp(&cost(*b)))?;
@@ -24,7 +24,7 @@ pub(crate) fn delay(reference: &Log, run: &Log) -> Option<f64> {
 }
 
 /// Returns the mean squared difference of velocities, infinite without overlap.
-fn difference(reference: &Log, run: &Log, shift: isize) -> f64 {
+fn difference(reference: &PreparedLog, run: &PreparedLog, shift: isize) -> f64 {
     let first = (-shift).max(0) as usize;
     let last = (reference.len() as isize).min(run.len() as isize - shift).max(0) as usize;
     let stride = (last.saturating_sub(first) / MAX_COMPARED).max(1);
@@ -41,10 +41,10 @@ fn difference(reference: &Log, run: &Log, shift: isize) -> f64 {
 mod tests {
     use super::*;
 
-    fn bump(centre: f64) -> Log {
+    fn bump(centre: f64) -> PreparedLog {
         let qd: Vec<f64> =
             (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
-        Log { qd, ..Log::zeros("bump", 1, 400, 0.01) }
+        PreparedLog { qd, ..PreparedLog::zeros("bump", 1, 400, 0.01) }
     }
 
     #[test]

@@ -3,7 +3,7 @@ use reachtube_robot::friction::WarmingBy;
 /// A recording prepared for regression: K evenly spaced samples of n joints, filtered without
 /// phase shift.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Log {
+pub struct PreparedLog {
     /// Name of the file.
     pub name: String,
     /// Number of joints n.
@@ -29,7 +29,7 @@ pub struct Log {
     pub(crate) slowest: Vec<f64>,
 }
 
-impl Log {
+impl PreparedLog {
     /// Returns a log whose samples are zero.
     #[must_use]
     pub(crate) fn zeros(name: &str, joints: usize, samples: usize, step: f64) -> Self {
@@ -51,7 +51,7 @@ impl Log {
     }
 
     /// Returns the log with every `stride`-th sample. It remembers the least speed within `margin`
-    /// \[s\] of each sample, so that [`Log::moving_mask`] knows the samples between.
+    /// \[s\] of each sample, so that [`PreparedLog::moving_mask`] knows the samples between.
     #[must_use]
     pub(crate) fn thinned(&self, stride: usize, margin: f64) -> Self {
         if stride <= 1 {
@@ -188,7 +188,7 @@ impl Log {
 }
 
 /// Returns at most `most` logs, evenly spread over those given.
-pub(crate) fn spread(logs: &[Log], most: usize) -> Vec<&Log> {
+pub(crate) fn spread(logs: &[PreparedLog], most: usize) -> Vec<&PreparedLog> {
     let count = logs.len().min(most);
     (0..count).map(|k| &logs[k * logs.len() / count]).collect()
 }
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn a_joint_does_not_move_near_a_reversal() {
-        let mut log = Log::zeros("reversal", 1, 20, 0.1);
+        let mut log = PreparedLog::zeros("reversal", 1, 20, 0.1);
         log.qd = (0..20).map(|k| if k == 10 { 0.0 } else { 1.0 }).collect();
         let at_rest: Vec<usize> = (0..20).filter(|k| !log.moving_mask(&[0.5], 0.2)[*k]).collect();
         assert_eq!(at_rest, [8, 9, 10, 11, 12]);

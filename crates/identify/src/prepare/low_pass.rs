@@ -11,14 +11,14 @@ pub(super) const TRANSIENT_PERIODS: f64 = 2.5;
 /// the choices). Each pass starts in the steady state of its first sample.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LowPass {
-    sections: [Section; 2],
+    sections: [SecondOrderSection; 2],
     /// Number of samples in a period of the cut-off.
     period: usize,
 }
 
 /// A section of second order, y = (b0 + b1 z⁻¹ + b2 z⁻²) / (1 + a1 z⁻¹ + a2 z⁻²) x.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Section {
+struct SecondOrderSection {
     b: [f64; 3],
     a: [f64; 2],
 }
@@ -33,7 +33,10 @@ impl LowPass {
         let period = (rate / cut_off).ceil() as usize;
         // The pole pairs of order 4 lie at angles of 22.5° and 67.5° from the real axis.
         let damping = [PI / 8.0, 3.0 * PI / 8.0].map(f64::cos);
-        between.then(|| Self { sections: damping.map(|d| Section::new(cut_off / rate, d)), period })
+        between.then(|| Self {
+            sections: damping.map(|d| SecondOrderSection::new(cut_off / rate, d)),
+            period,
+        })
     }
 
     /// Filters evenly spaced samples in place, forward and backward.
@@ -55,7 +58,7 @@ impl LowPass {
     }
 }
 
-impl Section {
+impl SecondOrderSection {
     /// Designs a section by the bilinear transform, prewarped at the cut-off.
     ///
     /// `cut_off` is a share of the sample rate.

@@ -26,7 +26,7 @@ mod windows;
 
 pub use cut_off::cut_off;
 pub use entry::LogEntry;
-pub use log::Log;
+pub use log::PreparedLog;
 pub use prepared::{Prepared, prepare};
 pub use raw_log::RawLog;
 pub use read::read;

@@ -3,7 +3,7 @@ use std::borrow::Cow;
 use crate::error::{Error, Result};
 use crate::prepare::changes::{LogChange, described};
 use crate::prepare::derivative::derivative;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::prepare::low_pass::{LowPass, TRANSIENT_PERIODS};
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
@@ -23,7 +23,7 @@ const MIN_SAMPLES: usize = 8;
 #[derive(Debug, Clone)]
 pub struct Prepared {
     /// The logs in the order given.
-    pub logs: Vec<Log>,
+    pub logs: Vec<PreparedLog>,
     /// Cut-off frequency of the low-pass \[Hz\].
     pub cut_off: f64,
     /// Changes to the recordings, one sentence each.
@@ -53,12 +53,13 @@ pub fn prepare(
     compensated: Option<&Robot>,
 ) -> Result<Prepared> {
     let common = common_step(raw.iter().filter_map(|log| median_step(&log.run.times)).collect());
-    let done: Vec<(Log, LogChange)> = raw
+    let done: Vec<(PreparedLog, LogChange)> = raw
         .par_iter()
         .map(|log| prepare_one(log, settings, cut_off, common, compensated))
         .collect::<Result<_>>()?;
-    let (logs, changes): (Vec<Log>, Vec<LogChange>) = done.into_iter().unzip();
-    let mut changes = described(logs.iter().map(Log::len).sum(), &changes, settings, cut_off);
+    let (logs, changes): (Vec<PreparedLog>, Vec<LogChange>) = done.into_iter().unzip();
+    let mut changes =
+        described(logs.iter().map(PreparedLog::len).sum(), &changes, settings, cut_off);
     changes.extend(compensated.map(compensation));
     Ok(Prepared { logs, cut_off, changes })
 }
@@ -96,7 +97,7 @@ pub(crate) fn prepare_one(
     cut_off: f64,
     common: f64,
     compensated: Option<&Robot>,
-) -> Result<(Log, LogChange)> {
+) -> Result<(PreparedLog, LogChange)> {
     let too_short = || Error::TooShort {
         log: raw.name.clone(),
         samples: raw.run.len(),
@@ -162,9 +163,9 @@ impl<'a> Signals<'a> {
     }
 
     /// Returns the filtered log with the ends still in place.
-    fn log(&self, gains: &[f64], differentiated: bool) -> Log {
+    fn log(&self, gains: &[f64], differentiated: bool) -> PreparedLog {
         let n = self.raw.run.joints;
-        let mut log = Log::zeros(&self.raw.name, n, self.even(Run::q, 0).len(), self.step);
+        let mut log = PreparedLog::zeros(&self.raw.name, n, self.even(Run::q, 0).len(), self.step);
         log.order = self.raw.order;
         // Temperatures change too slowly to need the low-pass.
         if !self.raw.run.temperatures.is_empty() {
@@ -195,7 +196,7 @@ impl<'a> Signals<'a> {
     }
 
     /// Replaces the torques by the input (11).
-    fn compensate(&self, log: &mut Log, robot: &Robot) {
+    fn compensate(&self, log: &mut PreparedLog, robot: &Robot) {
         let n = log.joints;
         let taken_off = |k: usize| {
             let (tau, robot) = (log.tau(k), warm_robot(robot, log, k));
@@ -212,7 +213,7 @@ impl<'a> Signals<'a> {
 }
 
 /// Returns the robot with the friction that it has at sample `k`, as far as the log knows it.
-fn warm_robot<'a>(robot: &'a Robot, log: &Log, k: usize) -> Cow<'a, Robot> {
+fn warm_robot<'a>(robot: &'a Robot, log: &PreparedLog, k: usize) -> Cow<'a, Robot> {
     if robot.warms_by().is_empty() {
         return Cow::Borrowed(robot);
     }

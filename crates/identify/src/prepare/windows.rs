@@ -1,6 +1,6 @@
 use crate::error::Result;
 use crate::prepare::align::delay;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use reachtube_files::write::atomically;
 use reachtube_recordings::column_names;
 use std::fmt::Write;
@@ -23,7 +23,7 @@ pub struct Window {
     /// Name of the motion: that of the log, or the common part of the names of its repeats.
     pub motion: String,
     /// The samples.
-    pub log: Log,
+    pub log: PreparedLog,
 }
 
 /// Cuts logs into windows of a duration \[s\]; without a duration each log is one window.
@@ -32,8 +32,8 @@ pub struct Window {
 /// are aligned with the first repeat by their velocities, and each window of the motion is a suite
 /// with one run per repeat. A rest that does not fill a window is dropped.
 #[must_use]
-pub fn windows(logs: &[Log], duration: Option<f64>, repeats: bool) -> Windows {
-    let motion_of = |log: &Log| match log.name.rsplit_once('_') {
+pub fn windows(logs: &[PreparedLog], duration: Option<f64>, repeats: bool) -> Windows {
+    let motion_of = |log: &PreparedLog| match log.name.rsplit_once('_') {
         Some((motion, _)) if repeats => motion.to_string(),
         _ => log.name.clone(),
     };
@@ -104,7 +104,7 @@ impl Windows {
     }
 }
 
-fn csv(log: &Log) -> String {
+fn csv(log: &PreparedLog) -> String {
     let mut text = std::iter::once("t".to_string())
         .chain(column_names(log.joints))
         .collect::<Vec<_>>()
@@ -127,10 +127,10 @@ mod tests {
 
     use super::*;
 
-    fn bump(name: &str, centre: f64) -> Log {
+    fn bump(name: &str, centre: f64) -> PreparedLog {
         let qd: Vec<f64> =
             (0..400).map(|k| (-((k as f64 * 0.01 - centre) / 0.2).powi(2)).exp()).collect();
-        Log { qd, ..Log::zeros(name, 1, 400, 0.01) }
+        PreparedLog { qd, ..PreparedLog::zeros(name, 1, 400, 0.01) }
     }
 
     #[test]

@@ -14,7 +14,7 @@ const MIN_ENTRY: f64 = 0.05;
 /// Where the rows do not determine a direction, the solution has the smallest norm in columns
 /// scaled to unit length.
 #[derive(Debug, Clone)]
-pub(crate) struct Solution {
+pub struct Solution {
     /// Parameters x, p entries.
     pub x: DVector<f64>,
     /// Covariance of x for rows with errors of variance 1, p x p.

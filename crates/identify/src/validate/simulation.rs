@@ -1,4 +1,4 @@
-use crate::prepare::log::{Log, spread};
+use crate::prepare::log::{PreparedLog, spread};
 use crate::regression::residuals::root_mean_square;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -40,15 +40,19 @@ pub struct WindowErrors {
 /// the final states with the recorded ones.
 ///
 /// Of more than 64 recordings, that many are simulated.
-pub(crate) fn simulate(robot: &Robot, logs: &[Log], durations: &[f64]) -> Vec<WindowErrors> {
+pub(crate) fn simulate(
+    robot: &Robot,
+    logs: &[PreparedLog],
+    durations: &[f64],
+) -> Vec<WindowErrors> {
     let logs = &spread(logs, MOST_LOGS);
     durations.iter().map(|duration| simulate_windows(robot, logs, *duration)).collect()
 }
 
-fn simulate_windows(robot: &Robot, logs: &[&Log], duration: f64) -> WindowErrors {
+fn simulate_windows(robot: &Robot, logs: &[&PreparedLog], duration: f64) -> WindowErrors {
     let n = robot.joint_count();
     // Windows spread evenly over each log, as (log, start, length).
-    let windows: Vec<(&Log, usize, usize)> = logs
+    let windows: Vec<(&PreparedLog, usize, usize)> = logs
         .iter()
         .flat_map(|&log| {
             let length = (duration / log.step).round().max(1.0) as usize;
@@ -82,7 +86,7 @@ fn simulate_windows(robot: &Robot, logs: &[&Log], duration: f64) -> WindowErrors
 }
 
 /// Returns the robot as warm as in a recording, as far as the recording knows it.
-fn warmed<'a>(robot: &'a Robot, log: &Log) -> Cow<'a, Robot> {
+fn warmed<'a>(robot: &'a Robot, log: &PreparedLog) -> Cow<'a, Robot> {
     if robot.warms_by().is_empty() {
         return Cow::Borrowed(robot);
     }
@@ -103,7 +107,12 @@ fn warmed<'a>(robot: &'a Robot, log: &Log) -> Cow<'a, Robot> {
 /// Returns the simulated minus the recorded state at the end of a window, 2n entries.
 ///
 /// The result is `None` if the simulation diverged.
-fn window_error(robot: &Robot, log: &Log, start: usize, length: usize) -> Option<DVector<f64>> {
+fn window_error(
+    robot: &Robot,
+    log: &PreparedLog,
+    start: usize,
+    length: usize,
+) -> Option<DVector<f64>> {
     let substeps = (log.step / SIMULATION_STEP).ceil().max(1.0) as usize;
     // The held torque is the mean over the step: the torque at its start would be half a step late.
     let mean =

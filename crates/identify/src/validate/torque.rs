@@ -1,5 +1,5 @@
 use crate::inertia::fit::InertiaFit;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::regression::residuals::root_mean_square;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use reachtube_robot::Robot;
@@ -62,7 +62,7 @@ pub struct TorqueTrace {
 pub(crate) fn predict_torque(
     found: &Robot,
     known: &Robot,
-    logs: &[Log],
+    logs: &[PreparedLog],
     sampling: &Sampling,
     fit: &InertiaFit,
 ) -> (Vec<LogValidation>, Vec<TorqueTrace>) {
@@ -116,7 +116,12 @@ fn joint_error(
     }
 }
 
-fn trace(samples: &Samples, residuals: &[f64], log: &Log, rows: Range<usize>) -> TorqueTrace {
+fn trace(
+    samples: &Samples,
+    residuals: &[f64],
+    log: &PreparedLog,
+    rows: Range<usize>,
+) -> TorqueTrace {
     let n = samples.joints;
     let column = |joint: usize, value: &dyn Fn(usize) -> f64| {
         rows.clone().skip(joint).step_by(n).map(value).collect()

@@ -1,7 +1,7 @@
 use crate::error::{Error, Result};
 use crate::fitted::Fitted;
 use crate::inputs::Inputs;
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::settings::{ModelSettings, WarmingChoice};
 use crate::warming::choice::WarmingFit;
 use crate::warming::rows::FrictionRows;
@@ -63,7 +63,7 @@ pub(crate) fn fit_warming(
 
 /// Returns the rows of all motions, or the name of a recording that does not know its warmth.
 fn rows(inputs: &Inputs, found: &Robot, by: WarmingBy) -> Result<FrictionRows, String> {
-    let logs: Vec<&Log> = inputs.friction.iter().chain(&inputs.dynamic).collect();
+    let logs: Vec<&PreparedLog> = inputs.friction.iter().chain(&inputs.dynamic).collect();
     FrictionRows::new(found, &logs, &inputs.sampling, by)
 }
 

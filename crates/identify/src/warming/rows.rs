@@ -1,4 +1,4 @@
-use crate::prepare::log::Log;
+use crate::prepare::log::PreparedLog;
 use crate::samples::Sampling;
 use reachtube_robot::Robot;
 use reachtube_robot::friction::WarmingBy;
@@ -33,7 +33,7 @@ impl FrictionRows {
     /// recording that does not know it, where there is one.
     pub(crate) fn new(
         found: &Robot,
-        logs: &[&Log],
+        logs: &[&PreparedLog],
         sampling: &Sampling,
         by: WarmingBy,
     ) -> Result<Self, String> {
@@ -54,7 +54,12 @@ impl FrictionRows {
 }
 
 /// Returns the rows of each joint while it moves.
-fn rows_of(found: &Robot, log: &Log, sampling: &Sampling, by: WarmingBy) -> Vec<Vec<FrictionRow>> {
+fn rows_of(
+    found: &Robot,
+    log: &PreparedLog,
+    sampling: &Sampling,
+    by: WarmingBy,
+) -> Vec<Vec<FrictionRow>> {
     let mut rows = vec![Vec::new(); log.joints];
     let moves = log.moving_mask(&sampling.slow, sampling.margin);
     for k in (0..log.len()).step_by(sampling.stride(log)) {

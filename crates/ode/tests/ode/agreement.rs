@@ -2,7 +2,7 @@
 
 use crate::distance;
 use proptest::prelude::*;
-use reachtube_ode::{DormandPrince, Run, RungeKutta4, Tolerance};
+use reachtube_ode::{DormandPrince, InitialValueProblem, RungeKutta4, Tolerance};
 use reachtube_scalar::Interval;
 
 /// A driven, damped pendulum: x = (angle, velocity), u = (torque).
@@ -38,7 +38,7 @@ proptest! {
             fixed.push(x);
         }
         let mut worst = 0.0_f64;
-        let run = Run { start: &start, inputs: &inputs };
+        let run = InitialValueProblem { start: &start, inputs: &inputs };
         let outcome = DormandPrince::new(2, FINE).simulate(&mut pendulum, &times, run, |k, x| {
             worst = worst.max(distance(x, &fixed[k]));
         });
@@ -99,7 +99,7 @@ fn the_step_is_kept_over_the_jumps_of_the_input() {
     };
     let times: Vec<f64> = (0..=1000).map(|k| 0.004 * f64::from(k)).collect();
     let inputs: Vec<f64> = times[1..].iter().map(|t| (3.0 * t).sin()).collect();
-    let run = Run { start: &[0.5, 0.0], inputs: &inputs };
+    let run = InitialValueProblem { start: &[0.5, 0.0], inputs: &inputs };
     assert!(
         DormandPrince::new(2, Tolerance::default())
             .simulate(&mut counted, &times, run, |_, _| {})
@@ -111,11 +111,11 @@ fn the_step_is_kept_over_the_jumps_of_the_input() {
 
 #[test]
 fn a_used_solver_gives_the_same_run() {
-    let run = Run { start: &[0.5, 0.0], inputs: &[1.0, -1.0] };
+    let run = InitialValueProblem { start: &[0.5, 0.0], inputs: &[1.0, -1.0] };
     let mut solver = DormandPrince::new(2, Tolerance::default());
     let mut ends = |start: &[f64]| {
         let mut end = [0.0; 2];
-        let run = Run { start, ..run };
+        let run = InitialValueProblem { start, ..run };
         assert!(
             solver
                 .simulate(&mut pendulum, &[0.0, 0.7, 1.9], run, |_, x| end.copy_from_slice(x))
@@ -149,6 +149,6 @@ fn runge_kutta_over_intervals_encloses_the_method() {
 #[test]
 #[should_panic(expected = "7 input entries do not form one row for each of 2 spans")]
 fn inputs_that_do_not_form_rows_panic() {
-    let run = Run { start: &[0.0, 0.0], inputs: &[1.0; 7] };
+    let run = InitialValueProblem { start: &[0.0, 0.0], inputs: &[1.0; 7] };
     let _ = DormandPrince::new(2, FINE).simulate(&mut pendulum, &[0.0, 1.0, 2.0], run, |_, _| {});
 }

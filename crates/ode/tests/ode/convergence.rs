@@ -137,7 +137,7 @@ fn a_held_input_gives_the_exact_solution() {
     let times: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k) + 0.01 * f64::from(k % 3)).collect();
     let inputs: Vec<f64> = (0..80).map(|k| (1.7 * f64::from(k)).sin()).collect();
     let mut state = dvector![1.0, -0.5, 0.2];
-    let run = reachtube_ode::Run { start: &[1.0, -0.5, 0.2], inputs: &inputs };
+    let run = reachtube_ode::InitialValueProblem { start: &[1.0, -0.5, 0.2], inputs: &inputs };
     let tolerance = Tolerance { relative: 1e-10, absolute: 1e-10 };
     let mut samples = 0;
     let outcome =

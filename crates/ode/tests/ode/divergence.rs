@@ -1,7 +1,9 @@
 //! Tests that an integration without a solution to the end reports where and why it stopped.
 
 use proptest::prelude::*;
-use reachtube_ode::{Cause, DormandPrince, Ensemble, Outcome, Run, Tolerance, VectorField};
+use reachtube_ode::{
+    Cause, DormandPrince, Ensemble, InitialValueProblem, Outcome, Tolerance, VectorField,
+};
 use reachtube_scalar::{Lanes, Lanewise};
 
 fn solver() -> DormandPrince {
@@ -86,7 +88,7 @@ fn a_solver_works_after_a_divergence() {
 #[test]
 fn a_run_that_diverges_does_not_affect_its_neighbours() {
     let starts = [[0.1], [1.0], [-2.0], [0.5], [5.0]];
-    let runs = starts.each_ref().map(|start| Run { start, inputs: &[] });
+    let runs = starts.each_ref().map(|start| InitialValueProblem { start, inputs: &[] });
     let times: Vec<f64> = (0..=300).map(|k| 0.01 * f64::from(k)).collect();
     let mut reached = [0; 5];
     let mut ensemble = Ensemble::<Lanes<4>>::new(1).bounded_by(1e6);

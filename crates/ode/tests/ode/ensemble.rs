@@ -1,7 +1,7 @@
 //! Tests that each lane of an ensemble is a run of its own.
 
 use proptest::prelude::*;
-use reachtube_ode::{Ensemble, Run, RungeKutta4, VectorField};
+use reachtube_ode::{Ensemble, InitialValueProblem, RungeKutta4, VectorField};
 use reachtube_scalar::{Lanes, Lanewise};
 
 /// A Duffing oscillator with dry friction: products, a sine and a branch, with two inputs.
@@ -17,7 +17,7 @@ impl<S: Lanewise> VectorField<S> for Duffing {
 
 const SPANS: usize = 5;
 
-fn all<S: Lanewise>(runs: &[Run<'_>], times: &[f64]) -> Vec<Vec<f64>> {
+fn all<S: Lanewise>(runs: &[InitialValueProblem<'_>], times: &[f64]) -> Vec<Vec<f64>> {
     let mut found = vec![Vec::new(); runs.len()];
     let outcomes =
         Ensemble::<S>::new(2).integrate(&mut Duffing, times, 3, runs, |run, sample, x| {
@@ -36,8 +36,11 @@ proptest! {
     ) {
         let times: Vec<f64> = (0..=SPANS).map(|k| 0.2 * k as f64 + 0.01 * (k * k) as f64).collect();
         let rows = inputs.chunks(2 * SPANS);
-        let runs: Vec<_> =
-            starts.iter().zip(rows).map(|(start, inputs)| Run { start, inputs }).collect();
+        let runs: Vec<_> = starts
+            .iter()
+            .zip(rows)
+            .map(|(start, inputs)| InitialValueProblem { start, inputs })
+            .collect();
         let single: Vec<_> = runs
             .iter()
             .map(|run| {
@@ -71,7 +74,7 @@ fn an_ensemble_without_runs_or_spans_works() {
             .is_empty()
     );
     let mut observed = 0;
-    let run = Run { start: &[1.0, 2.0], inputs: &[] };
+    let run = InitialValueProblem { start: &[1.0, 2.0], inputs: &[] };
     let outcomes =
         Ensemble::<Lanes<4>>::new(2).integrate(&mut Duffing, &[0.0], 1, &[run], |_, _, x| {
             assert_eq!(x, [1.0, 2.0]);

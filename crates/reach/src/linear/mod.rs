@@ -18,6 +18,6 @@ pub use input_gains::Disturbance;
 pub use propagation::Propagation;
 pub use sample_generators::SampleGenerators;
 pub use solution::Trajectory;
-pub use step::{Step, step};
+pub use step::{PropagationStep, step};
 pub use system::LinearSystem;
 pub use tube::{Tube, TubeRadii};

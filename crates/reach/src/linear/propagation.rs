@@ -6,8 +6,8 @@ use crate::error::ReachError;
 use crate::grid::TimeGrid;
 use crate::linear::column_sums::{absolute_ends, running_sum};
 use crate::linear::exponential::powers::bound_within_step;
-use crate::linear::exponential::samples::Samples;
-use crate::linear::step::{Step, step};
+use crate::linear::exponential::samples::SampleMatrices;
+use crate::linear::step::{PropagationStep, step};
 use crate::linear::system::LinearSystem;
 use crate::sets::interval_matrix::IntervalMatrix;
 use crate::upward::mul_upward;
@@ -31,8 +31,8 @@ use crate::upward::mul_upward;
 pub struct Propagation {
     system: LinearSystem,
     grid: TimeGrid,
-    steps: Vec<Step>,
-    samples: Samples,
+    steps: Vec<PropagationStep>,
+    samples: SampleMatrices,
     integral: Vec<IntervalMatrix>,
     /// M >= |e^{A(t_k - t_j)}| for every j <= k.
     bound: DMatrix<f64>,
@@ -49,12 +49,13 @@ impl Propagation {
         let steps = distinct_steps(system, grid);
         let (samples, within_step) = match grid.step() {
             Some(h) => {
-                let samples = Samples::uniform(system, &steps[0], Interval::point(h), grid.len());
+                let samples =
+                    SampleMatrices::uniform(system, &steps[0], Interval::point(h), grid.len());
                 (samples, DMatrix::identity(system.states(), system.states()))
             }
             None => {
                 let within_step = bound_within_step(system, grid.longest_step());
-                (Samples::after(system, &steps, grid.len(), &within_step), within_step)
+                (SampleMatrices::after(system, &steps, grid.len(), &within_step), within_step)
             }
         };
         // Sum the increments to Γ and bound all exponentials of the horizon.
@@ -125,13 +126,13 @@ impl Propagation {
     }
 
     /// Returns Φ, Γ and γ of the step from sample k to k + 1.
-    pub fn step(&self, k: usize) -> &Step {
+    pub fn step(&self, k: usize) -> &PropagationStep {
         if self.grid.step().is_some() { &self.steps[0] } else { &self.steps[k] }
     }
 }
 
 /// Computes one step for a uniform grid, and otherwise every step of the grid.
-fn distinct_steps(system: &LinearSystem, grid: &TimeGrid) -> Vec<Step> {
+fn distinct_steps(system: &LinearSystem, grid: &TimeGrid) -> Vec<PropagationStep> {
     let count = if grid.step().is_some() { 1 } else { grid.len().saturating_sub(1) };
     (0..count).into_par_iter().map(|k| step(system, grid.interval(k))).collect()
 }

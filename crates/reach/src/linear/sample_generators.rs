@@ -6,10 +6,10 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::error::ReachError;
-use crate::linear::exponential::powers::{Powers, bound_within_step};
+use crate::linear::exponential::powers::{MatrixPowers, bound_within_step};
 use crate::linear::input_gains::Disturbance;
 use crate::linear::propagation::Propagation;
-use crate::linear::step::Step;
+use crate::linear::step::PropagationStep;
 use crate::sets::interval_matrix::{IntervalMatrix, product};
 use crate::sets::membership::GeneratorRows;
 use crate::upward::{UNDERFLOW, relative_error, round_up_sum};
@@ -174,11 +174,11 @@ impl<'a> SampleGenerators<'a> {
             return UnitGenerators::new(states, inputs, std::iter::once(integral));
         }
         // From the last step back to the first, so that each product goes on from the one before.
-        let backward: Vec<Step> =
+        let backward: Vec<PropagationStep> =
             (0..steps).rev().map(|j| self.propagation.step(j).clone()).collect();
         let within = bound_within_step(system, self.propagation.grid().longest_step());
-        let powers = Powers::of_steps(&backward, &within);
-        let increment = |(j, step): (usize, &Step)| product(&powers.at(j), &step.gamma);
+        let powers = MatrixPowers::of_steps(&backward, &within);
+        let increment = |(j, step): (usize, &PropagationStep)| product(&powers.at(j), &step.gamma);
         UnitGenerators::new(states, inputs, backward.iter().enumerate().map(increment))
     }
 }

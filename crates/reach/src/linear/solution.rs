@@ -4,7 +4,7 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::add_up;
 
 use crate::linear::propagation::Propagation;
-use crate::linear::step::Step;
+use crate::linear::step::PropagationStep;
 use crate::sets::interval_matrix::IntervalVector;
 use crate::upward::dot_upward;
 
@@ -66,7 +66,7 @@ impl Propagation {
 }
 
 /// Encloses one step of the solution, Φ x + Γ u + γ.
-fn advance(step: &Step, x: &[f64], u: &[f64], next: &mut [Interval]) {
+fn advance(step: &PropagationStep, x: &[f64], u: &[f64], next: &mut [Interval]) {
     next.copy_from_slice(step.drift.as_slice());
     for (matrix, vector) in [(&step.phi, x), (&step.gamma, u)] {
         for (column, &value) in matrix.column_iter().zip(vector) {
@@ -80,7 +80,7 @@ fn advance(step: &Step, x: &[f64], u: &[f64], next: &mut [Interval]) {
 }
 
 /// Two bounds of the error of a floating-point solution, as for the exponential in
-/// [`Powers`](crate::linear::exponential::powers::Powers).
+/// [`MatrixPowers`](crate::linear::exponential::powers::Powers).
 struct SolutionError {
     /// Radius of the initial set.
     start: Vec<f64>,

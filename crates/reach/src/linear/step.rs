@@ -16,7 +16,7 @@ const SERIES_NORM: f64 = 0.5;
 /// The matrices of one step of length h of a linear system with constant input:
 /// x(h) = Φ x(0) + Γ u + γ.
 #[derive(Debug, Clone)]
-pub struct Step {
+pub struct PropagationStep {
     /// Φ = e^{Ah}, N x N.
     pub phi: IntervalMatrix,
     /// Γ = ∫₀ʰ e^{Aτ} dτ B, N x m.
@@ -32,7 +32,7 @@ pub struct Step {
 /// Outer, proved with directed rounding: for every real h in the interval, Φ, Γ and γ lie in the
 /// returned matrices. An entry that is zero for every h (no path through A) is the point 0.
 #[must_use]
-pub fn step(system: &LinearSystem, h: Interval) -> Step {
+pub fn step(system: &LinearSystem, h: Interval) -> PropagationStep {
     // Scale: halve h until the norm of A h suits the series.
     let (halvings, short) = halve(system, h);
     let n = system.states();
@@ -49,7 +49,7 @@ pub fn step(system: &LinearSystem, h: Interval) -> Step {
         drift = &drift + &phi * &drift;
         phi = product(&phi, &phi);
     }
-    Step { phi, gamma, drift }
+    PropagationStep { phi, gamma, drift }
 }
 
 /// Returns the number of halvings and the halved length.

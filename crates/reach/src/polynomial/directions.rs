@@ -18,7 +18,7 @@ const PARALLEL: f64 = 1e-12;
 
 /// A part of f that is a fixed vector times a polynomial in (x, u, sin, cos).
 #[derive(Debug, Clone)]
-pub(crate) struct Direction {
+pub(crate) struct FixedDirection {
     /// The fixed vector, N entries of which the largest is 1.
     pub column: Vec<f64>,
     /// The polynomial, prepared for recentring.
@@ -44,7 +44,7 @@ type Columns = BTreeMap<Vec<u8>, Vec<Interval>>;
 pub(crate) fn directions(
     angles: &Angles,
     terms: &mut [Vec<TaylorTerm<Interval>>],
-) -> Vec<Direction> {
+) -> Vec<FixedDirection> {
     let states = terms.len();
     let columns = columns(terms);
     let is_nonlinear = |m: &[u8]| degree(m) >= 2 || degree(&m[angles.plain..]) > 0;
@@ -58,8 +58,8 @@ pub(crate) fn directions(
     nonlinear.sort_by(|a, b| largest(b).abs().total_cmp(&largest(a).abs()));
     let inputs =
         columns.iter().filter(|(m, _)| is_input(m)).map(|(_, column)| unit(column)).collect();
-    let Some(basis) =
-        Basis::of_inputs(inputs, &nonlinear).or_else(|| Basis::of_parallels(&nonlinear))
+    let Some(basis) = DirectionBasis::of_inputs(inputs, &nonlinear)
+        .or_else(|| DirectionBasis::of_parallels(&nonlinear))
     else {
         return Vec::new();
     };
@@ -84,7 +84,7 @@ pub(crate) fn directions(
         };
         *terms = own.map(term).collect();
     }
-    let direction = |(column, terms): (Vec<f64>, Vec<_>)| Direction {
+    let direction = |(column, terms): (Vec<f64>, Vec<_>)| FixedDirection {
         column,
         polynomial: Recentring::new(angles, &terms),
         terms,
@@ -93,7 +93,7 @@ pub(crate) fn directions(
 }
 
 /// Directions, with the coordinates of columns in them.
-struct Basis {
+struct DirectionBasis {
     /// The directions; the largest entry of each is 1.
     columns: Vec<Vec<f64>>,
     /// Matrix from a column to its coordinates, where a column may combine several directions.
@@ -102,7 +102,7 @@ struct Basis {
     tolerance: f64,
 }
 
-impl Basis {
+impl DirectionBasis {
     /// Builds the basis from the columns of the inputs, if they are linearly independent and span
     /// all nonlinear columns.
     fn of_inputs(columns: Vec<Vec<f64>>, nonlinear: &[&[Interval]]) -> Option<Self> {

@@ -1,7 +1,7 @@
 use reachtube_scalar::{Interval, TaylorPolynomial, TaylorTerm};
 
 use crate::error::ReachError;
-use crate::polynomial::directions::{Direction, directions};
+use crate::polynomial::directions::{FixedDirection, directions};
 use crate::polynomial::expansion::angles::Angles;
 use crate::polynomial::expansion::monomials::degree;
 use crate::polynomial::expansion::recentred::Recentring;
@@ -34,7 +34,7 @@ pub struct PolynomialSystem {
     /// Part of each component that lies along no direction.
     pub(crate) rows: Vec<Recentring>,
     /// The directions: f = rows + Σ column · polynomial.
-    pub(crate) directions: Vec<Direction>,
+    pub(crate) directions: Vec<FixedDirection>,
     /// For each input, the direction that carries it and the factor.
     pub(crate) carriers: Vec<Option<Carrier>>,
     pub(crate) angles: Angles,
@@ -190,7 +190,7 @@ fn checked_terms(
 /// `terms` must no longer contain the terms of the directions.
 fn carrier(
     variable: usize,
-    directions: &[Direction],
+    directions: &[FixedDirection],
     terms: &[Vec<TaylorTerm<Interval>>],
 ) -> Option<Carrier> {
     let occurs =

@@ -1,7 +1,7 @@
 //! Simulated behaviours of random polynomial systems.
 
 use rayon::prelude::*;
-use reachtube_ode::{Ensemble, Run};
+use reachtube_ode::{Ensemble, InitialValueProblem};
 use reachtube_reach::FlowpipeMethod::Linearisation;
 
 use crate::simulated_case::{Field, SLACK, random_case};
@@ -32,7 +32,7 @@ fn simulations_are_within_the_assumed_error() {
                 case.input.centre.iter().zip(&case.input.radius).map(move |(c, r)| c + sign * r)
             })
             .collect();
-        let run = Run { start: &vertex, inputs: &inputs };
+        let run = InitialValueProblem { start: &vertex, inputs: &inputs };
         let end = |substeps: usize| {
             let mut end = vertex.clone();
             let mut ensemble = Ensemble::<f64>::new(vertex.len());

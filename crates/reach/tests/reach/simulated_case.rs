@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 
 use rayon::prelude::*;
-use reachtube_ode::{Ensemble, Run, VectorField};
+use reachtube_ode::{Ensemble, InitialValueProblem, VectorField};
 use reachtube_reach::{
     Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid,
     UncertainInput, Zonotope,
@@ -87,8 +87,11 @@ impl Case {
             pick(&self.start, kinds[run], &mut starts[run]);
             (0..steps * self.parts).for_each(|_| pick(&self.input, kinds[run], &mut inputs[run]));
         }
-        let all: Vec<Run<'_>> =
-            starts.iter().zip(&inputs).map(|(start, inputs)| Run { start, inputs }).collect();
+        let all: Vec<InitialValueProblem<'_>> = starts
+            .iter()
+            .zip(&inputs)
+            .map(|(start, inputs)| InitialValueProblem { start, inputs })
+            .collect();
         let n = self.start.dimension();
         let mut simulated: Vec<Option<Interval>> = vec![None; n];
         let check = |_: usize, sample: usize, x: &[f64]| {

@@ -2,7 +2,7 @@
 
 use crate::arm::arm;
 use crate::random::Random;
-use reachtube_ode::{DormandPrince, Ensemble, Run, Tolerance};
+use reachtube_ode::{DormandPrince, Ensemble, InitialValueProblem, Tolerance};
 use reachtube_reach::{IntervalVector, Propagation, TimeGrid};
 use reachtube_scalar::{Interval, Lanes};
 
@@ -16,7 +16,7 @@ fn simulated_runs_lie_in_the_enclosed_solution() {
     let inputs: Vec<f64> = (0..6 * 60).map(|_| 20.0 * random.symmetric()).collect();
     let point = IntervalVector::from_iterator(12, start.iter().map(|x| Interval::point(*x)));
     let exact = Propagation::new(&system, &grid).unwrap().solve(&point, &inputs);
-    let run = Run { start: &start, inputs: &inputs[..6 * 59] };
+    let run = InitialValueProblem { start: &start, inputs: &inputs[..6 * 59] };
     let close = |sample: usize, x: &[f64]| {
         let near =
             |(exact, x): (&Interval, &f64)| (*exact + Interval::centred(0.0, 1e-8)).contains(*x);

@@ -20,8 +20,8 @@ pub(super) fn format_combination(parameters: &[Parameter], leader: usize, row: &
     }
     let mut out = String::new();
     for (size, members) in groups {
-        let factor = Factor::of(size);
-        let bracket = members.len() > 1 && factor != Factor::One;
+        let factor = ReadableFactor::of(size);
+        let bracket = members.len() > 1 && factor != ReadableFactor::One;
         let outer = if bracket { members[0].0 } else { 1.0 };
         let names: Vec<_> =
             members.iter().map(|(sign, k)| (sign * outer, parameters[*k].to_string())).collect();
@@ -57,13 +57,13 @@ const LENGTH: i32 = 5;
 
 /// A positive coefficient in a readable form.
 #[derive(Debug, PartialEq)]
-enum Factor {
+enum ReadableFactor {
     One,
     Times(String),
     Over(String),
 }
 
-impl Factor {
+impl ReadableFactor {
     /// Returns the form with the fewest digits: the number, its inverse, a square or an inverse
     /// square.
     fn of(size: f64) -> Self {
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn coefficients_have_their_shortest_form() {
-        let formatted = |x: f64| Factor::of(x).times("x");
+        let formatted = |x: f64| ReadableFactor::of(x).times("x");
         let third = "0.333333 x";
         let cases = [
             (1.0, "x"),

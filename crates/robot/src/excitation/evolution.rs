@@ -7,7 +7,7 @@ use crate::random_states::Random;
 const GROWTH: f64 = 1.5;
 
 /// The result of one search.
-pub(super) struct SearchResult {
+pub(super) struct EvolutionResult {
     /// Number of the search.
     pub search: u64,
     /// Random point at which the search started.
@@ -31,7 +31,7 @@ pub(super) fn maximise(
     trials: usize,
     (search, random): &mut (u64, Random),
     value: &mut impl FnMut(&[f64]) -> f64,
-) -> SearchResult {
+) -> EvolutionResult {
     let origin: Vec<_> = (0..dimensions).map(|_| random.normal()).collect();
     let (mut point, mut best, mut step) = (origin.clone(), value(&origin), 0.5);
     let mut trial = origin.clone();
@@ -51,7 +51,7 @@ pub(super) fn maximise(
             step = (step * GROWTH.powf(-0.25)).max(1e-3);
         }
     }
-    SearchResult { search: *search, origin, point, value: best }
+    EvolutionResult { search: *search, origin, point, value: best }
 }
 
 #[cfg(test)]

@@ -13,13 +13,13 @@ pub(super) struct SearchSpace {
     period: f64,
     harmonics: usize,
     from_rest: bool,
-    limits: Vec<Limits>,
+    limits: Vec<MotionLimits>,
     /// Cosine and sine of 2π k / M at each of the M grid points.
     circle: Vec<[f64; 2]>,
 }
 
 /// The limits of one joint.
-struct Limits {
+struct MotionLimits {
     /// Middle and half width of the position range \[rad\].
     position: [f64; 2],
     speed: f64,
@@ -32,7 +32,7 @@ impl SearchSpace {
             let [low, high] = joint.position_limits;
             let (middle, half) = (0.5 * (low + high), 0.5 * (high - low) * settings.margin);
             let acceleration = settings.acceleration.get(i).or(settings.acceleration.first());
-            Limits {
+            MotionLimits {
                 position: [middle, half],
                 speed: joint.velocity_limit.map_or(settings.speed, |v| v * settings.margin),
                 acceleration: acceleration.copied().unwrap_or(f64::INFINITY),
@@ -107,7 +107,7 @@ impl SearchSpace {
 
     /// Returns the scale at which a motion reaches a limit, and the middle and half width of its
     /// position range at this scale.
-    fn fit(&self, grid: &[[f64; 3]], limits: &Limits) -> (f64, f64, f64) {
+    fn fit(&self, grid: &[[f64; 3]], limits: &MotionLimits) -> (f64, f64, f64) {
         let largest = |k: usize| grid.iter().fold(0.0, |m: f64, x| m.max(x[k].abs()));
         let low = grid.iter().fold(f64::INFINITY, |m, x| m.min(x[0]));
         let high = grid.iter().fold(f64::NEG_INFINITY, |m, x| m.max(x[0]));

@@ -1,23 +1,23 @@
 //! The chain of joints in a URDF's tree that forms the robot.
 
-use super::document::{Tree, TreeJoint, element};
+use super::document::{TreeJoint, UrdfTree, element};
 use crate::error::RobotError;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The joints from base to tip.
-pub(super) struct Chain<'a> {
+pub(super) struct JointChain<'a> {
     pub base: &'a str,
     /// Indices of the joints in the tree, fixed joints included.
     pub joints: Vec<usize>,
 }
 
-impl<'a> Tree<'a> {
+impl<'a> UrdfTree<'a> {
     /// Returns the chain between two links. An end that is not given must be unambiguous.
     pub(super) fn chain(
         &self,
         base: Option<&str>,
         tip: Option<&str>,
-    ) -> Result<Chain<'a>, RobotError> {
+    ) -> Result<JointChain<'a>, RobotError> {
         self.check_cycles()?;
         let tip = match tip {
             Some(name) => self.link(name, "tip")?,
@@ -49,7 +49,7 @@ impl<'a> Tree<'a> {
             ));
         }
         joints.iter().try_for_each(|k| self.check_joint(&self.joints[*k]))?;
-        Ok(Chain { base, joints })
+        Ok(JointChain { base, joints })
     }
 
     /// Returns the joints from a link towards the root.
@@ -146,7 +146,7 @@ impl<'a> Tree<'a> {
         &self,
         joint: &TreeJoint<'a>,
         link: &str,
-        chain: &Chain,
+        chain: &JointChain,
     ) -> RobotError {
         let is_branch = |k: &usize| {
             !self.joints[*k].is_fixed()

@@ -1,7 +1,7 @@
 //! Conversion of a chain of elements to a description.
 
-use super::chain::Chain;
-use super::document::{Tree, TreeJoint, element};
+use super::chain::JointChain;
+use super::document::{TreeJoint, UrdfTree, element};
 use crate::description::joint_description::{
     Convention, FrictionDescription, InertiaPoint, JointDescription, PlacementDescription,
 };
@@ -21,11 +21,11 @@ pub(super) struct MovedLink {
     pub lumped: Vec<String>,
 }
 
-impl<'a> Tree<'a> {
+impl<'a> UrdfTree<'a> {
     /// Returns the description of a chain, and its moving links.
     pub(super) fn describe(
         &self,
-        chain: &Chain<'a>,
+        chain: &JointChain<'a>,
     ) -> Result<(RobotDescription, Vec<MovedLink>), RobotError> {
         let mut fixed: Option<Placement> = None;
         let (mut joints, mut moved) = (Vec::new(), Vec::new());
@@ -70,8 +70,8 @@ impl<'a> Tree<'a> {
     fn bodies(
         &self,
         link: &'a str,
-        chain: &Chain<'a>,
-    ) -> Result<(Vec<(Placement, Body)>, Vec<String>), RobotError> {
+        chain: &JointChain<'a>,
+    ) -> Result<(Vec<(Placement, InertialBody)>, Vec<String>), RobotError> {
         let mut open = vec![(link, Placement::identity())];
         let (mut bodies, mut lumped) = (Vec::new(), Vec::new());
         while let Some((name, placement)) = open.pop() {
@@ -94,7 +94,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Returns the `<inertial>` of a link; a link without one has no mass.
-    fn body(&self, link: &str) -> Result<Option<Body>, RobotError> {
+    fn body(&self, link: &str) -> Result<Option<InertialBody>, RobotError> {
         let Some(inertial) = self.links[link].and_then(|node| element(node, "inertial")) else {
             return Ok(None);
         };
@@ -102,7 +102,7 @@ impl<'a> Tree<'a> {
         let inertia = self.child(inertial, "inertia")?;
         let entry = |name| Ok(self.number(inertia, name)?.unwrap_or(0.0));
         let value = self.attribute(mass, "value")?;
-        Ok(Some(Body {
+        Ok(Some(InertialBody {
             mass: self.to_number(mass, "value", value)?,
             inertia: [
                 entry("ixx")?,
@@ -122,7 +122,7 @@ impl<'a> Tree<'a> {
         &self,
         joint: &TreeJoint<'a>,
         before: Option<Placement>,
-        bodies: &[(Placement, Body)],
+        bodies: &[(Placement, InertialBody)],
     ) -> Result<JointDescription, RobotError> {
         let (translation, rpy) = self.origin_of(joint.node)?;
         let placement = match before {
@@ -205,7 +205,7 @@ impl<'a> Tree<'a> {
 }
 
 /// The body that an `<inertial>` describes.
-struct Body {
+struct InertialBody {
     mass: f64,
     inertia: [f64; 6],
     /// Whether `frame` rotates the link's axes.
@@ -214,7 +214,7 @@ struct Body {
     frame: Placement,
 }
 
-impl Body {
+impl InertialBody {
     fn has_inertia(&self) -> bool {
         self.mass != 0.0 || self.inertia != [0.0; 6]
     }
@@ -231,7 +231,7 @@ impl Body {
 /// Returns mass, centre of mass, and inertia about it in the link's axes, for all bodies together.
 ///
 /// The numbers of a single body whose frame is not rotated are returned without rounding.
-fn lump(bodies: &[(Placement, Body)]) -> (f64, [f64; 3], [f64; 6]) {
+fn lump(bodies: &[(Placement, InertialBody)]) -> (f64, [f64; 3], [f64; 6]) {
     let bodies: Vec<_> = bodies.iter().filter(|(_, body)| body.has_inertia()).collect();
     match bodies[..] {
         [] => (0.0, [0.0; 3], [0.0; 6]),

@@ -7,7 +7,7 @@ use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, HashMap};
 
 /// The links and joints of a URDF.
-pub(super) struct Tree<'a> {
+pub(super) struct UrdfTree<'a> {
     pub document: &'a Document<'a>,
     pub origin: &'a str,
     /// Links by name; `None` for a `world` link without an element.
@@ -56,7 +56,7 @@ pub(super) fn element<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>>
     elements(node, tag).next()
 }
 
-impl<'a> Tree<'a> {
+impl<'a> UrdfTree<'a> {
     /// Collects the links and joints of a document.
     pub(super) fn new(document: &'a Document<'a>, origin: &'a str) -> Result<Self, RobotError> {
         let mut tree = Self {

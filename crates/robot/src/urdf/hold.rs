@@ -1,6 +1,6 @@
 //! Joints of a URDF that are locked, and joints that mimic others.
 
-use super::document::{Tree, TreeJoint, element};
+use super::document::{TreeJoint, UrdfTree, element};
 use crate::error::RobotError;
 use crate::joint_kind::JointKind;
 use crate::lock::{Lock, LockedJoint};
@@ -26,7 +26,7 @@ impl<'a> TreeJoint<'a> {
     }
 }
 
-impl<'a> Tree<'a> {
+impl<'a> UrdfTree<'a> {
     /// Locks joints, and the joints that mimic them.
     pub(super) fn lock(&mut self, locks: &[Lock]) -> Result<(), RobotError> {
         for lock in locks {

@@ -1,11 +1,11 @@
 //! Gear ratio and rotor inertia from common extensions of URDF, which itself has no elements for
 //! them.
 
-use super::document::{Tree, TreeJoint, elements};
+use super::document::{TreeJoint, UrdfTree, elements};
 use crate::error::RobotError;
 use roxmltree::Node;
 
-impl<'a> Tree<'a> {
+impl<'a> UrdfTree<'a> {
     /// Returns gear ratio and rotor inertia \[kg m²\] of a joint.
     ///
     /// They are elements of the joint, or of a `<transmission>` that names the joint, or of its

@@ -2,7 +2,7 @@
 
 use super::companion::Companion;
 use super::describe::MovedLink;
-use super::document::{Tree, parse_document};
+use super::document::{UrdfTree, parse_document};
 use crate::error::RobotError;
 use crate::lock::Lock;
 use crate::robot::Robot;
@@ -119,7 +119,7 @@ impl Urdf {
         companion: Companion,
     ) -> Result<Self, RobotError> {
         let document = parse_document(&text, origin)?;
-        let mut tree = Tree::new(&document, origin)?;
+        let mut tree = UrdfTree::new(&document, origin)?;
         let locks = companion.locks(&options.locks);
         tree.lock(&locks)?;
         let chain = tree.chain(

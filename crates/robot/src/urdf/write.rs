@@ -2,7 +2,7 @@
 
 use super::companion::Companion;
 use super::describe::MovedLink;
-use super::document::{Tree, element, parse_document};
+use super::document::{UrdfTree, element, parse_document};
 use super::edit::{Edits, empty_element};
 use super::read::Urdf;
 use crate::error::RobotError;
@@ -36,7 +36,7 @@ impl Urdf {
             ));
         }
         let document = parse_document(&self.text, &self.origin)?;
-        let tree = Tree::new(&document, &self.origin)?;
+        let tree = UrdfTree::new(&document, &self.origin)?;
         let mut edits = Edits::default();
         for (i, moved) in self.moved.iter().enumerate() {
             self.write_inertia(&tree, moved, i, robot, &mut edits)?;
@@ -62,7 +62,7 @@ impl Urdf {
     /// Writes the inertia of moving link i if it differs.
     fn write_inertia(
         &self,
-        tree: &Tree,
+        tree: &UrdfTree,
         moved: &MovedLink,
         i: usize,
         robot: &Robot,
@@ -98,7 +98,7 @@ impl Urdf {
     /// Writes the friction of joint i if it differs.
     fn write_friction(
         &self,
-        tree: &Tree,
+        tree: &UrdfTree,
         moved: &MovedLink,
         i: usize,
         robot: &Robot,

@@ -2,7 +2,7 @@
 
 use crate::random::robots_and_states;
 use proptest::prelude::*;
-use reachtube_ode::{Ensemble, Run, VectorField};
+use reachtube_ode::{Ensemble, InitialValueProblem, VectorField};
 use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
 use reachtube_scalar::{Lanes, Lanewise};
 
@@ -90,7 +90,8 @@ fn an_ensemble_equals_its_runs_alone() {
     let torques: Vec<Vec<f64>> =
         (0..20).map(|k| (0..6).map(|i| 20.0 * f64::from(k + i).cos()).collect()).collect();
     let inputs = torques.concat();
-    let runs: Vec<_> = starts.iter().map(|start| Run { start, inputs: &inputs }).collect();
+    let runs: Vec<_> =
+        starts.iter().map(|start| InitialValueProblem { start, inputs: &inputs }).collect();
     let times: Vec<f64> = (0..=20).map(|k| 0.004 * f64::from(k)).collect();
     let mut field = RobotField::<Lanes<8>>::new(&robot, DrivenBy::Motor);
     let mut ends = vec![Vec::new(); 21];

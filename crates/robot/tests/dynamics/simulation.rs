@@ -2,7 +2,9 @@
 
 use crate::random::robots_and_states;
 use proptest::prelude::*;
-use reachtube_ode::{DormandPrince, Outcome, Run, RungeKutta4, Tolerance, VectorField};
+use reachtube_ode::{
+    DormandPrince, InitialValueProblem, Outcome, RungeKutta4, Tolerance, VectorField,
+};
 use reachtube_robot::{DrivenBy, Robot, RobotField};
 
 const FINE: Tolerance = Tolerance { relative: 1e-10, absolute: 1e-10 };
@@ -81,7 +83,7 @@ proptest! {
             fixed.push(x.clone());
         }
         let (mut worst, mut size) = (0.0_f64, 1.0_f64);
-        let run = Run { start: &start, inputs: &inputs };
+        let run = InitialValueProblem { start: &start, inputs: &inputs };
         let outcome = DormandPrince::new(12, FINE).simulate(&mut field, &times, run, |k, x| {
             worst = worst.max(distance(x, &fixed[k]));
             size = x.iter().fold(size, |a, x| a.max(x.abs()));

@@ -32,7 +32,7 @@ pub struct PolynomialMap<C = f64> {
     constants: Vec<C>,
     nodes: Vec<Node>,
     /// One group for each [`GROUP`] consecutive components.
-    groups: Vec<Group<C>>,
+    groups: Vec<MonomialGroup<C>>,
     /// Number of non-constant terms of all components together.
     term_count: usize,
 }
@@ -46,7 +46,7 @@ const SUMS: usize = 2;
 
 /// The non-constant terms of [`GROUP`] components.
 #[derive(Debug, Clone, PartialEq)]
-struct Group<C> {
+struct MonomialGroup<C> {
     /// Increasing numbers of the monomials that occur in one of the components.
     monomials: Vec<u32>,
     /// Coefficients of each monomial, one per component; 0 where it does not occur.
@@ -95,7 +95,7 @@ impl<C: Scalar> PolynomialMap<C> {
             });
         }
         close_under_parents(packing, &mut monomials);
-        let group = Group { monomials: vec![], coefficients: vec![] };
+        let group = MonomialGroup { monomials: vec![], coefficients: vec![] };
         let groups = vec![group; components.len().div_ceil(GROUP)];
         let mut map = Self {
             variables,
@@ -212,7 +212,7 @@ impl<C: Scalar> PolynomialMap<C> {
     }
 }
 
-impl<C: Scalar> Group<C> {
+impl<C: Scalar> MonomialGroup<C> {
     /// Stores the coefficient of a monomial in one component; monomials arrive in order.
     fn push(&mut self, monomial: u32, component: usize, c: C) {
         if self.monomials.last() != Some(&monomial) {

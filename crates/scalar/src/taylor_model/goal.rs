@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::bounds::{OVERFLOW_GUARD, inflated};
 use super::model::TaylorModel;
-use super::tight::{Part, PolynomialSearch};
+use super::tight::{PolynomialSearch, SubBox};
 use crate::interval::closed::Interval;
 use crate::rounding::add_up;
 use crate::taylor::polynomial::TaylorPolynomial;
@@ -70,7 +70,7 @@ impl TaylorModel {
 }
 
 /// A part of the box in the queue; the part with the highest bound comes first.
-struct Open(Part);
+struct Open(SubBox);
 
 impl PartialEq for Open {
     fn eq(&self, other: &Self) -> bool {

@@ -65,14 +65,14 @@ fn upper_bound(p: &TaylorPolynomial, sign: f64) -> f64 {
 
 /// The partial derivative in one variable over the box.
 #[derive(Clone, Copy, Default)]
-struct Slope {
+struct SlopeBounds {
     /// Derivative of the linear term.
     linear: f64,
     /// Bound of the magnitude of the derivative of all other terms.
     non_linear: f64,
 }
 
-impl Slope {
+impl SlopeBounds {
     fn is_monotonic(self) -> bool {
         self.linear.abs() > self.non_linear
     }
@@ -85,12 +85,12 @@ pub(super) struct PolynomialSearch<'a> {
     total: f64,
     /// The highest computed value, up to rounding.
     attained: f64,
-    slopes: Vec<Slope>,
+    slopes: Vec<SlopeBounds>,
     factors: Vec<u8>,
 }
 
 /// A part of the box, with the polynomial in the part's own coordinates.
-pub(super) struct Part {
+pub(super) struct SubBox {
     terms: Terms,
     /// Bound of the rounding errors of the terms.
     error: f64,
@@ -103,7 +103,7 @@ pub(super) struct Part {
 impl<'a> PolynomialSearch<'a> {
     /// Prepares a search for a polynomial whose magnitudes of coefficients sum up to `total`.
     pub(super) fn new(space: &'a TaylorSpace, total: f64) -> Self {
-        let slopes = vec![Slope::default(); space.variables()];
+        let slopes = vec![SlopeBounds::default(); space.variables()];
         Self { space, total, attained: f64::NEG_INFINITY, slopes, factors: Vec::new() }
     }
 
@@ -122,7 +122,7 @@ impl<'a> PolynomialSearch<'a> {
     }
 
     /// Bounds a polynomial over a part, given by its terms in the part's coordinates.
-    pub(super) fn part(&mut self, mut terms: Terms, mut error: f64) -> Part {
+    pub(super) fn part(&mut self, mut terms: Terms, mut error: f64) -> SubBox {
         // Fix the variables in which the polynomial is monotonic, until none is left.
         loop {
             self.differentiate(&terms);
@@ -140,20 +140,20 @@ impl<'a> PolynomialSearch<'a> {
         let cut = (0..self.slopes.len())
             .max_by(|i, j| self.slopes[*i].non_linear.total_cmp(&self.slopes[*j].non_linear))
             .filter(|i| self.slopes[*i].non_linear > 0.0);
-        Part { terms, error, bound: add_up(bound, error), cut }
+        SubBox { terms, error, bound: add_up(bound, error), cut }
     }
 
     /// Returns the bounds over the two halves of a part.
-    pub(super) fn halves(&mut self, part: &Part, cut: usize) -> [Part; 2] {
+    pub(super) fn halves(&mut self, part: &SubBox, cut: usize) -> [SubBox; 2] {
         self.halved_terms(part, cut).map(|(terms, error)| {
             let half = self.part(terms, error);
-            Part { bound: half.bound.min(part.bound), ..half }
+            SubBox { bound: half.bound.min(part.bound), ..half }
         })
     }
 
     /// Computes the slope in each variable.
     fn differentiate(&mut self, terms: &Terms) {
-        self.slopes.fill(Slope::default());
+        self.slopes.fill(SlopeBounds::default());
         for (m, c) in terms {
             self.space.packing.factors(*m, &mut self.factors);
             match self.factors[..] {
@@ -194,7 +194,7 @@ impl<'a> PolynomialSearch<'a> {
 
     /// Restricts the polynomial to the halves of the side of variable i, x_i = ∓1/2 + x_i'/2. The
     /// second number of each half bounds the error, given that of the polynomial.
-    fn halved_terms(&self, part: &Part, i: usize) -> [(Terms, f64); 2] {
+    fn halved_terms(&self, part: &SubBox, i: usize) -> [(Terms, f64); 2] {
         let packing = self.space.packing;
         // The terms c_e x_i^e with one monomial of the other variables become neighbours.
         let mut terms = part.terms.clone();

@@ -16,7 +16,7 @@ pub(crate) const SHARED: usize = 6;
 
 /// The pairs [e^{A t_j}, e^{A t_j} Γ(h)] of the first samples, prepared for products with later
 /// exponentials.
-pub(crate) struct Block {
+pub(crate) struct ExponentialBlock {
     /// Midpoints of all pairs, side by side.
     mid: DMatrix<f64>,
     /// Largest error bound of each entry over [`SHARED`] pairs, rad + (N + 2) u |mid|, above the
@@ -26,7 +26,7 @@ pub(crate) struct Block {
     zero: DMatrix<bool>,
 }
 
-impl Block {
+impl ExponentialBlock {
     /// Prepares `pairs` pairs of midpoints `mid` and radii `rad`, column by column.
     pub(crate) fn new(system: &LinearSystem, pairs: usize, mid: &[f64], rad: &[f64]) -> Self {
         let zero = always_zero(system);

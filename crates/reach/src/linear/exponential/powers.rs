@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up};
 
-use crate::linear::step::{Step, step};
+use crate::linear::step::{PropagationStep, step};
 use crate::linear::system::LinearSystem;
 use crate::sets::interval_matrix::{IntervalMatrix, ball, magnitude, midpoint, point};
 use crate::upward::{accumulate_upward, mul_upward, norm_upward, relative_error};
@@ -30,12 +30,12 @@ const MOST_SHORT_STEPS: f64 = 4096.0;
 /// Where e^{At} grows to about 1/ε over the horizon, Σ|δ_j| is no longer small and no M is found.
 /// The second bound alone is left. For entries that change sign, it grows exponentially faster than
 /// the entries.
-pub(crate) struct Powers {
+pub(crate) struct MatrixPowers {
     pub(crate) mid: Vec<DMatrix<f64>>,
     pub(crate) rad: Vec<DMatrix<f64>>,
 }
 
-impl Powers {
+impl MatrixPowers {
     /// Computes the first `count` powers of Φ = e^{Ah}, from the power 0 on.
     pub(crate) fn uniform(phi: &IntervalMatrix, count: usize) -> Self {
         let rounded = RoundedProducts::new(phi.nrows(), count, &|_| phi);
@@ -46,7 +46,7 @@ impl Powers {
     /// Computes the exponential at the start and after each of `steps`.
     ///
     /// P = `within_step` must satisfy P >= |e^{As}| for every s up to the longest step.
-    pub(crate) fn of_steps(steps: &[Step], within_step: &DMatrix<f64>) -> Self {
+    pub(crate) fn of_steps(steps: &[PropagationStep], within_step: &DMatrix<f64>) -> Self {
         let phi_at = |k: usize| &steps[k].phi;
         let rounded = RoundedProducts::new(within_step.nrows(), steps.len() + 1, &phi_at);
         let bound = rounded.horizon_bound(within_step);
@@ -174,7 +174,7 @@ mod tests {
         let phi = step(&growth, Interval::point(0.01)).phi;
         let bound = RoundedProducts::new(1, 101, &|_| &phi).horizon_bound(&dmatrix![1.0]);
         assert_eq!(bound[(0, 0)], f64::INFINITY);
-        let powers = Powers::uniform(&phi, 101);
+        let powers = MatrixPowers::uniform(&phi, 101);
         assert!(powers.at(100)[(0, 0)].contains(60f64.exp()));
     }
 }

@@ -8,9 +8,9 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::linear::column_sums::larger;
-use crate::linear::exponential::block::{Block, SHARED};
-use crate::linear::exponential::powers::Powers;
-use crate::linear::step::{Step, step};
+use crate::linear::exponential::block::{ExponentialBlock, SHARED};
+use crate::linear::exponential::powers::MatrixPowers;
+use crate::linear::step::{PropagationStep, step};
 use crate::linear::system::LinearSystem;
 use crate::sets::interval_matrix::{IntervalMatrix, product};
 
@@ -19,7 +19,7 @@ use crate::sets::interval_matrix::{IntervalMatrix, product};
 /// The second matrix of a pair is the increment of Γ over step k. Midpoints and radii are stored in
 /// separate arrays, pair by pair and column by column, so that loops over all entries vectorise.
 #[derive(Debug, Clone)]
-pub(crate) struct Samples {
+pub(crate) struct SampleMatrices {
     states: usize,
     inputs: usize,
     /// Number of samples, from the first on, with radii of their own; later samples share them.
@@ -29,18 +29,18 @@ pub(crate) struct Samples {
     rad: Vec<f64>,
 }
 
-impl Samples {
+impl SampleMatrices {
     /// Encloses the pairs at `count` samples separated by `steps`.
     ///
     /// P = `within_step` must satisfy P >= |e^{As}| for every s up to the longest step. The
     /// increment at the last sample, which no step follows, is zero.
     pub(crate) fn after(
         system: &LinearSystem,
-        steps: &[Step],
+        steps: &[PropagationStep],
         count: usize,
         within_step: &DMatrix<f64>,
     ) -> Self {
-        let powers = Powers::of_steps(steps, within_step);
+        let powers = MatrixPowers::of_steps(steps, within_step);
         let none = IntervalMatrix::from_element(system.states(), system.inputs(), Interval::ZERO);
         let pair = |k: usize| {
             let start = powers.at(k);
@@ -69,23 +69,28 @@ impl Samples {
     /// With k = b L + j and L about √count, pair k is the product of e^{A b L h} with pair j.
     /// Neither factor takes more than √count steps. The products are most of the work, and they are
     /// large and independent of each other.
-    pub(crate) fn uniform(system: &LinearSystem, step: &Step, h: Interval, count: usize) -> Self {
+    pub(crate) fn uniform(
+        system: &LinearSystem,
+        step: &PropagationStep,
+        h: Interval,
+        count: usize,
+    ) -> Self {
         // Powers of one step, up to one block of L samples.
         let length = count.isqrt().max(1).next_multiple_of(SHARED);
-        let short = Powers::uniform(&step.phi, length + 1);
+        let short = MatrixPowers::uniform(&step.phi, length + 1);
         let pair = |j: usize| [short.at(j), product(&short.at(j), &step.gamma)];
         // Pairs of the first block, and powers of a whole block.
         let (first, long) = rayon::join(
             || Self::from_pairs(system, (0..length).map(pair).collect()),
             || {
-                Powers::uniform(
+                MatrixPowers::uniform(
                     &over_block(system, &short.at(length), h * length as f64),
                     count.div_ceil(length),
                 )
             },
         );
         // Products of both give all later blocks, in parallel.
-        let block = Block::new(system, first.first, &first.mid, &first.rad);
+        let block = ExponentialBlock::new(system, first.first, &first.mid, &first.rad);
         let size = first.mid.len();
         let mut samples = first.extended(long.mid.len());
         let shared = samples.rad[size..].par_chunks_exact_mut((size / SHARED).max(1));
@@ -183,8 +188,8 @@ mod tests {
         )
         .unwrap();
         let step = step(&system, Interval::point(0.01));
-        let one_by_one = Powers::uniform(&step.phi, 1000);
-        let samples = Samples::uniform(&system, &step, Interval::point(0.01), 1000);
+        let one_by_one = MatrixPowers::uniform(&step.phi, 1000);
+        let samples = SampleMatrices::uniform(&system, &step, Interval::point(0.01), 1000);
         for k in 0..1000 {
             let (exponential, increment) = (samples.exponential(k), samples.increment(k));
             let other = one_by_one.at(k);

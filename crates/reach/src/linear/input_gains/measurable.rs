@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
 use crate::linear::column_sums::{ends, running_sum};
-use crate::linear::input_gains::taylor_series::Series;
+use crate::linear::input_gains::taylor_series::TaylorSeries;
 use crate::linear::propagation::Propagation;
 use crate::linear::step::step;
 use crate::linear::system::LinearSystem;
@@ -45,7 +45,7 @@ pub(super) struct Cells<'a> {
     pub propagation: Cow<'a, Propagation>,
     /// Number of cells of one step of the grid.
     parts: usize,
-    pub series: Series,
+    pub series: TaylorSeries,
     within: SecondOrder,
     /// ∫ |e^{Aτ} B| over each cell.
     integrals: Vec<IntervalMatrix>,
@@ -59,7 +59,7 @@ impl<'a> Cells<'a> {
         let system = propagation.system();
         let longest = propagation.grid().longest_step();
         let within = SecondOrder::new(system, longest);
-        let series = Series::new(system, longest);
+        let series = TaylorSeries::new(system, longest);
         let turning = DMatrix::from_element(system.states(), system.inputs(), Vec::new());
         let mut cells = Self { parts, series, within, integrals: Vec::new(), turning, propagation };
         let count = cells.propagation.grid().len().saturating_sub(1);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
 use crate::linear::input_gains::measurable::Cells;
-use crate::linear::input_gains::taylor_series::Polynomial;
+use crate::linear::input_gains::taylor_series::TimePolynomial;
 use crate::linear::propagation::Propagation;
 use crate::sets::interval_matrix::IntervalMatrix;
 
@@ -69,7 +69,7 @@ struct IntegralEntry<'a> {
     cells: &'a Cells<'a>,
     entry: (usize, usize),
     /// Polynomials of e^{Aτ} B within the cells evaluated so far.
-    polynomials: BTreeMap<usize, Polynomial>,
+    polynomials: BTreeMap<usize, TimePolynomial>,
 }
 
 impl IntegralEntry<'_> {

@@ -18,7 +18,7 @@ const DEEPEST: usize = 40;
 const NOISE: f64 = 4.0;
 
 /// The Taylor terms A^m B / m!, m < M, for steps up to a given length.
-pub(crate) struct Series {
+pub(crate) struct TaylorSeries {
     pub(crate) terms: Vec<IntervalMatrix>,
     /// |A|^M |B| / M! in the norm.
     ///
@@ -27,7 +27,7 @@ pub(crate) struct Series {
     remainder: f64,
 }
 
-impl Series {
+impl TaylorSeries {
     /// Computes as many terms as double precision needs for steps up to `longest` (s).
     pub(crate) fn new(system: &LinearSystem, longest: f64) -> Self {
         let a = point(system.a());
@@ -48,10 +48,10 @@ impl Series {
     }
 
     /// Returns entry (i, j) of `start` e^{Aτ} B as a polynomial in τ.
-    pub(crate) fn entry(&self, start: &IntervalMatrix, i: usize, j: usize) -> Polynomial {
+    pub(crate) fn entry(&self, start: &IntervalMatrix, i: usize, j: usize) -> TimePolynomial {
         let coefficient = |term: &IntervalMatrix| dot(start.row(i).iter(), term.column(j).iter());
         let norm = start.row(i).iter().fold(0.0, |sum, x| add_up(sum, x.mag()));
-        Polynomial {
+        TimePolynomial {
             coefficients: self.terms.iter().map(coefficient).collect(),
             tail: mul_up(2.0 * norm, self.remainder),
         }
@@ -60,12 +60,12 @@ impl Series {
 
 /// A polynomial with a truncation error: f(τ) = Σ c_m τ^m + e(τ) with |e(τ)| <= tail τ^M, for
 /// 0 <= τ up to the length of the series.
-pub(crate) struct Polynomial {
+pub(crate) struct TimePolynomial {
     coefficients: Vec<Interval>,
     tail: f64,
 }
 
-impl Polynomial {
+impl TimePolynomial {
     /// Encloses the range of f over `tau` by the mean value form, and returns the width of f at one
     /// point, which halving `tau` cannot reduce.
     ///
@@ -152,10 +152,10 @@ mod tests {
     use super::*;
 
     /// Returns e^{Aτ} B = (sin ωτ, cos ωτ) as polynomials, for τ up to `longest`.
-    fn oscillation(omega: f64, longest: f64) -> [Polynomial; 2] {
+    fn oscillation(omega: f64, longest: f64) -> [TimePolynomial; 2] {
         let a = dmatrix![0.0, omega; -omega, 0.0];
         let system = LinearSystem::new(a, dmatrix![0.0; 1.0], dvector![0.0, 0.0]).unwrap();
-        let series = Series::new(&system, longest);
+        let series = TaylorSeries::new(&system, longest);
         [0, 1].map(|i| series.entry(&IntervalMatrix::identity(2, 2), i, 0))
     }
 
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn halving_stops_at_noise() {
         let coefficient = |m: i32| Interval::centred(0.0, 1e-6 * 0.1f64.powi(m));
-        let noise = Polynomial { coefficients: (0..8).map(coefficient).collect(), tail: 0.0 };
+        let noise = TimePolynomial { coefficients: (0..8).map(coefficient).collect(), tail: 0.0 };
         let integral = noise.integral_of_absolute(Interval::ZERO, Interval::ONE, 0.0);
         assert!(integral.lo() == 0.0 && integral.hi() >= 1e-6 && integral.hi() < 1e-4);
         assert!(!noise.may_turn(between(0.0, 1.0), 0.0));

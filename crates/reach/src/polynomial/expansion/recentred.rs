@@ -39,7 +39,7 @@ pub(crate) struct Recentring {
     /// Monomials of degree 1: the variable and the index.
     linear: Vec<(usize, usize)>,
     /// Monomials of degree 2 and above, in the order of their indices.
-    nodes: Vec<Node>,
+    nodes: Vec<MonomialNode>,
     /// Index of the first monomial of degree 2.
     first_node: usize,
     /// Number of variables that are not angles.
@@ -49,7 +49,7 @@ pub(crate) struct Recentring {
 
 /// A monomial, as the one at index `parent` times a power of a variable.
 #[derive(Debug, Clone, Copy)]
-struct Node {
+struct MonomialNode {
     parent: u32,
     variable: u32,
     exponent: u32,
@@ -99,7 +99,7 @@ impl Recentring {
         let linear = monomials.iter().enumerate().filter(|(_, (degree, _))| *degree == 1);
         let linear: Vec<_> = linear.map(|(number, (_, m))| (first_variable(m), number)).collect();
         let nodes = monomials.iter().filter(|(degree, _)| *degree >= 2);
-        let nodes = nodes.map(|(_, m)| Node::new(plain, m, &index)).collect();
+        let nodes = nodes.map(|(_, m)| MonomialNode::new(plain, m, &index)).collect();
         let univariate =
             (0..plain).filter_map(|variable| Univariate::find(variable, &index)).collect();
         Self {
@@ -298,7 +298,7 @@ impl Recentring {
     }
 }
 
-impl Node {
+impl MonomialNode {
     fn new(plain: usize, monomial: &[u8], index: &BTreeMap<&[u8], usize>) -> Self {
         let variable = first_variable(monomial);
         let parent = index[with_exponent(monomial, variable, 0).as_slice()] as u32;

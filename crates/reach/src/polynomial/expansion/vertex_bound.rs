@@ -52,7 +52,7 @@ impl Monomial {
 
 /// The ends of a chosen factor, divided by its largest magnitude.
 #[derive(Debug)]
-struct Factor {
+struct FactorEnds {
     /// Ends where the square of the factor is smallest, and ends where it is largest.
     ends: [[f64; 2]; 2],
     /// Number of consecutive vertices with the same ends.
@@ -66,7 +66,7 @@ pub(crate) struct VertexBound {
     /// Largest number of chosen factors.
     most: usize,
     /// The chosen factors, squares last.
-    factors: Vec<Factor>,
+    factors: Vec<FactorEnds>,
     /// Each power as a part of a monomial.
     parts: Vec<Monomial>,
     /// Weight of each factor: the sum of the magnitudes of the terms that contain it.
@@ -108,7 +108,7 @@ impl VertexBound {
             let waist = trapezoid.map(|(_, waist)| waist).filter(|_| square.is_some());
             let whole = [side.lo() / size, side.hi() / size];
             let ends = waist.map_or([whole; 2], |waist| [[-waist, waist], [-1.0, 1.0]]);
-            self.factors.push(Factor { ends, run: 1 << square.unwrap_or(chosen.len()) });
+            self.factors.push(FactorEnds { ends, run: 1 << square.unwrap_or(chosen.len()) });
         }
     }
 
@@ -130,7 +130,7 @@ impl VertexBound {
     /// Returns the range of the sum, up to [`VERTEX_ROUNDINGS`] per factor of each term; `None`
     /// where it is not a number.
     pub(crate) fn range(&mut self) -> Option<Interval> {
-        for (i, Factor { ends, run }) in self.factors.iter().enumerate().rev() {
+        for (i, FactorEnds { ends, run }) in self.factors.iter().enumerate().rev() {
             for (values, ends) in self.values.chunks_exact_mut(*run).zip(ends.iter().cycle()) {
                 values.chunks_exact_mut(2 << i).for_each(|pair| evaluate_at_ends(pair, *ends));
             }

@@ -10,7 +10,7 @@ const LEAST_BOUND: f64 = 1e-3;
 
 /// The expansion point and everything that recentring a polynomial there needs.
 #[derive(Debug)]
-pub(crate) struct ExpansionPoint {
+pub(crate) struct RecentringPoint {
     /// (x*, u*), N + m entries.
     pub coordinates: Vec<f64>,
     /// Approximate distance of (x, u) from the point, N + m entries.
@@ -27,7 +27,7 @@ pub(crate) struct ExpansionPoint {
     pub versine_middles: Vec<f64>,
 }
 
-impl ExpansionPoint {
+impl RecentringPoint {
     /// Creates the point 0 with N + m `variables`.
     pub(crate) fn new(angles: &Angles, variables: usize) -> Self {
         Self {

@@ -5,7 +5,7 @@ use reachtube_scalar::Interval;
 use crate::polynomial::expansion::power_table::PowerTable;
 use crate::polynomial::expansion::recentred::RecentredPolynomial;
 use crate::polynomial::expansion::vertex_bound::VertexBound;
-use crate::polynomial::linearise::expansion_point::ExpansionPoint;
+use crate::polynomial::linearise::expansion_point::RecentringPoint;
 use crate::polynomial::linearise::linear_part::LinearPart;
 use crate::polynomial::system::PolynomialSystem;
 
@@ -16,9 +16,9 @@ const CHOICE_STEPS: u32 = 8;
 ///
 /// A and B are floating-point matrices; their errors belong to the remainder.
 #[derive(Debug)]
-pub(crate) struct Linearisation<'a> {
+pub(crate) struct FlowLinearisation<'a> {
     pub system: &'a PolynomialSystem,
-    point: ExpansionPoint,
+    point: RecentringPoint,
     pub linear: LinearPart,
     expansions: Expansions,
     ranges: Ranges,
@@ -44,14 +44,14 @@ struct Ranges {
     until_choice: u32,
 }
 
-impl<'a> Linearisation<'a> {
+impl<'a> FlowLinearisation<'a> {
     /// Prepares the linearisation of a system, with at most `vertex_variables` vertex factors.
     pub(crate) fn new(system: &'a PolynomialSystem, vertex_variables: usize) -> Self {
         let (n, m) = (system.states(), system.inputs());
         let powers = PowerTable::new(&system.highest);
         let mut own = Self {
             system,
-            point: ExpansionPoint::new(&system.angles, n + m),
+            point: RecentringPoint::new(&system.angles, n + m),
             linear: LinearPart::new(n, m),
             expansions: Expansions {
                 rows: system.rows.iter().map(|row| row.workspace()).collect(),

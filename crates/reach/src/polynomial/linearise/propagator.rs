@@ -2,7 +2,7 @@
 
 use reachtube_scalar::Interval;
 
-use crate::polynomial::linearise::linearisation::Linearisation;
+use crate::polynomial::linearise::linearisation::FlowLinearisation;
 use crate::polynomial::linearise::reachable_zonotope::ReachableZonotope;
 use crate::polynomial::linearise::step::LinearisedStep;
 use crate::polynomial::propagator::{SetPropagator, StepFailure};
@@ -25,7 +25,7 @@ impl<'a> ZonotopePropagator<'a> {
     ) -> Self {
         let (centre, radius) = sides.iter().map(|x| (x.mid(), x.rad())).unzip();
         let (inputs, directions) = (system.inputs(), system.directions.len());
-        let linearisation = Linearisation::new(system, vertex_variables);
+        let linearisation = FlowLinearisation::new(system, vertex_variables);
         Self {
             set: ReachableZonotope::new(centre, radius, inputs, directions),
             step: LinearisedStep::new(linearisation, most_generators),

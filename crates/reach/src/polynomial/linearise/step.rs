@@ -2,7 +2,7 @@
 
 use reachtube_scalar::Interval;
 
-use crate::polynomial::linearise::linearisation::Linearisation;
+use crate::polynomial::linearise::linearisation::FlowLinearisation;
 use crate::polynomial::linearise::reachable_zonotope::ReachableZonotope;
 use crate::polynomial::linearise::rounded_exponential::RoundedExponential;
 use crate::polynomial::propagator::StepFailure;
@@ -20,7 +20,7 @@ const LEAST_ENLARGEMENT: f64 = 1e-290;
 /// The steps of conservative linearisation, with reused memory.
 #[derive(Debug)]
 pub(crate) struct LinearisedStep<'a> {
-    linearisation: Linearisation<'a>,
+    linearisation: FlowLinearisation<'a>,
     exponential: RoundedExponential,
     /// Columns of the directions of the system.
     directions: Vec<&'a [f64]>,
@@ -29,10 +29,10 @@ pub(crate) struct LinearisedStep<'a> {
     linear_solution: LinearSolution,
     /// Offsets from the expansion point over the whole step, with input and remainder, N.
     tube: Vec<Interval>,
-    remainder: Remainder,
+    remainder: RemainderGuess,
     /// Movement of the centre in the last step, N.
     last_move: Vec<f64>,
-    scratch: Scratch,
+    scratch: StepWorkspace,
 }
 
 /// The linear system about the expansion point, without input and remainder.
@@ -48,14 +48,14 @@ struct LinearSolution {
 
 /// Ranges of the remainder: first along the axes (N), then along the directions.
 #[derive(Debug)]
-struct Remainder {
+struct RemainderGuess {
     guess: Vec<Interval>,
     found: Vec<Interval>,
 }
 
 /// Scratch memory, vectors of N entries.
 #[derive(Debug)]
-struct Scratch {
+struct StepWorkspace {
     /// Σ |g| of the stored generators, in floating point.
     sums: Vec<f64>,
     /// Bounds of the rates that input and remainder add to ẋ.
@@ -64,7 +64,7 @@ struct Scratch {
 }
 
 impl<'a> LinearisedStep<'a> {
-    pub(crate) fn new(linearisation: Linearisation<'a>, most_generators: usize) -> Self {
+    pub(crate) fn new(linearisation: FlowLinearisation<'a>, most_generators: usize) -> Self {
         let system = linearisation.system;
         let n = system.states();
         let directions: Vec<&[f64]> =
@@ -82,9 +82,12 @@ impl<'a> LinearisedStep<'a> {
                 tube: intervals(n),
             },
             tube: intervals(n),
-            remainder: Remainder { guess: intervals(remainders), found: intervals(remainders) },
+            remainder: RemainderGuess {
+                guess: intervals(remainders),
+                found: intervals(remainders),
+            },
             last_move: numbers(),
-            scratch: Scratch {
+            scratch: StepWorkspace {
                 sums: numbers(),
                 drive: numbers(),
                 vectors: [numbers(), numbers(), numbers(), numbers()],
@@ -213,7 +216,7 @@ impl<'a> LinearisedStep<'a> {
         for _ in 0..TRIES {
             self.remainder.guess.iter_mut().for_each(|x| *x = enlarged(*x));
             self.enclose_tube(h);
-            let Remainder { guess, found } = &mut self.remainder;
+            let RemainderGuess { guess, found } = &mut self.remainder;
             self.linearisation.remainder(&self.tube, found);
             let is_inside = |(found, guess): (&Interval, &Interval)| {
                 found.lo() > guess.lo() && found.hi() < guess.hi() && guess.mag().is_finite()
@@ -252,7 +255,7 @@ impl<'a> LinearisedStep<'a> {
         self.bound_drive(set, h);
         // Generators: half of the drive before Φ, half of it after.
         self.add_drive_at_start(set, half);
-        let Scratch { sums, vectors, .. } = &mut self.scratch;
+        let StepWorkspace { sums, vectors, .. } = &mut self.scratch;
         set.store(&self.exponential.phi, &self.directions, &mut vectors[0], sums);
         self.set_drive_at_end(set, half);
         // Centre, and a box of all errors of the step.
