@@ -125,7 +125,7 @@ def client() -> Iterator[Any]:
 
 def tasks_end_but(other: Any, client: Any) -> bool:
     """Return whether a client's scheduler soon has no task but the one of `other`."""
-    for _ in range(200):
+    for _ in range(2000):
         tasks = client.run_on_scheduler(lambda dask_scheduler: list(dask_scheduler.tasks))
         if tasks == [other.key]:
             return True

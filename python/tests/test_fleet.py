@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -110,20 +109,19 @@ def test_workers_give_the_same_bits(manifest: Path, alone: rt.Model, client: Any
 def test_a_worker_that_is_killed_changes_nothing(
     manifest: Path, alone: rt.Model, client: Any
 ) -> None:
-    workers = client.run(os.getpid)
-    victim = next(iter(workers.values()))
-    killed = threading.Event()
+    victim = next(iter(client.run(os.getpid).values()))
+    killed: list[int] = []
 
-    def kill() -> None:
-        time.sleep(0.3)
-        os.kill(victim, signal.SIGKILL)
-        killed.set()
+    def kill(done: int, total: int, words: list[str]) -> None:
+        if done == 2 and not killed:
+            killed.append(victim)
+            os.kill(victim, signal.SIGKILL)
 
-    threading.Thread(target=kill).start()
     found = fleet.conform(
-        rt.Robot.lwa4p(), manifest, torque="compensated", client=client, runs_per_task=1
+        rt.Robot.lwa4p(), manifest, torque="compensated", client=client, runs_per_task=1,
+        progress=kill,
     )
-    assert killed.wait(5) and found == alone
+    assert killed and found == alone
 
 
 def test_the_only_worker_is_killed_and_replaced(manifest: Path, alone: rt.Model) -> None:
