@@ -106,7 +106,6 @@ def long_files(root):
             yield f"{file}: {lines} lines, more than {LONGEST_FILE}; does it hold two concepts?"
 
 
-<<<<<<< HEAD
 def size(folder, modules):
     lines = sum(file.read_text().count("\n") for file in (folder / "src").rglob("*.rs"))
     public = sum(len(PUBLIC.findall(module.text)) for module in modules)
@@ -135,18 +134,6 @@ def types_of_one_name(root, crates):
     for name, places in sorted(files.items(), key=lambda item: (-len(item[1]), item[0])):
         if len(places) > 1:
             yield f"{name}: {', '.join(places)}"
-=======
-def size(crate):
-    """Returns name, lines, public items, exported names and the median length of a function."""
-    texts = [file.read_text() for file in sorted((crate / "src").rglob("*.rs"))]
-    sources = read(crate / "src")
-    library = crate / "src/lib.rs"
-    exported = reexports(library.read_text(), ()) if library.exists() else {}
-    lengths = [length for text in sources.values() for _, _, length in functions(text)]
-    items = sum(len(ITEM.findall(text)) for text in texts)
-    return (crate.name, sum(text.count("\n") for text in texts), items, len(exported),
-            statistics.median(lengths))
->>>>>>> 4633bf1 (A check of minutes: tools/check, tools/test-long, and steps that run side by side)
 
 
 if __name__ == "__main__":

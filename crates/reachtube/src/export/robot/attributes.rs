@@ -3,8 +3,8 @@ use reachtube_robot::{Parameter, ParameterKind, Robot};
 use crate::export::text::harmless;
 
 /// What the files leave out.
-pub(crate) const LEFT_OUT: &str = "Friction is the viscous coefficient v1 and one Coulomb magnitude \
-at no load; v2, v3, the dependence on the load and the Stribeck effect are left out.";
+pub(crate) const LEFT_OUT: &str = "Friction is the viscous coefficient v1 and one Coulomb \
+magnitude at no load; v2, v3, the dependence on the load and the Stribeck effect are left out.";
 
 /// Returns the viscous coefficient and the Coulomb magnitude of joint `j`.
 pub(crate) fn friction(robot: &Robot, j: usize) -> [f64; 2] {
