@@ -6,7 +6,7 @@
 
 Fails on files of one crate that import each other in a circle, on functions of more than 60 lines,
 and on Rust or Python files of more than 400 lines. Public items are those declared `pub`; the
-compiler refuses `pub` for what cannot be reached from outside its crate. Names are those that
+compiler refuses `pub` for what cannot be reached from outside its crate. Names are what
 `lib.rs` exports. Tests are left out, but for the lines.
 """
 

@@ -143,6 +143,6 @@ class Module:
 
 
 def crate(folder):
-    """Returns the modules of the crate in `folder`, those of a library and a program together."""
+    """Returns the modules of the crate in `folder`, of a library and a program together."""
     roots = (folder / "src/lib.rs", folder / "src/main.rs")
     return [m for root in roots if root.exists() for m in Module(root, Path(folder / "src")).all()]

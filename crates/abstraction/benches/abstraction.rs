@@ -1,6 +1,6 @@
-//! Benchmarks of models of the LWA 4P: their construction, their evaluation compared with that of
-//! the full dynamics (sines and cosines given), and their reachable sets. Run with
-//! `cargo bench -p reachtube-abstraction --bench abstraction`.
+//! Benchmarks of models of the LWA 4P: their construction, their evaluation compared with the full
+//! dynamics (sines and cosines given), and their reachable sets. Run with `cargo bench -p
+//! reachtube-abstraction --bench abstraction`.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -85,7 +85,7 @@ fn aba<S: Lanewise>(bencher: Bencher) {
     });
 }
 
-/// Radii of U, N m: about those that the linear model needs for the recordings of the paper.
+/// Radii of U, N m: about what the linear model needs for the recordings of the paper.
 const INPUT: [f64; 6] = [1.2, 2.2, 2.5, 0.7, 0.16, 0.5];
 /// Radii of the initial set, rad and rad/s.
 const STATE: [f64; 2] = [0.005, 0.03];

@@ -24,8 +24,8 @@ const WIDE_SIDE: f64 = 1.0;
 
 /// Returns the joint along whose position the mass matrix, row-major n x n, changes most.
 ///
-/// The change is that of P M, where P is the inverse of M in the middle of the box. Entry (i, j) is
-/// scaled by the inertias of the joints, because it maps an acceleration of j to one of i.
+/// The change is measured on P M, where P is the inverse of M in the middle of the box. Entry (i,
+/// j) is scaled by the inertias of the joints, because it maps an acceleration of j to one of i.
 pub(crate) fn stiffest(mass: &[TaylorModel], sides: &[Interval]) -> usize {
     let n = sides.len();
     let joint = widest(sides);
@@ -72,7 +72,7 @@ fn largest(values: &[f64]) -> Option<usize> {
     (values[index] > 0.0).then_some(index)
 }
 
-/// Returns the joint with the widest side among those that M_m depends on.
+/// Returns the joint with the widest side among the joints that M_m depends on.
 fn widest(sides: &[Interval]) -> usize {
     let width = |i: &usize| sides[*i].width();
     position_variables(sides.len()).max_by(|i, j| width(i).total_cmp(&width(j))).unwrap_or(0)

@@ -132,10 +132,10 @@ pub enum Error {
         /// Names of the variables in the term.
         factors: Vec<String>,
     },
-    /// The polynomials of a file are not those of a model.
+    /// The polynomials of a file are not a model's.
     #[error(transparent)]
     Records(#[from] RecordsError),
-    /// A file is not that of an abstraction, or has another version.
+    /// A file is not an abstraction file, or has another version.
     #[error("{}: {problem}", path.display())]
     ModelFile {
         /// The file.
@@ -157,7 +157,7 @@ pub enum Error {
     Reach(#[from] ReachError),
 }
 
-/// Why the polynomials of a file are not those of a model.
+/// Why the polynomials of a file are not a model's.
 #[derive(Debug, Error, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum RecordsError {
@@ -172,7 +172,7 @@ pub enum RecordsError {
         /// Number of variables.
         variables: usize,
     },
-    /// The variables are not those of the model.
+    /// The variables differ from the model's.
     #[error("its variables are not {}", expected.join(", "))]
     Variables {
         /// Names of the model's variables, in order.
@@ -218,7 +218,7 @@ pub enum RecordsError {
         /// Order of the model.
         order: u32,
     },
-    /// The terms differ from those that the robot gives.
+    /// The terms differ from the robot's.
     #[error(
         "its terms are not those of its robot at its expansion point: the file was changed after \
          it was written"

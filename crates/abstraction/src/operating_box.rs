@@ -61,7 +61,7 @@ impl OperatingBox {
     ///
     /// # Guarantee
     ///
-    /// Exact: the ends are those of the box.
+    /// Exact: the ends are the ends of the box.
     #[must_use]
     pub fn sides(&self) -> Vec<Interval> {
         let all = self.q.iter().chain(&self.qd).chain(&self.u);

@@ -2,8 +2,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::operating_box::OperatingBox;
 
-/// A bound of the truncation error f(x, u) - f_p(x, u): acceleration of the robot minus that of the
-/// model, over an operating box.
+/// A bound of the truncation error f(x, u) - f_p(x, u): acceleration of the robot minus
+/// acceleration of the model, over an operating box.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Remainder {
@@ -21,7 +21,7 @@ pub struct Remainder {
 }
 
 impl Remainder {
-    /// Returns whether the sizes are those of n joints and the box is not empty.
+    /// Returns whether the sizes fit n joints and the box is not empty.
     pub(crate) fn is_valid_for(&self, n: usize) -> bool {
         self.operating_box.is_valid_for(n)
             && self.bounds.len() == n

@@ -6,8 +6,8 @@ use crate::polynomial_model::PolynomialModel;
 /// Order for models 1 and 2, whose error begins at the first order of q, and lowest order: a
 /// shorter series of M_m⁻¹ would need many more parts.
 const LOW_ORDER: u32 = 5;
-/// Number of orders above that of model 3. The first is its error, which must be exact; the others
-/// make the rest small.
+/// Number of orders above the order of model 3. The first is its error, which must be exact; the
+/// others make the rest small.
 const HIGHER_ORDERS: u32 = 3;
 /// Highest order, for robots with few joints.
 const MAX_ORDER: u32 = 24;

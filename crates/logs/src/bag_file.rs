@@ -200,8 +200,8 @@ impl Scan<'_> {
         Ok(())
     }
 
-    /// Returns the loss of all messages after the last one that was read. The index of times
-    /// counts those that it still holds.
+    /// Returns the loss of all messages after the last one that was read. The index of times counts
+    /// the messages that it still holds.
     fn rest(
         &self,
         connection: &Connection,
@@ -238,7 +238,7 @@ impl Scan<'_> {
     fn unusable(&self, error: &rusqlite::Error) -> Error {
         let problem = match error.sqlite_error_code() {
             Some(rusqlite::ErrorCode::NotADatabase | rusqlite::ErrorCode::DatabaseCorrupt) => {
-                "so nothing in it can be recovered; use a copy or another log"
+                "so its messages cannot be recovered; use a copy or another log"
             }
             _ => {
                 "so it is no rosbag2 file in SQLite, or it is damaged; give the .db3 file of a bag"

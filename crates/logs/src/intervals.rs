@@ -49,7 +49,7 @@ struct IntervalRow {
 
 impl Intervals {
     /// Reads a list: CSV with the columns `start` and `end`, s from the log's first sample, or
-    /// `start_stamp` and `end_stamp`, s as the stamps. An empty end is that of the log. The
+    /// `start_stamp` and `end_stamp`, s as the stamps. An empty end is the end of the log. The
     /// columns `suite`, `motion` and `log` (name of the file) may be there.
     ///
     /// # Errors

@@ -305,7 +305,7 @@ fn time_note(path: &Path, series: &TopicStates, time: LogTime) -> String {
     let path = path.display();
     match time {
         LogTime::Receipt => {
-            format!("{path}: times are those at which the log received the messages")
+            format!("{path}: times are the times at which the log received the messages")
         }
         LogTime::Header => {
             let delay = |sample: &Sample| sample.received.saturating_sub(sample.time);

@@ -126,8 +126,8 @@ impl Scan<'_, '_> {
         })
     }
 
-    /// Reads a schema, a channel or a message. `offset` is its place in the file, or that of its
-    /// chunk.
+    /// Reads a schema, a channel or a message. `offset` is its place in the file, or its chunk's
+    /// place.
     fn record(&mut self, record: Record<'_>, offset: u64) -> Result<()> {
         match record {
             Record::Schema { header, .. } => {

@@ -18,7 +18,7 @@ pub(crate) const HEAD: usize = 9;
 pub(crate) struct Piece {
     /// Where it starts in the file.
     pub(crate) offset: u64,
-    /// Its bytes, with the head. Of a broken record, only a chunk has its bytes.
+    /// Its bytes, with the head. Among broken records, only a chunk has its bytes.
     pub(crate) bytes: Vec<u8>,
     /// What is wrong, and the number of bytes that cannot be used for it.
     pub(crate) fault: Option<(String, u64)>,

@@ -1,4 +1,4 @@
-//! The ROS messages that are read: joint states, and those that mark runs.
+//! The ROS messages that are read: joint states, and marks of runs.
 
 use crate::cdr::{Cdr, Doubles};
 

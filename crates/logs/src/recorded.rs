@@ -108,7 +108,7 @@ impl Recorded<'_> {
     }
 
     /// Writes the runs into a folder as CSV files, and then their index `runs.csv`. A number has
-    /// the digits that give it back to the last bit; times have those of the log.
+    /// the digits that give it back to the last bit; times have the digits of the log.
     ///
     /// # Errors
     ///

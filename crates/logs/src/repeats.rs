@@ -5,7 +5,8 @@ use serde::Serialize;
 use crate::cut::Cut;
 use crate::log::Log;
 
-/// Largest difference of a joint's first position from that of the suite's first run, rad or m.
+/// Largest difference of a joint's first position from the first position of the suite's first run,
+/// rad or m.
 const START: f64 = 0.05;
 
 /// Lowest correlation with the suite's first run.
@@ -25,10 +26,11 @@ pub struct Repeats {
     pub suite: String,
     /// Number of runs.
     pub runs: usize,
-    /// Lowest correlation of a run's velocities with those of the first run: 2 a·b / (a·a + b·b)
-    /// over all joints and samples, which is 1 only for equal velocities.
+    /// Lowest correlation of a run's velocities with the velocities of the first run: 2 a·b / (a·a
+    /// + b·b) over all joints and samples, which is 1 only for equal velocities.
     pub correlation: f64,
-    /// Largest difference of a joint's first position from that of the first run, rad or m.
+    /// Largest difference of a joint's first position from the first position of the first run, rad
+    /// or m.
     pub start_spread: f64,
     /// Largest lag behind the first run at which velocities correlate best, s.
     pub lag: f64,

@@ -1,4 +1,4 @@
-//! A sample of a log, and what can be wrong with it.
+//! A sample of a log, and its possible defects.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -120,7 +120,7 @@ pub(crate) struct Sample {
     pub(crate) time: i64,
     /// Time at which the log received the message, ns.
     pub(crate) received: i64,
-    /// Number of its topic among those of joint states.
+    /// Number of its topic among the topics of joint states.
     pub(crate) topic: usize,
     /// Number of the message in its topic, from 1.
     pub(crate) message: u64,

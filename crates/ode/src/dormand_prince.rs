@@ -126,7 +126,8 @@ impl DormandPrince {
             "the number of states differs from the dimension of the integrator"
         );
         let resolution = f64::EPSILON * t.abs().max(end.abs());
-        // First slope. That of the previous span is not valid, because the input may have jumped.
+        // First slope. The derivative of the previous span is not valid, because the input may have
+        // jumped.
         field.rate(t, x, u, &mut self.slopes[0]);
         for _ in 0..self.step_limit {
             // End of the span, or divergence.

@@ -9,9 +9,9 @@ use crate::vector_field::VectorField;
 
 /// An integrator of many runs of one field with fixed steps, one run per lane of the scalar S.
 ///
-/// The states of a run equal those of the same run over `f64`, to the last bit, if the operations
-/// of the field do. A run that diverges does not affect the others. With several threads, each
-/// needs its own ensemble, field and part of the runs.
+/// The states of a run equal the states of the same run over `f64`, to the last bit, if the
+/// operations of the field do. A run that diverges does not affect the others. With several
+/// threads, each needs its own ensemble, field and part of the runs.
 ///
 /// # Examples
 ///

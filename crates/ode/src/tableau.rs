@@ -15,7 +15,7 @@ pub(crate) const STAGES: [[f64; 6]; 7] = [
     [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 
-/// Error weights: the solution of order 5 minus that of order 4.
+/// Error weights: the solution of order 5 minus the solution of order 4.
 pub(crate) const ERROR_WEIGHTS: [f64; 7] = [
     71.0 / 57600.0,
     0.0,

@@ -141,7 +141,7 @@ fn read_group(data: &DataSet, members: &[usize], options: &ReadOptions) -> Vec<(
     summaries
 }
 
-/// Refuses a run whose number of joints differs from that of the first.
+/// Refuses a run whose number of joints differs from the first run's.
 fn same_joints(data: &DataSet, index: usize, run: RunSummary, joints: usize) -> Summary {
     let found = run.joint_count();
     if found == joints {

@@ -27,7 +27,7 @@ pub struct MemoryRuns {
 
 impl MemoryRuns {
     /// Adds a run under a name, with its suite and the motion that the suite is part of. The run's
-    /// SHA-256 becomes that of its numbers.
+    /// SHA-256 becomes the SHA-256 of its numbers.
     ///
     /// Returns the run's entry. The run counts as the latest of its suite unless its `order` is
     /// set there, and its `temperature` can be set likewise.

@@ -7,7 +7,7 @@ use crate::defect::Defect;
 use crate::text::quoted;
 
 const REMEDY: &str = "number the runs of a suite 1, 2, 3, ... in the order in which they were \
-                      recorded, or leave out the column";
+                      recorded, or omit the column";
 
 /// What a line of the index says about the order of a run.
 pub(crate) struct WrittenOrder<'a> {

@@ -277,8 +277,8 @@ impl Reading<'_> {
         self.defects.push(defect.of_joint(joint));
     }
 
-    /// Returns the time of a line in picoseconds, where it is a number and later than that of the
-    /// line above.
+    /// Returns the time of a line in picoseconds, where it is a number and later than the time of
+    /// the line above.
     fn time(&mut self, line: u64, value: f64, text: &str) -> Option<i128> {
         let time = value.is_finite().then(|| picoseconds(text).unwrap_or((value * 1e12) as i128));
         let above = self.rows.last().and_then(|row| row.time);

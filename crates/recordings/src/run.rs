@@ -6,7 +6,7 @@ pub struct Run {
     /// Time of the first sample as recorded, s.
     pub start: f64,
     /// Times since the first sample, K, s, strictly increasing from 0. For a file, differences are
-    /// those of the decimal numbers as written, to the picosecond.
+    /// taken between the decimal numbers as written, to the picosecond.
     pub times: Vec<f64>,
     /// States x = (q, q̇), rad and rad/s, row-major K x 2n.
     pub states: Vec<f64>,
@@ -54,8 +54,8 @@ pub enum RunError {
     },
     /// Times do not increase.
     #[error(
-        "the time of sample {sample}, {time} s, is not later than that of the sample before; sort \
-         the samples and drop duplicates"
+        "the time of sample {sample}, {time} s, is not later than the time of the sample before; \
+         sort the samples and drop duplicates"
     )]
     NotLater {
         /// The sample.

@@ -19,7 +19,7 @@ const LARGEST_CONTRADICTION: f64 = 0.02;
 /// The part of normal numbers that lie within one standard deviation.
 const WITHIN_ONE_DEVIATION: f64 = 0.682_689_49;
 
-/// Returns the standard deviation of the noise in each state of `run`, 2n, rad and rad/s; nothing
+/// Returns the standard deviation of the noise in each state of `run`, 2n, rad and rad/s; `None`
 /// for a run of fewer than 20 samples.
 ///
 /// Each sample is compared with the cubic through the two samples before and the two after it. A

@@ -81,7 +81,7 @@ impl fmt::Display for State {
     }
 }
 
-/// A name is not that of a state.
+/// A name does not name a state.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("\"{name}\" is not a state; states are named q1, q2, ..., qd1, ...")]
 pub struct StateNameError {

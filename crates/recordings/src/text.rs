@@ -3,8 +3,8 @@
 /// Length of the longest quotation from a file, characters.
 const QUOTED: usize = 40;
 
-/// Returns the line, from 1, on which a record starts. The reader's position may be that of blank
-/// lines above it.
+/// Returns the line, from 1, on which a record starts. The reader's position may be the number of a
+/// blank line above it.
 pub(crate) fn line_of(bytes: &[u8], position: Option<&csv::Position>) -> u64 {
     let Some(position) = position else { return 1 };
     let ahead = bytes.get(position.byte() as usize..).unwrap_or_default();

@@ -45,7 +45,7 @@ pub fn integral_gap(run: &Run, joint: usize) -> f64 {
 }
 
 /// Returns the least-squares slope of q over ∫q̇ dt, both from the first sample; `None` for a joint
-/// that hardly moves. Motion in a gap, of which nothing is known, counts on neither side.
+/// that hardly moves. Unrecorded motion in a gap counts on neither side.
 fn position_per_integral(run: &Run, joint: usize) -> Option<f64> {
     let (mut integral, mut cross, mut square, mut largest) = (0.0f64, 0.0, 0.0, 0.0f64);
     let longest = GapLimit::Usual.longest_step(steps(run).collect());
@@ -97,7 +97,7 @@ fn torque_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
         let problem = format!(
             "tau is {torque:e} {unit} at {time} s after the first sample, which no joint has"
         );
-        let remedy = format!("give tau in {unit}, or leave out that sample");
+        let remedy = format!("give tau in {unit}, or omit that sample");
         Some(joint_defect(path, joint, problem, &remedy))
     };
     (0..run.joints).filter_map(defect).collect()

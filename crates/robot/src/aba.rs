@@ -14,9 +14,8 @@ impl Robot {
     /// gravity included.
     ///
     /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\],
-    /// link-side torque
-    /// `tau` \[N m\]. The cost is linear in the number of joints (Featherstone, IJRR 1983). The
-    /// result equals that of [`Robot::forward_dynamics`] on s² + c² = 1.
+    /// link-side torque `tau` \[N m\]. The cost is linear in the number of joints (Featherstone,
+    /// IJRR 1983). The result equals the result of [`Robot::forward_dynamics`] on s² + c² = 1.
     ///
     /// # Guarantee
     ///

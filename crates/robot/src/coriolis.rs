@@ -10,7 +10,7 @@ impl Robot {
     /// Computes the Coriolis and centripetal torque c(q, q̇) of (3) \[N m\], without gravity.
     ///
     /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`] and `qd` \[rad/s\].
-    /// The torque is that of Newton-Euler at zero acceleration. With independent sine and cosine it
+    /// The torque equals Newton-Euler's at zero acceleration. With independent sine and cosine it
     /// is that algorithm's polynomial, which has a higher degree than the Christoffel form (12); on
     /// s² + c² = 1 both are equal.
     ///

@@ -88,7 +88,7 @@ pub enum RobotError {
         /// The values that are allowed.
         range: String,
     },
-    /// A text is not that of a locked joint.
+    /// A text does not describe a locked joint.
     #[error(
         "\"{text}\" locks no joint; give JOINT=VALUE, the name of a joint and its position in rad, \
          or in m for a prismatic joint"

@@ -32,8 +32,7 @@ impl<S: Scalar> GravityLoad<S> {
 impl Robot {
     /// Computes the gravity torque g(q) of (3) \[N m\] from the gravity parameters.
     ///
-    /// All slices have one entry per joint; `sin` and `cos` are those of
-    /// [`Robot::sin_cos`].
+    /// All slices have one entry per joint; `sin` and `cos` come from [`Robot::sin_cos`].
     ///
     /// # Guarantee
     ///

@@ -74,8 +74,8 @@ impl Link {
 
     /// Returns the pose in the parent for the position q of a prismatic joint.
     ///
-    /// The paths of prismatic joints are functions of their own, so that those of revolute joints
-    /// stay as short as without them.
+    /// The paths of prismatic joints are functions of their own, so that the paths of revolute
+    /// joints stay as short as without them.
     #[cold]
     #[inline(never)]
     fn pose_of_slide<S: Scalar>(&self, q: &S) -> Pose<S> {

@@ -15,7 +15,7 @@ impl Robot {
     /// `tau` = (M(q) + diag(armature)) q̈ + c(q, q̇) + g(q). All slices have one entry per joint:
     /// `sin`, `cos` of [`Robot::sin_cos`], `qd` \[rad/s\], `qdd` \[rad/s²\]. Sine and cosine may be
     /// independent variables: off the circle s² + c² = 1 the value is this algorithm's polynomial
-    /// extension, which differs from that of [`Robot::crba`].
+    /// extension, which differs from the extension of [`Robot::crba`].
     ///
     /// Recursive Newton-Euler algorithm (Luh, Walker & Paul 1980) with the link's second moments in
     /// place of its inertia tensor.

@@ -129,8 +129,8 @@ impl Robot {
 
     /// Returns the values of these parameters in the robot's description, each in its SI unit.
     ///
-    /// Coulomb friction and offset are those of the four quadrants at no load. If the quadrants
-    /// have slopes, these two values do not describe all of the friction.
+    /// Coulomb friction and offset come from the four quadrants at no load. If the quadrants have
+    /// slopes, these two values do not describe all of the friction.
     pub fn parameter_values(&self, parameters: &[Parameter]) -> Vec<f64> {
         let inertial = self.inertial_parameters();
         let value = |p: &Parameter| {

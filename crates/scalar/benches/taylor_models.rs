@@ -1,4 +1,5 @@
-//! Benchmarks of Taylor models of low order in 18 variables, beside those of their polynomials.
+//! Benchmarks of Taylor models of low order in 18 variables, beside benchmarks of their
+//! polynomials.
 
 use divan::{Bencher, black_box};
 use reachtube_scalar::{

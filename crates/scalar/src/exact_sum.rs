@@ -104,7 +104,7 @@ impl ExactSum {
         [self.count, flags].into_iter().chain(self.limbs[..length].iter().copied()).collect()
     }
 
-    /// Returns the sum of these words; nothing where no sum has them.
+    /// Returns the sum of these words; `None` if no sum has them.
     #[must_use]
     pub fn from_words(words: &[u64]) -> Option<Self> {
         let (&[count, flags], limbs) = words.split_at_checked(2)? else { return None };

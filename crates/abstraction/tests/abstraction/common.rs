@@ -62,7 +62,7 @@ pub(crate) fn seven_joints() -> Robot {
 }
 
 /// Returns the arm of seven joints without its motors. The inertia of its last joint is a
-/// thousandth of that of the first one, so its mass matrix changes by a multiple over small boxes.
+/// thousandth of the first one's, so its mass matrix changes by a multiple over small boxes.
 pub(crate) fn light_wrist() -> Robot {
     let lines = SEVEN_JOINTS.lines().filter(|line| !line.contains("armature"));
     Robot::from_toml(&lines.collect::<Vec<_>>().join("\n"), "light wrist").unwrap()

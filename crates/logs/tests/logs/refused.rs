@@ -1,4 +1,4 @@
-//! What is refused in a log that is whole, and what is said about it.
+//! Refused contents of a log that is whole, and their messages.
 
 use crate::support::*;
 use reachtube_logs::{Log, LogOptions, LogTime, convert, whole_logs};

@@ -22,10 +22,10 @@ const TOLERANCE: f64 = 1e-9;
 /// independent columns Y_b of Y.
 ///
 /// Columns are scaled to unit length and processed in their given order. A column that is
-/// independent of the earlier ones is a column of Y_b; any other column is a combination of those.
-/// [`Parameter::of_joints`] has the order that is common in the literature, joint by joint from the
-/// base. Parameters that are identifiable only together with those of earlier links are then
-/// grouped with these.
+/// independent of the earlier ones is a column of Y_b; any other column is a combination of such
+/// columns. [`Parameter::of_joints`] has the order that is common in the literature, joint by joint
+/// from the base. Parameters that are identifiable only together with parameters of earlier links
+/// are then grouped with these.
 ///
 /// # Examples
 ///
@@ -58,8 +58,8 @@ impl BaseParameters {
         Self::over(robot, parameters, &random_states(robot, STATES, &mut Random::new(1)))
     }
 
-    /// Computes the base parameters of a robot at rest at 200 random positions: those that gravity
-    /// alone identifies.
+    /// Computes the base parameters of a robot at rest at 200 random positions: the parameters that
+    /// gravity alone identifies.
     pub fn at_rest(robot: &Robot, parameters: &[Parameter]) -> Self {
         Self::over(robot, parameters, &random_rest_states(robot, STATES, &mut Random::new(1)))
     }
@@ -73,8 +73,8 @@ impl BaseParameters {
     ///
     /// A column is independent if more than `tolerance` of its length is independent of the earlier
     /// columns. A column shorter than `tolerance` times the longest column counts as 0. For
-    /// recorded motions, the base parameters are those that the motions excite, if `tolerance` is
-    /// above the noise.
+    /// recorded motions, the base parameters are the parameters that the motions excite, if
+    /// `tolerance` is above the noise.
     ///
     /// # Panics
     ///

@@ -108,10 +108,10 @@ pub struct FrictionDescription {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionErrors {
-    /// Of a1 to a8.
+    /// Standard errors of a1 to a8.
     #[serde(default)]
     pub coulomb: [f64; 8],
-    /// Of v1, v2 and v3.
+    /// Standard errors of v1, v2 and v3.
     #[serde(default)]
     pub viscous: [f64; 3],
 }

@@ -125,7 +125,7 @@ impl SearchSpace {
     }
 }
 
-/// Projects a series onto those with velocity Σ a = 0 and acceleration ω Σ l b = 0 at t = 0.
+/// Projects a series onto the series with velocity Σ a = 0 and acceleration ω Σ l b = 0 at t = 0.
 fn project_to_rest(a: &mut [f64], b: &mut [f64]) {
     let n = a.len() as f64;
     let mean = a.iter().sum::<f64>() / n;

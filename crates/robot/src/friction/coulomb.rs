@@ -76,7 +76,7 @@ impl Coulomb {
 
     /// Returns the friction torque \[N m\] with each quadrant in these parts, as
     /// [`torque`](Self::torque) but without steps, at a load torque \[N m\] and a joint velocity
-    /// \[rad/s\]. The parts are those of driving forward, driving backward, braking backward and
+    /// \[rad/s\]. The parts belong to driving forward, driving backward, braking backward and
     /// braking forward.
     ///
     /// Below [`NEAR_STANDSTILL`] it is in proportion to the velocity. Where the load is smaller

@@ -19,7 +19,7 @@ pub struct Friction {
     pub viscous: Viscous,
     /// Rise of dry friction toward standstill, if there is one. It is part of tau_c.
     pub stribeck: Option<Stribeck>,
-    /// Change of friction while the joint warms up, if it is known. Torques are those at the law's
+    /// Change of friction while the joint warms up, if it is known. Torques hold at the law's
     /// reference; [`Robot::at_temperature`](crate::Robot::at_temperature) and
     /// [`Robot::at_run`](crate::Robot::at_run) apply the law.
     pub warming: Option<Warming>,
@@ -64,8 +64,8 @@ impl Friction {
     /// Returns a range of the friction torque \[N m\], dry and viscous, over loads \[N m\] and
     /// velocities \[rad/s\] that may cross zero.
     ///
-    /// Friction at standstill is a set: every torque from the limit of backward motion to that of
-    /// forward motion, breakaway torques included. The range contains this set where 0 is among
+    /// Friction at standstill is a set: every torque from the limit of backward motion to the limit
+    /// of forward motion, breakaway torques included. The range contains this set where 0 is among
     /// the velocities.
     ///
     /// # Guarantee

@@ -42,11 +42,11 @@ impl PositionBox {
 impl Robot {
     /// Tries to prove that M_m(q) is positive definite at every position within the limits.
     ///
-    /// This is for robots whose links alone are no proof ([`Robot::check_physical`]), such as those
-    /// with base parameters. The proof is a branch and bound with interval arithmetic over boxes of
-    /// positions; boxes that are too wide are bisected. Returns the number of boxes, or `None` if
-    /// more than `most_boxes` would be needed, which implies nothing about M. The LWA 4P takes
-    /// about 45,000 boxes and 2 s.
+    /// This is for robots whose links alone are no proof ([`Robot::check_physical`]), such as
+    /// robots with base parameters. The proof is a branch and bound with interval arithmetic over
+    /// boxes of positions; boxes that are too wide are bisected. Returns the number of boxes, or
+    /// `None` if more than `most_boxes` would be needed, which implies nothing about M. The LWA 4P
+    /// takes about 45,000 boxes and 2 s.
     ///
     /// # Guarantee
     ///
@@ -152,8 +152,8 @@ impl<'a> Cover<'a> {
         others.fold(entry(i), |rest, j| rest - Interval::point(entry(j).mag()))
     }
 
-    /// Returns the two joints to bisect: those with the largest slack if their position is fixed at
-    /// the middle.
+    /// Returns the two joints to bisect: the joints with the largest slack if their position is
+    /// fixed at the middle.
     ///
     /// Bisecting two joints at a time halves the number of evaluations. M does not depend on the
     /// first joint.

@@ -11,7 +11,7 @@ pub enum Physicality {
     },
     /// A search without a proof: no violation was found among the sampled positions.
     Searched {
-        /// Number of positions, including those of the descents.
+        /// Number of positions, including the positions of the descents.
         positions: usize,
         /// Index of the joint with the smallest pivot.
         joint: usize,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Ends of the chain, locked joints, gravity, and motors and friction of joints. Each value
-/// overrides that of the URDF.
+/// overrides the URDF's value.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Companion {

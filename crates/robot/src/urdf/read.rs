@@ -68,8 +68,8 @@ impl Urdf {
     /// Reads a URDF file and its companion, the TOML file of the same base name beside it.
     ///
     /// The companion is optional. A TOML file with a `schema_version` is a robot of its own and no
-    /// companion. Values of the companion override those of the URDF, and `options` override those
-    /// of the companion.
+    /// companion. Values of the companion override the URDF's values, and `options` override the
+    /// companion's.
     ///
     /// # Errors
     ///

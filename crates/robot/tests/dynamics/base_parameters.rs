@@ -1,5 +1,5 @@
-//! Base parameters against those of Pinocchio's regressor (`shared/oracle`, `base_parameters`) and
-//! the paper's Table III.
+//! Base parameters against the parameters of Pinocchio's regressor (`shared/oracle`,
+//! `base_parameters`) and the paper's Table III.
 
 use crate::shared::{oracle, oracle_robot};
 use reachtube_robot::{BaseParameters, Parameter, ParameterKind, Regressor, Robot};
@@ -145,7 +145,7 @@ fn counts_and_gaps_agree_with_pinocchio() {
     }
 }
 
-/// Y θ = Y_b K θ holds at states other than those of the base, friction and offsets included.
+/// Y θ = Y_b K θ holds at states other than the states of the base, friction and offsets included.
 #[test]
 fn the_base_regressor_gives_the_same_torque() {
     use ParameterKind::{Coulomb, MotorInertia, Offset, Viscous1, Viscous3};

@@ -193,8 +193,8 @@ fn the_double_pendulum_has_its_textbook_mass_matrix() {
 }
 
 proptest! {
-    /// The load is that of gravity, for which Table III was identified. Under loads above 10 N m,
-    /// the friction of joint 5 would not dissipate.
+    /// The load is gravity, for which Table III was identified. Under loads above 10 N m, the
+    /// friction of joint 5 would not dissipate.
     #[test]
     fn coulomb_friction_dissipates(
         q in prop::collection::vec(-3.2..3.2f64, 6),

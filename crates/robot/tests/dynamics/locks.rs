@@ -228,7 +228,8 @@ fn joints_of_a_toml_robot_are_locked() {
     let locks = ["joint3=0.7", "joint6=-0.4"].map(|lock| lock.parse().unwrap());
     let locked = Robot::from_description(&lwa4p.description().with_locks(&locks).unwrap()).unwrap();
     assert_eq!(locked, Robot::load_locked("lwa4p", &locks).unwrap());
-    // The torques of the free joints are those of the whole robot while the locked joints rest.
+    // The torques of the free joints equal the torques of the whole robot while the locked joints
+    // rest.
     let whole = |[a, b, c, d]: [f64; 4], third: f64, sixth: f64| [a, b, third, c, d, sixth];
     let free = |tau: &[f64]| [0, 1, 3, 4].map(|i| tau[i]);
     let (q, qd, qdd) = ([0.3, -0.5, 0.9, 1.2], [0.5, 0.6, -0.7, 0.3], [1.0, -2.0, 3.0, 0.5]);

@@ -5,7 +5,7 @@ use crate::rounding::{add_up, sub_down, sub_up};
 /// A closed interval [lo, hi] of real numbers, lo ≤ hi, whose operations round outwards.
 ///
 /// An end can be infinite, which makes the interval unbounded, but never NaN. An interval is never
-/// empty. Operations are those of sets: the result encloses x ∘ y for **every** x and y of the
+/// empty. Operations are set operations: the result encloses x ∘ y for **every** x and y of the
 /// operands, so `x - x` is not zero unless x is a point. The operator `==` compares the ends.
 ///
 /// # Guarantee

@@ -4,8 +4,8 @@
 /// exponent of each variable, with variable 0 lowest.
 ///
 /// The product of two monomials is the sum of their packed integers. Packed monomials compare by
-/// degree, then by the exponents, that of the last variable first; a `TaylorSpace` orders
-/// monomials in the same way.
+/// degree, then by the exponents, the last variable's first; a `TaylorSpace` orders monomials in
+/// the same way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Packing {
     bits: u32,

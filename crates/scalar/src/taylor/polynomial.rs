@@ -14,7 +14,7 @@ use crate::scalar::Scalar;
 /// Each result takes one of three storage forms:
 ///
 /// - a constant, which belongs to every space, so that code over [`Scalar`] can convert a number;
-/// - a sorted list of terms, for sparse polynomials such as those of a robot's M, g and c;
+/// - a sorted list of terms, for sparse polynomials such as a robot's M, g and c;
 /// - a dense series, as division and elementary functions compute it.
 ///
 /// Clones share memory until one of them is changed.

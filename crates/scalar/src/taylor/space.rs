@@ -15,7 +15,7 @@ const MAX_TABLE_ENTRIES: u128 = 1 << 28;
 /// The space of polynomials in k variables, truncated at total degree p (Liu & Althoff, IROS 2018,
 /// Definition 3).
 ///
-/// Monomials of one degree are ordered by their exponents, that of the last variable first. Those
+/// Monomials of one degree are ordered by their exponents, the last variable's first. The monomials
 /// of degree 1 are x_0, x_1, and so on. A dense series stores one block of coefficients per degree.
 /// A product table holds the index of the product of each two monomials of two blocks. The space
 /// computes a product table or a list of monomials on first use.

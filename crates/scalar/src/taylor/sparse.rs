@@ -14,7 +14,7 @@ pub(crate) type Term<C> = (u128, C);
 /// by one. For longer factors, all products are collected and sorted.
 const MERGED_ROWS: usize = 4;
 
-/// Number of products collected before they are sorted. It keeps the memory near that of the
+/// Number of products collected before they are sorted. It keeps the memory near the size of the
 /// result.
 const BATCH: usize = 1 << 20;
 

@@ -40,7 +40,7 @@ pub(super) fn sum_of_magnitudes(c: &[f64]) -> f64 {
     inflated(sum, chunks.len() + 2 * PARTIAL_SUMS)
 }
 
-/// Number of stored norms. The last one is that of all degrees from 31 on, so models of a higher
+/// Number of stored norms. The last one holds for all degrees from 31 on, so models of a higher
 /// order have valid but wider remainders.
 const DEGREES: usize = 32;
 

@@ -33,7 +33,7 @@ impl TaylorModel {
             return Self::from(self.range() * other.range());
         }
         let order = a.space().or(b.space()).map_or(0, |space| space.order());
-        // Truncation: the largest part is that of two terms of degree p/2 + 1 each, which gets a
+        // Truncation: the largest part comes from two terms of degree p/2 + 1 each, which gets a
         // closer bound.
         let degree = order / 2 + 1;
         let parts = product_of_parts(a, b, degree, [&x, &y].map(|norms| norms.of_degree(degree)));

@@ -74,7 +74,8 @@ proptest! {
         }
     }
 
-    /// The angles of a box contain the angle of each point, and their ends are those of vertices.
+    /// The angles of a box contain the angle of each point, and their ends are attained at
+    /// vertices.
     #[test]
     fn angle_of_a_set((y, v) in interval_and_member(), (x, u) in interval_and_member()) {
         prop_assume!((v != 0.0 || u != 0.0) && v.abs() < 1e300 && u.abs() < 1e300);
