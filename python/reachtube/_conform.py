@@ -94,7 +94,7 @@ def conform(
         Whose equations of motion nominal motions satisfy: the model's, or the robot's own, which
         leaves to U what the robot itself does not explain and needs a linear model.
     calibrate
-        Motions that are kept back from the fit, to which the sets are then scaled.
+        Motions that are held out from the fit, to which the sets are then scaled.
     method
         Programs, or the paper's bisection.
     explain
@@ -112,8 +112,7 @@ def conform(
     Returns
     -------
     Model
-        With ``verified`` false where it could not be proved: that is no error. What can hardly
-        be right is also warned of, as `ReachtubeWarning`.
+        With ``verified`` false where it could not be proved: that is no error. Implausible results also produce a warning, `ReachtubeWarning`.
 
     Raises
     ------

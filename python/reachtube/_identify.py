@@ -57,7 +57,7 @@ class Identification(Record):
 
     @property
     def validation(self) -> list[dict[str, Any]]:
-        """Errors of the predicted torque, for each recording that was kept back."""
+        """Errors of the predicted torque, for each recording that was held out."""
         return list(self.to_dict()["validation"])
 
     def to_dict(self) -> dict[str, Any]:
@@ -140,7 +140,7 @@ def identify(
         Its geometry, and the prior of its links.
     dynamic, rest, friction, validate
         Recordings of exciting motions, of poses at rest, of slow motions of single joints, and of
-        motions that are kept back: runs, or paths of CSV files or folders of them.
+        motions that are held out: runs, or paths of CSV files or folders of them.
     settings
         A TOML file with recordings and settings, whose paths are relative to its folder.
     prepare, model

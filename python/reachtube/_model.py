@@ -99,7 +99,7 @@ class Model(Record):
 
     @property
     def warnings(self) -> list[str]:
-        """What can hardly be right about the answer, and the most likely cause."""
+        """Implausible results, and the most likely cause."""
         return [str(warning["text"]) for warning in self._content.get("warnings", [])]
 
     @property

@@ -93,7 +93,7 @@ impl PolynomialModel {
     ///
     /// # Errors
     ///
-    /// Those of [`bound_remainder`](Self::bound_remainder).
+    /// Returns the errors of [`bound_remainder`](Self::bound_remainder).
     pub fn narrower_box(
         &self,
         operating_box: &OperatingBox,

@@ -220,7 +220,7 @@ pub enum RecordsError {
     },
     /// The terms differ from the robot's.
     #[error(
-        "its terms are not those of its robot at its expansion point: the file was changed after \
+        "its terms do not agree with its robot at its expansion point: the file was changed after \
          it was written"
     )]
     Changed,

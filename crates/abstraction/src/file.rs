@@ -76,7 +76,7 @@ impl PolynomialModel {
     ///
     /// # Errors
     ///
-    /// Those of [`load`](Self::load), but for [`Error::File`].
+    /// Returns the errors of [`load`](Self::load), except [`Error::File`].
     pub fn parse(text: &str, origin: &Path) -> Result<Self> {
         let wrong = |problem: String| Error::ModelFile { path: origin.into(), problem };
         let value = json::versioned(text, FORMAT, VERSION, "abstract").map_err(wrong)?;

@@ -45,7 +45,7 @@ pub struct Conformance {
     pub verdict: Verdict,
     /// What may be expected of motions that were not recorded.
     pub trust: Trust,
-    /// How the sets were scaled, where motions were kept back for it.
+    /// How the sets were scaled, where motions were held out for it.
     pub calibration: Option<Calibration>,
     /// The sets without each of the motions they were found on; none for one motion, for a
     /// bisection, and for other notions than the hull.

@@ -13,7 +13,7 @@ pub(crate) const SAMPLE_TIME: f64 = 0.004;
 pub(crate) struct Motion {
     /// Positions at the start \[rad\], n.
     pub start: Vec<f64>,
-    /// Positions at the end minus those at the start \[rad\], n.
+    /// Positions at the end minus positions at the start \[rad\], n.
     pub travel: Vec<f64>,
     /// Duration \[s\].
     pub duration: f64,

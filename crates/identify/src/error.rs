@@ -59,7 +59,7 @@ pub enum Error {
         /// The gain.
         gain: f64,
     },
-    /// The names of the columns' joints are not those of the robot.
+    /// The names of the columns' joints differ from the robot's.
     #[error(
         "joints = {given:?} must name each of the robot's {} joints once, in the order of the \
          recordings' columns; the robot's joints are {}",

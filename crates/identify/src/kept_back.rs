@@ -1,6 +1,6 @@
-//! Choice between laws by kept-back recordings.
+//! Choice between laws by held-out recordings.
 
-/// Returns whether a law predicts kept-back parts better, given the sums of squared residuals of
+/// Returns whether a law predicts held-out parts better, given the sums of squared residuals of
 /// each part without and with it: by more than two standard errors of the mean gain.
 ///
 /// The rule favours the simpler law, since the best of several laws looks better than it is.

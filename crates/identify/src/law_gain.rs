@@ -26,7 +26,7 @@ impl LawGain {
         let warning = |((before, after), joint): ((&f64, &f64), &reachtube_robot::Joint)| {
             format!(
                 "{}: the friction laws predict the validation recordings worse (residual \
-                 {after:.4} instead of {before:.4} {}), although they predict kept-back parts of \
+                 {after:.4} instead of {before:.4} {}), although they predict held-out parts of \
                  the others better; set stribeck = false or warming = \"none\"",
                 joint.name,
                 joint.kind.force_unit()

@@ -14,7 +14,7 @@ use crate::sources::{Sources, joint_name};
 use crate::suites::suite_figures;
 use reachtube_scalar::number::at_least;
 
-/// Makes the page of a model over recordings: those that it was made from, or others.
+/// Makes the page of a model over recordings: the recordings that it was made from, or others.
 ///
 /// # Errors
 ///

@@ -85,7 +85,7 @@ fn explorer() -> Markup {
                 span.hint { "Runs" }
                 button #show-all type="button" { "All" }
                 button #show-none type="button" { "None" }
-                button #show-deciding type="button" { "Those that decide" }
+                button #show-deciding type="button" { "Joints that decide" }
             }
             ul.runs #run-list {}
             p.hint {

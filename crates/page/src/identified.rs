@@ -102,9 +102,9 @@ fn stacks(stacks: &[[Chart; 2]], height: Option<f64>) -> Result<Markup, Error> {
 
 fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, Error> {
     let which = if found.kept_back {
-        "These recordings were kept back from the fits."
+        "These recordings were held out from the fits."
     } else {
-        "No recording was kept back: the fits used these recordings too."
+        "No recording was held out: the fits used these recordings too."
     };
     let kinds = found.description.kinds();
     let mut logs = Vec::new();
@@ -245,7 +245,7 @@ fn friction_row(found: &Identification, k: usize) -> Vec<String> {
     std::iter::once(name).chain(found.friction.iter().map(cell)).collect()
 }
 
-/// Returns the charts of the combinations, those of one unit in one chart.
+/// Returns the charts of the combinations, one chart per unit.
 fn error_bars(fit: &InertiaFit) -> Result<Markup, Error> {
     let unit = |parameter: &&BaseParameter| match parameter.name.as_bytes() {
         [b'm', b'x' | b'y' | b'z', ..] => Some("kg m"),
@@ -319,7 +319,7 @@ fn parameter_row(parameter: &BaseParameter) -> Vec<String> {
     ]
 }
 
-/// Returns what is known of the fit as a whole, as names and values.
+/// Returns the facts about the fit as a whole, as names and values.
 fn inertia_facts(fit: &InertiaFit, gains: &[Gain]) -> Vec<(String, String)> {
     let condition = significant(fit.condition, 4);
     let mut facts = vec![("Condition number of the base regressor".to_string(), condition)];

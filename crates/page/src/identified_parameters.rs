@@ -30,7 +30,7 @@ const ESTIMATE: RGBColor = RGBColor(18, 70, 200);
 const BEYOND: RGBColor = RGBColor(222, 30, 30);
 
 /// Draws how far the estimates of combinations are from the description, with error bars. `unit`
-/// is that of all of them.
+/// covers all of them.
 ///
 /// # Errors
 ///

@@ -20,7 +20,7 @@ struct SuiteData<'a> {
     views: Vec<String>,
     /// Times of the bands and of the nominal solution.
     times: String,
-    /// Nothing where bands and runs are deviations already.
+    /// Empty if bands and runs are deviations already.
     nominal: Option<Vec<Packed>>,
     /// The bands as deviations from the unpacked nominal solution, the outer one first.
     bands: Vec<BandData<'a>>,
@@ -48,7 +48,7 @@ struct RunData<'a> {
     temperature: Option<f64>,
     gauge: Option<f64>,
     touches: usize,
-    /// Nothing where they are the first sample times of the suite.
+    /// Empty if they are the first sample times of the suite.
     times: Option<String>,
     states: Vec<Packed>,
 }

@@ -22,7 +22,7 @@ const SCALE: f64 = 120.0;
 const SCALE_STEPS: usize = 40;
 /// Mean width of a character \[px\]; the page's font is not known when the figure is drawn.
 const CHARACTER: f64 = 6.0;
-/// Width of the title over that of a label with as many characters.
+/// Width of the title over the width of a label with as many characters.
 const TITLE_WIDTH: f64 = 1.25;
 
 /// One entry.

@@ -46,7 +46,7 @@ pub struct Verdict {
     pub ok: bool,
     /// The outcome as one sentence.
     pub words: String,
-    /// What can hardly be right about the answer, one sentence each.
+    /// Implausible results, one sentence each.
     pub warnings: Vec<String>,
     /// Claims that were checked with directed rounding.
     pub proved: Vec<String>,

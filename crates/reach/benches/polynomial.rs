@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// The model has 12 states and 6 inputs; the sets are those of the paper, the measured input is 0.
+/// The model has 12 states and 6 inputs; the sets come from the paper, the measured input is 0.
 #[divan::bench(args = [None, Some(60)])]
 fn lwa4p_model_1_of_order_3(bencher: Bencher, order: Option<usize>) {
     let (system, grid) = (lwa4p::model1(), TimeGrid::uniform(0.004, SAMPLES));

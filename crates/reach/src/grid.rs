@@ -143,7 +143,8 @@ impl TimeGrid {
     }
 }
 
-/// Returns the step that all times fit: of 12 significant digits, or that of a rate in whole hertz.
+/// Returns the step that all times fit: of 12 significant digits, or the step of a rate in whole
+/// hertz.
 fn uniform_step(times: &[f64]) -> Option<f64> {
     let intervals = times.len().checked_sub(1).filter(|&n| n > 0)?;
     let mean = times[intervals] / intervals as f64;

@@ -57,8 +57,8 @@ pub enum RobotError {
     /// The mass matrix is not positive definite: torque on a joint would accelerate it backward.
     #[error(
         "robot `{robot}`: joint `{joint}` has the articulated inertia {pivot:.3e} {} at \
-         q = {q:.4?} {}, but it must be positive; correct its inertial parameters or those of \
-         later links, or add the motor's armature",
+         q = {q:.4?} {}, but it must be positive; correct its inertial parameters or the \
+         parameters of later links, or add the motor's armature",
         kind.inertia_unit().replace("^2", "²"),
         JointKind::units(kinds, JointKind::position_unit)
     )]

@@ -27,8 +27,8 @@ Exit codes: 0 all recordings were proved to lie in the reachable set, at samples
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Directions in which the recordings must lie in the reachable set [default: those of the
-    /// model file]
+    /// Directions in which the recordings must lie in the reachable set [default: as in the model
+    /// file]
     #[arg(long, value_parser = choice::<Notion>(NOTIONS))]
     pub notion: Option<Notion>,
 }

@@ -72,7 +72,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         robot.name(),
         folder.display()
     ));
-    // The sets of the nominal model, calibrated by the motions kept back.
+    // The sets of the nominal model, calibrated by the held-out motions.
     let settings = Settings {
         calibrate: recorded.calibration.clone(),
         ..Settings::new(Torque::Compensated, robot.joint_count())

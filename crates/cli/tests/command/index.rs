@@ -73,7 +73,7 @@ fn every_unused_file_is_noted() {
     let lab = Lab::new();
     std::fs::copy(lab.path("data/A_1.csv"), lab.path("data/A_4.csv")).unwrap();
     lab.conform("--suites A").exits(0).notes("A_4.csv is not in runs.csv and is not used").notes(
-        "3 of the 6 runs in data/runs.csv are used: 3 belong to suites that were not asked for",
+        "3 of the 6 runs in data/runs.csv are used: 3 belong to suites that were not selected",
     );
     lab.edit("data/runs.csv", |lines| lines.push("A_4.csv,A,motion A".into()));
     lab.conform("").exits(0).notes("A_4.csv is a copy of A_1.csv");

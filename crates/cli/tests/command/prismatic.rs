@@ -303,7 +303,7 @@ fn a_gantry_and_a_scara_are_identified() {
             let error = (mass[(i, j)] - expected[(i, j)]).abs();
             assert!(error < 0.01 * (scale[i] * scale[j]).sqrt(), "{name}: {mass} {expected}");
         }
-        // The weight of a vertical slide cannot be told from a constant force: their sum counts.
+        // The weight of a vertical slide looks like a constant force: their sum counts.
         let (qd, qdd) = (vec![0.1; q.len()], vec![0.3; q.len()]);
         let total = |robot: &Robot| {
             robot.inverse_dynamics(&q, &qd, &qdd)

@@ -74,7 +74,7 @@ fn table_2_is_printed_beside_the_papers() {
     lab.run("reproduce table2 --data data").fails_with(&["joint"]);
 }
 
-/// Each figure is a file, and says what it shows; the numbers are those of the sets and recordings.
+/// Each figure is a file, and says what it shows; the numbers agree with the sets and recordings.
 #[test]
 fn figures_of_the_paper_are_drawn_of_a_campaign() {
     let lab = Lab::new();

@@ -1,4 +1,4 @@
-//! Descriptions of robots, and those that are refused.
+//! Descriptions of robots, accepted and refused.
 
 use crate::fixture::{Lab, robot_toml};
 
@@ -53,8 +53,8 @@ fn a_singular_model_is_refused() {
 #[test]
 fn a_robot_that_is_not_there() {
     let lab = Lab::new();
-    lab.run("robot show nobody").fails_with(&[
-        "cannot read robot `nobody`",
+    lab.run("robot show missing").fails_with(&[
+        "cannot read robot `missing`",
         "TOML or URDF file or an embedded name (lwa4p)",
     ]);
     lab.run("conform --robot data --data data --torque motor")

@@ -131,7 +131,7 @@ fn one_value_outside_is_found_with_its_place() {
         (&worst["sample"], &worst["time"], &worst["joint"]),
         (&20.into(), &0.2.into(), &1.into())
     );
-    // The run is in the middle of the set, whose radius there is at least that of X0.
+    // The run is in the middle of the set, whose radius there is at least the radius of X0.
     let excess = worst["excess"].as_f64().unwrap();
     assert!((0.4..=0.5 - START).contains(&excess), "{excess}");
     assert_eq!(check["suites"][0]["violations"]["count"], 0);
@@ -166,7 +166,7 @@ fn motions_that_are_kept_back_calibrate_the_sets() {
     }
     assert_eq!(lab.check("--json").exits(0).json()["trust"], Value::Null);
     lab.conform("--calibrate MC").fails_with(&["no motion \"MC\"", "MA, MB"]);
-    lab.conform("--calibrate MA,MB").fails_with(&["all motions are kept back", "name fewer"]);
+    lab.conform("--calibrate MA,MB").fails_with(&["all motions are held out", "name fewer"]);
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn index_notes(source: &dyn RunSource, chosen: &[SuiteEntry]) -> Vec<String> {
     if used < all.len() {
         let without = all.iter().filter(|run| run.suite.is_none()).count();
         notes.push(format!(
-            "{used} of the {} runs in {} are used: {} belong to suites that were not asked for, \
+            "{used} of the {} runs in {} are used: {} belong to suites that were not selected, \
              {without} to no suite",
             all.len(),
             source.index_name().display(),

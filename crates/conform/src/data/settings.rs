@@ -207,7 +207,7 @@ pub struct Settings {
     /// Whose equations of motion nominal solutions satisfy.
     #[serde(default, skip_serializing_if = "is_default")]
     pub equations: Equations,
-    /// The motions that are kept back from the fit and then calibrate its sets. They are not
+    /// The motions that are held out from the fit and then calibrate its sets. They are not
     /// looked at but by [`conform`](crate::conform).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calibrate: Vec<String>,

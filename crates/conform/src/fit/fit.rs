@@ -37,7 +37,7 @@ pub struct Fitted {
 
 /// Finds the parameters of the nominal model for which its sets cost least.
 ///
-/// Motions that calibrate the sets are kept back from this fit too.
+/// Motions that calibrate the sets are held out from this fit too.
 ///
 /// The answer is a model, not a claim: [`conform`](crate::conform) finds and proves its sets as it
 /// does for any other. A model that is not linear is given the parameters that suit the linear

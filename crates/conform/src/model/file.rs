@@ -109,7 +109,7 @@ pub struct Model {
     pub proof: Verdict,
     /// What may be expected of the next motion.
     pub trust: Trust,
-    /// How the sets were scaled, where motions were kept back for it.
+    /// How the sets were scaled, where motions were held out for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
     /// The sets without each of the motions they were found on, of a linear model.

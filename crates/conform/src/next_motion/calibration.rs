@@ -29,13 +29,13 @@ const FIRST_STEP: i32 = 8;
 const MOST_STEPS: i32 = 512;
 
 /// Sets that were found on some motions and then scaled so that they enclose the others, which were
-/// kept back: split conformal calibration.
+/// held out: split conformal calibration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
     /// The motions that the sets were found on.
     pub fitted: Vec<String>,
-    /// The motions that were kept back, each with its gauge.
+    /// The motions that were held out, each with its gauge.
     pub gauges: Vec<Gauge>,
     /// The factor of the radii: the largest gauge.
     pub factor: f64,
@@ -147,7 +147,7 @@ fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet
     }
     if kept_back.len() == all.len() {
         return Err(Error::Calibration(
-            "all motions are kept back, so that none is left to find the sets with; name fewer \
+            "all motions are held out, so that none is left to find the sets with; name fewer \
              motions, or record more"
                 .into(),
         ));

@@ -1,4 +1,4 @@
-//! What may be said of motions that were not recorded: bounds, calibration by kept-back motions,
+//! What may be said of motions that were not recorded: bounds, calibration by held-out motions,
 //! and descriptions of how far the sets depend on single motions and runs.
 
 pub(crate) mod bounds;

@@ -16,7 +16,7 @@ const SEED: u64 = 1;
 /// With fewer motions the draws are so few that an interval means nothing.
 pub(crate) const FEWEST_MOTIONS: usize = 4;
 
-/// How often recordings that were kept back leave the sets. A description of these recordings with
+/// How often recordings that were held out leave the sets. A description of these recordings with
 /// the spread over their motions, and no guarantee for others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rates {

@@ -78,12 +78,12 @@ impl Trust {
         Self::unknown(Motions::new(recordings).count(), basis.into())
     }
 
-    /// Returns the bound for sets that were calibrated by motions that were kept back from the fit,
+    /// Returns the bound for sets that were calibrated by motions that were held out from the fit,
     /// and that enclose them where `is_proved`.
     ///
-    /// The next motion leaves the sets only if its gauge is above those of all n kept-back motions.
+    /// The next motion leaves the sets only if its gauge is above those of all n held-out motions.
     /// Of n + 1 exchangeable motions, each is that one with probability at most 1/(n + 1). For
-    /// independent motions, the probability given the kept-back ones is above ε with probability
+    /// independent motions, the probability given the held-out ones is above ε with probability
     /// at most (1 - ε)^n, which is the hold-out bound without a violation.
     #[must_use]
     pub fn of_calibration(

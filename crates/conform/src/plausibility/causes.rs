@@ -70,12 +70,12 @@ pub(super) fn likely_cause(problem: &Problem, calibration: Option<&Calibration>)
     }))
 }
 
-/// Returns, in words, which motion that was kept back made the sets as large as they are.
+/// Returns, in words, which motion that was held out made the sets as large as they are.
 fn scaled_by(Calibration { fitted, gauges, factor, .. }: &Calibration) -> String {
     let far = |a: &&Gauge, b: &&Gauge| a.gauge.total_cmp(&b.gauge);
     let motion = gauges.iter().max_by(far).map_or("", |gauge| gauge.motion.as_str());
     format!(
-        "the most likely cause: motion {motion}, which was kept back, is unlike those that the \
+        "the most likely cause: motion {motion}, which was held out, is unlike those that the \
          sets were found with ({}), so that calibration scaled these sets by {factor:.2}; record \
          more motions to find the sets with, among them some like {motion}",
         fitted.join(", ")

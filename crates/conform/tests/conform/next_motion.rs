@@ -54,7 +54,7 @@ fn calibrated_sets_are_those_of_the_other_motions_scaled_by_the_largest_gauge() 
         assert!((gauge.gauge / expected - 1.0).abs() < 1e-9, "{gauge:?} for {expected}");
     }
     assert!(calibration.factor > 1.2 && calibration.factor == gauges[0].max(gauges[1]).max(1.0));
-    // Nothing of the kept-back motions but the factor is in the sets.
+    // Nothing of the held-out motions but the factor is in the sets.
     let pairs = [
         (&found.sets.initial_set, &fitted.sets.initial_set),
         (&found.sets.input_set, &fitted.sets.input_set),
@@ -73,7 +73,7 @@ fn calibrated_sets_are_those_of_the_other_motions_scaled_by_the_largest_gauge() 
     let hulls = Hulls::new(&problem, smaller).unwrap();
     let model = Model::new(&problem, &found);
     assert!(!check(&model, &problem, &hulls).unwrap().verdict.conformant);
-    // Two motions were kept back: 1 in 3 on average, 1 - 0.05^(1/2) at confidence.
+    // Two motions were held out: 1 in 3 on average, 1 - 0.05^(1/2) at confidence.
     assert_eq!(found.trust.average_probability, Some(1.0 / 3.0));
     assert!((found.trust.violation_probability - (1.0 - 0.05f64.sqrt())).abs() < 1e-12);
     assert_eq!((found.trust.motions, found.trust.deciding), (2, 1));
@@ -110,7 +110,7 @@ fn a_motion_that_makes_calibrated_sets_absurd_is_named() {
         cause.map(|cause| cause.text)
     };
     let words = cause(&[], &["c", "d"]).unwrap();
-    let parts = ["motion d, which was kept back, is unlike", "found with (a, b)", "scaled these"];
+    let parts = ["motion d, which was held out, is unlike", "found with (a, b)", "scaled these"];
     assert!(parts.iter().all(|part| words.contains(part)), "{words}");
     assert_eq!(cause(&["a", "b", "c"], &["c"]), None);
 }
@@ -120,7 +120,7 @@ fn motions_that_cannot_calibrate_are_refused() {
     let folder = recorded([0.3; 4]);
     for (calibrate, words) in [
         (&["e"][..], "no motion \"e\"; the motions of the recordings are a, b, c, d"),
-        (&SUITES[..], "all motions are kept back"),
+        (&SUITES[..], "all motions are held out"),
     ] {
         let problem = read(&two_joints(), folder.path(), &[], &settings(calibrate));
         let Err(Error::Calibration(problem)) = conform(&problem, &Silent, None) else {

@@ -106,7 +106,7 @@ impl Job {
     }
 
     /// Follows a plan closed loop, and returns the text of a file with every `stride`-th sample.
-    /// The joints begin at the nominal temperature, as those of an arm that has warmed up.
+    /// The joints begin at the nominal temperature, as in an arm that has warmed up.
     fn follow(
         &self,
         robot: &VirtualRobot,

@@ -1,7 +1,7 @@
 //! A whole experiment as in the paper on a virtual robot: recordings to identify it with, and test
 //! suites of random motions, as one data set.
 //!
-//! The experiment is that of Sec. V-B and of the appendix:
+//! The experiment follows Sec. V-B and of the appendix:
 //!
 //! - Random point-to-point motions are followed closed loop, and the torque is recorded. Each gives
 //!   test suites that start at several of its points (Fig. 3) and apply that torque open loop.

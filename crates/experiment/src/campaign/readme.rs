@@ -53,7 +53,7 @@ temperature; a real robot has no such file. `{MARK}` holds the options.
 
 `--robot lwa4p` is the nominal model that the arm's controller has. Without `--suites`, `conform`
 takes all suites. With `--robot truth.toml`, `identify` prints the true combinations beside those
-that it finds, as those in the description.
+that it finds, as in the description.
 
 {HOW}
 ## Columns and numbers

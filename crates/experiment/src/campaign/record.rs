@@ -30,11 +30,11 @@ pub struct RecordedCampaign {
 }
 
 /// Records a campaign of a virtual robot with the nominal model `robot` into `folder`, on all
-/// cores. `progress` is told the number of parts that are done, and of all.
+/// cores. `progress` receives the number of parts that are done, and of all parts.
 ///
 /// The folder is a data set for [`DataSet::open`](reachtube_recordings::DataSet::open). The torque
-/// of the test suites is [`Torque::Compensated`](reachtube_recordings::Torque::Compensated), that
-/// of all other recordings [`Torque::Motor`](reachtube_recordings::Torque::Motor).
+/// of the test suites is [`Torque::Compensated`](reachtube_recordings::Torque::Compensated), the
+/// torque of all other recordings [`Torque::Motor`](reachtube_recordings::Torque::Motor).
 ///
 /// A campaign that was stopped may be started again with the same options: recordings that exist
 /// are kept, and the result is the same as without the stop.
@@ -96,7 +96,7 @@ pub fn record(
 struct RecordedJob {
     /// Their lines of the index.
     lines: Vec<String>,
-    /// Number of those that existed.
+    /// Number of recordings that existed.
     kept: usize,
     /// Their size \[bytes\].
     bytes: u64,

@@ -141,7 +141,7 @@ impl Table2 {
         let (of_all, of_positions) = (inputs(all), inputs(positions));
         let counts = [alike(&of_all, &papers(all)), alike(&of_positions, &papers(positions))];
         let smaller = of_all.iter().zip(&of_positions).filter(|(all, other)| other < all).count();
-        let virtual_arm = "The recordings are those of a virtual arm, whose friction, warming and \
+        let virtual_arm = "The recordings come from a virtual arm, whose friction, warming and \
                            payload are assumed.";
         vec![
             Claim::new(
@@ -204,7 +204,7 @@ impl Exemplary {
                 "by eye",
                 format!("{drifting} of {suites} suites have such a joint"),
                 2 * drifting > suites,
-                "Of a few runs no order can be told from chance.",
+                "Over a few runs, any order may be chance.",
             ),
         ]
     }

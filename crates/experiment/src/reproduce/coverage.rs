@@ -20,7 +20,7 @@ use crate::virtual_robot::{VirtualRobot, VirtualRobotParameters};
 /// Motions that every campaign records, as many as the paper's.
 const MOTIONS: usize = 38;
 
-/// Motions of them that are kept back for the hold-out bound.
+/// Number of these motions that are held out for the hold-out bound.
 const HELD_OUT: usize = 15;
 
 /// Motions of them that calibrate the sets of the others.
@@ -88,7 +88,7 @@ pub struct Coverage {
     pub options: CoverageOptions,
     /// Number of motions of each campaign.
     pub motions: usize,
-    /// Number of them that are kept back for the hold-out bound.
+    /// Number of these motions that are held out for the hold-out bound.
     pub held_out: usize,
     /// Number of them that calibrate the sets of the others.
     pub calibrating: usize,
@@ -178,7 +178,7 @@ fn campaign(motions: &MemoryRuns, next: &Problem) -> Result<Stated> {
     Ok([scenario, hold_out, (found.trust.violation_probability, truth), (average, truth)])
 }
 
-/// Returns the problem of some of the motions, of which the first `calibrating` are kept back.
+/// Returns the problem of some of the motions, of which the first `calibrating` are held out.
 fn problem(motions: MemoryRuns, used: Range<usize>, calibrating: usize) -> Result<Problem> {
     let names = |range: Range<usize>| range.map(|m| format!("M{m}")).collect::<Vec<_>>();
     let calibrate = names(used.start..used.start + calibrating);

@@ -23,7 +23,7 @@ pub enum ReproduceError {
     },
     /// The campaign is one of another robot.
     #[error(
-        "{}: the campaign's robot is {robot}, but Table III is that of the LWA 4P; record it with \
+        "{}: the campaign's robot is {robot}, but Table III belongs to the LWA 4P; record it with \
          --robot lwa4p",
         folder.display()
     )]

@@ -121,7 +121,7 @@ const POSITION: &str = "reachable set, position conformant";
 const LEAST_SPREAD: f64 = 0.01;
 
 /// Returns the suite whose runs' positions end furthest apart in all joints, by the product over
-/// the joints, of those with two samples or more.
+/// the joints, among suites with two samples or more.
 fn furthest_apart(problem: &Problem) -> Option<String> {
     let suites = problem.recordings().suites.iter().filter(|suite| suite.envelope.len() > 1);
     let spread = |suite: &reachtube_conform::Suite| {

@@ -177,7 +177,7 @@ impl PaperPage<'_> {
         let svg = charts_svg(&charts, charts.len(), "Stated and true probabilities")?;
         Ok(html! {
             p {
-                "Sets that enclose the recordings say nothing certain of the next motion. Three \
+                "Sets that enclose the recordings are no guarantee for the next motion. Three \
                  bounds say how likely it leaves them (docs/next-motion.md). Small campaigns of "
                 (self.coverage.motions) " independent motions put them to the test: each bound may \
                  be wrong in 5 % of the campaigns."

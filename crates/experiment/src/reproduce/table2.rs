@@ -60,7 +60,7 @@ pub struct Table2Case {
     pub lower_bound: Option<f64>,
     /// X0 and U.
     pub sets: UncertaintySets,
-    /// What can hardly be right about them, one sentence each.
+    /// Implausible results, one sentence each.
     pub warnings: Vec<String>,
     /// The paper's.
     pub paper: &'static PaperSets,

@@ -34,7 +34,7 @@ pub enum Part {
 pub enum Effect {
     /// Dry friction rises toward standstill; the law without this rise is higher elsewhere.
     Stribeck,
-    /// Friction falls while the joints warm up; the law is that of the mean warmth.
+    /// Friction falls while the joints warm up; the law holds at the mean warmth.
     Warming,
     /// The motor's torque ripples with its angle. A slow ripple passes the low-pass and moves the
     /// joint, so that it is not noise.
@@ -54,7 +54,7 @@ pub struct Table3Row {
     /// Our estimate, by least squares, in SI units.
     pub estimate: f64,
     /// Its standard error; none where the recordings do not determine the coefficient, so that it
-    /// is 0 or that of another quadrant.
+    /// is 0 or another quadrant's.
     pub standard_error: Option<f64>,
     /// The value of the arm that moved.
     pub truth: f64,
@@ -93,7 +93,7 @@ impl Table3 {
 ///
 /// # Errors
 ///
-/// - [`ReproduceError`] where the folder is not that of a campaign of the LWA 4P.
+/// - [`ReproduceError`] if the folder is not a campaign of the LWA 4P.
 /// - As [`identify`].
 pub fn table3(folder: &Path, progress: &dyn Fn(usize, usize)) -> Result<Table3> {
     Ok(table3_and_fig5(folder, progress)?.0)
@@ -154,7 +154,7 @@ fn settings(folder: &Path) -> IdentifySettings {
     settings
 }
 
-/// Returns the effects of those given that change anything.
+/// Returns the given effects that change anything.
 fn present<const N: usize>(effects: [(Effect, f64); N]) -> Vec<Effect> {
     let some = effects.into_iter().filter(|(_, size)| *size != 0.0);
     some.map(|(effect, _)| effect).collect()
@@ -244,7 +244,7 @@ fn inertia(
     (0..base.count()).filter(is_inertia).map(row).collect()
 }
 
-/// Returns the row of a combination. The paper prints those that are not 0.
+/// Returns the row of a combination. The paper prints the parameters that are not 0.
 fn combination(
     part: Part,
     own: &BaseParameter,

@@ -20,7 +20,7 @@ const RUNS: usize = 2;
 const START_POINTS: usize = 4;
 
 /// Records motions M0, M1, ... of the virtual robot, on all cores. They are drawn independently
-/// from one distribution, that of a campaign: random point-to-point motions, of which the open loop
+/// from one distribution, a campaign's: random point-to-point motions, of which the open loop
 /// begins at one of four points. A motion is a suite of two runs.
 pub(super) fn virtual_motions(
     robot: &VirtualRobot,

@@ -1,7 +1,7 @@
 //! Elementary functions with the same bits on every platform.
 //!
-//! The functions of `f64` are those of the platform's mathematics library, and their last bits
-//! differ. Those of the crate `libm` are computed by IEEE operations alone.
+//! The functions of `f64` come from the platform's mathematics library, and their last bits differ.
+//! The functions of the crate `libm` are computed by IEEE operations alone.
 
 use reachtube_robot::{Joint, JointKind};
 

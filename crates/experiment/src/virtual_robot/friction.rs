@@ -30,8 +30,8 @@ impl JointFriction {
     }
 
     /// Returns the limits of dry friction \[N m\] at a load \[N m\] and a speed |q̇| \[rad/s\]: the
-    /// torque of a joint that moves backward and that of one that moves forward. A joint at rest
-    /// has any torque between them.
+    /// torque of a joint that moves backward and of a joint that moves forward. A joint at rest has
+    /// any torque between them.
     pub(super) fn limits(&self, load: f64, speed: f64) -> [f64; 2] {
         let excess = self.law.stribeck.map_or(0.0, |stribeck| {
             let ratio = speed / stribeck.speed;

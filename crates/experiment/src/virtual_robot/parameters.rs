@@ -6,8 +6,8 @@ use super::error::VirtualRobotError;
 
 /// What the virtual robot has beyond its nominal model, and its controller.
 ///
-/// None of the values was identified. They were chosen so that runs spread as those of the real
-/// LWA 4P do, or are typical of such arms, as each of them says.
+/// None of the values was identified. They were chosen so that runs spread as on the real LWA 4P
+/// do, or are typical of such arms, as each of them says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct VirtualRobotParameters {
@@ -29,8 +29,8 @@ pub struct VirtualRobotParameters {
     pub stribeck_speed: f64,
     /// Temperature at which friction is nominal \[°C\]. Default 32: between cold and warm.
     pub nominal_temperature: f64,
-    /// Rate by which Coulomb friction falls with temperature \[1/K\]: its factor is
-    /// e^(-rate ΔT). Default 0.006, so that runs spread as those of the real robot.
+    /// Rate by which Coulomb friction falls with temperature \[1/K\]: its factor is e^(-rate ΔT).
+    /// Default 0.006, so that runs spread as on the real robot.
     pub coulomb_rate: f64,
     /// Rate by which viscous friction falls with temperature \[1/K\]. Default 0.012: lubricants
     /// change more than dry contacts.

@@ -176,7 +176,7 @@ fn links_and_motors_have_their_ratios() {
     let (truth, nominal) = (robot.truth(), robot.nominal());
     let gravity = truth.gravity_torque(&POSE) - nominal.gravity_torque(&POSE) * 1.02;
     assert!(gravity.amax() < 1e-7, "{gravity} N m");
-    // One set of bodies: the gravity torque is that of the inertial parameters.
+    // One set of bodies: the gravity torque agrees with the inertial parameters.
     assert!(truth.description().joints.iter().all(|joint| joint.gravity_moments.is_none()));
     let mass = truth.mass_matrix(&POSE) - nominal.mass_matrix(&POSE);
     assert!(mass.amax() < 0.12 && mass.amax() > 0.03, "{mass} kg m²");

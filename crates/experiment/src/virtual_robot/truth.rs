@@ -97,9 +97,9 @@ fn true_description(nominal: &Robot, parameters: &VirtualRobotParameters) -> Rob
     description
 }
 
-/// Returns the ten inertial parameters of each link: those of the nominal robot, or, where gravity
-/// has mass moments of its own, the nearest that show its gravity torque. The true links are
-/// bodies, for which gravity and inertia cannot differ.
+/// Returns the ten inertial parameters of each link: the nominal robot's, or, where gravity has
+/// mass moments of its own, the nearest that show its gravity torque. The true links are bodies,
+/// for which gravity and inertia cannot differ.
 fn united_moments(nominal: &Robot) -> Vec<f64> {
     let columns = Parameter::of_joints(nominal.joint_count(), &ParameterKind::INERTIAL);
     let inertial = nominal.parameter_values(&columns);

@@ -3,8 +3,8 @@ use crate::bodies::pseudo_inertia::{PER_LINK, link_parameters, parameter_basis, 
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix4};
 
-/// Weight of the prior of a positive column relative to that of a link, so that it decides where
-/// the data do not, and hardly moves what they determine.
+/// Weight of the prior of a positive column relative to a link's, so that it decides where the data
+/// do not, and hardly moves what they determine.
 const POSITIVE_STRENGTH: f64 = 0.01;
 
 /// Ratio of consecutive barrier weights.

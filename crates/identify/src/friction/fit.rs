@@ -60,9 +60,9 @@ pub struct FrictionFit {
 }
 
 impl FrictionFit {
-    /// Adds the relative standard errors of the loads, one per joint of the robot, to those of the
-    /// slopes in the load: a load that is off by a part changes torque minus load by that part of
-    /// the load.
+    /// Adds the relative standard errors of the loads, one per joint of the robot, to the errors of
+    /// the slopes in the load: a load that is off by a part changes torque minus load by that part
+    /// of the load.
     pub(crate) fn add_load_error(&mut self, robot: &Robot, load_errors: &[f64]) {
         let joints = robot.joints().iter().zip(load_errors);
         let own = joints.into_iter().find(|(joint, _)| joint.name == self.joint.joint);
@@ -91,7 +91,7 @@ pub(crate) fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit>
 
 /// Fits friction as [`fit`] does, and tries the Stribeck effect.
 ///
-/// The effect becomes part of the friction if it predicts kept-back slow motions better.
+/// The effect becomes part of the friction if it predicts held-out slow motions better.
 #[must_use]
 pub(crate) fn fit_with_stribeck(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
     let mut found = fit(name, samples)?;

@@ -97,7 +97,7 @@ impl CoulombForm {
         self.with_viscous(coulomb, x)
     }
 
-    /// Returns the standard errors of a1 to a8 and v1 to v3, given those of a solution.
+    /// Returns the standard errors of a1 to a8 and v1 to v3, given the errors of a solution.
     pub(super) fn errors(self, e: &[f64]) -> FrictionDescription {
         match self {
             Self::Symmetric => {

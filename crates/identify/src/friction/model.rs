@@ -19,7 +19,8 @@ impl FrictionModel {
         self.form.columns() + usize::from(self.stribeck.is_some())
     }
 
-    /// Returns the row of a sample: the columns of the form, then that of the Stribeck effect.
+    /// Returns the row of a sample: the columns of the form, then the column of the Stribeck
+    /// effect.
     pub(super) fn row(&self, s: &FrictionSample) -> Vec<f64> {
         let mut row = self.form.row(s);
         row.extend(self.stribeck.map(|speed| s.factors[0] * rise(s, speed)));
@@ -45,8 +46,8 @@ impl FrictionModel {
         FrictionDescription { stribeck, ..self.form.description(x) }
     }
 
-    /// Returns the standard errors of the friction, given those of a solution and of the Stribeck
-    /// speed \[rad/s\] as the last of them.
+    /// Returns the standard errors of the friction, given the errors of a solution and of the
+    /// Stribeck speed \[rad/s\] as the last of them.
     pub(super) fn errors(&self, e: &[f64]) -> FrictionDescription {
         let last = self.columns();
         let stribeck = self.stribeck.map(|_| Stribeck { excess: e[last - 1], speed: e[last] });

@@ -7,7 +7,7 @@ use crate::kept_back::gains;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-/// Number of stretches of the samples that are kept back in turn.
+/// Number of stretches of the samples that are held out in turn.
 const STRETCHES: usize = 8;
 
 /// Number of speeds of each of the two scans, the second between the neighbours of the best.
@@ -34,8 +34,8 @@ pub struct StribeckTrial {
 /// Tries the Stribeck effect on samples with these row weights: the speed by a scan, the rest by
 /// least squares. Returns the trial and the speed \[rad/s\] where the effect is accepted.
 ///
-/// The effect is accepted only if it predicts kept-back stretches better, by more than two standard
-/// errors of the gain. Each stretch gets a speed of its own, so that the scan is kept back too.
+/// The effect is accepted only if it predicts held-out stretches better, by more than two standard
+/// errors of the gain. Each stretch gets a speed of its own, so that the scan is held out too.
 pub(super) fn try_stribeck(
     form: CoulombForm,
     samples: &[FrictionSample],
@@ -49,7 +49,7 @@ pub(super) fn try_stribeck(
     let refused =
         |reason: String| (StribeckTrial { kept_back, accepted: false, reason: Some(reason) }, None);
     if !gains(&without, &with) {
-        return refused("kept-back slow motions are not predicted better with it".into());
+        return refused("held-out slow motions are not predicted better with it".into());
     }
     let Some((best, _)) = scan.best(&scan.total()) else {
         return refused("friction does not rise toward standstill".into());
@@ -129,7 +129,7 @@ impl StribeckScan {
         self.grams.iter().map(|stretches| stretches.iter().sum()).collect()
     }
 
-    /// Returns the best speed's index and solution, among those at which friction rises toward
+    /// Returns the best speed's index and solution, among the speeds at which friction rises toward
     /// standstill.
     fn best(&self, grams: &[DMatrix<f64>]) -> Option<(usize, DVector<f64>)> {
         let all: Vec<usize> = (0..=self.columns).collect();
@@ -140,7 +140,7 @@ impl StribeckScan {
         fits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at, x)| (at, x))
     }
 
-    /// Returns the sum of squared residuals of each stretch, kept back in turn, without and with
+    /// Returns the sum of squared residuals of each stretch, held out in turn, without and with
     /// the effect.
     fn kept_back(&self) -> (Vec<f64>, Vec<f64>) {
         let total = self.total();
@@ -231,7 +231,7 @@ mod tests {
             .filter_map(|seed| fitted(0.0, 0.005, seed).joint.stribeck.unwrap().reason)
             .collect();
         assert!(refused.len() >= 9, "{refused:?}");
-        assert!(refused[0].contains("kept-back slow motions are not predicted better"));
+        assert!(refused[0].contains("held-out slow motions are not predicted better"));
         let fast = fitted(1.2, 0.3, 1).joint;
         assert_eq!(fast.coefficients.stribeck, None);
         assert!(!fast.stribeck.unwrap().accepted);

@@ -97,8 +97,8 @@ impl LeastSquares {
     /// Solves in coordinates y in which the reference motion excites all directions equally.
     ///
     /// With the reference factor R of the independent columns, x = R⁻¹ y. Another choice of the
-    /// links' frames changes x, but y only by a rotation. The singular values in y are therefore
-    /// those of the motion, and not of the frames.
+    /// links' frames changes x, but y only by a rotation. The singular values in y therefore depend
+    /// on the motion, and not on the frames.
     fn new(base: &BaseParameters, fit: &TriangularFactor, reference: &TriangularFactor) -> Self {
         let independent = DMatrix::from_fn(base.parameters().len(), base.count(), |i, j| {
             f64::from(u8::from(base.independent()[j] == i))

@@ -44,7 +44,7 @@ fn is_inertia(column: &Parameter) -> bool {
     column.kind.is_inertial() || column.kind == ParameterKind::MotorInertia
 }
 
-/// Returns the columns of links and motors with their values, without those of friction.
+/// Returns the columns of links and motors with their values, without the columns of friction.
 pub(crate) fn inertia_part(
     columns: &[Parameter],
     values: &DVector<f64>,

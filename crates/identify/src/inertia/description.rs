@@ -49,7 +49,7 @@ fn add_friction(friction: &mut FrictionDescription, column: &Parameter, value: f
 }
 
 /// Returns the standard errors of the friction of joint `joint`, whose known friction has the
-/// standard errors `known`. A coefficient that was corrected by the fit has those of the fit.
+/// standard errors `known`. A coefficient that was corrected by the fit has the errors of the fit.
 pub(crate) fn friction_errors(
     found: &InertiaFit,
     joint: usize,

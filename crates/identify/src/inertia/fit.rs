@@ -21,8 +21,8 @@ pub struct InertiaFit {
     pub columns: Vec<Parameter>,
     /// The robust or plain least-squares fit.
     pub fit: Fit,
-    /// The values that are used, one per column: those of the nearest physically consistent links,
-    /// or those of least squares.
+    /// The values that are used, one per column: from the nearest physically consistent links, or
+    /// from least squares.
     pub values: DVector<f64>,
     /// Effect of the physical constraint; `None` if it was not requested.
     pub physical: Option<PhysicalFit>,

@@ -6,14 +6,14 @@ use reachtube_robot::Robot;
 /// Mass of a ball before it is adapted to the data \[kg\], if the description has no mass.
 const FIRST_MASS: f64 = 1.0;
 
-/// Second moment of a ball per mass before it is adapted \[m²\]: that of a solid ball with a radius
+/// Second moment of a ball per mass before it is adapted \[m²\], as of a solid ball with a radius
 /// of 0.1 m.
 const FIRST_SPREAD: f64 = 0.2 * 0.1 * 0.1;
 
 /// Relative change of the balls that is worth another round.
 const SETTLED: f64 = 0.02;
 
-/// The prior of the links: those of the description, and balls about the origins of the others.
+/// The prior of the links: the links of the description, and balls about the origins of the others.
 pub(super) struct LinkPrior {
     /// Pseudo-inertias of the description's links; `None` for a link that has a ball.
     described: Vec<Option<Matrix4<f64>>>,

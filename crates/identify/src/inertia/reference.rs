@@ -11,7 +11,7 @@ use reachtube_robot::{Parameter, Regressor, Robot};
 /// parameters.
 const STATES: usize = 400;
 
-/// Least range of a joint's motion relative to that of the joint that moves most.
+/// Least range of a joint's motion relative to the range of the joint that moves most.
 const MIN_RANGE: f64 = 0.1;
 
 /// Least standard deviation of a joint relative to its torque, for exact data.

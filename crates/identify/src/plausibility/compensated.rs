@@ -12,8 +12,8 @@ const LOGS: usize = 16;
 /// Number of samples of each, at most.
 const SAMPLES: usize = 256;
 
-/// Factor between the inputs and those that the description needs beyond which a warning is given.
-/// The controllers that compensate by a description need a good one.
+/// Factor between the inputs and the inputs that the description needs beyond which a warning is
+/// given. The controllers that compensate by a description need a good one.
 const MOST_TIMES: f64 = 10.0;
 
 /// Returns a warning if the inputs of compensated recordings, free of gravity and dry friction, are
@@ -56,7 +56,7 @@ pub(crate) fn input_unit_warning(
     };
     let (times, unit) = (number(times), unit_words(side, true));
     Some(format!(
-        "the compensated inputs are {times} times those that the description needs for these \
+        "the compensated inputs are {times} times the inputs that the description needs for these \
          motions (median of the joints): {unit}"
     ))
 }

@@ -102,8 +102,8 @@ impl Size {
     }
 }
 
-/// Returns a warning if gravity torques and inertias are those of no such arm: far from those of
-/// the description, or, if it has no masses, from those of arms of its length.
+/// Returns a warning if gravity torques and inertias fit no such arm: far from the description's,
+/// or, if it has no masses, from the values of arms of its length.
 ///
 /// Both must be too large, or both too small: friction imitates one of them, and gravity is absent
 /// where a controller compensates it.

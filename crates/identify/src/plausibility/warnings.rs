@@ -137,8 +137,8 @@ fn wrong_gain(gain: &Gain) -> Option<String> {
     let deviation = (gain.gain - 1.0).abs();
     (deviation > IMPLAUSIBLE_GAIN && deviation > SIGNIFICANT * gain.standard_error).then(|| {
         format!(
-            "the torque of {} contradicts that of the other joints, and would agree if multiplied \
-             by {:.3} ± {:.3}; check its gain",
+            "the torque of {} contradicts the torque of the other joints, and would agree if \
+             multiplied by {:.3} ± {:.3}; check its gain",
             gain.joint, gain.gain, gain.standard_error
         )
     })

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 #[serde(untagged)]
 pub enum LogEntry {
     /// A CSV file, or a folder with all its CSV files except runs.csv, in the order of their names;
-    /// where it has none, those of its subfolders.
+    /// where it has none, the recordings of its subfolders.
     Path(PathBuf),
     /// An interval of time of each of these files.
     Stretch {
@@ -59,8 +59,8 @@ impl From<PathBuf> for LogEntry {
     }
 }
 
-/// Returns the file itself, or the recordings of a folder sorted by name; where it has none, those
-/// of its subfolders.
+/// Returns the file itself, or the recordings of a folder sorted by name; where it has none, the
+/// recordings of its subfolders.
 pub(super) fn csv_files(path: &Path) -> Result<Vec<PathBuf>> {
     let unreadable = |source| reachtube_files::Error::Read {
         path: path.to_path_buf(),

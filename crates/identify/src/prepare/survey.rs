@@ -1,4 +1,4 @@
-//! What is known of a recording without keeping its samples.
+//! A summary of a recording without keeping its samples.
 
 use crate::error::{Error, Result};
 use crate::prepare::raw_log::RawLog;

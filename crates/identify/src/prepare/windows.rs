@@ -20,7 +20,7 @@ pub struct Windows {
 pub struct Window {
     /// Name of the test suite, which holds one window of one motion.
     pub suite: String,
-    /// Name of the motion: that of the log, or the common part of the names of its repeats.
+    /// Name of the motion: the name of the log, or the common part of the names of its repeats.
     pub motion: String,
     /// The samples.
     pub log: PreparedLog,

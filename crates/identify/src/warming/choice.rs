@@ -14,10 +14,10 @@ const MIN_SPREAD: f64 = 2.0;
 /// Least number of different runs that shows a law.
 const MIN_RUNS: usize = 3;
 
-/// Laws by which friction falls while the joints warm up, as chosen by kept-back recordings.
+/// Laws by which friction falls while the joints warm up, as chosen by held-out recordings.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WarmingFit {
-    /// What was kept back in turn: "recordings", or "stretches" of few recordings.
+    /// What was held out in turn: "recordings", or "stretches" of few recordings.
     pub kept_back_parts: &'static str,
     /// The laws that were compared.
     pub candidates: Vec<WarmingCandidate>,
@@ -34,8 +34,8 @@ pub struct WarmingCandidate {
     pub by: WarmingBy,
     /// Time constant of a thermal state \[runs\].
     pub time_constant: Option<f64>,
-    /// Torque residual over kept-back parts relative to that without a law, as root mean square
-    /// over the joints. A joint that a law does not help counts as 1.
+    /// Torque residual over held-out parts relative to the residual without a law, as root mean
+    /// square over the joints. A joint that a law does not help counts as 1.
     pub kept_back: f64,
 }
 
@@ -44,11 +44,11 @@ pub struct WarmingCandidate {
 pub struct JointWarming {
     /// Name of the joint.
     pub joint: String,
-    /// The law; `None` where no law predicts kept-back parts better.
+    /// The law; `None` where no law predicts held-out parts better.
     pub law: Option<Warming>,
     /// Standard errors of the rates of Coulomb and viscous friction.
     pub standard_errors: [f64; 2],
-    /// Root mean square of the torque residual over kept-back parts \[N m\], without and with the
+    /// Root mean square of the torque residual over held-out parts \[N m\], without and with the
     /// law.
     pub kept_back: [f64; 2],
     #[serde(skip)]
@@ -56,7 +56,7 @@ pub struct JointWarming {
 }
 
 impl WarmingFit {
-    /// Returns the laws of the joints, n entries, and nothing where no joint has one.
+    /// Returns the laws of the joints, n entries, or no entries if no joint has a law.
     pub(crate) fn laws(&self) -> Vec<Option<Warming>> {
         let laws: Vec<_> = self.joints.iter().map(|joint| joint.law).collect();
         if laws.iter().any(Option::is_some) { laws } else { vec![] }
@@ -126,7 +126,7 @@ impl WarmingFit {
 }
 
 impl JointWarming {
-    /// Chooses the shape of a law that predicts kept-back parts best.
+    /// Chooses the shape of a law that predicts held-out parts best.
     fn choose(name: &str, law: Warming, parts: &[Vec<FrictionRow>]) -> Self {
         let count = parts.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         let size = |squares: &[f64]| (squares.iter().sum::<f64>() / count).sqrt();

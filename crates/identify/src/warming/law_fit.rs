@@ -34,7 +34,7 @@ impl Shape {
     pub(crate) const CHANGING: [Self; 4] =
         [Self::Viscous, Self::Coulomb, Self::Common, Self::Separate];
 
-    /// Returns the rows of the map from free rates to those of Coulomb and viscous friction.
+    /// Returns the rows of the map from free rates to the rates of Coulomb and viscous friction.
     fn rates(self) -> &'static [[f64; 2]] {
         match self {
             Self::Constant => &[],

@@ -1,4 +1,4 @@
-//! Laws by which friction falls while the joints warm up: their fit, and their choice by kept-back
+//! Laws by which friction falls while the joints warm up: their fit, and their choice by held-out
 //! recordings.
 
 pub(crate) mod choice;

@@ -6,7 +6,7 @@ use reachtube_robot::friction::WarmingBy;
 /// Stretches into which each recording is cut where there are few recordings.
 const STRETCHES: usize = 6;
 
-/// Recordings from which each is kept back as a whole.
+/// Number of recordings from which each is held out as a whole.
 const ENOUGH_LOGS: usize = 4;
 
 /// The friction of a joint at one sample.
@@ -16,11 +16,11 @@ pub(crate) struct FrictionRow {
     pub value: f64,
     /// Coulomb and viscous friction at the reference \[N m\].
     pub friction: [f64; 2],
-    /// Recorded torque without that of the rigid links \[N m\].
+    /// Recorded torque without the torque of the rigid links \[N m\].
     pub torque: f64,
 }
 
-/// The rows of every joint, in the parts that are kept back in turn.
+/// The rows of every joint, in the parts that are held out in turn.
 pub(crate) struct FrictionRows {
     /// Rows by joint and part.
     pub joints: Vec<Vec<Vec<FrictionRow>>>,

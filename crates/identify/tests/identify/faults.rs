@@ -69,7 +69,8 @@ fn an_offset_under_noise_is_named_with_its_standard_error() {
     let joint3 = &found.offsets[2];
     let off = joint3.offset.unwrap() - 0.1;
     assert!(off.abs() < 3.0 * joint3.standard_error.unwrap(), "{:?}", found.offsets);
-    // Nobody sees the zero of a vertical axis, nor that of a joint whose link has free parameters.
+    // No recording shows the zero of a vertical axis, nor the zero of a joint whose link has free
+    // parameters.
     assert!(found.offsets[0].offset.is_none() && found.offsets[5].offset.is_none());
 }
 

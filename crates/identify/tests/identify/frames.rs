@@ -69,7 +69,7 @@ fn identified(lab: &Lab, robot: &Robot, settings: &IdentifySettings) -> Identifi
 fn frames_change_neither_the_count_nor_the_condition() {
     let [standard, modified] = [false, true].map(denavit_hartenberg);
     let far = moved(&modified, 4.0);
-    // The torque is that of an arm with masses in the standard frames.
+    // The torque comes from an arm with masses in the standard frames.
     let mut description = standard.description().clone();
     for joint in &mut description.joints {
         (joint.mass, joint.com) = (4.0, Some([0.1, 0.02, 0.03]));

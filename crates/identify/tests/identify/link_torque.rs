@@ -1,6 +1,6 @@
 //! A 7-joint arm whose torque is measured behind the gears, with the errors of real sensors.
 //!
-//! Physical links must predict kept-back torque as well as plain least squares with the same
+//! Physical links must predict held-out torque as well as plain least squares with the same
 //! filter, on every joint.
 
 use crate::lab::geometry;
@@ -86,7 +86,7 @@ fn settings(model: &str) -> IdentifySettings {
     IdentifySettings::from_toml(&text, "settings").unwrap()
 }
 
-/// Returns the errors over all kept-back recordings.
+/// Returns the errors over all held-out recordings.
 fn kept_back(found: &Identification) -> &LogValidation {
     assert!(found.kept_back);
     found.validation.last().unwrap()

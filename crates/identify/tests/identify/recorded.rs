@@ -136,7 +136,7 @@ fn panda() -> Robot {
 /// The Panda's recording.
 const EXCITING: &str = "panda/excitation/traj1_000_015s.csv";
 
-/// Each second is kept back in turn. On a single part, chance decides which of the two is ahead on
+/// Each second is held out in turn. On a single part, chance decides which of the two is ahead on
 /// a joint by some percent; over all parts no joint may be behind by more than chance explains.
 #[test]
 #[ignore = "needs the recordings in ../shared"]
@@ -197,7 +197,7 @@ fn half_of_the_pandas_motion_predicts_the_other_half() {
     );
     let mut settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
     let robot = panda();
-    // Base parameters stay those of least squares.
+    // Base parameters stay equal to least squares.
     let base = identify(&robot, &settings, &PathBuf::from(DATA), &|_, _| {}).unwrap();
     for joint in &base.validation[0].joints {
         let ratio = joint.relative.unwrap() / joint.relative_plain.unwrap();

@@ -47,8 +47,8 @@ fn recorded(physical: bool, change: impl Fn(&mut [f64])) -> (Lab, IdentifySettin
 }
 
 /// Returns the warnings of an identification of the arm with the links of `described`, where the
-/// recorded positions and velocities were multiplied by `motion`, and the torques by `torque`.
-/// The links are those of least squares, or physical.
+/// recorded positions and velocities were multiplied by `motion`, and the torques by `torque`. The
+/// links come from least squares, or are physical.
 fn warnings(described: &Robot, physical: bool, [motion, torque]: [f64; 2]) -> Vec<String> {
     let (lab, settings) = recorded(physical, |row| {
         row[1..=2 * JOINTS].iter_mut().for_each(|value| *value *= motion);

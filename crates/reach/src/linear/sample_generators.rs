@@ -15,8 +15,8 @@ use crate::sets::membership::GeneratorRows;
 use crate::upward::{UNDERFLOW, relative_error, round_up_sum};
 
 /// The generators of the reachable set of the deviation δẋ = A δx + B δu at the samples of a grid:
-/// the columns of e^{A t_k} for the initial set, and those of Γ(t_k - t_j) - Γ(t_k - t_{j+1}) for
-/// the disturbance over each earlier step; those of Γ(t_k) for one that is constant.
+/// the columns of e^{A t_k} for the initial set, and the columns of Γ(t_k - t_j) - Γ(t_k - t_{j+1})
+/// for the disturbance over each earlier step; the columns of Γ(t_k) for one that is constant.
 #[derive(Debug)]
 pub struct SampleGenerators<'a> {
     /// The propagation on the grid whose steps the disturbance is held over.
@@ -38,8 +38,8 @@ struct UnitGenerators {
     count: usize,
     /// State by state: the entries of all generators of the input, step by step.
     input: Vec<f64>,
-    /// For each number of steps, bounds of the errors of the entries of the first so many steps, in
-    /// sum: states x inputs, column by column.
+    /// For each number of steps, bounds of the errors of the entries of all steps up to it, in sum:
+    /// states x inputs, column by column.
     error: Vec<Vec<f64>>,
 }
 
@@ -73,13 +73,13 @@ impl<'a> SampleGenerators<'a> {
         Ok(Self { propagation, parts, is_constant, shared })
     }
 
-    /// Returns the generators at sample `k` for sets of these radii: those of X0 (N), of U (m) and
-    /// of a noise that is added (N), in the entries `states` of the state. `held` is the number of
-    /// steps in a row over which the disturbance is held: 1, or more for fewer generators.
+    /// Returns the generators at sample `k` for sets of these radii: the radii of X0 (N), of U (m)
+    /// and of a noise that is added (N), in the entries `states` of the state. `held` is the number
+    /// of steps in a row over which the disturbance is held: 1, or more for fewer generators.
     ///
     /// # Guarantee
     ///
-    /// Outer bounds of the errors: the exact generators lie within those of the rows. Their
+    /// Outer bounds of the errors: the exact generators lie within the errors of the rows. Their
     /// zonotope is the reachable set of the deviation from the sets' centres. It is an inner
     /// approximation of that set for a measurable disturbance, and where `held` is above 1.
     #[must_use]
@@ -156,7 +156,7 @@ impl<'a> SampleGenerators<'a> {
         (initial, input)
     }
 
-    /// The generators of the input after `steps` steps, and possibly those of later steps.
+    /// The generators of the input after `steps` steps, and possibly of later steps.
     fn unit(&self, steps: usize) -> Cow<'_, UnitGenerators> {
         match &self.shared {
             Some(shared) => Cow::Borrowed(shared),

@@ -102,8 +102,8 @@ impl Flowpipe {
     }
 
     /// Computes the flowpipe as [`new`](Self::new) does, and hands the zonotope at each sample k to
-    /// `visit`, once for each piece of the initial set. They are not kept: those of a long motion
-    /// take gigabytes.
+    /// `visit`, once for each piece of the initial set. They are not kept: the sets of a long
+    /// motion take gigabytes.
     ///
     /// # Guarantee
     ///

@@ -78,7 +78,7 @@ impl PolynomialSystem {
     /// # Errors
     ///
     /// Returns the errors of [`new`](Self::new), and [`ReachError::Shape`] for an angle whose index
-    /// is not that of a state.
+    /// is not a state's.
     ///
     /// # Examples
     ///

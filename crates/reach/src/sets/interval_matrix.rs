@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use reachtube_scalar::Interval;
 
-/// A matrix of intervals; its products and sums are those of nalgebra with outward rounding.
+/// A matrix of intervals; its products and sums are nalgebra's with outward rounding.
 pub type IntervalMatrix = DMatrix<Interval>;
 
 /// A vector of intervals.

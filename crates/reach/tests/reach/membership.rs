@@ -11,8 +11,8 @@ use crate::random::Random;
 
 const SLACK: f64 = 1e-9;
 
-/// A zonotope whose generators are those of a chain of integrators with damping, as a robot's are:
-/// long and nearly parallel ones among them.
+/// A zonotope whose generators come from a chain of integrators with damping, as a robot's do: long
+/// and nearly parallel ones among them.
 fn zonotope(dimension: usize, count: usize, random: &mut Random) -> GeneratorRows {
     let mut rows = GeneratorRows::new(dimension, count);
     for i in 0..dimension {
@@ -193,8 +193,8 @@ fn tell_apart(count: usize) {
     assert!(inside > count / 200 && outside > count / 200, "{inside} {outside}");
 }
 
-/// Of generators that alternate between two vectors, those of one vector are merged; points of the
-/// merged set are proved to lie in it with the errors of its sums, and lie in the whole one.
+/// Of generators that alternate between two vectors, the multiples of one vector are merged; points
+/// of the merged set are proved to lie in it with the errors of its sums, and lie in the whole one.
 #[test]
 fn merged_generators_span_a_smaller_set() {
     let mut random = Random::new(8);

@@ -107,7 +107,7 @@ impl ExportCase {
         self.grid.times()[self.steps()]
     }
 
-    /// Returns the tested step, s: that of the samples, or the mean where they have none.
+    /// Returns the tested step, s: the step of the samples, or the mean where they have none.
     #[must_use]
     pub fn step(&self) -> f64 {
         self.grid.step().unwrap_or(self.horizon() / self.steps() as f64)
@@ -144,8 +144,8 @@ impl ExportCase {
         hyperrectangle((0..n).map(side))
     }
 
-    /// Returns the initial state. That of sines and cosines encloses their values over X0; they are
-    /// no longer tied to their angle.
+    /// Returns the initial state. The box of sines and cosines encloses their values over X0; they
+    /// are no longer tied to their angle.
     ///
     /// # Guarantee
     ///

@@ -37,7 +37,7 @@ pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
         case.system.states[..2 * case.joints()].iter().map(|name| format!("\"{name}\"")).collect();
     let _ = write!(
         text,
-        "\n# The bounds of each set, over the times of its row; those of a deviation count from\n\
+        "\n# The bounds of each set, over the times of its row; bounds of a deviation count from\n\
          # the nominal motion.\nnames = [{}]\nunit(i) = [j == i ? 1.0 : 0.0 for j in 1:states]\n\
          open(\"juliareach_bounds.csv\", \"w\") do io\n    \
          println(io, join([\"t_from\"; \"t_to\"; [n * e for n in names for e in (\"_lower\", \

@@ -99,7 +99,7 @@ fn what_is_computed(case: &ExportCase, tool: Tool, form: InputForm) -> String {
         }
         InputForm::Range => {
             "the states under any input in the box of all recorded inputs plus U. This box \
-             contains the recorded input, so the set is larger than that of bounds.csv."
+             contains the recorded input, so the set is larger than the one of bounds.csv."
         }
     };
     format!("{who} computes {set} {of}")
@@ -138,7 +138,7 @@ fn about_tool(case: &ExportCase, tool: Tool, form: InputForm) -> &'static str {
             "SpaceEx itself takes affine flows only and refuses this file, which is a carrier for \
              programs that read its format with polynomial flows, such as Hyst and CORA."
         }
-        Tool::HyLaa => "HyLAA says nothing about the time between samples.",
+        Tool::HyLaa => "HyLAA has no bounds between samples.",
         Tool::JuliaReach if !affine => "TMJets computes with directed rounding.",
         Tool::Cora | Tool::SpaceEx | Tool::XSpeed | Tool::JuliaReach => {
             "The computation is in floating point without directed rounding."

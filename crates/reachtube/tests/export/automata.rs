@@ -198,7 +198,7 @@ fn spaceex(case: &ExportCase, tool: Tool, form: InputForm, name: &str) {
     }
 }
 
-/// Checks the initial states and returns those of the held input and of `left`.
+/// Checks the initial states and returns the initial values of the held input and of `left`.
 fn spaceex_start(case: &ExportCase, form: InputForm, configuration: &str) -> Vec<f64> {
     let initially = between(configuration, "initially = \"", "\"");
     let of = |name: &String| -> Vec<f64> {

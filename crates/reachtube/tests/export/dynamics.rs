@@ -50,7 +50,7 @@ fn the_terms_have_the_values_of_the_model() {
         for (rate, expected) in case.system.rates.iter().zip(&rates) {
             assert!((value(rate) - expected).abs() < 1e-11 * expected.abs().max(1.0));
         }
-        // Sines and cosines change as those of the angle do.
+        // Sines and cosines change as the angle's do.
         if case.system.dimension() == 4 * n {
             assert_eq!(rates[2 * n], qd[0] * q[0].cos());
             assert_eq!(rates[3 * n], -qd[0] * q[0].sin());

@@ -1,4 +1,4 @@
-//! What a tool cannot mean is refused by name.
+//! Unsupported models are refused by name.
 
 use reachtube::export::{InputForm, Meaning, Tool, files};
 

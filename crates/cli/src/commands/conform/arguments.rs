@@ -158,9 +158,9 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pub weights: String,
-    /// Measurement noise V: none; fitted (its radii are found with the sets and are at most those
-    /// of the sensor noise); or its radii, 2 or 2n numbers between 0 and 1e9: positions in rad,
-    /// then velocities in rad/s
+    /// Measurement noise V: none; fitted (its radii are found with the sets and are at most the
+    /// sensor noise's); or its radii, 2 or 2n numbers between 0 and 1e9: positions in rad, then
+    /// velocities in rad/s
     #[arg(
         long,
         help_heading = "Sets",
@@ -182,8 +182,8 @@ pub(crate) struct Arguments {
         value_parser = choice::<NominalStart>(NOMINAL_STARTS)
     )]
     pub nominal: NominalStart,
-    /// Equations of motion that nominal solutions satisfy. Those of the robot leave to U what the
-    /// robot itself does not explain, and need a linear model
+    /// Equations of motion that nominal solutions satisfy. With the robot's equations U covers only
+    /// what the robot itself does not explain; this needs a linear model
     #[arg(
         long,
         help_heading = "Model",
@@ -191,7 +191,7 @@ pub(crate) struct Arguments {
         value_parser = choice::<Equations>(EQUATIONS)
     )]
     pub equations: Equations,
-    /// Motions that are kept back from the fit, separated by commas, as runs.csv names them. The
+    /// Motions that are held out from the fit, separated by commas, as runs.csv names them. The
     /// sets found on the others are scaled until they enclose these too, which bounds the
     /// probability that the next motion leaves them
     #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]

@@ -49,7 +49,7 @@ fn stribeck(found: &Identification) -> String {
             trial.reason.clone().unwrap_or_else(|| "accepted".into()),
         ]
     };
-    let header = ["Stribeck effect", "kept-back residual without", "with", "excess", "speed", ""];
+    let header = ["Stribeck effect", "held-out residual without", "with", "excess", "speed", ""];
     table(&header, &tried.iter().map(row).collect::<Vec<_>>())
 }
 
@@ -67,7 +67,7 @@ fn warming(found: &Identification, fit: &WarmingFit) -> String {
         let law = joint.law.map_or_else(
             || {
                 vec![
-                    "no law predicts kept-back parts better".into(),
+                    "no law predicts held-out parts better".into(),
                     "-".into(),
                     "-".into(),
                     "-".into(),
@@ -90,10 +90,10 @@ fn warming(found: &Identification, fit: &WarmingFit) -> String {
         "reference",
         "Coulomb rate",
         "viscous rate",
-        &unit.head("kept-back residual without"),
+        &unit.head("held-out residual without"),
         "with",
     ];
-    let parts = format!("residual over kept-back {}, relative", fit.kept_back_parts);
+    let parts = format!("residual over held-out {}, relative", fit.kept_back_parts);
     format!("{}{}", table(&["friction by", &parts], &candidates), table(&header, &rows))
 }
 

@@ -235,8 +235,8 @@ fn offsets(found: &Identification) -> String {
     };
     let limit = |joint: &PositionOffset| Some(format!("{:.3}", joint.limit?));
     format!(
-        "{} that explain the torque best, each alone (± standard error): {}\nsmaller offsets \
-         cannot be told from errors of the model: {}\n",
+        "{} that explain the torque best, each alone (± standard error): {}\nsmaller offsets may \
+        be errors of the model: {}\n",
         unit.head("offsets of the positions"),
         list(&own),
         list(&limit)
@@ -265,7 +265,7 @@ fn validation(found: &Identification) -> String {
     let row = |log: &LogValidation| {
         std::iter::once(log.log.clone()).chain(log.joints.iter().map(cell)).collect()
     };
-    // The last row is that of all recordings.
+    // The last row is for all recordings.
     let left_out = found.validation.len().saturating_sub(MOST_RECORDINGS);
     let shown = found.validation.iter().enumerate();
     let shown = shown.filter(|(k, _)| *k + 1 < MOST_RECORDINGS || *k + 1 == found.validation.len());

@@ -19,7 +19,7 @@ use crate::sets::interval_matrix::IntervalMatrix;
 /// # Guarantee
 ///
 /// Outer enclosure, directed rounding. The lower end is the sum itself up to rounding, since a
-/// skipped node can only lower it. The upper end is that of
+/// skipped node can only lower it. The upper end comes from
 /// [`measurable_gains`](super::measurable::measurable_gains).
 pub(crate) fn sample_gains_on_any_grid(propagation: &Propagation) -> Vec<IntervalMatrix> {
     let cells = Cells::new(propagation);

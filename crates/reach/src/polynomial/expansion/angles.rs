@@ -126,8 +126,8 @@ impl Angles {
 
     /// Converts the slope of a variable to the slope of a state or input.
     ///
-    /// The slope of an angle is that of its sine, times the slope of the line that stands for the
-    /// sine.
+    /// The slope of an angle is the slope of its sine, times the slope of the line that stands for
+    /// the sine.
     pub(crate) fn chain_slope(
         &self,
         variable: usize,

@@ -18,8 +18,8 @@ pub(crate) struct Operation {
 
 /// Counts the largest number of roundings in a term of each of the first `own` coefficients.
 ///
-/// Each operation has two roundings and those of its factor; each later operation on the same
-/// coefficient adds one rounding of the sum.
+/// Each operation has two roundings and the roundings of its factor; each later operation on the
+/// same coefficient adds one rounding of the sum.
 pub(crate) fn roundings(
     plain: usize,
     start: &[Interval],

@@ -60,7 +60,7 @@ struct MonomialNode {
 /// The coefficients of a polynomial about the present centre, with scratch memory for its range.
 #[derive(Debug, Clone)]
 pub(crate) struct RecentredPolynomial {
-    /// Recentred coefficients, then those of intermediate terms.
+    /// Recentred coefficients, then coefficients of intermediate terms.
     coefficients: Vec<f64>,
     /// Error bounds of the recentred coefficients.
     errors: Vec<f64>,
@@ -193,7 +193,7 @@ impl Recentring {
     /// Iterates over contributions to the gradient at the present centre: a variable and a slope.
     ///
     /// The slopes of one variable must be added up: its derivative, and the slope of its line. The
-    /// slope of an angle is that of φ₁.
+    /// slope of an angle is the slope of φ₁.
     pub(crate) fn gradient<'a>(
         &'a self,
         work: &'a RecentredPolynomial,

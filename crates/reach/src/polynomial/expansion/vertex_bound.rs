@@ -7,8 +7,8 @@
 //! not show. All 2ⁿ vertices take n 2ⁿ products together.
 //!
 //! Where both x and x² are chosen, x³ is x times a range, so that the polynomial is affine in the
-//! pair. The vertices are then those of a trapezoid around the parabola: (±r, r²) and, on the
-//! tangents there, (±r/2, 0). For an angle they are (±sin r, 1 - cos r) and (±tan(r/2), 0).
+//! pair. The vertices then belong to a trapezoid around the parabola: (±r, r²) and, on the tangents
+//! there, (±r/2, 0). For an angle they are (±sin r, 1 - cos r) and (±tan(r/2), 0).
 
 use reachtube_scalar::Interval;
 
@@ -17,7 +17,8 @@ use crate::polynomial::expansion::power_table::PowerTable;
 /// Largest number of chosen factors, since the values at all vertices are stored.
 const MOST_FACTORS: usize = 20;
 
-/// Number of roundings of a term per chosen factor in it, those of the ends of the factor included.
+/// Number of roundings of a term per chosen factor in it, roundings of the ends of the factor
+/// included.
 pub(crate) const VERTEX_ROUNDINGS: usize = 8;
 
 /// A monomial or a part of one over a box: a product of chosen factors, each divided by its largest
@@ -71,7 +72,7 @@ pub(crate) struct VertexBound {
     parts: Vec<Monomial>,
     /// Weight of each factor: the sum of the magnitudes of the terms that contain it.
     weights: Vec<f64>,
-    /// Middle and radius of each coefficient a_S, later those of the value at each vertex.
+    /// Middle and radius of each coefficient a_S, later of the value at each vertex.
     values: Vec<[f64; 2]>,
 }
 
@@ -142,7 +143,7 @@ impl VertexBound {
         Interval::new(lo, hi)
     }
 
-    /// Adds to the weights of the factors of a power; `index` is that of the variable itself.
+    /// Adds to the weights of the factors of a power; `index` belongs to the variable itself.
     pub(crate) fn add_weight(&mut self, index: usize, exponent: u32, weight: f64) {
         if exponent % 2 == 1 {
             self.weights[index] += weight;

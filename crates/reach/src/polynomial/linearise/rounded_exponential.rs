@@ -19,7 +19,8 @@ const COARSE: f64 = 1e-6;
 /// v, and [`bound_times`](Self::bound_times) v is at least e^{|A|s} v for 0 <= s <= h.
 ///
 /// Horner's scheme of degree p forms each product of i factors A h with at most K = (p + 1)(n + 6)
-/// roundings, those of h and A h included. Its error is at most γ_K times the same polynomial in
+/// roundings, the roundings of h and A h included. Its error is at most γ_K times the same
+/// polynomial in
 /// |A| h, which is at most P (Higham, section 3.1). The truncation error of the series is bounded
 /// in the maximum norm.
 #[derive(Debug)]

@@ -113,7 +113,7 @@ impl<'a> LinearisedStep<'a> {
     /// numbers l_g in the range of the remainder. Containment proves that range. While d stays in
     /// the tube, the remainder is strictly inside the guess; while it is in the guess, d stays in
     /// the tube. Since d is continuous, both hold until the end of the step. The set after the step
-    /// is that of the linear system under e and l:
+    /// is reached by the linear system under e and l:
     ///
     /// ∫₀ʰ e^{As} b e(s) ds ∈
     /// (h/2) (e^{Ah} b + b) \[-r, r\] ⊕ (h³/12) |A|² e^{|A|h} |b| r \[-1, 1\],

@@ -92,7 +92,7 @@ impl TimeSeries {
         }
     }
 
-    /// Bounds the ranges of all terms, given those of the first terms, and the tails.
+    /// Bounds the ranges of all terms, given the ranges of the first terms, and the tails.
     fn bound(&mut self, monomials: &Monomials, first: &[Interval], h: &TaylorModel) {
         self.ranges =
             self.terms.iter().map(|terms| terms.iter().map(TaylorModel::range).collect()).collect();

@@ -3,7 +3,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use crate::sets::membership::blocks::{Blocks, Lanes, total};
 use crate::sets::membership::rows::GeneratorRows;
 
-/// Steps with the matrix of all generators, which is factored once, before those of Newton's
+/// Steps with the matrix of all generators, which is factored once, before the steps of Newton's
 /// method.
 const SIMPLE_STEPS: usize = 8;
 
@@ -17,7 +17,8 @@ const STALLED: usize = 20;
 /// A direction separates when the point is further along it by this part.
 const SEPARATED: f64 = 1e-12;
 
-/// Part of all generators that is added to those with free factors, so that a Newton step exists.
+/// Part of all generators that is added to the generators with free factors, so that a Newton step
+/// exists.
 const RIDGE: f64 = 1e-9;
 
 /// How accurately a growth is found.
@@ -45,8 +46,8 @@ pub enum Place {
 
 /// A zonotope about 0, made ready to be asked for many points.
 ///
-/// A point d lies in it where factors |α_j| <= 1 give d = Σ_j α_j g_j. Of all such factors those of
-/// least norm are α_j = clip(g_jᵀ y) for some y, which maximises the concave function
+/// A point d lies in it where factors |α_j| <= 1 give d = Σ_j α_j g_j. Of all such factors the ones
+/// of least norm are α_j = clip(g_jᵀ y) for some y, which maximises the concave function
 ///
 /// ```text
 /// dᵀ y - Σ_j H(g_jᵀ y),   H(z) = z²/2 for |z| <= 1, |z| - 1/2 beyond
@@ -146,7 +147,7 @@ impl Membership {
     }
 
     /// Returns the factor by which the set would have to grow to contain a `point` outside, from
-    /// below and to `tolerance` or 5 % of the growth, with the direction that shows it; nothing for
+    /// below and to `tolerance` or 5 % of the growth, with the direction that shows it; `None` for
     /// a point inside.
     pub fn gauge(
         &self,
@@ -272,8 +273,8 @@ impl MembershipWorkspace {
         factor.solve(&self.residual)
     }
 
-    /// Whether the residual can be absorbed by factors of at most `tolerance`: those of least norm
-    /// have the norm √(eᵀ (G Gᵀ)⁻¹ e).
+    /// Whether the residual can be absorbed by factors of at most `tolerance`: the factors of least
+    /// norm have the norm √(eᵀ (G Gᵀ)⁻¹ e).
     fn is_within(&self, step: &DVector<f64>, tolerance: f64) -> bool {
         self.residual.dot(step) <= tolerance * tolerance
     }

@@ -1,5 +1,5 @@
-//! Whether points lie in a zonotope: factors of the generators for those that do, a direction that
-//! separates them for those that do not.
+//! Whether points lie in a zonotope: factors of the generators for points inside, a separating
+//! direction for points outside.
 
 mod blocks;
 mod locate;

@@ -23,7 +23,7 @@ pub struct MembershipProof<'a> {
 }
 
 impl<'a> MembershipProof<'a> {
-    /// Prepares the proof for a zonotope; nothing where its generators do not span the states well
+    /// Prepares the proof for a zonotope; `None` if its generators do not span the states well
     /// enough.
     #[must_use]
     pub fn new(set: &'a Membership) -> Option<Self> {
@@ -39,8 +39,8 @@ impl<'a> MembershipProof<'a> {
             add_up(largest(&along), mul_up(relative_error(dimension), size))
         };
         let gain: Vec<f64> = (0..dimension).map(&mut gain_of).collect();
-        // 1 - G Gᵀ N: the computed product, its rounding, that of the Gram matrix, and the errors
-        // of the generators.
+        // 1 - G Gᵀ N: the computed product, its rounding, the rounding of the Gram matrix, and the
+        // errors of the generators.
         let product = &set.gram * &inverse;
         let defect = DMatrix::from_fn(dimension, dimension, |i, l| {
             let one = if i == l { 1.0 } else { 0.0 };
@@ -59,8 +59,8 @@ impl<'a> MembershipProof<'a> {
     }
 
     /// Returns whether the factors that the workspace has, times `limit`, prove that every point
-    /// within `radius` of `point` lies in the zonotope. The factors are those that
-    /// [`Membership::locate`] found for the point over `limit`.
+    /// within `radius` of `point` lies in the zonotope. The factors are what [`Membership::locate`]
+    /// found for the point over `limit`.
     ///
     /// # Guarantee
     ///

@@ -7,7 +7,7 @@ use crate::upward::{relative_error, round_up_sum};
 /// their entries.
 ///
 /// The exact zonotope is { Σ_j β_j g_j : |β_j| <= 1 }, where the exact entries of the generators
-/// g_j differ from those that are stored by no more than [`set_error`](Self::set_error) allows.
+/// g_j differ from the stored ones by no more than [`set_error`](Self::set_error) allows.
 ///
 /// # Examples
 ///

@@ -35,7 +35,7 @@ pub fn urdf(robot: &Robot) -> Result<UrdfFiles, ExportError> {
     let urdf = text(robot, &bodies);
     let mut description = robot.description().clone();
     for (joint, body) in description.joints.iter_mut().zip(&bodies) {
-        // The companion has the motor of the body, which need not be that of the description.
+        // The companion has the motor of the body, which need not be the description's.
         joint.rotor_inertia = None;
         joint.armature = Some(body.armature);
     }
@@ -54,7 +54,7 @@ fn text(robot: &Robot, bodies: &[Body]) -> String {
     let lines = [
         format!("{MARK} ({TOOL}): {}.", harmless(robot.name())),
         LEFT_OUT.into(),
-        "URDF has no motor inertia and no gravity: a simulator must be given those of robot.toml \
+        "URDF has no motor inertia and no gravity: a simulator needs the values of robot.toml \
          (armature, gravity)."
             .into(),
     ];
