@@ -57,7 +57,7 @@ impl Inputs {
     /// Reads and prepares all recordings of a job; the cut-off suits the exciting motions.
     ///
     /// Recordings are read twice, one by one: first for what decides how all are prepared, then to
-    /// prepare them. Of many exciting motions not all samples are kept.
+    /// prepare them. If there are many exciting motions, not all samples are kept.
     ///
     /// The controllers of `robot` compensate, where a recording has the input u.
     pub(crate) fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {

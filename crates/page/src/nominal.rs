@@ -18,8 +18,8 @@ pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
         add(
             "Calibration",
             format!(
-                "the smallest sets of {} motions, scaled by {}, the largest that a motion kept \
-                 back needs: {}",
+                "the smallest sets of {} motions, scaled by {}, the largest that a held-out motion \
+                needs: {}",
                 calibration.fitted.len(),
                 at_least(calibration.factor),
                 gauges.join(", ")

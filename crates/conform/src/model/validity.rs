@@ -64,11 +64,11 @@ impl Model {
         Err(format!("{problem}; run conform again"))
     }
 
-    /// Checks that what is in the file twice is the same: where it is not, somebody has changed a
-    /// part. Returns the robot, its model and the settings.
+    /// Checks that what is in the file twice is the same: if it is not, a part was changed. Returns
+    /// the robot, its model and the settings.
     pub(super) fn check_parts(&self) -> Result<Setup, String> {
         if self.data.sha256 != self.data.digest() {
-            return Err(changed("data.sha256 is not that of the recordings it lists"));
+            return Err(changed("data.sha256 does not match the recordings it lists"));
         }
         let holds = self.proof.conformant;
         let all_hold =
@@ -79,7 +79,7 @@ impl Model {
         let robot = Robot::from_description(&self.robot).map_err(|error| error.to_string())?;
         let dynamics = self.dynamics(&robot)?;
         if self.sha256 != self.digest() {
-            return Err(changed("sha256 is not that of the content"));
+            return Err(changed("sha256 does not match the content"));
         }
         let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
         let nominal_starts = self.data.suites.iter().filter_map(start).collect();
@@ -119,7 +119,8 @@ impl Model {
         let own = LinearSystem::new(matrix(&self.a), matrix(&self.b), drift)
             .map_err(|error| error.to_string())?;
         if !is_near(expected, &own) {
-            return Err(changed("a, b or drift is not that of its robot at its expansion point"));
+            return Err(changed("a, b or drift does not agree with its robot at its expansion \
+                point"));
         }
         Ok(made.with_linear(own))
     }

@@ -22,8 +22,8 @@ const SCAN: [f64; 2] = [0.05, 0.5];
 /// What the trial of the Stribeck effect on a joint has found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StribeckTrial {
-    /// Root mean square of the torque residual over stretches of the slow motions that were kept
-    /// back in turn \[N m\], without and with the effect.
+    /// Root mean square of the torque residual over stretches of the slow motions that were held
+    /// out in turn \[N m\], without and with the effect.
     pub kept_back: [f64; 2],
     /// Whether the friction of the joint has the effect.
     pub accepted: bool,

@@ -106,8 +106,8 @@ fn friction_by_temperature_is_recovered_within_its_errors() {
     assert!(error.contains("run_1: friction by the number of runs needs it"), "{error}");
 }
 
-/// A logarithm of the runs and a thermal state are hardly told apart by eight recordings, so only
-/// what either law is good for is tested.
+/// A logarithm of the runs and a thermal state are hardly distinguished by eight recordings, so
+/// only what either law is good for is tested.
 #[test]
 fn friction_that_changes_with_the_runs_is_predicted_better_by_a_law() {
     let law = Warming {
