@@ -20,8 +20,8 @@ fn main() {
     divan::main();
 }
 
-/// Deviations like those of an arm that drifts: a smooth growth of its own in each run and state,
-/// with some noise.
+/// Deviations like a drifting arm's: a smooth growth of its own in each run and state, with some
+/// noise.
 fn deviations(run: usize) -> Vec<f64> {
     let mut noise = 0x9E37_79B9_7F4A_7C15u64.wrapping_mul(run as u64 + 1);
     let mut random = move || {

@@ -10,8 +10,8 @@ use crate::sets::UncertaintySets;
 use crate::smallest_sets::smallest_sets;
 use crate::verdict::Verdict;
 
-/// The smallest sets of a model whose friction depends on the run, where nobody knows which run it
-/// is: the nominal motion is that of one condition in the middle, and the sets hold every run.
+/// The smallest sets of a model whose friction depends on the run, that hold for every run: the
+/// nominal motion is taken in one condition in the middle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnyRun {
@@ -26,7 +26,7 @@ pub struct AnyRun {
 }
 
 impl AnyRun {
-    /// Finds the sets for a linear model; nothing where friction does not depend on the run.
+    /// Finds the sets for a linear model; `None` if friction does not depend on the run.
     ///
     /// # Errors
     ///
@@ -48,7 +48,7 @@ impl AnyRun {
     }
 }
 
-/// The condition in the middle of those recorded: the geometric mean of the first and the last
+/// The condition in the middle of the recorded ones: the geometric mean of the first and the last
 /// place, and the mean of the temperatures.
 fn middle(problem: &Problem) -> Condition {
     let mut totals = problem.recordings().suites.iter().map(|suite| &suite.totals);

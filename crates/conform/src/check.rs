@@ -20,15 +20,15 @@ pub struct Check {
     /// Whether the recordings lie in the reachable set, and where not.
     #[serde(flatten)]
     pub verdict: Verdict,
-    /// What the check says about the next motion; nothing when a recording was used in the fit.
+    /// Result of the check about the next motion; `None` if a recording was used in the fit.
     pub trust: Option<Trust>,
-    /// How often the recordings leave the set, with their spread over motions; nothing when a
+    /// How often the recordings leave the set, with their spread over motions; `None` if a
     /// recording was used in the fit.
     pub rates: Option<Rates>,
     /// For each state in which a recording leaves the set, the value that leaves it furthest, among
-    /// those that have a reachable set.
+    /// states that have a reachable set.
     pub worst_by_state: Vec<Witness>,
-    /// What would have to grow so that the recordings were enclosed; nothing where they are, or
+    /// What would have to grow so that the recordings were enclosed; `None` if they are, or
     /// where a reachable set was lost; for the notion hull only.
     pub growth: Option<Growth>,
     /// What a user should know about the data.
@@ -41,7 +41,7 @@ pub struct Check {
 ///
 /// # Guarantee
 ///
-/// That of [`Verdict::new`].
+/// Returns the error of [`Verdict::new`].
 ///
 /// # Errors
 ///
@@ -148,7 +148,7 @@ fn may_start_near(model: &Model, suite: &Suite) -> bool {
             (low..=high).contains(&offset)
         })
     };
-    // Of a large suite only the bounds of all starts are known.
+    // A large suite keeps only the bounds of all starts.
     let may_be_near = || {
         suite.totals.start_bounds.iter().enumerate().all(|(i, [first, last])| {
             let ([low, high], nominal) = (near(i), suite.nominal_start[i]);

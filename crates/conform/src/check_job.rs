@@ -62,13 +62,13 @@ impl CheckJob {
         Self { suites: names.into_iter().map(Into::into).collect(), ..self }
     }
 
-    /// Judges recordings by this notion; without one, by that of the model.
+    /// Judges recordings by this notion; without one, by the model's.
     #[must_use]
     pub fn notion(self, notion: Option<Notion>) -> Self {
         Self { notion, ..self }
     }
 
-    /// Uses samples up to this time after the first only, s; without one, up to that of the model.
+    /// Uses samples up to this time after the first only, s; without one, up to the model's.
     #[must_use]
     pub fn until(self, until: Option<f64>) -> Self {
         Self { until, ..self }
@@ -110,7 +110,7 @@ impl CheckJob {
     ///
     /// # Guarantee
     ///
-    /// That of [`check()`](crate::check()).
+    /// Returns the error of [`check()`](crate::check()).
     ///
     /// # Errors
     ///

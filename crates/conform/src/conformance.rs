@@ -61,13 +61,13 @@ pub struct Conformance {
     pub tight: Vec<Witness>,
     /// How close a motion of the model comes to each run, where the settings ask for it.
     pub explanations: Vec<Explanation>,
-    /// What can hardly be right about the answer, and the most likely cause.
+    /// Implausible results, and the most likely cause.
     pub warnings: Vec<Warning>,
     /// The part of the variance of each state that the nominal motions explain, 2n; negative where
-    /// they are further away than the mean, nothing where the state hardly moves.
+    /// they are further away than the mean, `None` if the state hardly moves.
     pub nominal_explains: Vec<Option<f64>>,
-    /// The sets where nobody knows which run it is, for a linear model whose friction depends on
-    /// it; none for calibrated sets.
+    /// The sets that hold for every run, for a linear model whose friction depends on it; none for
+    /// calibrated sets.
     pub any_run: Option<AnyRun>,
     /// The root mean square of the input minus what the robot needs for the recorded motions, n,
     /// N m, to lay beside U.
@@ -77,14 +77,15 @@ pub struct Conformance {
 }
 
 /// Finds the smallest uncertainty sets for which the problem's model is reachset conformant with
-/// its recordings, and proves the result with directed rounding. A linear model's sets are those of
-/// one linear program; for others see [`Method`](crate::Method). A search for the sets of a model
-/// that is not linear keeps what is finished in the file `resume`, goes on from it, and removes it
-/// at the end.
+/// its recordings, and proves the result with directed rounding. A linear model's sets solve one
+/// linear program; for others see [`Method`](crate::Method). A search for the sets of a model that
+/// is not linear keeps what is finished in the file `resume`, goes on from it, and removes it at
+/// the end.
 ///
 /// # Guarantee
 ///
-/// That of [`Verdict::new`] when `verdict.conformant`. Nothing is claimed between samples.
+/// Returns the error of [`Verdict::new`] when `verdict.conformant`. Nothing is claimed between
+/// samples.
 ///
 /// # Errors
 ///

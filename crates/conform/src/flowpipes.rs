@@ -32,7 +32,7 @@ pub(crate) enum Effort {
 pub struct OuterSet {
     /// The sets at samples and between them.
     pub flowpipe: Flowpipe,
-    /// Where the recorded points of the case lie in them; nothing for the notion hull.
+    /// Where the recorded points of the case lie in them; empty for the notion hull.
     pub(crate) points: CasePoints,
 }
 
@@ -131,7 +131,7 @@ pub(crate) enum Enclosed {
 }
 
 /// Returns how many rows of a case, both sides together, the flowpipe under `sets` does not
-/// enclose; nothing where it is lost.
+/// enclose; `None` if it is lost.
 ///
 /// # Errors
 ///

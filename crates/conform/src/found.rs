@@ -35,17 +35,17 @@ pub(crate) const TOUCHING: f64 = 1e-4;
 
 /// Which rows decide the sets.
 pub(crate) enum Deciding {
-    /// Those that touch the reachable set, within a part of its radius.
+    /// Rows that touch the reachable set, within a part of its radius.
     Touching(f64),
-    /// Those named (case, sample, state, side), and recorded points in other directions.
+    /// Rows named (case, sample, state, side), and recorded points in other directions.
     Rows(HashSet<(usize, usize, usize, Side)>, Vec<Witness>),
     /// Recorded points in other directions, and rows that are as close to the reachable set.
     Points(Vec<Witness>),
 }
 
 impl Deciding {
-    /// Returns whether one side of a row decides the sets; `case` is that of the row, where hulls
-    /// belong to cases.
+    /// Returns whether one side of a row decides the sets; `case` is the row's, where hulls belong
+    /// to cases.
     pub(crate) fn contains(&self, case: Option<usize>, row: &Row, edge: &Edge) -> bool {
         match self {
             Self::Touching(part) => edge.excess >= -part * row.radius,

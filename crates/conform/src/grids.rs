@@ -65,7 +65,7 @@ impl Grids {
     ///
     /// # Panics
     ///
-    /// When `grid` is not one of those given to [`new`](Self::new).
+    /// When `grid` was not given to [`new`](Self::new).
     #[must_use]
     pub fn find(&self, grid: &TimeGrid) -> usize {
         let fits = |candidate: &Grid| grid.is_prefix_of(candidate.propagation.grid());
@@ -73,8 +73,9 @@ impl Grids {
     }
 }
 
-/// Returns the grids that are not the beginning of another one: the longest first, those that end
-/// last first of these, and then by their times, so that the order of the runs makes no difference.
+/// Returns the grids that are not the beginning of another one: the longest first, of equally long
+/// ones the last to end, and then by their times, so that the order of the runs makes no
+/// difference.
 pub(crate) fn distinct<'a>(grids: impl Iterator<Item = &'a TimeGrid>) -> Vec<&'a TimeGrid> {
     let end = |grid: &TimeGrid| grid.times().last().copied().unwrap_or(0.0);
     let by_times = |a: &TimeGrid, b: &TimeGrid| {

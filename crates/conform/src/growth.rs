@@ -9,11 +9,11 @@ use crate::sets::UncertaintySets;
 /// its sets. Not proved: to rounding, with the centres where they are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Growth {
-    /// Factor of all radii of X0, for a linear model. Nothing where no factor suffices.
+    /// Factor of all radii of X0, for a linear model. `None` if no factor suffices.
     pub initial_set: Option<f64>,
-    /// Factor of all radii of U, for a linear model. Nothing where no factor suffices.
+    /// Factor of all radii of U, for a linear model. `None` if no factor suffices.
     pub input_set: Option<f64>,
-    /// Factor of all radii of X0 and U, for a linear model. Nothing where no factor suffices.
+    /// Factor of all radii of X0 and U, for a linear model. `None` if no factor suffices.
     pub both_sets: Option<f64>,
     /// What the radii of V in all positions would have to grow by, rad or m.
     pub noise_position: f64,

@@ -10,7 +10,7 @@ use crate::flowpipes::OuterSet;
 use crate::rows::{Row, rows};
 use crate::sets::UncertaintySets;
 
-/// What is known of the reachable set that recordings are compared with.
+/// The reachable set that recordings are compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Enclosure {
@@ -23,7 +23,7 @@ pub enum Enclosure {
 }
 
 impl Enclosure {
-    /// Returns what people are told the recordings are compared with.
+    /// Returns the set's name for messages.
     #[must_use]
     pub fn set_name(self) -> &'static str {
         match self {

@@ -203,7 +203,7 @@ impl Job {
     ///
     /// # Guarantee
     ///
-    /// That of [`conform`](crate::conform).
+    /// Returns the error of [`conform`](crate::conform).
     ///
     /// # Errors
     ///

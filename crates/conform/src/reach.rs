@@ -155,7 +155,7 @@ impl SuiteReach {
     ///
     /// # Errors
     ///
-    /// Those of `out`.
+    /// Returns the errors of `out`.
     pub fn write_samples(&self, out: &mut dyn Write) -> io::Result<()> {
         let names =
             |kind: &str, i: usize| format!("{}_{kind}", State::from_index(i, self.dimension / 2));
@@ -178,7 +178,7 @@ impl SuiteReach {
     ///
     /// # Errors
     ///
-    /// Those of `out`.
+    /// Returns the errors of `out`.
     pub fn write_tube(&self, out: &mut dyn Write) -> io::Result<()> {
         write!(out, "t_from,t_to")?;
         for i in 0..self.dimension {

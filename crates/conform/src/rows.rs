@@ -9,7 +9,7 @@ use crate::data::settings::States;
 use crate::data::side::Side;
 use crate::sets::UncertaintySets;
 
-/// A radius that nobody can tell from none, rad or rad/s.
+/// A radius that is as good as none, rad or rad/s.
 pub(crate) const NEGLIGIBLE_RADIUS: f64 = 1e-9;
 
 /// One row: the recordings of a suite (or of a run with an input of its own) at one time in one
@@ -62,7 +62,7 @@ pub struct HullBounds {
 
 /// The hull of a reachable set over time, as rows are compared with it.
 pub trait Hull {
-    /// Returns the bounds at sample `k` in state `i`; nothing where the set was lost.
+    /// Returns the bounds at sample `k` in state `i`; `None` if the set was lost.
     fn bounds(&self, k: usize, i: usize) -> Option<HullBounds>;
 }
 
@@ -75,7 +75,7 @@ impl Hull for ReachSets {
 }
 
 impl Hull for Flowpipe {
-    /// Outer bounds: those of the computed set.
+    /// Outer bounds of the computed set.
     fn bounds(&self, k: usize, i: usize) -> Option<HullBounds> {
         let hull = (k < self.len()).then(|| self.sample(k)[i])?;
         Some(HullBounds { lower: hull.lo(), upper: hull.hi(), radius: hull.rad() })

@@ -75,7 +75,7 @@ pub struct SuiteVerdict {
 pub struct Violations {
     /// Their number.
     pub count: usize,
-    /// The one with the largest excess, among those that have a reachable set.
+    /// The one with the largest excess, among rows that have a reachable set.
     pub worst: Option<Witness>,
 }
 

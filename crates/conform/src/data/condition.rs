@@ -19,13 +19,13 @@ impl Condition {
         Self { place, temperatures: run.mean_temperature() }
     }
 
-    /// Returns the condition where nothing is known: that of the first run.
+    /// Returns the condition of the first run, the default.
     #[must_use]
     pub fn first() -> Self {
         Self { place: 1, temperatures: None }
     }
 
-    /// Returns the robot as warm as it is in this condition; nothing where its friction does not
+    /// Returns the robot as warm as it is in this condition; `None` if its friction does not
     /// change. A law of temperature without a recorded temperature keeps its reference.
     #[must_use]
     pub fn warm(&self, robot: &Robot) -> Option<Robot> {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 /// model's own equations contain: friction and the weight of a payload.
 ///
 /// At each sample the correction is evaluated at the nominal state, and the corrected input is held
-/// until the next sample. The reachable set is that of the model around this nominal motion.
+/// until the next sample. The reachable set is the model's, around this nominal motion.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InputCorrection {

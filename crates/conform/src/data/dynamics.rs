@@ -21,7 +21,7 @@ pub struct Dynamics {
 
 impl Dynamics {
     /// Makes the model of `robot` that `settings` ask for. A linear one is treated as a polynomial
-    /// for [`Method::Bisection`], which knows no program.
+    /// for [`Method::Bisection`], which has no program.
     ///
     /// # Errors
     ///
@@ -53,7 +53,7 @@ impl Dynamics {
         Self { linear: Some(system), ..self }
     }
 
-    /// Returns A, B and d of a linear model, and nothing for any other.
+    /// Returns A, B and d of a linear model, and `None` for any other.
     #[must_use]
     pub fn linear_system(&self) -> Option<&LinearSystem> {
         self.linear.as_ref()

@@ -4,7 +4,7 @@ use crate::data::side::Side;
 
 /// An envelope: the highest and lowest value over many runs, for each sample and state, and the run
 /// that has it. It takes runs one by one, two envelopes merge into the envelope of the whole, and
-/// its size is that of one run.
+/// it is as large as one run.
 ///
 /// # Examples
 ///
@@ -106,7 +106,7 @@ impl Envelope {
         self.upper_run.iter().chain(&self.lower_run).copied()
     }
 
-    /// Returns whether its parts fit together and are those of states of `dimension` entries.
+    /// Returns whether its parts fit together and have states of `dimension` entries.
     pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
         let entries = self.upper.len();
         let lengths = [self.lower.len(), self.upper_run.len(), self.lower_run.len()];
@@ -150,8 +150,8 @@ impl Envelope {
 }
 
 /// Moves bounds outward where `values` lie beyond them, and hands bounds that `values` reach to the
-/// run of the smaller number: 0 and -0 are equal, and the bits of a bound are those of its run. The
-/// pass has no branch, so that the compiler can use vector registers.
+/// run of the smaller number: 0 and -0 are equal, and a bound has the bits of its run. The pass has
+/// no branch, so that the compiler can use vector registers.
 fn extend_bounds(
     bounds: &mut [f64],
     runs: &mut [u32],

@@ -51,8 +51,8 @@ impl RunInput {
     }
 }
 
-/// The input that some runs share: that of the longest, of which the others' are the beginning.
-/// Where several are as long, it is that of the run of the smallest number, because their last
+/// The input that some runs share: the longest one, of which the others' are the beginning. Where
+/// several are as long, it is the input of the run of the smallest number, because their last
 /// samples may differ.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SharedInput {
@@ -63,7 +63,7 @@ pub(crate) struct SharedInput {
 }
 
 impl SharedInput {
-    /// Returns the input that both have in common; nothing where neither is the beginning of the
+    /// Returns the input that both have in common; `None` if neither is the beginning of the
     /// other. The order of merging makes no difference.
     pub(crate) fn merge(self, other: Self, joints: usize) -> Option<Self> {
         let shares = self.input.shares(&other.input, joints);

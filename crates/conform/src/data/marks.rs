@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 /// Number of states that are kept of a run at most.
 const MOST_MARKS: usize = 64;
 
-/// Some states of a run: those at the multiples of a power of two of samples. They stay in memory
-/// for some runs of every suite, so that runs can be compared without reading them again.
+/// Some states of a run, at the multiples of a power of two of samples. They stay in memory for
+/// some runs of every suite, so that runs can be compared without reading them again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Marks {
     /// Samples from one to the next, a power of two.
@@ -28,12 +28,12 @@ impl Marks {
         self.states.is_empty()
     }
 
-    /// Lets go of the states.
+    /// Drops the states.
     pub(crate) fn clear(&mut self) {
         self.states = Vec::new();
     }
 
-    /// Returns whether its parts are those of states of `dimension` entries.
+    /// Returns whether its parts have states of `dimension` entries.
     pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
         self.dimension == dimension
             && self.stride.is_power_of_two()

@@ -24,7 +24,7 @@ use crate::progress::Progress;
 /// Which runs stay in memory, sample by sample, after they were folded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Keep {
-    /// Those that have a nominal solution of their own.
+    /// Suites that have a nominal solution of their own.
     #[default]
     Needed,
     /// All, as figures and explanations need them; up to 256 MiB, beyond which runs are read again.
@@ -113,7 +113,7 @@ impl Problem {
         Ok(Self::of_recordings(setup, Origin::Source(source.into()), recordings, kept.into_runs()))
     }
 
-    /// Makes the problem of recordings that were read, and notes what a user should know of them.
+    /// Makes the problem of recordings that were read, and notes for the user.
     pub(crate) fn of_recordings(
         setup: Setup,
         origin: Origin,
@@ -187,15 +187,14 @@ impl Problem {
     /// # Panics
     ///
     /// Where the source has no run `index`, or the fold that the problem was made of has not kept
-    /// its entry; it keeps those of the runs in [`Suite::runs`](crate::Suite::runs) and of the runs
-    /// that have a bound of an envelope.
+    /// its entry; it keeps the entries of the runs in [`Suite::runs`](crate::Suite::runs) and of
+    /// the runs that have a bound of an envelope.
     #[must_use]
     pub fn entry(&self, index: usize) -> &RunEntry {
         self.read.origin.entry(index)
     }
 
-    /// Returns the samples of run `index`: those in memory, or read once more where they were not
-    /// kept.
+    /// Returns the samples of run `index`: from memory, or read once more where they were not kept.
     ///
     /// # Errors
     ///

@@ -17,14 +17,13 @@ pub struct Recordings {
     pub notes: Vec<String>,
     /// The root of the Merkle tree over the recordings' entries, in lower-case hexadecimal.
     pub root: String,
-    /// Whether a model file lists each recording: those of a source of fewer than 10,000, and of a
-    /// fold of fewer than 1000.
+    /// Whether a model file lists each recording: of a source of fewer than 10,000, and of a fold
+    /// of fewer than 1000.
     pub(crate) are_listed: bool,
     /// What a fold has found that was made to check a model: the digest of the model's recordings,
     /// and how many recordings are among them.
     pub(crate) compared: Option<(String, u64)>,
-    /// Number of recordings that were left out because they have defects: only a fold leaves out
-    /// any.
+    /// Number of recordings that were skipped because they have defects: only a fold skips any.
     pub skipped: usize,
 }
 

@@ -66,7 +66,8 @@ impl States {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum InitialLimit {
-    /// As far as makes the sets cheapest: X0 may take over what U would have to cover later.
+    /// By the amount that makes the sets cheapest: X0 may take over what U would have to cover
+    /// later.
     #[default]
     None,
     /// Positions no further than the first states of the recordings lie from their nominal start,
@@ -108,7 +109,7 @@ pub enum NominalStart {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Equations {
-    /// The model's: U covers what the model leaves out of the robot's equations.
+    /// The model's: U covers the model error.
     #[default]
     Model,
     /// The robot's own (docs/method.md, section 3). The model, which is linear, describes the
@@ -125,7 +126,7 @@ pub enum Noise {
     #[default]
     None,
     /// The radii are unknowns of the program, count in its cost as every radius does, and are at
-    /// most those of the sensor noise.
+    /// most the sensor noise's.
     Fitted,
     /// Known radii, 2n, rad and rad/s.
     Fixed(Vec<f64>),

@@ -27,7 +27,7 @@ pub struct Setup {
     pub nominal_starts: BTreeMap<String, Vec<f64>>,
     /// What is taken off the recorded inputs along the nominal motions, where anything is.
     pub correction: Option<InputCorrection>,
-    /// The condition that friction is taken in, whatever that of a run is; nothing where each run
+    /// The condition that friction is taken in, whatever a run's condition is; `None` if each run
     /// has its own.
     pub condition: Option<Condition>,
 }

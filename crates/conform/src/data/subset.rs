@@ -4,8 +4,8 @@ use crate::data::problem::{Problem, Read, sensor_noise};
 use crate::data::recordings::Recordings;
 
 impl Problem {
-    /// Returns the problem of some of the suites, as if no other had been read: nothing in it
-    /// depends on the others.
+    /// Returns the problem of some of the suites, as if no other had been read: it does not depend
+    /// on the others.
     #[must_use]
     pub(crate) fn with_suites(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
         let suites = self.recordings().suites.iter().enumerate();

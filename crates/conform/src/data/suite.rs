@@ -23,13 +23,13 @@ pub struct Suite {
     /// What was read of each run, in the order of `entry.runs`: of all runs of a source. A fold of
     /// many runs keeps 256 of them, as random as their SHA-256.
     pub runs: Vec<RunSummary>,
-    /// What is known of all runs together.
+    /// Totals of all runs.
     pub totals: Totals,
     /// The nominal initial state, 2n: the one that was given for the suite's name, or the mean of
     /// the runs' first states, rounded to nearest.
     pub nominal_start: Vec<f64>,
-    /// The one input of all runs (Definition 2), where they share it and their nominal start: that
-    /// of the longest run, of which the others' are the beginning.
+    /// The one input of all runs (Definition 2), where they share it and their nominal start: the
+    /// input of the longest run, of which the others' are the beginning.
     pub shared: Option<RunInput>,
     /// Envelope of the measured states, with run indices of the source.
     pub envelope: Arc<Envelope>,
@@ -80,7 +80,7 @@ pub(super) struct SuiteReader<'a> {
     pub nominal: NominalStart,
     pub nominal_starts: &'a BTreeMap<String, Vec<f64>>,
     pub kept: &'a KeptRuns,
-    /// Whether every run is kept, and not only those that later steps need one by one.
+    /// Whether every run is kept, and not only the runs that later steps need one by one.
     pub keep_all: bool,
 }
 

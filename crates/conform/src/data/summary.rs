@@ -57,7 +57,8 @@ impl RunSummary {
 }
 
 /// Returns the 256 runs with the lowest SHA-256, or all of fewer, in the order of their indices. A
-/// sample of the samples of parts is that of the whole, and copies of a run are drawn with it.
+/// sample of the samples of parts is the sample of the whole, and copies of a run are drawn with
+/// it.
 pub(crate) fn sampled<'a>(
     runs: impl IntoIterator<Item = &'a RunSummary>,
 ) -> impl Iterator<Item = &'a RunSummary> {

@@ -7,8 +7,8 @@ use crate::data::summary::RunSummary;
 /// Number of runs of a suite whose notes are given in full.
 pub(crate) const MOST_NOTED: usize = 20;
 
-/// What is known of all runs of a suite together. Its size does not grow with the runs, and the
-/// order in which they are taken makes no difference.
+/// Totals of all runs of a suite. Its size does not grow with the runs, and the order in which they
+/// are taken makes no difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Totals {
     /// Number of runs.
@@ -25,14 +25,14 @@ pub struct Totals {
     pub(crate) start_bounds: Vec<[f64; 2]>,
     /// The sums of the temperatures, n, over the runs that have them; empty where none has.
     pub(crate) temperatures: Vec<ExactSum>,
-    /// The notes about runs, of those that come first in the source.
+    /// The notes about the runs that come first in the source.
     pub(crate) notes: BTreeMap<usize, Vec<String>>,
     /// Number of runs that have notes.
     pub(crate) noted: usize,
 }
 
 impl Totals {
-    /// Returns what is known of one run.
+    /// Returns the totals of one run.
     pub(crate) fn of(run: &RunSummary) -> Self {
         let sum = |value: &f64| [*value].into_iter().collect();
         let temperatures = run.condition.temperatures.iter().flatten();
@@ -50,7 +50,7 @@ impl Totals {
         }
     }
 
-    /// Returns what is known of some runs, one at least.
+    /// Returns the totals of some runs, one at least.
     pub(crate) fn of_all<'a>(runs: impl IntoIterator<Item = &'a RunSummary>) -> Option<Self> {
         runs.into_iter().map(Self::of).reduce(|mut all, run| {
             all.merge(run);
@@ -58,7 +58,7 @@ impl Totals {
         })
     }
 
-    /// Merges what is known of other runs.
+    /// Merges the totals of other runs.
     pub(crate) fn merge(&mut self, other: Self) {
         self.count += other.count;
         self.first = self.first.min(other.first);
@@ -66,7 +66,7 @@ impl Totals {
         merge_range(&mut self.places, other.places);
         merge_sums(&mut self.starts, &other.starts);
         for (own, [low, high]) in self.start_bounds.iter_mut().zip(other.start_bounds) {
-            // By the order of all bits, so that of 0 and -0 it is always the same one.
+            // By the order of all bits, so that among 0 and -0 it is always the same one.
             own[0] = if low.total_cmp(&own[0]).is_lt() { low } else { own[0] };
             own[1] = if high.total_cmp(&own[1]).is_gt() { high } else { own[1] };
         }

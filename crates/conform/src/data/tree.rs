@@ -10,8 +10,8 @@ type Hash = [u8; 32];
 
 /// The Merkle tree over the recordings of a manifest: a binary tree over their places. A part of
 /// the recordings has the part of the tree that its places fill, and parts merge in any order.
-/// Where no recording has a place below one of a node's children, the node's hash is that of the
-/// other child.
+/// Where no recording has a place below one of a node's children, the node's hash is the hash of
+/// the other child.
 ///
 /// `docs/fleet.md` defines the hashes byte by byte.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -53,7 +53,7 @@ impl Tree {
         filled.all(|(first, (level, hash))| self.insert_subtree(first, level, hash))
     }
 
-    /// Returns the hash of the whole tree, in lower-case hexadecimal; that of no bytes where there
+    /// Returns the hash of the whole tree, in lower-case hexadecimal; the hash of no bytes if there
     /// is no recording.
     #[must_use]
     pub(crate) fn root(&self) -> String {
@@ -78,7 +78,7 @@ impl Tree {
         reachtube_files::hex(&root)
     }
 
-    /// Returns whether its subtrees are those of places, none of them of two subtrees, and joined.
+    /// Returns whether its subtrees belong to places, none of them of two subtrees, and joined.
     pub(crate) fn is_valid(&self) -> bool {
         let is_place = |(first, (level, _)): (&u64, &(u8, Hash))| {
             *level <= 32 && first >> level << level == *first && *first < 1 << 32

@@ -15,8 +15,8 @@ use crate::sets::UncertaintySets;
 /// Linearised residuals that differ by this many units are the same.
 const SAME: f64 = 1e-5;
 
-/// How far the model's own residual may exceed that of its linearisation before it is linearised
-/// again.
+/// How far the model's own residual may exceed the residual of its linearisation before it is
+/// linearised again.
 const SLACK: f64 = 1.02;
 
 /// Linearisations of one run.
@@ -31,7 +31,7 @@ const CONSTANT_UNITS: f64 = 1e-6;
 pub(super) struct Behaviour {
     /// Samples but the last x n.
     pub inputs: Vec<f64>,
-    /// The disturbance that was held for the whole motion, n; nothing where it may change at each
+    /// The disturbance that was held for the whole motion, n; `None` if it may change at each
     /// sample.
     pub constant: Option<Vec<f64>>,
     /// Samples x 2n from the start on, as far as it could be followed.

@@ -7,7 +7,7 @@ use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::sets::UncertaintySets;
 
 /// One unit of position, rad, and of velocity, rad/s, in which the largest residual is minimised.
-/// They are about the uncertainty of recordings: those of the LWA 4P differ by up to 0.0003
+/// They are about the uncertainty of recordings: recordings of the LWA 4P differ by up to 0.0003
 /// rad between q and the integral of q̇, and q̇ by up to 0.009 rad/s from a local parabola.
 const UNITS: [f64; 2] = [1e-3, 1e-2];
 

@@ -54,7 +54,7 @@ pub struct TraceVerdict {
     /// For how many recordings such a motion was not found and proved.
     pub unproved: usize,
     /// By which factor U must grow about its centre so that there is one for each recording, found
-    /// to 1 %; 1 where U suffices, nothing where a factor of 1024 does not.
+    /// to 1 %; 1 where U suffices, `None` if a factor of 1024 does not.
     pub factor: Option<f64>,
     /// The recording that needs the largest factor, where one needs more than 1.
     pub worst: Option<String>,
@@ -201,7 +201,7 @@ struct Trace<'a> {
 
 impl Trace<'_> {
     /// Returns 1, or else the least factor, to the accuracy of the search, for which a motion was
-    /// proved; nothing where there is none.
+    /// proved; `None` if there is none.
     fn factor(&self) -> Result<Option<f64>> {
         if self.holds(1.0)? {
             return Ok(Some(1.0));
@@ -245,7 +245,7 @@ impl Trace<'_> {
 
     /// Returns whether the exact solution from the start and under the input that were found is
     /// proved to stay within V of the recording at all samples: its flowpipe does, whose sets have
-    /// no width but that of rounding and remainders. Shorter steps make the remainders smaller.
+    /// no width but from rounding and remainders. Shorter steps make the remainders smaller.
     fn stays_close(&self, found: &Behaviour, recorded: &Run) -> Result<bool> {
         for parts in PARTS {
             if self.flowpipe_stays_close(found, recorded, parts)? {

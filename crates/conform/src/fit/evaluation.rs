@@ -40,7 +40,7 @@ pub(crate) struct Model {
     /// For each grid, the entries of E_k and R_k at the samples that are rows, as in a [`Block`].
     pub coefficients: Vec<Arc<Vec<f64>>>,
     /// For each track, the nominal motion at the samples that are rows, samples x 2n; empty for a
-    /// track that was not asked for.
+    /// track that was not selected.
     pub motions: Vec<Vec<f64>>,
 }
 
@@ -149,7 +149,7 @@ impl Fit<'_> {
     }
 
     /// Returns the smallest sets as [`smallest`](Self::smallest) does, with the rows `rows` first;
-    /// they become those that nearly decide the sets.
+    /// they become the rows that nearly decide the sets.
     ///
     /// # Errors
     ///
@@ -170,7 +170,7 @@ impl Fit<'_> {
         Ok(Smallest { cost: program.cost(&sets), sets })
     }
 
-    /// Returns the cost of the smallest sets of all tracks at every sample; nothing where a nominal
+    /// Returns the cost of the smallest sets of all tracks at every sample; `None` if a nominal
     /// motion runs away.
     ///
     /// # Errors

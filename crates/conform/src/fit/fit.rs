@@ -41,7 +41,7 @@ pub struct Fitted {
 ///
 /// The answer is a model, not a claim: [`conform`](crate::conform) finds and proves its sets as it
 /// does for any other. A model that is not linear is given the parameters that suit the linear
-/// model of the same robot about the same point; the costs of the record are those of the linear
+/// model of the same robot about the same point; the costs of the record belong to the linear
 /// model.
 ///
 /// # Errors

@@ -13,8 +13,8 @@ pub enum Group {
     Inertia,
     /// Viscous friction v1 of each joint.
     Viscous,
-    /// Quadratic and cubic viscous friction v2 and v3 of each joint. What the order of the model
-    /// leaves out is taken off the input along the nominal motion.
+    /// Quadratic and cubic viscous friction v2 and v3 of each joint. The truncation error of the
+    /// model is taken off the input along the nominal motion.
     Cubic,
     /// Coulomb friction of each joint, by quadrant where the quadrants differ, along the nominal
     /// motion.

@@ -259,8 +259,8 @@ impl<'a> Parameters<'a> {
         Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition: None })
     }
 
-    /// The quadratic and cubic viscous friction that the order of the model leaves out, about the
-    /// velocity of the expansion point. The robot's own equations leave nothing out.
+    /// The quadratic and cubic viscous friction that is missing at the order of the model, about
+    /// the velocity of the expansion point. The robot's own equations leave nothing out.
     fn left_out(&self, joint: usize, v2: f64, v3: f64) -> [f64; 2] {
         if self.setup.settings.equations == Equations::Robot {
             return [0.0, 0.0];

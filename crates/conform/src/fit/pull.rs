@@ -52,7 +52,7 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
 }
 
 /// Fits without a motion for each weight, each from the answer before, and returns the costs of the
-/// sets of all motions; nothing where a nominal motion runs away.
+/// sets of all motions; `None` if a nominal motion runs away.
 fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<Option<f64>>> {
     let tracks = fit.few_tracks(Some(motion), FEW);
     let mut numbers = vec![0.0; fit.parameters.len()];

@@ -17,7 +17,7 @@ pub struct FitRecord {
     pub identified_cost: f64,
     /// Cost of the smallest sets of the fitted model.
     pub cost: f64,
-    /// What each group is worth. These costs, and those of the motions left out, are approximate
+    /// What each group is worth. These costs, and the costs without each motion, are approximate
     /// where the times between samples differ.
     pub groups: Vec<GroupCost>,
     /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
@@ -41,8 +41,8 @@ pub struct FitRecord {
 pub struct GroupCost {
     /// The group.
     pub group: Group,
-    /// Cost of the sets with this group at its identified values and all others as fitted; nothing
-    /// where a nominal motion runs away.
+    /// Cost of the sets with this group at its identified values and all others as fitted; `None`
+    /// if a nominal motion runs away.
     pub cost_without: Option<f64>,
 }
 
@@ -52,8 +52,8 @@ pub struct GroupCost {
 pub struct UnseenMotion {
     /// The motion.
     pub motion: String,
-    /// Cost of the sets of all motions for the nominal model that was fitted without it; nothing
-    /// where a nominal motion runs away.
+    /// Cost of the sets of all motions for the nominal model that was fitted without it; `None`
+    /// if a nominal motion runs away.
     pub cost: Option<f64>,
 }
 
@@ -63,13 +63,13 @@ pub struct UnseenMotion {
 pub struct PullCost {
     /// The weight.
     pub pull: f64,
-    /// The mean cost over the motions left out; nothing where a nominal motion runs away.
+    /// The mean cost over the motions left out; `None` if a nominal motion runs away.
     pub cost: Option<f64>,
 }
 
 impl FitRecord {
-    /// Returns the mean cost over the motions left out, with the weight that was chosen; nothing
-    /// where a nominal motion runs away.
+    /// Returns the mean cost over the motions left out, with the weight that was chosen; `None`
+    /// if a nominal motion runs away.
     #[must_use]
     pub fn left_out_mean(&self) -> Option<f64> {
         let sum: Option<f64> = self.leave_one_out.iter().map(|left| left.cost).sum();
@@ -124,7 +124,7 @@ pub struct FittedParameter {
 
 impl FittedParameter {
     /// Returns whether the fit moved the value further than the recordings of the identification
-    /// allow: it covers something that the model leaves out, and measures nothing.
+    /// allow: it compensates for model error and is no measurement.
     #[must_use]
     pub fn is_beyond_error(&self) -> bool {
         let moved = (self.fitted - self.identified).abs();

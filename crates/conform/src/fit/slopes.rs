@@ -14,7 +14,7 @@ const DIFFERENCE: f64 = 1e-4;
 pub(crate) struct Slope {
     /// Of each track's nominal motion, samples x 2n.
     pub motions: Vec<Vec<f64>>,
-    /// Of E_k c and R_k r, for each grid samples x 2n pairs; nothing where they do not change.
+    /// Slopes of E_k c and R_k r, for each grid samples x 2n pairs; `None` if they do not change.
     pub reach: Option<Vec<Vec<[f64; 2]>>>,
 }
 

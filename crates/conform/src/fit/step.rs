@@ -81,8 +81,8 @@ pub(crate) struct Answer {
 }
 
 impl Step<'_> {
-    /// Solves the step by row generation. `rows` are the first rows, and become those that nearly
-    /// decide the answer.
+    /// Solves the step by row generation. `rows` are the first rows, and become the rows that
+    /// nearly decide the answer.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Rows of the program in other directions than those of the states.
+//! Rows of the program in directions other than the states.
 
 use crate::data::settings::Noise;
 use crate::linear::layout::Layout;

@@ -37,7 +37,7 @@ impl Limits {
 pub(crate) struct Layout {
     joints: usize,
     has_centres: bool,
-    /// Cost of each column; that of a centre is the cost of its radius, for scaling only.
+    /// Cost of each column; a centre has the cost of its radius, for scaling only.
     pub cost: Vec<f64>,
 }
 

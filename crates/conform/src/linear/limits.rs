@@ -4,8 +4,8 @@ use crate::data::problem::Problem;
 use crate::data::settings::{InitialLimit, Noise, NominalStart};
 use crate::linear::layout::Limits;
 
-/// The least limit of a set, rad or rad/s, which nobody can tell from 0. The program keeps room
-/// between its bounds.
+/// The least limit of a set, rad or rad/s, which is as good as 0. The program keeps room between
+/// its bounds.
 const LEAST_LIMIT: f64 = 1e-9;
 
 /// The part by which X0 may reach beyond the recorded starts that limit it, so that the program has

@@ -73,7 +73,7 @@ impl Program<'_> {
     }
 
     /// Returns the factors of the radii of X0 alone, of U alone, and of both, with which every row
-    /// holds up to rounding; nothing where no factor suffices.
+    /// holds up to rounding; `None` if no factor suffices.
     #[must_use]
     pub fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
         let unknowns = self.unknowns(sets);

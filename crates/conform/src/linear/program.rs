@@ -63,7 +63,7 @@ pub struct Program<'a> {
     pub(crate) noise_cost: Vec<f64>,
     /// Largest |d| in the checked states, at least the smallest normal number.
     pub(super) scale: f64,
-    /// Rows in other directions than those of the states.
+    /// Rows in directions other than the states.
     pub(crate) cuts: Vec<Cut>,
 }
 
@@ -128,7 +128,7 @@ impl<'a> Program<'a> {
         radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
     }
 
-    /// Returns the cost of widths of 1e-9 rad or rad/s throughout, which nobody can tell from none.
+    /// Returns the cost of widths of 1e-9 rad or rad/s throughout, which are as good as none.
     #[must_use]
     pub fn negligible_cost(&self) -> f64 {
         1e-9 * 0.5 * self.noise_cost.iter().sum::<f64>()
@@ -151,8 +151,8 @@ impl<'a> Program<'a> {
         self.solve_from(&mut self.first_rows())
     }
 
-    /// Solves the program as [`solve`](Self::solve) does, with the rows `indices` first; takes
-    /// those that were added.
+    /// Solves the program as [`solve`](Self::solve) does, with the rows `indices` first; takes the
+    /// rows that were added.
     ///
     /// # Errors
     ///
@@ -360,7 +360,7 @@ impl<'a> Program<'a> {
         self.indices(1).filter(touches).collect()
     }
 
-    /// Keeps those of some rows that come within `part` of the largest |d| of the sets' reach.
+    /// Keeps the rows that come within `part` of the largest |d| of the sets' reach.
     pub(crate) fn keep_close(&self, rows: &mut Vec<RowIndex>, sets: &UncertaintySets, part: f64) {
         let unknowns = self.unknowns(sets);
         rows.retain(|row| self.excess(*row, &unknowns) > -part * self.scale);

@@ -20,8 +20,8 @@ impl Program<'_> {
         if self.cost(&widened) < self.cost(&scaled) { widened } else { scaled }
     }
 
-    /// The sets with radii that are larger by terms of the same cost, but for those that have a
-    /// limit, so that every row holds; infinite where those without a limit are in no row.
+    /// The sets with radii that are larger by terms of the same cost, but for radii that have a
+    /// limit, so that every row holds; infinite where the radii without a limit are in no row.
     fn widened(&self, sets: &UncertaintySets) -> UncertaintySets {
         let unknowns = self.unknowns(sets);
         let largest = self.cost.iter().copied().fold(0.0, f64::max);

@@ -18,8 +18,8 @@ pub(crate) struct Triplets {
 }
 
 impl Triplets {
-    /// Adds a row. Entries below 1e-13 are dropped: they cannot be told from rounding, and the
-    /// repair covers them.
+    /// Adds a row. Entries below 1e-13 are dropped: they may be rounding, and the repair covers
+    /// them.
     pub(crate) fn row(&mut self, entries: impl IntoIterator<Item = (usize, f64)>) {
         for (column, value) in entries.into_iter().filter(|(_, value)| value.abs() > 1e-13) {
             self.rows.push(self.count);
@@ -33,7 +33,7 @@ impl Triplets {
 /// An optimal point as the solver found it.
 pub(crate) struct Optimum {
     pub found: Vec<f64>,
-    /// Which rows decide it: those whose multiplier exceeds their slack.
+    /// Which rows decide it: rows whose multiplier exceeds their slack.
     pub active: Vec<bool>,
     /// The dual objective.
     pub dual: f64,

@@ -95,10 +95,10 @@ pub struct Model {
     /// The noise of the sensors, where it limits V or X0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor_noise: Option<SensorNoise>,
-    /// What can hardly be right about the answer, and the most likely cause.
+    /// Implausible results, and the most likely cause.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
-    /// The part of the variance of each state that the nominal motions explain, 2n; nothing where
+    /// The part of the variance of each state that the nominal motions explain, 2n; `None` if
     /// the state hardly moves.
     pub nominal_explains: Vec<Option<f64>>,
     /// The root mean square of the input minus what the robot needs for the recorded motions, n,
@@ -129,7 +129,7 @@ pub struct Model {
     /// What is taken off the recorded inputs along the nominal motions, where anything is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub correction: Option<InputCorrection>,
-    /// The sets where nobody knows which run it is, or how warm the joints are.
+    /// The sets that hold for every run and every warmth of the joints.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub any_run: Option<AnyRun>,
     /// How the nominal model was fitted, where it was.
@@ -314,17 +314,17 @@ impl Model {
         }
     }
 
-    /// Returns whether one of these recordings, by its SHA-256, is among those that the model was
-    /// fitted to, or may be: where it [cannot be known](Self::knows_of), they count as used in the
-    /// fit.
+    /// Returns whether one of these recordings, by its SHA-256, is among the recordings that the
+    /// model was fitted to, or may be: where it [cannot be known](Self::knows_of), they count as
+    /// used in the fit.
     #[must_use]
     pub fn was_fitted_to(&self, recordings: &Recordings) -> bool {
         self.knows_of(recordings).unwrap_or(true)
     }
 
-    /// Returns whether one of these recordings is among those that the model was fitted to; nothing
-    /// where that cannot be known, because the file lists no recordings, or because a fold that was
-    /// not made to check this model has not kept the SHA-256 of each recording.
+    /// Returns whether one of these recordings is among the recordings that the model was fitted
+    /// to; `None` if that cannot be known, because the file lists no recordings, or because a fold
+    /// that was not made to check this model has not kept the SHA-256 of each recording.
     #[must_use]
     pub fn knows_of(&self, recordings: &Recordings) -> Option<bool> {
         if !self.data.are_listed() {

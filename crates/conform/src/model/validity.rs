@@ -119,8 +119,10 @@ impl Model {
         let own = LinearSystem::new(matrix(&self.a), matrix(&self.b), drift)
             .map_err(|error| error.to_string())?;
         if !is_near(expected, &own) {
-            return Err(changed("a, b or drift does not agree with its robot at its expansion \
-                point"));
+            return Err(changed(
+                "a, b or drift does not agree with its robot at its expansion \
+                point",
+            ));
         }
         Ok(made.with_linear(own))
     }

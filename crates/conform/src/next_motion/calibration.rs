@@ -111,7 +111,7 @@ pub(crate) fn calibrate(
     Ok(Calibrated { fit, fitted, found, calibration })
 }
 
-/// Returns the problem of the motions that the settings do not keep back; nothing where they keep
+/// Returns the problem of the motions that the settings do not keep back; `None` if they keep
 /// none back.
 ///
 /// # Errors

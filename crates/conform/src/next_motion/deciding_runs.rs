@@ -23,7 +23,7 @@ pub struct DecidingRuns {
     /// The ten that decide the most rows, the first first.
     pub most: Vec<DecidingRun>,
     /// About what the smallest sets would cost without those ten, by programs over the samples
-    /// that stay in memory of each run. Nothing for a model that is not linear, for calibrated
+    /// that stay in memory of each run. `None` for a model that is not linear, for calibrated
     /// sets, where the ten are half of all runs or more, or where a suite has more than 256 runs.
     pub cost_without: Option<f64>,
 }
@@ -39,7 +39,7 @@ pub struct DecidingRun {
 }
 
 impl DecidingRuns {
-    /// Counts the runs of the values `tight`; `cost` is that of the sets where these are the
+    /// Counts the runs of the values `tight`; `cost` is the cost of the sets where these are the
     /// smallest.
     ///
     /// # Errors

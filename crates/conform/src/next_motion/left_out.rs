@@ -25,14 +25,14 @@ pub struct LeftOut {
     /// The motion that is left out.
     pub motion: String,
     /// The cost of the smallest sets for the others, over the same samples as the cost of all; of a
-    /// model that is not linear, that of the linearised sets. Nothing where it was not computed.
+    /// model that is not linear, the cost of the linearised sets. `None` if it was not computed.
     pub cost: Option<f64>,
     /// Number of rows of the motion.
     pub rows: usize,
     /// How many of them leave these sets.
     pub outside: Option<usize>,
     /// The factor, at least 1, by which the radii of these sets must grow to enclose the motion.
-    /// Nothing where no factor suffices, or where the reachable set of a model that is not linear
+    /// `None` if no factor suffices, or where the reachable set of a model that is not linear
     /// is lost before one does.
     pub gauge: Option<f64>,
 }
@@ -99,7 +99,7 @@ pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Resul
 
 /// Leaves each motion out of the last program of a search for a model that is not linear, and
 /// compares the motion with the computed outer sets. Nothing with fewer than two motions, and for
-/// other notions than the hull. `sets` are those of all motions, as in [`leave_each_out`].
+/// other notions than the hull. `sets` belong to all motions, as in [`leave_each_out`].
 ///
 /// # Errors
 ///

@@ -1,5 +1,5 @@
-//! What may be said of motions that were not recorded: bounds, calibration by held-out motions,
-//! and descriptions of how far the sets depend on single motions and runs.
+//! Statements about motions that were not recorded: bounds, calibration by held-out motions, and
+//! descriptions of how far the sets depend on single motions and runs.
 
 pub(crate) mod bounds;
 pub(crate) mod calibration;

@@ -37,7 +37,7 @@ pub struct Rates {
 pub struct Rate {
     /// How many lie outside.
     pub outside: usize,
-    /// Out of so many.
+    /// Number of all.
     pub of: usize,
     /// Percentiles of the rate when whole motions are drawn with replacement (cluster bootstrap):
     /// rows of one motion are no independent draws. Nothing with fewer than four motions, or where
@@ -102,7 +102,7 @@ mod tests {
 
     #[test]
     fn intervals_count_motions_and_not_rows() {
-        // Half of 8 motions outside whole, the others not at all: rows say nothing more than
+        // Half of 8 motions outside whole, the others not at all: rows add no information to
         // motions. The binomial of 8 at one half has its 2.5 % and 97.5 % points at 1 and 7.
         let motions = |rows: usize| -> Vec<Counts> {
             (0..8).map(|m| Counts([rows * (m % 2), rows, m % 2, 1])).collect()

@@ -29,7 +29,7 @@ pub struct Trend {
 }
 
 /// Returns the trends of all suites whose runs share their input. Positions are compared at the
-/// last sample that was kept of all runs of a suite; the order is that of the index.
+/// last sample that was kept of all runs of a suite; the order is the index's.
 pub(crate) fn trends(problem: &Problem) -> Vec<Trend> {
     let suites = problem.recordings().suites.iter().filter(|suite| suite.shared.is_some());
     suites.flat_map(|suite| of_suite(suite, problem.joints())).collect()

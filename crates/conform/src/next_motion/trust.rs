@@ -26,7 +26,7 @@ pub struct Trust {
     /// Upper bound of the probability that the next motion leaves the reachable set.
     pub violation_probability: f64,
     /// The same before the calibration motions are drawn, which holds without a confidence: over
-    /// their draw and that of the next motion together. For calibrated sets only.
+    /// their draw and the draw of the next motion together. For calibrated sets only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub average_probability: Option<f64>,
     /// Confidence of that bound.
@@ -39,7 +39,7 @@ impl Trust {
     /// Returns the scenario bound for sets that were fitted to `recordings` and touch `tight`: the
     /// rows of support are among the tight ones.
     ///
-    /// At a first sample that no recording leaves, all motions touch a set without width. Those
+    /// At a first sample that no recording leaves, all motions touch a set without width. Motions
     /// that also touch it elsewhere give the same sets alone, so only they count; where there are
     /// none, all do.
     #[must_use]
@@ -69,8 +69,8 @@ impl Trust {
         Self::unknown(motions.count(), basis)
     }
 
-    /// Returns that nothing is known, because the nominal model was chosen for these motions: the
-    /// scenario bound counts what decides the sets only.
+    /// Returns that there is no guarantee, because the nominal model was chosen for these motions:
+    /// the scenario bound counts what decides the sets only.
     #[must_use]
     pub fn of_fitted_nominal(recordings: &Recordings) -> Self {
         let basis = "no scenario bound: the nominal model was fitted to the same motions; \
@@ -81,9 +81,9 @@ impl Trust {
     /// Returns the bound for sets that were calibrated by motions that were held out from the fit,
     /// and that enclose them where `is_proved`.
     ///
-    /// The next motion leaves the sets only if its gauge is above those of all n held-out motions.
-    /// Of n + 1 exchangeable motions, each is that one with probability at most 1/(n + 1). For
-    /// independent motions, the probability given the held-out ones is above ε with probability
+    /// The next motion leaves the sets only if its gauge is above the gauges of all n held-out
+    /// motions. Of n + 1 exchangeable motions, each is that one with probability at most 1/(n + 1).
+    /// For independent motions, the probability given the held-out ones is above ε with probability
     /// at most (1 - ε)^n, which is the hold-out bound without a violation.
     #[must_use]
     pub fn of_calibration(
@@ -133,7 +133,7 @@ impl Trust {
         }
     }
 
-    /// Returns that nothing is known, and why.
+    /// Returns that there is no guarantee, and why.
     fn unknown(motions: usize, basis: String) -> Self {
         Self {
             motions,

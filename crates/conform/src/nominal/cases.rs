@@ -40,7 +40,7 @@ impl Problem {
     ///
     /// # Errors
     ///
-    /// As [`run`](Self::run), and those of `visit`.
+    /// As [`run`](Self::run), and the errors of `visit`.
     pub(crate) fn cases_of<T: Send>(
         &self,
         index: usize,
@@ -57,7 +57,7 @@ impl Problem {
     ///
     /// # Errors
     ///
-    /// As [`run`](Self::run), and those of `visit`.
+    /// As [`run`](Self::run), and the errors of `visit`.
     pub(crate) fn recorded_cases_of<T: Send>(
         &self,
         suite: &Suite,
@@ -90,9 +90,9 @@ impl Problem {
         self.setup().correction.as_ref().is_some_and(|c| c.differs_by_run())
     }
 
-    /// Returns whether the inputs that were computed at reading are those of the problem's robot in
+    /// Returns whether the inputs that were computed at reading belong to the problem's robot in
     /// the problem's condition: friction is in the input of motor and link torques, and viscous
-    /// friction in that of link torques may have been fitted since.
+    /// friction in the input of link torques may have been fitted since.
     fn inputs_are_current(&self) -> bool {
         let is_warm = self.setup().condition.is_some() && !self.robot().warms_by().is_empty();
         match self.settings().torque {

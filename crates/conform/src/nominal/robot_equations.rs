@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 /// The robot's equations of motion (10) beside a linear model of it.
 pub(super) struct RobotEquations<'a> {
     robot: RobotField<'a, f64>,
-    /// The last n rows of A, those of q̈, n x 2n.
+    /// The last n rows of A, for q̈, n x 2n.
     of_state: DMatrix<f64>,
     /// The last n entries of d.
     drift: DVector<f64>,
@@ -18,14 +18,14 @@ pub(super) struct RobotEquations<'a> {
     of_acceleration: DMatrix<f64>,
     /// ẋ of the robot, 2n.
     rate: Vec<f64>,
-    /// Its q̈, less that of the model without input, n.
+    /// Its q̈, less the model's without input, n.
     missing: DVector<f64>,
     /// n.
     input: DVector<f64>,
 }
 
 impl<'a> RobotEquations<'a> {
-    /// Lays the equations of `robot` beside those of `model`.
+    /// Lays the equations of `robot` beside the equations of `model`.
     ///
     /// # Errors
     ///
@@ -45,7 +45,7 @@ impl<'a> RobotEquations<'a> {
     }
 
     /// Replaces the robot's input `u` (n, N m) at the state `x` (2n) by the model's: the q̈ of the
-    /// model is then that of the robot.
+    /// model then equals the robot's.
     pub(super) fn replace(&mut self, x: &[f64], u: &mut [f64]) {
         self.robot.rate(0.0, x, u, &mut self.rate);
         let (n, drift) = (u.len(), &self.drift);

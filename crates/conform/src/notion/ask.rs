@@ -1,5 +1,5 @@
 //! What the rounds of cutting planes and the proof ask of the recorded points, and the answers,
-//! which merge: those of parts of the points, in any order, give that of all points.
+//! which merge: answers of parts of the points, in any order, give the answer of all points.
 
 use std::collections::BTreeMap;
 
@@ -37,7 +37,7 @@ pub(crate) enum Question {
     },
     /// The point furthest along each direction, of all at its sample.
     Furthest { directions: Vec<(At, Vec<f64>)> },
-    /// The samples at which a point could not be proved, of those in `at` or of all.
+    /// The samples at which a point could not be proved, among `at` or of all.
     Unproved {
         #[serde(with = "stored_sets")]
         sets: UncertaintySets,
@@ -119,7 +119,7 @@ pub(crate) trait Points {
     ///
     /// # Errors
     ///
-    /// Those of the way to the points.
+    /// Returns the errors of the way to the points.
     fn ask(&self, question: &Question) -> Result<Answer>;
 }
 
@@ -129,7 +129,7 @@ pub(crate) fn other_answer() -> Error {
 }
 
 impl Answer {
-    /// Merges the answer of other points to the same question; nothing where it is one to another
+    /// Merges the answer of other points to the same question; `None` if it answers another
     /// question.
     #[must_use]
     pub(crate) fn merge(self, other: Self) -> Option<Self> {
@@ -186,13 +186,13 @@ fn merged<K: Ord, V>(
     own
 }
 
-/// Returns the point that is further outside; of two as far, that of the lower owner.
+/// Returns the point that is further outside; of two as far, the one of the lower owner.
 fn further(a: PointOutside, b: PointOutside) -> PointOutside {
     let is_first = a.ratio > b.ratio || a.ratio == b.ratio && a.point.owner <= b.point.owner;
     if is_first { a } else { b }
 }
 
-/// Returns the point that is further along; of two as far, that of the lower owner.
+/// Returns the point that is further along; of two as far, the one of the lower owner.
 fn more(a: PointAlong, b: PointAlong) -> PointAlong {
     let is_first = a.value > b.value || a.value == b.value && a.point.owner <= b.point.owner;
     if is_first { a } else { b }

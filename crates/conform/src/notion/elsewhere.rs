@@ -47,7 +47,7 @@ impl Points for PointsElsewhere<'_> {
         let sent = SentAnswer::from_bytes(&bytes)?;
         if sent.tree.root() != self.root {
             return Err(Error::Fold(
-                "the points are not those of the recordings that were folded: a recording was \
+                "the points do not belong to the recordings that were folded: a recording was \
                  changed meanwhile, or the points of a part are missing; fold them again"
                     .into(),
             ));
@@ -82,9 +82,8 @@ impl SentAnswer {
 
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let sent: Option<Self> = postcard::from_bytes(bytes).ok();
-        sent.filter(|sent| sent.version == VERSION && sent.tree.is_valid()).ok_or_else(|| {
-            Error::Fold("the bytes are not those of an answer of this version".into())
-        })
+        sent.filter(|sent| sent.version == VERSION && sent.tree.is_valid())
+            .ok_or_else(|| Error::Fold("not an answer of this version".into()))
     }
 }
 
@@ -100,8 +99,7 @@ fn question_to_bytes(question: &Question) -> Vec<u8> {
 pub(crate) fn question_from_bytes(bytes: &[u8]) -> Result<Question> {
     let read: Option<(u32, Question)> = postcard::from_bytes(bytes).ok();
     let question = read.filter(|(version, _)| *version == VERSION).map(|(_, question)| question);
-    question
-        .ok_or_else(|| Error::Fold("the bytes are not those of a question of this version".into()))
+    question.ok_or_else(|| Error::Fold("not a question of this version".into()))
 }
 
 impl Problem {

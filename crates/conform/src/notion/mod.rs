@@ -1,5 +1,5 @@
-//! Conformance in more directions than those of the states: every recorded point lies in the
-//! reachable set itself (exact), or in its projections on the phase planes of the joints.
+//! Conformance in more directions than the states: every recorded point lies in the reachable set
+//! itself (exact), or in its projections on the phase planes of the joints.
 
 pub(crate) mod answers;
 mod ask;

@@ -39,7 +39,7 @@ pub(crate) struct Asked<'a> {
 pub(crate) struct CasePoints {
     /// Number of points after the first sample, each counted once for each projection.
     pub points: usize,
-    /// Those that were not proved to lie in the set.
+    /// Points that were not proved to lie in the set.
     pub unproved: Vec<UnprovedPoint>,
     /// At each sample and in each projection the point that is furthest outside.
     pub furthest: Vec<FurthestPoint>,

@@ -30,7 +30,7 @@ pub struct FleetProblem {
     nominals: Vec<OnceLock<SuiteNominals>>,
 }
 
-/// The nominal solutions of a suite, with the run where it is that of one run.
+/// The nominal solutions of a suite, with the run where it belongs to one run.
 type SuiteNominals = Vec<(Nominal, Option<usize>)>;
 
 /// The recorded points of a part of a fleet's recordings: 24 n bytes for each sample of a recording
@@ -193,12 +193,12 @@ impl PartPoints {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let read: Option<Self> = postcard::from_bytes(bytes).ok();
         read.filter(|points| points.tree.is_valid() && points.points.iter().all(SamplePoints::fits))
-            .ok_or_else(|| Error::Fold("the bytes are not those of points".into()))
+            .ok_or_else(|| Error::Fold("the bytes are not points".into()))
     }
 }
 
 fn other_recordings() -> Error {
     Error::Fold(
-        "the recordings of this part are not those that were folded; fold them again".into(),
+        "the recordings of this part are not the ones that were folded; fold them again".into(),
     )
 }

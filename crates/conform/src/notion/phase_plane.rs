@@ -28,7 +28,7 @@ pub struct PhasePlane {
 
 impl PhasePlane {
     /// Returns the phase plane of each joint at the sample where a recording comes closest to the
-    /// boundary of the set's projection, or leaves it furthest; nothing for a model that is not
+    /// boundary of the set's projection, or leaves it furthest; empty for a model that is not
     /// linear, or where only positions count.
     ///
     /// # Guarantee

@@ -35,7 +35,7 @@ impl SamplePoints {
         self.values.chunks_exact(self.states.max(1))
     }
 
-    /// Returns whether values, errors and owners are those of the same points.
+    /// Returns whether values, errors and owners belong to the same points.
     pub(crate) fn fits(&self) -> bool {
         let count = self.owners.len() * self.states;
         self.states > 0 && [self.values.len(), self.errors.len()] == [count; 2]
@@ -100,7 +100,7 @@ pub(crate) fn points(problem: &Problem) -> Result<Vec<SamplePoints>> {
     Ok(all.into_samples())
 }
 
-/// Returns the nominal solutions of a suite, with the run where it is that of one run.
+/// Returns the nominal solutions of a suite, with the run where it belongs to one run.
 ///
 /// # Errors
 ///

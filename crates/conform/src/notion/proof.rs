@@ -18,7 +18,7 @@ const ACCURACY: f64 = 1e-3;
 /// A point that could not be proved to lie in a projection of the reachable set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Unproved {
-    /// Index of the sample among those of the sweep.
+    /// Index of the sample among the samples of the sweep.
     pub at: usize,
     /// Which of its points.
     pub point: usize,

@@ -48,7 +48,7 @@ pub(crate) fn smallest_sets(problem: &Problem, progress: &dyn Progress) -> Resul
 ///
 /// # Errors
 ///
-/// As [`smallest_sets`], and those of `widen`.
+/// As [`smallest_sets`], and the errors of `widen`.
 pub(crate) fn smallest_sets_widened(
     problem: &Problem,
     progress: &dyn Progress,
@@ -106,7 +106,7 @@ fn solve(
         }
         let mut outside = directions_outside(points, sets, tolerance, &near)?;
         if outside.is_empty() {
-            // All points are tried, and those that may be outside stay in the list.
+            // All points are tried, and points that may be outside stay in the list.
             near.push(Near { sets: sets.clone(), margin: 1.0 + tolerance });
             outside = directions_outside(points, sets, tolerance, &near[near.len() - 1..])?;
         }

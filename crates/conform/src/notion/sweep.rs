@@ -20,7 +20,7 @@ use crate::sets::UncertaintySets;
 /// tolerated.
 const GAUGE: f64 = 0.1;
 
-/// How accurately points near the boundary are told from others.
+/// How accurately points near the boundary are separated from others.
 const NEAR: f64 = 1e-3;
 
 /// A point counts as outside when the set must grow by more than this part.
@@ -61,7 +61,7 @@ pub(crate) struct SampleSet<'a> {
 /// A point outside a reachable set, with the direction that shows it.
 #[derive(Debug, Clone)]
 pub(crate) struct Outside {
-    /// Index of its sample among those of the sweep.
+    /// Index of its sample among the samples of the sweep.
     pub at: usize,
     /// Which projection.
     pub projection: usize,
@@ -99,7 +99,7 @@ impl<'a> SampleSet<'a> {
 
 impl SampleSet<'_> {
     /// Returns by which factor the set would have to grow for a point, in the projection and from
-    /// the set's centre, with the direction that shows it; nothing where it must not grow by more
+    /// the set's centre, with the direction that shows it; `None` if it must not grow by more
     /// than the factor 1 + `tolerance`. Nothing also where the factor is surely below `known`,
     /// which saves the search for it. The answer does not depend on the points before.
     pub(crate) fn growth(

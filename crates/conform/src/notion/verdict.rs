@@ -56,7 +56,7 @@ pub struct PointWitness {
     pub sample: usize,
     /// Time since the first sample, s.
     pub time: f64,
-    /// The combination l of the states, 2n entries; that of its leading state is 1 or -1.
+    /// The combination l of the states, 2n entries; the entry of its leading state is 1 or -1.
     pub direction: Vec<f64>,
     /// The combination in words, such as `qd1 - 3.2 q1`, with the leading state first and without
     /// states that hardly count.

@@ -75,9 +75,9 @@ fn scaled_by(Calibration { fitted, gauges, factor, .. }: &Calibration) -> String
     let far = |a: &&Gauge, b: &&Gauge| a.gauge.total_cmp(&b.gauge);
     let motion = gauges.iter().max_by(far).map_or("", |gauge| gauge.motion.as_str());
     format!(
-        "the most likely cause: motion {motion}, which was held out, is unlike those that the \
-         sets were found with ({}), so that calibration scaled these sets by {factor:.2}; record \
-         more motions to find the sets with, among them some like {motion}",
+        "the most likely cause: motion {motion}, which was held out, is unlike the motions that \
+         the sets were found with ({}), so that calibration scaled these sets by {factor:.2}; \
+         record more motions to find the sets with, among them some like {motion}",
         fitted.join(", ")
     )
 }

@@ -10,7 +10,7 @@ const RUNS: usize = 8;
 /// Number of samples of each that are looked at, at most.
 const SAMPLES: usize = 300;
 
-/// Runs of fewer samples say nothing.
+/// Runs of fewer samples are no evidence.
 const FEWEST: usize = 8;
 
 /// Half the time over which accelerations and torques are averaged, s.
@@ -154,7 +154,7 @@ impl<'a> Evidence<'a> {
             true => self.softened_input(run, k, half, &torques),
             false => torque.input(self.robot, &q, &qd, &torques),
         };
-        // Friction that is added to both sides says nothing about either.
+        // Friction that is added to both sides distinguishes neither.
         match torque {
             Torque::Link => {
                 let recorded = input.iter().zip(&viscous).map(|(u, v)| u - v).collect();

@@ -1,5 +1,5 @@
-//! Whether an answer can be right: sets beside the recorded motion and torque, and what most likely
-//! caused those that cannot.
+//! Whether an answer is plausible: sets beside the recorded motion and torque, and the most likely
+//! causes of implausible ones.
 
 mod causes;
 mod evidence;

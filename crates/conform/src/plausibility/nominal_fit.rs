@@ -9,7 +9,7 @@ use crate::nominal::simulate::nominal;
 pub(crate) struct NominalFit {
     /// The part of each state's variance that the nominal solutions explain, 2n: 1 minus the
     /// square of what they miss by the square of the motion about its mean. Below 0 where they are
-    /// further away than the mean. Nothing where the state hardly moves.
+    /// further away than the mean. `None` if the state hardly moves.
     pub explained: Vec<Option<f64>>,
     /// The recorded bounds of each state, 2n, rad and rad/s.
     pub recorded: Vec<[f64; 2]>,

@@ -18,7 +18,7 @@ const PART_OF_MOTION: f64 = 0.02;
 /// A nominal motion that explains less than this part of a velocity's variance is remarked.
 const LEAST_EXPLAINED: f64 = 0.5;
 
-/// A remark that an answer can hardly be right, although the sets enclose the recordings.
+/// A remark that an answer is implausible, although the sets enclose the recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Warning {
@@ -40,7 +40,7 @@ pub enum WarningKind {
     InitialSetSize,
     /// The positions of X0 reach much further than the recorded starts.
     InitialSetStarts,
-    /// X0 leaves out 0 by more than the noise of the sensors.
+    /// 0 lies outside X0 by more than the noise of the sensors.
     InitialSetOffset,
     /// U reaches beyond the recorded input.
     InputSetSize,
@@ -84,7 +84,7 @@ impl WarningKind {
                  start)"
             }
             Self::InitialSetOffset => {
-                "X0 leaves out 0, so that no nominal motion starts in it (distance)"
+                "X0 does not contain 0, so that no nominal motion starts in it (distance)"
             }
             Self::InputSetSize => {
                 "U reaches beyond the recorded inputs (reach, largest recorded input)"

@@ -10,7 +10,7 @@ use crate::result::table::Table;
 use crate::verdict::SuiteVerdict;
 
 impl Check {
-    /// Returns the answer for people, with one row for each suite; `kinds` are those of the joints.
+    /// Returns the answer for people, with one row for each suite; `kinds` belong to the joints.
     #[must_use]
     pub fn report(&self, kinds: &[JointKind]) -> Report {
         let of = |codes: &[Code]| -> Vec<Finding> {

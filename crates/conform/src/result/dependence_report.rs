@@ -28,7 +28,7 @@ pub(super) fn dependence(model: &Model) -> [Section; 3] {
     [left_out, runs, changed]
 }
 
-/// Returns the table of the sets without each motion, those that need the most growth first.
+/// Returns the table of the sets without each motion, the motions that need the most growth first.
 fn table_of_left_out(model: &Model) -> Table {
     let is_linear = model.acceleration.is_empty();
     let mut all: Vec<&LeftOut> = model.left_out.iter().collect();

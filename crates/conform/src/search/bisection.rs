@@ -31,7 +31,7 @@ struct BisectionState {
     /// Index of the next of [`FACTORS`], while none has enclosed every recording.
     factor: usize,
     enclosed: bool,
-    /// Index of the radius that is bisected: those of X0, then those of U.
+    /// Index of the radius that is bisected: first the radii of X0, then of U.
     radius: usize,
     /// A value of it that is too small.
     low: f64,

@@ -49,7 +49,7 @@ impl<'a> Journal<'a> {
     ///
     /// # Errors
     ///
-    /// A file that cannot be read or written, or is that of another job.
+    /// A file that cannot be read or written, or belongs to another job.
     pub(super) fn load<T: DeserializeOwned>(&self) -> Result<Option<T>> {
         let Some(path) = self.path else { return Ok(None) };
         write::try_at(path)?;

@@ -65,8 +65,8 @@ pub(crate) fn smallest_sets(
     })
 }
 
-/// Returns the points that touch the linearised set in directions other than those of the states,
-/// the closest first, each once.
+/// Returns the points that touch the linearised set in directions other than the states, the
+/// closest first, each once.
 fn touching(
     problem: &Problem,
     directions: &[(Direction, f64)],

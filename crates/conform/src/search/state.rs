@@ -102,7 +102,7 @@ impl SearchState {
         [around(x, 0..n), around(x, n..2 * n), around(u, 0..n)].concat()
     }
 
-    /// Adds margins; those of one row add up.
+    /// Adds margins; margins of one row add up.
     pub(super) fn add(&mut self, missing: Vec<Margin>) {
         self.change = f64::MAX;
         let places = self.margins.iter().enumerate().map(|(at, margin)| (margin.row(), at));

@@ -49,11 +49,11 @@ pub(super) struct SuccessiveLinearisation<'a> {
 /// The sets that a search found.
 pub(super) struct SearchResult<'a> {
     pub sets: UncertaintySets,
-    /// The last program, with one block per case; nothing for a bisection.
+    /// The last program, with one block per case; `None` for a bisection.
     pub program: Option<Program<'a>>,
     pub outer: Vec<OuterSet>,
-    /// The directions, other than those of the states, in which recorded points decide the sets,
-    /// and how close the points are to what the linearised set reaches.
+    /// The directions, other than the states, in which recorded points decide the sets, and how
+    /// close the points are to what the linearised set reaches.
     pub directions: Vec<(Direction, f64)>,
     /// The rows that decide the sets: case, sample, state, side.
     pub deciding: Vec<RowIndex>,

@@ -27,7 +27,7 @@ pub(super) struct Correction {
 }
 
 impl Correction {
-    /// Returns no correction, which is that of a linear model.
+    /// Returns no correction, as a linear model has.
     pub(super) fn none(samples: usize, states: usize) -> Self {
         Self { further: vec![0.0; samples * states * 2], states, runs_away: None }
     }

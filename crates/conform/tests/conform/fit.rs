@@ -234,7 +234,7 @@ fn a_right_model_is_left_alone_and_bad_settings_are_refused() {
     assert!(refused(&right, &[Group::Viscous], Some(2.0)).contains("from 0 to 1"));
     let link = problem(PLAIN, 2, |settings| settings.torque = Torque::Link);
     assert!(refused(&link, &[Group::Inertia, Group::WarmUp], None).contains("no friction"));
-    // An error that was bounded for one robot says nothing of another.
+    // An error that was bounded for one robot does not hold for another.
     let bounded = problem(PLAIN, 2, |settings| {
         let sides = |radius: f64| vec![[-radius, radius]; 2];
         let operating_box = OperatingBox { q: sides(3.0), qd: sides(9.0), u: sides(9.0) };

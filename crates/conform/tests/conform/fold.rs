@@ -13,7 +13,7 @@ use reachtube_robot::Robot;
 use reachtube_robot::friction::{Warming, WarmingBy};
 
 /// Suites of virtual recordings whose input is the suite's own; runs of B are of different lengths,
-/// and those of D have an input each.
+/// and runs of D have an input each.
 fn campaign(robot: &Robot, suites: &[(&str, usize)]) -> MemoryRuns {
     seeded(robot, suites, 7)
 }
@@ -135,7 +135,7 @@ fn models_that_are_not_linear_and_starts_of_their_own_give_the_same_files() {
 }
 
 /// Friction that depends on the run: each run is a case of its own although all share their input,
-/// and the sets where nobody knows the run need the mean of the temperatures.
+/// and the sets that hold for every run need the mean of the temperatures.
 #[test]
 fn robots_that_warm_up_give_the_same_files_and_need_every_run() {
     let runs = campaign(&two_joints(), &[("A", 6)]);
@@ -209,7 +209,7 @@ fn a_fold_of_many_runs_differs_from_reading_in_the_list_of_recordings_alone() {
     assert_eq!(own, other);
 }
 
-/// The size is that of the envelopes, the sample and the names of the runs that have a bound.
+/// The size comes from the envelopes, the sample and the names of the runs that have a bound.
 #[test]
 fn the_size_in_bytes_does_not_grow_with_the_runs() {
     let robot = two_joints();

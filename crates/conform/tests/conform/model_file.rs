@@ -1,5 +1,5 @@
-//! What a model file carries decides what is said of other recordings, and a changed file says
-//! nothing.
+//! The contents of a model file decide the verdict on other recordings, and a changed file is
+//! refused.
 
 use crate::common::{Disturbed, Random, grid, two_joints};
 use reachtube_conform::{

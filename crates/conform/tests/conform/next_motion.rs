@@ -1,4 +1,4 @@
-//! What is said of motions that were not recorded, against separate runs of the whole method.
+//! Statements about motions that were not recorded, against separate runs of the whole method.
 
 use crate::common::{
     Disturbed, Random, Recorded, conform_all, grid, read, two_joints, write_data_set,
@@ -225,7 +225,7 @@ fn a_motion_left_out_of_a_search_is_as_a_separate_search_and_check_find_it() {
         let separate = alone.search.as_ref().unwrap().linearised_cost.unwrap();
         let checked = check_of(&folder, &Model::new(&fit, &alone), &[&left.motion]);
         let outside = checked.verdict.violations.count;
-        // The cost counts the samples of all motions, as that of the others alone does here.
+        // The cost counts the samples of all motions, as the cost of the others alone does here.
         assert!((left.cost.unwrap() / separate - 1.0).abs() < 0.02, "{left:?} {separate}");
         assert_eq!(left.rows, 160);
         let apart = left.outside.unwrap().abs_diff(outside);

@@ -1,5 +1,5 @@
 //! The notions that need every recorded point, over folds: the points stay in parts, which are
-//! asked in rounds, and the answer is that of one machine to the last bit.
+//! asked in rounds, and the answer equals one machine's to the last bit.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -13,7 +13,7 @@ use reachtube_conform::{
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunSource, Torque};
 
-/// Suites whose recordings share their input, but for those of D; B has recordings of different
+/// Suites whose recordings share their input, but for the runs of D; B has recordings of different
 /// lengths.
 fn campaign(suites: &[(&str, usize)]) -> MemoryRuns {
     let robot = two_joints();
@@ -182,7 +182,7 @@ fn points_of_other_recordings_are_refused() {
     let problem = in_parts(&setup, &runs, 2, |index| if index == 5 { 9 } else { index % 2 }, None);
     let refused = conform(&problem, &Silent, None).unwrap_err();
     assert!(matches!(&refused, Error::Fold(why) if why.contains("are missing")), "{refused}");
-    // Nobody has the points.
+    // No part has the points.
     let fold = Fold::of_source(&setup, &runs, 0).unwrap();
     let problem = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
     assert!(matches!(conform(&problem, &Silent, None), Err(Error::Fold(_))));

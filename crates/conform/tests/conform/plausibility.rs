@@ -20,7 +20,7 @@ fn arm() -> Robot {
     Robot::from_description(&description).unwrap()
 }
 
-/// Numbers as somebody may have written them.
+/// Numbers as a user may have written them.
 struct Written {
     time: f64,
     angle: f64,

@@ -97,7 +97,7 @@ fn sets_alone_need_no_second_reading() {
         conform(&problem, &Silent, None).unwrap();
         let counts: Vec<usize> = reads.iter().map(|count| count.load(Ordering::Relaxed)).collect();
         assert_eq!(counts, [1; 12], "{differ}");
-        // A run that was folded is read again when somebody asks for its samples.
+        // A run that was folded is read again when its samples are needed.
         problem.run(0).unwrap();
         assert_eq!(reads[0].load(Ordering::Relaxed), 2);
     }

@@ -67,7 +67,7 @@ fn each_run_has_the_friction_of_its_order_or_temperature() {
         let wrong = problem(&robot, record(&robot, |place| RUNS + 1 - place));
         let wrong = conform_all(&wrong);
         assert!(wrong.cost > 2.0 * found.cost, "{by:?}: {} for {}", wrong.cost, found.cost);
-        // Where nobody knows the run, one nominal motion serves all of them.
+        // If the run is unknown, one nominal motion serves all of them.
         let any = found.any_run.clone().unwrap();
         assert!(any.verified && any.cost > 1.5 * found.cost && any.cost < wrong.cost, "{any:?}");
         // The file says both.

@@ -90,7 +90,7 @@ impl Fold {
         let context = Context::new(setup)?;
         let wrong =
             |what: &str| Error::Fold(format!("the bytes {what}; fold the recordings again"));
-        let body = bytes.strip_prefix(FORMAT).ok_or_else(|| wrong("are not those of a fold"))?;
+        let body = bytes.strip_prefix(FORMAT).ok_or_else(|| wrong("are not a fold"))?;
         let (version, body) =
             body.split_first_chunk().ok_or_else(|| wrong("of a fold are cut off"))?;
         let version = u32::from_le_bytes(*version);

@@ -64,7 +64,7 @@ impl Context {
     pub(super) fn refuse_explanations(settings: &Settings) -> Result<()> {
         let refused = || {
             Error::Fold(
-                "an explanation needs every recording sample by sample; leave out --explain, or \
+                "an explanation needs every recording sample by sample; omit --explain, or \
                  read the recordings on one machine"
                     .into(),
             )

@@ -280,7 +280,7 @@ impl Fold {
         }
     }
 
-    /// Returns the number of recordings without those that have defects.
+    /// Returns the number of recordings without defects.
     #[must_use]
     pub fn run_count(&self) -> u64 {
         self.state.runs
@@ -322,7 +322,7 @@ impl State {
         self.runs < LISTED_BELOW
     }
 
-    /// Lets go of everything superfluous.
+    /// Drops summaries that no later step needs.
     pub(super) fn settle(&mut self) {
         let are_listed = self.are_listed();
         self.suites.values_mut().for_each(|suite| suite.settle(are_listed, true));

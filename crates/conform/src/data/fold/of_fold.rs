@@ -25,7 +25,7 @@ pub enum OnDefect {
 }
 
 impl Problem {
-    /// Makes the problem of the recordings that were folded, which is that of
+    /// Makes the problem of the recordings that were folded, which equals the problem of
     /// [`read`](Self::read) over the same recordings: the same sets, verdicts and model files to
     /// the last bit. What needs single recordings again ends with [`Error::Fold`]: figures,
     /// explanations, the notion trace, and `fit` where runs differ. The notions phase-plane and

@@ -104,7 +104,7 @@ impl StoredSuite {
         }
     }
 
-    /// Returns the suite; nothing where its parts do not fit together.
+    /// Returns the suite; `None` if its parts do not fit together.
     pub(super) fn into_suite(self, context: &Context) -> Option<SuiteFold> {
         let states = 2 * context.robot.joint_count();
         let whole = |(place, stored): (u32, StoredRun)| {

@@ -22,7 +22,7 @@ const MOST_SUPERFLUOUS: usize = 256;
 pub(super) struct SuiteFold {
     /// The motion that the first run names which names one, with its place.
     pub motion: Option<(u32, String)>,
-    /// What is known of all runs together.
+    /// Totals of all runs.
     pub totals: Totals,
     /// The measured states.
     pub envelope: Envelope,
@@ -84,7 +84,7 @@ impl SuiteFold {
         self.outside = outside.min_by_key(|(place, ..)| *place);
     }
 
-    /// Lets go of what is superfluous; `are_listed` says whether the data set lists its runs. With
+    /// Drops what no later step needs; `are_listed` says whether the data set lists its runs. With
     /// `now`, nothing superfluous stays.
     pub(super) fn settle(&mut self, are_listed: bool, now: bool) {
         let keeps_all = are_listed || self.whole.are_all();
@@ -117,8 +117,8 @@ impl SuiteFold {
         }
         let (count, most) = (self.totals.count, most_bytes >> 20);
         let why = if context.is_own {
-            "each has a nominal solution of its own, because the nominal start is that of the run \
-             or friction depends on it"
+            "each has a nominal solution of its own, because the nominal start is the run's or \
+            friction depends on it"
         } else {
             "they differ in input or sample times"
         };

@@ -8,8 +8,8 @@ use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::{counted, listed, plural};
 
 impl Finding {
-    /// What the table of the sets without each motion says, and what it does not; nothing where
-    /// there is no table to expect.
+    /// The meaning of the table of the sets without each motion; `None` if there is no table to
+    /// expect.
     pub(crate) fn left_out(model: &Model) -> Option<Self> {
         let is_linear = model.acceleration.is_empty();
         let text = match (model.left_out.is_empty(), model.data.motions()) {
@@ -33,7 +33,7 @@ impl Finding {
         Some(Self::new(Severity::Info, Code::LeftOut, text).with("motions", motions))
     }
 
-    /// The runs that decide the sets, and what they cost; nothing where none does.
+    /// The runs that decide the sets, and what they cost; `None` if none does.
     pub(crate) fn deciding_runs(runs: &DecidingRuns, all: usize) -> Option<Self> {
         let first = runs.most.first()?;
         let mut text = format!(
@@ -66,7 +66,7 @@ impl Finding {
         )
     }
 
-    /// That the robot changed while it was recorded; nothing where it did not.
+    /// Finding that the robot changed while it was recorded; `None` if it did not.
     pub(crate) fn robot_changed(trends: &[Trend]) -> Option<Self> {
         let mut suites: Vec<String> = trends.iter().map(|trend| trend.suite.clone()).collect();
         suites.dedup();

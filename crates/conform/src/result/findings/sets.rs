@@ -54,7 +54,7 @@ impl Finding {
         Self::new(Severity::Info, Code::Touching, text).with("values", model.tight.len() as f64)
     }
 
-    /// How close motions of the model come to the recordings; `tolerance` is that of the settings.
+    /// How close motions of the model come to the recordings; `tolerance` comes from the settings.
     pub(crate) fn explanations(
         explained: &Explained,
         tolerance: Tolerance,
