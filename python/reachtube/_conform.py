@@ -197,7 +197,7 @@ def check(
     Returns
     -------
     Check
-        Not conformant is a value, with witnesses.
+        A check that fails is returned with witnesses, not raised.
     """
     with shown(progress, "check") as tell:
         return Check(

@@ -154,7 +154,7 @@ def identify(
     Returns
     -------
     Identification
-        What is implausible is also warned of, as `ReachtubeWarning`.
+        Implausible results also produce a warning, `ReachtubeWarning`.
 
     Raises
     ------

@@ -63,8 +63,8 @@ pub(super) fn likely_cause(problem: &Problem, calibration: Option<&Calibration>)
              nominal model for small sets (--fit)"
         };
         format!(
-            "no other unit, sign, kind of torque, order of joints or lag explains the recordings \
-             better ({} of the recorded input is not explained by the recorded motion): {remedy}",
+            "units, signs, kind of torque, order of joints and lags fit, but {} of the recorded \
+             input does not follow from the recorded motion: {remedy}",
             percent(rest)
         )
     }))
