@@ -112,7 +112,8 @@ def conform(
     Returns
     -------
     Model
-        With ``verified`` false where it could not be proved: that is no error. Implausible results also produce a warning, `ReachtubeWarning`.
+        With ``verified`` false where it could not be proved: that is no error.
+        Implausible results also produce a warning, `ReachtubeWarning`.
 
     Raises
     ------
