@@ -2,7 +2,7 @@ use reachtube_robot::{Parameter, ParameterKind, Robot};
 
 use crate::export::text::harmless;
 
-/// What the files leave out.
+/// Notes on what the files omit.
 pub(crate) const LEFT_OUT: &str = "Friction is the viscous coefficient v1 and one Coulomb \
 magnitude at no load; v2, v3, the dependence on the load and the Stribeck effect are left out.";
 
