@@ -1,5 +1,6 @@
 //! The model file.
 
+mod compared;
 pub(crate) mod file;
 pub(crate) mod records;
 mod validity;

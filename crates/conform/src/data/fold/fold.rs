@@ -13,7 +13,6 @@ use crate::data::kept::MOST_BYTES;
 use crate::data::setup::Setup;
 use crate::data::tree::{Leaf, Tree};
 use crate::error::{Error, Result};
-use crate::model::Model;
 
 /// A fold of fewer recordings keeps what a model file lists of each.
 const LISTED_BELOW: u64 = 1000;
@@ -108,18 +107,20 @@ impl Fold {
         Ok(Self { context: Arc::new(Context::new(setup)?), state, fitted: None })
     }
 
-    /// Returns the fold of no recording, to check `model`; `setup` is the one that
-    /// [`Model::open`] returned with it. The fold counts the recordings that the model was fitted
-    /// to, where the model file lists them. Folds merge where they check the same model.
+    /// Returns the fold of no recording, to compare recordings with those of a model: `digest` is
+    /// the model's digest of them, and `fitted` has the SHA-256 of each that is listed.
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), but a model may have explanations.
-    pub fn to_check(setup: &Setup, model: &Model) -> Result<Self> {
+    /// As [`new`](Self::new), but the setup may ask for explanations.
+    pub(crate) fn comparing(
+        setup: &Setup,
+        digest: String,
+        fitted: HashSet<String>,
+    ) -> Result<Self> {
         let mut fold = Self::with_context(setup, MOST_BYTES)?;
-        let runs = model.data.suites.iter().flat_map(|suite| &suite.runs);
-        fold.fitted = Some(Arc::new(runs.map(|run| run.sha256.clone()).collect()));
-        fold.state.compared = Some((model.data.sha256.clone(), 0));
+        fold.fitted = Some(Arc::new(fitted));
+        fold.state.compared = Some((digest, 0));
         Ok(fold)
     }
 
