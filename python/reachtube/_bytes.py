@@ -42,7 +42,7 @@ def without_head(kind: type, data: bytes) -> tuple[dict[str, Any], bytes]:
 
 @contextmanager
 def reading(kind: type) -> Iterator[None]:
-    """Say of which result the bytes are that cannot be read."""
+    """Name the result in the error if its bytes cannot be read."""
     try:
         yield
     except (AttributeError, KeyError, TypeError, ValueError) as error:
