@@ -1,4 +1,4 @@
-//! Folds of recordings that are compared with those of a model.
+//! Folds of recordings that are compared with a model's.
 
 use crate::data::fold::fold::Fold;
 use crate::data::setup::Setup;

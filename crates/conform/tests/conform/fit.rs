@@ -324,7 +324,7 @@ fn recordings_that_were_folded_are_fitted_to_the_last_bit() {
     assert!(refused.contains("warm-up"), "{refused}");
 }
 
-/// The costs that an independent sketch of the program reached by scaling the mass matrix and the
+/// The costs of a second implementation of the program that scales the mass matrix and the
 /// friction, and a little above (docs/fit.md).
 ///
 /// With the pull of the last one, steps lead to robots whose mass matrix is not positive definite

@@ -107,8 +107,8 @@ impl Fold {
         Ok(Self { context: Arc::new(Context::new(setup)?), state, fitted: None })
     }
 
-    /// Returns the fold of no recording, to compare recordings with those of a model: `digest` is
-    /// the model's digest of them, and `fitted` has the SHA-256 of each that is listed.
+    /// Returns the fold of no recording, to compare recordings with a model's: `digest` is the
+    /// model's digest of them, and `fitted` has the SHA-256 of each that is listed.
     ///
     /// # Errors
     ///
