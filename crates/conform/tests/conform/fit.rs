@@ -325,7 +325,7 @@ fn recordings_that_were_folded_are_fitted_to_the_last_bit() {
 }
 
 /// The costs of a second implementation of the program that scales the mass matrix and the
-/// friction, and a little above (docs/fit.md).
+/// friction, and a little above.
 ///
 /// With the pull of the last one, steps lead to robots whose mass matrix is not positive definite
 /// at every position, which must be taken back.
