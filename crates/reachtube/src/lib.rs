@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod export;
+pub mod prelude;
 
 pub use reachtube_abstraction::{
     self as abstraction, Abstraction, ExpansionPoint, ModelKind, OperatingBox, PolynomialModel,

@@ -22,7 +22,7 @@ const EFFECTS: &[(&str, &str)] = &[
     ("torque", "reads the recorded torques as such."),
     ("expansion", "expands the model there."),
     ("equations", "lets the nominal motions follow the robot's own equations."),
-    ("fit", "fits the nominal model for small sets."),
+    ("fit", "names the parameters to fit."),
     ("pull", "keeps the fitted values closer to the identified ones."),
     ("initial-limit", "limits X0 to the recorded starts."),
     ("disturbance", "lets the disturbance change during the motion."),

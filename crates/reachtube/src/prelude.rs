@@ -1,0 +1,10 @@
+//! The names of a conformance from recordings to an answer.
+
+#[cfg(feature = "report")]
+pub use reachtube_experiment::Result;
+
+pub use reachtube_conform::{
+    Answer, Check, Finding, Hulls, Job, Model, Noise, Notion, Settings, Silent,
+};
+pub use reachtube_recordings::{DataSet, Torque};
+pub use reachtube_robot::Robot;
