@@ -11,6 +11,7 @@ from ._abstraction import Abstraction, abstract
 from ._box import Box
 from ._conform import check, conform
 from ._excite import Excitation, excite
+from ._findings import Finding, Report
 from ._flowpipe import Flowpipe, flowpipe
 from ._identify import Identification, identify
 from ._model import Check, Model
@@ -37,6 +38,7 @@ __all__ = [
     "Defect",
     "DefectsError",
     "Excitation",
+    "Finding",
     "Flowpipe",
     "Identification",
     "Model",
@@ -46,6 +48,7 @@ __all__ = [
     "ReachtubeError",
     "ReachtubeWarning",
     "Recordings",
+    "Report",
     "Robot",
     "Run",
     "SettingError",

@@ -166,11 +166,9 @@ def told(text: str, notes: list[str], level: int) -> Model:
     for note in notes:
         log.info(note)
     found = Model(text)
-    if not found.verified:
-        words = "the sets are NOT PROVED to enclose the recordings"
-        warnings.warn(words, ReachtubeWarning, level)
-    for warning in found.warnings:
-        warnings.warn(warning, ReachtubeWarning, level)
+    for finding in found.findings:
+        if finding.severity != "info":
+            warnings.warn(str(finding), ReachtubeWarning, level)
     return found
 
 

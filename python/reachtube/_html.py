@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from html import escape
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ._findings import Finding
     from ._model import Check, Model
 
 GOOD, BAD = "#1a7f4b", "#b3261e"
@@ -48,13 +49,33 @@ def bar(radius: float, largest: float) -> str:
     )
 
 
+def lines(findings: Iterable[Finding]) -> str:
+    """Return findings as paragraphs."""
+    return "".join(f"<p>{escape(str(finding))}</p>" for finding in findings)
+
+
+def report(sections: list[dict[str, Any]]) -> str:
+    """Return the sections of a report."""
+    text = ""
+    for section in sections:
+        title = section["title"]
+        text += f"<h4>{escape(title)}</h4>" if title else ""
+        text += "".join(f"<p>{escape(each['written'])}</p>" for each in section["findings"])
+        for each in section["tables"]:
+            rows = [[escape(cell) for cell in row] for row in each["rows"]]
+            text += table(each["header"], rows)
+        text += "".join(
+            f"<p>{escape(name)}: {escape(value)}</p>" for name, value in section["facts"]
+        )
+    return text
+
+
 def model(found: Model) -> str:
     """Return verdict, sets and their radii as bars."""
-    words = "conformant, proved at samples" if found.verified else "not proved conformant"
-    cost = "a reachable set was lost" if found.cost is None else f"cost {found.cost:.6g}"
-    proof = found.proof
-    text = verdict(found.verified, f"{words}: {proof['runs']} recordings, {cost}")
-    text += "".join(f"<p>{escape(warning)}</p>" for warning in found.warnings)
+    findings = found.findings
+    of = {finding.code: finding for finding in findings}
+    text = verdict(found.verified, str(findings[0]))
+    text += lines(each for each in findings if each.code == "cost" or each.severity != "info")
     rows = list(rows_of_sets(found))
     largest: dict[tuple[str, str], float] = {}
     for name, _, unit, _, radius in rows:
@@ -65,17 +86,12 @@ def model(found: Model) -> str:
         for name, entry, unit, centre, radius in rows
     ]
     text += table(["set", "entry", "centre", "radius", "unit", ""], cells)
-    bound = found.violation_probability
-    return text + (
-        f"<p>The next motion leaves the set with probability at most {bound:.3g} "
-        f"({escape(found.trust['basis'])}).</p>"
-    )
+    return text + lines(of[code] for code in ("next-motion", "no-guarantee") if code in of)
 
 
 def check(found: Check) -> str:
     """Return verdict and one row for each suite."""
-    words = "conformant" if found.conformant else "not conformant"
-    text = verdict(found.conformant, f"{words}: {found.violations} of {found.rows} rows outside")
+    text = verdict(found.conformant, str(found.findings[0]))
     rows = []
     for suite in found.suites:
         worst = suite["violations"]["worst"] or {}

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _html, _reachtube
 from ._arrays import Array, array_of
 from ._box import Box
 from ._files import write_new
+from ._findings import Finding, Report, findings_of
 from ._record import Record
 from ._robot import Robot
 from .errors import ModelFileError, ReachtubeError, SettingError
+
+if TYPE_CHECKING:
+    from ._progress import Progress
+    from ._settings import Data, Notion
 
 
 class Model(Record):
@@ -98,9 +104,19 @@ class Model(Record):
         return None if record is None else Box._of(record)
 
     @property
+    def findings(self) -> list[Finding]:
+        """What the answer says, statement by statement: the verdict first."""
+        return findings_of(_reachtube.model_findings(self._text))
+
+    @property
+    def report(self) -> Report:
+        """The answer for people, as the command prints it."""
+        return Report(*_reachtube.model_report(self._text))
+
+    @property
     def warnings(self) -> list[str]:
-        """Implausible results, and the most likely cause."""
-        return [str(warning["text"]) for warning in self._content.get("warnings", [])]
+        """The findings that are warnings, as sentences."""
+        return [str(finding) for finding in self.findings if finding.severity == "warning"]
 
     @property
     def violation_probability(self) -> float:
@@ -152,6 +168,29 @@ class Model(Record):
     def _number(self, name: str) -> float | None:
         value = self._content.get(name)
         return None if value is None else float(value)
+
+    def check(
+        self,
+        data: Data,
+        *,
+        suites: str | Sequence[str] | None = None,
+        notion: Notion | None = None,
+        until: float | None = None,
+        max_gap: float | None = None,
+        progress: Progress = None,
+    ) -> Check:
+        """Check whether the model encloses other recordings, as the function `check` does."""
+        from ._conform import check
+
+        return check(
+            self,
+            data,
+            suites=suites,
+            notion=notion,
+            until=until,
+            max_gap=max_gap,
+            progress=progress,
+        )
 
     def to_pandas(self) -> Any:
         """Return the sets as a pandas DataFrame: one row for each entry of X0, U and V."""
@@ -217,6 +256,11 @@ class Check(Record):
         """What the check says of the next motion; ``None`` where a recording was in the fit."""
         trust = self._content.get("trust")
         return None if trust is None else dict(trust)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What the answer says, statement by statement: the verdict first."""
+        return findings_of(_reachtube.check_findings(self._text))
 
     @property
     def notes(self) -> list[str]:

@@ -4,7 +4,7 @@ use std::path::{MAIN_SEPARATOR, Path};
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use reachtube::conform;
+use reachtube::conform::{self, FrontEnd};
 use reachtube::recordings::{self, Defect};
 use reachtube::robot::RobotError;
 
@@ -53,6 +53,7 @@ impl Failure {
 
     fn exception(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let errors = py.import("reachtube.errors")?;
+        let written = |text: &str| FrontEnd::Python.written(text);
         match self {
             Self::Defects(defects, text) => {
                 let class = errors.getattr("Defect")?;
@@ -62,16 +63,16 @@ impl Failure {
                         defect.line,
                         defect.joint,
                         defect.kind.name(),
-                        &defect.problem,
-                        &defect.remedy,
+                        written(&defect.problem),
+                        written(&defect.remedy),
                     ))
                 };
                 let defects = defects.iter().map(make).collect::<PyResult<Vec<_>>>()?;
-                errors.getattr("DefectsError")?.call1((text, PyTuple::new(py, defects)?))
+                errors.getattr("DefectsError")?.call1((written(&text), PyTuple::new(py, defects)?))
             }
-            Self::Setting(text) => errors.getattr("SettingError")?.call1((text,)),
+            Self::Setting(text) => errors.getattr("SettingError")?.call1((written(&text),)),
             Self::ModelFile(text) => errors.getattr("ModelFileError")?.call1((text,)),
-            Self::Other(text) => errors.getattr("ReachtubeError")?.call1((text,)),
+            Self::Other(text) => errors.getattr("ReachtubeError")?.call1((written(&text),)),
         }
     }
 }

@@ -7,6 +7,7 @@ mod conformance;
 mod dynamics;
 mod excitation;
 mod failure;
+mod findings;
 mod fleet;
 mod flowpipe;
 mod identification;
@@ -27,6 +28,8 @@ mod _reachtube {
     use crate::conformance::{check, check_model, conform, reach, report};
     #[pymodule_export]
     use crate::excitation::excite;
+    #[pymodule_export]
+    use crate::findings::{check_findings, model_findings, model_report};
     #[pymodule_export]
     use crate::fleet::{NativeFleet, NativeFold};
     #[pymodule_export]
