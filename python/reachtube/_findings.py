@@ -22,7 +22,7 @@ class Finding:
     numbers: dict[str, float] = field(default_factory=dict)
     """The numbers by their names, in SI units."""
     remedy: dict[str, str] | None = None
-    """A setting that helps: ``setting``, ``value`` (empty if you have to choose one), ``effect``."""
+    """A setting that helps: ``setting``, ``value`` (empty if you choose it), ``effect``."""
     _written: str = field(default="", repr=False)
 
     @classmethod
