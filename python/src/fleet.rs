@@ -15,7 +15,7 @@ use crate::abstraction::NativeAbstraction;
 use crate::conformance::{basis, differing, fit_settings, setup, told};
 use crate::failure::{Failure, Result};
 use crate::manifest::{Entry, entry, read_csv, read_run};
-use crate::points::{Asked, NativeFleetProblem, asking};
+use crate::points::{NativeFleetProblem, asking};
 use crate::recordings::NativeRun;
 use crate::robot::NativeRobot;
 use crate::watched::watched;
@@ -151,9 +151,13 @@ impl NativeFleet {
         let setup = Arc::clone(&self.setup);
         asking(ask, |server| {
             watched(py, progress.as_ref(), move |watch| {
-                let problem = problem(&setup, &fold, report, server)?;
+                let problem = problem(&setup, &fold, report)?;
                 let fit = fit_settings(&fit, pull)?;
-                Ok(told(&Answer::new(problem, fit.as_ref(), None, watch)?))
+                let answer = match server.as_deref().filter(|_| fit.is_none()) {
+                    Some(server) => Answer::elsewhere(problem, server, watch)?,
+                    None => Answer::new(problem, fit.as_ref(), None, watch)?,
+                };
+                Ok(told(&answer))
             })
         })
     }
@@ -171,9 +175,12 @@ impl NativeFleet {
         asking(ask, |server| {
             watched(py, None, move |_| {
                 let model = model.ok_or_else(|| Failure::Setting("there is no model".into()))?;
-                let problem = problem(&setup, &fold, report, server)?;
+                let problem = problem(&setup, &fold, report)?;
                 let hulls = Hulls::new(&problem, model.sets())?;
-                let check = product::check(&model, &problem, &hulls)?;
+                let check = match server.as_deref() {
+                    Some(server) => product::check_elsewhere(&model, &problem, &hulls, server)?,
+                    None => product::check(&model, &problem, &hulls)?,
+                };
                 Ok(serde_json::to_string(&check).expect("a check has string keys"))
             })
         })
@@ -189,19 +196,10 @@ fn merged(setup: &Setup, parts: &[PyBackedBytes]) -> Result<Fold> {
     })
 }
 
-fn problem(
-    setup: &Setup,
-    fold: &[u8],
-    report: bool,
-    server: Option<Arc<Asked>>,
-) -> Result<Problem> {
+fn problem(setup: &Setup, fold: &[u8], report: bool) -> Result<Problem> {
     let fold = Fold::from_bytes(setup, fold)?;
     let on_defect = if report { OnDefect::Report } else { OnDefect::Refuse };
-    let problem = Problem::of_fold(setup.clone(), fold, on_defect)?;
-    Ok(match server {
-        Some(server) => problem.with_points_elsewhere(server),
-        None => problem,
-    })
+    Ok(Problem::of_fold(setup.clone(), fold, on_defect)?)
 }
 
 impl NativeFold {

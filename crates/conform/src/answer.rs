@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use crate::check::Check;
-use crate::conformance::{Conformance, conform};
+use crate::claim::certificate::Certificate;
+use crate::claim::remote::PointServer;
+use crate::conformance::{Conformance, conform, conform_elsewhere};
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::fit::fit::fit;
 use crate::fit::group::FitSettings;
 use crate::model::file::Model;
-use crate::notion::certificate::Certificate;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
 use crate::result::finding::Finding;
@@ -54,6 +55,20 @@ impl Answer {
             None => model,
         };
         Ok(Self { model, problem, found })
+    }
+
+    /// Finds the smallest sets for the problem of a fold whose points `server` asks.
+    ///
+    /// # Errors
+    ///
+    /// As [`conform_elsewhere`](crate::conform_elsewhere).
+    pub fn elsewhere(
+        problem: Problem,
+        server: &dyn PointServer,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let found = conform_elsewhere(&problem, server, progress)?;
+        Ok(Self { model: Model::new(&problem, &found), problem, found })
     }
 
     /// Returns whether the sets were proved to enclose every recording.

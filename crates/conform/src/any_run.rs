@@ -1,6 +1,7 @@
 use reachtube_scalar::ExactSum;
 use serde::{Deserialize, Serialize};
 
+use crate::claim::claim::claim;
 use crate::data::condition::Condition;
 use crate::data::problem::Problem;
 use crate::data::setup::Setup;
@@ -41,7 +42,7 @@ impl AnyRun {
         let condition = middle(problem);
         let blind =
             problem.with_setup(Setup { condition: Some(condition.clone()), ..setup.clone() });
-        let found = smallest_sets(&blind, &Silent, None)?;
+        let found = smallest_sets(&blind, &*claim(&blind, None)?, &Silent, None)?;
         let verdict = Verdict::new(&blind, &found.hulls, |_, _, _| {})?;
         let (sets, cost) = (found.hulls.sets, found.cost);
         Ok(Some(Self { condition, sets, cost, verified: verdict.conformant }))

@@ -1,5 +1,7 @@
 use serde::Serialize;
 
+use crate::claim::claim::judged;
+use crate::claim::remote::PointServer;
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::data::suite::Suite;
@@ -47,6 +49,36 @@ pub struct Check {
 ///
 /// As [`Problem::run`]. A violation is no error.
 pub fn check(model: &Model, problem: &Problem, hulls: &Hulls) -> Result<Check> {
+    check_asking(model, problem, hulls, None)
+}
+
+/// Does what [`check`] does for the problem of a fold whose points `server` asks: the notions
+/// phase-plane and exact need them.
+///
+/// # Guarantee
+///
+/// That of [`Verdict::new`].
+///
+/// # Errors
+///
+/// As [`check`]; those of `server`.
+pub fn check_elsewhere(
+    model: &Model,
+    problem: &Problem,
+    hulls: &Hulls,
+    server: &dyn PointServer,
+) -> Result<Check> {
+    check_asking(model, problem, hulls, Some(server))
+}
+
+fn check_asking(
+    model: &Model,
+    problem: &Problem,
+    hulls: &Hulls,
+    server: Option<&dyn PointServer>,
+) -> Result<Check> {
+    let judged = judged(problem, hulls, server)?;
+    let hulls = judged.as_ref().unwrap_or(hulls);
     let mut excess = vec![0.0f64; 2 * problem.joints()];
     let mut worst: Vec<Option<Witness>> = vec![None; 2 * problem.joints()];
     let verdict = Verdict::new(problem, hulls, |suite, _, row| {

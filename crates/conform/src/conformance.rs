@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use crate::any_run::AnyRun;
+use crate::claim::claim::{Claim, claim};
+use crate::claim::remote::PointServer;
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::error::Result;
@@ -97,8 +99,35 @@ pub fn conform(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
+    conform_claim(problem, &*claim(problem, None)?, progress, resume)
+}
+
+/// Does what [`conform`] does for the problem of a fold whose points `server` asks: the notions
+/// phase-plane and exact need them.
+///
+/// # Guarantee
+///
+/// As [`conform`].
+///
+/// # Errors
+///
+/// As [`conform`]; those of `server`.
+pub fn conform_elsewhere(
+    problem: &Problem,
+    server: &dyn PointServer,
+    progress: &dyn Progress,
+) -> Result<Conformance> {
+    conform_claim(problem, &*claim(problem, Some(server))?, progress, None)
+}
+
+fn conform_claim(
+    problem: &Problem,
+    claim: &dyn Claim,
+    progress: &dyn Progress,
+    resume: Option<&Path>,
+) -> Result<Conformance> {
     let (found, calibration) = if problem.settings().calibrate.is_empty() {
-        let mut found = smallest_sets(problem, progress, resume)?;
+        let mut found = smallest_sets(problem, claim, progress, resume)?;
         found.left_out.extend(leave_each_out(problem, &found.hulls.sets)?);
         (found, None)
     } else {

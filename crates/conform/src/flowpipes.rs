@@ -1,16 +1,10 @@
 //! Outer enclosures of the reachable sets of models that are not linear.
 
-use std::sync::Mutex;
-
-use reachtube_reach::{
-    Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInput, Visit, Zonotope,
-};
+use reachtube_reach::{Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInput, Visit};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
-use crate::data::settings::Notion;
 use crate::error::Result;
-use crate::notion::outer::{Asked, CasePoints, CaseRuns};
 use crate::rows::rows;
 use crate::sets::UncertaintySets;
 
@@ -27,67 +21,9 @@ pub(crate) enum Effort {
     Whole,
 }
 
-/// The computed outer set of a case.
-#[derive(Debug)]
-pub struct OuterSet {
-    /// The sets at samples and between them.
-    pub flowpipe: Flowpipe,
-    /// Where the recorded points of the case lie in them; empty for the notion hull.
-    pub(crate) points: CasePoints,
-}
-
-impl OuterSet {
-    /// Computes the outer set of a case under `sets`; of several attempts the one that comes
-    /// furthest. Judges the recorded points, where the notion is not the hull, and says how far it
-    /// reaches in the directions `asked`.
-    ///
-    /// # Guarantee
-    ///
-    /// Outer, as [`Flowpipe`], for every measurable disturbance with values in U. Points as
-    /// [`CaseRuns::take`].
-    ///
-    /// # Errors
-    ///
-    /// When sizes do not fit; as [`Problem::run`].
-    pub(crate) fn new(
-        problem: &Problem,
-        case: &Case,
-        sets: &UncertaintySets,
-        asked: &[Asked],
-    ) -> Result<Self> {
-        let system = problem.dynamics().polynomial_system()?;
-        if problem.settings().notion == Notion::Hull {
-            let of = |vertices: usize| attempt(system, case, sets, vertices, None);
-            let flowpipe = furthest(Effort::Whole, of, |flowpipe| flowpipe)?;
-            return Ok(Self { flowpipe, points: CasePoints::default() });
-        }
-        let runs = CaseRuns::new(problem, case, sets, asked)?;
-        let judged = |vertices: usize| {
-            let points = Mutex::new(CasePoints::default());
-            let visit = |sample: usize, zonotope: Zonotope| {
-                let mut here = CasePoints::default();
-                runs.take(sample, &zonotope, &mut here);
-                points.lock().expect("no thread panics").add(here);
-            };
-            let flowpipe = attempt(system, case, sets, vertices, Some(&visit))?;
-            let mut points = points.into_inner().expect("no thread panics");
-            runs.finish(flowpipe.len(), &mut points);
-            Ok(Self { flowpipe, points })
-        };
-        furthest(Effort::Whole, judged, |set| &set.flowpipe)
-    }
-
-    /// Returns the radii of the interval hull at a sample with the noise set, 2n, in floating
-    /// point.
-    pub(crate) fn hull_radii(&self, sample: usize, sets: &UncertaintySets) -> Vec<f64> {
-        let hull = self.flowpipe.sample(sample).iter().enumerate();
-        hull.map(|(i, side)| side.rad() + sets.noise_radius(i)).collect()
-    }
-}
-
 /// Attempts a flowpipe with more and more variables over whose vertices remainders are bounded, and
 /// returns the attempt that came furthest.
-fn furthest<T>(
+pub(crate) fn furthest<T>(
     effort: Effort,
     attempt: impl Fn(usize) -> Result<T>,
     flowpipe: impl Fn(&T) -> &Flowpipe,
@@ -105,7 +41,12 @@ fn furthest<T>(
     Ok(furthest)
 }
 
-fn attempt(
+/// Attempts the flowpipe of a case under `sets`, and shows the set at each sample to `visit`.
+///
+/// # Errors
+///
+/// When sizes do not fit.
+pub(crate) fn attempt(
     system: &PolynomialSystem,
     case: &Case,
     sets: &UncertaintySets,

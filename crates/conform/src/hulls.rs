@@ -1,4 +1,3 @@
-use rayon::prelude::*;
 use reachtube_reach::{Flowpipe, FlowpipeOutcome, ReachSets};
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
@@ -6,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::flowpipes::OuterSet;
-use crate::rows::{Row, rows};
+use crate::rows::{Hull, Row, rows};
 use crate::sets::UncertaintySets;
+use crate::tube::judged::{At, Judged};
 
 /// The reachable set that recordings are compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -53,6 +52,8 @@ pub struct Hulls {
     pub sets: UncertaintySets,
     /// The hulls.
     pub kind: HullKind,
+    /// What was found about the recorded points in the sets, once they were judged.
+    pub(crate) judged: Option<Judged>,
 }
 
 /// Hulls by the kind of model.
@@ -61,29 +62,55 @@ pub enum HullKind {
     /// Of the deviation of a linear model, on each of the problem's grids.
     Linear(Vec<ReachSets>),
     /// Of the state of any other model, for each of the problem's cases.
-    Outer(Vec<OuterSet>),
+    Outer(Vec<Flowpipe>),
 }
 
 impl Hulls {
-    /// Computes the reachable sets under `sets` on all cores.
-    ///
-    /// # Guarantee
-    ///
-    /// For a linear model as [`ReachSets`]: bounds from inside and from outside. For any other
-    /// model outer, as [`Flowpipe`], for every measurable disturbance with values in U.
+    /// Takes computed sets, in which no point was judged.
+    pub(crate) fn of(sets: UncertaintySets, kind: HullKind) -> Self {
+        Self { sets, kind, judged: None }
+    }
+
+    /// Returns whether the set at a sample was computed.
+    pub(crate) fn reaches(&self, at: At) -> bool {
+        match &self.kind {
+            HullKind::Linear(_) => true,
+            HullKind::Outer(flowpipes) => (at.1 as usize) < flowpipes[at.0 as usize].len(),
+        }
+    }
+
+    /// Returns the radii of the interval hull at a sample with the noise set, 2n.
+    pub(crate) fn radii(&self, at: At) -> Vec<f64> {
+        let bounds = |i: usize| match &self.kind {
+            HullKind::Linear(reach) => reach[at.0 as usize].bounds(at.1 as usize, i),
+            HullKind::Outer(flowpipes) => flowpipes[at.0 as usize].bounds(at.1 as usize, i),
+        };
+        let radius = |i: usize| {
+            bounds(i).map_or(f64::INFINITY, |bounds| bounds.radius) + self.sets.noise_radius(i)
+        };
+        (0..self.sets.initial_set.dimension()).map(radius).collect()
+    }
+
+    /// Returns the flowpipes of the cases of a model that is not linear; none of any other.
+    pub(crate) fn flowpipes(&self) -> &[Flowpipe] {
+        match &self.kind {
+            HullKind::Linear(_) => &[],
+            HullKind::Outer(flowpipes) => flowpipes,
+        }
+    }
+
+    /// Returns the time of a sample, s.
     ///
     /// # Errors
     ///
-    /// As [`Problem::run`]; when a solution cannot be enclosed.
-    pub fn new(problem: &Problem, sets: UncertaintySets) -> Result<Self> {
-        if problem.dynamics().linear_system().is_some() {
-            let grids = problem.grids()?.as_slice();
-            let kind = HullKind::Linear(grids.iter().map(|grid| grid.reach(&sets)).collect());
-            return Ok(Self { sets, kind });
-        }
-        let of = |case: &Case| OuterSet::new(problem, case, &sets, &[]);
-        let outer = problem.cases()?.par_iter().map(of).collect::<Result<_>>()?;
-        Ok(Self { sets, kind: HullKind::Outer(outer) })
+    /// As [`Problem::run`].
+    pub(crate) fn time(&self, problem: &Problem, (strand, sample): At) -> Result<f64> {
+        let strand = strand as usize;
+        let grid = match &self.kind {
+            HullKind::Linear(_) => problem.grids()?.as_slice()[strand].propagation.grid(),
+            HullKind::Outer(_) => &*problem.cases()?[strand].grid,
+        };
+        Ok(grid.times()[sample as usize])
     }
 
     /// Returns which bound of the reachable set recordings are compared with.
@@ -124,9 +151,9 @@ impl Hulls {
                 }
             }
             HullKind::Outer(outer) => {
-                for (index, (case, set)) in problem.cases()?.iter().zip(outer).enumerate() {
+                for (index, (case, flowpipe)) in problem.cases()?.iter().zip(outer).enumerate() {
                     let times = case.grid.times();
-                    rows(&case.measured, times, &set.flowpipe, &self.sets, states, |row| {
+                    rows(&case.measured, times, flowpipe, &self.sets, states, |row| {
                         visit(case.suite, Some(index), row);
                     });
                 }
@@ -145,7 +172,7 @@ impl Hulls {
             HullKind::Linear(_) => Ok(Vec::new()),
             HullKind::Outer(outer) => {
                 let pairs = problem.cases()?.iter().zip(outer);
-                Ok(pairs.filter_map(|(case, set)| Lost::new(case, &set.flowpipe)).collect())
+                Ok(pairs.filter_map(|(case, flowpipe)| Lost::new(case, flowpipe)).collect())
             }
         }
     }

@@ -10,7 +10,6 @@ use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::deviation::Nominal;
 use crate::error::Result;
-use crate::flowpipes::OuterSet;
 use crate::grids::Grid;
 use crate::hulls::{HullKind, Hulls, Lost};
 use crate::nominal::simulate::nominal;
@@ -54,9 +53,9 @@ pub fn reach(problem: &Problem, hulls: &Hulls) -> Result<Vec<SuiteReach>> {
     match &hulls.kind {
         HullKind::Linear(reach) => linear(problem, &hulls.sets, reach),
         HullKind::Outer(outer) => {
-            let of_case = |(case, set): (&Case, &OuterSet)| {
+            let of_case = |(case, flowpipe): (&Case, &Flowpipe)| {
                 let nominal = nominal(problem.dynamics().polynomials(), case)?;
-                Ok(SuiteReach::of_flowpipe(problem, case, nominal, &set.flowpipe))
+                Ok(SuiteReach::of_flowpipe(problem, case, nominal, flowpipe))
             };
             problem.cases()?.iter().zip(outer).map(of_case).collect()
         }

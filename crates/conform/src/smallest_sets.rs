@@ -1,14 +1,14 @@
 use std::path::Path;
 
+use crate::claim::claim::Claim;
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::error::Result;
 use crate::explain::trace;
 use crate::found::Found;
 use crate::linear::smallest_sets as linear;
-use crate::notion::smallest_sets as notion;
 use crate::progress::Progress;
-use crate::search::smallest_sets as search;
+use crate::search::{cutting_planes, smallest_sets as search};
 
 /// Finds the smallest sets for all recordings of a problem, by one program or by a search.
 ///
@@ -17,6 +17,7 @@ use crate::search::smallest_sets as search;
 /// As [`conform`](crate::conform).
 pub(crate) fn smallest_sets(
     problem: &Problem,
+    claim: &dyn Claim,
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Found> {
@@ -24,12 +25,12 @@ pub(crate) fn smallest_sets(
     match problem.dynamics().linear_system() {
         Some(_) if problem.settings().notion == Notion::Hull => linear::smallest_sets(problem),
         Some(_) if problem.settings().notion == Notion::Trace => {
-            trace::smallest_sets(problem, progress)
+            trace::smallest_sets(problem, claim, progress)
         }
-        Some(_) => notion::smallest_sets(problem, progress),
+        Some(_) => cutting_planes::smallest_sets(problem, claim, progress, Ok),
         None if problem.settings().notion == Notion::Trace => {
-            trace::smallest_outer_sets(problem, progress, resume)
+            trace::smallest_outer_sets(problem, claim, progress, resume)
         }
-        None => search::smallest_sets(problem, progress, resume),
+        None => search::smallest_sets(problem, claim, progress, resume),
     }
 }

@@ -3,6 +3,7 @@
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
+use crate::claim::witness::PointVerdict;
 use crate::data::problem::Problem;
 use crate::data::settings::{Notion, Settings, States};
 use crate::data::side::Side;
@@ -10,8 +11,8 @@ use crate::data::suite::Suite;
 use crate::error::Result;
 use crate::explain::trace::{TraceVerdict, trace_factors};
 use crate::hulls::{Enclosure, Hulls, Lost};
-use crate::notion::verdict::{Judged, PointVerdict, judge};
 use crate::rows::{Edge, Row};
+use crate::tube::judged::Judged;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
 /// the recordings of one suite at one time in one state (of one run, where it has a set of its
@@ -163,10 +164,8 @@ impl Verdict {
             violations.count += suite.violations.count;
             suite.violations.worst.iter().for_each(|worst| violations.take(worst.clone()));
         }
-        let points = match problem.settings().notion {
-            Notion::Hull => None,
-            _ => Some(judge_points(problem, hulls, &mut suites)?),
-        };
+        let count = |judged: &Judged| count_points(problem, hulls, judged, &mut suites);
+        let points = hulls.judged.as_ref().map(count).transpose()?;
         let traces = match problem.settings().notion {
             Notion::Trace => Some(judge_traces(problem, hulls, &mut suites)?),
             _ => None,
@@ -223,22 +222,24 @@ impl SuiteVerdict {
     }
 }
 
-/// Judges the recorded points and counts them for each suite.
-fn judge_points(
+/// Counts the recorded points that were judged for each suite.
+fn count_points(
     problem: &Problem,
     hulls: &Hulls,
+    judged: &Judged,
     suites: &mut [SuiteVerdict],
 ) -> Result<PointVerdict> {
-    let Judged { verdict, unproved } = judge(problem, hulls)?;
     suites.iter_mut().for_each(|suite| suite.points_unproved = Some(0));
-    for (suite, run, points) in unproved {
-        let suite = &mut suites[suite];
-        suite.points_unproved = suite.points_unproved.map(|count| count + points);
-        if !suite.violating_runs.contains(&run) {
-            suite.violating_runs.push(run);
+    let mut runs: Vec<_> = judged.unproved.iter().collect();
+    runs.sort_by_key(|(owner, run)| (run.first, **owner));
+    for ((suite, _), run) in runs {
+        let suite = &mut suites[*suite as usize];
+        suite.points_unproved = suite.points_unproved.map(|count| count + run.count);
+        if !suite.violating_runs.contains(&run.file) {
+            suite.violating_runs.push(run.file.clone());
         }
     }
-    Ok(verdict)
+    PointVerdict::new(problem, hulls, judged)
 }
 
 /// Judges the recordings as motions of the model and counts them for each suite.

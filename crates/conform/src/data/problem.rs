@@ -18,7 +18,6 @@ use crate::data::suite::SuiteReader;
 use crate::deviation::Deviation;
 use crate::error::{Error, Result};
 use crate::grids::Grids;
-use crate::notion::elsewhere::PointServer;
 use crate::progress::Progress;
 
 /// Which runs stay in memory, sample by sample, after they were folded.
@@ -63,8 +62,6 @@ pub struct Problem {
     grids: OnceLock<Grids>,
     pub(crate) cases: OnceLock<Vec<Case>>,
     deviations: OnceLock<Vec<Deviation>>,
-    /// Where the points are, if they are with other processes.
-    pub(crate) point_server: Option<Arc<dyn PointServer>>,
 }
 
 /// What was read of the recordings. It does not depend on the model.
@@ -137,7 +134,7 @@ impl Problem {
 
     pub(super) fn of(setup: Setup, read: Arc<Read>) -> Self {
         let (grids, cases, deviations) = Default::default();
-        Self { setup, read, grids, cases, deviations, point_server: None }
+        Self { setup, read, grids, cases, deviations }
     }
 
     /// Returns the setup: robot, model, settings.
@@ -192,6 +189,11 @@ impl Problem {
     #[must_use]
     pub fn entry(&self, index: usize) -> &RunEntry {
         self.read.origin.entry(index)
+    }
+
+    /// Returns whether the problem was made of a fold.
+    pub(crate) fn is_folded(&self) -> bool {
+        matches!(self.read.origin, Origin::Fold(_))
     }
 
     /// Returns the samples of run `index`: from memory, or read once more where they were not kept.

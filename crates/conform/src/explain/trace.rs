@@ -9,17 +9,19 @@ use reachtube_recordings::Run;
 use reachtube_scalar::rounding::{add_down, sub_down, sub_up};
 use serde::{Deserialize, Serialize};
 
+use crate::claim::claim::Claim;
+use crate::claim::look::Look;
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::data::settings::NEEDS_NOISE;
 use crate::error::{Error, Result};
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::found::Found;
-use crate::hulls::Hulls;
-use crate::notion::smallest_sets as points;
 use crate::progress::Progress;
+use crate::search::cutting_planes;
 use crate::search::smallest_sets as search;
 use crate::sets::UncertaintySets;
+use crate::tube::polynomial::Polynomial;
 
 /// What the radii of U are widened by first, N m, so that doubles lie in u + U.
 const LEAST_RADIUS: f64 = 1e-9;
@@ -136,8 +138,13 @@ pub(crate) fn trace_factors(problem: &Problem, sets: &UncertaintySets) -> Result
 /// # Errors
 ///
 /// As [`trace_factors`].
-pub(crate) fn smallest_sets(problem: &Problem, progress: &dyn Progress) -> Result<Found> {
-    points::smallest_sets_widened(problem, progress, |sets| widened(problem, sets, progress))
+pub(crate) fn smallest_sets(
+    problem: &Problem,
+    claim: &dyn Claim,
+    progress: &dyn Progress,
+) -> Result<Found> {
+    let widen = |sets| widened(problem, sets, progress);
+    cutting_planes::smallest_sets(problem, claim, progress, widen)
 }
 
 /// Finds sets as [`smallest_sets`] does, for a model that is not linear.
@@ -147,11 +154,13 @@ pub(crate) fn smallest_sets(problem: &Problem, progress: &dyn Progress) -> Resul
 /// As [`search::smallest_sets`] and [`trace_factors`].
 pub(crate) fn smallest_outer_sets(
     problem: &Problem,
+    claim: &dyn Claim,
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Found> {
-    let found = search::smallest_sets(problem, progress, resume)?;
-    let hulls = Hulls::new(problem, widened(problem, found.hulls.sets, progress)?)?;
+    let found = search::smallest_sets(problem, claim, progress, resume)?;
+    let sets = widened(problem, found.hulls.sets, progress)?;
+    let hulls = claim.judge(&Polynomial(problem), &sets, &Look::proof())?;
     let (cost, hull_volume) = search::costs(problem, &hulls)?;
     Ok(Found { hulls, cost, hull_volume, ..found })
 }

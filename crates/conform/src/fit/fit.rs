@@ -1,6 +1,7 @@
 use rayon::prelude::*;
 use reachtube_abstraction::Abstraction;
 
+use crate::claim::claim::asks_points;
 use crate::data::dynamics::Dynamics;
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
@@ -148,7 +149,7 @@ fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
 /// Refuses what cannot be fitted, whatever the recordings are.
 fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
     settings.check(problem.setup())?;
-    if problem.points_elsewhere().is_some() {
+    if asks_points(problem) && problem.is_folded() {
         return Err(Error::Fit(
             "a fit moves the nominal motions, and the points that other processes hold are \
              deviations from those before it; fit for the notion hull"

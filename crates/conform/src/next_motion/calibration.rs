@@ -4,6 +4,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::claim::claim::Rows;
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::data::settings::{NominalStart, Notion};
@@ -82,7 +83,7 @@ pub(crate) fn calibrate(
     let motions = Motions::new(problem.recordings());
     let kept_back = kept_back(problem, &motions)?;
     let fit = problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)));
-    let first = smallest_sets(&fit, progress, resume)?;
+    let first = smallest_sets(&fit, &Rows, progress, resume)?;
     let Found { hulls: Hulls { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
     let linear = problem.dynamics().linear_system().map(|_| program(problem)).transpose()?;

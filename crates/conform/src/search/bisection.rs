@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::flowpipes::{Effort, Enclosed, enclosed};
 use crate::found::SearchSummary;
 use crate::progress::Progress;
-use crate::rows::{Edge, rows};
+use crate::rows::Edge;
 use crate::search::journal::Journal;
 use crate::search::state::SearchState;
 use crate::search::successive::{SearchResult, SuccessiveLinearisation};
@@ -158,15 +158,13 @@ impl BisectionState {
 
     fn result<'a>(self, search: &'a SuccessiveLinearisation) -> Result<SearchResult<'a>> {
         let outer = search.outer_sets(&self.sets, &[])?;
-        let states = search.problem.settings().states;
         let mut deciding = Vec::new();
-        for (index, (case, set)) in search.cases.iter().zip(&outer).enumerate() {
-            rows(&case.measured, case.grid.times(), &set.flowpipe, &self.sets, states, |row| {
-                let touches = |edge: &&Edge| edge.excess >= -TOLERANCE * row.radius;
-                let sides = row.edges.iter().filter(touches).map(|edge| edge.side);
-                deciding.extend(sides.map(|side| (index, row.sample, row.state, side)));
-            });
-        }
+        outer.for_each_row(search.problem, |_, case, row| {
+            let touches = |edge: &&Edge| edge.excess >= -TOLERANCE * row.radius;
+            let sides = row.edges.iter().filter(touches).map(|edge| edge.side);
+            let case = case.expect("these hulls belong to cases");
+            deciding.extend(sides.map(|side| (case, row.sample, row.state, side)));
+        })?;
         let reachable_sets = self.reachable_sets + 1;
         let summary =
             SearchSummary { rounds: 1, reachable_sets, linearised_cost: None, runs_away: None };

@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::flowpipes::OuterSet;
 use crate::linear::cut::Cut;
-use crate::notion::outer::Asked;
 use crate::search::sensitivity::Sensitivity;
 use crate::sets::UncertaintySets;
+use crate::tube::judged::{Along, At, Judged};
 
 /// By how much more than what is missing the set must reach, in parts of its reach.
 const MARGIN: f64 = 1e-4;
@@ -36,37 +35,37 @@ pub(super) struct DirectionRow {
     pub radius: Vec<f64>,
 }
 
-/// Returns the directions of one case, to be asked of its computed sets, and their indices.
-pub(super) fn of_case(directions: &[Direction], case: usize) -> (Vec<usize>, Vec<Asked<'_>>) {
-    let mine = directions.iter().enumerate().filter(|(_, known)| known.case == case);
-    mine.map(|(index, known)| (index, Asked { sample: known.sample, direction: &known.direction }))
-        .unzip()
+/// Returns the directions, to be asked of the computed sets.
+pub(super) fn asked(directions: &[Direction]) -> Vec<(At, Vec<f64>)> {
+    directions.iter().map(|known| (known.at(), known.direction.clone())).collect()
 }
 
-/// Takes how far the computed sets of all cases reach, and adds the directions in which points are
-/// outside. Returns whether there are any.
-pub(super) fn take(directions: &mut Vec<Direction>, sets: &[OuterSet]) -> bool {
-    let known = directions.len();
-    for (case, set) in sets.iter().enumerate() {
-        let (indices, _) = of_case(&directions[..known], case);
-        for (index, reach) in &set.points.reaches {
-            let direction = &mut directions[indices[*index]];
-            (direction.reach, direction.further) = (*reach, None);
-        }
-        directions.extend(set.points.furthest.iter().map(|point| Direction {
-            case,
-            sample: point.sample,
-            run: point.bound_run,
-            direction: point.direction.clone(),
-            bound: point.bound,
-            reach: point.reach,
-            further: None,
-        }));
+/// Takes how far the computed sets reach, and adds the directions in which points are outside, with
+/// the points `along` that are furthest along them.
+pub(super) fn take(directions: &mut Vec<Direction>, judged: &Judged, along: Vec<Along>) {
+    for (index, reach) in &judged.reaches {
+        let direction = &mut directions[*index];
+        (direction.reach, direction.further) = (*reach, None);
     }
-    directions.len() > known
+    let new =
+        judged.furthest.iter().zip(along).map(|((((case, sample), _), point), along)| Direction {
+            case: *case as usize,
+            sample: *sample as usize,
+            run: along.owner.1 as usize,
+            direction: point.direction.clone(),
+            bound: along.value,
+            reach: point.reach.unwrap_or_default(),
+            further: None,
+        });
+    directions.extend(new);
 }
 
 impl Direction {
+    /// Returns case and sample.
+    pub(super) fn at(&self) -> At {
+        (self.case as u32, self.sample as u32)
+    }
+
     /// Returns the row of the program. With x̂ the motion from the centres c of the round before,
     /// the new centres c' and radii r' must satisfy
     /// lᵀ x̂ + lᵀ E (c' - c) + a r' + further >= lᵀ x.

@@ -2,6 +2,7 @@
 //! baseline.
 
 mod bisection;
+pub(crate) mod cutting_planes;
 mod directions;
 mod journal;
 pub(crate) mod sensitivity;

@@ -8,8 +8,7 @@ use reachtube_scalar::Lanes;
 use crate::data::case::Case;
 use crate::error::Result;
 use crate::nominal::simulate::{simulate, substeps};
-use crate::notion::outer::Asked;
-use crate::search::directions::DirectionRow;
+use crate::search::directions::{Direction, DirectionRow};
 use crate::sets::UncertaintySets;
 
 /// Several motions that are simulated at once.
@@ -59,7 +58,7 @@ impl Sensitivity {
         case: &Case,
         sets: &UncertaintySets,
         disturbance: Disturbance,
-        asked: &[Asked],
+        asked: &[&Direction],
     ) -> Result<Self, f64> {
         let n = case.joints();
         let times = case.grid.times();
@@ -89,7 +88,7 @@ impl Sensitivity {
             grown.write_into(&mut found.coefficients);
             for (row, asked) in found.directions.iter_mut().zip(asked) {
                 if asked.sample == k {
-                    *row = grown.along(asked.direction);
+                    *row = grown.along(&asked.direction);
                 }
             }
             if k % stride == 0 || k + 1 == times.len() {

@@ -1,24 +1,23 @@
 use std::collections::HashSet;
 use std::path::Path;
 
+use crate::claim::claim::Claim;
+use crate::claim::witness::{PointWitness, SeparatedPoint};
 use crate::data::case::Case;
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::data::settings::{Method, Notion, Weights};
 use crate::error::{Error, Result};
-use crate::flowpipes::OuterSet;
 use crate::found::{Deciding, Found, TOUCHING};
-use crate::hulls::{HullKind, Hulls};
+use crate::hulls::Hulls;
 use crate::linear::costs::shares;
 use crate::next_motion::left_out::leave_each_out_of_search;
 use crate::nominal::simulate::nominal;
-use crate::notion::verdict::{PointWitness, SeparatedPoint};
 use crate::progress::Progress;
 use crate::search::bisection;
 use crate::search::directions::Direction;
 use crate::search::journal::Journal;
 use crate::search::successive::{SearchResult, SuccessiveLinearisation};
-use crate::sets::UncertaintySets;
 use crate::verdict::Witness;
 use crate::weights::state_weights;
 
@@ -31,13 +30,14 @@ use crate::weights::state_weights;
 /// be read or written.
 pub(crate) fn smallest_sets(
     problem: &Problem,
+    claim: &dyn Claim,
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Found> {
     let cases = problem.cases()?;
     let weights = case_weights(problem, cases)?;
     let journal = Journal::new(resume, problem);
-    let search = SuccessiveLinearisation { problem, cases, weights };
+    let search = SuccessiveLinearisation { problem, cases, claim, weights };
     let settings = problem.settings();
     let found = match settings.method {
         Method::Program => search.run(&journal, progress)?,
@@ -49,11 +49,11 @@ pub(crate) fn smallest_sets(
         Some(program) => leave_each_out_of_search(problem, &sets, program, progress)?,
         None => Vec::new(),
     };
-    let points = touching(problem, &directions, &outer, &sets)?;
-    let (cost, hull_volume) = sums(cases, &outer, &sets, &search.weights);
+    let points = touching(problem, &directions, &outer)?;
+    let (cost, hull_volume) = sums(cases, &outer, &search.weights);
     journal.remove();
     Ok(Found {
-        hulls: Hulls { sets, kind: HullKind::Outer(outer) },
+        hulls: outer,
         cost,
         lower_bound: None,
         optimality_gap: None,
@@ -70,8 +70,7 @@ pub(crate) fn smallest_sets(
 fn touching(
     problem: &Problem,
     directions: &[(Direction, f64)],
-    outer: &[OuterSet],
-    sets: &UncertaintySets,
+    outer: &Hulls,
 ) -> Result<Vec<Witness>> {
     let cases = problem.cases()?;
     let mut touching: Vec<&(Direction, f64)> =
@@ -80,10 +79,9 @@ fn touching(
     let mut seen = HashSet::new();
     touching.retain(|(at, _)| seen.insert((at.case, at.sample, at.run)));
     let witness = |(at, ratio): &(Direction, f64)| {
-        let (case, set) = (&cases[at.case], &outer[at.case]);
-        let hull = set.hull_radii(at.sample, sets);
+        let (case, hull) = (&cases[at.case], outer.radii(at.at()));
         let recorded = problem.run(at.run)?;
-        let centres = set.flowpipe.sample(at.sample).iter().map(|side| side.mid());
+        let centres = outer.flowpipes()[at.case].sample(at.sample).iter().map(|side| side.mid());
         let deviation: Vec<f64> =
             recorded.state(at.sample).iter().zip(centres).map(|(x, c)| x - c).collect();
         let point = SeparatedPoint {
@@ -98,11 +96,7 @@ fn touching(
         };
         Ok(PointWitness::new(problem, &point).into_witness())
     };
-    touching
-        .into_iter()
-        .filter(|(at, _)| at.sample < outer[at.case].flowpipe.len())
-        .map(witness)
-        .collect()
+    touching.into_iter().filter(|(at, _)| outer.reaches(at.at())).map(witness).collect()
 }
 
 /// Returns the weights of the states, s, by the deviations from the nominal motions.
@@ -121,36 +115,30 @@ fn case_weights(problem: &Problem, cases: &[Case]) -> Result<Vec<f64>> {
     Ok(state_weights(weights, &envelopes.iter().collect::<Vec<_>>(), problem.joints()))
 }
 
-/// Returns the sums of [`sums`] over the reachable sets of a model that is not linear; of any
-/// other, nothing.
+/// Returns the sums of [`sums`] over the reachable sets of a model that is not linear.
 ///
 /// # Errors
 ///
 /// As [`Problem::cases`].
 pub(crate) fn costs(problem: &Problem, hulls: &Hulls) -> Result<(f64, f64)> {
     let cases = problem.cases()?;
-    match &hulls.kind {
-        HullKind::Linear(_) => Ok((0.0, 0.0)),
-        HullKind::Outer(outer) => {
-            Ok(sums(cases, outer, &hulls.sets, &case_weights(problem, cases)?))
-        }
-    }
+    Ok(sums(cases, hulls, &case_weights(problem, cases)?))
 }
 
 /// Returns Σ_k Σ_i s_i width_i(t_k) of the reachable sets with the noise set, where cases at one
 /// time count by their mean, and Σ_k Δt Π_i width_i(t_k), eq. (2) of the paper. Both are infinite
 /// where a set was lost.
-fn sums(cases: &[Case], outer: &[OuterSet], sets: &UncertaintySets, weights: &[f64]) -> (f64, f64) {
+fn sums(cases: &[Case], outer: &Hulls, weights: &[f64]) -> (f64, f64) {
     let shares = shares(cases.iter().map(|case| case.grid.times()));
     let (mut cost, mut volume) = (0.0, 0.0);
-    for ((case, set), shares) in cases.iter().zip(outer).zip(&shares) {
-        let (times, flowpipe) = (case.grid.times(), &set.flowpipe);
+    for ((case, flowpipe), shares) in cases.iter().zip(outer.flowpipes()).zip(&shares) {
+        let times = case.grid.times();
         for (k, share) in shares.iter().enumerate() {
             if k >= flowpipe.len() {
                 return (f64::INFINITY, f64::INFINITY);
             }
             let widths = flowpipe.sample(k).iter().map(|hull| hull.width()).enumerate();
-            let widths = widths.map(|(i, width)| width + 2.0 * sets.noise_radius(i));
+            let widths = widths.map(|(i, width)| width + 2.0 * outer.sets.noise_radius(i));
             let weighted = widths.clone().zip(weights).map(|(width, weight)| weight * width);
             cost += share * weighted.sum::<f64>();
             let next = times.get(k + 1).unwrap_or(&times[k]);

@@ -9,24 +9,26 @@
 
 use rayon::prelude::*;
 
+use crate::claim::claim::Claim;
+use crate::claim::look::Look;
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::data::side::Side;
 use crate::error::Result;
-use crate::flowpipes::OuterSet;
 use crate::found::SearchSummary;
+use crate::hulls::Hulls;
 use crate::linear::block::Block;
 use crate::linear::cut::Cut;
 use crate::linear::program::{Program, RowIndex, Solution};
 use crate::nominal::simulate::runs_away;
 use crate::progress::Progress;
-use crate::rows::rows;
 use crate::search::directions::{self, Direction};
 use crate::search::journal::Journal;
 use crate::search::sensitivity::Sensitivity;
 use crate::search::state::{Margin, SearchState};
 use crate::search::worst_case::Correction;
 use crate::sets::UncertaintySets;
+use crate::tube::polynomial::Polynomial;
 
 /// Rounds of linearisation after which the sets are taken as they are; with margins at most twice
 /// as many.
@@ -42,6 +44,8 @@ const MARGIN: f64 = 1.1;
 pub(super) struct SuccessiveLinearisation<'a> {
     pub problem: &'a Problem,
     pub cases: &'a [Case],
+    /// What is asked beyond the rows.
+    pub claim: &'a dyn Claim,
     /// The weights of the states in the cost, s, 2n.
     pub weights: Vec<f64>,
 }
@@ -51,7 +55,7 @@ pub(super) struct SearchResult<'a> {
     pub sets: UncertaintySets,
     /// The last program, with one block per case; `None` for a bisection.
     pub program: Option<Program<'a>>,
-    pub outer: Vec<OuterSet>,
+    pub outer: Hulls,
     /// The directions, other than the states, in which recorded points decide the sets, and how
     /// close the points are to what the linearised set reaches.
     pub directions: Vec<(Direction, f64)>,
@@ -101,14 +105,19 @@ impl SuccessiveLinearisation<'_> {
             // Enclose the reachable sets, and ask for what is outside with a margin.
             state.reachable_sets += 1;
             let outer = self.outer_sets(&state.sets, &state.directions)?;
-            let missing = self.missing(&outer, &state.sets);
+            let missing = self.missing(&outer)?;
             let is_lost = missing.iter().any(|margin| margin.margin.is_infinite());
             let rounds = if state.directions.is_empty() { 2 * ROUNDS } else { ROUNDS_OF_POINTS };
             if is_lost || state.rounds >= rounds {
                 return Ok(self.result(&state, round, outer));
             }
             let known = state.directions.len();
-            let has_new_directions = directions::take(&mut state.directions, &outer);
+            let judged = outer.judged.clone().unwrap_or_default();
+            let outside = judged.furthest.iter();
+            let outside = outside.map(|((at, _), point)| (*at, point.direction.clone()));
+            let along = self.claim.furthest(&outside.collect::<Vec<_>>())?;
+            directions::take(&mut state.directions, &judged, along);
+            let has_new_directions = state.directions.len() > known;
             if missing.is_empty() && !has_new_directions {
                 return Ok(self.result(&state, round, outer));
             }
@@ -119,7 +128,7 @@ impl SuccessiveLinearisation<'_> {
                 ));
             }
             if has_new_directions {
-                let points: usize = outer.iter().map(|set| set.points.unproved.len()).sum();
+                let points = judged.unproved_count();
                 progress.finished(&format!(
                     "recorded points that are not proved to lie in the set: {points}; new \
                      directions in the next round: {}",
@@ -131,33 +140,30 @@ impl SuccessiveLinearisation<'_> {
         }
     }
 
-    /// Computes the outer set of each case under `sets`, on all cores, and how far they reach in
-    /// some directions.
+    /// Computes the outer set of each case under `sets`, and how far they reach in some
+    /// directions.
     ///
     /// # Guarantee
     ///
-    /// As [`OuterSet::new`].
+    /// As [`Claim::judge`].
     ///
     /// # Errors
     ///
-    /// As [`OuterSet::new`].
+    /// As [`Claim::judge`].
     pub(super) fn outer_sets(
         &self,
         sets: &UncertaintySets,
         directions: &[Direction],
-    ) -> Result<Vec<OuterSet>> {
-        let of = |(index, case): (usize, &Case)| {
-            let (_, asked) = directions::of_case(directions, index);
-            OuterSet::new(self.problem, case, sets, &asked)
-        };
-        self.cases.par_iter().enumerate().map(of).collect()
+    ) -> Result<Hulls> {
+        let look = Look::Proof { at: None, asked: directions::asked(directions) };
+        self.claim.judge(&Polynomial(self.problem), sets, &look)
     }
 
     fn result<'s>(
         &'s self,
         state: &SearchState,
         round: Round<'s>,
-        outer: Vec<OuterSet>,
+        outer: Hulls,
     ) -> SearchResult<'s> {
         let sets = state.sets.clone();
         let summary = SearchSummary {
@@ -224,7 +230,8 @@ impl SuccessiveLinearisation<'_> {
         let (model, disturbance) =
             (self.problem.dynamics().polynomials(), self.problem.settings().disturbance);
         let of = |(index, case): (usize, &Case)| {
-            let (_, asked) = directions::of_case(directions, index);
+            let mine = directions.iter().filter(|known| known.case == index);
+            let asked: Vec<&Direction> = mine.collect();
             Sensitivity::new(model, case, sets, disturbance, &asked)
                 .map_err(|time| runs_away(case, time))
         };
@@ -243,22 +250,20 @@ impl SuccessiveLinearisation<'_> {
     }
 
     /// Returns the rows outside the reachable sets, each with what it misses and a little more.
-    fn missing(&self, outer: &[OuterSet], sets: &UncertaintySets) -> Vec<Margin> {
-        let (mut missing, states) = (Vec::new(), self.problem.settings().states);
-        for (index, (case, set)) in self.cases.iter().zip(outer).enumerate() {
-            rows(&case.measured, case.grid.times(), &set.flowpipe, sets, states, |row| {
-                for edge in row.edges.iter().filter(|edge| edge.excess > 0.0) {
-                    missing.push(Margin {
-                        case: index,
-                        sample: row.sample,
-                        state: row.state,
-                        side: edge.side,
-                        margin: MARGIN * edge.excess,
-                    });
-                }
-            });
-        }
-        missing
+    fn missing(&self, outer: &Hulls) -> Result<Vec<Margin>> {
+        let mut missing = Vec::new();
+        outer.for_each_row(self.problem, |_, case, row| {
+            for edge in row.edges.iter().filter(|edge| edge.excess > 0.0) {
+                missing.push(Margin {
+                    case: case.expect("these hulls belong to cases"),
+                    sample: row.sample,
+                    state: row.state,
+                    side: edge.side,
+                    margin: MARGIN * edge.excess,
+                });
+            }
+        })?;
+        Ok(missing)
     }
 }
 

@@ -1,15 +1,15 @@
 //! The notions that need every recorded point, over folds: the points stay in parts, which are
 //! asked in rounds, and the answer equals one machine's to the last bit.
 
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
 
 use crate::common::{Disturbed, Random, grid, two_joints};
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::{
     Conformance, Error, FitSettings, FleetProblem, Fold, Group, Hulls, Keep, Model, Noise, Notion,
     OnDefect, PartPoints, PartReader, PointServer, Problem, Settings, Setup, Silent, check,
-    conform, fit,
+    check_elsewhere, conform, conform_elsewhere, fit,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunSource, Torque};
 
@@ -91,7 +91,7 @@ fn in_parts(
     count: usize,
     part: impl Fn(usize) -> usize,
     broken: Option<usize>,
-) -> Problem {
+) -> (Problem, Parts) {
     let all = 0..runs.runs().len();
     let mut whole = Fold::new(setup).unwrap();
     for index in all.clone() {
@@ -109,12 +109,15 @@ fn in_parts(
     };
     let parts = Mutex::new((0..count).map(points).collect());
     let problem = Problem::of_fold(setup.clone(), whole.clone(), OnDefect::Report).unwrap();
-    let server = Parts { fleet, parts, asked: AtomicUsize::new(0) };
-    problem.with_points_elsewhere(Arc::new(server))
+    (problem, Parts { fleet, parts, asked: AtomicUsize::new(0) })
 }
 
-fn found(problem: &Problem) -> (Conformance, String) {
-    let found = conform(problem, &Silent, None).unwrap();
+fn found(problem: &Problem, server: Option<&Parts>) -> (Conformance, String) {
+    let found = match server {
+        Some(server) => conform_elsewhere(problem, server, &Silent),
+        None => conform(problem, &Silent, None),
+    };
+    let found = found.unwrap();
     let model = Model::new(problem, &found).to_json();
     (found, model)
 }
@@ -130,13 +133,14 @@ fn points_in_any_parts_give_the_model_file_of_one_machine() {
         let setup = setup(notion, noise);
         let source = Box::new(runs.clone());
         let once = Problem::read(setup.clone(), source, &[], Keep::Needed, &Silent).unwrap();
-        let (alone, file) = found(&once);
+        let (alone, file) = found(&once, None);
         let points = alone.verdict.points.as_ref().unwrap();
         assert!(alone.verdict.conformant && points.unproved == 0 && points.points > 400);
         assert!(!alone.tight.is_empty() && alone.cost > 0.0);
         for (count, stride) in [(1, 1), (2, 1), (5, 3), (19, 1)] {
-            let problem = in_parts(&setup, &runs, count, |index| index * stride % count, None);
-            assert_eq!(found(&problem).1, file, "{notion:?}, {count} parts");
+            let (problem, server) =
+                in_parts(&setup, &runs, count, |index| index * stride % count, None);
+            assert_eq!(found(&problem, Some(&server)).1, file, "{notion:?}, {count} parts");
         }
     }
 }
@@ -145,8 +149,8 @@ fn points_in_any_parts_give_the_model_file_of_one_machine() {
 fn recordings_with_defects_are_left_out_of_the_points_too() {
     let setup = setup(Notion::Exact, Noise::None);
     let runs = campaign(&[("A", 8)]);
-    let problem = in_parts(&setup, &runs, 3, |index| index % 3, Some(4));
-    let (found, _) = found(&problem);
+    let (problem, server) = in_parts(&setup, &runs, 3, |index| index % 3, Some(4));
+    let (found, _) = found(&problem, Some(&server));
     assert!(found.verdict.conformant);
     assert_eq!(found.verdict.points.unwrap().points, 7 * 23);
 }
@@ -159,18 +163,22 @@ fn a_check_names_the_same_points() {
     let source = Box::new(fitted);
     let problem = Problem::read(setup.clone(), source, &[], Keep::Needed, &Silent).unwrap();
     let model: Model = Model::new(&problem, &conform(&problem, &Silent, None).unwrap());
-    let answer = |problem: &Problem| {
+    let answer = |problem: &Problem, server: Option<&Parts>| {
         let hulls = Hulls::new(problem, model.sets()).unwrap();
-        check(&model, problem, &hulls).unwrap().verdict
+        let answer = match server {
+            Some(server) => check_elsewhere(&model, problem, &hulls, server),
+            None => check(&model, problem, &hulls),
+        };
+        answer.unwrap().verdict
     };
     let source = Box::new(others.clone());
     let once = Problem::read(setup.clone(), source, &[], Keep::Needed, &Silent).unwrap();
-    let expected = answer(&once);
+    let expected = answer(&once, None);
     let points = expected.points.as_ref().unwrap();
     assert!(points.outside > 0 && points.worst.is_some());
     for count in [1, 4] {
-        let parts = in_parts(&setup, &others, count, |index| index % count, None);
-        assert_eq!(answer(&parts), expected);
+        let (problem, server) = in_parts(&setup, &others, count, |index| index % count, None);
+        assert_eq!(answer(&problem, Some(&server)), expected);
     }
 }
 
@@ -179,8 +187,9 @@ fn points_of_other_recordings_are_refused() {
     let setup = setup(Notion::Exact, Noise::None);
     let runs = campaign(&[("A", 6)]);
     // One recording is in no part.
-    let problem = in_parts(&setup, &runs, 2, |index| if index == 5 { 9 } else { index % 2 }, None);
-    let refused = conform(&problem, &Silent, None).unwrap_err();
+    let part = |index| if index == 5 { 9 } else { index % 2 };
+    let (problem, server) = in_parts(&setup, &runs, 2, part, None);
+    let refused = conform_elsewhere(&problem, &server, &Silent).unwrap_err();
     assert!(matches!(&refused, Error::Fold(why) if why.contains("are missing")), "{refused}");
     // No part has the points.
     let fold = Fold::of_source(&setup, &runs, 0).unwrap();
@@ -194,7 +203,8 @@ fn points_of_other_recordings_are_refused() {
 #[test]
 fn a_fit_is_refused_because_points_are_deviations_from_the_motions_before_it() {
     let runs = campaign(&[("A", 4), ("B", 4)]);
-    let problem = in_parts(&setup(Notion::Exact, Noise::None), &runs, 2, |index| index % 2, None);
+    let setup = setup(Notion::Exact, Noise::None);
+    let (problem, _) = in_parts(&setup, &runs, 2, |index| index % 2, None);
     let settings = FitSettings { groups: vec![Group::Viscous], pull: Some(0.02) };
     let refused = fit(&problem, &settings, &Silent).unwrap_err().to_string();
     assert!(refused.contains("fit for the notion hull"), "{refused}");

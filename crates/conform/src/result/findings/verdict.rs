@@ -4,12 +4,12 @@ use reachtube_reach::Disturbance;
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::{at_least, four_decimals};
 
+use crate::claim::witness::{PointVerdict, PointWitness};
 use crate::data::settings::Notion;
 use crate::explain::trace::TraceVerdict;
 use crate::found::SearchSummary;
 use crate::hulls::{Enclosure, Lost};
 use crate::model::file::Model;
-use crate::notion::verdict::{PointVerdict, PointWitness};
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::{counted, notion_words, plural};

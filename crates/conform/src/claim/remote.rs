@@ -1,17 +1,20 @@
 //! Points that other processes have.
 
 use std::fmt::Debug;
-use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::problem::Problem;
+use crate::claim::claim::{Claim, other_answer};
+use crate::claim::look::{Answer, Look, Question};
 use crate::data::tree::Tree;
 use crate::error::{Error, Result};
-use crate::notion::ask::{Answer, Points, Question};
+use crate::hulls::Hulls;
+use crate::sets::UncertaintySets;
+use crate::tube::judged::{Along, At};
+use crate::tube::plant::Plant;
 
 /// The version of questions and answers in bytes.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The way to the points of a fold's recordings, which other processes have in parts
 /// ([`PartPoints`](crate::PartPoints)).
@@ -25,10 +28,10 @@ pub trait PointServer: Debug + Send + Sync {
     fn ask(&self, question: &[u8]) -> Result<Vec<u8>, String>;
 }
 
-/// The points of a problem, with a server.
+/// Recorded points that other processes have.
 #[derive(Debug)]
-pub(crate) struct PointsElsewhere<'a> {
-    pub server: &'a Arc<dyn PointServer>,
+pub(crate) struct Remote<'a> {
+    pub server: &'a dyn PointServer,
     /// The root of the tree over the recordings of the problem.
     pub root: &'a str,
 }
@@ -41,7 +44,7 @@ pub(crate) struct SentAnswer {
     answer: Answer,
 }
 
-impl Points for PointsElsewhere<'_> {
+impl Remote<'_> {
     fn ask(&self, question: &Question) -> Result<Answer> {
         let bytes = self.server.ask(&question_to_bytes(question)).map_err(Error::Fold)?;
         let sent = SentAnswer::from_bytes(&bytes)?;
@@ -53,6 +56,23 @@ impl Points for PointsElsewhere<'_> {
             ));
         }
         Ok(sent.answer)
+    }
+}
+
+impl Claim for Remote<'_> {
+    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Hulls> {
+        let question = Question::Judge { sets: sets.clone(), look: look.clone() };
+        let Answer::Judged(judged) = self.ask(&question)? else { return Err(other_answer()) };
+        Ok(Hulls { judged: Some(judged), ..plant.tube(sets, None)?.0 })
+    }
+
+    fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {
+        let question = Question::Furthest { directions: directions.to_vec() };
+        let Answer::Furthest(found) = self.ask(&question)? else { return Err(other_answer()) };
+        if found.len() != directions.len() {
+            return Err(other_answer());
+        }
+        found.into_iter().map(|along| along.ok_or_else(other_answer)).collect()
     }
 }
 
@@ -100,19 +120,4 @@ pub(crate) fn question_from_bytes(bytes: &[u8]) -> Result<Question> {
     let read: Option<(u32, Question)> = postcard::from_bytes(bytes).ok();
     let question = read.filter(|(version, _)| *version == VERSION).map(|(_, question)| question);
     question.ok_or_else(|| Error::Fold("not a question of this version".into()))
-}
-
-impl Problem {
-    /// Returns the problem of a fold whose points other processes have: the notions phase-plane and
-    /// exact ask them.
-    #[must_use]
-    pub fn with_points_elsewhere(mut self, server: Arc<dyn PointServer>) -> Self {
-        self.point_server = Some(server);
-        self
-    }
-
-    pub(crate) fn points_elsewhere(&self) -> Option<PointsElsewhere<'_>> {
-        let root = &self.recordings().root;
-        self.point_server.as_ref().map(|server| PointsElsewhere { server, root })
-    }
 }

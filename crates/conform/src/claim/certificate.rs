@@ -7,13 +7,14 @@ use rayon::prelude::*;
 use reachtube_reach::Disturbance;
 use serde::Serialize;
 
+use crate::claim::sample_points::{SamplePoints, points, projections};
+use crate::claim::sample_set::{CentredPoints, Factors, SampleSet};
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::error::{Error, Result};
 use crate::model::file::Model;
-use crate::notion::proof::{Factors, ProjectedPoints};
-use crate::notion::sweep::{PARTS, Sweep};
 use crate::sets::UncertaintySets;
+use crate::tube::linear::{Linear, PARTS};
 
 /// What the field `format` of every certificate says.
 pub const CERTIFICATE_FORMAT: &str = "reachtube-certificate";
@@ -73,7 +74,7 @@ impl Certificate {
             Notion::Exact | Notion::Trace => Notion::Exact,
             Notion::PhasePlane => Notion::PhasePlane,
         };
-        let (sweep, sets) = (Sweep::new(problem)?, model.sets());
+        let (plant, points, sets) = (Linear::new(problem)?, points(problem)?, model.sets());
         let is_measurable = problem.settings().disturbance == Disturbance::Measurable;
         let head = Head {
             format: CERTIFICATE_FORMAT,
@@ -82,9 +83,8 @@ impl Certificate {
             model_sha256: &model.sha256,
             parts: if is_measurable { PARTS } else { 1 },
         };
-        let of_sample = |at: usize| lines(problem, &sweep, &sets, at);
-        let samples: Vec<Vec<String>> =
-            (0..sweep.points.len()).into_par_iter().map(of_sample).collect();
+        let of_sample = |at: &SamplePoints| lines(problem, &plant, &sets, at);
+        let samples: Vec<Vec<String>> = points.par_iter().map(of_sample).collect();
         Ok(Self {
             lines: std::iter::once(json(&head)).chain(samples.into_iter().flatten()).collect(),
         })
@@ -106,24 +106,30 @@ impl Certificate {
     }
 }
 
-fn lines(problem: &Problem, sweep: &Sweep, sets: &UncertaintySets, at: usize) -> Vec<String> {
-    let (centre, error) = sweep.centre(&sweep.points[at], sets);
+fn lines(
+    problem: &Problem,
+    plant: &Linear,
+    sets: &UncertaintySets,
+    at: &SamplePoints,
+) -> Vec<String> {
+    let (settings, slice) = (problem.settings(), plant.slice(sets, at.place()));
+    let points = CentredPoints::new(at, &slice);
     let mut lines = Vec::new();
-    for projection in 0..sweep.projections.len() {
-        let points = ProjectedPoints::new(sweep, at, projection, [&centre, &error]);
-        sweep.unproved_in(&points, sets, |point, factors| {
+    for states in &projections(settings.notion, settings.states, problem.joints()) {
+        let (proved, _) = SampleSet::new(&slice, states).prove(&points, |point, factors| {
             let Factors { held, limit, set, work } = factors;
-            let (suite, run) = points.at.owners[point];
-            lines.push(json(&Line {
+            let (suite, run) = at.owners[point];
+            json(&Line {
                 suite: &problem.recordings().suites[suite as usize].entry.name,
                 run: &problem.entry(run as usize).file,
-                sample: points.at.sample,
-                states: points.projection,
+                sample: at.sample,
+                states,
                 held,
                 limit,
                 y: work.multipliers(set),
-            }));
+            })
         });
+        lines.extend(proved);
     }
     lines
 }

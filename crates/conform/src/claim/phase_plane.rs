@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 use reachtube_recordings::State;
 
+use crate::claim::sample_points::{SamplePoints, points, projections};
 use crate::data::problem::Problem;
 use crate::data::settings::{Notion, States};
 use crate::error::Result;
-use crate::notion::points::SamplePoints;
-use crate::notion::sweep::Sweep;
 use crate::sets::UncertaintySets;
+use crate::tube::linear::Linear;
+use crate::tube::plant::Slice;
 
 /// The reachable set of one joint's position and velocity at one sample, with the recordings
 /// there. All values are deviations from the nominal solution.
@@ -44,26 +45,27 @@ impl PhasePlane {
         {
             return Ok(Vec::new());
         }
-        let sweep = Sweep::of_notion(problem, Notion::PhasePlane)?;
-        let plane = |joint: usize| {
-            let ratio = |at: &SamplePoints| furthest(&sweep, at, sets, joint);
-            let ratios: Vec<f64> = sweep.points.par_iter().map(ratio).collect();
+        let (plant, points) = (Linear::new(problem)?, points(problem)?);
+        let planes = projections(Notion::PhasePlane, States::All, problem.joints());
+        let plane = |states: &Vec<usize>| {
+            let ratio = |at: &SamplePoints| furthest(&plant.slice(sets, at.place()), at, states);
+            let ratios: Vec<f64> = points.par_iter().map(ratio).collect();
             let at = (0..ratios.len()).max_by(|&i, &k| ratios[i].total_cmp(&ratios[k]))?;
-            Some(Self::new(&sweep, &sweep.points[at], sets, joint))
+            Some(Self::new(&plant, &points[at], sets, states))
         };
-        Ok((0..problem.joints()).filter_map(plane).collect())
+        Ok(planes.iter().filter_map(plane).collect())
     }
 
-    fn new(sweep: &Sweep, at: &SamplePoints, sets: &UncertaintySets, joint: usize) -> Self {
-        let (centre, _) = sweep.centre(at, sets);
-        let states = &sweep.projections[joint];
+    fn new(plant: &Linear, at: &SamplePoints, sets: &UncertaintySets, states: &[usize]) -> Self {
+        let slice = plant.slice(sets, at.place());
+        let (centre, _) = slice.centre();
         let [q, qd] = [states[0], states[1]];
-        let rows = sweep.rows(at, sets, states, 1);
-        let hull = sweep.hull(at, sets);
+        let rows = slice.generators(states, 1);
+        let hull = slice.hull();
         let bounds = |i: usize| [centre[i] - hull[i], centre[i] + hull[i]];
         Self {
-            joint: State::from_index(q, sweep.states / 2).joint,
-            time: sweep.grids[at.grid].propagation.grid().times()[at.sample],
+            joint: State::from_index(q, centre.len() / 2).joint,
+            time: plant.grids[at.strand].propagation.grid().times()[at.sample],
             polygon: rows.zonotope(vec![centre[q], centre[qd]]).polygon(0, 1),
             hull: [bounds(q), bounds(qd)],
             points: at.iter().map(|d| [d[q], d[qd]]).collect(),
@@ -73,10 +75,10 @@ impl PhasePlane {
 
 /// By which factor the set would have to grow for the furthest of the points, about, from the edges
 /// of a smaller set with few generators.
-fn furthest(sweep: &Sweep, at: &SamplePoints, sets: &UncertaintySets, joint: usize) -> f64 {
-    let (centre, _) = sweep.centre(at, sets);
-    let states = &sweep.projections[joint];
-    let vertices = sweep.coarse_rows(at, sets, states).zonotope(vec![0.0, 0.0]).polygon(0, 1);
+fn furthest(slice: &dyn Slice, at: &SamplePoints, states: &[usize]) -> f64 {
+    let (centre, _) = slice.centre();
+    let held = slice.coarse().first().copied().unwrap_or(1);
+    let vertices = slice.generators(states, held).zonotope(vec![0.0, 0.0]).polygon(0, 1);
     let next = vertices.iter().cycle().skip(1);
     let edges: Vec<[f64; 3]> = vertices
         .iter()

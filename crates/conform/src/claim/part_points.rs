@@ -2,11 +2,14 @@
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::OnceLock;
 
 use reachtube_recordings::{Defect, ReadOptions, Run, RunEntry};
 use serde::{Deserialize, Serialize};
 
+use crate::claim::points::{KnownLists, Points};
+use crate::claim::remote::{SentAnswer, question_from_bytes};
+use crate::claim::sample_points::{AllPoints, SamplePoints, nominals};
 use crate::data::fold::context::Context;
 use crate::data::fold::fold::Fold;
 use crate::data::fold::of_fold::OnDefect;
@@ -15,10 +18,7 @@ use crate::data::setup::Setup;
 use crate::data::tree::{Leaf, Tree};
 use crate::deviation::Nominal;
 use crate::error::{Error, Result};
-use crate::notion::answers::KnownLists;
-use crate::notion::elsewhere::{SentAnswer, question_from_bytes};
-use crate::notion::points::{AllPoints, SamplePoints, nominals};
-use crate::notion::sweep::Sweep;
+use crate::tube::linear::Linear;
 
 /// What every part of a fleet needs to find its points: the problem of the whole fold, and the
 /// nominal solutions of its suites, which are computed when they are first needed.
@@ -46,7 +46,7 @@ pub struct PartPoints {
     /// Files by their places in the manifest.
     files: BTreeMap<u32, String>,
     #[serde(skip)]
-    lists: Mutex<KnownLists>,
+    lists: KnownLists,
 }
 
 /// Takes the recordings of a part one by one.
@@ -138,7 +138,7 @@ impl<'a> PartReader<'a> {
     #[must_use]
     pub fn finish(self) -> PartPoints {
         let Self { tree, points, files, .. } = self;
-        PartPoints { tree, points: points.into_samples(), files, lists: Mutex::default() }
+        PartPoints { tree, points: points.into_samples(), files, lists: KnownLists::default() }
     }
 }
 
@@ -150,11 +150,11 @@ impl PartPoints {
     /// [`Error::Fold`] for bytes that are no question; as [`Problem::grids`].
     pub fn answer(&self, fleet: &FleetProblem, question: &[u8]) -> Result<Vec<u8>> {
         let question = question_from_bytes(question)?;
-        let notion = fleet.problem.settings().notion;
-        let sweep = Sweep::of_points(&fleet.problem, notion, Cow::Borrowed(&self.points))?;
         let file = |run: u32| self.files.get(&run).cloned().unwrap_or_default();
-        let mut lists = self.lists.lock().unwrap_or_else(PoisonError::into_inner);
-        let answer = sweep.answer(&question, &mut lists, &file);
+        let (samples, lists) = (Cow::Borrowed(&*self.points), KnownLists::clone(&self.lists));
+        let settings = (fleet.problem.settings(), fleet.problem.joints());
+        let points = Points::of(samples, settings, lists, Box::new(file));
+        let answer = points.answer(&Linear::new(&fleet.problem)?, &question)?;
         Ok(SentAnswer::new(self.tree.clone(), answer).to_bytes())
     }
 

@@ -5,21 +5,12 @@ use std::fmt::Write;
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
-use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::data::side::Side;
-use crate::error::Result;
-use crate::flowpipes::OuterSet;
-use crate::hulls::{HullKind, Hulls};
-use crate::notion::answers::points_of;
-use crate::notion::ask::{
-    Answer, At, Owner, PointOutside, Question, RecordedPoint, UnprovedRun, other_answer,
-};
-use crate::notion::outer::{FurthestPoint, UnprovedPoint};
-use crate::notion::points::SamplePoints;
-use crate::notion::sweep::Sweep;
-use crate::sets::UncertaintySets;
+use crate::error::{Error, Result};
+use crate::hulls::Hulls;
+use crate::tube::judged::{At, Judged, PointOutside};
 use crate::verdict::Witness;
 
 /// A state is named in a combination when its part is at least this of the largest.
@@ -86,128 +77,35 @@ pub(crate) struct SeparatedPoint<'a> {
     pub ratio: f64,
 }
 
-impl<'a> SeparatedPoint<'a> {
-    fn of_outer(
-        problem: &'a Problem,
-        case: &Case,
-        point: &'a FurthestPoint,
-        hull: &'a [f64],
-    ) -> Self {
-        Self {
-            suite: case.suite,
-            file: &problem.entry(point.run).file,
-            sample: point.sample,
-            time: case.grid.times()[point.sample],
-            hull,
-            deviation: &point.deviation,
-            direction: &point.direction,
-            ratio: point.ratio,
-        }
-    }
-}
-
-/// A verdict, and suite, recording and number of the points that are not proved: a recording may be
-/// there more than once, and the first has the first point.
-pub(crate) struct Judged {
-    pub verdict: PointVerdict,
-    pub unproved: Vec<(usize, String, usize)>,
-}
-
-/// Judges all points of a problem whose settings ask for more than the hull.
-///
-/// # Guarantee
-///
-/// A point that is not among the unproved ones lies in the exact reachable set of a linear model;
-/// in the computed outer set of any other.
-///
-/// # Errors
-///
-/// As [`Sweep::new`].
-pub(crate) fn judge(problem: &Problem, hulls: &Hulls) -> Result<Judged> {
-    match &hulls.kind {
-        HullKind::Linear(_) => judge_linear(problem, &hulls.sets),
-        HullKind::Outer(outer) => judge_outer(problem, &hulls.sets, outer),
-    }
-}
-
-/// Collects what was found when the outer sets were computed.
-fn judge_outer(problem: &Problem, sets: &UncertaintySets, outer: &[OuterSet]) -> Result<Judged> {
-    let cases = problem.cases()?;
-    let unproved = || {
-        let of_case = |(case, set): (&Case, &'_ OuterSet)| {
-            let suite = case.suite;
-            set.points.unproved.iter().map(move |point| (suite, *point)).collect::<Vec<_>>()
+impl PointVerdict {
+    /// Sums up what was found about the points of a problem.
+    pub(crate) fn new(problem: &Problem, hulls: &Hulls, judged: &Judged) -> Result<Self> {
+        let worst = judged.furthest.iter().max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio));
+        let witness = |((at, _), outside): (&(At, u32), &PointOutside)| {
+            let (time, hull) = (hulls.time(problem, *at)?, hulls.radii(*at));
+            let point = SeparatedPoint {
+                suite: outside.owner.0 as usize,
+                file: &outside.file,
+                sample: at.1 as usize,
+                time,
+                hull: &hull,
+                deviation: &outside.deviation,
+                direction: &outside.direction,
+                ratio: outside.ratio,
+            };
+            Ok::<_, Error>(PointWitness::new(problem, &point))
         };
-        cases.iter().zip(outer).flat_map(of_case)
-    };
-    let furthest = cases
-        .iter()
-        .zip(outer)
-        .flat_map(|(case, set)| set.points.furthest.iter().map(move |point| (case, set, point)));
-    let worst = furthest.max_by(|a, b| a.2.ratio.total_cmp(&b.2.ratio));
-    let verdict = PointVerdict {
-        notion: problem.settings().notion,
-        points: outer.iter().map(|set| set.points.points).sum(),
-        unproved: unproved().count(),
-        outside: unproved().filter(|(_, point)| point.is_outside).count(),
-        worst: worst.map(|(case, set, point)| {
-            let hull = set.hull_radii(point.sample, sets);
-            PointWitness::new(problem, &SeparatedPoint::of_outer(problem, case, point, &hull))
-        }),
-    };
-    let of_run =
-        |(suite, point): (usize, UnprovedPoint)| (suite, problem.entry(point.run).file.clone(), 1);
-    Ok(Judged { verdict, unproved: unproved().map(of_run).collect() })
-}
-
-fn judge_linear(problem: &Problem, sets: &UncertaintySets) -> Result<Judged> {
-    let question = Question::Judge { sets: sets.clone() };
-    let Answer::Judge(part) = points_of(problem)?.ask(&question)? else {
-        return Err(other_answer());
-    };
-    let frame = Sweep::without_points(problem)?;
-    let worst = part.furthest.iter().max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio));
-    let verdict = PointVerdict {
-        notion: problem.settings().notion,
-        points: part.points,
-        unproved: part.unproved.values().map(|run| run.count).sum(),
-        outside: part.outside,
-        worst: worst
-            .map(|((at, _), point)| PointWitness::of_sweep(problem, &frame, sets, *at, point)),
-    };
-    let mut runs: Vec<(Owner, UnprovedRun)> = part.unproved.into_iter().collect();
-    runs.sort_by_key(|(owner, run)| (run.first, *owner));
-    let unproved = runs.into_iter().map(|((suite, _), run)| (suite as usize, run.file, run.count));
-    Ok(Judged { verdict, unproved: unproved.collect() })
+        Ok(Self {
+            notion: problem.settings().notion,
+            points: judged.points,
+            unproved: judged.unproved_count(),
+            outside: judged.outside,
+            worst: worst.map(witness).transpose()?,
+        })
+    }
 }
 
 impl PointWitness {
-    /// Names a point outside the set of a linear model.
-    pub(crate) fn of_sweep(
-        problem: &Problem,
-        frame: &Sweep,
-        sets: &UncertaintySets,
-        at: At,
-        outside: &PointOutside,
-    ) -> Self {
-        let at = SamplePoints { grid: at.0 as usize, sample: at.1 as usize, ..Default::default() };
-        let RecordedPoint { owner, file, deviation } = &outside.point;
-        let (centre, _) = frame.centre(&at, sets);
-        let hull = frame.hull(&at, sets);
-        let deviation: Vec<f64> = deviation.iter().zip(&centre).map(|(x, c)| x - c).collect();
-        let point = SeparatedPoint {
-            suite: owner.0 as usize,
-            file,
-            sample: at.sample,
-            time: frame.grids[at.grid].propagation.grid().times()[at.sample],
-            hull: &hull,
-            deviation: &deviation,
-            direction: &outside.direction,
-            ratio: outside.ratio,
-        };
-        Self::new(problem, &point)
-    }
-
     /// Names a point outside in the words of the recordings.
     pub(crate) fn new(problem: &Problem, point: &SeparatedPoint) -> Self {
         let SeparatedPoint { hull, deviation, direction, .. } = point;

@@ -1,5 +1,5 @@
-//! The recorded points of a linear model: the deviations of all runs, sample by sample. And the
-//! projections in which points must lie in a set.
+//! The recorded points, sample by sample: the deviations of all runs from the nominal solutions of
+//! a linear model, their states for any other. And the projections in which they must lie in a set.
 
 use reachtube_recordings::Run;
 use reachtube_scalar::Interval;
@@ -10,18 +10,18 @@ use crate::data::problem::Problem;
 use crate::data::settings::{Notion, States};
 use crate::deviation::Nominal;
 use crate::error::Result;
-use crate::notion::ask::At;
+use crate::tube::judged::At;
 
-/// The points of runs at one sample of one grid.
+/// The points of runs at one sample of one strand: a grid of a linear model, a case of any other.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(crate) struct SamplePoints {
-    /// The grid.
-    pub grid: usize,
+    /// The strand.
+    pub strand: usize,
     /// The sample.
     pub sample: usize,
-    /// The deviations d = x_m(t_k) - x̂(t_k), points x 2n, rounded.
+    /// The deviations d = x_m(t_k) - x̂(t_k), rounded, or the states x_m(t_k), points x 2n.
     pub values: Vec<f64>,
-    /// How far each deviation may be from its rounded value, points x 2n, rounded up.
+    /// How far each value may be from the exact one, points x 2n, rounded up.
     pub errors: Vec<f32>,
     /// The number of states, 2n.
     pub states: usize,
@@ -41,9 +41,9 @@ impl SamplePoints {
         self.states > 0 && [self.values.len(), self.errors.len()] == [count; 2]
     }
 
-    /// Returns grid and sample.
+    /// Returns strand and sample.
     pub(crate) fn place(&self) -> At {
-        (self.grid as u32, self.sample as u32)
+        (self.strand as u32, self.sample as u32)
     }
 
     /// Returns a point, 2n entries.
@@ -51,7 +51,7 @@ impl SamplePoints {
         &self.values[index * self.states..][..self.states]
     }
 
-    /// Returns how far the deviation in state `state` of a point may be from its rounded value.
+    /// Returns how far the value in state `state` of a point may be from the exact one.
     pub(crate) fn error(&self, index: usize, state: usize) -> f64 {
         f64::from(self.errors[index * self.states + state])
     }
@@ -74,18 +74,48 @@ pub(crate) fn projections(notion: Notion, states: States, joints: usize) -> Vec<
     }
 }
 
-/// Collects the points of a problem whose model is linear, from the second sample of each grid on:
-/// at the first one the set is a box, and its hull is the set itself. The points of all runs stay
-/// in memory, 24 n bytes each.
+/// Collects the points of a problem, from the second sample of each strand on: at the first one the
+/// set is a box, and its hull is the set itself. The points of all runs stay in memory, 24 n bytes
+/// each.
 ///
 /// # Guarantee
 ///
-/// Outer: the exact deviation lies within `errors` of its point.
+/// Outer: the exact deviation from the nominal solution of a linear model lies within `errors` of
+/// its point. Recorded states are exact.
 ///
 /// # Errors
 ///
 /// As [`Problem::grids`] and [`Problem::run`].
 pub(crate) fn points(problem: &Problem) -> Result<Vec<SamplePoints>> {
+    match problem.dynamics().linear_system() {
+        Some(_) => deviations(problem),
+        None => states(problem),
+    }
+}
+
+/// Collects the recorded states of each case.
+fn states(problem: &Problem) -> Result<Vec<SamplePoints>> {
+    let cases = problem.cases()?;
+    let lengths = cases.iter().map(|case| case.grid.len());
+    let mut all = AllPoints::empty(lengths, 2 * problem.joints());
+    for (strand, case) in cases.iter().enumerate() {
+        let suite = &problem.recordings().suites[case.suite];
+        let is_own = |index: usize| case.run.is_none_or(|run| run == index);
+        for summary in suite.every_run()?.iter().filter(|summary| is_own(summary.index)) {
+            let (owner, run) =
+                ((case.suite as u32, summary.index as u32), problem.run(summary.index)?);
+            for at in all.0[strand].iter_mut().take(run.len().saturating_sub(1)) {
+                at.values.extend(run.state(at.sample));
+                at.errors.extend(run.state(at.sample).iter().map(|_| 0.0));
+                at.owners.push(owner);
+            }
+        }
+    }
+    Ok(all.into_samples())
+}
+
+/// Collects the deviations of all runs from the nominal solutions of a linear model.
+fn deviations(problem: &Problem) -> Result<Vec<SamplePoints>> {
     let mut all = AllPoints::new(problem)?;
     for (index, suite) in problem.recordings().suites.iter().enumerate() {
         for (nominal, run) in nominals(problem, index)? {
@@ -121,13 +151,17 @@ impl AllPoints {
     ///
     /// As [`Problem::grids`].
     pub(crate) fn new(problem: &Problem) -> Result<Self> {
-        let states = 2 * problem.joints();
-        let empty = |(grid, samples): (usize, usize)| {
-            let at = |sample| SamplePoints { grid, sample, states, ..SamplePoints::default() };
+        let lengths = problem.grids()?.as_slice().iter().map(|grid| grid.propagation.grid().len());
+        Ok(Self::empty(lengths, 2 * problem.joints()))
+    }
+
+    /// Returns no points, at every sample but the first of strands of these lengths.
+    fn empty(lengths: impl Iterator<Item = usize>, states: usize) -> Self {
+        let empty = |(strand, samples): (usize, usize)| {
+            let at = |sample| SamplePoints { strand, sample, states, ..SamplePoints::default() };
             (1..samples).map(at).collect()
         };
-        let grids = problem.grids()?.as_slice().iter();
-        Ok(Self(grids.map(|grid| grid.propagation.grid().len()).enumerate().map(empty).collect()))
+        Self(lengths.enumerate().map(empty).collect())
     }
 
     /// Takes the points of a run: its suite and index are `owner`.

@@ -1,0 +1,15 @@
+//! What recordings must satisfy beyond the rows: every recorded point lies in the reachable set
+//! itself (exact), or in its projections on the phase planes of the joints.
+
+pub(crate) mod certificate;
+#[expect(clippy::module_inception, reason = "the folder and its main trait share the noun")]
+pub(crate) mod claim;
+pub(crate) mod look;
+pub(crate) mod part_points;
+pub(crate) mod phase_plane;
+pub(crate) mod points;
+pub(crate) mod remote;
+mod sample_points;
+mod sample_set;
+pub(crate) mod touching;
+pub(crate) mod witness;

@@ -1,0 +1,296 @@
+//! Recorded points that lie in the reachable set, or in its projections on the phase planes.
+
+use std::borrow::Cow;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use crate::claim::claim::{Claim, other_answer};
+use crate::claim::look::{Answer, Look, Near, Question};
+use crate::claim::sample_points::{SamplePoints, points, projections};
+use crate::claim::sample_set::{CentredPoints, OUTSIDE, SampleSet};
+use crate::data::problem::Problem;
+use crate::data::settings::Settings;
+use crate::error::Result;
+use crate::hulls::Hulls;
+use crate::sets::UncertaintySets;
+use crate::tube::judged::{Along, At, Judged, PointOutside};
+use crate::tube::plant::{Plant, Slice};
+
+/// How accurately points near the boundary are told from others.
+const NEAR: f64 = 1e-3;
+
+/// How accurately the growth is known that a point outside a computed outer set needs.
+const GAUGE: f64 = 1e-7;
+
+/// For each sample, the points in a list; lists that were asked for stay.
+pub(crate) type KnownLists = Arc<Mutex<Vec<(Near, Vec<Vec<usize>>)>>>;
+
+/// Recorded points in memory.
+pub(crate) struct Points<'a> {
+    samples: Cow<'a, [SamplePoints]>,
+    /// The states of each projection in which points must lie in the set.
+    projections: Vec<Vec<usize>>,
+    lists: KnownLists,
+    /// Names a run.
+    file: Box<dyn Fn(u32) -> String + Sync + 'a>,
+}
+
+impl<'a> Points<'a> {
+    /// Collects the points of a problem.
+    ///
+    /// # Errors
+    ///
+    /// As [`points`].
+    pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
+        let file = |run: u32| problem.entry(run as usize).file.clone();
+        let samples = points(problem)?.into();
+        let settings = (problem.settings(), problem.joints());
+        Ok(Self::of(samples, settings, KnownLists::default(), Box::new(file)))
+    }
+
+    /// Takes points that were collected; `file` names a run.
+    pub(crate) fn of(
+        samples: Cow<'a, [SamplePoints]>,
+        (settings, joints): (&Settings, usize),
+        lists: KnownLists,
+        file: Box<dyn Fn(u32) -> String + Sync + 'a>,
+    ) -> Self {
+        let projections = projections(settings.notion, settings.states, joints);
+        Self { samples, projections, lists, file }
+    }
+
+    /// Answers a question of another process.
+    ///
+    /// # Errors
+    ///
+    /// As [`Claim::judge`].
+    pub(crate) fn answer(&self, plant: &dyn Plant, question: &Question) -> Result<Answer> {
+        Ok(match question {
+            Question::Judge { sets, look } => {
+                Answer::Judged(self.judge(plant, sets, look)?.judged.unwrap_or_default())
+            }
+            Question::Furthest { directions } => {
+                Answer::Furthest(directions.iter().map(|along| self.along(along)).collect())
+            }
+        })
+    }
+
+    /// Returns the index of a sample, which is in the order of strands and samples.
+    fn index(&self, at: At) -> Option<usize> {
+        self.samples.binary_search_by_key(&at, SamplePoints::place).ok()
+    }
+
+    fn along(&self, (at, direction): &(At, Vec<f64>)) -> Option<Along> {
+        let points = &self.samples[self.index(*at)?];
+        let (point, value) = points.furthest(direction);
+        let owner = points.owners[point];
+        let (file, point) = ((self.file)(owner.1), points.point(point).to_vec());
+        Some(Along { owner, file, point, value })
+    }
+
+    /// Returns, for each sample, the points that are in one of the lists.
+    fn in_lists(&self, plant: &dyn Plant, wanted: &[Near]) -> Result<Vec<Vec<usize>>> {
+        let mut lists = self.lists.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = vec![Vec::new(); self.samples.len()];
+        for near in wanted {
+            let known = match lists.iter().position(|(known, _)| known == near) {
+                Some(known) => known,
+                None => {
+                    lists.push((near.clone(), self.near(plant, near)?));
+                    lists.len() - 1
+                }
+            };
+            for (all, list) in all.iter_mut().zip(&lists[known].1) {
+                all.extend(list);
+            }
+        }
+        for list in &mut all {
+            list.sort_unstable();
+            list.dedup();
+        }
+        Ok(all)
+    }
+
+    /// Returns, for each sample, the points that are outside the set shrunk by the factor `margin`,
+    /// or close to its boundary.
+    fn near(&self, plant: &dyn Plant, Near { sets, margin }: &Near) -> Result<Vec<Vec<usize>>> {
+        let lists: Vec<OnceLock<Vec<usize>>> =
+            self.samples.iter().map(|_| OnceLock::new()).collect();
+        let watch = |slice: &dyn Slice| {
+            if let Some(index) = self.index(slice.at()) {
+                let points = CentredPoints::new(&self.samples[index], slice);
+                let mut near = vec![false; points.at.owners.len()];
+                for states in &self.projections {
+                    let mut set = SampleSet::new(slice, states);
+                    for (point, near) in near.iter_mut().enumerate() {
+                        let mut d = points.point(point, states);
+                        d.iter_mut().for_each(|x| *x /= margin);
+                        *near |= !set.contains(&d, NEAR);
+                    }
+                }
+                let near = (0..near.len()).filter(|point| near[*point]).collect();
+                lists[index].set(near).expect("a slice is shown once");
+            }
+            Judged::default()
+        };
+        plant.tube(sets, Some(&watch))?;
+        Ok(lists.into_iter().map(|list| list.into_inner().unwrap_or_default()).collect())
+    }
+
+    /// Returns the one of some points that is furthest outside in each projection, where the set
+    /// must grow by more than the factor 1 + `tolerance`. Each point is judged alone, so that
+    /// neither the order nor the grouping of the points makes a difference; of points that are
+    /// equally far, the one with the lowest owner counts.
+    fn outside(
+        &self,
+        points: &CentredPoints,
+        set: &mut SampleSet,
+        (projection, at): (usize, At),
+        tolerance: f64,
+        candidates: impl Iterator<Item = usize>,
+    ) -> Judged {
+        let states = &self.projections[projection];
+        let owner = |point: usize| points.at.owners[point];
+        let mut worst: Option<(usize, f64, Vec<f64>)> = None;
+        for point in candidates {
+            let d = points.point(point, states);
+            let known = worst.as_ref().map(|worst| worst.1);
+            let Some((ratio, short)) = set.growth(&d, tolerance, known) else { continue };
+            let is_further = worst.as_ref().is_none_or(|worst| {
+                ratio > worst.1 || ratio == worst.1 && owner(point) < owner(worst.0)
+            });
+            if is_further {
+                worst = Some((point, ratio, short));
+            }
+        }
+        let worst = worst.map(|(point, ratio, short)| {
+            self.point_outside(points, projection, (point, ratio, short))
+        });
+        let furthest = worst.map(|worst| ((at, projection as u32), worst)).into_iter().collect();
+        Judged { furthest, ..Judged::default() }
+    }
+
+    /// Returns the point of those outside a computed outer set that a direction shows to be
+    /// furthest outside.
+    fn outside_outer(
+        &self,
+        points: &CentredPoints,
+        set: &mut SampleSet,
+        projection: usize,
+        unproved: &[(usize, Option<f64>)],
+        slice: &dyn Slice,
+    ) -> Judged {
+        let outside = unproved.iter().filter_map(|(point, ratio)| Some((*point, (*ratio)?)));
+        let worst = outside.max_by(|a, b| a.1.total_cmp(&b.1));
+        let furthest = worst.and_then(|(point, ratio)| {
+            let d = points.point(point, &self.projections[projection]);
+            let (_, short) = set.gauge(&d, GAUGE)?;
+            let mut worst = self.point_outside(points, projection, (point, ratio, short));
+            worst.reach = Some(slice.support(&worst.direction));
+            Some(((slice.at(), projection as u32), worst))
+        });
+        Judged { furthest: furthest.into_iter().collect(), ..Judged::default() }
+    }
+
+    fn point_outside(
+        &self,
+        points: &CentredPoints,
+        projection: usize,
+        (point, ratio, short): (usize, f64, Vec<f64>),
+    ) -> PointOutside {
+        let deviation = points.whole(point);
+        let mut direction = vec![0.0; deviation.len()];
+        self.projections[projection].iter().zip(short).for_each(|(&i, l)| direction[i] = l);
+        let owner = points.at.owners[point];
+        let file = (self.file)(owner.1);
+        PointOutside { owner, file, deviation, direction, ratio, reach: None }
+    }
+
+    /// Proves the points at a slice. Of an exact plant, the point furthest outside is the one whose
+    /// growth is largest; of a computed outer set, the one whose bound of the growth is.
+    fn prove(&self, index: usize, slice: &dyn Slice, is_exact: bool) -> Judged {
+        let points = CentredPoints::new(&self.samples[index], slice);
+        let (count, owners) = (points.at.owners.len(), &points.at.owners);
+        let mut judged = Judged { points: count * self.projections.len(), ..Judged::default() };
+        for (projection, states) in self.projections.iter().enumerate() {
+            let mut set = SampleSet::new(slice, states);
+            let (_, unproved) = set.prove(&points, |_, _| ());
+            if unproved.is_empty() {
+                continue;
+            }
+            let first = (slice.at(), projection as u32);
+            for (point, _) in &unproved {
+                judged.leave(owners[*point], (self.file)(owners[*point].1), first, 1);
+            }
+            judged.outside += unproved.iter().filter(|(_, ratio)| ratio.is_some()).count();
+            judged = judged.merge(if is_exact {
+                let candidates = unproved.iter().map(|(point, _)| *point);
+                self.outside(&points, &mut set, (projection, slice.at()), OUTSIDE, candidates)
+            } else {
+                self.outside_outer(&points, &mut set, projection, &unproved, slice)
+            });
+        }
+        judged
+    }
+
+    /// Searches the points `near` at a slice.
+    fn search(&self, index: usize, slice: &dyn Slice, tolerance: f64, near: &[usize]) -> Judged {
+        if near.is_empty() {
+            return Judged::default();
+        }
+        let points = CentredPoints::new(&self.samples[index], slice);
+        let of_projection = |(projection, states): (usize, &Vec<usize>)| {
+            let (mut set, place) = (SampleSet::new(slice, states), (projection, slice.at()));
+            self.outside(&points, &mut set, place, tolerance, near.iter().copied())
+        };
+        let found = self.projections.iter().enumerate().map(of_projection);
+        found.fold(Judged::default(), Judged::merge)
+    }
+
+    /// Adds the points that no slice showed, because the set was lost before.
+    fn lost(&self, hulls: &Hulls, judged: &mut Judged) {
+        for points in self.samples.iter().filter(|points| !hulls.reaches(points.place())) {
+            for owner in &points.owners {
+                let count = self.projections.len();
+                judged.points += count;
+                judged.leave(*owner, (self.file)(owner.1), (points.place(), 0), count);
+            }
+        }
+    }
+}
+
+impl Claim for Points<'_> {
+    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Hulls> {
+        let (hulls, judged) = match look {
+            Look::Search { tolerance, near } => {
+                let near = self.in_lists(plant, near)?;
+                let watch = |slice: &dyn Slice| match self.index(slice.at()) {
+                    Some(index) => self.search(index, slice, *tolerance, &near[index]),
+                    None => Judged::default(),
+                };
+                plant.tube(sets, Some(&watch))?
+            }
+            Look::Proof { at, asked } => {
+                let is_exact = plant.is_exact();
+                let watch = |slice: &dyn Slice| {
+                    let here = asked.iter().enumerate().filter(|(_, (at, _))| *at == slice.at());
+                    let reaches = here.map(|(index, (_, l))| (index, slice.support(l))).collect();
+                    let judged = Judged { reaches, ..Judged::default() };
+                    let is_asked = at.as_ref().is_none_or(|at| at.contains(&slice.at()));
+                    match self.index(slice.at()).filter(|_| is_asked) {
+                        Some(index) => judged.merge(self.prove(index, slice, is_exact)),
+                        None => judged,
+                    }
+                };
+                let (hulls, mut judged) = plant.tube(sets, Some(&watch))?;
+                self.lost(&hulls, &mut judged);
+                (hulls, judged)
+            }
+        };
+        Ok(Hulls { judged: Some(judged), ..hulls })
+    }
+
+    fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {
+        let along = |direction| self.along(direction).ok_or_else(other_answer);
+        directions.iter().map(along).collect()
+    }
+}

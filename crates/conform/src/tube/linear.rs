@@ -1,0 +1,151 @@
+//! A linear model over recordings: the reachable sets of its deviation, on each grid.
+
+use nalgebra::DVectorView;
+use rayon::prelude::*;
+use reachtube_reach::{GeneratorRows, SampleGenerators};
+use reachtube_scalar::Interval;
+
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::grids::Grid;
+use crate::hulls::{HullKind, Hulls};
+use crate::linear::cut::Cut;
+use crate::sets::UncertaintySets;
+use crate::tube::judged::{At, Judged};
+use crate::tube::plant::{Plant, Slice, Watch};
+
+/// Number of disturbances, held over equally many steps, that suffice for most points.
+const HELD: usize = 24;
+
+/// Equal parts of a sample over which a disturbance is held that may be any measurable function.
+pub(crate) const PARTS: usize = 2;
+
+/// A linear model over recordings. Its strands are grids.
+pub(crate) struct Linear<'a> {
+    pub grids: &'a [Grid],
+    generators: Vec<SampleGenerators<'a>>,
+}
+
+impl<'a> Linear<'a> {
+    /// Prepares the generators of a problem.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::grids`].
+    pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
+        let (grids, disturbance) = (problem.grids()?.as_slice(), problem.settings().disturbance);
+        let of = |grid: &'a Grid| SampleGenerators::new(&grid.propagation, disturbance, PARTS);
+        let generators = grids.iter().map(of).collect::<Result<_, _>>()?;
+        Ok(Self { grids, generators })
+    }
+
+    /// Returns the reachable set at a sample.
+    pub(crate) fn slice<'b>(&'b self, sets: &'b UncertaintySets, at: At) -> LinearSlice<'b> {
+        let (grid, sample) = (at.0 as usize, at.1 as usize);
+        LinearSlice { plant: self, sets, grid, sample }
+    }
+
+    /// Returns the row of the program that a direction gives at a sample, for the largest lᵀ d of
+    /// its points.
+    pub(crate) fn cut(&self, at: At, l: &[f64], bound: f64) -> Cut {
+        let (grid, sample) = (at.0 as usize, at.1 as usize);
+        let propagation = &self.grids[grid].propagation;
+        let (e, gamma) = (propagation.exponential(sample), propagation.integral(sample));
+        let along = |column: DVectorView<'_, Interval>| {
+            column.iter().zip(l).map(|(x, l)| x.mid() * l).sum::<f64>()
+        };
+        let centre = e.column_iter().chain(gamma.column_iter()).map(along).collect();
+        let (initial, input) = self.generators[grid].gains(sample, l);
+        Cut {
+            centre,
+            radius: [initial, input].concat(),
+            noise: l.iter().map(|l| l.abs()).collect(),
+            bound,
+        }
+    }
+}
+
+impl Plant for Linear<'_> {
+    fn is_exact(&self) -> bool {
+        true
+    }
+
+    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)> {
+        let reach = self.grids.iter().map(|grid| grid.reach(sets)).collect();
+        let hulls = Hulls::of(sets.clone(), HullKind::Linear(reach));
+        let Some(watch) = watch else { return Ok((hulls, Judged::default())) };
+        let samples = self.grids.iter().enumerate().flat_map(|(grid, of)| {
+            (1..of.propagation.grid().len()).map(move |sample| (grid as u32, sample as u32))
+        });
+        let samples: Vec<At> = samples.collect();
+        let judged = samples.into_par_iter().map(|at| watch(&self.slice(sets, at)));
+        Ok((hulls, judged.reduce(Judged::default, Judged::merge)))
+    }
+}
+
+/// The reachable set of the deviation at one sample.
+pub(crate) struct LinearSlice<'a> {
+    plant: &'a Linear<'a>,
+    sets: &'a UncertaintySets,
+    grid: usize,
+    sample: usize,
+}
+
+impl LinearSlice<'_> {
+    /// Returns the radii of the set's interval hull with the noise set, 2n, in floating point.
+    pub(crate) fn hull(&self) -> Vec<f64> {
+        let grid = &self.plant.grids[self.grid];
+        let (e, gain) = (grid.propagation.exponential(self.sample), &grid.input_gains[self.sample]);
+        let radius = |i: usize| {
+            let start = e.row(i).into_iter().zip(&self.sets.initial_set.radius);
+            let input = gain.row(i).into_iter().zip(&self.sets.input_set.radius);
+            let sum: f64 = start.chain(input).map(|(x, r)| x.mid().abs() * r).sum();
+            sum + self.sets.noise_radius(i)
+        };
+        (0..self.sets.initial_set.dimension()).map(radius).collect()
+    }
+}
+
+impl Slice for LinearSlice<'_> {
+    fn at(&self) -> At {
+        (self.grid as u32, self.sample as u32)
+    }
+
+    fn centre(&self) -> (Vec<f64>, Vec<f64>) {
+        let propagation = &self.plant.grids[self.grid].propagation;
+        let (e, gamma) = (propagation.exponential(self.sample), propagation.integral(self.sample));
+        let UncertaintySets { initial_set, input_set, .. } = self.sets;
+        let entry = |i: usize| {
+            let start = e.row(i).into_iter().zip(&initial_set.centre);
+            let input = gamma.row(i).into_iter().zip(&input_set.centre);
+            let sum = start.chain(input).fold(Interval::ZERO, |sum, (x, c)| sum + *x * *c);
+            (sum.mid(), sum.rad())
+        };
+        (0..initial_set.dimension()).map(entry).unzip()
+    }
+
+    fn generators(&self, states: &[usize], held: usize) -> GeneratorRows {
+        let UncertaintySets { initial_set, input_set, .. } = self.sets;
+        let noise: Vec<f64> =
+            (0..initial_set.dimension()).map(|i| self.sets.noise_radius(i)).collect();
+        let radii = [&initial_set.radius[..], &input_set.radius, &noise];
+        self.plant.generators[self.grid].at(self.sample, radii, states, held)
+    }
+
+    fn coarse(&self) -> Vec<usize> {
+        vec![self.sample.div_ceil(HELD)]
+    }
+
+    fn support(&self, l: &[f64]) -> f64 {
+        let UncertaintySets { initial_set, input_set, .. } = self.sets;
+        let (initial, input) = self.plant.generators[self.grid].gains(self.sample, l);
+        let gains = initial.iter().chain(&input);
+        let radii = initial_set.radius.iter().chain(&input_set.radius);
+        let (centre, _) = self.centre();
+        dot(l, &centre) + gains.zip(radii).map(|(gain, r)| gain * r).sum::<f64>()
+    }
+}
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}

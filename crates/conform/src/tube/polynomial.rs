@@ -1,0 +1,106 @@
+//! A model that is not linear over recordings: outer enclosures of the reachable sets of its state,
+//! for each case.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
+use reachtube_reach::{Flowpipe, GeneratorRows, Zonotope};
+
+use crate::data::case::Case;
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::flowpipes::{Effort, attempt, furthest};
+use crate::hulls::{HullKind, Hulls};
+use crate::sets::UncertaintySets;
+use crate::tube::judged::{At, Judged};
+use crate::tube::plant::{Plant, Slice, Watch};
+
+/// Numbers of parts of the time so far, within each of which generators that a step adds have one
+/// factor in common: smaller sets, in which most points lie.
+const HELD: [usize; 2] = [24, 200];
+
+/// A model that is not linear over recordings. Its strands are cases.
+pub(crate) struct Polynomial<'a>(pub &'a Problem);
+
+impl Polynomial<'_> {
+    /// Computes the outer set of a case; of several attempts the one that comes furthest, and what
+    /// was found in that one.
+    fn strand(
+        &self,
+        (index, case): (usize, &Case),
+        sets: &UncertaintySets,
+        watch: Option<&Watch>,
+    ) -> Result<(Flowpipe, Judged)> {
+        let system = self.0.dynamics().polynomial_system()?;
+        let of = |vertices: usize| {
+            let (judged, count) = (Mutex::new(Judged::default()), AtomicUsize::new(0));
+            let visit = |sample: usize, zonotope: Zonotope| {
+                let before = count.swap(zonotope.generators().len(), Ordering::Relaxed);
+                let stride = zonotope.generators().len().saturating_sub(before);
+                let slice = ZonotopeSlice { zonotope, case: index, sample, stride, sets };
+                let Some(watch) = watch.filter(|_| sample > 0) else { return };
+                let here = watch(&slice);
+                let mut all = judged.lock().expect("no thread panics");
+                *all = std::mem::take(&mut *all).merge(here);
+            };
+            let visit = watch.is_some().then_some(&visit as reachtube_reach::Visit);
+            let flowpipe = attempt(system, case, sets, vertices, visit)?;
+            Ok((flowpipe, judged.into_inner().expect("no thread panics")))
+        };
+        furthest(Effort::Whole, of, |(flowpipe, _)| flowpipe)
+    }
+}
+
+impl Plant for Polynomial<'_> {
+    fn is_exact(&self) -> bool {
+        false
+    }
+
+    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)> {
+        let cases = self.0.cases()?.par_iter().enumerate();
+        let found: Vec<(Flowpipe, Judged)> =
+            cases.map(|case| self.strand(case, sets, watch)).collect::<Result<_>>()?;
+        let (flowpipes, judged): (Vec<Flowpipe>, Vec<Judged>) = found.into_iter().unzip();
+        let judged = judged.into_iter().fold(Judged::default(), Judged::merge);
+        Ok((Hulls::of(sets.clone(), HullKind::Outer(flowpipes)), judged))
+    }
+}
+
+/// The computed outer set of a case at one sample.
+struct ZonotopeSlice<'a> {
+    zonotope: Zonotope,
+    case: usize,
+    sample: usize,
+    /// Number of generators that the last step added.
+    stride: usize,
+    sets: &'a UncertaintySets,
+}
+
+impl Slice for ZonotopeSlice<'_> {
+    fn at(&self) -> At {
+        (self.case as u32, self.sample as u32)
+    }
+
+    fn centre(&self) -> (Vec<f64>, Vec<f64>) {
+        let centre = self.zonotope.centre().to_vec();
+        let exact = vec![0.0; centre.len()];
+        (centre, exact)
+    }
+
+    fn generators(&self, states: &[usize], held: usize) -> GeneratorRows {
+        let noise: Vec<f64> = states.iter().map(|i| self.sets.noise_radius(*i)).collect();
+        let rows = GeneratorRows::of_zonotope(&self.zonotope, states, &noise);
+        if held == 1 { rows } else { rows.merged(self.stride, held) }
+    }
+
+    fn coarse(&self) -> Vec<usize> {
+        HELD.map(|parts| self.sample.div_ceil(parts)).to_vec()
+    }
+
+    fn support(&self, l: &[f64]) -> f64 {
+        let along = |x: &[f64]| l.iter().zip(x).map(|(l, x)| l * x).sum::<f64>();
+        along(self.zonotope.centre())
+            + self.zonotope.generators().map(|g| along(g).abs()).sum::<f64>()
+    }
+}
