@@ -57,11 +57,11 @@ pub fn check(model: &Model, problem: &Problem, hulls: &Hulls) -> Result<Check> {
 ///
 /// # Guarantee
 ///
-/// That of [`Verdict::new`].
+/// As [`Verdict::new`].
 ///
 /// # Errors
 ///
-/// As [`check`]; those of `server`.
+/// As [`check`], and errors of `server`.
 pub fn check_elsewhere(
     model: &Model,
     problem: &Problem,

@@ -111,7 +111,7 @@ pub fn conform(
 ///
 /// # Errors
 ///
-/// As [`conform`]; those of `server`.
+/// As [`conform`], and errors of `server`.
 pub fn conform_elsewhere(
     problem: &Problem,
     server: &dyn PointServer,

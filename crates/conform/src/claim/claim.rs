@@ -15,7 +15,7 @@ use crate::tube::polynomial::Polynomial;
 
 /// What recordings must satisfy beyond the rows.
 pub(crate) trait Claim: Sync {
-    /// Computes the reachable sets of `plant` under `sets`, with what was found about the recordings
+    /// Computes the reachable sets of `plant` under `sets`, and what was found about the recordings
     /// in them.
     ///
     /// # Guarantee
@@ -25,14 +25,14 @@ pub(crate) trait Claim: Sync {
     ///
     /// # Errors
     ///
-    /// As [`Plant::tube`]; those of the way to the recordings.
+    /// As [`Plant::tube`], and failures to reach the recordings.
     fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Hulls>;
 
     /// Returns the recorded point that is furthest along each direction, of all at its sample.
     ///
     /// # Errors
     ///
-    /// Those of the way to the recordings.
+    /// Fails if the recordings cannot be reached.
     fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>>;
 }
 

@@ -15,7 +15,7 @@ use crate::sets::UncertaintySets;
 use crate::tube::judged::{Along, At, Judged, PointOutside};
 use crate::tube::plant::{Plant, Slice};
 
-/// How accurately points near the boundary are told from others.
+/// How accurately points near the boundary are distinguished from others.
 const NEAR: f64 = 1e-3;
 
 /// How accurately the growth is known that a point outside a computed outer set needs.
@@ -169,8 +169,7 @@ impl<'a> Points<'a> {
         Judged { furthest, ..Judged::default() }
     }
 
-    /// Returns the point of those outside a computed outer set that a direction shows to be
-    /// furthest outside.
+    /// Returns the point that a direction shows to be furthest outside a computed outer set.
     fn outside_outer(
         &self,
         points: &CentredPoints,

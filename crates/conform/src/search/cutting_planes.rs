@@ -41,8 +41,8 @@ const REPAIRS: i32 = 24;
 ///
 /// # Errors
 ///
-/// [`Error::Program`] when points are left outside after many rounds; as [`Problem::deviations`],
-/// and those of `widen`.
+/// [`Error::Program`] if points are left outside after many rounds; as [`Problem::deviations`], and
+/// errors of `widen`.
 pub(crate) fn smallest_sets(
     problem: &Problem,
     claim: &dyn Claim,
@@ -95,7 +95,7 @@ fn solve(
         let outside = |near: &[Near]| directions_outside((claim, plant), sets, tolerance, near);
         let mut found = outside(&near)?;
         if found.is_empty() {
-            // All points are tried, and those that may be outside stay in the list.
+            // All points are tried, and the ones that may be outside stay in the list.
             near.push(Near { sets: sets.clone(), margin: 1.0 + tolerance });
             found = outside(&near[near.len() - 1..])?;
         }

@@ -102,7 +102,7 @@ impl UnprovedRun {
 }
 
 impl PointOutside {
-    /// Returns the point that is further outside; of two as far, that of the lower owner.
+    /// Returns the point that is further outside; of two as far, the lower owner's.
     fn further(self, other: Self) -> Self {
         let is_first =
             self.ratio > other.ratio || self.ratio == other.ratio && self.owner <= other.owner;
@@ -111,7 +111,7 @@ impl PointOutside {
 }
 
 impl Along {
-    /// Returns the point that is further along; of two as far, that of the lower owner.
+    /// Returns the point that is further along; of two as far, the lower owner's.
     #[must_use]
     pub(crate) fn further(self, other: Self) -> Self {
         let is_first =

@@ -9,11 +9,11 @@ use crate::tube::judged::{At, Judged};
 
 /// A model over recordings, whose reachable sets under some sets can be computed.
 pub(crate) trait Plant: Sync {
-    /// Returns whether the rows of its program are those of its reachable sets.
+    /// Returns whether its reachable sets have the rows of its program.
     fn is_exact(&self) -> bool;
 
     /// Computes the reachable sets under `sets`, and shows each slice to `watch`; returns what that
-    /// found, merged. Slices are not kept: those of a long motion take gigabytes.
+    /// found, merged. Slices are not kept: a long motion's take gigabytes.
     ///
     /// # Errors
     ///
