@@ -22,8 +22,8 @@ pub(crate) enum Look {
     /// outside at each sample and in each projection, where the set must grow by more than
     /// 1 + `tolerance`.
     Search { tolerance: f64, near: Vec<Near> },
-    /// With directed rounding: every point, or the points at the samples `at` alone. Also how far the
-    /// sets reach in the directions `asked`.
+    /// With directed rounding: every point, or the points at the samples `at` alone. Also how far
+    /// the sets reach in the directions `asked`.
     Proof { at: Option<Vec<At>>, asked: Vec<(At, Vec<f64>)> },
 }
 
