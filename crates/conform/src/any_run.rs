@@ -1,7 +1,7 @@
 use reachtube_scalar::ExactSum;
 use serde::{Deserialize, Serialize};
 
-use crate::claim::claim::claim;
+use crate::claim::notion::claim;
 use crate::data::condition::Condition;
 use crate::data::problem::Problem;
 use crate::data::setup::Setup;

@@ -1,6 +1,6 @@
 use serde::Serialize;
 
-use crate::claim::claim::judged;
+use crate::claim::notion::judged;
 use crate::claim::remote::PointServer;
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
@@ -14,7 +14,8 @@ use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
 use crate::result::code::Code;
 use crate::result::finding::Finding;
-use crate::verdict::{Verdict, Witness};
+use crate::verdict::Verdict;
+use crate::witness::Witness;
 
 /// The answer of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::any_run::AnyRun;
-use crate::claim::claim::{Claim, claim};
+use crate::claim::claim::Claim;
+use crate::claim::notion::claim;
 use crate::claim::remote::PointServer;
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
@@ -13,16 +14,18 @@ use crate::found::{Deciding, Found, SearchSummary};
 use crate::hulls::Hulls;
 use crate::next_motion::calibration::{Calibrated, Calibration, calibrate};
 use crate::next_motion::deciding_runs::DecidingRuns;
-use crate::next_motion::left_out::{LeftOut, leave_each_out};
+use crate::next_motion::left_out::leave_each_out;
 use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
+use crate::next_motion::without_motion::LeftOut;
 use crate::nominal::input_error::InputError;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::{NominalFit, Warning, warnings};
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
 use crate::smallest_sets::smallest_sets;
-use crate::verdict::{Verdict, Witness};
+use crate::verdict::Verdict;
+use crate::witness::Witness;
 
 /// The result of [`conform`].
 #[derive(Debug)]
@@ -156,8 +159,7 @@ fn conform_claim(
     let fit = NominalFit::new(problem)?;
     let warnings = warnings(problem, &hulls.sets, &radii, &fit, calibration.as_ref())?;
     let is_proved = verdict.conformant;
-    let is_hull = problem.settings().notion == Notion::Hull;
-    let smallest_cost = (calibration.is_none() && is_hull).then_some(cost);
+    let is_smallest = calibration.is_none() && problem.settings().notion == Notion::Hull;
     Ok(Conformance {
         sets: hulls.sets.clone(),
         warnings,
@@ -168,19 +170,8 @@ fn conform_claim(
         paper_cost,
         hull_volume,
         verdict,
-        trust: match (&calibration, optimality_gap) {
-            (Some(calibration), _) => {
-                Trust::of_calibration(problem.recordings(), calibration, is_proved)
-            }
-            (None, Some(gap)) if gap > LARGEST_GAP => {
-                Trust::without_optimum(problem.recordings(), gap)
-            }
-            _ if problem.setup().correction.is_some() => {
-                Trust::of_fitted_nominal(problem.recordings())
-            }
-            _ => Trust::of_fit(problem.recordings(), &tight),
-        },
-        deciding_runs: DecidingRuns::new(problem, &tight, smallest_cost)?,
+        trust: trust(problem, calibration.as_ref(), optimality_gap, &tight, is_proved),
+        deciding_runs: DecidingRuns::new(problem, &tight, is_smallest.then_some(cost))?,
         trends: trends(problem),
         calibration,
         left_out,
@@ -191,4 +182,21 @@ fn conform_claim(
         any_run: if problem.settings().calibrate.is_empty() { AnyRun::new(problem)? } else { None },
         hulls,
     })
+}
+
+/// Returns what may be expected of motions that were not recorded.
+fn trust(
+    problem: &Problem,
+    calibration: Option<&Calibration>,
+    optimality_gap: Option<f64>,
+    tight: &[Witness],
+    is_proved: bool,
+) -> Trust {
+    let recordings = problem.recordings();
+    match (calibration, optimality_gap) {
+        (Some(calibration), _) => Trust::of_calibration(recordings, calibration, is_proved),
+        (None, Some(gap)) if gap > LARGEST_GAP => Trust::without_optimum(recordings, gap),
+        _ if problem.setup().correction.is_some() => Trust::of_fitted_nominal(recordings),
+        _ => Trust::of_fit(recordings, tight),
+    }
 }

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
 use crate::hulls::Hulls;
-use crate::next_motion::left_out::LeftOut;
+use crate::next_motion::without_motion::LeftOut;
 use crate::rows::{Edge, Row};
-use crate::verdict::Witness;
+use crate::witness::Witness;
 
 /// Sets that were found for a problem, before the verdict.
 pub(crate) struct Found {

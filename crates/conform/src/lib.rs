@@ -39,6 +39,7 @@ mod smallest_sets;
 mod tube;
 mod verdict;
 mod weights;
+mod witness;
 
 pub use answer::Answer;
 pub use any_run::AnyRun;
@@ -93,10 +94,10 @@ pub use model::{
 pub use next_motion::bounds::{clopper_pearson, scenario_bound};
 pub use next_motion::calibration::{Calibration, Gauge};
 pub use next_motion::deciding_runs::{DecidingRun, DecidingRuns};
-pub use next_motion::left_out::LeftOut;
 pub use next_motion::rates::{Rate, Rates};
 pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
+pub use next_motion::without_motion::LeftOut;
 pub use optimality::{LARGEST_GAP, optimality_gap};
 pub use plausibility::{Warning, WarningKind};
 pub use progress::{Progress, Silent};
@@ -109,4 +110,5 @@ pub use result::report::{Report, Section};
 pub use result::table::Table;
 pub use rows::{Edge, Hull, HullBounds, Row, rows};
 pub use sets::UncertaintySets;
-pub use verdict::{SuiteVerdict, Verdict, Violations, Witness};
+pub use verdict::{SuiteVerdict, Verdict, Violations};
+pub use witness::Witness;

@@ -1,18 +1,17 @@
 //! The verdict: whether every recording lies in the reachable set, and where not.
 
-use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::witness::PointVerdict;
 use crate::data::problem::Problem;
 use crate::data::settings::{Notion, Settings, States};
-use crate::data::side::Side;
 use crate::data::suite::Suite;
 use crate::error::Result;
 use crate::explain::trace::{TraceVerdict, trace_factors};
 use crate::hulls::{Enclosure, Hulls, Lost};
-use crate::rows::{Edge, Row};
+use crate::rows::Row;
 use crate::tube::judged::Judged;
+use crate::witness::Witness;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
 /// the recordings of one suite at one time in one state (of one run, where it has a set of its
@@ -78,49 +77,6 @@ pub struct Violations {
     pub count: usize,
     /// The one with the largest excess, among rows that have a reachable set.
     pub worst: Option<Witness>,
-}
-
-/// A recorded value at the edge of the reachable set or beyond it, in the words of the recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Witness {
-    /// The suite.
-    pub suite: String,
-    /// The recording.
-    pub run: String,
-    /// Sample, from 0.
-    pub sample: usize,
-    /// Time since the first sample, s.
-    pub time: f64,
-    /// Joint, from 1.
-    pub joint: usize,
-    /// The state.
-    pub state: State,
-    /// The side of the set.
-    pub side: Side,
-    /// How far outside the reachable set, rad or rad/s; an upper bound.
-    pub excess: f64,
-    /// Radius of the reachable set there, rad or rad/s.
-    pub radius: f64,
-}
-
-impl Witness {
-    /// Names one side of a row of a suite.
-    #[must_use]
-    pub fn new(problem: &Problem, suite: usize, row: &Row, edge: &Edge) -> Self {
-        let state = State::from_index(row.state, problem.joints());
-        Self {
-            suite: problem.recordings().suites[suite].entry.name.clone(),
-            run: problem.entry(edge.run as usize).file.clone(),
-            sample: row.sample,
-            time: row.time,
-            joint: state.joint + 1,
-            state,
-            side: edge.side,
-            excess: edge.excess,
-            radius: row.radius,
-        }
-    }
 }
 
 impl Violations {

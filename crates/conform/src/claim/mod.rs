@@ -5,6 +5,7 @@ pub(crate) mod certificate;
 #[expect(clippy::module_inception, reason = "the folder and its main trait share the noun")]
 pub(crate) mod claim;
 pub(crate) mod look;
+pub(crate) mod notion;
 pub(crate) mod part_points;
 pub(crate) mod phase_plane;
 pub(crate) mod points;

@@ -11,7 +11,7 @@ use crate::linear::program::Program;
 use crate::tube::judged::{Along, At};
 use crate::tube::linear::Linear;
 use crate::tube::plant::Slice;
-use crate::verdict::Witness;
+use crate::witness::Witness;
 
 /// Returns the points that touch the boundary of the reachable set in the direction of a cut, the
 /// closest first, each once, under the state that counts most in the direction.

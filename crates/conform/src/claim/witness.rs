@@ -11,7 +11,7 @@ use crate::data::side::Side;
 use crate::error::{Error, Result};
 use crate::hulls::Hulls;
 use crate::tube::judged::{At, Judged, PointOutside};
-use crate::verdict::Witness;
+use crate::witness::Witness;
 
 /// A state is named in a combination when its part is at least this of the largest.
 const NAMED: f64 = 0.1;

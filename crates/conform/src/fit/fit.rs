@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 use reachtube_abstraction::Abstraction;
 
-use crate::claim::claim::asks_points;
+use crate::claim::notion::asks_points;
 use crate::data::dynamics::Dynamics;
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;

@@ -3,6 +3,7 @@
 pub(crate) mod block;
 pub(crate) mod costs;
 pub(crate) mod cut;
+mod cut_rows;
 pub(crate) mod layout;
 mod limits;
 mod other_recordings;

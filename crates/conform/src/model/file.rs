@@ -26,13 +26,14 @@ use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained};
 use crate::next_motion::calibration::Calibration;
 use crate::next_motion::deciding_runs::DecidingRuns;
-use crate::next_motion::left_out::LeftOut;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
+use crate::next_motion::without_motion::LeftOut;
 use crate::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::plausibility::Warning;
 use crate::sets::UncertaintySets;
-use crate::verdict::{Verdict, Witness};
+use crate::verdict::Verdict;
+use crate::witness::Witness;
 
 /// What the field `format` of every model file says.
 pub const FORMAT: &str = "reachtube-model";

@@ -9,7 +9,7 @@ use crate::deviation::Deviation;
 use crate::error::Result;
 use crate::linear::program::Program;
 use crate::linear::smallest_sets::program;
-use crate::verdict::Witness;
+use crate::witness::Witness;
 
 /// Number of runs that are named.
 const MOST_NAMED: usize = 10;

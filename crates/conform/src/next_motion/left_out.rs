@@ -1,5 +1,4 @@
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
@@ -9,33 +8,14 @@ use crate::error::Result;
 use crate::flowpipes::{Effort, rows_outside};
 use crate::linear::program::Program;
 use crate::linear::smallest_sets::program;
-use crate::next_motion::calibration::{OuterGauge, outer_gauge};
 use crate::next_motion::motions::Motions;
+use crate::next_motion::outer_gauge::{OuterGauge, outer_gauge};
+use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
 
 /// Number of motions at most for which the program is solved again.
 const MOST_PROGRAMS: usize = 60;
-
-/// The sets of all motions but one, and how that one lies to them. A description, to rounding:
-/// nothing of it is proved, and it bounds no probability.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LeftOut {
-    /// The motion that is left out.
-    pub motion: String,
-    /// The cost of the smallest sets for the others, over the same samples as the cost of all; of a
-    /// model that is not linear, the cost of the linearised sets. `None` if it was not computed.
-    pub cost: Option<f64>,
-    /// Number of rows of the motion.
-    pub rows: usize,
-    /// How many of them leave these sets.
-    pub outside: Option<usize>,
-    /// The factor, at least 1, by which the radii of these sets must grow to enclose the motion.
-    /// `None` if no factor suffices, or where the reachable set of a model that is not linear
-    /// is lost before one does.
-    pub gauge: Option<f64>,
-}
 
 /// Leaves each motion out of the program of a linear model, one after the other. Nothing with fewer
 /// than two motions, for any other model, and for other notions than the hull. `sets` are the

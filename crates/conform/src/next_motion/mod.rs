@@ -6,6 +6,8 @@ pub(crate) mod calibration;
 pub(crate) mod deciding_runs;
 pub(crate) mod left_out;
 pub(crate) mod motions;
+mod outer_gauge;
 pub(crate) mod rates;
 pub(crate) mod trends;
 pub(crate) mod trust;
+pub(crate) mod without_motion;

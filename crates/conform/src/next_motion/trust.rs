@@ -10,7 +10,8 @@ use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::motions::Motions;
 use crate::rows::NEGLIGIBLE_RADIUS;
-use crate::verdict::{Verdict, Witness};
+use crate::verdict::Verdict;
+use crate::witness::Witness;
 
 /// Confidence of the bounds that are reported.
 pub const CONFIDENCE: f64 = 0.95;

@@ -3,8 +3,8 @@
 use reachtube_scalar::number::{at_least, four_decimals, significant};
 
 use crate::model::file::Model;
-use crate::next_motion::left_out::LeftOut;
 use crate::next_motion::trends::Trend;
+use crate::next_motion::without_motion::LeftOut;
 use crate::result::finding::Finding;
 use crate::result::report::Section;
 use crate::result::table::Table;

@@ -1,39 +1,13 @@
 //! Rows of the program in directions in which recorded points were outside the computed sets.
 
-use serde::{Deserialize, Serialize};
-
 use crate::linear::cut::Cut;
+use crate::search::direction::{Direction, DirectionRow};
 use crate::search::sensitivity::Sensitivity;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{Along, At, Judged};
 
 /// By how much more than what is missing the set must reach, in parts of its reach.
 const MARGIN: f64 = 1e-4;
-
-/// A direction in which a recorded point was outside a computed set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Direction {
-    pub case: usize,
-    pub sample: usize,
-    /// The run (index in the source) whose point is furthest.
-    pub run: usize,
-    /// The direction l, 2n.
-    pub direction: Vec<f64>,
-    /// max lᵀ x over the recorded points.
-    pub bound: f64,
-    /// max lᵀ x over the last computed set, without the noise set.
-    reach: f64,
-    /// How much further that set reaches than its linearisation, once that is known.
-    further: Option<f64>,
-}
-
-/// One row of the linearisation in any direction l: lᵀ E_k, and the gains of the radii, 3n each.
-#[derive(Debug, Clone, Default)]
-pub(super) struct DirectionRow {
-    pub centre: Vec<f64>,
-    pub radius: Vec<f64>,
-}
 
 /// Returns the directions, to be asked of the computed sets.
 pub(super) fn asked(directions: &[Direction]) -> Vec<(At, Vec<f64>)> {

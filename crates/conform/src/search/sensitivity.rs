@@ -8,7 +8,7 @@ use reachtube_scalar::Lanes;
 use crate::data::case::Case;
 use crate::error::Result;
 use crate::nominal::simulate::{simulate, substeps};
-use crate::search::directions::{Direction, DirectionRow};
+use crate::search::direction::{Direction, DirectionRow};
 use crate::sets::UncertaintySets;
 
 /// Several motions that are simulated at once.

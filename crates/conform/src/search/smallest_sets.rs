@@ -15,11 +15,11 @@ use crate::next_motion::left_out::leave_each_out_of_search;
 use crate::nominal::simulate::nominal;
 use crate::progress::Progress;
 use crate::search::bisection;
-use crate::search::directions::Direction;
+use crate::search::direction::Direction;
 use crate::search::journal::Journal;
 use crate::search::successive::{SearchResult, SuccessiveLinearisation};
-use crate::verdict::Witness;
 use crate::weights::state_weights;
+use crate::witness::Witness;
 
 /// Finds the smallest sets of a model that is not linear by the method of the settings. What is
 /// finished is kept in the file `resume` and removed at the end.

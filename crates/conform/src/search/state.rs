@@ -7,7 +7,7 @@ use reachtube_reach::Hyperrectangle;
 use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
-use crate::search::directions::Direction;
+use crate::search::direction::Direction;
 use crate::sets::UncertaintySets;
 
 /// Part of the largest radius or centre below which a change counts as settled.

@@ -14,7 +14,8 @@ use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::{counted, notion_words, plural};
 use crate::result::remedy::Remedy;
-use crate::verdict::{Verdict, Witness};
+use crate::verdict::Verdict;
+use crate::witness::Witness;
 
 /// Returns the code and the severity of a verdict.
 fn outcome(is_conformant: bool) -> (Severity, Code) {

@@ -1,0 +1,21 @@
+use serde::{Deserialize, Serialize};
+
+/// The sets of all motions but one, and how that one lies to them. A description, to rounding:
+/// nothing of it is proved, and it bounds no probability.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeftOut {
+    /// The motion that is left out.
+    pub motion: String,
+    /// The cost of the smallest sets for the others, over the same samples as the cost of all; of a
+    /// model that is not linear, the cost of the linearised sets. `None` if it was not computed.
+    pub cost: Option<f64>,
+    /// Number of rows of the motion.
+    pub rows: usize,
+    /// How many of them leave these sets.
+    pub outside: Option<usize>,
+    /// The factor, at least 1, by which the radii of these sets must grow to enclose the motion.
+    /// `None` if no factor suffices, or where the reachable set of a model that is not linear
+    /// is lost before one does.
+    pub gauge: Option<f64>,
+}
