@@ -59,9 +59,9 @@ pub struct Hulls {
 /// Hulls by the kind of model.
 #[derive(Debug)]
 pub enum HullKind {
-    /// Of the deviation of a linear model, on each of the problem's grids.
+    /// Sets of the deviation of a linear model, on each of the problem's grids.
     Linear(Vec<ReachSets>),
-    /// Of the state of any other model, for each of the problem's cases.
+    /// Sets of the state of any other model, for each of the problem's cases.
     Outer(Vec<Flowpipe>),
 }
 

@@ -129,7 +129,7 @@ fn likeness(logs: &[Log], first: &Cut, run: &Cut) -> Option<Likeness> {
     }
     let most = (LAG / step_a) as isize;
     let correlate = |lag: isize| (correlation((a, first), (b, run), lag), lag);
-    // Of equal correlations, the shortest lag.
+    // The shortest lag wins among equal correlations.
     let (correlation, lag) = (-most..=most)
         .map(correlate)
         .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.abs().cmp(&x.1.abs())))?;

@@ -90,7 +90,7 @@ pub(super) fn nominal_caution(model: &Model) -> Option<String> {
     let beyond = match beyond {
         0 => String::new(),
         count => format!(
-            " Of these, {count} moved by more than {MOST_ERRORS} standard errors, and compensate \
+            " {count} of these moved by more than {MOST_ERRORS} standard errors, and compensate \
             for model error."
         ),
     };

@@ -204,8 +204,8 @@ impl<'a> Points<'a> {
         PointOutside { owner, file, deviation, direction, ratio, reach: None }
     }
 
-    /// Proves the points at a slice. Of an exact plant, the point furthest outside is the one whose
-    /// growth is largest; of a computed outer set, the one whose bound of the growth is.
+    /// Proves the points at a slice. The point furthest outside an exact set is the one with the
+    /// largest growth; outside a computed outer set, the one with the largest bound of the growth.
     fn prove(&self, index: usize, slice: &dyn Slice, is_exact: bool) -> Judged {
         let points = CentredPoints::new(&self.samples[index], slice);
         let (count, owners) = (points.at.owners.len(), &points.at.owners);

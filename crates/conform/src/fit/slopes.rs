@@ -12,7 +12,7 @@ const DIFFERENCE: f64 = 1e-4;
 
 /// The derivatives with respect to one parameter.
 pub(crate) struct Slope {
-    /// Of each track's nominal motion, samples x 2n.
+    /// Slopes of each track's nominal motion, samples x 2n.
     pub motions: Vec<Vec<f64>>,
     /// Slopes of E_k c and R_k r, for each grid samples x 2n pairs; `None` if they do not change.
     pub reach: Option<Vec<Vec<[f64; 2]>>>,

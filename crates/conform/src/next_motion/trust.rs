@@ -83,7 +83,7 @@ impl Trust {
     /// and that enclose them where `is_proved`.
     ///
     /// The next motion leaves the sets only if its gauge is above the gauges of all n held-out
-    /// motions. Of n + 1 exchangeable motions, each is that one with probability at most 1/(n + 1).
+    /// motions. Each of n + 1 exchangeable motions is that one with probability at most 1/(n + 1).
     /// For independent motions, the probability given the held-out ones is above ε with probability
     /// at most (1 - ε)^n, which is the hold-out bound without a violation.
     #[must_use]

@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_positive_parameter_that_the_data_do_not_bound_stays_near_its_prior() {
-        // Of the parameters 10 and 11, the data determine the sum alone.
+        // The data determine only the sum of the parameters 10 and 11.
         let mut rows = vec![0.0; 13];
         (rows[10], rows[11], rows[12]) = (100.0, 100.0, 500.0);
         let data = TriangularFactor::from_rows(&rows, 12);

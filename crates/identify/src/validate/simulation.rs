@@ -39,7 +39,7 @@ pub struct WindowErrors {
 /// Simulates the robot under the recorded torque over windows of each duration \[s\], and compares
 /// the final states with the recorded ones.
 ///
-/// Of more than 64 recordings, that many are simulated.
+/// At most 64 recordings are simulated.
 pub(crate) fn simulate(
     robot: &Robot,
     logs: &[PreparedLog],

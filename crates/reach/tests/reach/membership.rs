@@ -193,8 +193,8 @@ fn tell_apart(count: usize) {
     assert!(inside > count / 200 && outside > count / 200, "{inside} {outside}");
 }
 
-/// Of generators that alternate between two vectors, the multiples of one vector are merged; points
-/// of the merged set are proved to lie in it with the errors of its sums, and lie in the whole one.
+/// Multiples of one vector are merged, here among generators that alternate between two vectors.
+/// Points of the merged set are proved to lie in it with the errors of its sums, and lie in the whole one.
 #[test]
 fn merged_generators_span_a_smaller_set() {
     let mut random = Random::new(8);

@@ -46,8 +46,8 @@ pub enum Place {
 
 /// A zonotope about 0, made ready to be asked for many points.
 ///
-/// A point d lies in it where factors |α_j| <= 1 give d = Σ_j α_j g_j. Of all such factors the ones
-/// of least norm are α_j = clip(g_jᵀ y) for some y, which maximises the concave function
+/// A point d lies in it where factors |α_j| <= 1 give d = Σ_j α_j g_j. Among all such factors the
+/// ones of least norm are α_j = clip(g_jᵀ y) for some y, which maximises the concave function
 ///
 /// ```text
 /// dᵀ y - Σ_j H(g_jᵀ y),   H(z) = z²/2 for |z| <= 1, |z| - 1/2 beyond

@@ -1,7 +1,7 @@
 //! An identified robot as simulators read it.
 //!
 //! [`mjcf`] is for MuJoCo and [`urdf`] for everything else. Both have the robot's inverse dynamics.
-//! Of friction they have the linear viscous coefficient and one Coulomb magnitude at no load, which
+//! Their friction is the linear viscous coefficient and one Coulomb magnitude at no load, which
 //! is all that their formats express. Links that cannot exist, as links from base parameters, are
 //! replaced by bodies with the same torques, or refused where none were found.
 
