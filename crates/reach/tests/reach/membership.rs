@@ -194,7 +194,8 @@ fn tell_apart(count: usize) {
 }
 
 /// Multiples of one vector are merged, here among generators that alternate between two vectors.
-/// Points of the merged set are proved to lie in it with the errors of its sums, and lie in the whole one.
+/// Points of the merged set are proved to lie in it with the errors of its sums, and lie in the
+/// whole one.
 #[test]
 fn merged_generators_span_a_smaller_set() {
     let mut random = Random::new(8);
