@@ -301,7 +301,7 @@ fn what_cannot_be_known_to_be_new_counts_as_used() {
     let hulls = Hulls::new(&new, model.sets()).unwrap();
     let answer = check(&model, &new, &hulls).unwrap();
     assert!(answer.trust.is_none() && answer.rates.is_none());
-    assert!(answer.notes.iter().any(|note| note.contains("cannot be known")));
+    assert!(answer.notes.iter().any(|note| note.contains("so they count as used")));
     // The other way round: a model that lists its recordings, and a fold that has not kept all.
     let small = read(&setup, &other);
     let model = Model::new(&small, &conform(&small, &Silent, None).unwrap());
