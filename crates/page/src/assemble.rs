@@ -18,7 +18,7 @@ use reachtube_scalar::number::at_least;
 ///
 /// # Errors
 ///
-/// As [`Problem::run`];
+/// As [`Problem::run`](reachtube_conform::Problem::run);
 /// [`Error::NoReachableSet`](super::Error::NoReachableSet) for a suite without one.
 pub fn page(sources: &Sources) -> Result<Page> {
     let Sources { model, problem, check, .. } = *sources;

@@ -23,7 +23,8 @@ const LEAST_RADIUS: f64 = 1e-9;
 ///
 /// # Errors
 ///
-/// As [`Problem::run`]; [`Error::NoReachableSet`] for a suite without one.
+/// As [`Problem::run`](reachtube_conform::Problem::run);
+/// [`Error::NoReachableSet`] for a suite without one.
 pub fn suite_figures(sources: &Sources) -> Result<Vec<SuiteFigure>> {
     let recordings = sources.problem.recordings();
     let drawn = recordings.suites.iter().filter(|suite| suite.envelope.len() > 1);
