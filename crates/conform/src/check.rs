@@ -44,7 +44,7 @@ pub struct Check {
 ///
 /// # Guarantee
 ///
-/// Returns the error of [`Verdict::new`].
+/// As [`Verdict::new`].
 ///
 /// # Errors
 ///

@@ -110,7 +110,7 @@ impl CheckJob {
     ///
     /// # Guarantee
     ///
-    /// Returns the error of [`check()`](crate::check()).
+    /// As [`check()`](crate::check()).
     ///
     /// # Errors
     ///

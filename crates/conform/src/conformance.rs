@@ -89,8 +89,7 @@ pub struct Conformance {
 ///
 /// # Guarantee
 ///
-/// Returns the error of [`Verdict::new`] when `verdict.conformant`. Nothing is claimed between
-/// samples.
+/// As [`Verdict::new`], if `verdict.conformant`. Nothing is claimed between samples.
 ///
 /// # Errors
 ///

@@ -203,7 +203,7 @@ impl Job {
     ///
     /// # Guarantee
     ///
-    /// Returns the error of [`conform`](crate::conform).
+    /// As [`conform`](crate::conform).
     ///
     /// # Errors
     ///
