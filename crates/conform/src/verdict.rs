@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::claim::notion::judged;
 use crate::claim::witness::PointVerdict;
 use crate::data::problem::Problem;
 use crate::data::settings::{Notion, Settings, States};
@@ -100,12 +101,15 @@ impl Verdict {
     ///
     /// # Errors
     ///
-    /// As [`Problem::run`].
+    /// As [`Problem::run`]; points of a fold that other processes have and that were not asked.
     pub fn new(
         problem: &Problem,
         hulls: &Hulls,
         mut visit: impl FnMut(usize, Option<usize>, &Row),
     ) -> Result<Self> {
+        // Without its points, a verdict would claim less than the notion does.
+        let own = judged(problem, hulls, None)?;
+        let hulls = own.as_ref().unwrap_or(hulls);
         let mut suites: Vec<SuiteVerdict> =
             problem.recordings().suites.iter().map(SuiteVerdict::start).collect();
         let mut largest_excess = f64::NEG_INFINITY;

@@ -48,7 +48,10 @@ fn verdict_of(robot: &Robot, settings: &Settings, folder: &Path, input: f64) -> 
         noise_set: Some(Hyperrectangle { centre: vec![0.0; 4], radius: NOISE.into() }),
     };
     let hulls = Hulls::new(&problem, sets).unwrap();
-    Verdict::new(&problem, &hulls, |_, _, _| ()).unwrap()
+    let verdict = Verdict::new(&problem, &hulls, |_, _, _| ()).unwrap();
+    // A verdict asks the points that its claim speaks of, whoever computed the sets.
+    assert!(verdict.points.as_ref().is_some_and(|points| points.points > 0));
+    verdict
 }
 
 fn verdict(folder: &Path, input: f64) -> Verdict {
