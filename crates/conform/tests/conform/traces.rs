@@ -49,7 +49,7 @@ fn verdict_of(robot: &Robot, settings: &Settings, folder: &Path, input: f64) -> 
     };
     let hulls = Hulls::new(&problem, sets).unwrap();
     let verdict = Verdict::new(&problem, &hulls, |_, _, _| ()).unwrap();
-    // A verdict asks the points that its claim speaks of, whoever computed the sets.
+    // A verdict asks the points that its claim names, for sets of any origin.
     assert!(verdict.points.as_ref().is_some_and(|points| points.points > 0));
     verdict
 }
