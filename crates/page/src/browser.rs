@@ -2,11 +2,11 @@
 //!
 //! The tests need Chromium or Chrome on the PATH; they are ignored unless asked for.
 
-use super::devtools::Tab;
 use super::html::write_html;
 use super::library::{Assets, LIBRARY_FILE, write_library};
 use super::sample;
 use super::suite_figure::{Nominal, RunTrace};
+use reachtube_testing::Tab;
 use serde_json::{Value, json};
 use std::fs;
 

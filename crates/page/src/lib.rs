@@ -37,8 +37,6 @@ mod text_table;
 #[cfg(test)]
 mod browser;
 #[cfg(test)]
-mod devtools;
-#[cfg(test)]
 mod sample;
 
 pub use assemble::page;

@@ -1,5 +1,4 @@
-//! A page in a headless browser, driven through its DevTools protocol, for the tests of this
-//! module.
+//! A page in a headless browser, driven through its DevTools protocol.
 //!
 //! The browser reads commands and writes answers and events on two pipes, as JSON that ends with a
 //! zero byte (`--remote-debugging-pipe`).
@@ -34,20 +33,25 @@ const QUIET: [&str; 12] = [
 ];
 
 /// A page in a browser of its own.
-pub(super) struct Tab {
+#[derive(Debug)]
+pub struct Tab {
     browser: Child,
     commands: File,
     answers: Receiver<Value>,
     session: Option<String>,
     count: u64,
     /// Messages on the console, violated policies and exceptions.
-    pub(super) messages: Vec<String>,
+    pub messages: Vec<String>,
     folder: TempDir,
 }
 
 impl Tab {
     /// Starts a browser with an empty page of a size \[px\], dark or light.
-    pub(super) fn new(width: u32, height: u32, dark: bool) -> Self {
+    ///
+    /// # Panics
+    ///
+    /// Panics without a browser on the PATH.
+    pub fn new(width: u32, height: u32, dark: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let pipes = ["commands", "answers"].map(|name| folder.path().join(name));
         assert!(Command::new("mkfifo").args(&pipes).status().unwrap().success());
@@ -85,7 +89,8 @@ impl Tab {
     }
 
     /// Returns the folder whose files the page may have beside it.
-    pub(super) fn folder(&self) -> &Path {
+    #[must_use]
+    pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
@@ -93,14 +98,15 @@ impl Tab {
     ///
     /// # Errors
     ///
-    /// The first message where it does not become so.
-    pub(super) fn open(&mut self, html: &[u8]) -> Result<(), String> {
+    /// The messages of a page that does not become interactive.
+    pub fn open(&mut self, html: &[u8]) -> Result<(), String> {
         let path = self.folder.path().join("page.html");
         fs::write(&path, html).unwrap();
         self.call("Page.navigate", json!({ "url": format!("file://{}", path.display()) }));
+        // A page that will not be ready has a message; the time limit only ends one that hangs.
         let start = Instant::now();
         while self.script("document.documentElement?.dataset.ready") != "yes" {
-            if start.elapsed() > PATIENCE / 6 {
+            if !self.messages.is_empty() || start.elapsed() > PATIENCE {
                 return Err(format!("the page is not ready: {:?}", self.messages));
             }
             thread::sleep(Duration::from_millis(50));
@@ -108,8 +114,12 @@ impl Tab {
         Ok(())
     }
 
-    /// Returns the value of an expression in the page, of a promise when it is kept.
-    pub(super) fn script(&mut self, expression: &str) -> Value {
+    /// Returns the value of an expression in the page, or of a promise once it is kept.
+    ///
+    /// # Panics
+    ///
+    /// Panics if the expression throws.
+    pub fn script(&mut self, expression: &str) -> Value {
         let answer = self.call(
             "Runtime.evaluate",
             json!({ "expression": expression, "returnByValue": true, "awaitPromise": true }),
@@ -120,7 +130,7 @@ impl Tab {
 
     /// Moves the mouse to places in the window \[px\], with the button pressed from the first on
     /// where it drags.
-    pub(super) fn mouse(&mut self, places: &[[f64; 2]], drags: bool) {
+    pub fn mouse(&mut self, places: &[[f64; 2]], drags: bool) {
         let (buttons, button) = if drags { (1, "left") } else { (0, "none") };
         for (k, [x, y]) in places.iter().enumerate() {
             let mut send = |kind: &str, buttons: i32, button: &str| {

@@ -1,0 +1,5 @@
+//! What the tests of several crates share. It is not published.
+
+mod tab;
+
+pub use tab::Tab;
