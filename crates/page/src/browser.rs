@@ -67,8 +67,12 @@ fn the_library_beside_the_page_is_read() {
 #[ignore = "needs a browser"]
 fn without_the_library_the_static_figure_stays_and_the_console_says_why() {
     let mut tab = Tab::new(1400, 900, false);
-    let error = tab.open(&page(Assets::Beside)).unwrap_err();
-    assert!(error.contains("plotly.js"), "{error}");
+    let reports = |tab: &mut Tab| {
+        let state = tab.script("document.readyState");
+        state == "complete" && tab.messages.iter().any(|message| message.contains("plotly.js"))
+    };
+    tab.open_until(&page(Assets::Beside), reports).unwrap();
+    assert_ne!(tab.script("document.documentElement.dataset.ready"), "yes");
     let shown = "[...document.querySelectorAll('.suite')].filter(pane => !pane.hidden).length";
     assert_eq!(tab.script(shown), json!(1));
 }

@@ -98,16 +98,29 @@ impl Tab {
     ///
     /// # Errors
     ///
-    /// The messages of a page that does not become interactive.
+    /// As [`open_until`](Self::open_until).
     pub fn open(&mut self, html: &[u8]) -> Result<(), String> {
+        let ready = "document.documentElement?.dataset.ready";
+        self.open_until(html, |tab| tab.script(ready) == "yes")
+    }
+
+    /// Opens a page and waits until `is_done`, which runs a script in the page each time.
+    ///
+    /// # Errors
+    ///
+    /// The messages of a page that hangs.
+    pub fn open_until(
+        &mut self,
+        html: &[u8],
+        mut is_done: impl FnMut(&mut Self) -> bool,
+    ) -> Result<(), String> {
         let path = self.folder.path().join("page.html");
         fs::write(&path, html).unwrap();
         self.call("Page.navigate", json!({ "url": format!("file://{}", path.display()) }));
-        // A page that will not be ready has a message; the time limit only ends one that hangs.
         let start = Instant::now();
-        while self.script("document.documentElement?.dataset.ready") != "yes" {
-            if !self.messages.is_empty() || start.elapsed() > PATIENCE {
-                return Err(format!("the page is not ready: {:?}", self.messages));
+        while !is_done(self) {
+            if start.elapsed() > PATIENCE {
+                return Err(format!("the page hangs: {:?}", self.messages));
             }
             thread::sleep(Duration::from_millis(50));
         }
