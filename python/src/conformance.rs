@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use pyo3::prelude::*;
 use reachtube::abstraction::ExpansionPoint;
 use reachtube::conform::{
-    Answer, Basis, CheckJob, FitSettings, Group, Job, Keep, Model, Opened, Settings, Setup,
-    SuiteReach, Tolerance,
+    Answer, Basis, CheckJob, FitSettings, FrontEnd, Group, Job, Keep, Model, Opened, Settings,
+    Setup, SuiteReach, Tolerance,
 };
 use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
 use reachtube::recordings::GapLimit;
@@ -249,7 +249,8 @@ pub(crate) fn report(
         let opened = wanted.open(watch)?;
         let (check, reach) = (opened.check()?, opened.reach()?);
         let Opened { model, problem, .. } = &opened;
-        let sources = Sources { model, problem, reach: &reach, check: &check };
+        let sources =
+            Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::Python };
         let (mut html, mut library) = (Vec::new(), Vec::new());
         let assets = if beside { Assets::Beside } else { Assets::Inside };
         let page = page(&sources)?;

@@ -155,6 +155,7 @@ impl Check {
             None => Finding::fitted_to_these(),
         });
         findings.extend(self.rates.as_ref().map(Finding::held_out_rates));
+        findings.extend(Finding::reach_of_proof(verdict, model.settings.states));
         let noted = [Code::Recordings, Code::UseUnknown, Code::OtherStart];
         findings.extend(self.findings.into_iter().filter(|f| noted.contains(&f.code)));
         self.findings = findings;

@@ -1,18 +1,15 @@
 //! Assembly of a page from a model and recordings.
 
-use reachtube_conform::{
-    self as conform, Check, Code, Enclosure, Equations, Finding, LeftOut, Model, Notion, States,
-};
+use reachtube_conform::{Code, Equations, Finding, Model, States};
 use reachtube_reach::Hyperrectangle;
 
 use crate::cost::{cost_charts, cost_tables};
 use crate::error::Result;
-use crate::nominal::{nominal_caution, nominal_facts, nominal_tables};
-use crate::notion::{outside_points, phase_planes, place, together, traces};
+use crate::nominal::{nominal_facts, nominal_tables};
 use crate::page::{JointSets, Page, SetsTable, Verdict};
+use crate::phase_planes::phase_planes;
 use crate::sources::{Sources, joint_name};
 use crate::suites::suite_figures;
-use reachtube_scalar::number::at_least;
 
 /// Makes the page of a model over recordings: the recordings that it was made from, or others.
 ///
@@ -36,7 +33,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
             check.verdict.runs,
             check.verdict.suites.len()
         ),
-        verdict: verdict(model, check),
+        verdict: verdict(sources),
         cost: cost_tables(model, &figures),
         cost_charts: cost_charts(&figures),
         suites: figures,
@@ -44,105 +41,40 @@ pub fn page(sources: &Sources) -> Result<Page> {
         nominal: nominal_tables(model),
         sets: vec![sets_table(model)],
         facts: [nominal_facts(model), facts(model)].concat(),
-        trust: vec![trust(model, check)],
-        caution: caution(model),
+        trust: trust(sources),
+        caution: caution(sources),
         notes: check.notes.clone(),
     })
 }
 
-fn verdict(model: &Model, check: &Check) -> Verdict {
-    let answer = &check.verdict;
-    let outer = answer.enclosure == Enclosure::Outer;
-    let set = answer.enclosure.set_name();
-    let (outside, rows) = (answer.violations.count, answer.rows);
-    let words = match &answer.violations.worst {
-        _ if answer.conformant => format!(
-            "All {} recordings lie in {} at every sample{}.",
-            answer.runs,
-            place(answer),
-            together(answer)
-        ),
-        _ if outside == 0 => outside_points(answer, model),
-        None => format!("{outside} of {rows} rows have no {set}."),
-        Some(worst) => format!(
-            "{outside} of {rows} rows leave the {set}; the furthest is {} at {:.3} s, {} by \
-             {:.3e}.",
-            worst.run, worst.time, worst.state, worst.excess
-        ),
-    };
-    let states = match model.settings.states {
-        States::All => "position and velocity",
-        States::Positions => "position",
-    };
-    let points = answer.points.as_ref().map(|points| {
-        format!(
-            "{} of {} recorded points lie in {}{}, proved with directed rounding.",
-            points.points - points.unproved,
-            points.points,
-            place(answer),
-            together(answer)
-        )
-    });
+/// Sets what the library found about the answer among the figures: the verdict and what lies
+/// furthest outside, warnings, and what was proved and what was not.
+fn verdict(sources: &Sources) -> Verdict {
+    let Sources { model, check, .. } = *sources;
+    let of_check = |codes: &[Code]| of_codes(sources, &check.findings, codes);
+    let outside: Vec<&Finding> =
+        check.findings.iter().filter(|found| found.code == Code::FurthestOutside).collect();
+    let headline = check.findings.first().into_iter().chain(outside);
+    let words: Vec<String> = headline.map(|found| sentence(sources, found)).collect();
+    let warnings = model.warnings.iter().map(Finding::from);
+    let mut proved = of_check(&[Code::Traces, Code::Points, Code::Rows]);
     let band = "The grey band is an outer bound of the model's reachable set at the samples";
-    let rows_hold = [
-        format!(
-            "{} of {rows} rows (suite, sample, state) hold, checked with directed rounding: the \
-             recorded {states} lies in the interval hull of the {set}.",
-            rows - outside,
-        ),
-        match model.noise_set {
-            None => format!("{band}."),
-            Some(_) => {
-                format!("{band}, without the measurement noise V: recordings may leave it by V.")
-            }
-        },
-    ];
-    let proved = traces(answer).into_iter().chain(points).chain(rows_hold).collect();
-    let mut not_proved = not_proved(model, answer, outer);
-    not_proved.extend(answer.lost.iter().map(|lost| sentence(&Finding::from(lost))));
-    let warnings = model.warnings.iter().map(|warning| sentence(&Finding::from(warning))).collect();
-    Verdict { ok: answer.conformant, words, warnings, proved, not_proved }
-}
-
-/// Returns what a reader must not take for proved.
-fn not_proved(model: &Model, answer: &conform::Verdict, outer: bool) -> Vec<String> {
-    let notion = match answer.points.as_ref().map_or(Notion::Hull, |points| points.notion) {
-        Notion::Hull => {
-            "The notion is the hull, which bounds each state separately. A point inside the hull \
-             need not be reachable."
+    proved.push(match model.noise_set {
+        None => format!("{band}."),
+        Some(_) => {
+            format!("{band}, without the measurement noise V: recordings may leave it by V.")
         }
-        Notion::PhasePlane => {
-            "The notion is the phase plane, which takes position and velocity of each joint \
-             together, and each joint by itself. States of several joints need not be reachable \
-             together."
-        }
-        Notion::Exact => {
-            "The notion is exact: all states at one sample are reachable together. Whether one \
-             motion of the model passes through the states of all samples is not said."
-        }
-        Notion::Trace => {
-            "The notion is trace: up to V, one motion of the model passes through the states of \
-             all samples. V is what the recordings were allowed to be wrong by."
-        }
-    };
-    let mut words = vec![
-        "The recordings are compared with the set at samples. Between samples only the model's own \
-         states are enclosed, in the tube that the command reachtube reach writes."
-            .into(),
-        notion.into(),
-    ];
-    if outer {
-        words.push(
-            "The model is not linear: its reachable set was computed as an outer enclosure, which \
-             is what a formal analysis uses. A recording in it need not be a behaviour of the \
-             model itself. The recordings that decide the sets touch the linearised set, not the \
-             wider band."
-                .into(),
-        );
+    });
+    let mut not_proved = of_check(&[Code::AtSamples, Code::Notion, Code::OuterSet]);
+    not_proved.extend(of_codes(sources, &model.findings(), &[Code::Explanations]));
+    not_proved.extend(of_check(&[Code::SetLost]));
+    Verdict {
+        ok: check.verdict.conformant,
+        words: words.join(" "),
+        warnings: warnings.map(|warning| sentence(sources, &warning)).collect(),
+        proved,
+        not_proved,
     }
-    let explanations = of_codes(&model.findings(), &[Code::Explanations]);
-    words.extend(explanations.map(|found| format!("Searched for, not proved: {found}")));
-    words
 }
 
 fn sets_table(model: &Model) -> SetsTable {
@@ -214,63 +146,39 @@ fn word(setting: impl serde::Serialize) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_string)
 }
 
-fn trust(model: &Model, check: &Check) -> String {
+/// Returns the bound for the next motion: from the check if it has one, or else from the fit.
+fn trust(sources: &Sources) -> Vec<String> {
+    let Sources { model, check, .. } = *sources;
     let bounds = [Code::NextMotion, Code::NoGuarantee];
-    let of_check = of_codes(&check.findings, &bounds).filter(|_| check.trust.is_some());
-    of_check.or_else(|| of_codes(&model.findings(), &bounds)).unwrap_or_default()
+    match check.trust {
+        Some(_) => of_codes(sources, &check.findings, &bounds),
+        None => of_codes(sources, &model.findings(), &bounds),
+    }
 }
 
-/// Returns the first finding of some codes as a sentence.
-fn of_codes(findings: &[Finding], codes: &[Code]) -> Option<String> {
-    findings.iter().find(|finding| codes.contains(&finding.code)).map(sentence)
+/// Returns what must not be concluded.
+fn caution(sources: &Sources) -> Vec<String> {
+    let codes = [
+        Code::RecordedOnly,
+        Code::NotSmallest,
+        Code::FewMotions,
+        Code::ParametersMoved,
+        Code::LeftOut,
+        Code::RobotChanged,
+    ];
+    of_codes(sources, &sources.model.findings(), &codes)
+}
+
+/// Returns the findings of some codes as sentences, in the order of the codes.
+fn of_codes(sources: &Sources, findings: &[Finding], codes: &[Code]) -> Vec<String> {
+    let of = |code: Code| findings.iter().filter(move |finding| finding.code == code);
+    codes.iter().copied().flat_map(of).map(|finding| sentence(sources, finding)).collect()
 }
 
 /// Returns a finding as a sentence.
-fn sentence(finding: &Finding) -> String {
-    let words = finding.to_string();
+fn sentence(sources: &Sources, finding: &Finding) -> String {
+    let words = finding.written_for(sources.front_end);
     let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
-    format!("{}{rest}", first.to_uppercase())
-}
-
-fn caution(model: &Model) -> Vec<String> {
-    let mut words = vec![
-        "It is a fact about these recordings that the sets enclose them. It implies nothing \
-         certain about motions, payloads or temperatures that were not recorded."
-            .to_string(),
-    ];
-    let findings = model.findings();
-    words.extend(of_codes(&findings, &[Code::NotSmallest]));
-    if model.trust.violation_probability > 0.5 {
-        words.push(
-            "There are too few independent motions for a useful bound on the next motion. Record \
-             more motions rather than more runs of the same motions."
-                .into(),
-        );
-    }
-    words.extend(nominal_caution(model));
-    words.extend(furthest_motion(model));
-    words.extend(of_codes(&findings, &[Code::RobotChanged]));
-    words
-}
-
-/// Says how far the motion that the others foretell least lies outside their sets.
-fn furthest_motion(model: &Model) -> Option<String> {
-    let growth = |left: &LeftOut| left.gauge.unwrap_or(f64::INFINITY);
-    let computed = model.left_out.iter().filter(|left| left.cost.is_some());
-    let left = computed.max_by(|a, b| growth(a).total_cmp(&growth(b)))?;
-    let motion = &left.motion;
-    let words = match left.gauge {
-        Some(gauge) if gauge > 1.0 => format!(
-            "The sets found without motion {motion} would have to grow {} times to hold it.",
-            at_least(gauge)
-        ),
-        Some(_) => return None,
-        None => format!(
-            "No growth was found under which the sets found without motion {motion} hold it."
-        ),
-    };
-    Some(format!(
-        "{words} Another motion may lie as far out. This describes the recorded motions and bounds \
-         no probability."
-    ))
+    let end = if rest.ends_with(['.', ':']) { "" } else { "." };
+    format!("{}{rest}{end}", first.to_uppercase())
 }

@@ -1,9 +1,9 @@
-//! What a page says of a nominal model that was fitted, and of calibrated sets.
+//! Tables of a nominal model that was fitted, and facts about calibrated sets.
 
-use reachtube_conform::{FitRecord, FittedParameter, MOST_ERRORS, Model};
+use reachtube_conform::{Code, Finding, FitRecord, FittedParameter, Model};
 
 use crate::text_table::TextTable;
-use reachtube_scalar::number::{at_least, four_decimals};
+use reachtube_scalar::number::four_decimals;
 
 /// The column of standard errors in the table of parameters.
 const STANDARD_ERROR: usize = 2;
@@ -12,19 +12,9 @@ const STANDARD_ERROR: usize = 2;
 pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
     let mut facts = Vec::new();
     let mut add = |name: &str, value: String| facts.push((name.to_string(), value));
-    if let Some(calibration) = &model.calibration {
-        let gauge = |g: &reachtube_conform::Gauge| format!("{} {}", g.motion, at_least(g.gauge));
-        let gauges: Vec<String> = calibration.gauges.iter().map(gauge).collect();
-        add(
-            "Calibration",
-            format!(
-                "the smallest sets of {} motions, scaled by {}, the largest that a held-out motion \
-                needs: {}",
-                calibration.fitted.len(),
-                at_least(calibration.factor),
-                gauges.join(", ")
-            ),
-        );
+    let calibrated = |found: &Finding| found.code == Code::Calibrated;
+    if let Some(calibrated) = model.report().findings().into_iter().find(calibrated) {
+        add("Calibration", calibrated.text);
     }
     if let Some(any) = &model.any_run {
         add("Cost of the sets for any run", four_decimals(any.cost));
@@ -81,23 +71,6 @@ fn costs(fit: &FitRecord) -> TextTable {
             .chain(calibrated)
             .collect(),
     }
-}
-
-/// Returns what must not be concluded from a fitted nominal model.
-pub(super) fn nominal_caution(model: &Model) -> Option<String> {
-    let fit = model.fit.as_ref()?;
-    let beyond = fit.parameters.iter().filter(|p| p.is_beyond_error()).count();
-    let beyond = match beyond {
-        0 => String::new(),
-        count => format!(
-            " {count} of these moved by more than {MOST_ERRORS} standard errors, and compensate \
-            for model error."
-        ),
-    };
-    Some(format!(
-        "The parameters of the nominal model were chosen for small sets. They are no measurements \
-         of the robot, and predict its torque worse than the identified ones may.{beyond}"
-    ))
 }
 
 fn parameter(model: &Model, p: &FittedParameter) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! What a page is made from.
 
-use reachtube_conform::{Check, Model, Problem, SuiteReach};
+use reachtube_conform::{Check, FrontEnd, Model, Problem, SuiteReach};
 
 /// The sources of a page.
 #[derive(Debug, Clone, Copy)]
@@ -13,6 +13,8 @@ pub struct Sources<'a> {
     pub reach: &'a [SuiteReach],
     /// Whether the recordings lie in the sets.
     pub check: &'a Check,
+    /// How the page writes settings.
+    pub front_end: FrontEnd,
 }
 
 pub(super) fn joint_name(model: &Model, joint: usize) -> String {

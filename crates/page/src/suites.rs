@@ -56,7 +56,7 @@ fn rank(figure: &SuiteFigure) -> (f64, f64, usize) {
 
 /// Makes the figure of one suite.
 fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigure> {
-    let Sources { model, problem, check, reach } = *sources;
+    let Sources { model, problem, check, reach, .. } = *sources;
     let (joints, name) = (model.joints(), &suite.entry.name);
     let own: Vec<&SuiteReach> = reach.iter().filter(|reach| reach.suite == *name).collect();
     let longest = own.iter().max_by_key(|reach| reach.times.len()).copied();

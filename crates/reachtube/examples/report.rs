@@ -1,5 +1,6 @@
 //! The report page of a virtual arm, written to the folder `reachtube-report`.
 
+use reachtube::conform::FrontEnd;
 use reachtube::demo::{DemoOptions, record};
 use reachtube::page::{Assets, Sources, page, write_html};
 use reachtube::{
@@ -19,7 +20,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let check = Check::new(&model, &problem, found.verdict.clone());
     let reach = reach(&problem, &found.hulls)?;
-    let sources = Sources { model: &model, problem: &problem, reach: &reach, check: &check };
+    let sources = Sources {
+        model: &model,
+        problem: &problem,
+        reach: &reach,
+        check: &check,
+        front_end: FrontEnd::CommandLine,
+    };
     let mut html = Vec::new();
     write_html(&page(&sources)?, Assets::Inside, &mut html)?;
     let path = std::path::Path::new("reachtube-report/report.html");

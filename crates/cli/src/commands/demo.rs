@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use reachtube::Model;
 use reachtube::conform::{
-    Answer, Calibration, Check, Conformance, FitSettings, Group, Job, Keep, Settings, Setup,
-    conform,
+    Answer, Calibration, Check, Conformance, FitSettings, FrontEnd, Group, Job, Keep, Settings,
+    Setup, conform,
 };
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::number::{at_least, four_decimals};
@@ -142,7 +142,8 @@ fn check_held_out(
     let opened = Opened::with(model, setup, &args, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
-    let sources = Sources { model, problem, reach: &reach, check: &check };
+    let sources =
+        Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     let page = report_files::write(&sources, Assets::Inside, page)?;
     output::wrote(&page);
     Ok((opened.model, check))

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::conform::{Finding, Keep, SuiteReach};
+use reachtube::conform::{Finding, FrontEnd, Keep, SuiteReach};
 use reachtube::page::{Sources, page};
 use reachtube::write;
 use serde_json::json;
@@ -64,7 +64,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         write::atomically(samples, |out| reach.write_samples(out))?;
         write::atomically(tube, |out| reach.write_tube(out))?;
     }
-    let sources = Sources { model, problem, reach: &reach, check: &check };
+    let sources =
+        Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     report_files::write_figures(&page(&sources)?, &args.out)?;
     if json {
         let rows: Vec<_> = written.iter().map(Written::json).collect();

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use reachtube::conform::Keep;
+use reachtube::conform::{FrontEnd, Keep};
 use reachtube::page::{Assets, Sources};
 use serde_json::json;
 
@@ -56,7 +56,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
-    let sources = Sources { model, problem, reach: &reach, check: &check };
+    let sources =
+        Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     let page = report_files::write(&sources, args.assets.into(), &args.out)?;
     output::notes(&problem.recordings().notes);
     output::show(json, &json!({ "report": page.display().to_string() }), || {

@@ -14,7 +14,7 @@ fn points_are_proved_and_certified() {
     lab.run("check --model exact.json --data data --torque compensated").exits(0);
     lab.run("report --model exact.json --data data --torque compensated --out page").exits(0);
     let page = lab.read("page/report.html");
-    for part in ["the reachable set itself at every sample", "Phase planes", "notion is exact"] {
+    for part in [points, "Phase planes", "notion is exact"] {
         assert!(page.contains(part), "{part} is not on the page");
     }
 }

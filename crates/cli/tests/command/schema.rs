@@ -34,10 +34,25 @@ fn models_fit_the_schema() {
     ] {
         let model = lab.conform(&format!("--json {options}")).exits(0).json();
         assert_eq!(complaints(&schema, &model), Vec::<String>::new(), "{options}");
+        let codes: Vec<&Value> = model["findings"].as_array().unwrap().iter().collect();
+        assert_eq!(codes[0]["code"], "conformant", "{options}");
+        assert!(codes.iter().any(|finding| finding["code"] == "cost"), "{options}");
     }
     lab.edit("data/runs.csv", |lines| lines[0] = lines[0].replace("motion", "other"));
     let model = lab.conform("--json").exits(0).json();
     assert_eq!(complaints(&schema, &model), Vec::<String>::new());
+}
+
+#[test]
+fn what_conform_prints_is_a_model_file_with_findings() {
+    let lab = Lab::new();
+    let mut printed = lab.conform("--json --out model.json").exits(0).json();
+    let stored: Value = serde_json::from_str(&lab.read("model.json")).unwrap();
+    lab.write("printed.json", printed.to_string());
+    lab.run("check --model printed.json --data data --torque compensated").exits(0);
+    assert!(stored.get("findings").is_none());
+    printed.as_object_mut().unwrap().remove("findings");
+    assert_eq!(printed, stored);
 }
 
 #[test]

@@ -1,7 +1,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::group::Group;
-use crate::plausibility::{Warning, WarningKind};
 
 /// Number of standard errors by which a fit may move a value that is still a measurement.
 pub const MOST_ERRORS: f64 = 3.0;
@@ -78,24 +77,23 @@ impl FitRecord {
 
     /// Returns why the fit suits its motions only, if it does. `calibrated_cost` is the cost of the
     /// fitted model's calibrated sets, where they are calibrated.
-    pub(crate) fn overfitted(&self, calibrated_cost: Option<f64>) -> Option<Warning> {
+    pub(crate) fn overfitted(&self, calibrated_cost: Option<f64>) -> Option<Overfit> {
         let costs = self.identified_calibrated_cost.zip(calibrated_cost);
-        let fact = match (costs.filter(|(before, after)| after > before), self.left_out_mean()) {
-            (Some((before, after)), _) => format!(
-                "calibrated sets cost {after:.0} with the fitted nominal model and {before:.0} \
-                 with the identified one"
-            ),
-            (None, Some(mean)) if mean <= self.identified_cost => return None,
-            (None, _) => "with a motion left out the fitted nominal model needs larger sets than \
-                          the identified one"
-                .into(),
-        };
-        let text = format!(
-            "{fact}: the fit suits its own motions only, so fit to more of them, fit fewer groups \
-             (--fit), or give a larger weight to the pull (--pull)"
-        );
-        Some(Warning { kind: WarningKind::Overfitted, joints: Vec::new(), text })
+        match (costs.filter(|(before, after)| after > before), self.left_out_mean()) {
+            (Some((identified, fitted)), _) => Some(Overfit::Calibrated { identified, fitted }),
+            (None, Some(mean)) if mean <= self.identified_cost => None,
+            (None, _) => Some(Overfit::LeftOut),
+        }
     }
+}
+
+/// Why a fit suits its own motions only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Overfit {
+    /// Calibrated sets cost more with the fitted model than with the identified one.
+    Calibrated { identified: f64, fitted: f64 },
+    /// With a motion left out, the fitted model needs larger sets than the identified one.
+    LeftOut,
 }
 
 /// A parameter before and after.

@@ -9,6 +9,7 @@ use reachtube_abstraction::{Records, TermRecord};
 use reachtube_files::{json, write};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_robot::RobotDescription;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -159,6 +160,10 @@ pub struct Model {
     pub data: DataRecord,
     /// The robot.
     pub robot: RobotDescription,
+    /// The findings that the command prints beside the model. They follow from the rest and are
+    /// not read.
+    #[serde(default, skip_serializing)]
+    pub(crate) findings: IgnoredAny,
     /// SHA-256 of the rest of the file's content, so that a change is noticed.
     pub sha256: String,
 }
@@ -216,6 +221,7 @@ impl Model {
             acceleration: polynomial.acceleration,
             data: DataRecord::new(problem),
             robot: problem.robot().description().clone(),
+            findings: IgnoredAny,
             sha256: String::new(),
         }
         .sealed()
@@ -289,7 +295,8 @@ impl Model {
     #[must_use]
     pub fn with_fit(mut self, record: FitRecord) -> Self {
         let calibrated_cost = self.calibration.as_ref().and(self.cost);
-        self.warnings.extend(record.overfitted(calibrated_cost));
+        let overfit = record.overfitted(calibrated_cost);
+        self.warnings.extend(overfit.as_ref().map(Warning::from));
         Self { fit: Some(record), ..self }.sealed()
     }
 

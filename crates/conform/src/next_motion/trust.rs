@@ -74,8 +74,7 @@ impl Trust {
     /// the scenario bound counts what decides the sets only.
     #[must_use]
     pub fn of_fitted_nominal(recordings: &Recordings) -> Self {
-        let basis = "no scenario bound: the nominal model was fitted to the same motions; \
-                     --calibrate MOTION,.. keeps motions back from both fits";
+        let basis = "no scenario bound: the nominal model was fitted to the same motions";
         Self::unknown(Motions::new(recordings).count(), basis.into())
     }
 

@@ -3,6 +3,7 @@ use reachtube_robot::Robot;
 
 use crate::data::problem::Problem;
 use crate::error::Result;
+use crate::plausibility::cause::Reading;
 
 /// Number of runs that are looked at, at most.
 const RUNS: usize = 8;
@@ -30,8 +31,8 @@ pub(super) struct Evidence<'a> {
 /// What recordings may mean instead of what was stated: each number as it is read.
 #[derive(Debug, Clone)]
 pub(super) struct Hypothesis {
-    /// What is tried, in words.
-    pub words: String,
+    /// What is tried.
+    pub reading: Reading,
     /// The recorded torques.
     pub torque: Torque,
     /// Factor of the times.

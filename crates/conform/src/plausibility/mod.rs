@@ -1,11 +1,13 @@
 //! Whether an answer is plausible: sets beside the recorded motion and torque, and the most likely
-//! causes of implausible ones.
+//! causes of implausible ones. `result/findings/plausibility.rs` words what is found.
 
+pub(crate) mod cause;
 mod causes;
 mod evidence;
 mod nominal_fit;
+pub(crate) mod warning;
 mod warnings;
 
 pub(crate) use nominal_fit::NominalFit;
+pub use warning::{Warning, WarningKind};
 pub(crate) use warnings::warnings;
-pub use warnings::{Warning, WarningKind};

@@ -1,5 +1,4 @@
 use reachtube_recordings::State;
-use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
@@ -7,6 +6,7 @@ use crate::error::Result;
 use crate::next_motion::calibration::Calibration;
 use crate::plausibility::causes::likely_cause;
 use crate::plausibility::nominal_fit::NominalFit;
+use crate::plausibility::warning::{Remark, Warning, WarningKind};
 use crate::sets::UncertaintySets;
 
 /// X0 that reaches further than the recorded starts by more than this factor is remarked ...
@@ -17,97 +17,6 @@ const PART_OF_MOTION: f64 = 0.02;
 
 /// A nominal motion that explains less than this part of a velocity's variance is remarked.
 const LEAST_EXPLAINED: f64 = 0.5;
-
-/// A remark that an answer is implausible, although the sets enclose the recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Warning {
-    /// What is remarked.
-    pub kind: WarningKind,
-    /// The joints that it is about, from 1; none where it is about all.
-    pub joints: Vec<usize>,
-    /// The remark in words.
-    pub text: String,
-}
-
-/// What a warning remarks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WarningKind {
-    /// The reachable set is more than twice as wide as the recorded motion.
-    ReachableSetSize,
-    /// X0 is wider than the recorded motion.
-    InitialSetSize,
-    /// The positions of X0 reach much further than the recorded starts.
-    InitialSetStarts,
-    /// 0 lies outside X0 by more than the noise of the sensors.
-    InitialSetOffset,
-    /// U reaches beyond the recorded input.
-    InputSetSize,
-    /// V is nearly as wide as the recorded motion.
-    NoiseSetSize,
-    /// The nominal motion explains little of the recorded one.
-    Unexplained,
-    /// What most likely caused the other warnings.
-    Cause,
-    /// The fitted nominal model needs larger sets than the identified one for motions that it was
-    /// not fitted to.
-    Overfitted,
-}
-
-impl WarningKind {
-    /// All kinds that are about single joints, in the order of the warnings.
-    const OF_JOINTS: [Self; 7] = [
-        Self::ReachableSetSize,
-        Self::InitialSetSize,
-        Self::InitialSetStarts,
-        Self::InitialSetOffset,
-        Self::InputSetSize,
-        Self::NoiseSetSize,
-        Self::Unexplained,
-    ];
-
-    /// Returns the words before the list of states.
-    fn words(self) -> &'static str {
-        match self {
-            Self::ReachableSetSize => {
-                "the reachable set is more than twice as wide as the recorded motion (largest \
-                 width, range of the recordings)"
-            }
-            Self::InitialSetSize => {
-                "X0 is wider than the recorded motion and covers what the model does not explain \
-                 (width, range of the recordings)"
-            }
-            Self::InitialSetStarts => {
-                "X0 reaches much further than the recorded starts and covers what happens later; \
-                 an initial limit (--initial-limit positions) leaves that to U (reach, furthest \
-                 start)"
-            }
-            Self::InitialSetOffset => {
-                "X0 does not contain 0, so that no nominal motion starts in it (distance)"
-            }
-            Self::InputSetSize => {
-                "U reaches beyond the recorded inputs (reach, largest recorded input)"
-            }
-            Self::NoiseSetSize => {
-                "V is so wide that hardly any motion is left to explain (width, range of the \
-                 recordings)"
-            }
-            Self::Unexplained => {
-                "the nominal motions explain little of the recorded velocities (part of the \
-                 variance)"
-            }
-            Self::Cause | Self::Overfitted => "",
-        }
-    }
-}
-
-/// What is remarked of one joint.
-struct Remark {
-    kind: WarningKind,
-    joint: usize,
-    text: String,
-}
 
 /// Returns what is remarkable about `sets` beside the recordings of `problem`, and the most likely
 /// cause where anything is. `radii` are the largest radii of the reachable set, for each state
@@ -129,18 +38,12 @@ pub(crate) fn warnings(
     remarks.extend((0..n).filter_map(|joint| of_input(problem, sets, fit, joint)));
     let of_kind = |kind: WarningKind| {
         let of: Vec<&Remark> = remarks.iter().filter(|remark| remark.kind == kind).collect();
-        let texts: Vec<&str> = of.iter().map(|remark| remark.text.as_str()).collect();
-        let mut joints: Vec<usize> = of.iter().map(|remark| remark.joint).collect();
-        joints.sort_unstable();
-        joints.dedup();
-        let text = format!("{}: {}", kind.words(), texts.join("; "));
-        (!of.is_empty()).then_some(Warning { kind, joints, text })
+        (!of.is_empty()).then(|| Warning::of_remarks(kind, &of))
     };
     let mut found: Vec<Warning> = WarningKind::OF_JOINTS.into_iter().filter_map(of_kind).collect();
     // X0 takes over from U where that is cheaper, whatever the recordings are.
     if found.iter().any(|warning| warning.kind != WarningKind::InitialSetStarts) {
-        let text = likely_cause(problem, calibration)?;
-        found.push(Warning { kind: WarningKind::Cause, joints: Vec::new(), text });
+        found.push(Warning::from(&likely_cause(problem, calibration)?));
     }
     Ok(found)
 }

@@ -41,6 +41,14 @@ codes! {
     SetLost = "set-lost",
     /// A simulated motion of the model diverged.
     Unstable = "unstable",
+    /// How many rows hold.
+    Rows = "rows",
+    /// Recordings are compared at samples.
+    AtSamples = "at-samples",
+    /// What the notion of conformance does not ask.
+    Notion = "notion",
+    /// The reachable set was computed as an outer enclosure.
+    OuterSet = "outer-set",
     /// The point that lies furthest outside.
     FurthestOutside = "furthest-outside",
     /// What the sets cost.
@@ -91,6 +99,10 @@ codes! {
     GrowthNeeded = "growth-needed",
     /// How often held-out recordings leave the sets.
     HeldOutRates = "held-out-rates",
+    /// Nothing certain follows for what was not recorded.
+    RecordedOnly = "recorded-only",
+    /// There are too few independent motions for a useful bound.
+    FewMotions = "few-motions",
     /// Whether recordings were used in the fit cannot be known.
     UseUnknown = "use-unknown",
     /// No recording of a suite starts near the model's nominal start.

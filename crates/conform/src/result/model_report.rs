@@ -4,6 +4,7 @@ use reachtube_recordings::State;
 use reachtube_robot::JointKind;
 use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::interval;
+use serde::Serialize;
 
 use crate::data::settings::Equations;
 use crate::model::file::Model;
@@ -18,10 +19,27 @@ use crate::witness::Witness;
 const MOST_PLACES: usize = 6;
 
 impl Model {
-    /// Returns what the answer says, statement by statement: the verdict first.
+    /// Returns what the answer says, statement by statement: the verdict first, and last what must
+    /// not be concluded, which is not in the report.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
-        self.report().findings()
+        let mut findings = self.report().findings();
+        findings.extend(Finding::reach_of_proof(&self.proof, self.settings.states));
+        findings.extend(Finding::beyond_recordings(&self.trust));
+        findings
+    }
+
+    /// Returns the text of the model file with [`findings`](Self::findings) beside the model, as
+    /// the command prints it. It can be read as a model file.
+    #[must_use]
+    pub fn to_json_with_findings(&self) -> String {
+        #[derive(Serialize)]
+        struct Printed<'a> {
+            #[serde(flatten)]
+            model: &'a Model,
+            findings: Vec<Finding>,
+        }
+        reachtube_files::json::to_lines(&Printed { model: self, findings: self.findings() })
     }
 
     /// Returns the answer for people. A table of the sets is like Table II of the paper.

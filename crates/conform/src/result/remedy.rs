@@ -2,7 +2,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::result::front_end::{FrontEnd, mentions};
+use crate::result::front_end::FrontEnd;
 
 /// A setting that helps, and what it does. Each front end writes it in its own form.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -21,6 +21,7 @@ const EFFECTS: &[(&str, &str)] = &[
     ("until", "uses only the samples before."),
     ("torque", "reads the recorded torques as such."),
     ("expansion", "expands the model there."),
+    ("model", "with order 2 follows how the inertia changes."),
     ("equations", "lets the nominal motions follow the robot's own equations."),
     ("fit", "names the parameters to fit."),
     ("pull", "keeps the fitted values closer to the identified ones."),
@@ -50,13 +51,6 @@ impl Remedy {
     #[must_use]
     pub fn until(time: f64) -> Self {
         Self::new("until", format!("{time:.3}"))
-    }
-
-    /// Returns the first remedy that a text mentions as users of the command write it.
-    pub(crate) fn mentioned_in(text: &str) -> Option<Self> {
-        let is_known = |setting: &str| EFFECTS.iter().any(|(name, _)| *name == setting);
-        let mut all = mentions(text).into_iter().filter(|found| is_known(found.setting));
-        all.next().map(|found| Self::new(found.setting, found.value.unwrap_or_default()))
     }
 
     /// Returns the remedy as a sentence, as users of a front end write settings.

@@ -286,7 +286,7 @@ fn a_fit_that_suits_its_own_motions_only_is_a_warning() {
     assert!(words.as_ref().is_some_and(|words| words.contains(&fact)), "{words:?}");
     let (words, record) = overfitted(&[1.6, 0.6], &[]);
     assert!(record.left_out_mean() > Some(record.identified_cost), "{record:?}");
-    assert!(words.is_some_and(|words| words.contains("with a motion left out")));
+    assert!(words.is_some_and(|words| words.contains("With a motion left out")));
 }
 
 /// The fold of a source, read back as the problem that the source gives.

@@ -2,8 +2,8 @@
 
 use crate::common::{Random, grid};
 use reachtube_conform::{
-    Conformance, Equations, Keep, Method, Model, Noise, NominalStart, Problem, Settings, Setup,
-    Silent, Warning, WarningKind, conform,
+    Conformance, Equations, Finding, Keep, Method, Model, Noise, NominalStart, Problem, Settings,
+    Setup, Silent, Warning, WarningKind, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
@@ -96,9 +96,10 @@ fn found_for(robot: Robot, written: &Written, settings: Settings) -> (Problem, C
     (problem, found)
 }
 
-fn cause(warnings: &[Warning]) -> Option<&str> {
+/// Returns the cause among warnings with its remedy.
+fn cause(warnings: &[Warning]) -> Option<String> {
     let is_cause = |warning: &&Warning| warning.kind == WarningKind::Cause;
-    warnings.iter().find(is_cause).map(|warning| warning.text.as_str())
+    warnings.iter().find(is_cause).map(|warning| Finding::from(warning).to_string())
 }
 
 #[test]
@@ -143,7 +144,7 @@ fn filtered_torques_of_joints_that_turn_are_named() {
     let cause_of = |filtered: usize| {
         let written = Written { filtered, about: 2.0, ..RIGHT };
         let (_, found) = found_for(robot.clone(), &written, own.clone());
-        cause(&found.warnings).map(String::from)
+        cause(&found.warnings)
     };
     let named = cause_of(12).expect("the sets are wide");
     assert!(named.contains("`reachtube prepare --compensate`"), "{named}");
@@ -173,10 +174,11 @@ fn an_expansion_point_far_from_the_motion_is_named_and_a_better_one_proposed() {
     let (_, far) = found_for(folding(), &folded, Settings::new(Torque::Motor, 2));
     let cause = cause(&far.warnings).unwrap();
     assert!(
-        cause.starts_with("the robot explains the recordings, and model 1 does not"),
+        cause.starts_with("The robot explains the recordings, and model 1 does not"),
         "{cause}"
     );
-    assert!(cause.contains("up to 2.85 rad; with --expansion=0.02,2.58, the mean"), "{cause}");
+    assert!(cause.contains("up to 2.85 rad. About 0.02,2.58, the mean"), "{cause}");
+    assert!(cause.ends_with("`--expansion 0.02,2.58` expands the model there."), "{cause}");
     let mut near = Settings::new(Torque::Motor, 2);
     near.expansion_point.q = vec![0.0, 2.6];
     let (_, near) = found_for(folding(), &folded, near);
@@ -187,8 +189,9 @@ fn an_expansion_point_far_from_the_motion_is_named_and_a_better_one_proposed() {
     let by_robot = Settings { equations: Equations::Robot, ..Settings::new(Torque::Motor, 2) };
     let (_, far) = found_for(folding(), &wrong, by_robot);
     let cause = self::cause(&far.warnings).unwrap();
-    assert!(cause.starts_with("the nominal motions follow the robot, and deviations"), "{cause}");
-    assert!(cause.contains("--expansion=0.02,2.58 is the mean of the positions"), "{cause}");
+    assert!(cause.starts_with("The nominal motions follow the robot, and deviations"), "{cause}");
+    assert!(cause.contains("The mean of the positions is a better point."), "{cause}");
+    assert!(cause.ends_with("`--expansion 0.02,2.58` expands the model there."), "{cause}");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use reachtube_conform::{
-    Check, Conformance, Hulls, Keep, Model, Problem, Progress, Setup, Silent, States, Trend,
-    Verdict, reach,
+    Check, Conformance, FrontEnd, Hulls, Keep, Model, Problem, Progress, Setup, Silent, States,
+    Trend, Verdict, reach,
 };
 use reachtube_recordings::DataSet;
 
@@ -147,9 +147,14 @@ fn suite_under(
     let model = Model::new(&problem, found);
     let verdict = Verdict::new(&problem, &hulls, |_, _, _| ())?;
     let check = Check::new(&model, &problem, verdict);
-    let figure =
-        suite_figures(&Sources { model: &model, problem: &problem, reach: &sets, check: &check })?
-            .pop();
+    let figure = suite_figures(&Sources {
+        model: &model,
+        problem: &problem,
+        reach: &sets,
+        check: &check,
+        front_end: FrontEnd::CommandLine,
+    })?
+    .pop();
     let figure = figure.ok_or(ReproduceError::NoSuite)?;
     let first = problem.recordings().suites[0].runs[0].index;
     let run = problem.run(first)?;

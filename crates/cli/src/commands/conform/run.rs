@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use reachtube::conform::{Answer, FitSettings, Job};
+use reachtube::conform::{Answer, FitSettings, FrontEnd, Job};
 use reachtube::page::{Assets, Sources};
 use reachtube::recordings::DataSet;
 use reachtube::write;
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::wrote(path);
     }
     if json {
-        output::print_json_text(&answer.model.to_json())?;
+        output::print_json_text(&answer.model.to_json_with_findings())?;
     } else {
         output::print(&answer.report().to_string())?;
     }
@@ -68,6 +68,7 @@ fn job(args: &Arguments) -> Result<Job> {
 pub(crate) fn report(answer: &Answer, folder: &Path) -> Result<PathBuf> {
     let Answer { model, problem, .. } = answer;
     let (check, reach) = (answer.check(), answer.reach()?);
-    let sources = Sources { model, problem, reach: &reach, check: &check };
+    let sources =
+        Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     report_files::write(&sources, Assets::Inside, folder)
 }

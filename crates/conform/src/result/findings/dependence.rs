@@ -1,24 +1,27 @@
 //! How far the sets depend on single motions and runs.
 
+use reachtube_scalar::number::at_least;
+
 use crate::model::file::Model;
 use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::Trend;
+use crate::next_motion::without_motion::LeftOut;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::{counted, listed, plural};
 
 impl Finding {
-    /// The meaning of the table of the sets without each motion; `None` if there is no table to
-    /// expect.
+    /// The meaning of the table of the sets without each motion, and the motion that the others
+    /// foretell least; `None` if there is no table to expect.
     pub(crate) fn left_out(model: &Model) -> Option<Self> {
         let is_linear = model.acceleration.is_empty();
         let text = match (model.left_out.is_empty(), model.data.motions()) {
             (true, 0 | 1) => return None,
             (true, _) if is_linear => return None,
             (true, _) => {
-                "The sets without each motion are computed for --method program and --notion hull \
-                 only. For others, find the sets with --suites of the other motions, and check \
-                 the motion that was left out."
+                "The sets without each motion are computed by the method `program` and for the \
+                 notion `hull` only. Otherwise, find sets for the suites of the other motions, and \
+                 check the motion that was left out."
             }
             (false, _) if model.fit.is_some() => {
                 "The sets were found without each motion, for a nominal model that was fitted to \
@@ -30,7 +33,23 @@ impl Finding {
             }
         };
         let motions = model.left_out.len() as f64;
-        Some(Self::new(Severity::Info, Code::LeftOut, text).with("motions", motions))
+        let finding = Self::new(Severity::Info, Code::LeftOut, text).with("motions", motions);
+        Some(match furthest(&model.left_out) {
+            None => finding,
+            Some(LeftOut { motion, gauge, .. }) => {
+                let growth = match gauge {
+                    Some(gauge) => {
+                        format!("would have to grow {} times to enclose it", at_least(*gauge))
+                    }
+                    None => "enclose it under no growth that was found".into(),
+                };
+                let more = format!(
+                    " Without motion {motion} they {growth}, and another motion may lie as far out."
+                );
+                let text = finding.text.clone() + &more;
+                Self { text, ..finding }.at(motion).with("growth", gauge.unwrap_or(f64::INFINITY))
+            }
+        })
     }
 
     /// The runs that decide the sets, and what they cost; `None` if none does.
@@ -78,4 +97,11 @@ impl Finding {
         let finding = Self::new(Severity::Warning, Code::RobotChanged, text).at(place);
         (!suites.is_empty()).then(|| finding.with("joints", trends.len() as f64))
     }
+}
+
+/// Returns the motion whose absence needs the most growth, if one needs any.
+fn furthest(all: &[LeftOut]) -> Option<&LeftOut> {
+    let growth = |left: &LeftOut| left.gauge.unwrap_or(f64::INFINITY);
+    let computed = all.iter().filter(|left| left.cost.is_some());
+    computed.max_by(|a, b| growth(a).total_cmp(&growth(b))).filter(|left| growth(left) > 1.0)
 }

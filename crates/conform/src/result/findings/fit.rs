@@ -29,7 +29,8 @@ impl Finding {
             .with("pull", *pull)
     }
 
-    /// That fitted values compensate for model error, if some do.
+    /// That fitted values are no measurements, and how many compensate for model error; `None` if
+    /// none changed.
     pub(crate) fn parameters_moved(record: &FitRecord) -> Option<Self> {
         let changed = || record.parameters.iter().filter(|p| p.has_changed());
         let is_far = |p: &&FittedParameter| {
@@ -50,11 +51,16 @@ impl Finding {
                 counted(far, "value")
             ));
         }
-        let text = format!(
-            "{}. Such a value compensates for model error; do not read it as a measurement.",
-            words.join(", and ")
-        );
-        (!words.is_empty()).then(|| {
+        let text = match words.is_empty() {
+            true => "The fitted values were chosen for small sets; do not read them as \
+                     measurements."
+                .into(),
+            false => format!(
+                "{}. Such a value compensates for model error; do not read it as a measurement.",
+                words.join(", and ")
+            ),
+        };
+        changed().next().map(|_| {
             Self::new(Severity::Info, Code::ParametersMoved, text)
                 .with("beyond_error", beyond as f64)
                 .with("beyond_factor", far as f64)

@@ -3,7 +3,9 @@
 mod check;
 mod dependence;
 mod fit;
+mod limits;
 mod new_motions;
+mod plausibility;
 mod sets;
 mod verdict;
 pub(super) mod words;

@@ -49,7 +49,6 @@ impl Finding {
         let remedy =
             (could_say_more && data.motions() > 1).then(|| Remedy::new("calibrate", "MOTION,.."));
         let finding = Self::next_motion(trust, proof.enclosure.set_name(), "touched the set");
-        // The remedy says how.
         let text = finding.text.replace(HOW_TO_CALIBRATE, "");
         Self { text, ..finding }.remedied_by(remedy)
     }
@@ -148,5 +147,5 @@ impl Finding {
     }
 }
 
-/// What the basis of a fitted nominal model says about settings.
+/// What the basis of a fitted nominal model says about settings in files of earlier versions.
 const HOW_TO_CALIBRATE: &str = "; --calibrate MOTION,.. keeps motions back from both fits";

@@ -1,11 +1,10 @@
-//! What a page says and draws of the notions of enclosure.
+//! Phase planes: the reachable set in position and velocity of one joint.
 
-use reachtube_conform::{Model, Notion, PhasePlane, PointVerdict, Problem, Verdict};
+use reachtube_conform::{Model, PhasePlane, Problem};
 use reachtube_robot::JointKind;
 
 use super::chart::{Chart, Series};
 use crate::error::Result;
-use reachtube_scalar::number::four_decimals;
 
 /// Grey.
 const HULL: [u8; 3] = [150, 156, 164];
@@ -13,66 +12,6 @@ const HULL: [u8; 3] = [150, 156, 164];
 const SET: [u8; 3] = [18, 70, 200];
 /// Orange.
 const RECORDED: [u8; 3] = [222, 110, 0];
-
-/// Names what recordings lie in.
-pub(super) fn place(answer: &Verdict) -> String {
-    let set = answer.enclosure.set_name();
-    match notion(answer) {
-        Notion::Hull => format!("the interval hull of the {set}"),
-        Notion::PhasePlane => format!("the projections of the {set} on the phase planes"),
-        Notion::Exact | Notion::Trace => format!("the {set} itself"),
-    }
-}
-
-/// Says which states are taken together.
-pub(super) fn together(answer: &Verdict) -> &'static str {
-    match notion(answer) {
-        Notion::Hull => "",
-        Notion::PhasePlane => ", position and velocity of each joint together",
-        Notion::Exact | Notion::Trace => ", all states together",
-    }
-}
-
-fn notion(answer: &Verdict) -> Notion {
-    answer.points.as_ref().map_or(Notion::Hull, |points| points.notion)
-}
-
-/// Says how many recordings are motions of the model, where that was asked.
-pub(super) fn traces(answer: &Verdict) -> Option<String> {
-    let traces = answer.traces.as_ref()?;
-    Some(format!(
-        "{} of {} recordings are, up to V, one motion of the model each, with its start in X0 and \
-         its input in U: proved with directed rounding.",
-        answer.runs - traces.unproved,
-        answer.runs
-    ))
-}
-
-/// Says how many points are not in the set, and names the one furthest outside.
-pub(super) fn outside_points(answer: &Verdict, model: &Model) -> String {
-    let Some(PointVerdict { points, unproved, worst, .. }) = &answer.points else {
-        return "No row could be compared.".into();
-    };
-    let mut words = format!(
-        "{unproved} of {points} recorded points were not proved to lie in {}{}",
-        place(answer),
-        together(answer)
-    );
-    if let Some(worst) = worst {
-        let state = worst.leading_state();
-        words += &format!(
-            "; the furthest is {} at {:.3} s, where {} is {} {unit} from the centre of the set, \
-             which reaches {} {unit}",
-            worst.run,
-            worst.time,
-            worst.combination,
-            four_decimals(worst.value),
-            four_decimals(worst.reach),
-            unit = state.kind.unit(model.robot.joints[state.joint].kind)
-        );
-    }
-    words + "."
-}
 
 /// Draws the phase plane of each joint at the sample where a recording comes closest to the
 /// boundary of the set, or leaves it furthest: the hull, the set in it, and the recordings.

@@ -1,0 +1,77 @@
+use reachtube_recordings::Torque;
+
+/// What most likely makes an answer implausible. Parts are of the recorded input.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Cause {
+    /// The recordings mean something else than was stated.
+    Reading {
+        /// What they mean.
+        reading: Reading,
+        /// The part that the recorded motion does not explain under this reading.
+        unexplained: f64,
+        /// The part that it does not explain as stated.
+        as_stated: f64,
+    },
+    /// A motion that was held out made calibration scale the sets by much.
+    HeldOut {
+        /// The motion.
+        motion: String,
+        /// The motions that the sets were found with.
+        fitted: Vec<String>,
+        /// The factor of the sets.
+        factor: f64,
+    },
+    /// The positions lie far from the point about which deviations have the robot's inertia.
+    ExpansionPoint {
+        /// The largest distance, rad.
+        distance: f64,
+        /// The mean of the positions, n, rad.
+        mean: Vec<f64>,
+    },
+    /// The robot explains the recordings, and the constant inertia of model 1 does not.
+    ConstantInertia {
+        /// The part that the robot does not explain.
+        by_robot: f64,
+        /// The part that model 1 does not explain.
+        by_model: f64,
+        /// How far the positions lie from the expansion point, rad.
+        distance: f64,
+        /// The mean of the positions, n, rad, and the part that model 1 does not explain about it,
+        /// where that is much less.
+        about_mean: Option<(Vec<f64>, f64)>,
+        /// Whether nominal motions can follow the robot's own equations instead.
+        can_follow_robot: bool,
+    },
+    /// The recorded motion does not explain the input, however the recordings are read.
+    Parameters {
+        /// The part that is not explained.
+        unexplained: f64,
+        /// Whether the nominal model was fitted for small sets already.
+        is_fitted: bool,
+    },
+}
+
+/// What recordings may mean instead of what was stated.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Reading {
+    /// As stated.
+    Stated,
+    /// The torques are in units of this many N m.
+    TorqueUnit(f64),
+    /// The torques have the opposite sign.
+    OppositeSigns,
+    /// The torques are of another kind.
+    Kind(Torque),
+    /// The steps of dry friction are missing from motor torques.
+    Filtered,
+    /// The times are in ms.
+    Milliseconds,
+    /// Positions and velocities are in degrees.
+    Degrees,
+    /// The torques are later than the motion by this time, s.
+    Lag(f64),
+    /// The torque of one joint, from 1, has the opposite sign.
+    OppositeSign(usize),
+    /// The torques of two joints, from 1, are swapped.
+    Swapped(usize, usize),
+}

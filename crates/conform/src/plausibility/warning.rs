@@ -1,0 +1,65 @@
+use serde::{Deserialize, Serialize};
+
+use crate::result::remedy::Remedy;
+
+/// A remark that an answer is implausible, although the sets enclose the recordings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Warning {
+    /// What is remarked.
+    pub kind: WarningKind,
+    /// The joints that it is about, from 1; none where it is about all.
+    pub joints: Vec<usize>,
+    /// The remark in words, without the remedy. Files of earlier versions name settings in it.
+    pub text: String,
+    /// A setting that helps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<Remedy>,
+}
+
+/// What a warning remarks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WarningKind {
+    /// The reachable set is more than twice as wide as the recorded motion.
+    ReachableSetSize,
+    /// X0 is wider than the recorded motion.
+    InitialSetSize,
+    /// The positions of X0 reach much further than the recorded starts.
+    InitialSetStarts,
+    /// 0 lies outside X0 by more than the noise of the sensors.
+    InitialSetOffset,
+    /// U reaches beyond the recorded input.
+    InputSetSize,
+    /// V is nearly as wide as the recorded motion.
+    NoiseSetSize,
+    /// The nominal motion explains little of the recorded one.
+    Unexplained,
+    /// What most likely caused the other warnings.
+    Cause,
+    /// The fitted nominal model needs larger sets than the identified one for motions that it was
+    /// not fitted to.
+    Overfitted,
+}
+
+impl WarningKind {
+    /// All kinds that are about single joints, in the order of the warnings.
+    pub(crate) const OF_JOINTS: [Self; 7] = [
+        Self::ReachableSetSize,
+        Self::InitialSetSize,
+        Self::InitialSetStarts,
+        Self::InitialSetOffset,
+        Self::InputSetSize,
+        Self::NoiseSetSize,
+        Self::Unexplained,
+    ];
+}
+
+/// What is remarked of one joint.
+pub(crate) struct Remark {
+    pub kind: WarningKind,
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The state or joint with its sizes.
+    pub text: String,
+}

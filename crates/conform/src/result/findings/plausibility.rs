@@ -1,0 +1,259 @@
+//! What is implausible about the sets, and why.
+
+use crate::fit::record::Overfit;
+use crate::plausibility::cause::{Cause, Reading};
+use crate::plausibility::warning::{Remark, Warning, WarningKind};
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+use crate::result::findings::words::{listed, plural};
+use crate::result::remedy::Remedy;
+
+impl From<&Warning> for Finding {
+    /// Makes the finding of a warning, as model files have it.
+    fn from(warning: &Warning) -> Self {
+        let Warning { kind, joints, text, remedy } = warning;
+        // Files of earlier versions have texts without a full stop.
+        let end = if text.ends_with('.') { "" } else { "." };
+        let listed = listed(&joints.iter().map(ToString::to_string).collect::<Vec<_>>());
+        let place = format!("{} {listed}", plural(joints.len(), "joint"));
+        Self {
+            place: (!joints.is_empty()).then_some(place),
+            remedy: remedy.clone(),
+            ..Self::new(Severity::Warning, code(*kind), format!("{text}{end}"))
+        }
+    }
+}
+
+/// Returns the code of a kind of warning.
+fn code(kind: WarningKind) -> Code {
+    match kind {
+        WarningKind::ReachableSetSize => Code::ReachableSetSize,
+        WarningKind::InitialSetSize => Code::InitialSetSize,
+        WarningKind::InitialSetStarts => Code::InitialSetStarts,
+        WarningKind::InitialSetOffset => Code::InitialSetOffset,
+        WarningKind::InputSetSize => Code::InputSetSize,
+        WarningKind::NoiseSetSize => Code::NoiseSetSize,
+        WarningKind::Unexplained => Code::Unexplained,
+        WarningKind::Cause => Code::Cause,
+        WarningKind::Overfitted => Code::Overfitted,
+    }
+}
+
+impl Warning {
+    /// Makes the warning of one kind about joints.
+    pub(crate) fn of_remarks(kind: WarningKind, remarks: &[&Remark]) -> Self {
+        let texts: Vec<String> = remarks.iter().map(|remark| remark.text.clone()).collect();
+        let mut joints: Vec<usize> = remarks.iter().map(|remark| remark.joint).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let remedy = (kind == WarningKind::InitialSetStarts)
+            .then(|| Remedy::new("initial-limit", "positions"));
+        Self { kind, joints, text: format!("{}: {}.", words(kind), texts.join("; ")), remedy }
+    }
+
+    fn about_all(kind: WarningKind, text: String, remedy: Option<Remedy>) -> Self {
+        Self { kind, joints: Vec::new(), text, remedy }
+    }
+}
+
+/// Returns the words before the list of states or joints.
+fn words(kind: WarningKind) -> &'static str {
+    match kind {
+        WarningKind::ReachableSetSize => {
+            "The reachable set is more than twice as wide as the recorded motion (largest width, \
+             range of the recordings)"
+        }
+        WarningKind::InitialSetSize => {
+            "X0 is wider than the recorded motion and covers what the model does not explain \
+             (width, range of the recordings)"
+        }
+        WarningKind::InitialSetStarts => {
+            "X0 reaches much further than the recorded starts and covers what happens later, which \
+             a limit of X0 would leave to U (reach, furthest start)"
+        }
+        WarningKind::InitialSetOffset => {
+            "X0 does not contain 0, so that no nominal motion starts in it (distance)"
+        }
+        WarningKind::InputSetSize => {
+            "U reaches beyond the recorded inputs (reach, largest recorded input)"
+        }
+        WarningKind::NoiseSetSize => {
+            "V is so wide that hardly any motion is left to explain (width, range of the \
+             recordings)"
+        }
+        WarningKind::Unexplained => {
+            "The nominal motions explain little of the recorded velocities (part of the variance)"
+        }
+        WarningKind::Cause | WarningKind::Overfitted => "",
+    }
+}
+
+impl From<&Overfit> for Warning {
+    /// Reports that a fit suits its own motions only.
+    fn from(overfit: &Overfit) -> Self {
+        let fact = match overfit {
+            Overfit::Calibrated { identified, fitted } => format!(
+                "Calibrated sets cost {fitted:.0} with the fitted nominal model and \
+                 {identified:.0} with the identified one"
+            ),
+            Overfit::LeftOut => "With a motion left out the fitted nominal model needs larger \
+                                 sets than the identified one"
+                .into(),
+        };
+        let text = format!(
+            "{fact}: the fit suits its own motions only. Fit to more motions, fit fewer groups, or \
+             give a larger weight to the pull."
+        );
+        Self::about_all(WarningKind::Overfitted, text, Some(Remedy::new("pull", "")))
+    }
+}
+
+impl From<&Cause> for Warning {
+    /// Reports the most likely cause of other warnings.
+    fn from(cause: &Cause) -> Self {
+        let mut remedy = None;
+        let text = match cause {
+            Cause::Reading { reading, unexplained, as_stated } => {
+                if let Reading::Kind(kind) = reading {
+                    remedy = Some(Remedy::new("torque", format!("{kind:?}").to_lowercase()));
+                }
+                format!(
+                    "The most likely cause: {}. So read, {} of the recorded input is not explained \
+                     by the recorded motion, and {} as stated.",
+                    reading_words(reading),
+                    percent(*unexplained),
+                    percent(*as_stated)
+                )
+            }
+            Cause::HeldOut { motion, fitted, factor } => format!(
+                "The most likely cause: motion {motion}, which was held out, is unlike the motions \
+                 that the sets were found with ({}), so that calibration scaled these sets by \
+                 {factor:.2}. Record more motions to find the sets with, among them some like \
+                 {motion}.",
+                listed(fitted)
+            ),
+            Cause::ExpansionPoint { distance, mean } => {
+                remedy = Some(Remedy::new("expansion", point(mean)));
+                format!(
+                    "The nominal motions follow the robot, and deviations from them the inertia at \
+                     the expansion point, from which the positions lie up to {distance:.2} rad. \
+                     The mean of the positions is a better point."
+                )
+            }
+            Cause::ConstantInertia { about_mean, can_follow_robot, .. } => {
+                remedy = Some(match (about_mean, can_follow_robot) {
+                    (Some((mean, _)), _) => Remedy::new("expansion", point(mean)),
+                    (None, true) => Remedy::new("equations", "robot"),
+                    (None, false) => Remedy::new("model", "3"),
+                });
+                constant_inertia_words(cause)
+            }
+            Cause::Parameters { unexplained, is_fitted } => {
+                remedy = (!is_fitted).then(|| Remedy::new("fit", ""));
+                let what_to_do = match is_fitted {
+                    true => {
+                        "The nominal model was fitted for small sets already, so record more \
+                         motions, or cut them into shorter windows (`reachtube prepare --window`)."
+                    }
+                    false => {
+                        "Check the robot's parameters, for example with `reachtube identify`, or \
+                         fit the nominal model for small sets."
+                    }
+                };
+                format!(
+                    "Units, signs, kind of torque, order of joints and lags fit, but {} of the \
+                     recorded input does not follow from the recorded motion. {what_to_do}",
+                    percent(*unexplained)
+                )
+            }
+        };
+        Self::about_all(WarningKind::Cause, text, remedy)
+    }
+}
+
+/// Returns the sentences about a model whose inertia is constant.
+fn constant_inertia_words(cause: &Cause) -> String {
+    let Cause::ConstantInertia { by_robot, by_model, distance, about_mean, can_follow_robot } =
+        cause
+    else {
+        return String::new();
+    };
+    let better = about_mean.as_ref().map(|(mean, unexplained)| {
+        let also = match can_follow_robot {
+            true => "Nominal motions by the robot's own equations follow the robot.",
+            false => "Model 3 of order 2 follows how the inertia changes.",
+        };
+        format!(
+            " About {}, the mean of the positions, {} is not explained. {also}",
+            point(mean),
+            percent(*unexplained)
+        )
+    });
+    format!(
+        "The robot explains the recordings, and model 1 does not: {} of the recorded input is not \
+         explained by the robot, and {} by the inertia at the expansion point, from which the \
+         positions lie up to {distance:.2} rad.{} Shorter windows lessen the error.",
+        percent(*by_robot),
+        percent(*by_model),
+        better.unwrap_or_default(),
+    )
+}
+
+fn reading_words(reading: &Reading) -> String {
+    match reading {
+        Reading::Stated => "the recordings are as stated".into(),
+        Reading::TorqueUnit(unit) if *unit < 1.0 => "the torques are in N mm, not in N m".into(),
+        Reading::TorqueUnit(_) => "the torques are in kN m, not in N m".into(),
+        Reading::OppositeSigns => "the torques have the opposite sign".into(),
+        Reading::Kind(kind) => {
+            format!("the torques are of the kind `{}`", format!("{kind:?}").to_lowercase())
+        }
+        Reading::Filtered => {
+            "dry friction steps where joints turn and rest, and the recorded torques do not, as \
+             where they were filtered; `reachtube prepare --compensate` writes inputs that are \
+             free of it"
+                .into()
+        }
+        Reading::Milliseconds => "the times are in ms, not in s".into(),
+        Reading::Degrees => "positions and velocities are in degrees, not in rad".into(),
+        Reading::Lag(lag) => format!("the torques are about {lag} s later than the motion"),
+        Reading::OppositeSign(joint) => {
+            format!("the torque of joint {joint} has the opposite sign")
+        }
+        Reading::Swapped(one, other) => {
+            format!("the torques of joints {one} and {other} are swapped")
+        }
+    }
+}
+
+/// Returns a position as settings have it.
+fn point(q: &[f64]) -> String {
+    q.iter().map(|q| format!("{q:.2}")).collect::<Vec<_>>().join(",")
+}
+
+fn percent(part: f64) -> String {
+    format!("{:.0} %", 100.0 * part.min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::result::front_end::FrontEnd;
+
+    #[test]
+    fn a_cause_names_its_remedy_as_data() {
+        let reading = Reading::Kind(reachtube_recordings::Torque::Motor);
+        let cause = Cause::Reading { reading, unexplained: 0.07, as_stated: 3.0 };
+        let finding = Finding::from(&Warning::from(&cause));
+        let written = finding.written_for(FrontEnd::Python);
+        assert!(written.contains("of the kind `motor`. So read, 7 % of"), "{written}");
+        assert!(written.contains("and 100 % as stated. `torque=\"motor\"` reads"), "{written}");
+    }
+
+    #[test]
+    fn a_warning_of_an_earlier_version_is_read() {
+        let old = r#"{"kind": "cause", "joints": [], "text": "the cause: x (--torque motor)"}"#;
+        let finding = Finding::from(&serde_json::from_str::<Warning>(old).unwrap());
+        assert_eq!(finding.text, "the cause: x (--torque motor).");
+    }
+}
