@@ -46,8 +46,9 @@ fn models_fit_the_schema() {
 #[test]
 fn what_conform_prints_is_a_model_file_with_findings() {
     let lab = Lab::new();
-    let mut printed = lab.conform("--json --out model.json").exits(0).json();
-    let stored: Value = serde_json::from_str(&lab.read("model.json")).unwrap();
+    let run = lab.conform("--json --out new/folder/model.json").exits(0);
+    let mut printed = run.notes("wrote new/folder/model.json").json();
+    let stored: Value = serde_json::from_str(&lab.read("new/folder/model.json")).unwrap();
     lab.write("printed.json", printed.to_string());
     lab.run("check --model printed.json --data data --torque compensated").exits(0);
     assert!(stored.get("findings").is_none());

@@ -32,16 +32,6 @@ fn the_sets_are_those_that_generated_the_recordings() {
 }
 
 #[test]
-fn a_model_file_is_what_json_prints() {
-    let lab = Lab::new();
-    let run = lab
-        .conform("--json --out new/folder/model.json")
-        .exits(0)
-        .notes("wrote new/folder/model.json");
-    assert_eq!(lab.read("new/folder/model.json"), run.stdout);
-}
-
-#[test]
 fn a_table_shows_the_sets() {
     let text = Lab::new().conform("").exits(0).stdout;
     assert!(text.starts_with("conformant: 6 recordings in 2 suites; 408 of 408 rows"), "{text}");
