@@ -7,8 +7,8 @@ use crate::data::problem::Problem;
 use crate::data::setup::Setup;
 use crate::error::Result;
 use crate::progress::Silent;
+use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
-use crate::smallest_sets::smallest_sets;
 use crate::verdict::Verdict;
 
 /// The smallest sets of a model whose friction depends on the run, that hold for every run: the

@@ -10,7 +10,7 @@ use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
-use crate::found::{Deciding, Found, SearchSummary};
+use crate::found::{Found, SearchSummary};
 use crate::hulls::Hulls;
 use crate::next_motion::calibration::{Calibrated, Calibration, calibrate};
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -22,8 +22,8 @@ use crate::nominal::input_error::InputError;
 use crate::optimality::LARGEST_GAP;
 use crate::plausibility::{NominalFit, Warning, warnings};
 use crate::progress::Progress;
+use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
-use crate::smallest_sets::smallest_sets;
 use crate::verdict::Verdict;
 use crate::witness::Witness;
 
@@ -140,10 +140,7 @@ fn conform_claim(
     };
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
-    let mut tight = match &deciding {
-        Deciding::Points(points) | Deciding::Rows(_, points) => points.clone(),
-        Deciding::Touching(_) => Vec::new(),
-    };
+    let mut tight = found.touching;
     let mut radii = vec![0.0f64; 2 * problem.joints()];
     let verdict = Verdict::new(problem, &hulls, |suite, case, row| {
         radii[row.state] = radii[row.state].max(row.radius);

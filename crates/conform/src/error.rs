@@ -81,12 +81,6 @@ pub enum Error {
          --equations model"
     )]
     Equations,
-    /// A notion of enclosure other than the hull was asked of the bisection.
-    #[error(
-        "the paper's bisection finds sets for the notion hull only; use --method program, or \
-         --notion hull"
-    )]
-    Notion,
     /// The notion trace was asked of a problem that it is not for.
     #[error("the notion trace {0}")]
     Trace(&'static str),

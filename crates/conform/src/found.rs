@@ -28,6 +28,8 @@ pub(crate) struct Found {
     pub left_out: Vec<LeftOut>,
     /// Which rows decide the sets.
     pub deciding: Deciding,
+    /// The recorded points that decide the sets in directions other than the states.
+    pub touching: Vec<Witness>,
 }
 
 /// A point touches the set when it is within this part of its reach.
@@ -37,24 +39,20 @@ pub(crate) const TOUCHING: f64 = 1e-4;
 pub(crate) enum Deciding {
     /// Rows that touch the reachable set, within a part of its radius.
     Touching(f64),
-    /// Rows named (case, sample, state, side), and recorded points in other directions.
-    Rows(HashSet<(usize, usize, usize, Side)>, Vec<Witness>),
-    /// Recorded points in other directions, and rows that are as close to the reachable set.
-    Points(Vec<Witness>),
+    /// Rows named (case, sample, state, side).
+    Rows(HashSet<(usize, usize, usize, Side)>),
 }
 
 impl Deciding {
     /// Returns whether one side of a row decides the sets; `case` is the row's, where hulls belong
     /// to cases.
     pub(crate) fn contains(&self, case: Option<usize>, row: &Row, edge: &Edge) -> bool {
-        match self {
-            Self::Touching(part) => edge.excess >= -part * row.radius,
-            Self::Rows(rows, _) => {
-                let named = |case| rows.contains(&(case, row.sample, row.state, edge.side));
-                edge.excess.is_finite() && case.is_some_and(named)
+        let named = |case| (case, row.sample, row.state, edge.side);
+        edge.excess.is_finite()
+            && match self {
+                Self::Touching(part) => edge.excess >= -part * row.radius,
+                Self::Rows(rows) => case.is_some_and(|case| rows.contains(&named(case))),
             }
-            Self::Points(_) => edge.excess >= -TOUCHING * row.radius,
-        }
     }
 }
 

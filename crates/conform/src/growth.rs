@@ -2,7 +2,7 @@ use serde::Serialize;
 
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::smallest_sets::program;
+use crate::linear::program::Program;
 use crate::sets::UncertaintySets;
 
 /// What would have to grow, alone and by how much, so that a model encloses recordings that leave
@@ -32,7 +32,7 @@ impl Growth {
         let largest = |excess: &[f64]| excess.iter().copied().fold(0.0, f64::max);
         let [initial_set, input_set, both_sets] = match problem.dynamics().linear_system() {
             None => [None; 3],
-            Some(_) => program(problem)?.growth_factors(sets),
+            Some(_) => Program::of_problem(problem)?.growth_factors(sets),
         };
         let (noise_position, noise_velocity) = (largest(positions), largest(velocities));
         Ok(Self { initial_set, input_set, both_sets, noise_position, noise_velocity })

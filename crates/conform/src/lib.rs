@@ -35,7 +35,6 @@ mod result;
 mod rows;
 mod search;
 mod sets;
-mod smallest_sets;
 mod tube;
 mod verdict;
 mod weights;

@@ -3,6 +3,7 @@
 use crate::claim::look::Look;
 use crate::error::{Error, Result};
 use crate::hulls::Hulls;
+use crate::progress::Progress;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
@@ -28,6 +29,19 @@ pub(crate) trait Claim: Sync {
     ///
     /// Fails if the recordings cannot be reached.
     fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>>;
+
+    /// Returns the part by which sets may have to grow for a point before a search goes on; `None`
+    /// where only the rows are claimed.
+    fn tolerance(&self) -> Option<f64>;
+
+    /// Widens the sets that a search found, for what programs do not ask.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the recordings cannot be reached, or the job is cancelled.
+    fn widen(&self, sets: UncertaintySets, _: &dyn Progress) -> Result<UncertaintySets> {
+        Ok(sets)
+    }
 }
 
 /// The rows alone: the notion hull.
@@ -40,6 +54,10 @@ impl Claim for Rows {
 
     fn furthest(&self, _: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {
         Ok(Vec::new())
+    }
+
+    fn tolerance(&self) -> Option<f64> {
+        None
     }
 }
 

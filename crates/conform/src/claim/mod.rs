@@ -13,4 +13,5 @@ pub(crate) mod remote;
 mod sample_points;
 mod sample_set;
 pub(crate) mod touching;
+mod traces;
 pub(crate) mod witness;

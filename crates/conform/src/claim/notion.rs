@@ -2,8 +2,9 @@
 
 use crate::claim::claim::{Claim, Rows};
 use crate::claim::look::Look;
-use crate::claim::points::Points;
+use crate::claim::points::{Points, tolerance};
 use crate::claim::remote::{PointServer, Remote};
+use crate::claim::traces::Traces;
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::error::Result;
@@ -22,9 +23,14 @@ pub(crate) fn claim<'a>(
     problem: &'a Problem,
     server: Option<&'a dyn PointServer>,
 ) -> Result<Box<dyn Claim + 'a>> {
-    Ok(match (problem.settings().notion, server) {
+    let settings = problem.settings();
+    Ok(match (settings.notion, server) {
         (Notion::Hull, _) => Box::new(Rows),
-        (_, Some(server)) => Box::new(Remote { server, root: &problem.recordings().root }),
+        (Notion::Trace, _) => Box::new(Traces { problem, points: Points::new(problem)? }),
+        (_, Some(server)) => {
+            let root = &problem.recordings().root;
+            Box::new(Remote { server, root, tolerance: tolerance(settings) })
+        }
         (_, None) => Box::new(Points::new(problem)?),
     })
 }
@@ -37,7 +43,7 @@ pub(crate) fn claim<'a>(
 pub(crate) fn plant(problem: &Problem) -> Result<Box<dyn Plant + '_>> {
     Ok(match problem.dynamics().linear_system() {
         Some(_) => Box::new(Linear::new(problem)?),
-        None => Box::new(Polynomial(problem)),
+        None => Box::new(Polynomial::new(problem)),
     })
 }
 
@@ -61,7 +67,7 @@ impl Hulls {
                 Ok(Self::of(sets, HullKind::Linear(reach)))
             }
             // These sets are not computed twice: the points are judged on the way.
-            None => claim(problem, None)?.judge(&Polynomial(problem), &sets, &Look::proof()),
+            None => claim(problem, None)?.judge(&Polynomial::new(problem), &sets, &Look::proof()),
         }
     }
 }

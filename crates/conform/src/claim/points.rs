@@ -8,12 +8,18 @@ use crate::claim::look::{Answer, Look, Near, Question};
 use crate::claim::sample_points::{SamplePoints, points, projections};
 use crate::claim::sample_set::{CentredPoints, OUTSIDE, SampleSet};
 use crate::data::problem::Problem;
-use crate::data::settings::Settings;
+use crate::data::settings::{Noise, Settings};
 use crate::error::Result;
 use crate::hulls::Hulls;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{Along, At, Judged, PointOutside};
 use crate::tube::plant::{Plant, Slice};
+
+/// Sets are taken when no point needs them to grow by more than this part.
+const TOLERANCE: f64 = 2e-5;
+
+/// The same with a noise set, which does not grow, so that the others have to grow more.
+const TOLERANCE_WITH_NOISE: f64 = 2e-6;
 
 /// How accurately points near the boundary are distinguished from others.
 const NEAR: f64 = 1e-3;
@@ -29,6 +35,7 @@ pub(crate) struct Points<'a> {
     samples: Cow<'a, [SamplePoints]>,
     /// The states of each projection in which points must lie in the set.
     projections: Vec<Vec<usize>>,
+    tolerance: f64,
     lists: KnownLists,
     /// Names a run.
     file: Box<dyn Fn(u32) -> String + Sync + 'a>,
@@ -55,7 +62,7 @@ impl<'a> Points<'a> {
         file: Box<dyn Fn(u32) -> String + Sync + 'a>,
     ) -> Self {
         let projections = projections(settings.notion, settings.states, joints);
-        Self { samples, projections, lists, file }
+        Self { samples, projections, tolerance: tolerance(settings), lists, file }
     }
 
     /// Answers a question of another process.
@@ -291,5 +298,17 @@ impl Claim for Points<'_> {
     fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {
         let along = |direction| self.along(direction).ok_or_else(other_answer);
         directions.iter().map(along).collect()
+    }
+
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
+    }
+}
+
+/// Returns the part by which sets may have to grow for a point before a search goes on.
+pub(crate) fn tolerance(settings: &Settings) -> f64 {
+    match settings.noise {
+        Noise::None => TOLERANCE,
+        Noise::Fitted | Noise::Fixed(_) => TOLERANCE_WITH_NOISE,
     }
 }

@@ -34,6 +34,8 @@ pub(crate) struct Remote<'a> {
     pub server: &'a dyn PointServer,
     /// The root of the tree over the recordings of the problem.
     pub root: &'a str,
+    /// As [`Claim::tolerance`].
+    pub tolerance: f64,
 }
 
 /// An answer, with the recordings that it is of.
@@ -73,6 +75,10 @@ impl Claim for Remote<'_> {
             return Err(other_answer());
         }
         found.into_iter().map(|along| along.ok_or_else(other_answer)).collect()
+    }
+
+    fn tolerance(&self) -> Option<f64> {
+        Some(self.tolerance)
     }
 }
 

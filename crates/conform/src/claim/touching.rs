@@ -8,34 +8,36 @@ use crate::error::Result;
 use crate::found::TOUCHING;
 use crate::hulls::Hulls;
 use crate::linear::program::Program;
-use crate::tube::judged::{Along, At};
-use crate::tube::linear::Linear;
-use crate::tube::plant::Slice;
+use crate::tube::direction::Direction;
+use crate::tube::plant::Plant;
 use crate::witness::Witness;
 
-/// Returns the points that touch the boundary of the reachable set in the direction of a cut, the
-/// closest first, each once, under the state that counts most in the direction.
+/// Returns the points that touch what the program's sets reach in the direction of one of its cuts,
+/// the closest first, each once, under the state that counts most in the direction.
 ///
 /// # Errors
 ///
-/// As [`Problem::grids`].
+/// As [`Problem::run`].
 pub(crate) fn touching(
-    problem: &Problem,
-    plant: &Linear,
+    (problem, plant): (&Problem, &dyn Plant),
     program: &Program,
     hulls: &Hulls,
-    cuts: &[(At, Vec<f64>, Along)],
+    directions: &[Direction],
 ) -> Result<Vec<Witness>> {
-    let mut seen = HashSet::new();
-    let mut touching = Vec::new();
-    for ((at, direction, along), cut) in cuts.iter().zip(&program.cuts) {
+    let with_ratio = directions.iter().zip(&program.cuts).map(|(direction, cut)| {
         let (from_centre, reach) = program.reach(cut, &hulls.sets);
-        let ratio = from_centre / reach;
-        if ratio < 1.0 - TOUCHING || !seen.insert((at, along.owner)) {
-            continue;
-        }
-        let (centre, _) = plant.slice(&hulls.sets, *at).centre();
-        let deviation: Vec<f64> = along.point.iter().zip(&centre).map(|(x, c)| x - c).collect();
+        (direction, from_centre / reach)
+    });
+    let mut touching: Vec<(&Direction, f64)> =
+        with_ratio.filter(|(_, ratio)| *ratio >= 1.0 - TOUCHING).collect();
+    touching.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut seen = HashSet::new();
+    touching
+        .retain(|(known, _)| hulls.reaches(known.at) && seen.insert((known.at, known.along.owner)));
+    let witness = |(known, ratio): (&Direction, f64)| {
+        let Direction { at, direction, along, .. } = known;
+        let centre = plant.centre(hulls, *at);
+        let deviation: Vec<f64> = along.point.iter().zip(centre).map(|(x, c)| x - c).collect();
         let point = SeparatedPoint {
             suite: along.owner.0 as usize,
             file: &along.file,
@@ -46,8 +48,7 @@ pub(crate) fn touching(
             direction,
             ratio,
         };
-        touching.push(PointWitness::new(problem, &point).into_witness());
-    }
-    touching.sort_by(|a, b| (b.excess / b.radius).total_cmp(&(a.excess / a.radius)));
-    Ok(touching)
+        Ok(PointWitness::new(problem, &point).into_witness())
+    };
+    touching.into_iter().map(witness).collect()
 }

@@ -15,7 +15,7 @@ use crate::fit::parameters::{Parameter, Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fit::search::{Effort, Optimum, Search};
-use crate::linear::smallest_sets::program;
+use crate::linear::program::Program;
 use crate::next_motion::calibration::{calibrate, without_kept_back};
 use crate::nominal::input_error::InputError;
 use crate::progress::{Progress, Silent};
@@ -173,7 +173,7 @@ fn one_motion(others_are_kept_back: bool) -> String {
 
 /// The cost of the smallest sets of a linear model, as [`conform`](crate::conform) finds it.
 fn smallest_cost(problem: &Problem) -> Result<f64> {
-    let program = program(problem)?;
+    let program = Program::of_problem(problem)?;
     let solution = program.solve()?;
     Ok(program.cost(&program.repaired(&solution.sets)))
 }

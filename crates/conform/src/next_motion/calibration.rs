@@ -3,7 +3,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::claim::claim::Rows;
+use crate::claim::claim::{Claim, Rows};
+use crate::claim::look::Look;
+use crate::claim::notion::plant;
 use crate::data::problem::Problem;
 use crate::data::settings::{NominalStart, Notion};
 use crate::error::{Error, Result};
@@ -11,13 +13,13 @@ use crate::flowpipes::Effort;
 use crate::found::{Deciding, Found};
 use crate::hulls::Hulls;
 use crate::linear::program::{Program, TIGHT};
-use crate::linear::smallest_sets::{program, prove};
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, STEP, outer_gauge};
 use crate::progress::Progress;
-use crate::search::smallest_sets::costs;
+use crate::search::prove::prove;
+use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
-use crate::smallest_sets::smallest_sets;
+use crate::tube::plant::Costs;
 
 /// Sets that were found on some motions and then scaled so that they enclose the others, which were
 /// held out: split conformal calibration.
@@ -76,7 +78,8 @@ pub(crate) fn calibrate(
     let first = smallest_sets(&fit, &Rows, progress, resume)?;
     let Found { hulls: Hulls { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
-    let linear = problem.dynamics().linear_system().map(|_| program(problem)).transpose()?;
+    let linear =
+        problem.dynamics().linear_system().map(|_| Program::of_problem(problem)).transpose()?;
     let grown = |factor: f64| fitted.grown(factor, input_only);
     let gauge = |motion: &&str| {
         let suites: Vec<bool> = (0..problem.recordings().suites.len())
@@ -94,8 +97,9 @@ pub(crate) fn calibrate(
         Ok(Gauge { motion: (*motion).to_string(), gauge })
     };
     let gauges = kept_back.iter().map(gauge).collect::<Result<Vec<_>>>()?;
+    let scale = linear.as_ref().map(Program::scale);
     let factor = gauges.iter().map(|gauge| gauge.gauge).fold(1.0, f64::max);
-    let found = Found { search, left_out, ..scaled(problem, grown(factor))? };
+    let found = Found { search, left_out, ..scaled(problem, &grown(factor), scale)? };
     let all = motions.distinct().into_iter();
     let others = all.filter(|motion| !kept_back.contains(motion)).map(String::from).collect();
     let calibration = Calibration { fitted: others, gauges, factor, input_only };
@@ -179,29 +183,23 @@ fn lost(motion: &str, factor: f64) -> String {
 
 /// Returns the scaled sets with their reachable sets over all recordings. They are not the
 /// smallest, so there is no lower bound.
-fn scaled(problem: &Problem, sets: UncertaintySets) -> Result<Found> {
-    let (cost, paper_cost, hull_volume, hulls) = match problem.dynamics().linear_system() {
-        Some(_) => {
-            let program = program(problem)?;
-            let hulls = prove(problem, sets, program.scale())?;
-            let (paper_cost, hull_volume) = program.paper_sums(&hulls.sets);
-            (program.cost(&hulls.sets), Some(paper_cost), hull_volume, hulls)
-        }
-        None => {
-            let hulls = Hulls::new(problem, sets)?;
-            let (cost, volume) = costs(problem, &hulls)?;
-            (cost, None, volume, hulls)
-        }
+fn scaled(problem: &Problem, sets: &UncertaintySets, scale: Option<f64>) -> Result<Found> {
+    let plant = &*plant(problem)?;
+    let hulls = match scale {
+        Some(scale) => prove((problem, plant), &Rows, sets, scale)?,
+        None => Rows.judge(plant, sets, &Look::proof())?,
     };
+    let Costs { cost, paper, volume } = plant.costs(&hulls)?;
     Ok(Found {
         hulls,
         cost,
         lower_bound: None,
         optimality_gap: None,
-        paper_cost,
-        hull_volume,
+        paper_cost: paper,
+        hull_volume: volume,
         search: None,
         left_out: Vec::new(),
-        deciding: Deciding::Touching(if paper_cost.is_some() { TIGHT } else { STEP - 1.0 }),
+        deciding: Deciding::Touching(if paper.is_some() { TIGHT } else { STEP - 1.0 }),
+        touching: Vec::new(),
     })
 }

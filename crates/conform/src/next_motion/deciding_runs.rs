@@ -8,7 +8,6 @@ use crate::data::suite::Suite;
 use crate::deviation::Deviation;
 use crate::error::Result;
 use crate::linear::program::Program;
-use crate::linear::smallest_sets::program;
 use crate::witness::Witness;
 
 /// Number of runs that are named.
@@ -77,7 +76,7 @@ fn cost_without(problem: &Problem, dropped: &BTreeSet<usize>) -> Result<Option<f
     }
     let runs = problem.recordings().suites.iter().flat_map(|suite| &suite.runs);
     let stride = runs.map(|run| run.marks.stride).max().unwrap_or(1);
-    let program = program(problem)?.with_every(stride);
+    let program = Program::of_problem(problem)?.with_every(stride);
     let deviations = problem.deviations()?;
     let cost = |dropped: &BTreeSet<usize>| {
         let kept: Vec<Deviation> =

@@ -7,7 +7,6 @@ use crate::deviation::Deviation;
 use crate::error::Result;
 use crate::flowpipes::{Effort, rows_outside};
 use crate::linear::program::Program;
-use crate::linear::smallest_sets::program;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, outer_gauge};
 use crate::next_motion::without_motion::LeftOut;
@@ -32,7 +31,7 @@ pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Resul
     if motions.count() < 2 || !is_built {
         return Ok(Vec::new());
     }
-    let (program, deviations) = (program(problem)?, problem.deviations()?);
+    let (program, deviations) = (Program::of_problem(problem)?, problem.deviations()?);
     let input_only = problem.settings().nominal == NominalStart::Own;
     let of = |motion: &&str| -> Vec<&Deviation> {
         deviations.iter().filter(|d| motions.of_suite(d.suite) == *motion).collect()

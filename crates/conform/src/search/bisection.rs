@@ -1,19 +1,21 @@
 //! Uncertainty sets by bisection of one radius after the other (end of Sec. IV-C of the paper), a
 //! baseline.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::data::case::Case;
+use crate::claim::claim::Claim;
+use crate::claim::look::Look;
+use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::flowpipes::{Effort, Enclosed, enclosed};
-use crate::found::SearchSummary;
+use crate::flowpipes::Effort;
+use crate::found::{Deciding, Found, SearchSummary};
 use crate::progress::Progress;
-use crate::rows::Edge;
 use crate::search::journal::Journal;
-use crate::search::state::SearchState;
-use crate::search::successive::{SearchResult, SuccessiveLinearisation};
+use crate::search::prove::encloses;
 use crate::sets::UncertaintySets;
+use crate::tube::plant::{Costs, Plant};
+use crate::tube::polynomial::Polynomial;
+use crate::tube::state::SearchState;
 
 /// Part of its first value to which a radius is found.
 const TOLERANCE: f64 = 0.01;
@@ -41,25 +43,34 @@ struct BisectionState {
     reachable_sets: usize,
 }
 
-/// Enlarges the sets of the first linearisation until they enclose every recording, then makes one
+/// Whether reachable sets hold the recordings.
+struct Trial<'a> {
+    problem: &'a Problem,
+    claim: &'a dyn Claim,
+}
+
+/// Enlarges the sets of the first linearisation until they hold every recording, then makes one
 /// radius after the other as small as it can be while the others stay.
 ///
 /// # Errors
 ///
-/// As [`SuccessiveLinearisation::run`].
-pub(super) fn run<'a>(
-    search: &'a SuccessiveLinearisation,
+/// As [`search`](crate::search::search::search).
+pub(super) fn bisect(
+    problem: &Problem,
+    claim: &dyn Claim,
     journal: &Journal,
     progress: &dyn Progress,
-) -> Result<SearchResult<'a>> {
-    let linearised = search.round(&mut SearchState::start(search.problem.joints()))?.solution.sets;
+) -> Result<Found> {
+    let (trial, plant) = (Trial { problem, claim }, Polynomial::new(problem));
+    let first = plant.round(&mut SearchState::start(problem.joints()), None)?;
+    let linearised = first.program.solve()?.sets;
     let mut state = journal.load()?.unwrap_or_else(|| BisectionState::start(&linearised));
     while !state.enclosed && state.factor < FACTORS.len() {
         progress.go_on()?;
         let factor = FACTORS[state.factor];
         state.sets = linearised.inflated(factor, 0.0);
-        search.problem.limits().shrink(&mut state.sets.initial_set);
-        state.enclosed = encloses(search, &state.sets)?;
+        problem.limits().shrink(&mut state.sets.initial_set);
+        state.enclosed = trial.holds(&state.sets)?;
         state.first = state.radius_now();
         (state.factor, state.reachable_sets) = (state.factor + 1, state.reachable_sets + 1);
         journal.save(&state)?;
@@ -73,7 +84,7 @@ pub(super) fn run<'a>(
     while state.enclosed && state.radius < state.count() {
         while !state.is_narrow() {
             progress.go_on()?;
-            state.halve(search)?;
+            state.halve(&trial)?;
             journal.save(&state)?;
         }
         let (done, count, radius) = (state.radius + 1, state.count(), state.radius_now());
@@ -84,16 +95,34 @@ pub(super) fn run<'a>(
             state.reachable_sets
         ));
     }
-    state.result(search)
+    let sets = claim.widen(state.sets, progress)?;
+    let hulls = claim.judge(&plant, &sets, &Look::proof())?;
+    let Costs { cost, volume, .. } = plant.costs(&hulls)?;
+    let reachable_sets = state.reachable_sets + 1;
+    let search =
+        SearchSummary { rounds: 1, reachable_sets, linearised_cost: None, runs_away: None };
+    Ok(Found {
+        hulls,
+        cost,
+        lower_bound: None,
+        optimality_gap: None,
+        paper_cost: None,
+        hull_volume: volume,
+        search: Some(search),
+        left_out: Vec::new(),
+        deciding: Deciding::Touching(TOLERANCE),
+        touching: Vec::new(),
+    })
 }
 
-/// Returns whether the reachable sets under `sets` enclose every recording.
-fn encloses(search: &SuccessiveLinearisation, sets: &UncertaintySets) -> Result<bool> {
-    let of_case =
-        |case: &Case| Ok(enclosed(search.problem, case, sets, Effort::Quick)? == Enclosed::Yes);
-    // The first case that is not enclosed, or fails, ends the others.
-    let outside = search.cases.par_iter().map(of_case).find_any(|all| !matches!(all, Ok(true)));
-    outside.unwrap_or(Ok(true))
+impl Trial<'_> {
+    /// Returns whether the reachable sets under `sets` hold every recording, as it is claimed.
+    fn holds(&self, sets: &UncertaintySets) -> Result<bool> {
+        let plant = Polynomial { problem: self.problem, effort: Effort::Quick };
+        let hulls = self.claim.judge(&plant, sets, &Look::proof())?;
+        let are_points_proved = hulls.judged.as_ref().is_none_or(|judged| judged.left.is_empty());
+        Ok(are_points_proved && encloses(self.problem, &hulls)?)
+    }
 }
 
 impl BisectionState {
@@ -133,7 +162,7 @@ impl BisectionState {
     }
 
     /// Bisects once.
-    fn halve(&mut self, search: &SuccessiveLinearisation) -> Result<()> {
+    fn halve(&mut self, trial: &Trial) -> Result<()> {
         // The first guess is no uncertainty at all.
         let guess = if self.low == 0.0 && self.radius_now() == self.first {
             0.0
@@ -142,7 +171,7 @@ impl BisectionState {
         };
         let sets = self.with_radius(guess);
         self.reachable_sets += 1;
-        if encloses(search, &sets)? {
+        if trial.holds(&sets)? {
             self.sets = sets;
         } else {
             self.low = guess.max(TOLERANCE * 0.5 * self.first);
@@ -154,21 +183,5 @@ impl BisectionState {
         self.radius += 1;
         self.low = 0.0;
         self.first = self.radius_now();
-    }
-
-    fn result<'a>(self, search: &'a SuccessiveLinearisation) -> Result<SearchResult<'a>> {
-        let outer = search.outer_sets(&self.sets, &[])?;
-        let mut deciding = Vec::new();
-        outer.for_each_row(search.problem, |_, case, row| {
-            let touches = |edge: &&Edge| edge.excess >= -TOLERANCE * row.radius;
-            let sides = row.edges.iter().filter(touches).map(|edge| edge.side);
-            let case = case.expect("these hulls belong to cases");
-            deciding.extend(sides.map(|side| (case, row.sample, row.state, side)));
-        })?;
-        let reachable_sets = self.reachable_sets + 1;
-        let summary =
-            SearchSummary { rounds: 1, reachable_sets, linearised_cost: None, runs_away: None };
-        let (sets, directions) = (self.sets, Vec::new());
-        Ok(SearchResult { sets, program: None, outer, directions, deciding, summary })
     }
 }

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 
 /// The name of the file's format.
 const FORMAT: &str = "reachtube-progress";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Where a search keeps what is finished, if it does.
 #[derive(Debug)]

@@ -1,14 +1,9 @@
-//! The smallest sets of a model that is not linear: successive linearisation, or bisection as a
-//! baseline.
+//! The smallest sets of a model over recordings: one search for every plant and claim, or bisection
+//! as a baseline.
 
 mod bisection;
-pub(crate) mod cutting_planes;
-mod direction;
-mod directions;
 mod journal;
-pub(crate) mod sensitivity;
+pub(crate) mod prove;
+#[expect(clippy::module_inception, reason = "the folder and its main function share the noun")]
+mod search;
 pub(crate) mod smallest_sets;
-mod state;
-mod successive;
-pub(crate) mod traces;
-mod worst_case;

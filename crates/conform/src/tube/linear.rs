@@ -1,5 +1,7 @@
 //! A linear model over recordings: the reachable sets of its deviation, on each grid.
 
+use std::sync::OnceLock;
+
 use nalgebra::DVectorView;
 use rayon::prelude::*;
 use reachtube_reach::{GeneratorRows, SampleGenerators};
@@ -10,9 +12,12 @@ use crate::error::Result;
 use crate::grids::Grid;
 use crate::hulls::{HullKind, Hulls};
 use crate::linear::cut::Cut;
+use crate::linear::program::Program;
 use crate::sets::UncertaintySets;
+use crate::tube::direction::Direction;
 use crate::tube::judged::{At, Judged};
-use crate::tube::plant::{Plant, Slice, Watch};
+use crate::tube::plant::{Costs, Plant, Round, Slice, Watch};
+use crate::tube::state::SearchState;
 
 /// Number of disturbances, held over equally many steps, that suffice for most points.
 const HELD: usize = 24;
@@ -22,8 +27,11 @@ pub(crate) const PARTS: usize = 2;
 
 /// A linear model over recordings. Its strands are grids.
 pub(crate) struct Linear<'a> {
+    problem: &'a Problem,
     pub grids: &'a [Grid],
     generators: Vec<SampleGenerators<'a>>,
+    /// The program of the rows, once it is asked for.
+    program: OnceLock<Program<'a>>,
 }
 
 impl<'a> Linear<'a> {
@@ -36,18 +44,31 @@ impl<'a> Linear<'a> {
         let (grids, disturbance) = (problem.grids()?.as_slice(), problem.settings().disturbance);
         let of = |grid: &'a Grid| SampleGenerators::new(&grid.propagation, disturbance, PARTS);
         let generators = grids.iter().map(of).collect::<Result<_, _>>()?;
-        Ok(Self { grids, generators })
+        Ok(Self { problem, grids, generators, program: OnceLock::new() })
+    }
+
+    /// Returns the program of the rows.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::deviations`].
+    pub(crate) fn program(&self) -> Result<&Program<'a>> {
+        if let Some(program) = self.program.get() {
+            return Ok(program);
+        }
+        let program = Program::of_problem(self.problem)?;
+        Ok(self.program.get_or_init(|| program))
     }
 
     /// Returns the reachable set at a sample.
     pub(crate) fn slice<'b>(&'b self, sets: &'b UncertaintySets, at: At) -> LinearSlice<'b> {
-        let (grid, sample) = (at.0 as usize, at.1 as usize);
-        LinearSlice { plant: self, sets, grid, sample }
+        let strand = at.0 as usize;
+        LinearSlice { grid: &self.grids[strand], generators: &self.generators[strand], sets, at }
     }
 
     /// Returns the row of the program that a direction gives at a sample, for the largest lᵀ d of
     /// its points.
-    pub(crate) fn cut(&self, at: At, l: &[f64], bound: f64) -> Cut {
+    fn cut(&self, at: At, l: &[f64], bound: f64) -> Cut {
         let (grid, sample) = (at.0 as usize, at.1 as usize);
         let propagation = &self.grids[grid].propagation;
         let (e, gamma) = (propagation.exponential(sample), propagation.integral(sample));
@@ -70,6 +91,25 @@ impl Plant for Linear<'_> {
         true
     }
 
+    fn round<'b>(
+        &'b self,
+        state: &mut SearchState,
+        before: Option<Round<'b>>,
+    ) -> Result<Round<'b>> {
+        let mut round = match before {
+            Some(before) => before,
+            None => {
+                let program = self.program()?.clone();
+                Round { rows: program.first_rows(), program, runs_away: None }
+            }
+        };
+        let cuts = &mut round.program.cuts;
+        for Direction { at, direction, along, .. } in &state.directions[cuts.len()..] {
+            cuts.push(self.cut(*at, direction, along.value));
+        }
+        Ok(round)
+    }
+
     fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)> {
         let reach = self.grids.iter().map(|grid| grid.reach(sets)).collect();
         let hulls = Hulls::of(sets.clone(), HullKind::Linear(reach));
@@ -81,21 +121,35 @@ impl Plant for Linear<'_> {
         let judged = samples.into_par_iter().map(|at| watch(&self.slice(sets, at)));
         Ok((hulls, judged.reduce(Judged::default, Judged::merge)))
     }
+
+    fn centre(&self, hulls: &Hulls, at: At) -> Vec<f64> {
+        self.slice(&hulls.sets, at).centre().0
+    }
+
+    fn costs(&self, hulls: &Hulls) -> Result<Costs> {
+        let program = self.program()?;
+        let (paper, volume) = program.paper_sums(&hulls.sets);
+        Ok(Costs { cost: program.cost(&hulls.sets), paper: Some(paper), volume })
+    }
 }
 
 /// The reachable set of the deviation at one sample.
 pub(crate) struct LinearSlice<'a> {
-    plant: &'a Linear<'a>,
+    grid: &'a Grid,
+    generators: &'a SampleGenerators<'a>,
     sets: &'a UncertaintySets,
-    grid: usize,
-    sample: usize,
+    at: At,
 }
 
 impl LinearSlice<'_> {
+    fn sample(&self) -> usize {
+        self.at.1 as usize
+    }
+
     /// Returns the radii of the set's interval hull with the noise set, 2n, in floating point.
     pub(crate) fn hull(&self) -> Vec<f64> {
-        let grid = &self.plant.grids[self.grid];
-        let (e, gain) = (grid.propagation.exponential(self.sample), &grid.input_gains[self.sample]);
+        let (sample, grid) = (self.sample(), self.grid);
+        let (e, gain) = (grid.propagation.exponential(sample), &grid.input_gains[sample]);
         let radius = |i: usize| {
             let start = e.row(i).into_iter().zip(&self.sets.initial_set.radius);
             let input = gain.row(i).into_iter().zip(&self.sets.input_set.radius);
@@ -108,12 +162,12 @@ impl LinearSlice<'_> {
 
 impl Slice for LinearSlice<'_> {
     fn at(&self) -> At {
-        (self.grid as u32, self.sample as u32)
+        self.at
     }
 
     fn centre(&self) -> (Vec<f64>, Vec<f64>) {
-        let propagation = &self.plant.grids[self.grid].propagation;
-        let (e, gamma) = (propagation.exponential(self.sample), propagation.integral(self.sample));
+        let (sample, propagation) = (self.sample(), &self.grid.propagation);
+        let (e, gamma) = (propagation.exponential(sample), propagation.integral(sample));
         let UncertaintySets { initial_set, input_set, .. } = self.sets;
         let entry = |i: usize| {
             let start = e.row(i).into_iter().zip(&initial_set.centre);
@@ -129,16 +183,16 @@ impl Slice for LinearSlice<'_> {
         let noise: Vec<f64> =
             (0..initial_set.dimension()).map(|i| self.sets.noise_radius(i)).collect();
         let radii = [&initial_set.radius[..], &input_set.radius, &noise];
-        self.plant.generators[self.grid].at(self.sample, radii, states, held)
+        self.generators.at(self.sample(), radii, states, held)
     }
 
     fn coarse(&self) -> Vec<usize> {
-        vec![self.sample.div_ceil(HELD)]
+        vec![self.sample().div_ceil(HELD)]
     }
 
     fn support(&self, l: &[f64]) -> f64 {
         let UncertaintySets { initial_set, input_set, .. } = self.sets;
-        let (initial, input) = self.plant.generators[self.grid].gains(self.sample, l);
+        let (initial, input) = self.generators.gains(self.sample(), l);
         let gains = initial.iter().chain(&input);
         let radii = initial_set.radius.iter().chain(&input_set.radius);
         let (centre, _) = self.centre();

@@ -4,13 +4,25 @@ use reachtube_reach::GeneratorRows;
 
 use crate::error::Result;
 use crate::hulls::Hulls;
+use crate::linear::program::{Program, RowIndex};
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{At, Judged};
+use crate::tube::state::SearchState;
 
-/// A model over recordings, whose reachable sets under some sets can be computed.
+/// A model over recordings. It poses programs for the smallest sets, and computes the reachable
+/// sets under some sets.
 pub(crate) trait Plant: Sync {
     /// Returns whether its reachable sets have the rows of its program.
     fn is_exact(&self) -> bool;
+
+    /// Poses the program of the rows that recordings ask, and of the directions of `state`. An
+    /// exact plant goes on from the round `before`: its rows do not depend on the sets.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`](crate::Problem::run); when the model cannot be followed along a case.
+    fn round<'a>(&'a self, state: &mut SearchState, before: Option<Round<'a>>)
+    -> Result<Round<'a>>;
 
     /// Computes the reachable sets under `sets`, and shows each slice to `watch`; returns what that
     /// found, merged. Slices are not kept: a long motion's take gigabytes.
@@ -19,6 +31,36 @@ pub(crate) trait Plant: Sync {
     ///
     /// As [`Problem::run`](crate::Problem::run); when a solution cannot be enclosed.
     fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)>;
+
+    /// Returns the centre of a reachable set at a sample, in floating point.
+    fn centre(&self, hulls: &Hulls, at: At) -> Vec<f64>;
+
+    /// Returns what reachable sets cost.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`](crate::Problem::run).
+    fn costs(&self, hulls: &Hulls) -> Result<Costs>;
+}
+
+/// A program, as it is posed in one round of a search.
+pub(crate) struct Round<'a> {
+    pub program: Program<'a>,
+    /// The rows to begin with. The rows that the program generates join them.
+    pub rows: Vec<RowIndex>,
+    /// Where a worst-case motion under the sets of the round before ran away: case and time, s.
+    pub runs_away: Option<(String, f64)>,
+}
+
+/// What reachable sets cost; infinite where a set was lost.
+pub(crate) struct Costs {
+    /// Σ_k Σ_i s_i width_i(t_k) of the sets with the noise set, where strands at one time count by
+    /// their mean.
+    pub cost: f64,
+    /// The paper's sum (21), for a linear model.
+    pub paper: Option<f64>,
+    /// Σ_k Δt Π_i width_i(t_k), eq. (2) of the paper.
+    pub volume: f64,
 }
 
 /// What looks at each slice while reachable sets are computed.

@@ -12,18 +12,30 @@ use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::flowpipes::{Effort, attempt, furthest};
 use crate::hulls::{HullKind, Hulls};
+use crate::linear::costs::shares;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{At, Judged};
-use crate::tube::plant::{Plant, Slice, Watch};
+use crate::tube::linearised::{round, weights};
+use crate::tube::plant::{Costs, Plant, Round, Slice, Watch};
+use crate::tube::state::SearchState;
 
 /// Numbers of parts of the time so far, within each of which generators that a step adds have one
 /// factor in common: smaller sets, in which most points lie.
 const HELD: [usize; 2] = [24, 200];
 
 /// A model that is not linear over recordings. Its strands are cases.
-pub(crate) struct Polynomial<'a>(pub &'a Problem);
+pub(crate) struct Polynomial<'a> {
+    pub problem: &'a Problem,
+    /// How hard to try where a set is lost.
+    pub effort: Effort,
+}
 
-impl Polynomial<'_> {
+impl<'a> Polynomial<'a> {
+    /// Returns the plant that tries hard.
+    pub(crate) fn new(problem: &'a Problem) -> Self {
+        Self { problem, effort: Effort::Whole }
+    }
+
     /// Computes the outer set of a case; of several attempts the one that comes furthest, and what
     /// was found in that one.
     fn strand(
@@ -32,7 +44,7 @@ impl Polynomial<'_> {
         sets: &UncertaintySets,
         watch: Option<&Watch>,
     ) -> Result<(Flowpipe, Judged)> {
-        let system = self.0.dynamics().polynomial_system()?;
+        let system = self.problem.dynamics().polynomial_system()?;
         let of = |vertices: usize| {
             let (judged, count) = (Mutex::new(Judged::default()), AtomicUsize::new(0));
             let visit = |sample: usize, zonotope: Zonotope| {
@@ -48,7 +60,7 @@ impl Polynomial<'_> {
             let flowpipe = attempt(system, case, sets, vertices, visit)?;
             Ok((flowpipe, judged.into_inner().expect("no thread panics")))
         };
-        furthest(Effort::Whole, of, |(flowpipe, _)| flowpipe)
+        furthest(self.effort, of, |(flowpipe, _)| flowpipe)
     }
 }
 
@@ -57,13 +69,49 @@ impl Plant for Polynomial<'_> {
         false
     }
 
+    fn round<'a>(
+        &'a self,
+        state: &mut SearchState,
+        before: Option<Round<'a>>,
+    ) -> Result<Round<'a>> {
+        // Two programs would take twice the memory.
+        drop(before);
+        round(self.problem, state)
+    }
+
     fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)> {
-        let cases = self.0.cases()?.par_iter().enumerate();
+        let cases = self.problem.cases()?.par_iter().enumerate();
         let found: Vec<(Flowpipe, Judged)> =
             cases.map(|case| self.strand(case, sets, watch)).collect::<Result<_>>()?;
         let (flowpipes, judged): (Vec<Flowpipe>, Vec<Judged>) = found.into_iter().unzip();
         let judged = judged.into_iter().fold(Judged::default(), Judged::merge);
         Ok((Hulls::of(sets.clone(), HullKind::Outer(flowpipes)), judged))
+    }
+
+    fn centre(&self, hulls: &Hulls, (case, sample): At) -> Vec<f64> {
+        let sides = hulls.flowpipes()[case as usize].sample(sample as usize).iter();
+        sides.map(|side| side.mid()).collect()
+    }
+
+    fn costs(&self, hulls: &Hulls) -> Result<Costs> {
+        let (cases, weights) = (self.problem.cases()?, weights(self.problem)?);
+        let shares = shares(cases.iter().map(|case| case.grid.times()));
+        let mut costs = Costs { cost: 0.0, paper: None, volume: 0.0 };
+        for ((case, flowpipe), shares) in cases.iter().zip(hulls.flowpipes()).zip(&shares) {
+            let times = case.grid.times();
+            for (k, share) in shares.iter().enumerate() {
+                if k >= flowpipe.len() {
+                    return Ok(Costs { cost: f64::INFINITY, paper: None, volume: f64::INFINITY });
+                }
+                let widths = flowpipe.sample(k).iter().map(|hull| hull.width()).enumerate();
+                let widths = widths.map(|(i, width)| width + 2.0 * hulls.sets.noise_radius(i));
+                let weighted = widths.clone().zip(&weights).map(|(width, weight)| weight * width);
+                costs.cost += share * weighted.sum::<f64>();
+                let next = times.get(k + 1).unwrap_or(&times[k]);
+                costs.volume += share * widths.product::<f64>() * (next - times[k]);
+            }
+        }
+        Ok(costs)
     }
 }
 

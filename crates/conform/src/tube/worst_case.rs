@@ -8,8 +8,8 @@ use reachtube_ode::{Ensemble, InitialValueProblem};
 use crate::data::case::Case;
 use crate::data::side::Side;
 use crate::nominal::simulate::BOUND;
-use crate::search::sensitivity::{Many, Node, Sensitivity};
 use crate::sets::UncertaintySets;
+use crate::tube::sensitivity::{Many, Node, Sensitivity};
 
 /// Rows whose recordings stay below this part of the linearised radius get no correction: a small
 /// one would not make them decide.

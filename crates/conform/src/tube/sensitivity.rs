@@ -8,8 +8,8 @@ use reachtube_scalar::Lanes;
 use crate::data::case::Case;
 use crate::error::Result;
 use crate::nominal::simulate::{simulate, substeps};
-use crate::search::direction::{Direction, DirectionRow};
 use crate::sets::UncertaintySets;
+use crate::tube::direction::{Direction, DirectionRow};
 
 /// Several motions that are simulated at once.
 pub(super) type Many = Lanes<8>;
@@ -87,7 +87,7 @@ impl Sensitivity {
             grown.advance(a, b, times[k] - times[k - 1]);
             grown.write_into(&mut found.coefficients);
             for (row, asked) in found.directions.iter_mut().zip(asked) {
-                if asked.sample == k {
+                if asked.at.1 as usize == k {
                     *row = grown.along(&asked.direction);
                 }
             }

@@ -7,8 +7,9 @@ use reachtube_reach::Hyperrectangle;
 use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
-use crate::search::direction::Direction;
 use crate::sets::UncertaintySets;
+use crate::tube::direction::Direction;
+use crate::tube::judged::{Along, At, Judged};
 
 /// Part of the largest radius or centre below which a change counts as settled.
 const SETTLED: f64 = 1e-5;
@@ -23,7 +24,7 @@ const SHRINKS: f64 = 0.8;
 /// The state of the search between rounds: everything that the next round depends on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct SearchState {
+pub(crate) struct SearchState {
     /// Number of rounds done.
     pub rounds: usize,
     /// How often the reachable sets were computed.
@@ -47,7 +48,7 @@ pub(super) struct SearchState {
 /// A row that must be reached with a margin.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Margin {
+pub(crate) struct Margin {
     pub case: usize,
     pub sample: usize,
     pub state: usize,
@@ -58,7 +59,7 @@ pub(super) struct Margin {
 
 impl SearchState {
     /// Returns the state before the first round: no uncertainty.
-    pub(super) fn start(joints: usize) -> Self {
+    pub(crate) fn start(joints: usize) -> Self {
         let (initial_set, input_set) =
             (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
@@ -77,7 +78,7 @@ impl SearchState {
     /// Takes the sets that a program gave, with their cost, and returns whether they have settled.
     /// Where answers jump back and forth, as answers of the same cost may do, centres get less
     /// freedom.
-    pub(super) fn take(&mut self, sets: &UncertaintySets, cost: f64) -> bool {
+    pub(crate) fn take(&mut self, sets: &UncertaintySets, cost: f64) -> bool {
         let change = change(&self.sets, sets);
         if change > SHRINKS * self.change {
             self.freedom = 0.5 * self.freedom.min(change);
@@ -89,7 +90,7 @@ impl SearchState {
     }
 
     /// Returns the bounds of the centres of X0 and U in the next round; none when they are free.
-    pub(super) fn centre_bounds(&self) -> Vec<[f64; 2]> {
+    pub(crate) fn centre_bounds(&self) -> Vec<[f64; 2]> {
         if self.freedom == f64::MAX {
             return Vec::new();
         }
@@ -102,8 +103,31 @@ impl SearchState {
         [around(x, 0..n), around(x, n..2 * n), around(u, 0..n)].concat()
     }
 
+    /// Returns the directions, to be asked of reachable sets.
+    pub(crate) fn asked(&self) -> Vec<(At, Vec<f64>)> {
+        self.directions.iter().map(|known| (known.at, known.direction.clone())).collect()
+    }
+
+    /// Takes how far reachable sets reach, and adds the directions in which points are outside
+    /// them, with the points `along` that are furthest along these. Returns their number.
+    pub(crate) fn take_points(&mut self, judged: &Judged, along: Vec<Along>) -> usize {
+        for (index, reach) in &judged.reaches {
+            let direction = &mut self.directions[*index];
+            (direction.reach, direction.further) = (*reach, None);
+        }
+        let new = judged.furthest.iter().zip(along).map(|(((at, _), point), along)| Direction {
+            at: *at,
+            direction: point.direction.clone(),
+            along,
+            reach: point.reach.unwrap_or_default(),
+            further: None,
+        });
+        self.directions.extend(new);
+        judged.furthest.len()
+    }
+
     /// Adds margins; margins of one row add up.
-    pub(super) fn add(&mut self, missing: Vec<Margin>) {
+    pub(crate) fn add(&mut self, missing: Vec<Margin>) {
         self.change = f64::MAX;
         let places = self.margins.iter().enumerate().map(|(at, margin)| (margin.row(), at));
         let known: HashMap<_, usize> = places.collect();

@@ -1,0 +1,24 @@
+//! The program of a linear model and its recordings.
+
+use crate::data::envelope::Envelope;
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::linear::block::Block;
+use crate::linear::program::Program;
+use crate::weights::state_weights;
+
+impl<'a> Program<'a> {
+    /// Returns the program of a linear model and its recordings.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::deviations`].
+    pub(crate) fn of_problem(problem: &'a Problem) -> Result<Self> {
+        let (settings, joints) = (problem.settings(), problem.joints());
+        let (grids, deviations) = (problem.grids()?, problem.deviations()?);
+        let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
+        let weights = state_weights(&settings.weights, &envelopes, joints);
+        let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
+        Ok(Self::new(settings, &weights, blocks).with_limits(problem.limits()))
+    }
+}

@@ -1,0 +1,131 @@
+//! The program of a model that is not linear in one round of successive linearisation
+//! (docs/method.md, correction K).
+//!
+//! The model is linearised along every nominal motion, about the centres found so far. Worst-case
+//! motions, simulated with the model itself, show where it reaches further than its linearisation,
+//! and move the rows.
+
+use rayon::prelude::*;
+
+use crate::data::case::Case;
+use crate::data::envelope::Envelope;
+use crate::data::problem::Problem;
+use crate::data::settings::Weights;
+use crate::data::side::Side;
+use crate::error::Result;
+use crate::linear::block::Block;
+use crate::linear::program::Program;
+use crate::nominal::simulate::{nominal, runs_away};
+use crate::sets::UncertaintySets;
+use crate::tube::direction::Direction;
+use crate::tube::plant::Round;
+use crate::tube::sensitivity::Sensitivity;
+use crate::tube::state::SearchState;
+use crate::tube::worst_case::Correction;
+use crate::weights::state_weights;
+
+/// Linearises the model along every case, and poses the program, with one block per case.
+///
+/// # Errors
+///
+/// As [`Plant::round`](crate::tube::plant::Plant::round).
+pub(super) fn round<'a>(problem: &'a Problem, state: &mut SearchState) -> Result<Round<'a>> {
+    let (cases, sets) = (problem.cases()?, &state.sets);
+    let sensitivities = sensitivities(problem, sets, &state.directions)?;
+    let corrections = corrections(problem, state, &sensitivities)?;
+    let ran_away = cases.iter().zip(&corrections);
+    let runs_away =
+        ran_away.filter_map(|(case, c)| c.runs_away.map(|time| (case.name.clone(), time))).next();
+    let mut cuts = Vec::with_capacity(state.directions.len());
+    let mut used = vec![0; cases.len()];
+    for direction in &mut state.directions {
+        let (case, sample) = (direction.at.0 as usize, direction.at.1 as usize);
+        let (sensitivity, at) = (&sensitivities[case], &mut used[case]);
+        let nominal = &sensitivity.nominal[sample * direction.direction.len()..];
+        cuts.push(direction.cut(&sensitivity.directions[*at], nominal, sets));
+        *at += 1;
+    }
+    let parts = cases.iter().zip(sensitivities).zip(&corrections);
+    let mut blocks: Vec<Block> = parts
+        .map(|((case, sensitivity), correction)| block(case, sensitivity, correction, sets))
+        .collect();
+    for margin in &state.margins {
+        let envelope = &mut blocks[margin.case].envelope;
+        envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
+    }
+    let mut program = Program::new(problem.settings(), &weights(problem)?, blocks)
+        .with_centre_bounds(state.centre_bounds())
+        .with_limits(problem.limits());
+    program.cuts = cuts;
+    Ok(Round { rows: program.first_rows(), program, runs_away })
+}
+
+/// Returns the weights of the states, s, by the deviations from the nominal motions.
+pub(super) fn weights(problem: &Problem) -> Result<Vec<f64>> {
+    let deviation = |case: &Case| {
+        let nominal = nominal(problem.dynamics().polynomials(), case)?;
+        let states = 2 * case.joints();
+        let off = |k: usize, i: usize, x: f64| x - nominal[k * states + i];
+        Ok(case.measured.map(off, off))
+    };
+    let weights = &problem.settings().weights;
+    let envelopes: Vec<Envelope> = match weights {
+        Weights::Spread => problem.cases()?.iter().map(deviation).collect::<Result<_>>()?,
+        Weights::Unit | Weights::Given(_) => Vec::new(),
+    };
+    Ok(state_weights(weights, &envelopes.iter().collect::<Vec<_>>(), problem.joints()))
+}
+
+fn sensitivities(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    directions: &[Direction],
+) -> Result<Vec<Sensitivity>> {
+    let (model, disturbance) = (problem.dynamics().polynomials(), problem.settings().disturbance);
+    let of = |(index, case): (usize, &Case)| {
+        let mine = directions.iter().filter(|known| known.at.0 as usize == index);
+        let asked: Vec<&Direction> = mine.collect();
+        Sensitivity::new(model, case, sets, disturbance, &asked)
+            .map_err(|time| runs_away(case, time))
+    };
+    problem.cases()?.par_iter().enumerate().map(of).collect()
+}
+
+/// Corrects the linearisation by worst-case motions; not in the first round, which has no sets yet.
+fn corrections(
+    problem: &Problem,
+    state: &SearchState,
+    sensitivities: &[Sensitivity],
+) -> Result<Vec<Correction>> {
+    let model = problem.dynamics().polynomials();
+    let of = |(case, sensitivity): (&Case, &Sensitivity)| match state.rounds {
+        0 => Correction::none(case.grid.len(), 2 * case.joints()),
+        _ => Correction::new(model, case, &state.sets, sensitivity),
+    };
+    Ok(problem.cases()?.par_iter().zip(sensitivities).map(of).collect())
+}
+
+/// Makes the rows of one case. With x̂ the motion from the centres c of the round before, the new
+/// centres c' and radii r' must satisfy x̂ + E (c' - c) + R r' + correction >= x_m, and likewise
+/// below.
+fn block(
+    case: &Case,
+    sensitivity: Sensitivity,
+    correction: &Correction,
+    sets: &UncertaintySets,
+) -> Block {
+    let (n, states) = (case.joints(), 2 * case.joints());
+    let centre: Vec<f64> =
+        sets.initial_set.centre.iter().chain(&sets.input_set.centre).copied().collect();
+    let from_nominal = |k: usize, i: usize, x: f64| {
+        let (row, _) = sensitivity.row(n, k, i);
+        let moved: f64 = row.iter().zip(&centre).map(|(e, c)| e * c).sum();
+        x - sensitivity.nominal[k * states + i] + moved
+    };
+    let envelope = case.measured.map(
+        |k, i, upper| from_nominal(k, i, upper) - correction.at(k, i, Side::Upper),
+        |k, i, lower| from_nominal(k, i, lower) + correction.at(k, i, Side::Lower),
+    );
+    let coefficients = sensitivity.coefficients.into();
+    Block { times: case.grid.times().to_vec(), coefficients, envelope }
+}
