@@ -6,8 +6,7 @@ use crate::data::condition::Condition;
 use crate::data::problem::Problem;
 use crate::data::setup::Setup;
 use crate::error::Result;
-use crate::progress::Silent;
-use crate::search::smallest_sets::smallest_sets;
+use crate::search::smallest_sets::smallest_sets_alone;
 use crate::sets::UncertaintySets;
 use crate::verdict::Verdict;
 
@@ -42,7 +41,7 @@ impl AnyRun {
         let condition = middle(problem);
         let blind =
             problem.with_setup(Setup { condition: Some(condition.clone()), ..setup.clone() });
-        let found = smallest_sets(&blind, &*claim(&blind, None)?, &Silent, None)?;
+        let found = smallest_sets_alone(&blind, &*claim(&blind, None)?)?;
         let verdict = Verdict::new(&blind, &found.hulls, |_, _, _| {})?;
         let (sets, cost) = (found.hulls.sets, found.cost);
         Ok(Some(Self { condition, sets, cost, verified: verdict.conformant }))

@@ -3,7 +3,6 @@ use serde::Serialize;
 use crate::claim::notion::judged;
 use crate::claim::remote::PointServer;
 use crate::data::problem::Problem;
-use crate::data::settings::Notion;
 use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
 use crate::error::Result;
@@ -93,8 +92,9 @@ fn check_asking(
         }
     })?;
     let worst_by_state = worst.into_iter().flatten().collect();
-    let is_hull = problem.settings().notion == Notion::Hull;
-    let can_grow = is_hull && !verdict.conformant && excess.iter().all(|excess| excess.is_finite());
+    let can_grow = !problem.settings().notion.asks_points()
+        && !verdict.conformant
+        && excess.iter().all(|excess| excess.is_finite());
     let growth = can_grow.then(|| Growth::new(problem, &hulls.sets, &excess)).transpose()?;
     Ok(Check { worst_by_state, growth, ..Check::new(model, problem, verdict) }.with_findings(model))
 }

@@ -7,14 +7,12 @@ use crate::claim::claim::Claim;
 use crate::claim::notion::claim;
 use crate::claim::remote::PointServer;
 use crate::data::problem::Problem;
-use crate::data::settings::Notion;
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
 use crate::found::{Found, SearchSummary};
 use crate::hulls::Hulls;
-use crate::next_motion::calibration::{Calibrated, Calibration, calibrate};
+use crate::next_motion::calibration::{Calibration, calibrate};
 use crate::next_motion::deciding_runs::DecidingRuns;
-use crate::next_motion::left_out::leave_each_out;
 use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
@@ -129,13 +127,9 @@ fn conform_claim(
     resume: Option<&Path>,
 ) -> Result<Conformance> {
     let (found, calibration) = if problem.settings().calibrate.is_empty() {
-        let mut found = smallest_sets(problem, claim, progress, resume)?;
-        found.left_out.extend(leave_each_out(problem, &found.hulls.sets)?);
-        (found, None)
+        (smallest_sets(problem, claim, progress, resume)?, None)
     } else {
-        let Calibrated { fit, fitted, mut found, calibration } =
-            calibrate(problem, progress, resume)?;
-        found.left_out.extend(leave_each_out(&fit, &fitted)?);
+        let (found, calibration) = calibrate(problem, progress, resume)?;
         (found, Some(calibration))
     };
     let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
@@ -155,7 +149,7 @@ fn conform_claim(
     let fit = NominalFit::new(problem)?;
     let warnings = warnings(problem, &hulls.sets, &radii, &fit, calibration.as_ref())?;
     let is_proved = verdict.conformant;
-    let is_smallest = calibration.is_none() && problem.settings().notion == Notion::Hull;
+    let is_smallest = calibration.is_none() && !problem.settings().notion.asks_points();
     Ok(Conformance {
         sets: hulls.sets.clone(),
         warnings,

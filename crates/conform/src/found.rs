@@ -24,7 +24,7 @@ pub(crate) struct Found {
     pub hull_volume: f64,
     /// The search, for a model that is not linear.
     pub search: Option<SearchSummary>,
-    /// The sets without each motion, where the search for a model that is not linear found them.
+    /// The sets without each motion.
     pub left_out: Vec<LeftOut>,
     /// Which rows decide the sets.
     pub deciding: Deciding,

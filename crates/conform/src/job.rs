@@ -187,7 +187,7 @@ impl Job {
     pub fn read(self, progress: &dyn Progress) -> Result<Problem> {
         let setup = self.basis.setup(self.settings, self.explain)?;
         let has_points =
-            setup.settings.notion != Notion::Hull && setup.dynamics.linear_system().is_some();
+            setup.settings.notion.asks_points() && setup.dynamics.linear_system().is_some();
         if self.is_certified && !has_points {
             return Err(Error::NotPoints);
         }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::claim::notion::judged;
 use crate::claim::witness::PointVerdict;
 use crate::data::problem::Problem;
-use crate::data::settings::{Notion, Settings, States};
+use crate::data::settings::{Settings, States};
 use crate::data::suite::Suite;
 use crate::error::Result;
 use crate::explain::trace::{TraceVerdict, trace_factors};
@@ -126,10 +126,8 @@ impl Verdict {
         }
         let count = |judged: &Judged| count_points(problem, hulls, judged, &mut suites);
         let points = hulls.judged.as_ref().map(count).transpose()?;
-        let traces = match problem.settings().notion {
-            Notion::Trace => Some(judge_traces(problem, hulls, &mut suites)?),
-            _ => None,
-        };
+        let asks_motions = problem.settings().notion.asks_motions();
+        let traces = asks_motions.then(|| judge_traces(problem, hulls, &mut suites)).transpose()?;
         let rows = suites.iter().map(|suite| suite.rows).sum();
         let (runs, enclosure) = (problem.recordings().run_count(), hulls.enclosure());
         Ok(Self {
@@ -233,23 +231,7 @@ fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {
              disturbance in U"
         }
     };
-    let lies = match settings.notion {
-        Notion::Hull => format!(
-            "the recorded {states} of every joint lies in the interval hull of the model's {set}"
-        ),
-        Notion::PhasePlane => format!(
-            "the recorded {states} of every joint together lie in the projection of the model's \
-             {set} on the joint's phase plane"
-        ),
-        Notion::Exact => {
-            format!("the recorded {states} of all joints together lie in the model's {set}")
-        }
-        Notion::Trace => format!(
-            "the recorded {states} of all joints together lie in the model's {set}, and one motion \
-             of the model, with its start in X0 and its input in U, passes through all samples \
-             within V"
-        ),
-    };
+    let lies = settings.notion.claim_words(states, set);
     format!(
         "for each of the {runs} recordings, at each of its samples, {lies}; {how}, at samples, \
          whose times are the recorded ones to a picosecond"

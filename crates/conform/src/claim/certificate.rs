@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use reachtube_reach::Disturbance;
 use serde::Serialize;
 
-use crate::claim::sample_points::{SamplePoints, points, projections};
+use crate::claim::sample_points::{SamplePoints, points};
 use crate::claim::sample_set::{CentredPoints, Factors, SampleSet};
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
@@ -67,13 +67,12 @@ impl Certificate {
     /// [`Error::NotPoints`] for the notion hull and models that are not linear; as
     /// [`Problem::run`].
     pub fn new(problem: &Problem, model: &Model) -> Result<Self> {
-        let notion = match problem.settings().notion {
-            Notion::Hull => return Err(Error::NotPoints),
-            _ if problem.dynamics().linear_system().is_none() => return Err(Error::NotPoints),
-            // The certificate is about the points, not the motions through them.
-            Notion::Exact | Notion::Trace => Notion::Exact,
-            Notion::PhasePlane => Notion::PhasePlane,
-        };
+        let notion = problem.settings().notion;
+        if !notion.asks_points() || problem.dynamics().linear_system().is_none() {
+            return Err(Error::NotPoints);
+        }
+        // The certificate is about the points, not the motions through them.
+        let notion = if notion.asks_motions() { Notion::Exact } else { notion };
         let (plant, points, sets) = (Linear::new(problem)?, points(problem)?, model.sets());
         let is_measurable = problem.settings().disturbance == Disturbance::Measurable;
         let head = Head {
@@ -115,7 +114,7 @@ fn lines(
     let (settings, slice) = (problem.settings(), plant.slice(sets, at.place()));
     let points = CentredPoints::new(at, &slice);
     let mut lines = Vec::new();
-    for states in &projections(settings.notion, settings.states, problem.joints()) {
+    for states in &settings.notion.projections(settings.states, problem.joints()) {
         let (proved, _) = SampleSet::new(&slice, states).prove(&points, |point, factors| {
             let Factors { held, limit, set, work } = factors;
             let (suite, run) = at.owners[point];

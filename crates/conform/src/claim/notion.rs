@@ -6,13 +6,67 @@ use crate::claim::points::{Points, tolerance};
 use crate::claim::remote::{PointServer, Remote};
 use crate::claim::traces::Traces;
 use crate::data::problem::Problem;
-use crate::data::settings::Notion;
+use crate::data::settings::{Notion, States};
 use crate::error::Result;
 use crate::hulls::{HullKind, Hulls};
+use crate::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::sets::UncertaintySets;
 use crate::tube::linear::Linear;
 use crate::tube::plant::Plant;
 use crate::tube::polynomial::Polynomial;
+
+impl Notion {
+    /// Returns whether recorded points are judged, and not only each state by itself.
+    #[must_use]
+    pub fn asks_points(self) -> bool {
+        self != Self::Hull
+    }
+
+    /// Returns whether one motion of the model must pass through all samples of a recording.
+    #[must_use]
+    pub fn asks_motions(self) -> bool {
+        self == Self::Trace
+    }
+
+    /// Returns the states of each projection in which recorded points must lie in the reachable
+    /// set.
+    pub(crate) fn projections(self, states: States, joints: usize) -> Vec<Vec<usize>> {
+        let rows = states.rows(joints);
+        match self {
+            Self::Exact | Self::Trace => vec![(0..rows).collect()],
+            _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
+            _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
+        }
+    }
+
+    /// Returns the relative gap above which sets are not called the smallest: cutting planes end
+    /// below it.
+    pub(crate) fn largest_gap(self) -> f64 {
+        if self.asks_points() { LARGEST_GAP_OF_POINTS } else { LARGEST_GAP }
+    }
+
+    /// Returns what is claimed of the recorded `states`, such as "position", in a model's `set`.
+    pub(crate) fn claim_words(self, states: &str, set: &str) -> String {
+        match self {
+            Self::Hull => format!(
+                "the recorded {states} of every joint lies in the interval hull of the model's \
+                 {set}"
+            ),
+            Self::PhasePlane => format!(
+                "the recorded {states} of every joint together lie in the projection of the \
+                 model's {set} on the joint's phase plane"
+            ),
+            Self::Exact => {
+                format!("the recorded {states} of all joints together lie in the model's {set}")
+            }
+            Self::Trace => format!(
+                "{}, and one motion of the model, with its start in X0 and its input in U, passes \
+                 through all samples within V",
+                Self::Exact.claim_words(states, set)
+            ),
+        }
+    }
+}
 
 /// Returns what the notion of a problem claims, about points that `server` has where there is one.
 ///
@@ -25,8 +79,10 @@ pub(crate) fn claim<'a>(
 ) -> Result<Box<dyn Claim + 'a>> {
     let settings = problem.settings();
     Ok(match (settings.notion, server) {
-        (Notion::Hull, _) => Box::new(Rows),
-        (Notion::Trace, _) => Box::new(Traces { problem, points: Points::new(problem)? }),
+        (notion, _) if !notion.asks_points() => Box::new(Rows),
+        (notion, _) if notion.asks_motions() => {
+            Box::new(Traces { problem, points: Points::new(problem)? })
+        }
         (_, Some(server)) => {
             let root = &problem.recordings().root;
             Box::new(Remote { server, root, tolerance: tolerance(settings) })
@@ -72,11 +128,6 @@ impl Hulls {
     }
 }
 
-/// Returns whether the notion of a problem asks its recorded points.
-pub(crate) fn asks_points(problem: &Problem) -> bool {
-    problem.settings().notion != Notion::Hull
-}
-
 /// Judges the recorded points in reachable sets, where the notion asks them and they were not
 /// judged yet.
 ///
@@ -88,7 +139,7 @@ pub(crate) fn judged(
     hulls: &Hulls,
     server: Option<&dyn PointServer>,
 ) -> Result<Option<Hulls>> {
-    if !asks_points(problem) || hulls.judged.is_some() {
+    if !problem.settings().notion.asks_points() || hulls.judged.is_some() {
         return Ok(None);
     }
     let claim = claim(problem, server)?;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use reachtube_recordings::State;
 
-use crate::claim::sample_points::{SamplePoints, points, projections};
+use crate::claim::sample_points::{SamplePoints, points};
 use crate::data::problem::Problem;
 use crate::data::settings::{Notion, States};
 use crate::error::Result;
@@ -45,8 +45,8 @@ impl PhasePlane {
         {
             return Ok(Vec::new());
         }
-        let (plant, points) = (Linear::new(problem)?, points(problem)?);
-        let planes = projections(Notion::PhasePlane, States::All, problem.joints());
+        let (plant, points) = (Linear::with_slices(problem)?, points(problem)?);
+        let planes = Notion::PhasePlane.projections(States::All, problem.joints());
         let plane = |states: &Vec<usize>| {
             let ratio = |at: &SamplePoints| furthest(&plant.slice(sets, at.place()), at, states);
             let ratios: Vec<f64> = points.par_iter().map(ratio).collect();

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::claim::claim::{Claim, other_answer};
 use crate::claim::look::{Answer, Look, Near, Question};
-use crate::claim::sample_points::{SamplePoints, points, projections};
+use crate::claim::sample_points::{SamplePoints, points};
 use crate::claim::sample_set::{CentredPoints, OUTSIDE, SampleSet};
 use crate::data::problem::Problem;
 use crate::data::settings::{Noise, Settings};
@@ -61,7 +61,7 @@ impl<'a> Points<'a> {
         lists: KnownLists,
         file: Box<dyn Fn(u32) -> String + Sync + 'a>,
     ) -> Self {
-        let projections = projections(settings.notion, settings.states, joints);
+        let projections = settings.notion.projections(settings.states, joints);
         Self { samples, projections, tolerance: tolerance(settings), lists, file }
     }
 

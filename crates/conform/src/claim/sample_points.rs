@@ -1,5 +1,5 @@
 //! The recorded points, sample by sample: the deviations of all runs from the nominal solutions of
-//! a linear model, their states for any other. And the projections in which they must lie in a set.
+//! a linear model, their states for any other.
 
 use reachtube_recordings::Run;
 use reachtube_scalar::Interval;
@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
-use crate::data::settings::{Notion, States};
 use crate::deviation::Nominal;
 use crate::error::Result;
 use crate::tube::judged::At;
@@ -61,16 +60,6 @@ impl SamplePoints {
         let along = |d: &[f64]| d.iter().zip(direction).map(|(d, l)| d * l).sum::<f64>();
         let points = self.iter().map(along).enumerate();
         points.fold((0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best })
-    }
-}
-
-/// Returns the states of each projection in which recorded points must lie in the reachable set.
-pub(crate) fn projections(notion: Notion, states: States, joints: usize) -> Vec<Vec<usize>> {
-    let rows = states.rows(joints);
-    match notion {
-        Notion::Exact | Notion::Trace => vec![(0..rows).collect()],
-        _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
-        _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
     }
 }
 

@@ -12,7 +12,7 @@ use crate::data::notes::recording_notes;
 use crate::data::origin::Origin;
 use crate::data::recordings::Recordings;
 use crate::data::sensor_noise::SensorNoise;
-use crate::data::settings::{Notion, Settings};
+use crate::data::settings::Settings;
 use crate::data::setup::{Setup, read_options, side};
 use crate::data::suite::SuiteReader;
 use crate::deviation::Deviation;
@@ -103,7 +103,7 @@ impl Problem {
             kept: &kept,
             keep_all: keep == Keep::All
                 || settings.explain.is_some()
-                || settings.notion != Notion::Hull,
+                || settings.notion.asks_points(),
         };
         let recordings = Recordings::read(&reader, names, progress)?;
         check_starts(&setup, source.as_ref(), &recordings)?;

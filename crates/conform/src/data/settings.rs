@@ -261,7 +261,7 @@ impl Settings {
     /// [`Error::Trace`] with the remedy.
     pub(crate) fn check_trace(&self) -> Result<()> {
         match &self.noise {
-            _ if self.notion != Notion::Trace => Ok(()),
+            _ if !self.notion.asks_motions() => Ok(()),
             Noise::None => Err(Error::Trace(NEEDS_NOISE)),
             Noise::Fixed(radii) if radii.contains(&0.0) => Err(Error::Trace(NEEDS_NOISE)),
             Noise::Fixed(_) | Noise::Fitted => Ok(()),

@@ -29,7 +29,7 @@ const CAUTION: f64 = 0.99;
 /// J. Optim. Theory Appl. 99, 1998).
 pub(super) fn regulate(chain: &Chain, enough: f64) -> Regulated {
     let (mut states, mut moves) = start(chain);
-    let mut step = Step::new(chain, &states, &moves);
+    let mut step = NewtonStep::new(chain, &states, &moves);
     for _ in 0..ITERATIONS {
         let gap = states.gap() + moves.gap();
         if gap <= ACCURACY * states.bound
@@ -145,7 +145,7 @@ fn room(own: [f64; 2], change: [f64; 2]) -> [f64; 2] {
 /// The Newton step. With s and λ the slacks and multipliers above (+) and below (-) a value z,
 /// h = λ / s and a = (μ - Δs Δλ) / s the target of their product, the changes minimise
 /// ½ (h⁺ + h⁻) Δz² + (a⁺ - a⁻) Δz - (h⁺ - h⁻) Δz Δt.
-struct Step<'a> {
+struct NewtonStep<'a> {
     riccati: Riccati<'a>,
     states: Band,
     moves: Band,
@@ -154,7 +154,7 @@ struct Step<'a> {
     scratch: [Vec<f64>; 2],
 }
 
-impl<'a> Step<'a> {
+impl<'a> NewtonStep<'a> {
     fn new(chain: &'a Chain, states: &Band, moves: &Band) -> Self {
         let pair = || [states.values.clone(), moves.values.clone()];
         let riccati = Riccati::new(chain);

@@ -1,7 +1,6 @@
 use rayon::prelude::*;
 use reachtube_abstraction::Abstraction;
 
-use crate::claim::notion::asks_points;
 use crate::data::dynamics::Dynamics;
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
@@ -149,7 +148,7 @@ fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
 /// Refuses what cannot be fitted, whatever the recordings are.
 fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
     settings.check(problem.setup())?;
-    if asks_points(problem) && problem.is_folded() {
+    if problem.settings().notion.asks_points() && problem.is_folded() {
         return Err(Error::Fit(
             "a fit moves the nominal motions, and the points that other processes hold are \
              deviations from those before it; fit for the notion hull"
@@ -183,7 +182,7 @@ fn calibrated_cost(problem: &Problem) -> Option<f64> {
     let is_calibrated = !problem.settings().calibrate.is_empty();
     let is_linear = problem.dynamics().linear_system().is_some();
     let found = (is_calibrated && is_linear).then(|| calibrate(problem, &Silent, None));
-    found?.ok().map(|calibrated| calibrated.found.cost)
+    found?.ok().map(|(found, _)| found.cost)
 }
 
 /// The linear model of the same robot about the same point.

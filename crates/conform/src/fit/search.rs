@@ -2,7 +2,7 @@ use crate::error::{Error, Result};
 use crate::fit::evaluation::{Fit, Model, Smallest};
 use crate::fit::group::Group;
 use crate::fit::slopes::slopes;
-use crate::fit::step::{Step, StepRow};
+use crate::fit::step::{StepProgram, StepRow};
 use crate::linear::program::RowIndex;
 
 /// The first trust region: numbers may move by this much.
@@ -81,7 +81,7 @@ impl Search<'_> {
                 };
             let program = self.fit.program(&point.model, &self.tracks);
             loop {
-                let step = Step {
+                let step = StepProgram {
                     fit: self.fit,
                     model: &point.model,
                     slopes: &slopes,

@@ -52,8 +52,8 @@ const SOLVER_TOLERANCE: f64 = 1e-8;
 /// Track, sample among the rows, state, side.
 pub(crate) type StepRow = (usize, usize, usize, Side);
 
-/// One step.
-pub(crate) struct Step<'a> {
+/// The program of one step.
+pub(crate) struct StepProgram<'a> {
     pub fit: &'a Fit<'a>,
     pub model: &'a Model,
     pub slopes: &'a [Slope],
@@ -80,7 +80,7 @@ pub(crate) struct Answer {
     pub cost: f64,
 }
 
-impl Step<'_> {
+impl StepProgram<'_> {
     /// Solves the step by row generation. `rows` are the first rows, and become the rows that
     /// nearly decide the answer.
     ///

@@ -19,7 +19,7 @@ use crate::data::correction::InputCorrection;
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
 use crate::data::sensor_noise::SensorNoise;
-use crate::data::settings::{Notion, Settings};
+use crate::data::settings::Settings;
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::record::FitRecord;
@@ -30,7 +30,6 @@ use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
-use crate::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::plausibility::Warning;
 use crate::sets::UncertaintySets;
 use crate::verdict::Verdict;
@@ -356,10 +355,7 @@ impl Model {
     /// smallest.
     #[must_use]
     pub fn gap_of_not_minimal(&self) -> Option<f64> {
-        let largest = match self.settings.notion {
-            Notion::Hull => LARGEST_GAP,
-            _ => LARGEST_GAP_OF_POINTS,
-        };
+        let largest = self.settings.notion.largest_gap();
         self.optimality_gap.filter(|gap| *gap > largest)
     }
 

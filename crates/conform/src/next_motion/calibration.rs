@@ -7,7 +7,7 @@ use crate::claim::claim::{Claim, Rows};
 use crate::claim::look::Look;
 use crate::claim::notion::plant;
 use crate::data::problem::Problem;
-use crate::data::settings::{NominalStart, Notion};
+use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
 use crate::flowpipes::Effort;
 use crate::found::{Deciding, Found};
@@ -47,18 +47,6 @@ pub struct Gauge {
     pub gauge: f64,
 }
 
-/// The answer of [`calibrate`].
-pub(crate) struct Calibrated {
-    /// The problem of the motions that the sets were found on.
-    pub fit: Problem,
-    /// The sets that were found on them.
-    pub fitted: UncertaintySets,
-    /// The scaled sets.
-    pub found: Found,
-    /// How they were scaled.
-    pub calibration: Calibration,
-}
-
 /// Finds the smallest sets for the motions that the settings do not keep back, and scales their
 /// radii until they enclose the others too. V is not scaled, because it is the noise of the
 /// sensors; nor is X0 where that noise limits it.
@@ -71,7 +59,7 @@ pub(crate) fn calibrate(
     problem: &Problem,
     progress: &dyn Progress,
     resume: Option<&Path>,
-) -> Result<Calibrated> {
+) -> Result<(Found, Calibration)> {
     let motions = Motions::new(problem.recordings());
     let kept_back = kept_back(problem, &motions)?;
     let fit = problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)));
@@ -103,7 +91,7 @@ pub(crate) fn calibrate(
     let all = motions.distinct().into_iter();
     let others = all.filter(|motion| !kept_back.contains(motion)).map(String::from).collect();
     let calibration = Calibration { fitted: others, gauges, factor, input_only };
-    Ok(Calibrated { fit, fitted, found, calibration })
+    Ok((found, calibration))
 }
 
 /// Returns the problem of the motions that the settings do not keep back; `None` if they keep
@@ -123,7 +111,7 @@ pub(crate) fn without_kept_back(problem: &Problem) -> Result<Option<Problem>> {
 
 /// Returns the motions that the settings keep back, or why that cannot be.
 fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
-    if problem.settings().notion != Notion::Hull {
+    if problem.settings().notion.asks_points() {
         return Err(Error::Calibration(
             "sets are calibrated for the notion hull only; use --notion hull".into(),
         ));

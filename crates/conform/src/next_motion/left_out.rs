@@ -1,9 +1,7 @@
 use rayon::prelude::*;
 
-use crate::data::case::Case;
 use crate::data::problem::Problem;
-use crate::data::settings::{NominalStart, Notion};
-use crate::deviation::Deviation;
+use crate::data::settings::NominalStart;
 use crate::error::Result;
 use crate::flowpipes::{Effort, rows_outside};
 use crate::linear::program::Program;
@@ -16,150 +14,124 @@ use crate::sets::UncertaintySets;
 /// Number of motions at most for which the program is solved again.
 const MOST_PROGRAMS: usize = 60;
 
-/// Leaves each motion out of the program of a linear model, one after the other. Nothing with fewer
-/// than two motions, for any other model, and for other notions than the hull. `sets` are the
-/// smallest for all motions: a motion that does not touch their reachable set decides nothing, and
-/// without it they are the smallest still.
-///
-/// # Errors
-///
-/// As [`Problem::deviations`].
-pub(crate) fn leave_each_out(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<LeftOut>> {
-    let motions = Motions::new(problem.recordings());
-    let is_built =
-        problem.settings().notion == Notion::Hull && problem.dynamics().linear_system().is_some();
-    if motions.count() < 2 || !is_built {
-        return Ok(Vec::new());
-    }
-    let (program, deviations) = (Program::of_problem(problem)?, problem.deviations()?);
-    let input_only = problem.settings().nominal == NominalStart::Own;
-    let of = |motion: &&str| -> Vec<&Deviation> {
-        deviations.iter().filter(|d| motions.of_suite(d.suite) == *motion).collect()
-    };
-    let decides =
-        |own: &Vec<&Deviation>| program.with_deviations(own.iter().copied()).touches(sets);
-    // Which motions need a program, in their order, so that the answer does not depend on cores.
-    let all: Vec<&str> = motions.distinct();
-    let mut programs = 0;
-    let steps: Vec<(&str, Step)> = all
-        .iter()
-        .map(|motion| {
-            let step = match decides(&of(motion)) {
-                false => Step::Same,
-                true if programs == MOST_PROGRAMS => Step::Skip,
-                true => {
-                    programs += 1;
-                    Step::Solve
-                }
-            };
-            (*motion, step)
-        })
-        .collect();
-    let leave_out = |(motion, step): &(&str, Step)| {
-        let own: Vec<Program> =
-            of(motion).into_iter().map(|d| program.with_deviations([d])).collect();
-        let rows = own.iter().map(|own| own.rows() / 2).sum();
-        let unknown =
-            LeftOut { motion: (*motion).into(), cost: None, rows, outside: None, gauge: None };
-        match step {
-            Step::Skip => unknown,
-            Step::Same => {
-                let cost = Some(program.cost(sets));
-                LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown }
-            }
-            Step::Solve => {
-                let others = deviations.iter().filter(|d| motions.of_suite(d.suite) != *motion);
-                unknown.with(&program.with_deviations(others), &own, input_only)
-            }
-        }
-    };
-    Ok(steps.par_iter().map(leave_out).collect())
+/// A motion beside the others.
+struct Without<'a> {
+    problem: &'a Problem,
+    /// Which suites are the motion's.
+    suites: Vec<bool>,
 }
 
-/// Leaves each motion out of the last program of a search for a model that is not linear, and
-/// compares the motion with the computed outer sets. Nothing with fewer than two motions, and for
-/// other notions than the hull. `sets` belong to all motions, as in [`leave_each_out`].
+/// Leaves each motion out of the program that gave the smallest sets, one after the other, and
+/// compares the motion with the sets of the others: with their rows for a linear model, and with
+/// the computed outer sets for any other. Nothing with fewer than two motions, and for other
+/// notions than the hull. `sets` are the smallest for all motions: a motion that does not touch
+/// their reachable set decides nothing, and without it they are the smallest still.
 ///
 /// # Errors
 ///
-/// When sizes do not fit, or the job is cancelled.
-pub(crate) fn leave_each_out_of_search(
+/// As [`Problem::run`]; when sizes do not fit, or the job is cancelled.
+pub(crate) fn leave_each_out(
     problem: &Problem,
-    sets: &UncertaintySets,
     program: &Program,
+    sets: &UncertaintySets,
     progress: &dyn Progress,
 ) -> Result<Vec<LeftOut>> {
     let motions = Motions::new(problem.recordings());
-    if motions.count() < 2 || problem.settings().notion != Notion::Hull {
+    if motions.count() < 2 || problem.settings().notion.asks_points() {
         return Ok(Vec::new());
     }
-    let cases = problem.cases()?;
-    let input_only = problem.settings().nominal == NominalStart::Own;
+    let suites = 0..problem.recordings().suites.len();
+    let all = motions.distinct().into_iter().map(|motion| {
+        let suites = suites.clone().map(|suite| motions.of_suite(suite) == motion).collect();
+        (motion, Without { problem, suites })
+    });
+    // Which motions need a program, in their order, so that the answer does not depend on cores.
     let mut programs = 0;
-    let leave_out = |motion: &str| {
+    let numbered = all.map(|(motion, without)| {
+        let decides = without.rows(program, |suite| without.suites[suite])?.touches(sets);
+        programs += usize::from(decides);
+        Ok((motion, without, decides.then_some(programs)))
+    });
+    let numbered: Vec<_> = numbered.collect::<Result<_>>()?;
+    let leave_out = |(motion, without, number): &(&str, Without, Option<usize>)| {
         progress.go_on()?;
-        let is_own = |suite: usize| motions.of_suite(suite) == motion;
-        let own = program.with_blocks(|case| is_own(cases[case].suite));
-        let of_motion: Vec<&Case> = cases.iter().filter(|case| is_own(case.suite)).collect();
-        let states = problem.settings().states.rows(problem.joints());
-        let rows = states * of_motion.iter().map(|case| case.measured.len()).sum::<usize>();
+        let own = without.own(program)?;
+        let rows = own.iter().map(|own| own.rows() / 2).sum();
         let unknown =
-            LeftOut { motion: motion.into(), cost: None, rows, outside: None, gauge: None };
-        if !own.touches(sets) {
-            let cost = Some(program.cost(sets));
-            return Ok(LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown });
+            LeftOut { motion: (*motion).into(), cost: None, rows, outside: None, gauge: None };
+        match *number {
+            None => {
+                let cost = Some(program.cost(sets));
+                Ok(LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown })
+            }
+            Some(number) if number > MOST_PROGRAMS => Ok(unknown),
+            Some(_) => {
+                let others = without.rows(program, |suite| !without.suites[suite])?;
+                without.compare(&others, &own, unknown)
+            }
         }
-        programs += 1;
-        let others = program.with_blocks(|case| !is_own(cases[case].suite));
-        let Some(solution) = (programs <= MOST_PROGRAMS).then(|| others.solve().ok()).flatten()
-        else {
-            return Ok(unknown);
-        };
+    };
+    numbered.par_iter().map(leave_out).collect()
+}
+
+impl Without<'_> {
+    /// Returns the program with the rows of some suites alone.
+    fn rows<'p>(&self, program: &Program<'p>, of: impl Fn(usize) -> bool) -> Result<Program<'p>> {
+        Ok(match self.problem.dynamics().linear_system() {
+            Some(_) => {
+                program.with_deviations(self.problem.deviations()?.iter().filter(|d| of(d.suite)))
+            }
+            None => {
+                let cases = self.problem.cases()?;
+                program.with_blocks(|block| of(cases[block].suite))
+            }
+        })
+    }
+
+    /// Returns the program of each of the motion's suites.
+    fn own<'p>(&self, program: &Program<'p>) -> Result<Vec<Program<'p>>> {
+        let own = (0..self.suites.len()).filter(|suite| self.suites[*suite]);
+        own.map(|suite| self.rows(program, |other| other == suite)).collect()
+    }
+
+    /// Solves the program of the other motions and compares the motion with its sets. A program
+    /// that the solver gives up on leaves nothing to compare with.
+    fn compare(&self, others: &Program, own: &[Program], unknown: LeftOut) -> Result<LeftOut> {
+        let Ok(solution) = others.solve() else { return Ok(unknown) };
         let sets = others.repaired(&solution.sets);
-        let grown = |factor: f64| sets.grown(factor, input_only);
-        let of_case = |case: &&Case| rows_outside(problem, case, &sets);
+        let input_only = self.problem.settings().nominal == NominalStart::Own;
+        let growth = |own: &Program| {
+            let [_, input, both] = own.growth_factors(&sets);
+            if input_only { input } else { both }
+        };
+        let growth = own.iter().map(growth).try_fold(1.0, |max: f64, g| g.map(|g| max.max(g)));
+        let (outside, gauge) = match self.problem.dynamics().linear_system() {
+            Some(_) => (Some(own.iter().map(|own| own.outside(&sets)).sum()), growth),
+            None => self.outer(&sets, growth.unwrap_or(1.0), input_only)?,
+        };
+        Ok(LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown })
+    }
+
+    /// Returns how many of the motion's rows leave the computed outer sets, and the motion's gauge
+    /// by these; the search for it begins at `guess`.
+    fn outer(
+        &self,
+        sets: &UncertaintySets,
+        guess: f64,
+        input_only: bool,
+    ) -> Result<(Option<usize>, Option<f64>)> {
+        let own = self.problem.cases()?.par_iter().filter(|case| self.suites[case.suite]);
         let sum = |a: Option<usize>, b: Option<usize>| Ok(a.zip(b).map(|(a, b)| a + b));
-        let outside = of_motion.par_iter().map(of_case).try_reduce(|| Some(0), sum)?;
-        let [_, input, both] = own.growth_factors(&sets);
-        let guess = if input_only { input } else { both }.unwrap_or(1.0);
-        let suites: Vec<bool> = (0..problem.recordings().suites.len()).map(is_own).collect();
+        let outside = own.map(|case| rows_outside(self.problem, case, sets));
+        let outside = outside.try_reduce(|| Some(0), sum)?;
+        let grown = |factor: f64| sets.grown(factor, input_only);
         let gauge = match outside {
             Some(0) => Some(1.0),
-            _ => match outer_gauge(problem, &suites, Effort::Quick, guess, &grown)? {
+            _ => match outer_gauge(self.problem, &self.suites, Effort::Quick, guess, &grown)? {
                 OuterGauge::Factor(factor) => Some(factor),
                 OuterGauge::None | OuterGauge::Lost(_) => None,
             },
         };
-        Ok(LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown })
-    };
-    motions.distinct().into_iter().map(leave_out).collect()
-}
-
-/// What leaving a motion out takes.
-enum Step {
-    /// A program of the other motions.
-    Solve,
-    /// Nothing, because the motion decides nothing.
-    Same,
-    /// A program too many.
-    Skip,
-}
-
-impl LeftOut {
-    /// Solves the program of the other motions and compares the motion's own rows with its sets.
-    /// A program that the solver gives up on leaves nothing to compare with.
-    fn with(self, others: &Program, own: &[Program], input_only: bool) -> Self {
-        let Ok(solution) = others.solve() else { return self };
-        let sets = others.repaired(&solution.sets);
-        let gauge = |own: &Program| {
-            let [_, input, both] = own.growth_factors(&sets);
-            if input_only { input } else { both }
-        };
-        Self {
-            cost: Some(others.cost(&sets)),
-            outside: Some(own.iter().map(|own| own.outside(&sets)).sum()),
-            gauge: own.iter().map(gauge).try_fold(1.0, |max: f64, g| g.map(|g| max.max(g))),
-            ..self
-        }
+        Ok((outside, gauge))
     }
 }

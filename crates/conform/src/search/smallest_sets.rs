@@ -8,18 +8,19 @@ use crate::data::problem::Problem;
 use crate::data::settings::Method;
 use crate::error::Result;
 use crate::found::{Deciding, Found, SearchSummary, TOUCHING};
-use crate::linear::program::TIGHT;
-use crate::next_motion::left_out::leave_each_out_of_search;
+use crate::linear::program::{Program, TIGHT};
+use crate::next_motion::left_out::leave_each_out;
 use crate::optimality::optimality_gap;
-use crate::progress::Progress;
+use crate::progress::{Progress, Silent};
 use crate::search::bisection::bisect;
 use crate::search::journal::Journal;
 use crate::search::prove::prove;
 use crate::search::search::{Ended, search};
 use crate::tube::plant::{Costs, Plant};
 
-/// Finds the smallest sets for all recordings of a problem. What a search for the sets of a model
-/// that is not linear has finished is kept in the file `resume` and removed at the end.
+/// Finds the smallest sets for all recordings of a problem, and those without each motion. What a
+/// search for the sets of a model that is not linear has finished is kept in the file `resume` and
+/// removed at the end.
 ///
 /// # Errors
 ///
@@ -36,20 +37,34 @@ pub(crate) fn smallest_sets(
         Method::Bisection if !plant.is_exact() => bisect(problem, claim, &journal, progress)?,
         _ => {
             let ended = search((problem, plant), claim, &journal, progress)?;
-            finish((problem, plant), claim, ended, progress)?
+            let (found, program) = finish((problem, plant), claim, ended, progress)?;
+            let left_out = leave_each_out(problem, &program, &found.hulls.sets, progress)?;
+            Found { left_out, ..found }
         }
     };
     journal.remove();
     Ok(found)
 }
 
-/// Widens the sets that a search found for what programs do not ask, and proves them.
-fn finish(
+/// Finds the smallest sets of a linear model alone.
+///
+/// # Errors
+///
+/// As [`smallest_sets`].
+pub(crate) fn smallest_sets_alone(problem: &Problem, claim: &dyn Claim) -> Result<Found> {
+    let plant = &*plant(problem)?;
+    let ended = search((problem, plant), claim, &Journal::new(None, problem), &Silent)?;
+    Ok(finish((problem, plant), claim, ended, &Silent)?.0)
+}
+
+/// Widens the sets that a search found for what programs do not ask, and proves them. Returns the
+/// last program too.
+fn finish<'a>(
     (problem, plant): (&Problem, &dyn Plant),
     claim: &dyn Claim,
-    ended: Ended,
+    ended: Ended<'a>,
     progress: &dyn Progress,
-) -> Result<Found> {
+) -> Result<(Found, Program<'a>)> {
     let Ended { state, round, lower_bound, tube } = ended;
     let (program, is_exact) = (round.program, plant.is_exact());
     let sets = match claim.tolerance() {
@@ -63,24 +78,20 @@ fn finish(
     };
     let Costs { cost, paper, volume } = plant.costs(&hulls)?;
     let gap = optimality_gap(cost, lower_bound, program.negligible_cost());
-    let left_out = match is_exact {
-        true => Vec::new(),
-        false => leave_each_out_of_search(problem, &hulls.sets, &program, progress)?,
-    };
     let summary = SearchSummary {
         rounds: state.rounds,
         reachable_sets: state.reachable_sets,
         linearised_cost: Some(program.cost(&state.sets)),
         runs_away: round.runs_away,
     };
-    Ok(Found {
+    let found = Found {
         cost,
         lower_bound: is_exact.then_some(lower_bound),
         optimality_gap: is_exact.then_some(gap),
         paper_cost: paper,
         hull_volume: volume,
         search: (!is_exact).then_some(summary),
-        left_out,
+        left_out: Vec::new(),
         deciding: match claim.tolerance() {
             _ if !is_exact => Deciding::Rows(program.tight(&hulls.sets).into_iter().collect()),
             None => Deciding::Touching(TIGHT),
@@ -88,5 +99,6 @@ fn finish(
         },
         touching: touching((problem, plant), &program, &hulls, &state.directions)?,
         hulls,
-    })
+    };
+    Ok((found, program))
 }

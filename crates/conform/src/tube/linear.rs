@@ -29,21 +29,36 @@ pub(crate) const PARTS: usize = 2;
 pub(crate) struct Linear<'a> {
     problem: &'a Problem,
     pub grids: &'a [Grid],
+    /// The generators of slices on each grid.
     generators: Vec<SampleGenerators<'a>>,
     /// The program of the rows, once it is asked for.
     program: OnceLock<Program<'a>>,
 }
 
 impl<'a> Linear<'a> {
-    /// Prepares the generators of a problem.
+    /// Takes the model of a problem, with slices where its notion asks points.
     ///
     /// # Errors
     ///
     /// As [`Problem::grids`].
     pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
+        Self::with(problem, problem.settings().notion.asks_points())
+    }
+
+    /// Takes the model of a problem, with slices whatever its notion is.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::grids`].
+    pub(crate) fn with_slices(problem: &'a Problem) -> Result<Self> {
+        Self::with(problem, true)
+    }
+
+    fn with(problem: &'a Problem, has_slices: bool) -> Result<Self> {
         let (grids, disturbance) = (problem.grids()?.as_slice(), problem.settings().disturbance);
         let of = |grid: &'a Grid| SampleGenerators::new(&grid.propagation, disturbance, PARTS);
-        let generators = grids.iter().map(of).collect::<Result<_, _>>()?;
+        let used = if has_slices { grids } else { &[] };
+        let generators = used.iter().map(of).collect::<Result<_, _>>()?;
         Ok(Self { problem, grids, generators, program: OnceLock::new() })
     }
 
