@@ -17,6 +17,7 @@ mod reference;
 mod report_files;
 mod settings_file;
 mod table;
+mod understood;
 mod virtual_robot_arguments;
 
 use std::process::ExitCode;

@@ -6,6 +6,7 @@ use crate::prepare::log::PreparedLog;
 use crate::prepare::prepared::{common_step, prepare_one};
 use crate::prepare::read::{Source, sources};
 use crate::prepare::survey::{Survey, check_held_out};
+use crate::prepare::turns::missing_turns;
 use crate::prepare::velocity::velocity_warnings;
 use crate::samples::{Sampling, most_samples};
 use crate::settings::IdentifySettings;
@@ -64,7 +65,7 @@ impl Inputs {
         let IdentifySettings { rest, friction, dynamic, validate, prepare, model, .. } = settings;
         let groups = [rest, friction, dynamic, validate];
         let sources = groups.map(|entries| sources(entries, folder)).into_iter();
-        let sources: Vec<Vec<Source>> = sources.collect::<Result<_>>()?;
+        let mut sources: Vec<Vec<Source>> = sources.collect::<Result<_>>()?;
         let survey = |source: &Source| Ok(Survey::of(&source.read(robot, prepare)?));
         let surveys = sources.iter().map(|group| group.par_iter().map(survey).collect());
         let surveys: Vec<Vec<Survey>> = surveys.collect::<Result<_>>()?;
@@ -72,8 +73,10 @@ impl Inputs {
         check_held_out(&surveys[3], &fitted)?;
         let cut_off = chosen_cut_off(&surveys[2], prepare)?;
         let margin = MARGIN_PERIODS / cut_off;
-        // All groups get one sample time.
+        // All groups get one sample time, and count turns alike.
         let all: Vec<&Survey> = surveys.iter().flatten().collect();
+        let mut notes = turns(robot, &all, sources.iter_mut().flatten());
+        notes.extend(all.iter().flat_map(|log| log.notes.clone()));
         let common = common_step(all.iter().filter_map(|survey| survey.step).collect());
         let strides = [1, 1, stride(&surveys[2]), stride(&surveys[3])];
         let (mut logs, mut changes) = (Vec::new(), Vec::new());
@@ -99,7 +102,8 @@ impl Inputs {
             margin,
             laws: vec![],
         };
-        let mut changes = described_changes(samples, &changes, prepare, cut_off);
+        notes.extend(described_changes(samples, &changes, prepare, cut_off));
+        let mut changes = notes;
         if short > 0 {
             changes.push(format!(
                 "{short} recordings were left out: they are too short for a low-pass of \
@@ -119,6 +123,19 @@ impl Inputs {
         let kept_back = !self.validate.is_empty();
         (kept_back, if kept_back { &self.validate } else { &self.dynamic })
     }
+}
+
+/// Sets the turns that recordings lack against the others, and returns a sentence for each.
+fn turns<'a>(
+    robot: &Robot,
+    surveys: &[&Survey],
+    sources: impl Iterator<Item = &'a mut Source>,
+) -> Vec<String> {
+    let names: Vec<String> = surveys.iter().map(|log| log.file.display().to_string()).collect();
+    let extents: Vec<_> = surveys.iter().map(|log| log.extents.clone()).collect();
+    let (turns, notes) = missing_turns(robot, &names, &extents);
+    sources.zip(turns).for_each(|(source, turns)| source.turns = turns);
+    notes
 }
 
 /// Returns the recordings of a group that are long enough for the low-pass, and the number of the

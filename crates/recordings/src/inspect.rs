@@ -85,6 +85,15 @@ pub struct JointSummary {
 /// Reads every recording of the index and summarises the data set.
 #[must_use]
 pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Inspection {
+    inspect_source(data, data.root().display().to_string(), gap_limit)
+}
+
+/// Reads every recording of a source and summarises it.
+pub(crate) fn inspect_source(
+    data: &dyn RunSource,
+    folder: String,
+    gap_limit: GapLimit,
+) -> Inspection {
     let options = ReadOptions { gap_limit, ..ReadOptions::default() };
     let groups = groups(data);
     let read = |(_, _, members): &(String, bool, Vec<usize>)| read_group(data, members, &options);
@@ -101,7 +110,7 @@ pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Inspection {
         }
     }
     Inspection {
-        folder: data.root().display().to_string(),
+        folder,
         joints,
         runs: data.runs().len(),
         notes: notes(data, &sound),
@@ -122,7 +131,11 @@ type Summary = Result<RunSummary, Vec<Refusal>>;
 
 /// Reads the runs of a group, and compares each with the first that has no defect. At most the
 /// first run and one for each core are held at once.
-fn read_group(data: &DataSet, members: &[usize], options: &ReadOptions) -> Vec<(usize, Summary)> {
+fn read_group(
+    data: &dyn RunSource,
+    members: &[usize],
+    options: &ReadOptions,
+) -> Vec<(usize, Summary)> {
     let read = |index: usize| data.read(index, options).map_err(Refusal::of_recording);
     let mut summaries = Vec::new();
     for (count, &index) in members.iter().enumerate() {
@@ -142,7 +155,7 @@ fn read_group(data: &DataSet, members: &[usize], options: &ReadOptions) -> Vec<(
 }
 
 /// Refuses a run whose number of joints differs from the first run's.
-fn same_joints(data: &DataSet, index: usize, run: RunSummary, joints: usize) -> Summary {
+fn same_joints(data: &dyn RunSource, index: usize, run: RunSummary, joints: usize) -> Summary {
     let found = run.joint_count();
     if found == joints {
         return Ok(run);
@@ -155,7 +168,7 @@ fn same_joints(data: &DataSet, index: usize, run: RunSummary, joints: usize) -> 
 
 /// Returns the suites, then one group for each kind of the runs without one: name, whether it is a
 /// suite, and indices of its runs.
-fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
+fn groups(data: &dyn RunSource) -> Vec<(String, bool, Vec<usize>)> {
     let mut groups: Vec<_> =
         data.suites().into_iter().map(|suite| (suite.name, true, suite.runs)).collect();
     for (index, run) in data.runs().iter().enumerate().filter(|(_, run)| run.suite.is_none()) {
@@ -168,7 +181,7 @@ fn groups(data: &DataSet) -> Vec<(String, bool, Vec<usize>)> {
     groups
 }
 
-fn notes(data: &DataSet, runs: &[Option<RunSummary>]) -> Vec<String> {
+fn notes(data: &dyn RunSource, runs: &[Option<RunSummary>]) -> Vec<String> {
     let mut notes = data.notes();
     let sound = || runs.iter().enumerate().filter_map(|(index, run)| Some((index, run.as_ref()?)));
     notes.extend(sound().flat_map(|(_, run)| run.notes.iter().cloned()));

@@ -11,6 +11,7 @@
 //!   remedy. [`check_limits`] finds wrong units; [`run_notes`] and [`copies_note`] return notes.
 //! - [`Torque`] states what the recorded torques mean and returns the input u of the model.
 //! - [`inspect()`] summarises a data set.
+//! - [`read_logged`] reads CSV files of any header, as robots and drivers log them.
 //!
 //! `docs/recordings.md` describes the format.
 //!
@@ -40,6 +41,8 @@ mod gap_limit;
 mod index;
 mod inspect;
 mod inspect_run;
+mod logged;
+mod logged_runs;
 mod memory;
 mod notes;
 mod order;
@@ -60,6 +63,11 @@ pub use error::{Error, Result};
 pub use gap_limit::GapLimit;
 pub use index::RunEntry;
 pub use inspect::{Inspection, JointSummary, RunGroup, inspect};
+pub use logged::{
+    AngleUnit, ColumnSettings, Logged, LoggedOptions, TimeUnit, Understood, csv_files, group_files,
+    is_recording, read_logged,
+};
+pub use logged_runs::{LogInspection, inspect_logs};
 pub use memory::MemoryRuns;
 pub use notes::{copies_note, run_notes};
 pub use reading::{parse_csv, read_csv};

@@ -333,8 +333,19 @@ fn seconds(picoseconds: i128) -> f64 {
     picoseconds as f64 / 1e12
 }
 
-/// Returns problem and remedy of a file that is not comma-separated text with a header.
-fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
+/// Returns whether text starts with the header `t,q1..qn,qd1..qdn,tau1..taun`.
+pub(crate) fn is_strict_header(bytes: &[u8]) -> bool {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
+    let Ok(header) = reader.headers() else { return false };
+    let n = header.iter().skip(1).take_while(|name| is_numbered(name, "q")).count();
+    n > 0
+        && header.get(0) == Some("t")
+        && (1..).zip(column_names(n)).all(|(at, name)| header.get(at) == Some(&name))
+}
+
+/// Returns problem and remedy of a file that is not text.
+pub(crate) fn not_text(bytes: &[u8]) -> Option<(String, &'static str)> {
     if bytes.is_empty() {
         return Some((
             "the file is empty".into(),
@@ -346,6 +357,14 @@ fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
     }
     if bytes.contains(&0) {
         return Some(("the file is not text".into(), "write the recording as CSV in UTF-8"));
+    }
+    None
+}
+
+/// Returns problem and remedy of a file that is not comma-separated text with a header.
+fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
+    if let Some(problem) = not_text(bytes) {
+        return Some(problem);
     }
     let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or(bytes);
     let first = String::from_utf8_lossy(first);

@@ -3,7 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::recordings::{DataSet, Inspection, JointSummary, RunGroup, inspect};
+use reachtube::recordings::{
+    ColumnSettings, DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, inspect,
+    inspect_logs,
+};
+use reachtube_robot::Robot;
 
 use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
@@ -13,6 +17,7 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 use crate::table::{plural, table};
+use crate::understood::understood;
 use reachtube::number::four_decimals;
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
@@ -34,9 +39,13 @@ pub(crate) struct Arguments {
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Folder with runs.csv and the recordings
-    #[arg(long, value_name = "FOLDER")]
+    /// Folder with runs.csv and the recordings, or a log or folder of logs: CSV files of any header
+    #[arg(long, value_name = "PATH")]
     pub data: PathBuf,
+    /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
+    /// also first=0, time_unit=ms and angle=deg
+    #[arg(long, value_name = "KEY=VALUE,..")]
+    pub columns: Option<ColumnSettings>,
     /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, 10
     /// times where sample times jitter]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
@@ -44,12 +53,46 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    if args.data.is_file() || (args.data.is_dir() && !args.data.join("runs.csv").exists()) {
+        return run_logs(args, json);
+    }
     let bar = Progress::of("reading recordings");
     let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap));
     drop(bar);
     let kinds = kinds(args, inspection.joints)?;
     output::notes(&inspection.notes);
     output::show(json, &inspection, || summary(&inspection, &kinds))?;
+    outcome(inspection)
+}
+
+/// Summarises logs, and what was understood of each.
+fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
+    let robot = args.robot.as_ref().map(|name| args.lock.load(name)).transpose()?;
+    let robot = robot.as_ref();
+    let columns = args.columns.clone().unwrap_or_default();
+    let options = LoggedOptions {
+        robot,
+        joints: &[],
+        columns: &columns,
+        gains: false,
+        torque: false,
+        gap_limit: gap_limit(args.max_gap),
+        until: None,
+    };
+    let bar = Progress::of("reading logs");
+    let found = inspect_logs(&args.data, &options)?;
+    drop(bar);
+    let joints = found.inspection.joints;
+    let kinds = robot.map_or(vec![JointKind::Revolute; joints], Robot::kinds);
+    output::notes(&found.inspection.notes);
+    output::show(json, &found, || {
+        let sets = if joints > 0 { summary(&found.inspection, &kinds) } else { String::new() };
+        format!("{}{sets}", understood(&found.logs))
+    })?;
+    outcome(found.inspection)
+}
+
+fn outcome(inspection: Inspection) -> Result<Outcome> {
     if inspection.refused.is_empty() {
         Ok(Outcome::Done)
     } else {

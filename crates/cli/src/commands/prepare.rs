@@ -6,6 +6,7 @@ use clap::Args;
 use reachtube::identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, cut_off, prepare, read, windows,
 };
+use reachtube::recordings::ColumnSettings;
 use serde_json::json;
 
 use crate::error::{Error, Result};
@@ -58,6 +59,10 @@ pub(crate) struct Arguments {
     /// place of the torque; read it with `--torque compensated`
     #[arg(long)]
     pub compensate: bool,
+    /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
+    /// also first=0, time_unit=ms and angle=deg
+    #[arg(long, value_name = "KEY=VALUE,..")]
+    pub columns: Option<ColumnSettings>,
     /// Longest time between two samples, above 0 s [default: 10 times the usual sample time]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
@@ -86,7 +91,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let files: Vec<PathBuf> = cut.file_names().map(|name| args.out.join(name)).collect();
     output::claim_all(&files)?;
     cut.write(&args.out)?;
-    output::notes(&[prepared.changes, cut.changes].concat());
+    let notes: Vec<String> = raw.iter().flat_map(|log| log.notes.clone()).collect();
+    output::notes(&[notes, prepared.changes, cut.changes].concat());
     output::note(&format!(
         "wrote {} recordings and runs.csv to {}",
         cut.windows.len(),
@@ -113,6 +119,7 @@ fn settings(args: &Arguments) -> PrepareSettings {
         joints: args.joints.clone(),
         cut_off: args.cut_off,
         max_gap: args.max_gap,
+        columns: args.columns.clone().unwrap_or_default(),
         ..PrepareSettings::default()
     }
 }

@@ -1,4 +1,3 @@
-use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -57,38 +56,4 @@ impl From<PathBuf> for LogEntry {
     fn from(path: PathBuf) -> Self {
         Self::Path(path)
     }
-}
-
-/// Returns the file itself, or the recordings of a folder sorted by name; where it has none, the
-/// recordings of its subfolders.
-pub(super) fn csv_files(path: &Path) -> Result<Vec<PathBuf>> {
-    let unreadable = |source| reachtube_files::Error::Read {
-        path: path.to_path_buf(),
-        source,
-        remedy: "give a CSV file of one recording, or a folder of them",
-    };
-    if !path.metadata().map_err(unreadable)?.is_dir() {
-        return Ok(vec![path.to_path_buf()]);
-    }
-    let recordings = |folder: &Path| -> std::io::Result<[Vec<PathBuf>; 2]> {
-        let entries = std::fs::read_dir(folder)?.flatten().map(|entry| entry.path());
-        let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
-        let is_recording = |path: &PathBuf| {
-            path.extension().is_some_and(|e| e == "csv")
-                && path.file_name().is_some_and(|f| f != "runs.csv")
-        };
-        Ok([files.into_iter().filter(is_recording).collect(), folders])
-    };
-    let [mut files, folders] = recordings(path).map_err(unreadable)?;
-    if files.is_empty() {
-        for folder in folders {
-            let [below, _] = recordings(&folder).map_err(unreadable)?;
-            files.extend(below);
-        }
-    }
-    files.sort();
-    if files.is_empty() {
-        return Err(Error::NoCsvFile { folder: path.to_path_buf() });
-    }
-    Ok(files)
 }

@@ -21,6 +21,7 @@ pub(crate) mod settings;
 mod spectrum;
 pub(crate) mod survey;
 mod time_unit;
+pub(crate) mod turns;
 pub(crate) mod velocity;
 mod windows;
 

@@ -253,7 +253,7 @@ mod tests {
             temperatures: vec![],
             sha256: String::new(),
         };
-        RawLog { name: "wave".into(), file: "wave.csv".into(), order: None, run }
+        RawLog { name: "wave".into(), file: "wave.csv".into(), order: None, run, notes: vec![] }
     }
 
     #[test]

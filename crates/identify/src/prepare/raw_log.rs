@@ -12,6 +12,8 @@ pub struct RawLog {
     pub order: Option<u64>,
     /// The samples.
     pub run: Run,
+    /// What was changed or is worth a look, one sentence each.
+    pub notes: Vec<String>,
 }
 
 impl RawLog {

@@ -1,13 +1,20 @@
 use crate::error::{Error, Result};
-use crate::prepare::entry::{LogEntry, csv_files};
+use crate::prepare::entry::LogEntry;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
 use crate::prepare::time_unit::check_time_unit;
-use reachtube_recordings::{GapLimit, ReadOptions, Run, check_limits, read_csv};
+use crate::prepare::turns::{add_turns, extents, missing_turns};
+use reachtube_recordings::{
+    Defect, GapLimit, LoggedOptions, ReadOptions, Run, check_limits, csv_files, group_files,
+    is_recording, read_csv, read_logged,
+};
 use reachtube_robot::Robot;
 use std::path::{Path, PathBuf};
 
 /// Reads recordings of a robot and puts their columns into the order of the robot's joints.
+///
+/// A CSV file with the header `t,q1..qn,qd1..qdn,tau1..taun` is read as it is. In others, columns
+/// and units are recognised ([`read_logged`]), and [`RawLog::notes`] says how.
 ///
 /// Relative paths start at `folder`.
 ///
@@ -24,19 +31,31 @@ pub fn read(
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
     let sources = sources(entries, folder)?;
-    sources.iter().map(|source| source.read(robot, settings)).collect()
+    let read = sources.iter().map(|source| source.read(robot, settings));
+    let mut logs = read.collect::<Result<Vec<RawLog>>>()?;
+    let names: Vec<String> = logs.iter().map(|log| log.file.display().to_string()).collect();
+    let found: Vec<_> = logs.iter().map(|log| extents(&log.run)).collect();
+    let (turns, notes) = missing_turns(robot, &names, &found);
+    logs.iter_mut().zip(turns).for_each(|(log, turns)| add_turns(&mut log.run, &turns));
+    if let Some(first) = logs.first_mut() {
+        first.notes.extend(notes);
+    }
+    Ok(logs)
 }
 
 /// A recording to read.
 #[derive(Debug, Clone)]
 pub(crate) struct Source {
-    file: PathBuf,
+    /// Its files: more than one if each quantity has a file.
+    files: Vec<PathBuf>,
     /// Times between which samples are used \[s\].
     from: f64,
     until: Option<f64>,
     order: Option<u64>,
     /// Whether `tau` is the input u.
     compensated: bool,
+    /// Turns to add to the positions of each joint; empty for none.
+    pub turns: Vec<f64>,
 }
 
 /// Returns the recordings of a list, without reading them.
@@ -44,10 +63,15 @@ pub(crate) fn sources(entries: &[LogEntry], folder: &Path) -> Result<Vec<Source>
     let mut found = Vec::new();
     for entry in entries {
         let (path, from, until) = entry.parts();
-        for (index, file) in (0..).zip(csv_files(&folder.join(path))?) {
+        let path = folder.join(path);
+        let files = csv_files(&path)?;
+        if files.is_empty() {
+            return Err(Error::NoCsvFile { folder: path });
+        }
+        for (index, files) in (0..).zip(group_files(files)) {
             let order = entry.order().map(|first| first + index);
             let compensated = entry.is_compensated();
-            found.push(Source { file, from, until, order, compensated });
+            found.push(Source { files, from, until, order, compensated, turns: vec![] });
         }
     }
     Ok(found)
@@ -57,22 +81,68 @@ impl Source {
     /// Reads the recording, with its columns in the order of the robot's joints.
     pub(crate) fn read(&self, robot: &Robot, settings: &PrepareSettings) -> Result<RawLog> {
         let order = column_order(robot, &settings.joints)?;
-        let gap_limit = settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
-        let options =
-            ReadOptions { joints: Some(robot.joint_count()), gap_limit, until: self.until };
-        let file = self.file.clone();
-        let run = read_csv(&file, &options).map_err(reachtube_recordings::Error::Defects)?;
-        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let run = reordered(starting_at(run, self.from), &order);
+        let file = self.files[0].clone();
+        let (run, notes) = match self.files[..] {
+            [_] if is_recording(&file) => (self.read_recording(robot, settings, &order)?, vec![]),
+            _ => self.read_logged(robot, settings)?,
+        };
+        let mut run = starting_at(run, self.from);
         match check_limits(&file, &run, robot) {
             defects if defects.is_empty() => {
                 check_time_unit(&file, &run)?;
+                add_turns(&mut run, &self.turns);
                 let run = if self.compensated { with_compensation(run, robot) } else { run };
-                Ok(RawLog { name, file, order: self.order, run })
+                Ok(RawLog { name: self.name(), file, order: self.order, run, notes })
             }
             defects => Err(reachtube_recordings::Error::Defects(defects).into()),
         }
     }
+
+    /// Returns the name of the file, or of the folder of the files.
+    fn name(&self) -> String {
+        let file = &self.files[0];
+        let folder = file.parent().and_then(Path::file_name).filter(|_| self.files.len() > 1);
+        let name = folder.or_else(|| file.file_stem()).unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+
+    fn read_recording(
+        &self,
+        robot: &Robot,
+        settings: &PrepareSettings,
+        order: &[usize],
+    ) -> Result<Run> {
+        let options = ReadOptions {
+            joints: Some(robot.joint_count()),
+            gap_limit: gap_limit(settings),
+            until: self.until,
+        };
+        let run = read_csv(&self.files[0], &options).map_err(refused)?;
+        Ok(reordered(run, order))
+    }
+
+    /// Reads columns of any name, which come in the order of the robot's joints.
+    fn read_logged(&self, robot: &Robot, settings: &PrepareSettings) -> Result<(Run, Vec<String>)> {
+        let options = LoggedOptions {
+            robot: Some(robot),
+            joints: &settings.joints,
+            columns: &settings.columns,
+            gains: !settings.gains.is_empty(),
+            torque: true,
+            gap_limit: gap_limit(settings),
+            until: self.until,
+        };
+        let logged = read_logged(&self.files, &options).map_err(refused)?;
+        Ok((logged.run, logged.notes))
+    }
+}
+
+fn gap_limit(settings: &PrepareSettings) -> GapLimit {
+    settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+}
+
+fn refused(defects: Vec<Defect>) -> Error {
+    reachtube_recordings::Error::Defects(defects).into()
 }
 
 /// Returns a run with the motor torque in place of the input u.

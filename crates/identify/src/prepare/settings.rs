@@ -1,3 +1,4 @@
+use reachtube_recordings::ColumnSettings;
 use serde::{Deserialize, Serialize};
 
 /// Settings of how recordings are prepared.
@@ -21,6 +22,13 @@ pub struct PrepareSettings {
     /// By default it is 1.9 times the usual time at a fixed rate, and 10 times the usual time where
     /// the sample times jitter.
     pub max_gap: Option<f64>,
+    /// Columns of recordings as robots and drivers log them, where their names do not tell.
+    #[serde(skip_serializing_if = "is_default")]
+    pub columns: ColumnSettings,
+}
+
+fn is_default(columns: &ColumnSettings) -> bool {
+    *columns == ColumnSettings::default()
 }
 
 /// The source of a log's velocity.

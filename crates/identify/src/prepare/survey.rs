@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::spectrum::motion_bandwidth;
+use crate::prepare::turns::{Extent, extents};
 use reachtube_recordings::{Run, integral_gap};
 use std::path::PathBuf;
 
@@ -29,6 +30,10 @@ pub(crate) struct Survey {
     /// Difference of each joint's position and the integral of its velocity, and the range of its
     /// position \[rad\].
     pub gaps: Vec<[f64; 2]>,
+    /// First, lowest and highest position of each joint \[rad\].
+    pub extents: Vec<Extent>,
+    /// Notes about its reading.
+    pub notes: Vec<String>,
 }
 
 impl Survey {
@@ -47,6 +52,8 @@ impl Survey {
             width: 4 * run.joints + if run.temperatures.is_empty() { 0 } else { run.joints },
             bandwidths: bandwidths(log),
             gaps: (0..run.joints).map(gap).collect(),
+            extents: extents(run),
+            notes: log.notes.clone(),
         }
     }
 

@@ -1,0 +1,355 @@
+//! Which columns of a recording's files are its time, positions, velocities and torques.
+
+use std::path::{Path, PathBuf};
+
+use super::dialect::Dialect;
+use super::joints::{Column, Joints, Mismatch, listed};
+use super::name::{ColumnName, Origin, Quantity};
+use super::options::LoggedOptions;
+use super::pattern::by_pattern;
+use super::time_column::{TimeColumns, time_columns};
+use crate::defect::{Defect, DefectKind};
+
+/// What the torques of a log are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TorqueKind {
+    Measured,
+    /// What the model of the controller demands.
+    Demanded,
+    /// Motor currents, which gains turn into torques.
+    Current,
+}
+
+/// The columns of a recording.
+#[derive(Debug, Clone)]
+pub(super) struct Assignment {
+    /// Those of the time, for each file.
+    pub time: Vec<TimeColumns>,
+    pub q: Vec<Column>,
+    pub qd: Option<Vec<Column>>,
+    pub tau: Option<(Vec<Column>, TorqueKind)>,
+    pub temperatures: Option<Vec<Column>>,
+    /// Names of the joints, where they are known.
+    pub joints: Vec<String>,
+    pub notes: Vec<String>,
+    pub unused: Vec<String>,
+}
+
+/// Finds the columns by their names.
+pub(super) fn assign(
+    files: &[PathBuf],
+    dialects: &[Dialect],
+    options: &LoggedOptions,
+) -> Result<Assignment, Vec<Defect>> {
+    let finder =
+        Finder { files, line: dialects[0].line, options, columns: columns(files, dialects) };
+    finder.assignment(dialects).map_err(|defect| vec![*defect])
+}
+
+/// Returns the columns of all files. A file of one quantity has it in its name or its columns'.
+fn columns(files: &[PathBuf], dialects: &[Dialect]) -> Vec<Column> {
+    let mut columns = Vec::new();
+    for (file, dialect) in dialects.iter().enumerate() {
+        let of_file = quantity_of_file(&files[file]);
+        for (at, text) in dialect.names.iter().enumerate().filter(|(_, text)| !text.is_empty()) {
+            let mut name = ColumnName::new(text);
+            name.quantity = name.quantity.or(of_file);
+            columns.push(Column { file, at, text: text.clone(), name });
+        }
+    }
+    columns
+}
+
+/// Returns the quantity that a file's name speaks of, other than the time.
+pub(super) fn quantity_of_file(file: &Path) -> Option<Quantity> {
+    let stem = file.file_stem()?.to_string_lossy();
+    ColumnName::new(&stem).quantity.filter(|q| !matches!(q, Quantity::Time | Quantity::Other))
+}
+
+type Found<T> = Result<T, Box<Defect>>;
+
+struct Finder<'a> {
+    files: &'a [PathBuf],
+    /// Line of the first file's header.
+    line: u64,
+    options: &'a LoggedOptions<'a>,
+    columns: Vec<Column>,
+}
+
+impl Finder<'_> {
+    fn assignment(&self, dialects: &[Dialect]) -> Found<Assignment> {
+        let time = time_columns(self.files, dialects, &self.columns, self.options)?;
+        let mut notes = Vec::new();
+        let joints = self.joints()?;
+        let (q, others) = self.positions(&joints)?;
+        if self.options.robot.is_some() && !others.is_empty() {
+            notes.push(format!(
+                "the robot has no joint for {}, which are not used",
+                listed(others.iter().map(|column| column.text.as_str()))
+            ));
+        }
+        let find = |quantity, origins: &[Origin]| self.find(quantity, origins, &joints);
+        let measured = [Origin::Measured, Origin::Unstated];
+        let qd = find(Quantity::Velocity, &measured)?.map(|(columns, _)| columns);
+        let temperatures = find(Quantity::Temperature, &measured).ok().flatten();
+        let temperatures = temperatures.map(|(columns, _)| columns);
+        let tau = self.torques(&joints)?;
+        let mut out = Assignment {
+            time,
+            q,
+            qd,
+            tau,
+            temperatures,
+            joints: joints.names,
+            notes,
+            unused: vec![],
+        };
+        out.unused = self.unused(&out);
+        Ok(out)
+    }
+
+    /// Returns the columns of a quantity: those of the first of some origins that has any.
+    fn find(
+        &self,
+        quantity: Quantity,
+        origins: &[Origin],
+        joints: &Joints,
+    ) -> Found<Option<(Vec<Column>, Vec<Column>)>> {
+        if let Some(columns) = self.given(quantity, joints)? {
+            return Ok(Some((columns, vec![])));
+        }
+        let mut first = None;
+        for origin in origins {
+            let columns = self.of(quantity, *origin);
+            if columns.is_empty() {
+                continue;
+            }
+            match joints.matched(&columns) {
+                Ok(found) => return Ok(Some(found)),
+                Err(mismatch) => first = first.or(Some((mismatch, columns))),
+            }
+        }
+        match first {
+            None => Ok(None),
+            Some((mismatch, columns)) => Err(self.mismatch(quantity, mismatch, &columns, joints)),
+        }
+    }
+
+    fn of(&self, quantity: Quantity, origin: Origin) -> Vec<Column> {
+        let fits = |column: &&Column| {
+            column.name.quantity == Some(quantity) && column.name.origin == origin
+        };
+        self.columns.iter().filter(fits).cloned().collect()
+    }
+
+    /// Returns the columns that the settings name.
+    fn given(&self, quantity: Quantity, joints: &Joints) -> Found<Option<Vec<Column>>> {
+        let Some((key, pattern)) =
+            self.options.columns.patterns().find(|(key, _)| key_of(quantity) == *key)
+        else {
+            return Ok(None);
+        };
+        let found = by_pattern(&self.columns, pattern, self.options.columns.first);
+        let count = joints.names.len();
+        if found.is_empty() || (count > 0 && found.len() != count) {
+            let problem = format!(
+                "columns.{key} = \"{pattern}\" names {} columns of the {}; the header has {}",
+                found.len(),
+                if count > 0 { format!("{count} joints") } else { "joints".into() },
+                self.header()
+            );
+            return Err(self.defect(DefectKind::Header, problem, REMEDY));
+        }
+        let places = joints.places.iter().map(|place| found[*place].clone());
+        Ok(Some(if count > 0 { places.collect() } else { found }))
+    }
+
+    /// Returns the robot's joints, or those that the positions name.
+    fn joints(&self) -> Found<Joints> {
+        let first = self.options.columns.first;
+        if let Some(robot) = self.options.robot {
+            let names: Vec<String> =
+                robot.joints().iter().map(|joint| joint.name.clone()).collect();
+            let place = |(at, name): (usize, &String)| {
+                self.options.joints.iter().position(|other| other == name).unwrap_or(at)
+            };
+            let places = names.iter().enumerate().map(place).collect();
+            return Ok(Joints { names, places, first });
+        }
+        let none = Joints { first, ..Joints::default() };
+        let given = self.given(Quantity::Position, &none)?;
+        let measured =
+            || [Origin::Measured, Origin::Unstated].map(|o| self.of(Quantity::Position, o));
+        let found = given.or_else(|| measured().into_iter().find(|columns| !columns.is_empty()));
+        let mut found = found.unwrap_or_default();
+        let [head, ..] = &found[..] else { return Ok(none) };
+        // One series is in the order of its numbers, names are in the order of the file.
+        let series = head.name.series();
+        if found.iter().all(|c| c.name.number().is_some() && c.name.series() == series) {
+            found.sort_by_key(|column| column.name.number());
+        }
+        let name = |column: &Column| match column.name.joint[..] {
+            [] => column.text.clone(),
+            _ => column.name.joint.join("_"),
+        };
+        let names = found.iter().map(name).collect::<Vec<_>>();
+        let places = (0..names.len()).collect();
+        Ok(Joints { names, places, first })
+    }
+
+    fn positions(&self, joints: &Joints) -> Found<(Vec<Column>, Vec<Column>)> {
+        let measured = [Origin::Measured, Origin::Unstated];
+        if let Some(found) = self.find(Quantity::Position, &measured, joints)? {
+            return Ok(found);
+        }
+        let targets = self.of(Quantity::Position, Origin::Target);
+        if targets.is_empty() {
+            let problem =
+                format!("no column is a position of a joint; the header has {}", self.header());
+            return Err(self.defect(DefectKind::Header, problem, REMEDY));
+        }
+        let problem = format!(
+            "the positions are targets only: {}; a model needs what the robot did",
+            listed(targets.iter().map(|column| column.text.as_str()))
+        );
+        let remedy = "log the measured positions too, such as actual_q_0";
+        Err(self.defect(DefectKind::Header, problem, remedy))
+    }
+
+    fn torques(&self, joints: &Joints) -> Found<Option<(Vec<Column>, TorqueKind)>> {
+        let measured = [Origin::Measured, Origin::Unstated];
+        let torque = self.find(Quantity::Torque, &measured, joints)?;
+        if let Some((columns, _)) = torque {
+            return Ok(Some((columns, TorqueKind::Measured)));
+        }
+        let current = self.find(Quantity::Current, &measured, joints);
+        if self.options.gains
+            && let Some((columns, _)) = current.clone()?
+        {
+            return Ok(Some((columns, TorqueKind::Current)));
+        }
+        let demanded = self.find(Quantity::Torque, &[Origin::Target], joints)?;
+        if let Some((columns, _)) = demanded {
+            return Ok(Some((columns, TorqueKind::Demanded)));
+        }
+        if !self.options.torque {
+            return Ok(current.ok().flatten().map(|(columns, _)| (columns, TorqueKind::Current)));
+        }
+        if let Some((columns, _)) = current? {
+            let problem = format!(
+                "there is no torque, but there are motor currents: {}",
+                listed(columns.iter().map(|column| column.text.as_str()))
+            );
+            let remedy = "give the torque per current of each joint, N m/A at the output side of \
+                          the gear: gains = [..] in the settings, or --gains";
+            return Err(self.defect(DefectKind::Header, problem, remedy));
+        }
+        let problem = format!("no column is a torque of a joint; the header has {}", self.header());
+        let remedy = "log torques or motor currents too; where a column holds them, name it in the \
+                      settings: [columns] tau = \"NAME_{}\"";
+        Err(self.defect(DefectKind::Header, problem, remedy))
+    }
+
+    fn mismatch(
+        &self,
+        quantity: Quantity,
+        mismatch: Mismatch,
+        columns: &[Column],
+        joints: &Joints,
+    ) -> Box<Defect> {
+        let word = word_of(quantity);
+        let found = listed(columns.iter().map(|column| column.text.as_str()));
+        match mismatch {
+            Mismatch::Twice([first, second]) => {
+                let problem = format!("\"{first}\" and \"{second}\" may be {word} of one joint");
+                self.defect(DefectKind::Header, problem, REMEDY)
+            }
+            Mismatch::Missing(missing) => {
+                let names: Vec<&str> = missing.iter().map(|i| joints.names[*i].as_str()).collect();
+                let (problem, remedy) = self.missing(word, &names, joints.names.len(), &found);
+                self.defect(DefectKind::Joints, problem, &remedy)
+            }
+            Mismatch::Count(_) => {
+                let problem = format!(
+                    "the log has {} {word} columns, {found}, but the robot has {} joints: {}",
+                    columns.len(),
+                    joints.names.len(),
+                    joints.names.join(", ")
+                );
+                let remedy = "give the robot that was recorded; hold joints that were not recorded \
+                              with --lock JOINT=VALUE, or name the columns in the settings: \
+                              [columns] q = \"NAME_{}\"";
+                self.defect(DefectKind::Joints, problem, remedy)
+            }
+        }
+    }
+
+    /// Returns problem and remedy of joints that the log lacks.
+    fn missing(&self, word: &str, names: &[&str], count: usize, found: &str) -> (String, String) {
+        let problem = format!(
+            "the log has no {word} of {}, {} of the robot's {count} joints; it has {found}",
+            names.join(", "),
+            names.len()
+        );
+        let Some(robot) = self.options.robot else {
+            return (problem, REMEDY.into());
+        };
+        let lock = |name: &&str| {
+            let joint = robot.description().joints.iter().find(|joint| joint.name == **name);
+            let [low, high] = joint.and_then(|joint| joint.position_limits).unwrap_or([0.0, 0.0]);
+            format!("--lock {name}={}", 0.0f64.clamp(low.min(high), high.max(low)))
+        };
+        let locks: Vec<String> = names.iter().map(lock).collect();
+        let remedy = format!(
+            "if they were held, give the positions at which they were: {}; else log them too",
+            locks.join(" ")
+        );
+        (problem, remedy)
+    }
+
+    /// Returns the columns that are not used, without those whose names are of nothing known.
+    fn unused(&self, assignment: &Assignment) -> Vec<String> {
+        let lists = [
+            Some(&assignment.q),
+            assignment.qd.as_ref(),
+            assignment.tau.as_ref().map(|(columns, _)| columns),
+            assignment.temperatures.as_ref(),
+        ];
+        let used = |column: &Column| {
+            lists.iter().flatten().any(|list| list.contains(column))
+                || assignment.time[column.file].contains(column.at)
+        };
+        self.columns.iter().filter(|c| !used(c)).map(|c| c.text.clone()).collect()
+    }
+
+    fn header(&self) -> String {
+        listed(self.columns.iter().map(|column| column.text.as_str()))
+    }
+
+    fn defect(&self, kind: DefectKind, problem: String, remedy: &str) -> Box<Defect> {
+        Box::new(Defect::new(&self.files[0], Some(self.line), problem, remedy).of_kind(kind))
+    }
+}
+
+const REMEDY: &str = "name the columns in the settings: [columns] q = \"NAME_{}\", qd = .., \
+                      tau = .., time = .., or --columns q=NAME_{},..";
+
+fn key_of(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Position => "q",
+        Quantity::Velocity => "qd",
+        Quantity::Torque => "tau",
+        Quantity::Current => "current",
+        _ => "",
+    }
+}
+
+fn word_of(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Position => "position",
+        Quantity::Velocity => "velocity",
+        Quantity::Torque => "torque",
+        Quantity::Current => "current",
+        _ => "temperature",
+    }
+}

@@ -1,0 +1,114 @@
+//! Which files are logs, and which of them are one recording.
+
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::assignment::quantity_of_file;
+use super::dialect::Dialect;
+use super::name::{ColumnName, Quantity};
+use crate::reading::is_strict_header;
+
+/// Bytes in which a header ends.
+const HEADER_BYTES: u64 = 1 << 16;
+
+/// Returns whether a file is a recording in the format of `docs/recordings.md`, with the header
+/// `t,q1..qn,qd1..qdn,tau1..taun`. Other files are logs, which [`read_logged`](super::read_logged)
+/// reads. A file that cannot be read is taken for a recording, whose reader says why.
+#[must_use]
+pub fn is_recording(file: &Path) -> bool {
+    // Reading a pipe would empty it.
+    !file.is_file() || head(file).is_none_or(|bytes| is_strict_header(&bytes))
+}
+
+fn head(file: &Path) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(file).ok()?;
+    file.take(HEADER_BYTES).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
+}
+
+/// Returns the file itself, or the CSV files of a folder except `runs.csv`, sorted by name; where it
+/// has none, those of its subfolders.
+///
+/// # Errors
+///
+/// [`reachtube_files::Error::Read`] for a path that cannot be read.
+pub fn csv_files(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Error> {
+    let unreadable = |source| reachtube_files::Error::Read {
+        path: path.to_path_buf(),
+        source,
+        remedy: "give a CSV file of one recording, or a folder of them",
+    };
+    if !path.metadata().map_err(unreadable)?.is_dir() {
+        return Ok(vec![path.to_path_buf()]);
+    }
+    let recordings = |folder: &Path| -> std::io::Result<[Vec<PathBuf>; 2]> {
+        let entries = std::fs::read_dir(folder)?.flatten().map(|entry| entry.path());
+        let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+        let is_recording = |path: &PathBuf| {
+            path.extension().is_some_and(|e| e == "csv")
+                && path.file_name().is_some_and(|f| f != "runs.csv")
+        };
+        Ok([files.into_iter().filter(is_recording).collect(), folders])
+    };
+    let [mut files, folders] = recordings(path).map_err(unreadable)?;
+    if files.is_empty() {
+        for folder in folders {
+            let [below, _] = recordings(&folder).map_err(unreadable)?;
+            files.extend(below);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Groups the files of a folder to recordings: files with one quantity each, such as `position.csv`
+/// and `effort.csv`, are one recording if their names are the same without the quantity. Each other
+/// file is a recording.
+#[must_use]
+pub fn group_files(files: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
+    let mut groups: Vec<Vec<PathBuf>> = Vec::new();
+    let mut of_name: BTreeMap<(PathBuf, Vec<String>), (usize, Vec<Quantity>)> = BTreeMap::new();
+    for file in files {
+        let Some((quantity, name)) = only_quantity(&file) else {
+            groups.push(vec![file]);
+            continue;
+        };
+        let key = (file.parent().unwrap_or(Path::new("")).to_path_buf(), name);
+        match of_name.get_mut(&key) {
+            Some((group, quantities)) if !quantities.contains(&quantity) => {
+                groups[*group].push(file);
+                quantities.push(quantity);
+            }
+            _ => {
+                of_name.insert(key, (groups.len(), vec![quantity]));
+                groups.push(vec![file]);
+            }
+        }
+    }
+    // Positions come first: they are the file that messages name.
+    for group in &mut groups {
+        group.sort_by_key(|file| only_quantity(file).map(|(quantity, _)| quantity));
+    }
+    groups
+}
+
+/// Returns the one quantity of a file, and the rest of its name; `None` for a file with several.
+fn only_quantity(file: &Path) -> Option<(Quantity, Vec<String>)> {
+    let quantity = quantity_of_file(file)?;
+    let bytes = head(file)?;
+    if is_strict_header(&bytes) {
+        return None;
+    }
+    let dialect = Dialect::of(file, &bytes).ok()?;
+    let is_other = |name: &String| {
+        let other = ColumnName::new(name).quantity;
+        other.is_some_and(|q| q != quantity && !matches!(q, Quantity::Time | Quantity::Other))
+    };
+    if dialect.names.iter().any(is_other) {
+        return None;
+    }
+    let name = ColumnName::new(&file.file_stem()?.to_string_lossy());
+    Some((quantity, name.joint))
+}

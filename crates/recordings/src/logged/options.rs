@@ -1,0 +1,24 @@
+use reachtube_robot::Robot;
+
+use super::settings::ColumnSettings;
+use crate::gap_limit::GapLimit;
+
+/// How logs are read.
+#[derive(Debug, Clone, Copy)]
+pub struct LoggedOptions<'a> {
+    /// The robot, whose joints the columns are matched with. Without it, the positions of a log are
+    /// its joints.
+    pub robot: Option<&'a Robot>,
+    /// Names of the robot's joints in the order of numbered columns; empty for the robot's order.
+    pub joints: &'a [String],
+    /// What is said about the columns.
+    pub columns: &'a ColumnSettings,
+    /// Whether gains turn motor currents into torques.
+    pub gains: bool,
+    /// Whether a log without torques is refused.
+    pub torque: bool,
+    /// Longest time between two samples that is accepted.
+    pub gap_limit: GapLimit,
+    /// Time after the first sample beyond which samples are not used, s.
+    pub until: Option<f64>,
+}

@@ -1,0 +1,102 @@
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::assignment::{Assignment, TorqueKind};
+use super::dialect::Dialect;
+use super::joints::Column;
+use super::recognise::Units;
+use crate::run::Run;
+
+/// What was understood of a log.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Understood {
+    /// Paths of its files.
+    pub files: Vec<String>,
+    /// What separates columns: commas, semicolons, tabs or blanks.
+    pub separator: &'static str,
+    /// Number of samples.
+    pub samples: usize,
+    /// Duration, s.
+    pub duration: f64,
+    /// Names of the joints, in the order of the columns.
+    pub joints: Vec<String>,
+    /// Column of the time.
+    pub time: String,
+    /// Columns of the positions.
+    pub q: Vec<String>,
+    /// Columns of the velocities; empty where they were differentiated.
+    pub qd: Vec<String>,
+    /// Columns of the torques; empty where there is none.
+    pub tau: Vec<String>,
+    /// What the torques are: `measured`, `demanded`, `current` or `none`.
+    pub torque: &'static str,
+    /// Columns of the temperatures.
+    pub temperature: Vec<String>,
+    /// Columns that are not used.
+    pub unused: Vec<String>,
+    /// Unit of the time as written: s, ms, us or ns.
+    pub time_unit: &'static str,
+    /// Units of positions and velocities as written: rad or deg, and these per second.
+    pub angle_units: [&'static str; 2],
+    /// Motion per integral of the velocity in these units, near 1, where joints move.
+    pub ratio: Option<f64>,
+}
+
+impl Understood {
+    pub(super) fn of(units: Units) -> Self {
+        Self {
+            time_unit: units.time.name(),
+            angle_units: [units.q.name(), units.qd.name()],
+            ratio: units.ratio,
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn set(
+        &mut self,
+        files: &[PathBuf],
+        dialect: &Dialect,
+        assignment: &Assignment,
+        run: &Run,
+    ) {
+        let names = |columns: &[Column]| columns.iter().map(|c| c.text.clone()).collect();
+        self.files = files.iter().map(|file| file.display().to_string()).collect();
+        self.separator = dialect.separator_name();
+        (self.samples, self.duration) = (run.len(), run.duration());
+        self.joints.clone_from(&assignment.joints);
+        self.time.clone_from(&assignment.time[0].name);
+        self.q = names(&assignment.q);
+        self.qd = assignment.qd.as_deref().map_or_else(Vec::new, names);
+        self.tau = assignment.tau.as_ref().map_or_else(Vec::new, |(columns, _)| names(columns));
+        self.torque = match assignment.tau {
+            None => "none",
+            Some((_, TorqueKind::Measured)) => "measured",
+            Some((_, TorqueKind::Demanded)) => "demanded",
+            Some((_, TorqueKind::Current)) => "current",
+        };
+        self.temperature = assignment.temperatures.as_deref().map_or_else(Vec::new, names);
+        self.unused.clone_from(&assignment.unused);
+    }
+}
+
+impl Units {
+    /// Describes what was recognised, where it is not the usual.
+    pub(super) fn notes(&self, with_velocity: bool) -> impl Iterator<Item = String> {
+        let time = (self.time.per_second() != 1)
+            .then(|| format!("the times are in {}; they were changed to s", self.time.name()));
+        let q = (self.q.per_radian() != 1.0)
+            .then(|| "the positions are in degrees; they were changed to rad".to_string());
+        let qd = (with_velocity && self.qd.per_radian() != 1.0)
+            .then(|| "the velocities are in degrees/s; they were changed to rad/s".to_string());
+        let contradiction = self.contradiction.map(|ratio| {
+            format!(
+                "the positions move {ratio:.3e} times as far as the integrals of the velocities, \
+                 which fits no units; check both columns"
+            )
+        });
+        let differentiated = (!with_velocity)
+            .then(|| "there is no velocity; it is the derivative of the position".to_string());
+        [time, q, qd, contradiction, differentiated].into_iter().flatten()
+    }
+}
