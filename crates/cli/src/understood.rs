@@ -5,7 +5,7 @@ use reachtube::recordings::Understood;
 /// Number of names of columns that are listed.
 const LISTED: usize = 6;
 
-/// Describes each log; one whose columns and units are those of the log before it has one line.
+/// Describes each log, in one line if the log before it has the same columns and units.
 pub(crate) fn understood(logs: &[Understood]) -> String {
     let mut text = String::new();
     let mut before = None;

@@ -1,10 +1,10 @@
 //! `reachtube inspect`: what a data set holds.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::recordings::{
-    ColumnSettings, DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, inspect,
+    ColumnSettings, DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, csv_files, inspect,
     inspect_logs,
 };
 use reachtube_robot::Robot;
@@ -53,7 +53,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    if args.data.is_file() || (args.data.is_dir() && !args.data.join("runs.csv").exists()) {
+    if is_logs(&args.data) {
         return run_logs(args, json);
     }
     let bar = Progress::of("reading recordings");
@@ -63,6 +63,12 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::notes(&inspection.notes);
     output::show(json, &inspection, || summary(&inspection, &kinds))?;
     outcome(inspection)
+}
+
+/// Returns whether a path is a CSV file, or a folder of them without an index.
+fn is_logs(path: &Path) -> bool {
+    let has_files = || csv_files(path).is_ok_and(|files| !files.is_empty());
+    path.is_file() || (path.is_dir() && !path.join("runs.csv").exists() && has_files())
 }
 
 /// Summarises logs, and what was understood of each.

@@ -79,3 +79,46 @@ fn paths_out_of_the_folder_are_noted() {
         run.exits(0).notes("data/runs.csv:3: the path \"../A_2.csv\" (and 1 more) leads out");
     }
 }
+
+/// Writes a log of the fixture's arm with other names, in degrees and milliseconds.
+fn log_of_a_driver(lab: &Lab) {
+    let mut text =
+        String::from("time;axis2_pos;axis1_pos;axis2_vel;axis1_vel;axis1_eff;axis2_eff\n");
+    for k in 0..300 {
+        let t = 0.008 * f64::from(k);
+        let (q, qd) = (60.0 * t.sin(), 60.0 * t.cos());
+        text += &format!("{};{q};{};{qd};{};1;2\n", 8 * k, -q, -qd);
+    }
+    std::fs::create_dir(lab.path("logs")).unwrap();
+    lab.write("logs/motion.csv", text);
+}
+
+#[test]
+fn logs_are_described_as_they_were_understood() {
+    let lab = Lab::new();
+    log_of_a_driver(&lab);
+    let run = lab.run("inspect --data logs --robot arm.toml").exits(0);
+    for words in [
+        "logs/motion.csv: 300 samples, 2.392 s, separated by semicolons",
+        "time    time [ms]",
+        "q       axis1_pos, axis2_pos [deg]",
+        "qd      axis1_vel, axis2_vel [deg/s]",
+        "tau     axis1_eff, axis2_eff",
+    ] {
+        assert!(run.stdout.contains(words), "{words}: {}", run.stdout);
+    }
+    run.notes("the times are in ms; they were changed to s");
+    let found = lab.run("inspect --data logs/motion.csv --json").exits(0).json();
+    crate::output_schema::fits("inspect", &found);
+    assert_eq!(found["logs"][0]["angle_units"], serde_json::json!(["deg", "deg"]));
+    lab.run("inspect --data logs --columns q=p{}").fails_after_result(&["columns.q = \"p{}\""]);
+}
+
+#[test]
+fn logs_are_prepared_as_recordings() {
+    let lab = Lab::new();
+    log_of_a_driver(&lab);
+    lab.run("prepare --robot arm.toml --logs logs --window 0.5 --out windows").exits(0);
+    let first = lab.read("windows/0001_motion.csv");
+    assert!(first.starts_with("t,q1,q2,qd1,qd2,tau1,tau2\n"), "{first}");
+}

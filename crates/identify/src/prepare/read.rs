@@ -239,4 +239,38 @@ mod tests {
             read(&[LogEntry::Path("b".into())], folder.path(), &robot, &PrepareSettings::default());
         assert!(nowhere.unwrap_err().to_string().contains("folder of them"));
     }
+
+    #[test]
+    fn logs_are_read_with_the_settings_and_counted_turns_are_brought_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let header = |name: &str| (0..6).map(|i| format!(",{name}_{i}")).collect::<String>();
+        let names = [header("actual_q"), header("actual_qd"), header("actual_current")].concat();
+        for (file, turn) in [("a", 0.0), ("b", 360.0), ("c", 0.0)] {
+            let row = |k: usize| {
+                let t = 0.01 * k as f64;
+                let [q, qd] = [30.0 * t.sin(), 30.0 * t.cos()];
+                let rest = [vec![q; 5], vec![qd; 6], vec![2.0; 6]].concat();
+                let cells = rest.iter().map(|cell| format!(",{cell}")).collect::<String>();
+                format!("{},{}{cells}\n", 10 * k, q + turn)
+            };
+            let rows: String = (0..300).map(row).collect();
+            let path = folder.path().join(format!("{file}.csv"));
+            std::fs::write(path, format!("timestamp{names}\n\n{rows}")).unwrap();
+        }
+        let robot = Robot::lwa4p();
+        let entries = [LogEntry::Path(folder.path().into())];
+        let none = PrepareSettings::default();
+        let refused = read(&entries, folder.path(), &robot, &none).unwrap_err().to_string();
+        assert!(refused.contains("motor currents: actual_current_0"), "{refused}");
+        let gains = PrepareSettings { gains: vec![3.0; 6], ..PrepareSettings::default() };
+        let logs = read(&entries, folder.path(), &robot, &gains).unwrap();
+        let said = logs.iter().flat_map(|log| log.notes.clone()).collect::<Vec<_>>().join("\n");
+        assert!(said.contains("b.csv: joint1 is a turn away from other recordings"), "{said}");
+        assert!(said.contains("the times are in ms") && said.contains("in degrees"), "{said}");
+        for log in &logs {
+            assert!((log.run.times[299] - 2.99).abs() < 1e-9);
+            assert!((log.run.q(100)[0] - (30.0 * 1f64.sin()).to_radians()).abs() < 1e-9);
+            assert_eq!(log.run.torque(5), [2.0; 6]);
+        }
+    }
 }

@@ -39,9 +39,8 @@ pub(crate) fn missing_turns(
         for (at, lacking) in of_joint(description, &extents) {
             turns[at][joint] = lacking;
             notes.push(format!(
-                "{}: the position of {} is {} away from that of other recordings from its first \
-                 sample on, where it is {:.3} rad: it counts as {:.3} rad; check how the log \
-                 counts turns",
+                "{}: {} is {} away from other recordings from the first sample on, at 0 s: \
+                 {:.3} rad counts as {:.3} rad; check how the log counts turns",
                 names[at],
                 description.name,
                 if lacking.abs() == 1.0 {

@@ -23,7 +23,7 @@ pub(super) enum TorqueKind {
 /// The columns of a recording.
 #[derive(Debug, Clone)]
 pub(super) struct Assignment {
-    /// Those of the time, for each file.
+    /// Columns of the time, for each file.
     pub time: Vec<TimeColumns>,
     pub q: Vec<Column>,
     pub qd: Option<Vec<Column>>,
@@ -108,7 +108,7 @@ impl Finder<'_> {
         Ok(out)
     }
 
-    /// Returns the columns of a quantity: those of the first of some origins that has any.
+    /// Returns the columns of a quantity from the first of some origins that has any.
     fn find(
         &self,
         quantity: Quantity,
@@ -164,7 +164,7 @@ impl Finder<'_> {
         Ok(Some(if count > 0 { places.collect() } else { found }))
     }
 
-    /// Returns the robot's joints, or those that the positions name.
+    /// Returns the robot's joints; without a robot, the joints that the positions name.
     fn joints(&self) -> Found<Joints> {
         let first = self.options.columns.first;
         if let Some(robot) = self.options.robot {
@@ -307,7 +307,7 @@ impl Finder<'_> {
         (problem, remedy)
     }
 
-    /// Returns the columns that are not used, without those whose names are of nothing known.
+    /// Returns the names of the columns that are not used.
     fn unused(&self, assignment: &Assignment) -> Vec<String> {
         let lists = [
             Some(&assignment.q),

@@ -108,8 +108,8 @@ fn reader(bytes: &[u8], separator: u8) -> csv::Reader<&[u8]> {
         .from_reader(bytes)
 }
 
-/// Returns the first byte and the line of the header: the first line with text. Of lines that start
-/// with `#`, the last one is the header if numbers follow it, as NumPy writes it.
+/// Returns the first byte and the line of the header: the first line with text. A last
+/// comment `#` before numbers is the header, as NumPy writes it.
 fn header_at(bytes: &[u8]) -> Option<(usize, u64)> {
     let mut at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut comment = None;

@@ -28,8 +28,8 @@ fn head(file: &Path) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Returns the file itself, or the CSV files of a folder except `runs.csv`, sorted by name; where it
-/// has none, those of its subfolders.
+/// Returns the file itself, or the CSV files of a folder except `runs.csv`, sorted by name. If the
+/// folder has none, returns the CSV files of its subfolders.
 ///
 /// # Errors
 ///

@@ -115,8 +115,8 @@ impl Joints {
     }
 }
 
-/// Returns the words of a joint's name without "joint", which logs often leave out. Nothing is left
-/// of a name without another word.
+/// Returns the words of a joint's name without "joint", which logs often omit. The result is empty
+/// if the name has no other word.
 fn without_joint(words: &[String]) -> Vec<String> {
     let rest: Vec<String> = words.iter().filter(|word| *word != "joint").cloned().collect();
     let is_word = |word: &String| word.len() > 1 && word.parse::<usize>().is_err();

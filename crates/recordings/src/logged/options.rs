@@ -11,7 +11,7 @@ pub struct LoggedOptions<'a> {
     pub robot: Option<&'a Robot>,
     /// Names of the robot's joints in the order of numbered columns; empty for the robot's order.
     pub joints: &'a [String],
-    /// What is said about the columns.
+    /// Names and units of columns that the user gives.
     pub columns: &'a ColumnSettings,
     /// Whether gains turn motor currents into torques.
     pub gains: bool,

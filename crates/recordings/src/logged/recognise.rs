@@ -36,6 +36,8 @@ pub(super) struct Numbers<'a> {
     pub revolute: &'a [bool],
     /// Largest magnitude of each joint's position, rad, where the robot limits it.
     pub limits: &'a [Option<f64>],
+    /// Highest speed of each joint, rad/s, where the robot limits it.
+    pub speeds: &'a [Option<f64>],
 }
 
 /// The units of a log.
@@ -127,33 +129,48 @@ fn time_of_step(times: &[f64]) -> Result<TimeUnit, [String; 2]> {
     }
 }
 
-/// Returns the unit in which positions fit the limits of their joints.
+/// Returns the unit in which positions, or else velocities, fit the limits of their joints.
 fn by_limits(numbers: &Numbers) -> Result<AngleUnit, [String; 2]> {
-    let has_limits = (0..numbers.q.len()).any(|i| numbers.revolute[i] && numbers.limits[i] > None);
-    let share = |joint: usize| {
-        let limit = if has_limits { numbers.limits[joint] } else { Some(2.0 * PI) };
-        let furthest = numbers.q[joint].iter().fold(0.0, |most: f64, q| most.max(q.abs()));
-        limit.filter(|limit| *limit > 0.0).map(|limit| (furthest / limit, furthest, limit))
+    let revolute = || (0..numbers.q.len()).filter(|joint| numbers.revolute[*joint]);
+    let turns = vec![Some(2.0 * PI); numbers.q.len()];
+    let has_limits = revolute().any(|joint| numbers.limits[joint].is_some());
+    let limits = if has_limits { numbers.limits } else { &turns };
+    let of = |values: &[Vec<f64>], limits: &[Option<f64>]| {
+        let share = |joint: usize| {
+            let most = values[joint].iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            limits[joint].filter(|limit| *limit > 0.0).map(|limit| [most / limit, most, limit])
+        };
+        revolute().filter_map(share).max_by(|a, b| a[0].total_cmp(&b[0]))
     };
-    let revolute = (0..numbers.q.len()).filter(|joint| numbers.revolute[*joint]);
-    let worst = revolute.filter_map(share).max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((share, furthest, limit)) = worst else { return Ok(AngleUnit::Radians) };
-    let degrees = share / AngleUnit::Degrees.per_radian();
-    if share <= FITS {
-        Ok(AngleUnit::Radians)
-    } else if share > BEYOND && degrees <= FITS {
-        Ok(AngleUnit::Degrees)
-    } else if degrees <= FITS {
-        Err([
+    let Some([share, furthest, limit]) = of(numbers.q, limits) else {
+        return Ok(AngleUnit::Radians);
+    };
+    if let Some(unit) = unit_of_share(share) {
+        return Ok(unit);
+    }
+    let fastest = numbers.qd.and_then(|qd| of(qd, numbers.speeds));
+    fastest.and_then(|[share, ..]| unit_of_share(share)).ok_or_else(|| {
+        [
             format!(
                 "the unit of the positions is ambiguous: they reach {furthest:.3}, where the limit \
                  is {limit:.3} rad"
             ),
             "give columns.angle = \"rad\" or \"deg\"".into(),
-        ])
+        ]
+    })
+}
+
+/// Returns the unit of values whose largest is this multiple of its limit in radians; `None` where
+/// it may be either.
+fn unit_of_share(share: f64) -> Option<AngleUnit> {
+    let degrees = share / AngleUnit::Degrees.per_radian();
+    if share > BEYOND && degrees <= FITS {
+        Some(AngleUnit::Degrees)
+    } else if share <= FITS || degrees > FITS {
+        // The check of the limits names joints that are far beyond them in any unit.
+        Some(AngleUnit::Radians)
     } else {
-        // The check of the limits names the joint.
-        Ok(AngleUnit::Radians)
+        None
     }
 }
 
@@ -202,7 +219,7 @@ mod tests {
         angles: [f64; 2],
         amplitude: f64,
         with_velocity: bool,
-        limit: Option<f64>,
+        [limit, speed]: [Option<f64>; 2],
     ) -> Result<Units, [String; 2]> {
         let seconds: Vec<f64> = (0..400).map(|k| 0.01 * k as f64).collect();
         let q = seconds.iter().map(|t| amplitude * t.sin() * angles[0]).collect::<Vec<_>>();
@@ -216,6 +233,7 @@ mod tests {
             qd: with_velocity.then_some(&qd[..]),
             revolute: &[true],
             limits: &[limit],
+            speeds: &[speed],
         };
         recognise(&numbers, None, None)
     }
@@ -230,23 +248,25 @@ mod tests {
             let angles = [(Radians, 1.0), (Degrees, DEG)];
             for (q, a) in angles {
                 for (qd, b) in angles {
-                    let units = found(per_second, [a, b], 1.0, true, Some(3.1)).unwrap();
+                    let units = found(per_second, [a, b], 1.0, true, [Some(3.1), None]).unwrap();
                     assert_eq!((units.time, units.q, units.qd), (time, q, qd));
                     assert!((units.ratio.unwrap() - 1.0).abs() < 1e-3);
                 }
             }
         }
-        let without = found(1e3, [DEG, DEG], 1.0, false, None).unwrap();
+        let without = found(1e3, [DEG, DEG], 1.0, false, [None; 2]).unwrap();
         assert_eq!((without.time, without.q), (TimeUnit::Milliseconds, Degrees));
     }
 
     #[test]
     fn what_may_mean_two_things_is_refused() {
         // 10 degrees, or 10 rad beyond a limit of 3.1 rad.
-        let [problem, remedy] = found(1.0, [DEG, DEG], 0.17, true, Some(3.1)).unwrap_err();
+        let [problem, remedy] = found(1.0, [DEG, DEG], 0.17, true, [Some(3.1), None]).unwrap_err();
         assert!(problem.contains("9.7") && remedy.contains("columns.angle"), "{problem}");
+        let fast = found(1.0, [DEG, DEG], 0.17, true, [Some(3.1), Some(1.5)]).unwrap();
+        assert_eq!(fast.q, AngleUnit::Degrees);
         // 0.2 s or 0.2 ms between samples.
-        let [problem, remedy] = found(20.0, [1.0; 2], 1.0, false, None).unwrap_err();
+        let [problem, remedy] = found(20.0, [1.0; 2], 1.0, false, [None; 2]).unwrap_err();
         assert!(problem.contains("0.2") && remedy.contains("columns.time_unit"), "{problem}");
     }
 

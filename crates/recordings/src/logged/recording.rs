@@ -18,6 +18,9 @@ use super::wraps::unwrap;
 use crate::defect::{Defect, DefectKind};
 use crate::run::Run;
 
+/// A joint that leaves its first position by more than this moves, rad or m.
+const MOVES: f64 = 0.05;
+
 /// A recording of a log, and what was understood of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Logged {
@@ -172,7 +175,9 @@ impl Table {
                 }
             ));
         }
-        notes.extend(torque_note(assignment).map(|note| format!("{name}: {note}")));
+        let about_torques =
+            torque_note(assignment).into_iter().chain(self.dead_torques(assignment));
+        notes.extend(about_torques.map(|note| format!("{name}: {note}")));
         let run = self.run(times, units.time);
         Ok(Logged { run, understood: Understood::of(units), notes })
     }
@@ -194,6 +199,10 @@ impl Table {
                 joints.map(|joint| joint.position_limits.map(furthest)).collect()
             }
         };
+        let speeds: Vec<Option<f64>> = match options.robot {
+            None => vec![None; kinds.len()],
+            Some(robot) => robot.joints().iter().map(|joint| joint.velocity_limit).collect(),
+        };
         let numbers = Numbers {
             times: &times,
             first: self.times[0] as f64 / 1e12,
@@ -201,10 +210,30 @@ impl Table {
             qd: self.qd.as_deref(),
             revolute: &revolute,
             limits: &limits,
+            speeds: &speeds,
         };
         let columns = assignment.q.iter().chain(assignment.qd.iter().flatten());
         let named = columns.filter_map(|column| column.name.angle).next();
         recognise(&numbers, assignment.time[0].unit, options.columns.angle.or(named))
+    }
+
+    /// Names the joints that move while their torque stays the same.
+    fn dead_torques(&self, assignment: &Assignment) -> Option<String> {
+        let tau = self.tau.as_ref()?;
+        let moves = |joint: &usize| {
+            let first = self.q[*joint][0];
+            self.q[*joint].iter().any(|q| (q - first).abs() > MOVES)
+        };
+        let is_dead = |joint: &usize| tau[*joint].iter().all(|value| *value == tau[*joint][0]);
+        let dead: Vec<usize> = (0..tau.len()).filter(moves).filter(is_dead).collect();
+        let [first, ..] = dead[..] else { return None };
+        let names: Vec<&str> = dead.iter().map(|i| assignment.joints[*i].as_str()).collect();
+        Some(format!(
+            "the torque of {} is {} in every sample, although the joint moves: it was not \
+             measured, and no model of it can be identified",
+            names.join(", "),
+            tau[first][0]
+        ))
     }
 
     /// Returns the times since the first sample, s.

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use crate::lock_arguments::LockArguments;
 use clap::Args;
+use reachtube::recordings::ColumnSettings;
 
 use crate::option_values::seconds;
 
@@ -58,6 +59,10 @@ pub(crate) struct Arguments {
     /// times where the sample times jitter]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
+    /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
+    /// also first=0, time_unit=ms and angle=deg
+    #[arg(long, value_name = "KEY=VALUE,..")]
+    pub columns: Option<ColumnSettings>,
     /// The torque was measured at the link side of the gear and does not drive the motor's inertia
     #[arg(long)]
     pub link_torque: bool,

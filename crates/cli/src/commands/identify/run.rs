@@ -132,6 +132,9 @@ fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     }
     settings.robot = args.robot.clone().or(settings.robot);
     settings.prepare.cut_off = args.cut_off.or(settings.prepare.cut_off);
+    if let Some(columns) = &args.columns {
+        settings.prepare.columns.clone_from(columns);
+    }
     settings.prepare.max_gap = args.max_gap.or(settings.prepare.max_gap);
     if !args.gains.is_empty() {
         settings.prepare.gains = args.gains.clone();
