@@ -37,7 +37,7 @@ pub struct Conformance {
     /// The dual objective of the program of a linear model: no sets cost less, to the solver's
     /// tolerance.
     pub lower_bound: Option<f64>,
-    /// How far the cost may be above the least, relative to the lower bound. Above [`LARGEST_GAP`]
+    /// How far the cost may be above the least, relative to the lower bound. Above 1e-6
     /// the sets are conformant, but not minimal.
     pub optimality_gap: Option<f64>,
     /// The paper's sum, eq. (21), which adds E where it should add |E|, for a linear model.

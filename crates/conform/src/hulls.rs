@@ -51,14 +51,14 @@ pub struct Hulls {
     /// The uncertainty sets.
     pub sets: UncertaintySets,
     /// The hulls.
-    pub kind: HullKind,
+    pub(crate) kind: HullKind,
     /// What was found about the recorded points in the sets, once they were judged.
     pub(crate) judged: Option<Judged>,
 }
 
 /// Hulls by the kind of model.
 #[derive(Debug)]
-pub enum HullKind {
+pub(crate) enum HullKind {
     /// Sets of the deviation of a linear model, on each of the problem's grids.
     Linear(Vec<ReachSets>),
     /// Sets of the state of any other model, for each of the problem's cases.
@@ -133,7 +133,7 @@ impl Hulls {
     /// # Errors
     ///
     /// As [`Problem::run`].
-    pub fn for_each_row(
+    pub(crate) fn for_each_row(
         &self,
         problem: &Problem,
         mut visit: impl FnMut(usize, Option<usize>, Row),
@@ -167,7 +167,7 @@ impl Hulls {
     /// # Errors
     ///
     /// As [`Problem::run`].
-    pub fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
+    pub(crate) fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
         match &self.kind {
             HullKind::Linear(_) => Ok(Vec::new()),
             HullKind::Outer(outer) => {
@@ -181,7 +181,7 @@ impl Hulls {
 impl Lost {
     /// Returns where the reachable set of a case ends, if it ends too early.
     #[must_use]
-    pub fn new(case: &Case, flowpipe: &Flowpipe) -> Option<Self> {
+    pub(crate) fn new(case: &Case, flowpipe: &Flowpipe) -> Option<Self> {
         match flowpipe.outcome() {
             FlowpipeOutcome::Reached => None,
             FlowpipeOutcome::Failed { time, state, .. } => {

@@ -51,7 +51,7 @@ impl Row {
 
 /// The interval hull of a reachable set in one state at one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HullBounds {
+pub(crate) struct HullBounds {
     /// The lower bound that a row may use, rad or rad/s.
     pub lower: f64,
     /// The upper bound that a row may use.
@@ -61,7 +61,7 @@ pub struct HullBounds {
 }
 
 /// The hull of a reachable set over time, as rows are compared with it.
-pub trait Hull {
+pub(crate) trait Hull {
     /// Returns the bounds at sample `k` in state `i`; `None` if the set was lost.
     fn bounds(&self, k: usize, i: usize) -> Option<HullBounds>;
 }
@@ -89,7 +89,7 @@ impl Hull for Flowpipe {
 ///
 /// Excesses are upper bounds for the hull as its bounds are given, widened by the noise set V
 /// rounded inward; directed rounding.
-pub fn rows(
+pub(crate) fn rows(
     envelope: &Envelope,
     times: &[f64],
     hull: &impl Hull,

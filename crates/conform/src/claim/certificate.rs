@@ -17,7 +17,7 @@ use crate::sets::UncertaintySets;
 use crate::tube::linear::{Linear, PARTS};
 
 /// What the field `format` of every certificate says.
-pub const CERTIFICATE_FORMAT: &str = "reachtube-certificate";
+pub(crate) const CERTIFICATE_FORMAT: &str = "reachtube-certificate";
 
 /// The first line of a certificate.
 #[derive(Debug, Serialize)]

@@ -7,7 +7,7 @@ const MOST_MARKS: usize = 64;
 /// Some states of a run, at the multiples of a power of two of samples. They stay in memory for
 /// some runs of every suite, so that runs can be compared without reading them again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Marks {
+pub(crate) struct Marks {
     /// Samples from one to the next, a power of two.
     pub stride: usize,
     /// The states, row-major, marks x 2n.

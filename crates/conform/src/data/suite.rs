@@ -24,7 +24,7 @@ pub struct Suite {
     /// many runs keeps 256 of them, as random as their SHA-256.
     pub runs: Vec<RunSummary>,
     /// Totals of all runs.
-    pub totals: Totals,
+    pub(crate) totals: Totals,
     /// The nominal initial state, 2n: the one that was given for the suite's name, or the mean of
     /// the runs' first states, rounded to nearest.
     pub nominal_start: Vec<f64>,

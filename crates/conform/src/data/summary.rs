@@ -25,7 +25,7 @@ pub struct RunSummary {
     /// The first state, 2n.
     pub start: Vec<f64>,
     /// Some of its states; none where the run is not drawn from a suite of more than 256.
-    pub marks: Marks,
+    pub(crate) marks: Marks,
     /// What friction may depend on.
     pub condition: Condition,
     /// SHA-256 of the recording.

@@ -10,7 +10,7 @@ pub(crate) const MOST_NOTED: usize = 20;
 /// Totals of all runs of a suite. Its size does not grow with the runs, and the order in which they
 /// are taken makes no difference.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Totals {
+pub(crate) struct Totals {
     /// Number of runs.
     pub(crate) count: usize,
     /// The run that comes first in the source.
@@ -78,15 +78,9 @@ impl Totals {
         }
     }
 
-    /// Returns the number of runs.
-    #[must_use]
-    pub fn run_count(&self) -> usize {
-        self.count
-    }
-
     /// Returns the mean of the first states, 2n, rounded to nearest.
     #[must_use]
-    pub fn mean_start(&self) -> Vec<f64> {
+    pub(crate) fn mean_start(&self) -> Vec<f64> {
         self.starts.iter().map(ExactSum::mean).collect()
     }
 

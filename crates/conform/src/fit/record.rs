@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::fit::group::Group;
 
 /// Number of standard errors by which a fit may move a value that is still a measurement.
-pub const MOST_ERRORS: f64 = 3.0;
+pub(crate) const MOST_ERRORS: f64 = 3.0;
 
 /// How the nominal model was fitted, for people and for the model file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

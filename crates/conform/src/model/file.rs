@@ -36,26 +36,26 @@ use crate::verdict::Verdict;
 use crate::witness::Witness;
 
 /// What the field `format` of every model file says.
-pub const FORMAT: &str = "reachtube-model";
+pub(crate) const FORMAT: &str = "reachtube-model";
 
 /// The version of the format that this library writes and reads; the schema is
 /// `docs/model.schema.json`.
-pub const VERSION: u32 = 3;
+pub(crate) const VERSION: u32 = 3;
 
 const REMEDY: &str = "give a file that `conform --out` wrote";
 
 /// Number of tight values kept in a file at most: as many as a degenerate program may have would
 /// make it unreadable.
-pub const MOST_TIGHT: usize = 500;
+pub(crate) const MOST_TIGHT: usize = 500;
 
 /// A model with the uncertainty sets for which it is reachset conformant with the recordings named
 /// in it. SI units; states are ordered q then q̇.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
-    /// The name of the format, [`FORMAT`].
+    /// The name of the format, "reachtube-model".
     pub format: String,
-    /// The version of the format, [`VERSION`].
+    /// The version of the format.
     pub version: u32,
     /// Name and version of the program that wrote the file.
     pub tool: String,

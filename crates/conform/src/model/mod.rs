@@ -5,5 +5,5 @@ pub(crate) mod file;
 pub(crate) mod records;
 mod validity;
 
-pub use file::{FORMAT, MOST_TIGHT, Model, VERSION};
+pub use file::Model;
 pub use records::{DataRecord, Explained, Residual, RunRecord, SuiteRecord};
