@@ -54,7 +54,7 @@ fn results_fit_the_schema() {
     run("robot_show", "robot show arm.toml");
     run("abstract", "abstract --robot arm.toml");
     run("abstract", "abstract --robot arm.toml --box 0.1,0.1,1");
-    run("reproduce_coverage", "reproduce coverage --campaigns 2 --next 20");
+    run("reproduce_coverage", "reproduce coverage --campaigns 1 --next 20");
     run("reproduce_table1", "reproduce table1 --robot arm.toml --motions 1 --orders 1");
 }
 
