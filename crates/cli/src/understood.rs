@@ -1,5 +1,7 @@
 //! What was understood of logs, in words.
 
+use std::path::Path;
+
 use reachtube::recordings::Understood;
 
 /// Number of names of columns that are listed.
@@ -13,7 +15,7 @@ pub(crate) fn understood(logs: &[Understood]) -> String {
         let columns = columns(log);
         text += &format!(
             "{}: {} samples, {:.3} s, separated by {}",
-            log.files.join(" + "),
+            files(log),
             log.samples,
             log.duration,
             log.separator
@@ -29,6 +31,16 @@ pub(crate) fn understood(logs: &[Understood]) -> String {
         text.push('\n');
     }
     text
+}
+
+/// Returns the path of the first file, and the names of the others.
+fn files(log: &Understood) -> String {
+    let name = |path: &String| {
+        let name = Path::new(path).file_name().map(|name| name.to_string_lossy().into_owned());
+        format!(" + {}", name.unwrap_or_default())
+    };
+    let (first, others) = log.files.split_first().expect("a log has a file");
+    format!("{first}{}", others.iter().map(name).collect::<String>())
 }
 
 fn columns(log: &Understood) -> String {

@@ -92,8 +92,7 @@ fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
     let kinds = robot.map_or(vec![JointKind::Revolute; joints], Robot::kinds);
     output::notes(&found.inspection.notes);
     output::show(json, &found, || {
-        let sets = if joints > 0 { summary(&found.inspection, &kinds) } else { String::new() };
-        format!("{}{sets}", understood(&found.logs))
+        format!("{}{}", understood(&found.logs), summary(&found.inspection, &kinds))
     })?;
     outcome(found.inspection)
 }

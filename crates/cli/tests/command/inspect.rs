@@ -83,7 +83,7 @@ fn paths_out_of_the_folder_are_noted() {
 /// Writes a log of the fixture's arm with other names, in degrees and milliseconds.
 fn log_of_a_driver(lab: &Lab) {
     let mut text =
-        String::from("time;axis2_pos;axis1_pos;axis2_vel;axis1_vel;axis1_eff;axis2_eff\n");
+        String::from("time;axis2_pos;axis1_pos;axis2_vel;axis1_vel;axis1_effort;axis2_effort\n");
     for k in 0..300 {
         let t = 0.008 * f64::from(k);
         let (q, qd) = (60.0 * t.sin(), 60.0 * t.cos());
@@ -103,7 +103,7 @@ fn logs_are_described_as_they_were_understood() {
         "time    time [ms]",
         "q       axis1_pos, axis2_pos [deg]",
         "qd      axis1_vel, axis2_vel [deg/s]",
-        "tau     axis1_eff, axis2_eff",
+        "tau     axis1_effort, axis2_effort",
     ] {
         assert!(run.stdout.contains(words), "{words}: {}", run.stdout);
     }

@@ -154,8 +154,8 @@ fn quantity(word: &str) -> Option<Quantity> {
         }
         "qd" | "dq" | "vel" | "velocity" | "velocities" | "speed" | "speeds" | "qdot" | "qvel"
         | "dtheta" => Quantity::Velocity,
-        "tau" | "torque" | "torques" | "effort" | "efforts" | "moment" | "moments" | "trq"
-        | "force" | "forces" => Quantity::Torque,
+        "tau" | "torque" | "torques" | "effort" | "efforts" | "eff" | "moment" | "moments"
+        | "trq" | "force" | "forces" => Quantity::Torque,
         "current" | "currents" | "curr" | "amps" => Quantity::Current,
         "temp" | "temps" | "temperature" | "temperatures" => Quantity::Temperature,
         "t" | "time" | "timestamp" | "timestamps" | "stamp" | "secs" | "nsecs" | "nanosec" => {
@@ -235,6 +235,7 @@ mod tests {
             ("- arm_1_joint_position", Some(Position), Unstated, Some(1)),
             ("/joint_states/arm_1_joint/velocity", Some(Velocity), Unstated, Some(1)),
             ("field.effort4", Some(Torque), Unstated, Some(4)),
+            ("axis2_eff", Some(Torque), Unstated, Some(2)),
             ("current_position_1", Some(Position), Measured, Some(1)),
             ("q_d[3]", Some(Position), Target, Some(3)),
             ("tau_q1", Some(Torque), Unstated, Some(1)),
