@@ -41,6 +41,9 @@ pub fn inspect_logs(path: &Path, options: &LoggedOptions) -> Result<LogInspectio
     Ok(LogInspection { inspection, logs })
 }
 
+/// What was understood of a log, and the notes about it.
+type Found = (Understood, Vec<String>);
+
 /// Logs as a source of recordings.
 #[derive(Debug)]
 struct LoggedRuns<'a> {
@@ -49,7 +52,7 @@ struct LoggedRuns<'a> {
     groups: Vec<Vec<PathBuf>>,
     options: LoggedOptions<'a>,
     /// What was understood of each that was read, and its notes.
-    found: Mutex<Vec<Option<(Understood, Vec<String>)>>>,
+    found: Mutex<Vec<Option<Found>>>,
 }
 
 impl<'a> LoggedRuns<'a> {

@@ -65,14 +65,12 @@ impl Joints {
                 let named = (0..names.len()).filter(|joint| column.name.contains(&names[*joint]));
                 named.max_by_key(|joint| names[*joint].len())
             });
-            match best {
-                None => others.push(column.clone()),
-                Some(joint) => match found[joint].replace(column) {
-                    Some(other) => {
-                        return Err(Mismatch::Twice([other.text.clone(), column.text.clone()]));
-                    }
-                    None => {}
-                },
+            let Some(joint) = best else {
+                others.push(column.clone());
+                continue;
+            };
+            if let Some(other) = found[joint].replace(column) {
+                return Err(Mismatch::Twice([other.text.clone(), column.text.clone()]));
             }
         }
         let missing: Vec<usize> = (0..found.len()).filter(|i| found[*i].is_none()).collect();

@@ -107,11 +107,11 @@ fn is_number(word: &str) -> bool {
 }
 
 /// Returns whether a word may say which joint it is.
-fn is_of_joint(word: &String) -> bool {
+fn is_of_joint(word: &str) -> bool {
     let speaks = quantity(word).is_some()
         || origin(word).is_some()
         || angle_unit(word).is_some()
-        || matches!(word.as_str(), "nm" | "dot" | "ddot");
+        || matches!(word, "nm" | "dot" | "ddot");
     !speaks
 }
 
