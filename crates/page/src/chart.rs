@@ -67,7 +67,7 @@ type Axes<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64,
 /// # Errors
 ///
 /// Fails for numbers that are not finite, and where the drawing library fails.
-pub fn chart_svg(chart: &Chart) -> Result<String, Error> {
+pub(crate) fn chart_svg(chart: &Chart) -> Result<String, Error> {
     chart_svg_of_height(chart, HEIGHT)
 }
 
@@ -88,7 +88,7 @@ pub(super) fn chart_svg_of_height(chart: &Chart, height: f64) -> Result<String, 
 ///
 /// # Errors
 ///
-/// As [`chart_svg`].
+/// Fails for numbers that are not finite, and where the drawing library fails.
 pub fn charts_svg(charts: &[Chart], columns: usize, label: &str) -> Result<String, Error> {
     let svgs: Vec<String> = charts.iter().map(chart_svg).collect::<Result<_, _>>()?;
     let (width, height) =

@@ -40,7 +40,7 @@ mod browser;
 mod sample;
 
 pub use assemble::page;
-pub use chart::{Chart, Series, chart_svg, charts_svg};
+pub use chart::{Chart, Series, charts_svg};
 pub use error::{Error, Result};
 pub use figure::suite_svg;
 pub use html::write_html;

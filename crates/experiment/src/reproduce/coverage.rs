@@ -69,7 +69,7 @@ impl CoverageRow {
     /// Returns whether the statement is about each campaign, at confidence, and not about their
     /// mean.
     #[must_use]
-    pub fn is_at_confidence(&self) -> bool {
+    pub(crate) fn is_at_confidence(&self) -> bool {
         self.statement.contains("confidence")
     }
 

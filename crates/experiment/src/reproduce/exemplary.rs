@@ -83,7 +83,7 @@ impl Exemplary {
 
     /// Returns the joint (from 0) whose position spreads furthest over the runs.
     #[must_use]
-    pub fn widest_joint(&self) -> usize {
+    pub(crate) fn widest_joint(&self) -> usize {
         let wider = |a: &usize, b: &usize| self.spread(*a).total_cmp(&self.spread(*b));
         (0..self.joints()).max_by(wider).unwrap_or(0)
     }

@@ -2,7 +2,6 @@
 
 use reachtube_conform::{Case, Hulls, Problem, SuiteReach, UncertaintySets, reach};
 use reachtube_reach::{Disturbance, Hyperrectangle, TimeGrid};
-use reachtube_recordings::State;
 use reachtube_scalar::Interval;
 
 use super::system::System;
@@ -118,7 +117,7 @@ impl ExportCase {
     /// # Errors
     ///
     /// [`ExportError::NotUniform`], which names `remedy`.
-    pub fn fixed_step(&self, tool: Tool, remedy: &'static str) -> Result<f64, ExportError> {
+    pub(crate) fn fixed_step(&self, tool: Tool, remedy: &'static str) -> Result<f64, ExportError> {
         let refusal = || ExportError::NotUniform { tool, case: self.reach.name(), remedy };
         self.grid.step().ok_or_else(refusal)
     }
@@ -168,13 +167,6 @@ impl ExportCase {
             set.radius.extend(extra.radius);
         }
         InitialState { start, set }
-    }
-
-    /// Returns names of the states for a table: `q1_lower` and the like.
-    #[must_use]
-    pub fn bound_names(&self, ending: &str) -> Vec<String> {
-        let n = self.joints();
-        (0..2 * n).map(|i| format!("{}_{ending}", State::from_index(i, n))).collect()
     }
 }
 

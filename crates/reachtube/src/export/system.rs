@@ -119,7 +119,7 @@ impl System {
 impl Polynomial {
     /// Returns the polynomial without its constant term.
     #[must_use]
-    pub fn without_constant(&self) -> Self {
+    pub(crate) fn without_constant(&self) -> Self {
         let terms = self.terms.iter().filter(|term| !term.factors.is_empty());
         Self { terms: terms.cloned().collect() }
     }
