@@ -6,7 +6,7 @@ use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
     r#abstract, campaign, check, completions, conform, convert, demo, excite, export, identify,
-    inspect, man, prepare, reach, report,
+    inspect, man, model, prepare, reach, report,
 };
 use crate::error::Result;
 use crate::global::GlobalOptions;
@@ -53,11 +53,12 @@ Examples:
   reachtube reproduce table1
       repeat the paper's simulations
 
-Exit codes: 0 conformant (or done), 1 not conformant, 2 error.
+Exit codes: 0 conformant (or done), 1 not conformant, 2 error, 3 conformant but vacuous.
 Results go to standard output; notes, warnings and errors go to standard error.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    Model(model::Arguments),
     Demo(demo::Arguments),
     Campaign(campaign::Arguments),
     #[command(subcommand)]
@@ -83,6 +84,7 @@ pub(crate) enum Command {
 pub(crate) fn run(cli: &Cli) -> Result<Outcome> {
     let json = cli.global.json;
     match &cli.command {
+        Command::Model(args) => model::run(args, json),
         Command::Demo(args) => demo::run(args, json),
         Command::Campaign(args) => campaign::run(args, json),
         Command::Robot(RobotCommand::Show(args)) => robot::show(args, json),

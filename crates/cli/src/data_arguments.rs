@@ -30,7 +30,7 @@ pub(crate) struct DataArguments {
     pub max_gap: Option<f64>,
 }
 
-const TORQUES: Choices = &[
+pub(crate) const TORQUES: Choices = &[
     ("compensated", "the model's input u: gravity and Coulomb friction are already subtracted"),
     ("motor", "motor torque at the output side of the gear"),
     ("link", "link-side torque, from a joint torque sensor"),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use reachtube::export::ExportError;
+use reachtube::pipeline::Error as PipelineError;
 use reachtube::recordings::Refusal;
 use thiserror::Error;
 
@@ -62,6 +63,17 @@ pub(crate) enum Error {
         /// Number of recorded joints.
         recorded: usize,
     },
+    /// `model` does not know what the recorded torques are.
+    #[error(
+        "the meaning of the recorded torques is not given; say --torque motor, link or \
+         compensated, or torque = \"..\" in the settings file"
+    )]
+    NoTorque,
+    /// `model` has no recordings.
+    #[error(
+        "no recordings are given; name some with --data, or with data = [..] in the settings file"
+    )]
+    NoData,
     /// `identify` has no robot.
     #[error(
         "no robot is given; name one with --robot, or with robot = \"..\" in the settings file"
@@ -179,6 +191,9 @@ pub(crate) enum Error {
     /// A model or robot could not be exported.
     #[error(transparent)]
     Export(ExportError),
+    /// No model could be made of logs.
+    #[error(transparent)]
+    Pipeline(PipelineError),
     /// The library reported an error.
     #[error(transparent)]
     Library(Box<reachtube::Error>),
@@ -191,6 +206,8 @@ impl Error {
             Self::Usage(_) => "usage",
             Self::Output(_) => "file",
             Self::Refused { .. } => "recordings",
+            Self::Pipeline(PipelineError::NoSets { .. }) => "conform",
+            Self::Pipeline(_) => "recordings",
             Self::Log(error) => log_kind(error),
             Self::Export(_) => "export",
             Self::Library(error) => kind(error),
@@ -253,6 +270,18 @@ impl From<ExportError> for Error {
         match error {
             ExportError::Conform(error) => error.into(),
             error => Self::Export(error),
+        }
+    }
+}
+
+impl From<PipelineError> for Error {
+    fn from(error: PipelineError) -> Self {
+        match error {
+            PipelineError::Identify(error) => error.into(),
+            PipelineError::Conform(error) => error.into(),
+            PipelineError::Robot(error) => error.into(),
+            PipelineError::Abstraction(error) => error.into(),
+            error => Self::Pipeline(error),
         }
     }
 }

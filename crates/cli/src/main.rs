@@ -30,6 +30,9 @@ const NOT_CONFORMANT: u8 = 1;
 /// Exit code of an error.
 const ERROR: u8 = 2;
 
+/// Exit code of a model that is conformant and says nothing.
+const VACUOUS: u8 = 3;
+
 fn main() -> ExitCode {
     let json = std::env::args().any(|argument| argument == "--json");
     let outcome = settings_file::parse(std::env::args_os().collect()).and_then(|arguments| {
@@ -39,6 +42,7 @@ fn main() -> ExitCode {
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::NotConformant) => ExitCode::from(NOT_CONFORMANT),
+        Ok(Outcome::Vacuous) => ExitCode::from(VACUOUS),
         Err(error::Error::Usage(message)) if !json || !message.use_stderr() => message.exit(),
         Err(error) if json => {
             output::json_error(&error.to_string(), error.kind(), ERROR);

@@ -137,6 +137,7 @@ impl Check {
         let (verdict, kinds) = (&self.verdict, model.robot.kinds());
         let set = verdict.enclosure.set_name();
         let mut findings = vec![Finding::verdict_of_check(verdict)];
+        findings.extend(Finding::vacuous(model));
         if let Some(points) = &verdict.points {
             let are_lost = !verdict.lost.is_empty();
             findings.push(Finding::points(points, verdict.enclosure, are_lost));

@@ -18,7 +18,7 @@ use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
 use crate::nominal::input_error::InputError;
 use crate::optimality::LARGEST_GAP;
-use crate::plausibility::{NominalFit, Warning, warnings};
+use crate::plausibility::{NominalFit, Usefulness, Warning, warnings};
 use crate::progress::Progress;
 use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
@@ -66,6 +66,8 @@ pub struct Conformance {
     pub explanations: Vec<Explanation>,
     /// Implausible results, and the most likely cause.
     pub warnings: Vec<Warning>,
+    /// How much the sets say about the motion of each joint.
+    pub usefulness: Usefulness,
     /// The part of the variance of each state that the nominal motions explain, 2n; negative where
     /// they are further away than the mean, `None` if the state hardly moves.
     pub nominal_explains: Vec<Option<f64>>,
@@ -148,11 +150,13 @@ fn conform_claim(
     };
     let fit = NominalFit::new(problem)?;
     let warnings = warnings(problem, &hulls.sets, &radii, &fit, calibration.as_ref())?;
+    let usefulness = Usefulness::new(problem, &hulls, &fit)?;
     let is_proved = verdict.conformant;
     let is_smallest = calibration.is_none() && !problem.settings().notion.asks_points();
     Ok(Conformance {
         sets: hulls.sets.clone(),
         warnings,
+        usefulness,
         nominal_explains: fit.explained,
         cost,
         lower_bound,

@@ -1,4 +1,4 @@
-use reachtube_reach::{Flowpipe, FlowpipeOutcome, ReachSets};
+use reachtube_reach::{Flowpipe, FlowpipeOutcome, ReachSets, TimeGrid};
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
@@ -91,6 +91,35 @@ impl Hulls {
         (0..self.sets.initial_set.dimension()).map(radius).collect()
     }
 
+    /// Returns the end of the longest recording, s, and the radii of the interval hull with the
+    /// noise set at the end of each recording, the largest in each state, 2n; infinite where a
+    /// reachable set ends early.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub(crate) fn at_end(&self, problem: &Problem) -> Result<(f64, Vec<f64>)> {
+        let ends: Vec<(usize, f64)> = match &self.kind {
+            HullKind::Linear(_) => {
+                let grids = problem.grids()?.as_slice().iter();
+                grids.map(|grid| end(grid.propagation.grid())).collect()
+            }
+            HullKind::Outer(_) => problem.cases()?.iter().map(|case| end(&case.grid)).collect(),
+        };
+        let mut all = (0.0f64, vec![0.0f64; self.sets.initial_set.dimension()]);
+        for (strand, (sample, time)) in (0..).zip(ends) {
+            let at = (strand, sample as u32);
+            let radii =
+                if self.reaches(at) { self.radii(at) } else { vec![f64::INFINITY; all.1.len()] };
+            all.0 = all.0.max(time);
+            all.1
+                .iter_mut()
+                .zip(radii)
+                .for_each(|(largest, radius)| *largest = largest.max(radius));
+        }
+        Ok(all)
+    }
+
     /// Returns the flowpipes of the cases of a model that is not linear; none of any other.
     pub(crate) fn flowpipes(&self) -> &[Flowpipe] {
         match &self.kind {
@@ -176,6 +205,11 @@ impl Hulls {
             }
         }
     }
+}
+
+/// Returns the last sample of a grid and its time, s.
+fn end(grid: &TimeGrid) -> (usize, f64) {
+    (grid.times().len().saturating_sub(1), grid.times().last().copied().unwrap_or(0.0))
 }
 
 impl Lost {

@@ -17,6 +17,7 @@ pub use reachtube_files::{TOOL, printable, write};
 pub use reachtube_identify::{self as identify, Identification, IdentifySettings, identify};
 #[cfg(feature = "report")]
 pub use reachtube_page as page;
+pub use reachtube_pipeline as pipeline;
 pub use reachtube_reach::{
     self as reach, Disturbance, Flowpipe, FlowpipeSettings, Hyperrectangle, PolynomialSystem,
     TimeGrid, UncertainInput,

@@ -19,7 +19,8 @@ Examples:
 A model that is not linear is compared by its computed outer set, an enclosure of the reachable set.
 
 Exit codes: 0 all recordings were proved to lie in the reachable set, at samples, as --notion says;
-1 some were not, and the result names a witness (suite, run, time, joint, excess); 2 error.";
+1 some were not, and the result names a witness (suite, run, time, joint, excess); 2 error;
+3 they were, but the model is vacuous: its sets say nothing about some joint.";
 
 /// Check whether a model encloses other recordings
 #[derive(Debug, Args)]
@@ -41,5 +42,5 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     warnings.for_each(|warning| output::warn(&format!("of the model itself: {warning}")));
     let kinds = opened.model.robot.kinds();
     output::show(json, &check, || check.report(&kinds).to_string())?;
-    Ok(Outcome::of(check.verdict.conformant))
+    Ok(Outcome::of_model(check.verdict.conformant, &opened.model))
 }

@@ -110,7 +110,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         );
         output::print(&text)?;
     }
-    Ok(Outcome::of(model.verified))
+    Ok(Outcome::of_model(model.verified, &model))
 }
 
 fn options(args: &Arguments) -> Result<DemoOptions> {

@@ -12,6 +12,7 @@ pub(crate) mod export;
 pub(crate) mod identify;
 pub(crate) mod inspect;
 pub(crate) mod man;
+pub(crate) mod model;
 pub(crate) mod prepare;
 pub(crate) mod reach;
 pub(crate) mod report;

@@ -30,7 +30,7 @@ use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
-use crate::plausibility::Warning;
+use crate::plausibility::{Usefulness, Warning};
 use crate::sets::UncertaintySets;
 use crate::verdict::Verdict;
 use crate::witness::Witness;
@@ -99,6 +99,10 @@ pub struct Model {
     /// Implausible results, and the most likely cause.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<Warning>,
+    /// How much the sets say about the motion of each joint; `None` in files of versions before it
+    /// was recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub usefulness: Option<Usefulness>,
     /// The part of the variance of each state that the nominal motions explain, 2n; `None` if
     /// the state hardly moves.
     pub nominal_explains: Vec<Option<f64>>,
@@ -199,6 +203,7 @@ impl Model {
             noise_set,
             sensor_noise: settings.are_limited_by_noise().then(|| problem.sensor_noise().clone()),
             warnings: found.warnings.clone(),
+            usefulness: Some(found.usefulness.clone()),
             nominal_explains: found.nominal_explains.clone(),
             input_error: found.input_error.clone(),
             proof: found.verdict.clone(),
@@ -224,6 +229,20 @@ impl Model {
             sha256: String::new(),
         }
         .sealed()
+    }
+
+    /// Returns whether the sets were proved to enclose every recording and say something about the
+    /// motion of every joint. A model is vacuous otherwise if it is proved.
+    #[must_use]
+    pub fn is_useful(&self) -> bool {
+        self.verified && !self.is_vacuous()
+    }
+
+    /// Returns whether the sets were proved to enclose every recording but say nothing about the
+    /// motion of some joint.
+    #[must_use]
+    pub fn is_vacuous(&self) -> bool {
+        self.verified && self.usefulness.as_ref().is_some_and(|said| !said.vacuous.is_empty())
     }
 
     /// Reads a model file and checks that its parts fit together.

@@ -5,9 +5,11 @@ pub(crate) mod cause;
 mod causes;
 mod evidence;
 mod nominal_fit;
+mod usefulness;
 pub(crate) mod warning;
 mod warnings;
 
 pub(crate) use nominal_fit::NominalFit;
+pub use usefulness::{JointWidth, Usefulness, Vacuity, VacuousSet};
 pub use warning::{Warning, WarningKind};
 pub(crate) use warnings::warnings;

@@ -33,6 +33,8 @@ codes! {
     Conformant = "conformant",
     /// Some recordings were not proved to be enclosed.
     NotConformant = "not-conformant",
+    /// The sets were proved to enclose every recording but say nothing about some joint.
+    Vacuous = "vacuous",
     /// How many recorded points were proved to lie in the reachable set.
     Points = "points",
     /// How many recordings were proved to be motions of the model.

@@ -60,6 +60,7 @@ impl Model {
 fn verdict(model: &Model) -> Section {
     let proof = &model.proof;
     let mut findings = vec![Finding::verdict_of_fit(model)];
+    findings.extend(Finding::vacuous(model));
     if let Some(points) = &proof.points {
         findings.push(Finding::points(points, proof.enclosure, !proof.lost.is_empty()));
     }

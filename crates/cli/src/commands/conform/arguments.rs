@@ -32,7 +32,8 @@ Examples:
   reachtube conform --robot arm.toml --data recordings --torque motor --calibrate M7,M8,M9
       find the sets on the other motions, and scale them to hold these three
 
-Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error.";
+Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error, 3 conformant but vacuous:
+the sets say nothing about some joint.";
 
 /// Find the smallest uncertainty sets for which a model encloses every recording, and prove it
 ///

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let page = report(&answer, folder)?;
         output::wrote(&page);
     }
-    Ok(Outcome::of(answer.holds()))
+    Ok(Outcome::of_model(answer.holds(), &answer.model))
 }
 
 /// Returns the job that the arguments describe.

@@ -7,5 +7,6 @@ mod limits;
 mod new_motions;
 mod plausibility;
 mod sets;
+mod vacuous;
 mod verdict;
 pub(super) mod words;

@@ -51,6 +51,7 @@ impl Finding {
             }
         };
         let outcome_words = match (model.verified, model.gap_of_not_minimal()) {
+            _ if model.is_vacuous() => "conformant, but vacuous",
             (false, _) => "NOT PROVED conformant",
             (true, Some(_)) => "conformant, not minimal",
             (true, None) => "conformant",

@@ -1,0 +1,175 @@
+use serde::{Deserialize, Serialize};
+
+use crate::data::problem::Problem;
+use crate::data::suite::Suite;
+use crate::error::Result;
+use crate::hulls::Hulls;
+use crate::plausibility::nominal_fit::NominalFit;
+use crate::sets::UncertaintySets;
+
+/// The part of a joint's range over all recordings that counts as its motion within one recording
+/// at least, so that a joint that rests there decides nothing.
+const PART_OF_RANGE: f64 = 0.05;
+
+/// X0 that is wider than what the recorded starts and the noise of the sensors explain by more than
+/// this factor says nothing ...
+const FACTOR_OF_STARTS: f64 = 5.0;
+
+/// ... where it is also wider than this part of the recorded motion.
+const PART_OF_MOTION: f64 = 0.1;
+
+/// Inputs and widths below this, N m, rad or rad/s, are rounding.
+const SMALLEST: f64 = 1e-6;
+
+/// How much the sets say about the motion of each joint. Sets that were proved to enclose every
+/// recording may be so wide that nothing follows from them; the model is then vacuous.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Usefulness {
+    /// The end of the longest recording, s, to which the widths belong.
+    pub horizon: f64,
+    /// The width of the reachable set beside the motion, one entry for each joint.
+    pub joints: Vec<JointWidth>,
+    /// The sets that say nothing; none of a model that is useful.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub vacuous: Vec<Vacuity>,
+}
+
+/// The reachable set of a joint's position at the end of the recordings.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointWidth {
+    /// Half the width of the set with V, rad (m); `None` where the reachable set was lost.
+    pub half_width: Option<f64>,
+    /// The root mean square over the suites of the joint's largest distance from its start, and at
+    /// least 5 % of its range over all recordings, rad (m).
+    pub displacement: f64,
+}
+
+/// A set of one joint that says nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Vacuity {
+    /// The joint, from 1.
+    pub joint: usize,
+    /// The set.
+    pub set: VacuousSet,
+    /// Its size: the width of a set of states, the reach of U from 0.
+    pub size: f64,
+    /// What it is compared with: the motion of the joint over all recordings, the width that starts
+    /// and noise explain, or the largest recorded input.
+    pub compared_with: f64,
+}
+
+/// Which set says nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VacuousSet {
+    /// The reachable set of the position.
+    Reachable,
+    /// X0 of the position.
+    InitialPosition,
+    /// X0 of the velocity.
+    InitialVelocity,
+    /// U.
+    Input,
+}
+
+impl JointWidth {
+    /// Returns half the width of the set by the displacement: below 0.5 the set is useful, above 1
+    /// it says nothing. Infinite where the set was lost.
+    #[must_use]
+    pub fn ratio(&self) -> f64 {
+        self.half_width.map_or(f64::INFINITY, |half_width| half_width / self.displacement)
+    }
+}
+
+impl Usefulness {
+    /// Compares the sets of `hulls` with the recordings of `problem`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub(crate) fn new(problem: &Problem, hulls: &Hulls, fit: &NominalFit) -> Result<Self> {
+        let n = problem.joints();
+        let (horizon, radii) = hulls.at_end(problem)?;
+        let half_width = |joint: usize| radii[joint].is_finite().then_some(radii[joint]);
+        let displacement = |joint: usize| displacement(problem, fit, joint);
+        let width =
+            |joint| JointWidth { half_width: half_width(joint), displacement: displacement(joint) };
+        let joints: Vec<JointWidth> = (0..n).map(width).collect();
+        let vacuous = (0..n)
+            .flat_map(|joint| {
+                let reachable = of_reachable_set(fit, &joints[joint], joint);
+                reachable.into_iter().chain(of_sets(problem, &hulls.sets, fit, joint))
+            })
+            .collect();
+        Ok(Self { horizon, joints, vacuous })
+    }
+
+    /// Returns the largest ratio of half a joint's set to its displacement, and the joint, from 0.
+    #[must_use]
+    pub fn worst(&self) -> Option<(usize, f64)> {
+        let ratios = self.joints.iter().map(JointWidth::ratio).enumerate();
+        ratios.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Returns the displacement of a joint, as [`JointWidth::displacement`] says.
+fn displacement(problem: &Problem, fit: &NominalFit, joint: usize) -> f64 {
+    let suites = &problem.recordings().suites;
+    let middle = |suite: &Suite, k: usize| {
+        0.5 * (suite.envelope.lower(k, joint) + suite.envelope.upper(k, joint))
+    };
+    let moved = |suite: &Suite| {
+        let distances =
+            (0..suite.envelope.len()).map(|k| (middle(suite, k) - middle(suite, 0)).abs());
+        distances.fold(0.0, f64::max)
+    };
+    let moving = suites.iter().filter(|suite| !suite.envelope.is_empty());
+    let squares: f64 = moving.map(|suite| moved(suite).powi(2)).sum();
+    let [low, high] = fit.recorded[joint];
+    (squares / suites.len().max(1) as f64).sqrt().max(PART_OF_RANGE * (high - low)).max(SMALLEST)
+}
+
+fn of_reachable_set(fit: &NominalFit, width: &JointWidth, joint: usize) -> Option<Vacuity> {
+    let [low, high] = fit.recorded[joint];
+    let (size, compared_with) = (2.0 * width.half_width?, high - low);
+    let says_nothing = size > compared_with && size > SMALLEST;
+    let set = VacuousSet::Reachable;
+    says_nothing.then_some(Vacuity { joint: joint + 1, set, size, compared_with })
+}
+
+fn of_sets(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    fit: &NominalFit,
+    joint: usize,
+) -> Vec<Vacuity> {
+    let n = problem.joints();
+    let initial = |set: VacuousSet, i: usize| {
+        let (low, high) = sets.initial_set.bounds(i);
+        let explained = 2.0 * (fit.farthest_starts[i] + problem.sensor_noise().radius[i]);
+        let [first, last] = fit.recorded[i];
+        let limit = (FACTOR_OF_STARTS * explained).max(PART_OF_MOTION * (last - first));
+        let (size, joint) = (high - low, joint + 1);
+        let says_nothing = size > limit.max(SMALLEST);
+        says_nothing.then_some(Vacuity { joint, set, size, compared_with: explained })
+    };
+    let (low, high) = sets.input_set.bounds(joint);
+    let (size, compared_with) = (high.max(-low), fit.largest_input[joint]);
+    let input = (size > compared_with && size > SMALLEST).then_some(Vacuity {
+        joint: joint + 1,
+        set: VacuousSet::Input,
+        size,
+        compared_with,
+    });
+    [
+        initial(VacuousSet::InitialPosition, joint),
+        initial(VacuousSet::InitialVelocity, n + joint),
+        input,
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}

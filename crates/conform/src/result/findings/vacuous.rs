@@ -1,0 +1,84 @@
+//! Which sets say nothing, although they were proved to enclose every recording.
+
+use reachtube_robot::JointKind;
+
+use crate::model::file::Model;
+use crate::plausibility::{Usefulness, Vacuity, VacuousSet};
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+use crate::result::findings::words::{counted, listed, plural};
+
+/// Largest number of sets that the sentence describes.
+const MOST_SETS: usize = 3;
+
+impl Finding {
+    /// Which sets of a model say nothing; none of a model that is useful or was not proved.
+    pub(crate) fn vacuous(model: &Model) -> Option<Self> {
+        let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
+        let kinds = model.robot.kinds();
+        let mut sets: Vec<&Vacuity> = said.vacuous.iter().collect();
+        sets.sort_by(|a, b| factor(b).total_cmp(&factor(a)));
+        let mut joints: Vec<usize> = sets.iter().map(|set| set.joint).collect();
+        joints.sort_unstable();
+        joints.dedup();
+        let names: Vec<String> = joints.iter().map(ToString::to_string).collect();
+        let place = format!("{} {}", plural(names.len(), "joint"), listed(&names));
+        let first = sets.iter().take(MOST_SETS);
+        let mut words: Vec<String> =
+            first.map(|set| described(set, said, kinds[set.joint - 1])).collect();
+        let more = sets.len().saturating_sub(MOST_SETS);
+        if more > 0 {
+            words.push(format!("{} more", counted(more, "set")));
+        }
+        let text = format!("Proved, but it says nothing about {place}: {}.", words.join("; "));
+        let worst = sets.first()?;
+        let finding = Self::new(Severity::Failure, Code::Vacuous, text).at(place);
+        Some(
+            finding
+                .with("horizon", said.horizon)
+                .with("joint", worst.joint as f64)
+                .with("size", worst.size)
+                .with("compared_with", worst.compared_with),
+        )
+    }
+}
+
+/// Returns by which factor a set exceeds what it is compared with.
+fn factor(set: &Vacuity) -> f64 {
+    set.size / set.compared_with
+}
+
+/// Describes a set that says nothing.
+fn described(set: &Vacuity, said: &Usefulness, kind: JointKind) -> String {
+    let Vacuity { joint, size, .. } = set;
+    let times = match factor(set) {
+        factor if factor < 100.0 => format!("{factor:.1} times"),
+        factor => format!("{factor:.0e} times"),
+    };
+    let size = match size {
+        size if (1e-3..1e4).contains(size) => format!("{size:.3}"),
+        size => format!("{size:.1e}"),
+    };
+    match set.set {
+        VacuousSet::Reachable => {
+            let (unit, end) = (kind.position_unit(), said.horizon);
+            format!(
+                "the set of q{joint} is {size} {unit} wide after {end:.3} s, {times} its motion"
+            )
+        }
+        VacuousSet::InitialPosition | VacuousSet::InitialVelocity => {
+            let (state, unit) = match set.set {
+                VacuousSet::InitialPosition => ("q", kind.position_unit()),
+                _ => ("qd", kind.velocity_unit()),
+            };
+            format!(
+                "X0 of {state}{joint} is {size} {unit} wide, {times} what the recorded starts and \
+                 the noise of the sensors explain"
+            )
+        }
+        VacuousSet::Input => {
+            let unit = kind.force_unit();
+            format!("U of joint {joint} reaches {size} {unit}, {times} the largest input")
+        }
+    }
+}

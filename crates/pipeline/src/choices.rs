@@ -1,0 +1,123 @@
+use std::path::PathBuf;
+
+use reachtube_conform::{Equations, Group};
+use reachtube_recordings::Torque;
+use serde::{Deserialize, Serialize};
+
+/// Largest number of columns of a comment.
+const COLUMNS: usize = 96;
+
+/// The choices behind a model. Those that are not given are made from the recordings.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+pub struct Choices {
+    /// The robot: a name or a file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robot: Option<String>,
+    /// Recordings: files or folders.
+    pub data: Vec<PathBuf>,
+    /// What the recorded torques are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque: Option<Torque>,
+    /// Factors of the recorded torques, one per joint; for motor currents in N m/A.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gains: Vec<f64>,
+    /// The motions that are kept back.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub held_out: Option<Vec<String>>,
+    /// Cut-off frequency of the low-pass, Hz.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut_off: Option<f64>,
+    /// Whether the robot is identified from the recordings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub identify: Option<bool>,
+    /// Whose equations of motion the nominal motions satisfy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equations: Option<Equations>,
+    /// The position about which the model of deviations is linear, n, rad.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expansion: Option<Vec<f64>>,
+    /// Radii of the sensors' noise, 2n, rad and rad/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_noise: Option<Vec<f64>>,
+    /// The largest accepted ratio of half a joint's set at the horizon to the joint's displacement.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_ratio: Option<f64>,
+    /// Time up to which the model predicts, s: the length of the windows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub horizon: Option<f64>,
+    /// Parameters of the nominal model that are fitted for small sets.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fit: Option<Vec<Group>>,
+    /// Weight of the pull of the fit toward the identified values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pull: Option<f64>,
+}
+
+/// A choice that was made, and why.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Choice {
+    /// The key in the settings.
+    pub key: &'static str,
+    /// What was chosen, in words.
+    pub value: String,
+    /// The reason.
+    pub reason: String,
+}
+
+impl Choices {
+    /// Returns the choices as TOML, with the reasons of `made` as comments.
+    #[must_use]
+    pub fn to_toml(&self, made: &[Choice]) -> String {
+        let lines = toml::to_string(self).expect("choices are a TOML table");
+        let mut text = String::new();
+        for line in lines.lines() {
+            let key = line.split(" = ").next().unwrap_or_default();
+            if let Some(choice) = made.iter().find(|choice| choice.key == key) {
+                text += &comment(&choice.reason);
+            }
+            text += line;
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// Returns a sentence as lines of a comment.
+fn comment(sentence: &str) -> String {
+    let mut lines = vec![String::from("#")];
+    for word in sentence.split_whitespace() {
+        if lines.last().is_some_and(|line| line.len() + word.len() >= COLUMNS) {
+            lines.push("#".into());
+        }
+        let line = lines.last_mut().expect("there is a line");
+        line.push(' ');
+        line.push_str(word);
+    }
+    format!("\n{}\n", lines.join("\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn choices_are_read_as_they_were_written() {
+        let choices = Choices {
+            robot: Some("arm.urdf".into()),
+            data: vec!["logs".into()],
+            torque: Some(Torque::Motor),
+            held_out: Some(vec!["a".into()]),
+            fit: Some(vec![Group::Inertia]),
+            expansion: Some(vec![0.1, -1.2]),
+            equations: Some(Equations::Robot),
+            ..Choices::default()
+        };
+        let reason = "every fourth motion is kept back before anything is looked at ".repeat(3);
+        let made = [Choice { key: "held-out", value: "a".into(), reason }];
+        let text = choices.to_toml(&made);
+        assert!(text.contains("# every fourth motion"), "{text}");
+        assert!(text.lines().all(|line| line.len() <= 100), "{text}");
+        assert_eq!(toml::from_str::<Choices>(&text).unwrap(), choices);
+    }
+}

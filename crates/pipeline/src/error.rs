@@ -1,0 +1,65 @@
+use thiserror::Error;
+
+/// Why no model could be made of the recordings.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Recordings could not be read or prepared, or a robot could not be identified.
+    #[error(transparent)]
+    Identify(#[from] reachtube_identify::Error),
+    /// A conformance could not be decided.
+    #[error(transparent)]
+    Conform(#[from] reachtube_conform::Error),
+    /// The robot's description is wrong.
+    #[error(transparent)]
+    Robot(#[from] reachtube_robot::RobotError),
+    /// The expansion point does not fit the robot.
+    #[error(transparent)]
+    Abstraction(#[from] reachtube_abstraction::Error),
+    /// No recording shows a motion of several joints.
+    #[error(
+        "none of the {recordings} recordings shows a motion of several joints: {rest} at rest, \
+         {one} of one joint at a time; give recordings in which all joints move"
+    )]
+    NoMotion {
+        /// Number of recordings.
+        recordings: usize,
+        /// Number of recordings at rest.
+        rest: usize,
+        /// Number of recordings in which one joint moves.
+        one: usize,
+    },
+    /// A recording that is to be kept back does not exist.
+    #[error(
+        "held-out = \"{name}\" is no motion of the recordings; the motions are {}",
+        motions.join(", ")
+    )]
+    HeldOut {
+        /// The name.
+        name: String,
+        /// All motions.
+        motions: Vec<String>,
+    },
+    /// Every motion is kept back.
+    #[error("held-out names every motion; leave one at least for the sets")]
+    NothingLeft,
+    /// The recordings allow no sets at any horizon.
+    #[error("no sets were found, even over {shortest} s: {reason}")]
+    NoSets {
+        /// The shortest horizon that was tried, s.
+        shortest: f64,
+        /// Why.
+        reason: String,
+    },
+    /// No recording is as long as a window.
+    #[error(
+        "no recording that was kept is as long as the horizon of {horizon} s; give a shorter one"
+    )]
+    NoWindow {
+        /// The horizon, s.
+        horizon: f64,
+    },
+}
+
+/// A result of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;

@@ -1,0 +1,153 @@
+//! Which motions are kept back, before anything is looked at.
+
+use reachtube_identify::prepare::{LogEntry, RawLog};
+
+use crate::error::{Error, Result};
+
+/// One motion in this many is kept back.
+const ONE_IN: usize = 4;
+
+/// The part of a single motion that is used; the rest is kept back.
+const PART_OF_ONE: f64 = 0.75;
+
+/// A recording, or a part of one.
+#[derive(Debug, Clone)]
+pub(crate) struct Recording {
+    /// The samples.
+    pub log: RawLog,
+    /// Where they come from.
+    pub entry: LogEntry,
+    /// The motion that it shows.
+    pub motion: String,
+}
+
+/// Motions for the sets, motions that are kept back, and the rule by which they were chosen.
+#[derive(Debug)]
+pub(crate) struct Split {
+    pub kept: Vec<Recording>,
+    pub held_out: Vec<Recording>,
+    pub names: Vec<String>,
+    pub reason: String,
+}
+
+impl Split {
+    /// Splits recordings of motions: the motions `given` are kept back, or else every fourth in
+    /// the order of the recordings, the last of two or three, and the last quarter of a single one.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::HeldOut`] for a name that is no motion, [`Error::NothingLeft`].
+    pub(crate) fn new(recordings: Vec<Recording>, given: Option<&[String]>) -> Result<Self> {
+        let mut motions: Vec<String> = Vec::new();
+        for recording in &recordings {
+            if !motions.contains(&recording.motion) {
+                motions.push(recording.motion.clone());
+            }
+        }
+        if let Some(name) = given.into_iter().flatten().find(|name| !motions.contains(name)) {
+            return Err(Error::HeldOut { name: name.clone(), motions });
+        }
+        let (names, reason): (Vec<String>, String) = match (given, motions.len()) {
+            (Some(names), _) => (names.to_vec(), "given".into()),
+            (None, 1) => return Ok(Self::in_time(recordings)),
+            (None, count @ 2..ONE_IN) => {
+                (motions[count - 1..].to_vec(), format!("the last of {count} motions"))
+            }
+            (None, count) => {
+                let every = motions.iter().skip(ONE_IN - 1).step_by(ONE_IN);
+                (every.cloned().collect(), format!("every fourth of {count} motions"))
+            }
+        };
+        let is_held_out = |recording: &Recording| names.contains(&recording.motion);
+        let (held_out, kept): (Vec<_>, Vec<_>) = recordings.into_iter().partition(is_held_out);
+        if kept.is_empty() {
+            return Err(Error::NothingLeft);
+        }
+        Ok(Self { kept, held_out, names, reason })
+    }
+
+    /// Keeps back the end of each recording of a single motion.
+    fn in_time(recordings: Vec<Recording>) -> Self {
+        let [mut kept, mut held_out] = [Vec::new(), Vec::new()];
+        for recording in recordings {
+            let at = PART_OF_ONE * recording.log.run.duration();
+            kept.push(recording.between(0.0, Some(at)));
+            held_out.push(recording.between(at, None));
+        }
+        let reason = "there is one motion: its last quarter is kept back, and nothing follows for \
+                      other motions";
+        Self { kept, held_out, names: Vec::new(), reason: reason.into() }
+    }
+}
+
+impl Recording {
+    /// Returns the part between two times since the first sample, s.
+    fn between(&self, from: f64, until: Option<f64>) -> Self {
+        let run = &self.log.run;
+        let first = run.times.partition_point(|t| *t < from);
+        let last = until.map_or(run.len(), |until| run.times.partition_point(|t| *t <= until));
+        let n = run.joints;
+        let mut part = run.clone();
+        part.times = run.times[first..last].iter().map(|t| t - run.times[first]).collect();
+        part.start += run.times[first];
+        part.states = run.states[2 * n * first..2 * n * last].to_vec();
+        part.torques = run.torques[n * first..n * last].to_vec();
+        if !run.temperatures.is_empty() {
+            part.temperatures = run.temperatures[n * first..n * last].to_vec();
+        }
+        let entry = LogEntry::Stretch {
+            path: self.log.file.clone(),
+            from,
+            until,
+            order: self.log.order,
+            compensated: false,
+        };
+        Self { log: RawLog { run: part, ..self.log.clone() }, entry, motion: self.motion.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use reachtube_recordings::Run;
+
+    fn recordings(motions: &[&str]) -> Vec<Recording> {
+        let of = |motion: &&str| {
+            let times: Vec<f64> = (0..101).map(|k| 0.1 * f64::from(k)).collect();
+            let states = times.iter().flat_map(|t| [*t, 1.0]).collect();
+            let run = Run::new(1, times, states, vec![0.0; 101]).unwrap();
+            let name = motion.to_string();
+            let log = RawLog { name: name.clone(), file: (&name).into(), order: None, run };
+            let entry = LogEntry::Path((&name).into());
+            Recording { log, entry, motion: name }
+        };
+        motions.iter().map(of).collect()
+    }
+
+    #[test]
+    fn every_fourth_motion_is_kept_back() {
+        let split =
+            Split::new(recordings(&["a", "a", "b", "c", "d", "e", "f", "g", "h"]), None).unwrap();
+        assert_eq!((split.names, split.kept.len()), (vec!["d".into(), "h".into()], 7));
+        let split = Split::new(recordings(&["a", "b"]), None).unwrap();
+        assert_eq!(split.names, ["b"]);
+        let split = Split::new(recordings(&["a", "b"]), Some(&["a".into()])).unwrap();
+        assert_eq!(split.kept[0].motion, "b");
+    }
+
+    #[test]
+    fn the_end_of_a_single_motion_is_kept_back() {
+        let split = Split::new(recordings(&["a"]), None).unwrap();
+        let (kept, held_out) = (&split.kept[0].log.run, &split.held_out[0].log.run);
+        assert_eq!((kept.len(), held_out.len()), (76, 26));
+        assert_eq!((held_out.start, held_out.times[0], held_out.q(0)[0]), (7.5, 0.0, 7.5));
+    }
+
+    #[test]
+    fn names_that_are_no_motions_and_nothing_left_are_errors() {
+        let wrong = Split::new(recordings(&["a", "b"]), Some(&["c".into()])).unwrap_err();
+        assert!(wrong.to_string().contains("the motions are a, b"), "{wrong}");
+        let all = Split::new(recordings(&["a"]), Some(&["a".into()])).unwrap_err();
+        assert!(matches!(all, Error::NothingLeft));
+    }
+}

@@ -1,0 +1,106 @@
+use std::collections::BTreeMap;
+
+use reachtube_conform::JointWidth;
+use reachtube_identify::prepare::PreparedLog;
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::trial::Trial;
+use crate::windows::cut;
+
+/// The horizons that are tried, s.
+const HORIZONS: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0];
+
+/// Windows of a trial: more hardly change how wide sets are beside the motion.
+const MOST_WINDOWS: usize = 200;
+
+/// Longer horizons are not tried once the worst joint's set is wider than its motion by this
+/// factor.
+const HOPELESS: f64 = 1.5;
+
+/// How wide the sets are at a horizon.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rung {
+    /// The horizon, s.
+    pub horizon: f64,
+    /// Half the width of each joint's set by the joint's displacement, n; empty where no sets were
+    /// found.
+    pub ratios: Vec<f64>,
+    /// Why no sets were found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+impl Rung {
+    /// Returns the joint, from 0, whose set is widest beside its motion, and the ratio; infinite
+    /// where no sets were found.
+    #[must_use]
+    pub fn worst(&self) -> (usize, f64) {
+        let ratios = self.ratios.iter().copied().enumerate();
+        ratios.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
+    }
+}
+
+/// Finds how the sets grow with the horizon, up to the one at which they say nothing.
+///
+/// # Errors
+///
+/// [`Error::NoSets`] if none were found over the shortest horizon.
+pub(crate) fn ladder(
+    trial: &Trial,
+    logs: &[PreparedLog],
+    motions: &BTreeMap<String, String>,
+) -> Result<Vec<Rung>> {
+    let mut rungs: Vec<Rung> = Vec::new();
+    let steps = logs.iter().map(|log| log.step);
+    let shortest = 3.0 * steps.fold(0.0, f64::max);
+    for horizon in HORIZONS.into_iter().filter(|horizon| *horizon >= shortest) {
+        let windows = match cut(logs, motions, horizon, MOST_WINDOWS) {
+            Err(Error::NoWindow { .. }) => break,
+            other => other?,
+        };
+        let (ratios, reason) = match trial.run(windows, false) {
+            Ok(answer) => (ratios(&answer.found.usefulness.joints), None),
+            Err(error) => (Vec::new(), Some(error.to_string())),
+        };
+        rungs.push(Rung { horizon, ratios, reason });
+        if rungs.last().is_some_and(|rung| rung.worst().1 > HOPELESS) {
+            break;
+        }
+    }
+    match rungs.first() {
+        Some(Rung { reason: None, .. }) => Ok(rungs),
+        Some(Rung { horizon, reason: Some(reason), .. }) => {
+            Err(Error::NoSets { shortest: *horizon, reason: reason.clone() })
+        }
+        None => Err(Error::NoWindow { horizon: HORIZONS[0] }),
+    }
+}
+
+fn ratios(joints: &[JointWidth]) -> Vec<f64> {
+    joints.iter().map(JointWidth::ratio).collect()
+}
+
+/// Returns the longest horizon up to which no set is wider beside the motion than `largest`; if
+/// there is none, the horizon at which the worst set is narrowest.
+pub(crate) fn longest(rungs: &[Rung], largest: f64) -> &Rung {
+    let fitting = rungs.iter().take_while(|rung| rung.worst().1 <= largest).last();
+    let narrowest = || rungs.iter().min_by(|a, b| a.worst().1.total_cmp(&b.worst().1));
+    fitting.or_else(narrowest).expect("there is a rung")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_horizon_whose_sets_are_narrow_is_chosen() {
+        let rung =
+            |horizon: f64, ratio: f64| Rung { horizon, ratios: vec![0.1, ratio], reason: None };
+        let rungs = [rung(0.05, 0.2), rung(0.1, 0.4), rung(0.2, 0.6), rung(0.3, 0.45)];
+        assert_eq!(longest(&rungs, 0.5).horizon, 0.1);
+        assert_eq!(longest(&rungs, 0.1).horizon, 0.05);
+        assert_eq!(longest(&[rung(0.05, 3.0), rung(0.1, 2.0)], 0.5).horizon, 0.1);
+        assert_eq!(Rung { horizon: 1.0, ratios: vec![], reason: None }.worst().1, f64::INFINITY);
+    }
+}

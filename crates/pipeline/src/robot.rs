@@ -1,0 +1,186 @@
+//! The robot: as described, or identified from the recordings.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use reachtube_identify::prepare::{LogEntry, PrepareSettings, PreparedLog, RawLog, prepare};
+use reachtube_identify::{IdentifySettings, ModelSettings, identify};
+use reachtube_recordings::Torque;
+use reachtube_robot::Robot;
+
+use crate::error::Result;
+use crate::held_out::Recording;
+use crate::trial::Trial;
+use crate::windows::cut;
+
+/// A description that leaves less than this part of the torque unexplained is taken as it is.
+const GOOD: f64 = 0.1;
+
+/// The identified robot must leave less than this part of what the description leaves.
+const BETTER: f64 = 0.8;
+
+/// Length of the windows over which torque is compared, s, and their number.
+const WINDOW: f64 = 0.1;
+const MOST_WINDOWS: usize = 200;
+
+/// A robot, with the recordings prepared for it.
+#[derive(Debug)]
+pub(crate) struct Nominal {
+    pub robot: Robot,
+    pub logs: Vec<PreparedLog>,
+    /// Whether it was identified from the recordings.
+    pub is_identified: bool,
+    /// Why.
+    pub reason: String,
+}
+
+/// What the choice of the robot needs.
+pub(crate) struct Evidence<'a> {
+    /// Poses at rest.
+    pub rest: Vec<LogEntry>,
+    /// Motions of one joint at a time.
+    pub one_joint: Vec<LogEntry>,
+    /// Exciting motions.
+    pub motions: &'a [Recording],
+    /// What the torques are.
+    pub torque: Torque,
+    /// How recordings are prepared.
+    pub settings: &'a PrepareSettings,
+    /// Cut-off frequency of the low-pass, Hz.
+    pub cut_off: f64,
+    /// The trial without a robot of its own.
+    pub trial: &'a Trial,
+}
+
+impl Evidence<'_> {
+    /// Chooses between the robot as described and the robot identified from the recordings: the one
+    /// that `given` says, or else the identified one if it explains the torque clearly better.
+    ///
+    /// # Errors
+    ///
+    /// As [`identify`], if the description is no alternative.
+    pub(crate) fn choose(&self, described: &Robot, given: Option<bool>) -> Result<Nominal> {
+        let is_physical = described.check_physical().map(|_| ());
+        let own = match (given, &is_physical) {
+            (Some(true), _) | (_, Err(_)) => None,
+            (_, Ok(())) => {
+                let nominal = self.prepared(described)?;
+                let error = self.unexplained(&nominal)?;
+                Some((nominal, error))
+            }
+        };
+        let percent = |part: f64| format!("{:.0} %", 100.0 * part);
+        match own {
+            Some((nominal, error)) if given == Some(false) => {
+                let left = percent(error);
+                let reason = format!("given; the description leaves {left} of the torque open");
+                Ok(Nominal { reason, ..nominal })
+            }
+            Some((nominal, error)) if error < GOOD || self.torque == Torque::Compensated => {
+                let reason = match self.torque {
+                    Torque::Compensated => format!(
+                        "the torques are the input of the robot that the description gives, which \
+                         leaves {} of it unexplained",
+                        percent(error)
+                    ),
+                    _ => format!("the description leaves {} of the torque open", percent(error)),
+                };
+                Ok(Nominal { reason, ..nominal })
+            }
+            Some((nominal, error)) => {
+                let identified = match self.identified(described) {
+                    Ok(identified) => identified,
+                    Err(failure) => {
+                        let reason = format!(
+                            "the description leaves {} of the torque unexplained, but the robot \
+                             could not be identified: {failure}",
+                            percent(error)
+                        );
+                        return Ok(Nominal { reason, ..nominal });
+                    }
+                };
+                let after = self.unexplained(&identified)?;
+                let reason = format!(
+                    "of the torque, the description leaves {} unexplained and the identified robot \
+                     {}",
+                    percent(error),
+                    percent(after)
+                );
+                let best = if after < BETTER * error { identified } else { nominal };
+                Ok(Nominal { reason, ..best })
+            }
+            None => {
+                let identified = self.identified(described)?;
+                let after = percent(self.unexplained(&identified)?);
+                let why = match is_physical {
+                    Ok(()) => "given".into(),
+                    Err(problem) => format!("the description is no body ({problem})"),
+                };
+                let reason =
+                    format!("{why}; the identified robot leaves {after} of the torque open");
+                Ok(Nominal { reason, ..identified })
+            }
+        }
+    }
+
+    /// Identifies the robot from what is not kept back.
+    fn identified(&self, described: &Robot) -> Result<Nominal> {
+        let settings = IdentifySettings {
+            rest: self.rest.clone(),
+            friction: self.one_joint.clone(),
+            dynamic: self.motions.iter().map(|recording| recording.entry.clone()).collect(),
+            prepare: PrepareSettings { cut_off: Some(self.cut_off), ..self.settings.clone() },
+            model: ModelSettings {
+                motor_inertia: self.torque != Torque::Link,
+                physical: Some(true),
+                windows: vec![0.5],
+                ..ModelSettings::default()
+            },
+            ..IdentifySettings::default()
+        };
+        let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
+        let nominal = self.prepared(&Robot::from_description(&found.description)?)?;
+        Ok(Nominal { is_identified: true, ..nominal })
+    }
+
+    /// Prepares the motions for a robot.
+    fn prepared(&self, robot: &Robot) -> Result<Nominal> {
+        let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
+        let logs = prepare_for(&raw, robot, self.torque, self.settings, self.cut_off)?;
+        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason: String::new() })
+    }
+
+    /// Returns the part of the torque that a robot does not explain: the mean over the joints of
+    /// the root mean square of what is left by that of the torque.
+    fn unexplained(&self, nominal: &Nominal) -> Result<f64> {
+        let windows = cut(&nominal.logs, &BTreeMap::new(), WINDOW, MOST_WINDOWS)?;
+        let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
+        let errors = trial.run(windows, false)?.found.input_error;
+        let gains = &self.settings.gains;
+        let torque = |joint: usize| {
+            let runs = self.motions.iter().map(|motion| &motion.log.run);
+            let values = runs.flat_map(|run| (0..run.len()).map(move |k| run.torque(k)[joint]));
+            let (sum, count) =
+                values.fold((0.0, 0usize), |(sum, count), tau| (sum + tau * tau, count + 1));
+            gains.get(joint).unwrap_or(&1.0).abs() * (sum / count.max(1) as f64).sqrt()
+        };
+        let parts = errors.iter().enumerate().map(|(joint, error)| error / torque(joint).max(1e-9));
+        Ok(parts.sum::<f64>() / errors.len() as f64)
+    }
+}
+
+/// Filters recordings and turns their torques into the input of a robot's model.
+///
+/// # Errors
+///
+/// As [`prepare`].
+pub(crate) fn prepare_for(
+    raw: &[RawLog],
+    robot: &Robot,
+    torque: Torque,
+    settings: &PrepareSettings,
+    cut_off: f64,
+) -> Result<Vec<PreparedLog>> {
+    let compensated = (torque != Torque::Compensated).then_some(robot);
+    Ok(prepare(raw, settings, cut_off, compensated)?.logs)
+}

@@ -1,0 +1,49 @@
+//! A conformance over windows, as every step of the pipeline asks for it.
+
+use reachtube_abstraction::ExpansionPoint;
+use reachtube_conform::{
+    Answer, Equations, FitSettings, Job, Noise, NominalStart, Settings, Silent,
+};
+use reachtube_recordings::{MemoryRuns, Torque};
+use reachtube_robot::Robot;
+
+use crate::error::Result;
+
+/// What a conformance over windows needs besides the windows.
+#[derive(Debug, Clone)]
+pub(crate) struct Trial {
+    /// The robot, whose own equations the nominal motions may satisfy.
+    pub robot: Robot,
+    /// The position about which deviations are linear, n, rad.
+    pub expansion: Vec<f64>,
+    /// Radii of the sensors' noise, 2n, rad and rad/s.
+    pub sensor_noise: Vec<f64>,
+    /// Whose equations of motion nominal motions satisfy.
+    pub equations: Equations,
+    /// What is fitted.
+    pub fit: Option<FitSettings>,
+}
+
+impl Trial {
+    /// Finds the sets for windows.
+    ///
+    /// # Errors
+    ///
+    /// As [`Job::run`].
+    pub(crate) fn run(&self, windows: MemoryRuns, keep_runs: bool) -> Result<Answer> {
+        let n = self.robot.joint_count();
+        let settings = Settings {
+            expansion_point: ExpansionPoint::from_values(&self.expansion, n)?,
+            noise: Noise::Fitted,
+            sensor_noise: Some(self.sensor_noise.clone()),
+            nominal: NominalStart::Own,
+            equations: self.equations,
+            ..Settings::new(Torque::Compensated, n)
+        };
+        let job = Job::new(self.robot.clone(), windows, Torque::Compensated)
+            .settings(settings)
+            .fit(self.fit.clone())
+            .keep_runs(keep_runs);
+        Ok(job.run(&Silent)?)
+    }
+}

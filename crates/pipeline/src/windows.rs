@@ -1,0 +1,43 @@
+//! Prepared recordings cut into windows, as recordings of a conformance.
+
+use std::collections::BTreeMap;
+
+use reachtube_identify::prepare::{PreparedLog, windows};
+use reachtube_recordings::{MemoryRuns, Run};
+
+use crate::error::{Error, Result};
+
+/// Cuts recordings into windows of `horizon` \[s\], each a suite of its own, at most `most` of them
+/// evenly spread. `motions` has the motion of each log.
+///
+/// # Errors
+///
+/// [`Error::NoWindow`] if no recording is as long.
+pub(crate) fn cut(
+    logs: &[PreparedLog],
+    motions: &BTreeMap<String, String>,
+    horizon: f64,
+    most: usize,
+) -> Result<MemoryRuns> {
+    let all = windows(logs, Some(horizon), false).windows;
+    let count = all.len().min(most);
+    if count == 0 {
+        return Err(Error::NoWindow { horizon });
+    }
+    let mut runs = MemoryRuns::default();
+    for window in (0..count).map(|k| &all[k * all.len() / count]) {
+        let motion = motions.get(&window.motion).unwrap_or(&window.motion);
+        runs.push(&window.suite, Some(&window.suite), Some(motion), run(&window.log));
+    }
+    Ok(runs)
+}
+
+/// Returns the samples of a window as a recording. Its times are multiples of the sample time to
+/// the microsecond, so that all windows share one grid.
+fn run(log: &PreparedLog) -> Run {
+    let time = |k: usize| (1e6 * k as f64 * log.step).round() / 1e6;
+    let states = (0..log.len()).flat_map(|k| [log.q(k), log.qd(k)].concat()).collect();
+    let times = (0..log.len()).map(time).collect();
+    Run::new(log.joints, times, states, log.tau.clone())
+        .expect("a window has one row of finite numbers for each sample")
+}
