@@ -1,9 +1,9 @@
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 use reachtube_conform::{Answer, Check, Equations, FitSettings, Silent};
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, PreparedLog, RawLog, cut_off, read};
-use reachtube_recordings::{Torque, noise_deviations};
+use reachtube_recordings::{DataSet, RunEntry, RunSource, Torque, noise_deviations};
 use reachtube_robot::Robot;
 use serde::Serialize;
 
@@ -100,8 +100,7 @@ pub fn build(
 ) -> Result<Built> {
     let mut road = Road { choices: given.clone(), made: Vec::new(), say };
     let settings = PrepareSettings { gains: given.gains.clone(), ..PrepareSettings::default() };
-    let entries: Vec<LogEntry> = given.data.iter().cloned().map(LogEntry::from).collect();
-    let sorted = Sorted::read(&mut road, &entries, folder, robot, &settings)?;
+    let sorted = Sorted::read(&mut road, given, folder, robot, &settings)?;
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     let names = if split.names.is_empty() { "the end".into() } else { split.names.join(", ") };
     road.choose("held-out", names, &split.reason);
@@ -109,19 +108,25 @@ pub fn build(
 
     // The filter, and the model of deviations about the mean of the motion.
     let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &recording.log).collect();
+    let is_filtered = torque != Torque::Compensated;
     let cut_off = cut_off(&raw, &PrepareSettings { cut_off: given.cut_off, ..settings.clone() })?;
     let cut_off = (10.0 * cut_off).round() / 10.0;
-    road.choose("cut-off", format!("{cut_off} Hz"), reason_of_cut_off(given));
-    road.choices.cut_off = Some(cut_off);
+    if is_filtered {
+        road.choose("cut-off", format!("{cut_off} Hz"), "1.5 times the bandwidth of the motions");
+        road.choices.cut_off = Some(cut_off);
+    }
     let expansion = given.expansion.clone().unwrap_or_else(|| mean_position(&raw));
     road.choose("expansion", list(&expansion), "the mean position of the motions");
     road.choices.expansion = Some(expansion.clone());
-    let noise = given.sensor_noise.clone().unwrap_or_else(|| noise(&raw, cut_off));
-    road.choose(
-        "sensor-noise",
-        list(&noise),
-        "5 standard deviations of the noise before the filter, lessened by what the filter takes",
-    );
+    let noise = given
+        .sensor_noise
+        .clone()
+        .unwrap_or_else(|| noise(&raw, is_filtered.then_some(cut_off)));
+    let why = match is_filtered {
+        true => "5 standard deviations before the filter, lessened by what the filter takes",
+        false => "5 standard deviations",
+    };
+    road.choose("sensor-noise", list(&noise), why);
     road.choices.sensor_noise = Some(noise.clone());
     let equations = given.equations.unwrap_or(Equations::Robot);
     let why = "the robot's own equations follow the motion further than a linear model";
@@ -166,12 +171,13 @@ struct Sorted {
 impl Sorted {
     fn read(
         road: &mut Road,
-        entries: &[LogEntry],
+        given: &Choices,
         folder: &Path,
         robot: &Robot,
         settings: &PrepareSettings,
     ) -> Result<Self> {
-        let raw = read(entries, folder, robot, settings)?;
+        let entries: Vec<LogEntry> = given.data.iter().cloned().map(LogEntry::from).collect();
+        let raw = read(&entries, folder, robot, settings)?;
         let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
         let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
         let of = |kind: Kind| -> Vec<&RawLog> {
@@ -184,9 +190,11 @@ impl Sorted {
             let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
-        let names = motions(&moving, &vec![None; moving.len()]);
-        let mut distinct = names.clone();
-        distinct.dedup();
+        let known = indexed(given.data.iter().map(|path| folder.join(path)));
+        let known: Vec<Option<String>> =
+            moving.iter().map(|log| known.get(&log.file).cloned()).collect();
+        let names = motions(&moving, &known);
+        let distinct: BTreeSet<&String> = names.iter().collect();
         road.choose(
             "data",
             format!("{} recordings", raw.len()),
@@ -198,6 +206,7 @@ impl Sorted {
                 distinct.len()
             ),
         );
+        drop(distinct);
         let recordings = moving.iter().zip(names).map(|(log, motion)| Recording {
             log: (*log).clone(),
             entry: entry(log),
@@ -208,6 +217,20 @@ impl Sorted {
             [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
         Ok(Self { rest, one_joint, motions })
     }
+}
+
+/// Returns the motion, or else the suite, of each file that the index of a folder names.
+fn indexed(folders: impl Iterator<Item = PathBuf>) -> BTreeMap<PathBuf, String> {
+    let indices = folders.filter(|folder| folder.join("runs.csv").is_file());
+    let sets = indices.filter_map(|folder| DataSet::open(&folder).ok());
+    let motion = |set: DataSet| -> Vec<(PathBuf, String)> {
+        let named = |(index, run): (usize, &RunEntry)| {
+            let motion = run.motion.clone().or_else(|| run.suite.clone())?;
+            Some((set.run_name(index), motion))
+        };
+        set.runs().iter().enumerate().filter_map(named).collect()
+    };
+    sets.flat_map(motion).collect()
 }
 
 /// Chooses the horizon, and the fit if one was given, and finds the sets.
@@ -283,13 +306,6 @@ fn motion_names(split: &Split) -> BTreeMap<String, String> {
     all.map(|recording| (recording.log.name.clone(), recording.motion.clone())).collect()
 }
 
-fn reason_of_cut_off(given: &Choices) -> &'static str {
-    match given.cut_off {
-        Some(_) => "given",
-        None => "1.5 times the bandwidth of the motions",
-    }
-}
-
 fn reason_of_horizon(rung: &Rung, ladder: &[Rung], largest: f64, robot: &Robot) -> String {
     let name = |joint: usize| &robot.joints()[joint].name;
     let percent = |ratio: f64| match ratio.is_finite() {
@@ -320,20 +336,23 @@ fn mean_position(logs: &[&RawLog]) -> Vec<f64> {
     (0..n).map(|joint| (100.0 * sum(joint) / samples.max(1) as f64).round() / 100.0).collect()
 }
 
-/// Returns the radii of the noise that is left after a low-pass, 2n, rad and rad/s, rounded to two
-/// digits. White noise keeps the part of its variance that lies below the cut-off. A velocity is as
-/// noisy as the recorded one or as the derivative of the position, whichever is less.
-fn noise(logs: &[&RawLog], cut_off: f64) -> Vec<f64> {
+/// Returns the radii of the sensors' noise, 2n, rad and rad/s, rounded to two digits; after a
+/// low-pass of `cut_off` \[Hz\] of what is left of it. White noise keeps the part of its variance
+/// that lies below the cut-off, and a filtered velocity is as noisy as the recorded one or as the
+/// derivative of the position, whichever is less.
+fn noise(logs: &[&RawLog], cut_off: Option<f64>) -> Vec<f64> {
     let left = |log: &&RawLog| -> Option<Vec<f64>> {
         let run = &log.run;
+        let mut deviations = noise_deviations(run)?;
+        let Some(cut_off) = cut_off else { return Some(deviations) };
         let n = run.joints;
         let step = run.duration() / (run.len() - 1).max(1) as f64;
-        let part = (2.0 * cut_off * step).sqrt().min(1.0);
-        let deviations = noise_deviations(run)?;
         let slope = 2.0 * std::f64::consts::PI * cut_off / 3f64.sqrt();
-        let of_velocity = |joint: usize| deviations[n + joint].min(slope * deviations[joint]);
-        let positions = deviations[..n].iter().copied();
-        Some(positions.chain((0..n).map(of_velocity)).map(|x| part * x).collect())
+        for joint in 0..n {
+            deviations[n + joint] = deviations[n + joint].min(slope * deviations[joint]);
+        }
+        let part = (2.0 * cut_off * step).sqrt().min(1.0);
+        Some(deviations.into_iter().map(|deviation| part * deviation).collect())
     };
     let all: Vec<Vec<f64>> = logs.iter().filter_map(left).collect();
     let states = logs.first().map_or(0, |log| 2 * log.run.joints);

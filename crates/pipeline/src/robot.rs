@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use reachtube_identify::prepare::{LogEntry, PrepareSettings, PreparedLog, RawLog, prepare};
+use reachtube_identify::prepare::{LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered};
 use reachtube_identify::{IdentifySettings, ModelSettings, identify};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
@@ -169,7 +169,8 @@ impl Evidence<'_> {
     }
 }
 
-/// Filters recordings and turns their torques into the input of a robot's model.
+/// Filters recordings and turns their torques into the input of a robot's model. Torques that are
+/// the input already are not filtered.
 ///
 /// # Errors
 ///
@@ -181,6 +182,9 @@ pub(crate) fn prepare_for(
     settings: &PrepareSettings,
     cut_off: f64,
 ) -> Result<Vec<PreparedLog>> {
-    let compensated = (torque != Torque::Compensated).then_some(robot);
-    Ok(prepare(raw, settings, cut_off, compensated)?.logs)
+    if torque == Torque::Compensated {
+        let logs = raw.iter().map(|log| unfiltered(log, &settings.gains));
+        return Ok(logs.collect::<Result<_, _>>()?);
+    }
+    Ok(prepare(raw, settings, cut_off, Some(robot))?.logs)
 }

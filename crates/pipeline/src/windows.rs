@@ -7,8 +7,12 @@ use reachtube_recordings::{MemoryRuns, Run};
 
 use crate::error::{Error, Result};
 
+/// Parts into which a single motion is divided, so that one can be compared with the others.
+const PARTS: usize = 4;
+
 /// Cuts recordings into windows of `horizon` \[s\], each a suite of its own, at most `most` of them
-/// evenly spread. `motions` has the motion of each log.
+/// evenly spread. `motions` has the motion of each log; the windows of a single one belong to four
+/// parts of it.
 ///
 /// # Errors
 ///
@@ -24,10 +28,16 @@ pub(crate) fn cut(
     if count == 0 {
         return Err(Error::NoWindow { horizon });
     }
+    let motion = |index: usize| motions.get(&all[index].motion).unwrap_or(&all[index].motion);
+    let is_single = (0..all.len()).all(|index| motion(index) == motion(0));
     let mut runs = MemoryRuns::default();
-    for window in (0..count).map(|k| &all[k * all.len() / count]) {
-        let motion = motions.get(&window.motion).unwrap_or(&window.motion);
-        runs.push(&window.suite, Some(&window.suite), Some(motion), run(&window.log));
+    for index in (0..count).map(|k| k * all.len() / count) {
+        let window = &all[index];
+        let motion = match is_single {
+            true => format!("{} part {}", motion(index), 1 + PARTS * index / all.len()),
+            false => motion(index).clone(),
+        };
+        runs.push(&window.suite, Some(&window.suite), Some(&motion), run(&window.log));
     }
     Ok(runs)
 }

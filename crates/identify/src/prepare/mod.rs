@@ -28,7 +28,7 @@ mod windows;
 pub use cut_off::cut_off;
 pub use entry::LogEntry;
 pub use log::PreparedLog;
-pub use prepared::{Prepared, prepare};
+pub use prepared::{Prepared, prepare, unfiltered};
 pub use raw_log::RawLog;
 pub use read::read;
 pub use settings::{PrepareSettings, VelocitySource};

@@ -64,6 +64,38 @@ pub fn prepare(
     Ok(Prepared { logs, cut_off, changes })
 }
 
+/// Samples a recording evenly and filters nothing: for torques that are a model's input already, in
+/// which a low-pass would blur the steps. `gains` multiply the torques; an empty list stands for 1.
+/// Accelerations are derivatives of the velocity.
+///
+/// # Errors
+///
+/// [`Error::TooShort`] for a recording of one sample.
+pub fn unfiltered(raw: &RawLog, gains: &[f64]) -> Result<PreparedLog> {
+    let step = median_step(&raw.run.times).ok_or_else(|| Error::TooShort {
+        log: raw.name.clone(),
+        samples: raw.run.len(),
+        duration: raw.run.duration(),
+        cut_off: f64::INFINITY,
+    })?;
+    let n = raw.run.joints;
+    let even = |which, joint| resampled(&raw.run.times, raw.column(which, joint), step);
+    let mut log = PreparedLog::zeros(&raw.name, n, even(Run::q, 0).len(), step);
+    log.order = raw.order;
+    for joint in 0..n {
+        let qd = even(Run::qd, joint);
+        let gain = gains.get(joint).copied().unwrap_or(1.0);
+        let columns = [
+            (&mut log.q, even(Run::q, joint)),
+            (&mut log.qdd, derivative(&qd, step)),
+            (&mut log.qd, qd),
+            (&mut log.tau, even(Run::torque, joint).into_iter().map(|tau| gain * tau).collect()),
+        ];
+        columns.into_iter().for_each(|(rows, column)| set_column(rows, joint, n, &column));
+    }
+    Ok(log)
+}
+
 /// Describes what was taken off the torques.
 fn compensation(robot: &Robot) -> String {
     let has_friction = |joint: &Joint| {
