@@ -12,15 +12,15 @@ use crate::option_values::{Choices, choice, seconds, trimmed};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
 pub(crate) struct DataArguments {
-    /// Folder with runs.csv and the recordings
+    /// Folder with runs.csv and the recordings; for a model that `model` made, logs like its own
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
     /// Names of the test suites to use, separated by commas [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// Meaning of the recorded torques, columns tau1 to taun in N m
+    /// Meaning of the recorded torques, columns tau1 to taun in N m [default: the model file's]
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
-    pub torque: Torque,
+    pub torque: Option<Torque>,
     /// Use only samples up to this time after the first sample, above 0 s [default: all]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub until: Option<f64>,

@@ -5,6 +5,7 @@ use reachtube::conform::{
     self, Check, CheckJob, Hulls, Keep, Notion, Problem, Setup, SuiteReach, check, reach,
 };
 use reachtube::export::ExportCase;
+use reachtube::pipeline::prepared;
 use reachtube::recordings::DataSet;
 
 use crate::data_arguments::{DataArguments, ModelArguments, gap_limit};
@@ -42,12 +43,21 @@ impl Opened {
                  found; --until changes the limit"
             ));
         }
-        if settings.torque != args.torque {
-            let name = |torque| format!("{torque:?}").to_lowercase();
-            let (given, model) = (name(args.torque), name(settings.torque));
+        let expected = model.preparation.as_ref().map_or(settings.torque, |known| known.torque);
+        if let Some(given) = args.torque.filter(|given| *given != expected) {
+            let [given, model] =
+                [given, expected].map(|torque| format!("{torque:?}").to_lowercase());
             return Err(Error::OtherTorque { given, model });
         }
-        let job = CheckJob::new(model, setup, DataSet::open(&args.data)?)
+        let prepared = model
+            .preparation
+            .as_ref()
+            .map(|known| prepared(&model, known, std::slice::from_ref(&args.data)));
+        let job = match prepared.transpose()? {
+            Some(windows) => CheckJob::new(model, setup, windows),
+            None => CheckJob::new(model, setup, DataSet::open(&args.data)?),
+        };
+        let job = job
             .suites(&args.suites)
             .notion(notion)
             .until(args.until)

@@ -150,21 +150,19 @@ fn conform_claim(
     };
     let fit = NominalFit::new(problem)?;
     let warnings = warnings(problem, &hulls.sets, &radii, &fit, calibration.as_ref())?;
-    let usefulness = Usefulness::new(problem, &hulls, &fit)?;
-    let is_proved = verdict.conformant;
     let is_smallest = calibration.is_none() && !problem.settings().notion.asks_points();
     Ok(Conformance {
         sets: hulls.sets.clone(),
         warnings,
-        usefulness,
+        usefulness: Usefulness::new(problem, &hulls, &fit)?,
         nominal_explains: fit.explained,
         cost,
         lower_bound,
         optimality_gap,
         paper_cost,
         hull_volume,
+        trust: trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant),
         verdict,
-        trust: trust(problem, calibration.as_ref(), optimality_gap, &tight, is_proved),
         deciding_runs: DecidingRuns::new(problem, &tight, is_smallest.then_some(cost))?,
         trends: trends(problem),
         calibration,

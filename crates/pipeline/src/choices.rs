@@ -1,3 +1,4 @@
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use reachtube_conform::{Equations, Group};
@@ -52,6 +53,12 @@ pub struct Choices {
     /// Weight of the pull of the fit toward the identified values.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pull: Option<f64>,
+    /// Joints that are held at positions, as `JOINT=VALUE`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lock: Vec<String>,
+    /// The reasons that a file gives for its choices, by their keys.
+    #[serde(skip)]
+    pub reasons: BTreeMap<String, String>,
 }
 
 /// A choice that was made, and why.
@@ -66,6 +73,27 @@ pub struct Choice {
 }
 
 impl Choices {
+    /// Reads choices and the reasons in the comments before them.
+    ///
+    /// # Errors
+    ///
+    /// Text that is not TOML, and keys that do not exist, with line and column.
+    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
+        let mut choices: Self = toml::from_str(text)?;
+        let mut reason: Vec<&str> = Vec::new();
+        for line in text.lines() {
+            match (line.strip_prefix("# "), line.split_once(" = ")) {
+                (Some(words), _) => reason.push(words),
+                (None, Some((key, _))) if !reason.is_empty() => {
+                    choices.reasons.insert(key.into(), reason.join(" "));
+                    reason.clear();
+                }
+                _ => reason.clear(),
+            }
+        }
+        Ok(choices)
+    }
+
     /// Returns the choices as TOML, with the reasons of `made` as comments.
     #[must_use]
     pub fn to_toml(&self, made: &[Choice]) -> String {
@@ -114,10 +142,12 @@ mod tests {
             ..Choices::default()
         };
         let reason = "every fourth motion is kept back before anything is looked at ".repeat(3);
-        let made = [Choice { key: "held-out", value: "a".into(), reason }];
+        let made = [Choice { key: "held-out", value: "a".into(), reason: reason.clone() }];
         let text = choices.to_toml(&made);
         assert!(text.contains("# every fourth motion"), "{text}");
         assert!(text.lines().all(|line| line.len() <= 100), "{text}");
-        assert_eq!(toml::from_str::<Choices>(&text).unwrap(), choices);
+        let read = Choices::from_toml(&text).unwrap();
+        assert_eq!(read.reasons["held-out"], reason.trim());
+        assert_eq!(Choices { reasons: BTreeMap::new(), ..read }, choices);
     }
 }

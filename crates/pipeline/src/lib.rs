@@ -2,15 +2,23 @@
 
 mod build;
 mod choices;
+mod compared;
 mod error;
+mod fits;
 mod held_out;
 mod horizon;
 mod kinds;
+mod noise;
+mod prepared;
+mod road;
 mod robot;
+mod sorted;
 mod trial;
 mod windows;
 
-pub use build::{Built, HeldOut, build};
+pub use build::{Built, build};
 pub use choices::{Choice, Choices};
+pub use compared::HeldOut;
 pub use error::{Error, Result};
 pub use horizon::Rung;
+pub use prepared::prepared;

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use reachtube_identify::prepare::{LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered};
+use reachtube_identify::prepare::{
+    LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered,
+};
 use reachtube_identify::{IdentifySettings, ModelSettings, identify};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
@@ -69,7 +71,6 @@ impl Evidence<'_> {
                 Some((nominal, error))
             }
         };
-        let percent = |part: f64| format!("{:.0} %", 100.0 * part);
         match own {
             Some((nominal, error)) if given == Some(false) => {
                 let left = percent(error);
@@ -87,28 +88,7 @@ impl Evidence<'_> {
                 };
                 Ok(Nominal { reason, ..nominal })
             }
-            Some((nominal, error)) => {
-                let identified = match self.identified(described) {
-                    Ok(identified) => identified,
-                    Err(failure) => {
-                        let reason = format!(
-                            "the description leaves {} of the torque unexplained, but the robot \
-                             could not be identified: {failure}",
-                            percent(error)
-                        );
-                        return Ok(Nominal { reason, ..nominal });
-                    }
-                };
-                let after = self.unexplained(&identified)?;
-                let reason = format!(
-                    "of the torque, the description leaves {} unexplained and the identified robot \
-                     {}",
-                    percent(error),
-                    percent(after)
-                );
-                let best = if after < BETTER * error { identified } else { nominal };
-                Ok(Nominal { reason, ..best })
-            }
+            Some((nominal, error)) => self.better(described, nominal, error),
             None => {
                 let identified = self.identified(described)?;
                 let after = percent(self.unexplained(&identified)?);
@@ -121,6 +101,30 @@ impl Evidence<'_> {
                 Ok(Nominal { reason, ..identified })
             }
         }
+    }
+
+    /// Returns the identified robot if it explains the torque clearly better than the description,
+    /// which leaves the part `error` of it unexplained.
+    fn better(&self, described: &Robot, nominal: Nominal, error: f64) -> Result<Nominal> {
+        let identified = match self.identified(described) {
+            Ok(identified) => identified,
+            Err(failure) => {
+                let left = percent(error);
+                let reason = format!(
+                    "the description leaves {left} of the torque unexplained, but the robot could \
+                     not be identified: {failure}"
+                );
+                return Ok(Nominal { reason, ..nominal });
+            }
+        };
+        let after = self.unexplained(&identified)?;
+        let reason = format!(
+            "of the torque, the description leaves {} unexplained and the identified robot {}",
+            percent(error),
+            percent(after)
+        );
+        let best = if after < BETTER * error { identified } else { nominal };
+        Ok(Nominal { reason, ..best })
     }
 
     /// Identifies the robot from what is not kept back.
@@ -187,4 +191,8 @@ pub(crate) fn prepare_for(
         return Ok(logs.collect::<Result<_, _>>()?);
     }
     Ok(prepare(raw, settings, cut_off, Some(robot))?.logs)
+}
+
+fn percent(part: f64) -> String {
+    format!("{:.0} %", 100.0 * part)
 }

@@ -23,6 +23,22 @@ pub(crate) fn cut(
     horizon: f64,
     most: usize,
 ) -> Result<MemoryRuns> {
+    Ok(cut_some(logs, motions, horizon, most, |_, _| true)?.0)
+}
+
+/// Does what [`cut`] does for the windows that `is_wanted` takes, by the number of their motion and
+/// their name, and returns how many motions there are.
+///
+/// # Errors
+///
+/// As [`cut`].
+pub(crate) fn cut_some(
+    logs: &[PreparedLog],
+    motions: &BTreeMap<String, String>,
+    horizon: f64,
+    most: usize,
+    is_wanted: impl Fn(usize, &str) -> bool,
+) -> Result<(MemoryRuns, usize)> {
     let all = windows(logs, Some(horizon), false).windows;
     let count = all.len().min(most);
     if count == 0 {
@@ -31,15 +47,22 @@ pub(crate) fn cut(
     let motion = |index: usize| motions.get(&all[index].motion).unwrap_or(&all[index].motion);
     let is_single = (0..all.len()).all(|index| motion(index) == motion(0));
     let mut runs = MemoryRuns::default();
+    let mut names: Vec<String> = Vec::new();
     for index in (0..count).map(|k| k * all.len() / count) {
         let window = &all[index];
         let motion = match is_single {
             true => format!("{} part {}", motion(index), 1 + PARTS * index / all.len()),
             false => motion(index).clone(),
         };
-        runs.push(&window.suite, Some(&window.suite), Some(&motion), run(&window.log));
+        let number = names.iter().position(|name| *name == motion).unwrap_or_else(|| {
+            names.push(motion.clone());
+            names.len() - 1
+        });
+        if is_wanted(number, &window.suite) {
+            runs.push(&window.suite, Some(&window.suite), Some(&motion), run(&window.log));
+        }
     }
-    Ok(runs)
+    Ok((runs, names.len()))
 }
 
 /// Returns the samples of a window as a recording. Its times are multiples of the sample time to

@@ -46,6 +46,7 @@ mod logged_runs;
 mod memory;
 mod notes;
 mod order;
+mod preparation;
 mod reading;
 mod refusal;
 mod run;
@@ -70,6 +71,7 @@ pub use logged::{
 pub use logged_runs::{LogInspection, inspect_logs};
 pub use memory::MemoryRuns;
 pub use notes::{copies_note, run_notes};
+pub use preparation::Preparation;
 pub use reading::{parse_csv, read_csv};
 pub use refusal::{DefectPlace, Refusal};
 pub use run::{Run, RunError, column_names};

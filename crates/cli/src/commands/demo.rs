@@ -135,7 +135,7 @@ fn check_held_out(
     let args = DataArguments {
         data: folder.to_path_buf(),
         suites: suites.to_vec(),
-        torque: Torque::Compensated,
+        torque: Some(Torque::Compensated),
         until: None,
         max_gap: None,
     };

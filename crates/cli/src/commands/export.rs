@@ -172,7 +172,7 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
     let data = DataArguments {
         data,
         suites: args.suites.clone(),
-        torque: setup.settings.torque,
+        torque: None,
         until: args.until,
         max_gap: args.max_gap,
     };

@@ -3,15 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::conform::JointWidth;
+use reachtube::Silent;
+use reachtube::conform::{Answer, FrontEnd, JointWidth, Keep, Opened};
 use reachtube::number::significant;
+use reachtube::page::{Assets, Sources};
 use reachtube::pipeline::{Built, Choice, Choices, HeldOut, build};
-use reachtube::recordings::Torque;
+use reachtube::recordings::{MemoryRuns, RunSource, Torque};
 use reachtube::write;
 use reachtube_files::MARK;
+use reachtube_robot::{Lock, Robot};
 use serde_json::{Value, json};
 
-use super::conform;
 use crate::data_arguments::TORQUES;
 use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
@@ -68,7 +70,9 @@ pub(crate) struct Arguments {
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (choices, folder) = choices(args)?;
     let name = choices.robot.clone().ok_or(Error::NoRobot)?;
-    let robot = args.lock.load(&name)?;
+    let locks: Vec<Lock> =
+        choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
+    let robot = Robot::load_locked(&name, &locks)?;
     let torque = choices.torque.ok_or(Error::NoTorque)?;
     if choices.data.is_empty() {
         return Err(Error::NoData);
@@ -83,11 +87,26 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     };
     let built = build(&robot, torque, &choices, &folder, &mut say)?;
     drop(bar);
-    save(&built, args, &files)?;
-    let page = conform::report(&built.answer, &page)?;
-    output::wrote(&page);
+    save(&built, &files)?;
+    let held_out = args.out.join("held-out");
+    let Built { answer, shown, shown_held_out, .. } = &built;
+    for (runs, folder) in [(shown, &page), (shown_held_out, &held_out)] {
+        if !runs.runs().is_empty() && built.held_out.failure.is_none() {
+            output::wrote(&write_page(answer, runs.clone(), folder)?);
+        }
+    }
     output::show(json, &as_json(&built), || summary(&built, args))?;
     Ok(outcome(&built))
+}
+
+/// Writes a page about some windows.
+fn write_page(answer: &Answer, runs: MemoryRuns, folder: &Path) -> Result<PathBuf> {
+    let opened = answer.model.check(runs).keep(Keep::All).open(&Silent)?;
+    let (check, reach) = (opened.check()?, opened.reach()?);
+    let Opened { model, problem, .. } = &opened;
+    let front_end = FrontEnd::CommandLine;
+    let sources = Sources { model, problem, reach: &reach, check: &check, front_end };
+    report_files::write(&sources, Assets::Inside, folder)
 }
 
 /// Returns the choices of the settings file and the command line, with paths from the working
@@ -97,7 +116,7 @@ fn choices(args: &Arguments) -> Result<(Choices, PathBuf)> {
         None => Choices::default(),
         Some(path) => {
             let text = reachtube_files::read_text(path, "give a file that `model` wrote")?;
-            toml::from_str(&text).map_err(|error| Error::SettingsSyntax {
+            Choices::from_toml(&text).map_err(|error| Error::SettingsSyntax {
                 path: path.clone(),
                 message: error.to_string(),
             })?
@@ -120,6 +139,9 @@ fn choices(args: &Arguments) -> Result<(Choices, PathBuf)> {
     if !args.held_out.is_empty() {
         choices.held_out = Some(args.held_out.clone());
     }
+    if !args.lock.lock.is_empty() {
+        choices.lock = args.lock.lock.iter().map(ToString::to_string).collect();
+    }
     if !args.gains.is_empty() {
         choices.gains.clone_from(&args.gains);
     }
@@ -127,7 +149,7 @@ fn choices(args: &Arguments) -> Result<(Choices, PathBuf)> {
 }
 
 /// Writes the model, the robot and the choices.
-fn save(built: &Built, args: &Arguments, files: &[PathBuf; 3]) -> Result<()> {
+fn save(built: &Built, files: &[PathBuf; 3]) -> Result<()> {
     let [model, robot, choices] = files;
     built.answer.model.save(model)?;
     let description = toml::to_string(built.robot.description());
@@ -145,14 +167,8 @@ fn save(built: &Built, args: &Arguments, files: &[PathBuf; 3]) -> Result<()> {
         data: built.choices.data.iter().map(|path| absolute(path)).collect(),
         ..built.choices.clone()
     };
-    let lock = match args.lock.lock.is_empty() {
-        true => String::new(),
-        false => {
-            "# The robot's joints were locked by --lock, which this file does not hold.\n".into()
-        }
-    };
     let text = format!(
-        "# {MARK} model: the choices behind model.json, each with its reason.\n{lock}{}",
+        "# {MARK} model: the choices behind model.json, each with its reason.\n\n{}",
         named.to_toml(&built.made)
     );
     write::atomically(choices, |out| out.write_all(text.as_bytes()))?;

@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 use reachtube_abstraction::{Records, TermRecord};
 use reachtube_files::{json, write};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
+use reachtube_recordings::Preparation;
 use reachtube_robot::RobotDescription;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
@@ -131,6 +132,10 @@ pub struct Model {
     pub tight: Vec<Witness>,
     /// The settings.
     pub settings: Settings,
+    /// How logs became its recordings, where a pipeline made them. Commands do the same to other
+    /// logs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preparation: Option<Preparation>,
     /// What is taken off the recorded inputs along the nominal motions, where anything is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub correction: Option<InputCorrection>,
@@ -214,6 +219,7 @@ impl Model {
             trends: found.trends.clone(),
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),
+            preparation: None,
             correction: problem.setup().correction.clone(),
             any_run: found.any_run.clone(),
             fit: None,
@@ -229,20 +235,6 @@ impl Model {
             sha256: String::new(),
         }
         .sealed()
-    }
-
-    /// Returns whether the sets were proved to enclose every recording and say something about the
-    /// motion of every joint. A model is vacuous otherwise if it is proved.
-    #[must_use]
-    pub fn is_useful(&self) -> bool {
-        self.verified && !self.is_vacuous()
-    }
-
-    /// Returns whether the sets were proved to enclose every recording but say nothing about the
-    /// motion of some joint.
-    #[must_use]
-    pub fn is_vacuous(&self) -> bool {
-        self.verified && self.usefulness.as_ref().is_some_and(|said| !said.vacuous.is_empty())
     }
 
     /// Reads a model file and checks that its parts fit together.
@@ -318,7 +310,7 @@ impl Model {
         Self { fit: Some(record), ..self }.sealed()
     }
 
-    fn sealed(self) -> Self {
+    pub(super) fn sealed(self) -> Self {
         Self { sha256: self.digest(), ..self }
     }
 

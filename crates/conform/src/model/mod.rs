@@ -3,6 +3,7 @@
 mod compared;
 pub(crate) mod file;
 pub(crate) mod records;
+mod usefulness;
 mod validity;
 
 pub use file::Model;

@@ -50,8 +50,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 fn job(args: &Arguments) -> Result<Job> {
     let basis = basis(args)?;
     let settings = settings(args, basis.joints())?;
+    let torque = settings.torque;
     let fit = FitSettings { groups: args.fit.clone(), pull: args.pull };
-    let mut job = Job::new(basis, DataSet::open(&args.data.data)?, args.data.torque)
+    let mut job = Job::new(basis, DataSet::open(&args.data.data)?, torque)
         .settings(settings)
         .suites(&args.data.suites)
         .fit((!args.fit.is_empty()).then_some(fit))

@@ -58,7 +58,7 @@ pub(super) fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
         calibrate: args.calibrate.clone(),
         until: args.data.until,
         gap_limit: gap_limit(args.data.max_gap),
-        ..Settings::new(args.data.torque, joints)
+        ..Settings::new(args.data.torque.ok_or(Error::NoTorque)?, joints)
     };
     settings.validate(joints)?;
     Ok(settings)

@@ -1,0 +1,27 @@
+//! Whether a model says anything, and how logs became its recordings.
+
+use reachtube_recordings::Preparation;
+
+use crate::model::file::Model;
+
+impl Model {
+    /// Returns whether the sets were proved to enclose every recording and say something about the
+    /// motion of every joint. A model is vacuous otherwise if it is proved.
+    #[must_use]
+    pub fn is_useful(&self) -> bool {
+        self.verified && !self.is_vacuous()
+    }
+
+    /// Returns whether the sets were proved to enclose every recording but say nothing about the
+    /// motion of some joint.
+    #[must_use]
+    pub fn is_vacuous(&self) -> bool {
+        self.verified && self.usefulness.as_ref().is_some_and(|said| !said.vacuous.is_empty())
+    }
+
+    /// Returns the model with what was done to logs before its sets were found.
+    #[must_use]
+    pub fn with_preparation(self, preparation: Preparation) -> Self {
+        Self { preparation: Some(preparation), ..self }.sealed()
+    }
+}

@@ -1,0 +1,100 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use reachtube_conform::{Answer, Check, Silent};
+use reachtube_identify::prepare::PreparedLog;
+use reachtube_recordings::{MemoryRuns, RunSource};
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::windows::{cut, cut_some};
+
+/// Windows on a page, besides those that decide.
+const MOST_SHOWN: usize = 12;
+
+/// A model beside motions that were kept back from every choice.
+#[derive(Debug, Clone, Serialize)]
+pub struct HeldOut {
+    /// Number of windows.
+    pub windows: usize,
+    /// Number of rows (window, sample, state).
+    pub rows: usize,
+    /// How many of them lie outside the reachable set.
+    pub outside: usize,
+    /// The factor by which the set of each joint would have to grow where it is left furthest, n;
+    /// 1 where nothing lies outside.
+    pub growth: Vec<f64>,
+    /// Why the motions could not be compared, such as a nominal motion that runs away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
+}
+
+impl HeldOut {
+    /// Compares a model with prepared recordings. Returns the windows that leave its sets, too.
+    pub(crate) fn new(
+        answer: &Answer,
+        logs: &[PreparedLog],
+        motions: &BTreeMap<String, String>,
+        horizon: f64,
+    ) -> Result<(Self, BTreeSet<String>)> {
+        let n = answer.model.robot.joints.len();
+        let none = BTreeSet::new();
+        let windows = match cut(logs, motions, horizon, usize::MAX) {
+            Err(Error::NoWindow { .. }) => {
+                return Ok((Self::failed(n, 0, "no window is as long"), none));
+            }
+            other => other?,
+        };
+        let count = windows.runs().len();
+        match answer.model.check(windows).run(&Silent) {
+            Ok(check) => {
+                let verdict = &check.verdict;
+                let left = verdict.suites.iter().filter(|suite| suite.violations.count > 0);
+                let outside = left.map(|suite| suite.suite.clone()).take(MOST_SHOWN).collect();
+                let held_out = Self {
+                    windows: count,
+                    rows: verdict.rows,
+                    outside: verdict.violations.count,
+                    growth: growth(&check, n),
+                    failure: None,
+                };
+                Ok((held_out, outside))
+            }
+            Err(error) => Ok((Self::failed(n, count, &error.to_string()), none)),
+        }
+    }
+
+    fn failed(joints: usize, windows: usize, why: &str) -> Self {
+        let growth = vec![f64::INFINITY; joints];
+        Self { windows, rows: 0, outside: 0, growth, failure: Some(why.into()) }
+    }
+}
+
+/// Returns the factor by which the sets of each joint would have to grow about their centres.
+pub(crate) fn growth(check: &Check, joints: usize) -> Vec<f64> {
+    let mut growth = vec![1.0f64; joints];
+    for worst in &check.worst_by_state {
+        let factor = 1.0 + worst.excess / worst.radius.max(f64::MIN_POSITIVE);
+        let own = &mut growth[worst.state.joint];
+        *own = own.max(factor);
+    }
+    growth
+}
+
+/// Returns the windows that `first` names and others, evenly spread; none where no recording is as
+/// long as a window.
+pub(crate) fn some_windows(
+    logs: &[PreparedLog],
+    motions: &BTreeMap<String, String>,
+    horizon: f64,
+    first: &BTreeSet<String>,
+) -> Result<MemoryRuns> {
+    let all = match cut(logs, motions, horizon, usize::MAX) {
+        Err(Error::NoWindow { .. }) => return Ok(MemoryRuns::default()),
+        other => other?,
+    };
+    let stride = all.runs().len().div_ceil(MOST_SHOWN).max(1);
+    let spread: BTreeSet<&str> =
+        all.runs().iter().step_by(stride).map(|run| run.file.as_str()).collect();
+    let is_wanted = |_, name: &str| first.contains(name) || spread.contains(name);
+    Ok(cut_some(logs, motions, horizon, usize::MAX, is_wanted)?.0)
+}

@@ -1,0 +1,91 @@
+//! Recordings sorted by what they are.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
+use reachtube_recordings::{DataSet, RunEntry, RunSource};
+use reachtube_robot::Robot;
+
+use crate::choices::Choices;
+use crate::error::{Error, Result};
+use crate::held_out::Recording;
+use crate::kinds::{Kind, motions};
+use crate::road::Road;
+
+/// Recordings by what they are.
+pub(crate) struct Sorted {
+    pub rest: Vec<LogEntry>,
+    pub one_joint: Vec<LogEntry>,
+    pub motions: Vec<Recording>,
+}
+
+impl Sorted {
+    /// Reads recordings and sorts them.
+    ///
+    /// # Errors
+    ///
+    /// Recordings that cannot be read; [`Error::NoMotion`].
+    pub(crate) fn read(
+        road: &mut Road,
+        given: &Choices,
+        folder: &Path,
+        robot: &Robot,
+        settings: &PrepareSettings,
+    ) -> Result<Self> {
+        let entries: Vec<LogEntry> = given.data.iter().cloned().map(LogEntry::from).collect();
+        let raw = read(&entries, folder, robot, settings)?;
+        let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
+        let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
+        let of = |kind: Kind| -> Vec<&RawLog> {
+            let pairs = raw.iter().zip(&kinds).filter(|(_, other)| **other == kind);
+            pairs.map(|(log, _)| log).collect()
+        };
+        let entry = |log: &RawLog| LogEntry::Path(log.file.clone());
+        let moving = of(Kind::Motion);
+        if moving.is_empty() {
+            let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
+            return Err(Error::NoMotion { recordings: raw.len(), rest, one });
+        }
+        let known = indexed(given.data.iter().map(|path| folder.join(path)));
+        let known: Vec<Option<String>> =
+            moving.iter().map(|log| known.get(&log.file).cloned()).collect();
+        let names = motions(&moving, &known);
+        let distinct: BTreeSet<&String> = names.iter().collect();
+        road.choose(
+            "data",
+            format!("{} recordings", raw.len()),
+            format!(
+                "{} at rest, {} of one joint at a time, {} of several joints ({} motions)",
+                count(Kind::Rest),
+                count(Kind::OneJoint),
+                moving.len(),
+                distinct.len()
+            ),
+        );
+        drop(distinct);
+        let recordings = moving.iter().zip(names).map(|(log, motion)| Recording {
+            log: (*log).clone(),
+            entry: entry(log),
+            motion,
+        });
+        let motions = recordings.collect();
+        let [rest, one_joint] =
+            [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
+        Ok(Self { rest, one_joint, motions })
+    }
+}
+
+/// Returns the motion, or else the suite, of each file that the index of a folder names.
+fn indexed(folders: impl Iterator<Item = PathBuf>) -> BTreeMap<PathBuf, String> {
+    let indices = folders.filter(|folder| folder.join("runs.csv").is_file());
+    let sets = indices.filter_map(|folder| DataSet::open(&folder).ok());
+    let motion = |set: DataSet| -> Vec<(PathBuf, String)> {
+        let named = |(index, run): (usize, &RunEntry)| {
+            let motion = run.motion.clone().or_else(|| run.suite.clone())?;
+            Some((set.run_name(index), motion))
+        };
+        set.runs().iter().enumerate().filter_map(named).collect()
+    };
+    sets.flat_map(motion).collect()
+}

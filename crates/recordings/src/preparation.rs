@@ -1,0 +1,21 @@
+use serde::{Deserialize, Serialize};
+
+use crate::torque::Torque;
+
+/// How logs become the recordings of a model: what was done to them before its sets were found, and
+/// what has to be done to other logs before they are compared with it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Preparation {
+    /// What the torques of the logs are. Gravity and dry friction of the model's robot are taken off
+    /// them, unless they are compensated already.
+    pub torque: Torque,
+    /// Factors of the torques, one per joint; none where they count as recorded.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gains: Vec<f64>,
+    /// Cut-off frequency of the low-pass, Hz; none where nothing is filtered.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cut_off: Option<f64>,
+    /// Length of the windows into which logs are cut, s.
+    pub window: f64,
+}
