@@ -1,15 +1,14 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use reachtube_conform::{Answer, Equations, FitSettings};
-use reachtube_identify::prepare::{PrepareSettings, PreparedLog, RawLog, cut_off};
+use reachtube_conform::{Answer, Equations, FitSettings, NominalStart};
+use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
 use crate::choices::{Choice, Choices};
 use crate::compared::{HeldOut, some_windows};
 use crate::error::Result;
-use crate::fits;
 use crate::held_out::Split;
 use crate::horizon::{Rung, ladder, longest};
 use crate::noise::noise;
@@ -17,7 +16,7 @@ use crate::road::Road;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::Sorted;
 use crate::trial::Trial;
-use crate::windows::cut;
+use crate::windows::Prepared;
 
 /// Half a joint's set by the joint's displacement that is accepted by default.
 const LARGEST_RATIO: f64 = 0.5;
@@ -98,20 +97,23 @@ pub fn build(
 
     // The horizon and the sets.
     let motions = motion_names(&split);
-    let (mut answer, ladder) = sets(&mut road, &mut trial, &logs, &motions)?;
+    let from_start = torque == Torque::Compensated;
+    let recordings = Prepared { logs: &logs, motions: &motions, from_start };
+    let (mut answer, ladder) = sets(&mut road, &mut trial, &recordings)?;
     let raw: Vec<RawLog> = split.held_out.iter().map(|recording| recording.log.clone()).collect();
-    let prepared = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
+    let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
+    let held_back = Prepared { logs: &held_back, ..recordings };
     let horizon = road.choices.horizon.unwrap_or_default();
     answer.model = answer.model.with_preparation(Preparation {
         torque,
         gains: given.gains.clone(),
         cut_off: road.choices.cut_off,
-        window: horizon,
+        window: (!from_start).then_some(horizon),
     });
-    let (held_out, outside) = HeldOut::new(&answer, &prepared, &motions, horizon)?;
+    let (held_out, outside) = HeldOut::new(&answer, &held_back, horizon)?;
     let deciding = answer.model.deciding_runs.most.iter().map(|run| run.file.clone()).collect();
-    let shown = some_windows(&logs, &motions, horizon, &deciding)?;
-    let shown_held_out = some_windows(&prepared, &motions, horizon, &outside)?;
+    let shown = some_windows(&recordings, horizon, &deciding)?;
+    let shown_held_out = some_windows(&held_back, horizon, &outside)?;
     let Road { choices, made, .. } = road;
     Ok(Built { answer, robot, choices, made, ladder, held_out, shown, shown_held_out })
 }
@@ -145,42 +147,31 @@ fn first_choices(
     road.choose("sensor-noise", list(&sensor_noise), why);
     road.choices.sensor_noise = Some(sensor_noise.clone());
     let equations = given.equations.unwrap_or(Equations::Robot);
-    let why = "the robot's own equations follow the motion further than a linear model";
-    road.choose("equations", format!("{equations:?}").to_lowercase(), why);
-    road.choices.equations = Some(equations);
+    let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
     let robot = robot.clone();
-    Ok((Trial { robot, expansion, sensor_noise, equations, fit: None }, cut_off))
+    let trial = Trial { robot, expansion, sensor_noise, equations, nominal, fit: None };
+    Ok((trial, cut_off))
 }
 
 /// Chooses the fit and the horizon, and finds the sets.
-fn sets(
-    road: &mut Road,
-    trial: &mut Trial,
-    logs: &[PreparedLog],
-    motions: &BTreeMap<String, String>,
-) -> Result<(Answer, Vec<Rung>)> {
+fn sets(road: &mut Road, trial: &mut Trial, recordings: &Prepared) -> Result<(Answer, Vec<Rung>)> {
     let largest = road.choices.largest_ratio.unwrap_or(LARGEST_RATIO);
     road.choices.largest_ratio = Some(largest);
-    let mut rungs = ladder(trial, logs, motions)?;
-    let (fit, reason) = match &road.choices.fit {
-        Some(groups) if groups.is_empty() => (None, "given".to_string()),
-        Some(groups) => {
-            (Some(FitSettings { groups: groups.clone(), pull: road.choices.pull }), "given".into())
-        }
-        None => {
-            let found = fits::choose(trial, logs, motions, longest(&rungs, largest).horizon)?;
-            (found.fit, found.reason)
-        }
+    let mut rungs = choose_equations(road, trial, recordings, largest)?;
+    let groups = road.choices.fit.clone().unwrap_or_default();
+    let pull = road.choices.pull;
+    let fit = (!groups.is_empty()).then(|| FitSettings { groups: groups.clone(), pull });
+    let reason = match fit {
+        Some(_) => "given",
+        None => "sets of a fitted model are smaller, but a fit takes minutes; name groups for one",
     };
-    let groups = fit.as_ref().map_or_else(Vec::new, |fit| fit.groups.clone());
     let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
     let value = if names.is_empty() { "nothing".into() } else { names.join(", ") };
     road.choose("fit", value, reason);
-    road.choices.pull = fit.as_ref().and_then(|fit| fit.pull);
     road.choices.fit = Some(groups);
     if fit.is_some() {
         trial.fit = fit;
-        rungs = ladder(trial, logs, motions)?;
+        rungs = ladder(trial, recordings)?;
     }
     let (horizon, reason) = match road.choices.horizon {
         Some(horizon) => (horizon, "given".to_string()),
@@ -191,8 +182,53 @@ fn sets(
     };
     road.choose("horizon", format!("{horizon} s"), reason);
     road.choices.horizon = Some(horizon);
-    let answer = trial.run(cut(logs, motions, horizon, usize::MAX)?, false)?;
+    let answer = trial.run(recordings.cut(horizon, usize::MAX)?, false)?;
     Ok((answer, rungs))
+}
+
+/// Chooses whose equations nominal motions satisfy: those with which the sets stay narrow for
+/// longer, or are narrower. Returns how the sets grow with them.
+fn choose_equations(
+    road: &mut Road,
+    trial: &mut Trial,
+    recordings: &Prepared,
+    largest: f64,
+) -> Result<Vec<Rung>> {
+    let given = road.choices.equations;
+    let grown = |equations: Equations| {
+        let trial = Trial { equations, ..trial.clone() };
+        let rungs = ladder(&trial, recordings)?;
+        let rung = longest(&rungs, largest).clone();
+        Ok::<_, crate::error::Error>((rungs, rung))
+    };
+    let (rungs, equations, reason) = match given {
+        Some(equations) => (grown(equations)?.0, equations, "given".to_string()),
+        None => {
+            let (of_robot, own) = grown(Equations::Robot)?;
+            let (of_model, other) = grown(Equations::Model)?;
+            let is_narrow = |rung: &Rung| rung.worst().1 <= largest;
+            let is_better = match (is_narrow(&own), is_narrow(&other)) {
+                (true, true) => other.horizon > own.horizon,
+                (false, false) => other.worst().1 < own.worst().1,
+                (own, _) => !own,
+            };
+            let words = |rung: &Rung| format!("{} at {} s", percent(rung.worst().1), rung.horizon);
+            let reason = format!(
+                "the widest set is {} of the motion with the robot's equations, {} with the linear \
+                 model's",
+                words(&own),
+                words(&other)
+            );
+            match is_better {
+                true => (of_model, Equations::Model, reason),
+                false => (of_robot, Equations::Robot, reason),
+            }
+        }
+    };
+    road.choose("equations", format!("{equations:?}").to_lowercase(), reason);
+    road.choices.equations = Some(equations);
+    trial.equations = equations;
+    Ok(rungs)
 }
 
 fn motion_names(split: &Split) -> BTreeMap<String, String> {
@@ -202,10 +238,6 @@ fn motion_names(split: &Split) -> BTreeMap<String, String> {
 
 fn reason_of_horizon(rung: &Rung, ladder: &[Rung], largest: f64, robot: &Robot) -> String {
     let name = |joint: usize| &robot.joints()[joint].name;
-    let percent = |ratio: f64| match ratio.is_finite() {
-        true => format!("{:.0} %", 100.0 * ratio),
-        false => "no bound".into(),
-    };
     let (joint, ratio) = rung.worst();
     let next = ladder.iter().find(|other| other.horizon > rung.horizon);
     let mut words = format!("the widest set is {} of the motion ({})", percent(ratio), name(joint));
@@ -218,6 +250,11 @@ fn reason_of_horizon(rung: &Rung, ladder: &[Rung], largest: f64, robot: &Robot) 
             &format!("; at {} s it would be {} ({})", next.horizon, percent(ratio), name(joint));
     }
     words
+}
+
+/// Returns a ratio in percent.
+pub(crate) fn percent(ratio: f64) -> String {
+    if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "of no bounded size".into() }
 }
 
 fn list(values: &[f64]) -> String {

@@ -1,12 +1,11 @@
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use reachtube_conform::{Answer, Check, Silent};
-use reachtube_identify::prepare::PreparedLog;
 use reachtube_recordings::{MemoryRuns, RunSource};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::windows::{cut, cut_some};
+use crate::windows::Prepared;
 
 /// Windows on a page, besides those that decide.
 const MOST_SHOWN: usize = 12;
@@ -32,13 +31,12 @@ impl HeldOut {
     /// Compares a model with prepared recordings. Returns the windows that leave its sets, too.
     pub(crate) fn new(
         answer: &Answer,
-        logs: &[PreparedLog],
-        motions: &BTreeMap<String, String>,
+        recordings: &Prepared,
         horizon: f64,
     ) -> Result<(Self, BTreeSet<String>)> {
         let n = answer.model.robot.joints.len();
         let none = BTreeSet::new();
-        let windows = match cut(logs, motions, horizon, usize::MAX) {
+        let windows = match recordings.cut(horizon, usize::MAX) {
             Err(Error::NoWindow { .. }) => {
                 return Ok((Self::failed(n, 0, "no window is as long"), none));
             }
@@ -83,12 +81,11 @@ pub(crate) fn growth(check: &Check, joints: usize) -> Vec<f64> {
 /// Returns the windows that `first` names and others, evenly spread; none where no recording is as
 /// long as a window.
 pub(crate) fn some_windows(
-    logs: &[PreparedLog],
-    motions: &BTreeMap<String, String>,
+    recordings: &Prepared,
     horizon: f64,
     first: &BTreeSet<String>,
 ) -> Result<MemoryRuns> {
-    let all = match cut(logs, motions, horizon, usize::MAX) {
+    let all = match recordings.cut(horizon, usize::MAX) {
         Err(Error::NoWindow { .. }) => return Ok(MemoryRuns::default()),
         other => other?,
     };
@@ -96,5 +93,5 @@ pub(crate) fn some_windows(
     let spread: BTreeSet<&str> =
         all.runs().iter().step_by(stride).map(|run| run.file.as_str()).collect();
     let is_wanted = |_, name: &str| first.contains(name) || spread.contains(name);
-    Ok(cut_some(logs, motions, horizon, usize::MAX, is_wanted)?.0)
+    Ok(recordings.cut_some(horizon, usize::MAX, is_wanted)?.0)
 }

@@ -1,12 +1,9 @@
-use std::collections::BTreeMap;
-
 use reachtube_conform::JointWidth;
-use reachtube_identify::prepare::PreparedLog;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::trial::Trial;
-use crate::windows::cut;
+use crate::windows::Prepared;
 
 /// The horizons that are tried, s.
 const HORIZONS: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0];
@@ -46,16 +43,12 @@ impl Rung {
 /// # Errors
 ///
 /// [`Error::NoSets`] if none were found over the shortest horizon.
-pub(crate) fn ladder(
-    trial: &Trial,
-    logs: &[PreparedLog],
-    motions: &BTreeMap<String, String>,
-) -> Result<Vec<Rung>> {
+pub(crate) fn ladder(trial: &Trial, recordings: &Prepared) -> Result<Vec<Rung>> {
     let mut rungs: Vec<Rung> = Vec::new();
-    let steps = logs.iter().map(|log| log.step);
+    let steps = recordings.logs.iter().map(|log| log.step);
     let shortest = 3.0 * steps.fold(0.0, f64::max);
     for horizon in HORIZONS.into_iter().filter(|horizon| *horizon >= shortest) {
-        let windows = match cut(logs, motions, horizon, MOST_WINDOWS) {
+        let windows = match recordings.cut(horizon, MOST_WINDOWS) {
             Err(Error::NoWindow { .. }) => break,
             other => other?,
         };

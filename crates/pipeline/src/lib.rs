@@ -4,7 +4,6 @@ mod build;
 mod choices;
 mod compared;
 mod error;
-mod fits;
 mod held_out;
 mod horizon;
 mod kinds;

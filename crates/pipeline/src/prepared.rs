@@ -1,4 +1,3 @@
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use reachtube_conform::Model;
@@ -8,7 +7,8 @@ use reachtube_robot::Robot;
 
 use crate::error::Result;
 use crate::robot::prepare_for;
-use crate::windows::cut;
+use crate::sorted::index_names;
+use crate::windows::Prepared;
 
 /// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`.
 ///
@@ -16,12 +16,20 @@ use crate::windows::cut;
 ///
 /// Logs that cannot be read or prepared, and [`Error::NoWindow`](crate::Error::NoWindow) if none is
 /// as long as a window.
-pub fn prepared(model: &Model, preparation: &Preparation, logs: &[PathBuf]) -> Result<MemoryRuns> {
+pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> Result<MemoryRuns> {
     let Preparation { torque, gains, cut_off, window } = preparation;
     let robot = Robot::from_description(&model.robot)?;
     let settings = PrepareSettings { gains: gains.clone(), ..PrepareSettings::default() };
-    let entries: Vec<LogEntry> = logs.iter().cloned().map(LogEntry::from).collect();
+    let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, Path::new(""), &robot, &settings)?;
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    cut(&logs, &BTreeMap::new(), *window, usize::MAX)
+    let (motions, from_start) = (index_names(paths, &raw), window.is_none());
+    let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
+    let prepared = Prepared { logs: &logs, motions: &motions, from_start };
+    let horizon = match (window, model.usefulness.as_ref()) {
+        (Some(window), _) => *window,
+        (None, Some(said)) => said.horizon.min(longest),
+        (None, None) => longest,
+    };
+    prepared.cut(horizon, usize::MAX)
 }

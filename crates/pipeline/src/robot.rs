@@ -13,7 +13,7 @@ use reachtube_robot::Robot;
 use crate::error::Result;
 use crate::held_out::Recording;
 use crate::trial::Trial;
-use crate::windows::cut;
+use crate::windows::Prepared;
 
 /// A description that leaves less than this part of the torque unexplained is taken as it is.
 const GOOD: f64 = 0.1;
@@ -157,7 +157,9 @@ impl Evidence<'_> {
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of
     /// the root mean square of what is left by that of the torque.
     fn unexplained(&self, nominal: &Nominal) -> Result<f64> {
-        let windows = cut(&nominal.logs, &BTreeMap::new(), WINDOW, MOST_WINDOWS)?;
+        let none = BTreeMap::new();
+        let recordings = Prepared { logs: &nominal.logs, motions: &none, from_start: false };
+        let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
         let errors = trial.run(windows, false)?.found.input_error;
         let gains = &self.settings.gains;

@@ -76,6 +76,13 @@ impl Sorted {
     }
 }
 
+/// Returns the motion, or else the suite, of each recording by its name, where an index names it.
+pub(crate) fn index_names(paths: &[PathBuf], raw: &[RawLog]) -> BTreeMap<String, String> {
+    let known = indexed(paths.iter().cloned());
+    let named = |log: &RawLog| Some((log.name.clone(), known.get(&log.file)?.clone()));
+    raw.iter().filter_map(named).collect()
+}
+
 /// Returns the motion, or else the suite, of each file that the index of a folder names.
 fn indexed(folders: impl Iterator<Item = PathBuf>) -> BTreeMap<PathBuf, String> {
     let indices = folders.filter(|folder| folder.join("runs.csv").is_file());

@@ -20,6 +20,8 @@ pub(crate) struct Trial {
     pub sensor_noise: Vec<f64>,
     /// Whose equations of motion nominal motions satisfy.
     pub equations: Equations,
+    /// Where nominal motions start.
+    pub nominal: NominalStart,
     /// What is fitted.
     pub fit: Option<FitSettings>,
 }
@@ -36,7 +38,7 @@ impl Trial {
             expansion_point: ExpansionPoint::from_values(&self.expansion, n)?,
             noise: Noise::Fitted,
             sensor_noise: Some(self.sensor_noise.clone()),
-            nominal: NominalStart::Own,
+            nominal: self.nominal,
             equations: self.equations,
             ..Settings::new(Torque::Compensated, n)
         };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use reachtube_identify::prepare::{PreparedLog, windows};
+use reachtube_identify::prepare::{PreparedLog, Window, windows};
 use reachtube_recordings::{MemoryRuns, Run};
 
 use crate::error::{Error, Result};
@@ -10,59 +10,88 @@ use crate::error::{Error, Result};
 /// Parts into which a single motion is divided, so that one can be compared with the others.
 const PARTS: usize = 4;
 
-/// Cuts recordings into windows of `horizon` \[s\], each a suite of its own, at most `most` of them
-/// evenly spread. `motions` has the motion of each log; the windows of a single one belong to four
-/// parts of it.
-///
-/// # Errors
-///
-/// [`Error::NoWindow`] if no recording is as long.
-pub(crate) fn cut(
-    logs: &[PreparedLog],
-    motions: &BTreeMap<String, String>,
-    horizon: f64,
-    most: usize,
-) -> Result<MemoryRuns> {
-    Ok(cut_some(logs, motions, horizon, most, |_, _| true)?.0)
+/// Prepared recordings, and how they are cut.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Prepared<'a> {
+    /// The recordings.
+    pub logs: &'a [PreparedLog],
+    /// The motion of each, by its name.
+    pub motions: &'a BTreeMap<String, String>,
+    /// Whether a recording counts from its start, and recordings of a motion are one suite, as
+    /// where inputs were commanded; else each is cut into windows, which are suites of their own.
+    pub from_start: bool,
 }
 
-/// Does what [`cut`] does for the windows that `is_wanted` takes, by the number of their motion and
-/// their name, and returns how many motions there are.
-///
-/// # Errors
-///
-/// As [`cut`].
-pub(crate) fn cut_some(
-    logs: &[PreparedLog],
-    motions: &BTreeMap<String, String>,
-    horizon: f64,
-    most: usize,
-    is_wanted: impl Fn(usize, &str) -> bool,
-) -> Result<(MemoryRuns, usize)> {
-    let all = windows(logs, Some(horizon), false).windows;
-    let count = all.len().min(most);
-    if count == 0 {
-        return Err(Error::NoWindow { horizon });
+impl Prepared<'_> {
+    /// Cuts recordings at `horizon` \[s\], at most `most` windows of them evenly spread. The windows
+    /// of a single motion belong to four parts of it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoWindow`] if no recording is as long.
+    pub(crate) fn cut(&self, horizon: f64, most: usize) -> Result<MemoryRuns> {
+        Ok(self.cut_some(horizon, most, |_, _| true)?.0)
     }
-    let motion = |index: usize| motions.get(&all[index].motion).unwrap_or(&all[index].motion);
-    let is_single = (0..all.len()).all(|index| motion(index) == motion(0));
-    let mut runs = MemoryRuns::default();
-    let mut names: Vec<String> = Vec::new();
-    for index in (0..count).map(|k| k * all.len() / count) {
-        let window = &all[index];
-        let motion = match is_single {
-            true => format!("{} part {}", motion(index), 1 + PARTS * index / all.len()),
-            false => motion(index).clone(),
+
+    /// Does what [`cut`](Self::cut) does for what `is_wanted` takes, by the number of its motion
+    /// and its name, and returns how many motions there are.
+    ///
+    /// # Errors
+    ///
+    /// As [`cut`](Self::cut).
+    pub(crate) fn cut_some(
+        &self,
+        horizon: f64,
+        most: usize,
+        is_wanted: impl Fn(usize, &str) -> bool,
+    ) -> Result<(MemoryRuns, usize)> {
+        let all = match self.from_start {
+            true => self.beginnings(horizon),
+            false => windows(self.logs, Some(horizon), false).windows,
         };
-        let number = names.iter().position(|name| *name == motion).unwrap_or_else(|| {
-            names.push(motion.clone());
-            names.len() - 1
-        });
-        if is_wanted(number, &window.suite) {
-            runs.push(&window.suite, Some(&window.suite), Some(&motion), run(&window.log));
+        let count = if self.from_start { all.len() } else { all.len().min(most) };
+        if count == 0 {
+            return Err(Error::NoWindow { horizon });
         }
+        let motion = |index: usize| self.motion(&all[index].motion);
+        let is_single = (0..all.len()).all(|index| motion(index) == motion(0));
+        let mut runs = MemoryRuns::default();
+        let mut names: Vec<String> = Vec::new();
+        for index in (0..count).map(|k| k * all.len() / count) {
+            let window = &all[index];
+            let motion = match is_single && !self.from_start {
+                true => format!("{} part {}", motion(index), 1 + PARTS * index / all.len()),
+                false => motion(index).to_string(),
+            };
+            let number = names.iter().position(|name| *name == motion).unwrap_or_else(|| {
+                names.push(motion.clone());
+                names.len() - 1
+            });
+            let name = if self.from_start { &window.log.name } else { &window.suite };
+            if is_wanted(number, name) {
+                runs.push(name, Some(&window.suite), Some(&motion), run(&window.log));
+            }
+        }
+        Ok((runs, names.len()))
     }
-    Ok((runs, names.len()))
+
+    /// Returns the recordings up to a horizon, if one is as long.
+    fn beginnings(&self, horizon: f64) -> Vec<Window> {
+        let duration = |log: &PreparedLog| log.len().saturating_sub(1) as f64 * log.step;
+        if self.logs.iter().all(|log| duration(log) < horizon) {
+            return Vec::new();
+        }
+        let beginning = |log: &PreparedLog| {
+            let samples = ((horizon / log.step).round() as usize + 1).min(log.len());
+            let suite = self.motion(&log.name).to_string();
+            Window { suite, motion: log.name.clone(), log: log.interval(0..samples) }
+        };
+        self.logs.iter().map(beginning).collect()
+    }
+
+    fn motion<'a>(&'a self, log: &'a String) -> &'a str {
+        self.motions.get(log).unwrap_or(log)
+    }
 }
 
 /// Returns the samples of a window as a recording. Its times are multiples of the sample time to

@@ -16,6 +16,8 @@ pub struct Preparation {
     /// Cut-off frequency of the low-pass, Hz; none where nothing is filtered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cut_off: Option<f64>,
-    /// Length of the windows into which logs are cut, s.
-    pub window: f64,
+    /// Length of the windows into which logs are cut, s; none where they count from their start, and
+    /// those of one motion are a suite.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window: Option<f64>,
 }
