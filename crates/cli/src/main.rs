@@ -30,7 +30,7 @@ const NOT_CONFORMANT: u8 = 1;
 /// Exit code of an error.
 const ERROR: u8 = 2;
 
-/// Exit code of a model that is conformant and says nothing.
+/// Exit code of a model that is conformant and vacuous.
 const VACUOUS: u8 = 3;
 
 fn main() -> ExitCode {

@@ -8,7 +8,7 @@ pub(crate) enum Outcome {
     Done,
     /// The verdict is not conformant.
     NotConformant,
-    /// The verdict is conformant, but the sets say nothing about some joint.
+    /// The verdict is conformant, but the sets do not limit some joint.
     Vacuous,
 }
 

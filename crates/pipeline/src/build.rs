@@ -21,7 +21,7 @@ use crate::windows::Prepared;
 /// Half a joint's set by the joint's displacement that is accepted by default.
 const LARGEST_RATIO: f64 = 0.5;
 
-/// A model made of logs, the choices behind it, and what motions that were kept back say of it.
+/// A model made of logs, the choices behind it, and what motions that were held out say of it.
 #[derive(Debug)]
 pub struct Built {
     /// The model with its recordings, the windows.
@@ -32,13 +32,15 @@ pub struct Built {
     pub choices: Choices,
     /// The choices that were made, in their order, with their reasons.
     pub made: Vec<Choice>,
+    /// What a user should know about the reading of the logs.
+    pub notes: Vec<String>,
     /// How wide the sets are at each horizon that was tried.
     pub ladder: Vec<Rung>,
-    /// What the motions that were kept back say.
+    /// What the motions that were held out say.
     pub held_out: HeldOut,
-    /// Some windows for a page: those that decide the sets, and others evenly spread.
+    /// Some windows for a page: windows that decide the sets, and others evenly spread.
     pub shown: MemoryRuns,
-    /// Some windows of motions that were kept back: those that leave the sets, and others.
+    /// Some windows of motions that were held out: windows that leave the sets, and others.
     pub shown_held_out: MemoryRuns,
 }
 
@@ -54,8 +56,8 @@ impl Built {
     }
 }
 
-/// Makes a model of the recordings that `given` names, and compares it with motions that are kept
-/// back. `folder` is where relative paths begin. `say` takes each choice when it is made.
+/// Makes a model of the recordings that `given` names, and compares it with motions that are held
+/// out. `folder` is where relative paths begin. `say` takes each choice when it is made.
 ///
 /// # Errors
 ///
@@ -81,6 +83,7 @@ pub fn build(
     let (mut trial, cut_off) = first_choices(&mut road, robot, torque, &raw, &settings)?;
 
     // The robot.
+    let notes = sorted.notes;
     let evidence = Evidence {
         rest: sorted.rest,
         one_joint: sorted.one_joint,
@@ -115,7 +118,7 @@ pub fn build(
     let shown = some_windows(&recordings, horizon, &deciding)?;
     let shown_held_out = some_windows(&held_back, horizon, &outside)?;
     let Road { choices, made, .. } = road;
-    Ok(Built { answer, robot, choices, made, ladder, held_out, shown, shown_held_out })
+    Ok(Built { answer, robot, choices, made, notes, ladder, held_out, shown, shown_held_out })
 }
 
 /// Chooses the filter, the model of deviations about the mean of the motion, and what the noise of
@@ -144,7 +147,10 @@ fn first_choices(
         true => "5 standard deviations before the filter, lessened by what the filter takes",
         false => "5 standard deviations",
     };
-    road.choose("sensor-noise", list(&sensor_noise), why);
+    let (q, qd) = sensor_noise.split_at(sensor_noise.len() / 2);
+    let most = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
+    let value = format!("up to {:.1e} rad and {:.1e} rad/s", most(q), most(qd));
+    road.choose("sensor-noise", value, why);
     road.choices.sensor_noise = Some(sensor_noise.clone());
     let equations = given.equations.unwrap_or(Equations::Robot);
     let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
@@ -163,7 +169,7 @@ fn sets(road: &mut Road, trial: &mut Trial, recordings: &Prepared) -> Result<(An
     let fit = (!groups.is_empty()).then(|| FitSettings { groups: groups.clone(), pull });
     let reason = match fit {
         Some(_) => "given",
-        None => "sets of a fitted model are smaller, but a fit takes minutes; name groups for one",
+        None => "a fit takes minutes; it makes sets smaller",
     };
     let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
     let value = if names.is_empty() { "nothing".into() } else { names.join(", ") };
@@ -186,7 +192,7 @@ fn sets(road: &mut Road, trial: &mut Trial, recordings: &Prepared) -> Result<(An
     Ok((answer, rungs))
 }
 
-/// Chooses whose equations nominal motions satisfy: those with which the sets stay narrow for
+/// Chooses whose equations nominal motions satisfy: the equations with which sets stay narrow for
 /// longer, or are narrower. Returns how the sets grow with them.
 fn choose_equations(
     road: &mut Road,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Largest number of columns of a comment.
 const COLUMNS: usize = 96;
 
-/// The choices behind a model. Those that are not given are made from the recordings.
+/// The choices behind a model. Choices that are not given are made from the recordings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 pub struct Choices {
@@ -23,7 +23,7 @@ pub struct Choices {
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gains: Vec<f64>,
-    /// The motions that are kept back.
+    /// The motions that are held out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out: Option<Vec<String>>,
     /// Cut-off frequency of the low-pass, Hz.
@@ -141,7 +141,7 @@ mod tests {
             equations: Some(Equations::Robot),
             ..Choices::default()
         };
-        let reason = "every fourth motion is kept back before anything is looked at ".repeat(3);
+        let reason = "every fourth motion is held out before anything is looked at ".repeat(3);
         let made = [Choice { key: "held-out", value: "a".into(), reason: reason.clone() }];
         let text = choices.to_toml(&made);
         assert!(text.contains("# every fourth motion"), "{text}");

@@ -7,10 +7,10 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::windows::Prepared;
 
-/// Windows on a page, besides those that decide.
+/// Windows on a page, besides the deciding ones.
 const MOST_SHOWN: usize = 12;
 
-/// A model beside motions that were kept back from every choice.
+/// A model beside motions that were held out from every choice.
 #[derive(Debug, Clone, Serialize)]
 pub struct HeldOut {
     /// Number of windows.

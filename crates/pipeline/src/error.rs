@@ -29,7 +29,7 @@ pub enum Error {
         /// Number of recordings in which one joint moves.
         one: usize,
     },
-    /// A recording that is to be kept back does not exist.
+    /// A recording that is to be held out does not exist.
     #[error(
         "held-out = \"{name}\" is no motion of the recordings; the motions are {}",
         motions.join(", ")
@@ -40,7 +40,7 @@ pub enum Error {
         /// All motions.
         motions: Vec<String>,
     },
-    /// Every motion is kept back.
+    /// Every motion is held out.
     #[error("held-out names every motion; leave one at least for the sets")]
     NothingLeft,
     /// The recordings allow no sets at any horizon.

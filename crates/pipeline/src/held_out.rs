@@ -1,13 +1,13 @@
-//! Which motions are kept back, before anything is looked at.
+//! Which motions are held out, before anything is looked at.
 
 use reachtube_identify::prepare::{LogEntry, RawLog};
 
 use crate::error::{Error, Result};
 
-/// One motion in this many is kept back.
+/// One motion in this many is held out.
 const ONE_IN: usize = 4;
 
-/// The part of a single motion that is used; the rest is kept back.
+/// The part of a single motion that is used; the rest is held out.
 const PART_OF_ONE: f64 = 0.75;
 
 /// A recording, or a part of one.
@@ -21,7 +21,7 @@ pub(crate) struct Recording {
     pub motion: String,
 }
 
-/// Motions for the sets, motions that are kept back, and the rule by which they were chosen.
+/// Motions for the sets, motions that are held out, and the rule by which they were chosen.
 #[derive(Debug)]
 pub(crate) struct Split {
     pub kept: Vec<Recording>,
@@ -31,7 +31,7 @@ pub(crate) struct Split {
 }
 
 impl Split {
-    /// Splits recordings of motions: the motions `given` are kept back, or else every fourth in
+    /// Splits recordings of motions: the motions `given` are held out, or else every fourth in
     /// the order of the recordings, the last of two or three, and the last quarter of a single one.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl Split {
             kept.push(recording.between(0.0, Some(at)));
             held_out.push(recording.between(at, None));
         }
-        let reason = "there is one motion: its last quarter is kept back, and nothing follows for \
+        let reason = "there is one motion: its last quarter is held out, and nothing follows for \
                       other motions";
         Self { kept, held_out, names: Vec::new(), reason: reason.into() }
     }
@@ -117,7 +117,8 @@ mod tests {
             let states = times.iter().flat_map(|t| [*t, 1.0]).collect();
             let run = Run::new(1, times, states, vec![0.0; 101]).unwrap();
             let name = motion.to_string();
-            let log = RawLog { name: name.clone(), file: (&name).into(), order: None, run };
+            let file = (&name).into();
+            let log = RawLog { name: name.clone(), file, order: None, notes: vec![], run };
             let entry = LogEntry::Path((&name).into());
             Recording { log, entry, motion: name }
         };

@@ -38,7 +38,7 @@ impl Rung {
     }
 }
 
-/// Finds how the sets grow with the horizon, up to the one at which they say nothing.
+/// Finds how the sets grow with the horizon, up to the one at which they are useless.
 ///
 /// # Errors
 ///
@@ -47,7 +47,10 @@ pub(crate) fn ladder(trial: &Trial, recordings: &Prepared) -> Result<Vec<Rung>> 
     let mut rungs: Vec<Rung> = Vec::new();
     let steps = recordings.logs.iter().map(|log| log.step);
     let shortest = 3.0 * steps.fold(0.0, f64::max);
-    for horizon in HORIZONS.into_iter().filter(|horizon| *horizon >= shortest) {
+    // A recording that counts from its start moves most in its middle, so all horizons are tried.
+    let whole = recordings.from_start.then(|| recordings.longest());
+    let horizons = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
+    for horizon in horizons.chain(whole).filter(|horizon| *horizon >= shortest) {
         let windows = match recordings.cut(horizon, MOST_WINDOWS) {
             Err(Error::NoWindow { .. }) => break,
             other => other?,
@@ -57,7 +60,8 @@ pub(crate) fn ladder(trial: &Trial, recordings: &Prepared) -> Result<Vec<Rung>> 
             Err(error) => (Vec::new(), Some(error.to_string())),
         };
         rungs.push(Rung { horizon, ratios, reason });
-        if rungs.last().is_some_and(|rung| rung.worst().1 > HOPELESS) {
+        let is_hopeless = rungs.last().is_some_and(|rung| rung.worst().1 > HOPELESS);
+        if is_hopeless && whole.is_none() {
             break;
         }
     }
@@ -74,10 +78,10 @@ fn ratios(joints: &[JointWidth]) -> Vec<f64> {
     joints.iter().map(JointWidth::ratio).collect()
 }
 
-/// Returns the longest horizon up to which no set is wider beside the motion than `largest`; if
-/// there is none, the horizon at which the worst set is narrowest.
+/// Returns the longest horizon at which no set is wider beside the motion than `largest`; if there
+/// is none, the horizon at which the worst set is narrowest.
 pub(crate) fn longest(rungs: &[Rung], largest: f64) -> &Rung {
-    let fitting = rungs.iter().take_while(|rung| rung.worst().1 <= largest).last();
+    let fitting = rungs.iter().rev().find(|rung| rung.worst().1 <= largest);
     let narrowest = || rungs.iter().min_by(|a, b| a.worst().1.total_cmp(&b.worst().1));
     fitting.or_else(narrowest).expect("there is a rung")
 }
@@ -90,7 +94,7 @@ mod tests {
     fn the_longest_horizon_whose_sets_are_narrow_is_chosen() {
         let rung =
             |horizon: f64, ratio: f64| Rung { horizon, ratios: vec![0.1, ratio], reason: None };
-        let rungs = [rung(0.05, 0.2), rung(0.1, 0.4), rung(0.2, 0.6), rung(0.3, 0.45)];
+        let rungs = [rung(0.05, 0.2), rung(0.1, 0.4), rung(0.2, 0.6), rung(0.3, 0.7)];
         assert_eq!(longest(&rungs, 0.5).horizon, 0.1);
         assert_eq!(longest(&rungs, 0.1).horizon, 0.05);
         assert_eq!(longest(&[rung(0.05, 3.0), rung(0.1, 2.0)], 0.5).horizon, 0.1);

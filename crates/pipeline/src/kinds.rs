@@ -103,7 +103,7 @@ mod tests {
     }
 
     fn log(name: &str, run: Run) -> RawLog {
-        RawLog { name: name.into(), file: name.into(), order: None, run }
+        RawLog { name: name.into(), file: name.into(), order: None, notes: vec![], run }
     }
 
     #[test]

@@ -127,7 +127,7 @@ impl Evidence<'_> {
         Ok(Nominal { reason, ..best })
     }
 
-    /// Identifies the robot from what is not kept back.
+    /// Identifies the robot from what is not held out.
     fn identified(&self, described: &Robot) -> Result<Nominal> {
         let settings = IdentifySettings {
             rest: self.rest.clone(),
@@ -155,7 +155,7 @@ impl Evidence<'_> {
     }
 
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of
-    /// the root mean square of what is left by that of the torque.
+    /// the root mean square of what is left by the root mean square of the torque.
     fn unexplained(&self, nominal: &Nominal) -> Result<f64> {
         let none = BTreeMap::new();
         let recordings = Prepared { logs: &nominal.logs, motions: &none, from_start: false };

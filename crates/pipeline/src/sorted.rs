@@ -18,6 +18,8 @@ pub(crate) struct Sorted {
     pub rest: Vec<LogEntry>,
     pub one_joint: Vec<LogEntry>,
     pub motions: Vec<Recording>,
+    /// What a user should know about the reading of the recordings.
+    pub notes: Vec<String>,
 }
 
 impl Sorted {
@@ -72,7 +74,8 @@ impl Sorted {
         let motions = recordings.collect();
         let [rest, one_joint] =
             [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
-        Ok(Self { rest, one_joint, motions })
+        let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
+        Ok(Self { rest, one_joint, motions, notes })
     }
 }
 

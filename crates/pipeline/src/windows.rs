@@ -23,8 +23,8 @@ pub(crate) struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    /// Cuts recordings at `horizon` \[s\], at most `most` windows of them evenly spread. The windows
-    /// of a single motion belong to four parts of it.
+    /// Cuts recordings at `horizon` \[s\], at most `most` windows of them evenly spread. The
+    /// windows of a single motion belong to four parts of it.
     ///
     /// # Errors
     ///
@@ -75,10 +75,16 @@ impl Prepared<'_> {
         Ok((runs, names.len()))
     }
 
+    /// Returns the duration of the longest recording, s, to the microsecond.
+    pub(crate) fn longest(&self) -> f64 {
+        let duration = |log: &PreparedLog| log.len().saturating_sub(1) as f64 * log.step;
+        let longest = self.logs.iter().map(duration).fold(0.0, f64::max);
+        (1e6 * longest).round() / 1e6
+    }
+
     /// Returns the recordings up to a horizon, if one is as long.
     fn beginnings(&self, horizon: f64) -> Vec<Window> {
-        let duration = |log: &PreparedLog| log.len().saturating_sub(1) as f64 * log.step;
-        if self.logs.iter().all(|log| duration(log) < horizon) {
+        if self.longest() < horizon {
             return Vec::new();
         }
         let beginning = |log: &PreparedLog| {

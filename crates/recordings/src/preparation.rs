@@ -7,8 +7,8 @@ use crate::torque::Torque;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Preparation {
-    /// What the torques of the logs are. Gravity and dry friction of the model's robot are taken off
-    /// them, unless they are compensated already.
+    /// What the torques of the logs are. Gravity and dry friction of the model's robot are taken
+    /// off them, unless they are compensated already.
     pub torque: Torque,
     /// Factors of the torques, one per joint; none where they count as recorded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -16,8 +16,8 @@ pub struct Preparation {
     /// Cut-off frequency of the low-pass, Hz; none where nothing is filtered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cut_off: Option<f64>,
-    /// Length of the windows into which logs are cut, s; none where they count from their start, and
-    /// those of one motion are a suite.
+    /// Length of the windows into which logs are cut, s; none where recordings count from
+    /// their start, and all recordings of one motion are a suite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
 }

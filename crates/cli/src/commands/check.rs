@@ -20,7 +20,7 @@ A model that is not linear is compared by its computed outer set, an enclosure o
 
 Exit codes: 0 all recordings were proved to lie in the reachable set, at samples, as --notion says;
 1 some were not, and the result names a witness (suite, run, time, joint, excess); 2 error;
-3 they were, but the model is vacuous: its sets say nothing about some joint.";
+3 they were, but the model is vacuous: its sets do not limit some joint.";
 
 /// Check whether a model encloses other recordings
 #[derive(Debug, Args)]

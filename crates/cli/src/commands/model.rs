@@ -52,11 +52,11 @@ pub(crate) struct Arguments {
     /// options on the command line come before it
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
-    /// Time up to which the model predicts, above 0 s [default: the longest at which no set is wider
-    /// than half the motion]
+    /// Time up to which the model predicts, above 0 s [default: the longest at which no set is
+    /// wider than half the motion]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub horizon: Option<f64>,
-    /// Motions that are kept back from every choice, separated by commas [default: every fourth]
+    /// Motions that are held out from every choice, separated by commas [default: every fourth]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     pub held_out: Vec<String>,
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
@@ -87,6 +87,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     };
     let built = build(&robot, torque, &choices, &folder, &mut say)?;
     drop(bar);
+    output::notes(&built.notes);
     save(&built, &files)?;
     let held_out = args.out.join("held-out");
     let Built { answer, shown, shown_held_out, .. } = &built;
@@ -189,7 +190,7 @@ fn percent(ratio: f64) -> String {
     if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "-".into() }
 }
 
-/// Returns the answer in a few lines: verdict, sets, what was kept back, and what to do next.
+/// Returns the answer in a few lines: verdict, sets, what was held out, and what to do next.
 fn summary(built: &Built, args: &Arguments) -> String {
     let model = &built.answer.model;
     let horizon = built.choices.horizon.unwrap_or_default();

@@ -40,7 +40,7 @@ fn recording(seed: f64) -> String {
     text
 }
 
-fn lab() -> Lab {
+pub(crate) fn lab() -> Lab {
     let lab = Lab::new();
     lab.write("pendulum.toml", PENDULUM);
     for (name, seed) in [("a", 0.1), ("b", 0.4), ("c", 0.7)] {

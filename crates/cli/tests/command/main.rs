@@ -11,6 +11,7 @@ mod identify;
 mod index;
 mod inspect;
 mod locks;
+mod model;
 mod nonlinear;
 mod notions;
 mod options;

@@ -12,7 +12,7 @@ impl Model {
         self.verified && !self.is_vacuous()
     }
 
-    /// Returns whether the sets were proved to enclose every recording but say nothing about the
+    /// Returns whether the sets were proved to enclose every recording but do not limit the
     /// motion of some joint.
     #[must_use]
     pub fn is_vacuous(&self) -> bool {

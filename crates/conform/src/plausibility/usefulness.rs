@@ -12,7 +12,7 @@ use crate::sets::UncertaintySets;
 const PART_OF_RANGE: f64 = 0.05;
 
 /// X0 that is wider than what the recorded starts and the noise of the sensors explain by more than
-/// this factor says nothing ...
+/// this factor is vacuous ...
 const FACTOR_OF_STARTS: f64 = 5.0;
 
 /// ... where it is also wider than this part of the recorded motion.
@@ -30,7 +30,7 @@ pub struct Usefulness {
     pub horizon: f64,
     /// The width of the reachable set beside the motion, one entry for each joint.
     pub joints: Vec<JointWidth>,
-    /// The sets that say nothing; none of a model that is useful.
+    /// The vacuous sets; none of a model that is useful.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub vacuous: Vec<Vacuity>,
 }
@@ -46,7 +46,7 @@ pub struct JointWidth {
     pub displacement: f64,
 }
 
-/// A set of one joint that says nothing.
+/// A vacuous set of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vacuity {
@@ -61,7 +61,7 @@ pub struct Vacuity {
     pub compared_with: f64,
 }
 
-/// Which set says nothing.
+/// Which set is vacuous.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum VacuousSet {
@@ -77,7 +77,7 @@ pub enum VacuousSet {
 
 impl JointWidth {
     /// Returns half the width of the set by the displacement: below 0.5 the set is useful, above 1
-    /// it says nothing. Infinite where the set was lost.
+    /// it is vacuous. Infinite where the set was lost.
     #[must_use]
     pub fn ratio(&self) -> f64 {
         self.half_width.map_or(f64::INFINITY, |half_width| half_width / self.displacement)

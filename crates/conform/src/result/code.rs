@@ -33,7 +33,7 @@ codes! {
     Conformant = "conformant",
     /// Some recordings were not proved to be enclosed.
     NotConformant = "not-conformant",
-    /// The sets were proved to enclose every recording but say nothing about some joint.
+    /// The sets were proved to enclose every recording but do not limit some joint.
     Vacuous = "vacuous",
     /// How many recorded points were proved to lie in the reachable set.
     Points = "points",

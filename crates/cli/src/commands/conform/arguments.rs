@@ -33,7 +33,7 @@ Examples:
       find the sets on the other motions, and scale them to hold these three
 
 Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error, 3 conformant but vacuous:
-the sets say nothing about some joint.";
+the sets do not limit some joint.";
 
 /// Find the smallest uncertainty sets for which a model encloses every recording, and prove it
 ///

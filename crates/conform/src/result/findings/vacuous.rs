@@ -1,4 +1,4 @@
-//! Which sets say nothing, although they were proved to enclose every recording.
+//! Which sets are vacuous, although they were proved to enclose every recording.
 
 use reachtube_robot::JointKind;
 
@@ -12,7 +12,7 @@ use crate::result::findings::words::{counted, listed, plural};
 const MOST_SETS: usize = 3;
 
 impl Finding {
-    /// Which sets of a model say nothing; none of a model that is useful or was not proved.
+    /// Which sets of a model are vacuous; none of a model that is useful or was not proved.
     pub(crate) fn vacuous(model: &Model) -> Option<Self> {
         let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
         let kinds = model.robot.kinds();
@@ -30,7 +30,7 @@ impl Finding {
         if more > 0 {
             words.push(format!("{} more", counted(more, "set")));
         }
-        let text = format!("Proved, but it says nothing about {place}: {}.", words.join("; "));
+        let text = format!("Proved, but vacuous for {place}: {}.", words.join("; "));
         let worst = sets.first()?;
         let finding = Self::new(Severity::Failure, Code::Vacuous, text).at(place);
         Some(
@@ -48,7 +48,7 @@ fn factor(set: &Vacuity) -> f64 {
     set.size / set.compared_with
 }
 
-/// Describes a set that says nothing.
+/// Describes a vacuous set.
 fn described(set: &Vacuity, said: &Usefulness, kind: JointKind) -> String {
     let Vacuity { joint, size, .. } = set;
     let times = match factor(set) {

@@ -1,0 +1,115 @@
+//! From logs to a model in one command.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::fixture::Lab;
+use crate::identify::lab as pendulum_lab;
+
+/// A lab with `pendulum.toml`, whose mass is wrong, and four logs in `logs`.
+fn lab() -> Lab {
+    let lab = pendulum_lab();
+    std::fs::create_dir(lab.path("logs")).unwrap();
+    for name in ["a", "b", "c"] {
+        let (from, to) = (lab.path(&format!("{name}.csv")), lab.path(&format!("logs/{name}.csv")));
+        std::fs::rename(from, to).unwrap();
+    }
+    lab
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+#[test]
+fn logs_become_a_useful_model_that_takes_other_logs() {
+    let lab = lab();
+    let run =
+        lab.run("model --robot pendulum.toml --data logs --torque motor --out arm --json").exits(0);
+    let answer = json(&run.stdout);
+    assert_eq!((&answer["useful"], &answer["conformant"]), (&true.into(), &true.into()));
+    // The description misses half of the mass, so that the robot is identified.
+    let choice = |key: &str| {
+        let choices = answer["choices"].as_array().unwrap().iter();
+        choices.clone().find(|choice| choice["key"] == key).unwrap()["value"].clone()
+    };
+    assert_eq!((choice("identify"), choice("held-out")), ("true".into(), "c".into()));
+    let ratio = answer["joints"][0]["ratio"].as_f64().unwrap();
+    let horizon = answer["horizon"].as_f64().unwrap();
+    assert!(ratio <= 0.5 && horizon >= 0.1, "{ratio} after {horizon} s");
+    for file in ["model.json", "robot.toml", "choices.toml", "page/report.html"] {
+        assert!(lab.path("arm").join(file).is_file(), "{file}");
+    }
+    // Nothing that the model was made of lies outside, prepared again from the logs.
+    let check = lab.run("check --model arm/model.json --data logs/a.csv --json").exits(0);
+    assert_eq!(json(&check.stdout)["violations"]["count"], 0);
+    let other = lab.run("check --model arm/model.json --data logs --torque link");
+    assert!(other.exits(2).stderr.contains("motor"), "the torque is another");
+}
+
+#[test]
+fn the_same_choices_give_the_same_bytes() {
+    let lab = lab();
+    lab.run("model --robot pendulum.toml --data logs --torque motor --out arm").exits(0);
+    lab.run("model --settings arm/choices.toml --out again").exits(0);
+    let read = |path: &str| std::fs::read_to_string(lab.path(path)).unwrap();
+    for file in ["model.json", "robot.toml", "choices.toml"] {
+        assert_eq!(read(&format!("arm/{file}")), read(&format!("again/{file}")), "{file}");
+    }
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let lab = lab();
+    let wrong = [
+        ("--data logs --torque motor", "--robot"),
+        ("--robot pendulum.toml --torque motor", "--data"),
+        ("--robot pendulum.toml --data logs", "--torque motor, link or compensated"),
+        (
+            "--robot pendulum.toml --data logs --torque motor --held-out z",
+            "the motions are a, b, c",
+        ),
+    ];
+    for (arguments, part) in wrong {
+        let run = lab.run(&format!("model {arguments} --out arm")).exits(2);
+        assert!(run.stderr.contains(part), "{arguments}: {}", run.stderr);
+        assert!(!Path::new(&lab.path("arm/model.json")).exists());
+    }
+}
+
+#[test]
+fn a_log_of_standstill_is_refused() {
+    let lab = lab();
+    let rest: String =
+        (0..400).map(|k| format!("{:.3},0.1,0,0.2\n", 0.005 * f64::from(k))).collect();
+    std::fs::create_dir(lab.path("rest")).unwrap();
+    lab.write("rest/rest.csv", format!("t,q1,qd1,tau1\n{rest}"));
+    let run = lab.run("model --robot pendulum.toml --data rest --torque motor --out arm").exits(2);
+    assert!(run.stderr.contains("1 at rest"), "{}", run.stderr);
+}
+
+#[test]
+#[ignore = "needs the recordings in ../shared"]
+fn raw_logs_of_two_arms_become_useful_models() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let data = data.canonicalize().unwrap();
+    let lab = Lab::new();
+    let arms = [
+        ("ur10e/ur10e.urdf", "ur10e/excitation", 0.3),
+        ("double_pendulum/acrobot.urdf", "double_pendulum/openloop", 0.1),
+    ];
+    for (robot, logs, horizon) in arms {
+        let (robot, logs) = (data.join(robot), data.join(logs));
+        let (robot, logs) = (robot.display(), logs.display());
+        let line = format!("model --robot {robot} --data {logs} --torque motor --out arm --force");
+        let answer = json(&lab.run(&format!("{line} --json")).exits(0).stdout);
+        assert!(answer["horizon"].as_f64().unwrap() >= horizon, "{}", answer["horizon"]);
+        let held_out = &answer["held_out"];
+        let part = held_out["outside"].as_f64().unwrap() / held_out["rows"].as_f64().unwrap();
+        assert!(part < 0.01, "{part}");
+        // The windows of all logs, prepared again: only what was held out may lie outside.
+        let check = lab.run(&format!("check --model arm/model.json --data {logs} --json"));
+        assert_eq!(json(&check.stdout)["violations"]["count"], held_out["outside"]);
+    }
+}
