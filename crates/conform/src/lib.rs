@@ -92,7 +92,7 @@ pub use next_motion::rates::{Rate, Rates};
 pub use next_motion::trends::Trend;
 pub use next_motion::trust::{CONFIDENCE, Trust};
 pub use next_motion::without_motion::LeftOut;
-pub use plausibility::{JointWidth, Usefulness, VacuousSet, Vacuity, Warning, WarningKind};
+pub use plausibility::{JointWidth, Usefulness, Vacuity, VacuousSet, Warning, WarningKind};
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use result::code::Code;

@@ -7,7 +7,7 @@ use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
 use crate::choices::{Choice, Choices};
-use crate::compared::{HeldOut, some_windows};
+use crate::compared::{Compared, HeldOut};
 use crate::error::Result;
 use crate::held_out::Split;
 use crate::horizon::{Rung, ladder, longest};
@@ -113,10 +113,8 @@ pub fn build(
         cut_off: road.choices.cut_off,
         window: (!from_start).then_some(horizon),
     });
-    let (held_out, outside) = HeldOut::new(&answer, &held_back, horizon)?;
-    let deciding = answer.model.deciding_runs.most.iter().map(|run| run.file.clone()).collect();
-    let shown = some_windows(&recordings, horizon, &deciding)?;
-    let shown_held_out = some_windows(&held_back, horizon, &outside)?;
+    let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
+    let Compared { held_out, shown, shown_held_out } = compared;
     let Road { choices, made, .. } = road;
     Ok(Built { answer, robot, choices, made, notes, ladder, held_out, shown, shown_held_out })
 }

@@ -27,9 +27,34 @@ pub struct HeldOut {
     pub failure: Option<String>,
 }
 
+/// A model beside motions that were held out, and windows for pages.
+pub(crate) struct Compared {
+    pub held_out: HeldOut,
+    pub shown: MemoryRuns,
+    pub shown_held_out: MemoryRuns,
+}
+
+impl Compared {
+    /// Compares a model with the recordings that were held out, and chooses windows for pages: the
+    /// windows that decide the sets or leave them, and others evenly spread.
+    pub(crate) fn new(
+        answer: &Answer,
+        recordings: &Prepared,
+        held_back: &Prepared,
+        horizon: f64,
+    ) -> Result<Self> {
+        let (held_out, outside) = HeldOut::new(answer, held_back, horizon)?;
+        let deciding = &answer.model.deciding_runs.most;
+        let deciding = deciding.iter().map(|run| run.file.clone()).collect();
+        let shown = some_windows(recordings, horizon, &deciding)?;
+        let shown_held_out = some_windows(held_back, horizon, &outside)?;
+        Ok(Self { held_out, shown, shown_held_out })
+    }
+}
+
 impl HeldOut {
     /// Compares a model with prepared recordings. Returns the windows that leave its sets, too.
-    pub(crate) fn new(
+    fn new(
         answer: &Answer,
         recordings: &Prepared,
         horizon: f64,
@@ -68,7 +93,7 @@ impl HeldOut {
 }
 
 /// Returns the factor by which the sets of each joint would have to grow about their centres.
-pub(crate) fn growth(check: &Check, joints: usize) -> Vec<f64> {
+fn growth(check: &Check, joints: usize) -> Vec<f64> {
     let mut growth = vec![1.0f64; joints];
     for worst in &check.worst_by_state {
         let factor = 1.0 + worst.excess / worst.radius.max(f64::MIN_POSITIVE);
@@ -80,7 +105,7 @@ pub(crate) fn growth(check: &Check, joints: usize) -> Vec<f64> {
 
 /// Returns the windows that `first` names and others, evenly spread; none where no recording is as
 /// long as a window.
-pub(crate) fn some_windows(
+fn some_windows(
     recordings: &Prepared,
     horizon: f64,
     first: &BTreeSet<String>,

@@ -71,21 +71,12 @@ impl Evidence<'_> {
                 Some((nominal, error))
             }
         };
+        let is_input = self.torque == Torque::Compensated;
         match own {
-            Some((nominal, error)) if given == Some(false) => {
+            // Compensated torques are the input of the robot that is described.
+            Some((nominal, error)) if given == Some(false) || error < GOOD || is_input => {
                 let left = percent(error);
-                let reason = format!("given; the description leaves {left} of the torque open");
-                Ok(Nominal { reason, ..nominal })
-            }
-            Some((nominal, error)) if error < GOOD || self.torque == Torque::Compensated => {
-                let reason = match self.torque {
-                    Torque::Compensated => format!(
-                        "the torques are the input of the robot that the description gives, which \
-                         leaves {} of it unexplained",
-                        percent(error)
-                    ),
-                    _ => format!("the description leaves {} of the torque open", percent(error)),
-                };
+                let reason = format!("the description leaves {left} of the torque unexplained");
                 Ok(Nominal { reason, ..nominal })
             }
             Some((nominal, error)) => self.better(described, nominal, error),
