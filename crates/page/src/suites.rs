@@ -66,6 +66,8 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     let mut spots = spots(sources, suite);
     let chosen = if are_many { deciding(&spots) } else { (0..suite.runs.len()).collect() };
     spots.retain(|spot| chosen.contains(&spot.run));
+    let sets = model.sets();
+    let noise: Vec<f64> = (0..2 * joints).map(|i| sets.noise_radius(i)).collect();
     // Each run as a line, relative to its own nominal solution where it has one.
     let (mut runs, mut range, mut gauges) = (Vec::new(), None, Vec::new());
     for (order, summary) in suite.runs.iter().enumerate() {
@@ -73,7 +75,7 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
         let of_run = own.iter().find(|reach| reach.run.as_ref() == Some(file));
         let mut run = trace(problem, summary.index, order, of_run.copied())?;
         let at_samples = at_samples(&run, &longest.times);
-        run.gauge = gauge(&at_samples, &band);
+        run.gauge = gauge(&at_samples, &band, &noise);
         run.touches = spots.iter().filter(|spot| spot.run == order).count();
         gauges.extend(run.gauge.map(|gauge| {
             let RunTrace { order, temperature, .. } = run;
@@ -177,11 +179,13 @@ fn at_samples(run: &RunTrace, times: &[f64]) -> Vec<Vec<f64>> {
     run.states.iter().map(row).collect()
 }
 
-/// Returns the part of the band's radius that a run reaches at most, to rounding.
-fn gauge(states: &[Vec<f64>], band: &Band) -> Option<f64> {
-    let parts = states.iter().zip(&band.lower).zip(&band.upper).flat_map(|((row, low), high)| {
-        row.iter().zip(low).zip(high).filter_map(|((x, low), high)| {
-            let radius = 0.5 * (high - low);
+/// Returns the part of the radius of the band with the noise set V that a run reaches at most, to
+/// rounding. `noise` has the radius of V in each state.
+fn gauge(states: &[Vec<f64>], band: &Band, noise: &[f64]) -> Option<f64> {
+    let rows = states.iter().zip(&band.lower).zip(&band.upper).zip(noise);
+    let parts = rows.flat_map(|(((row, low), high), noise)| {
+        row.iter().zip(low).zip(high).filter_map(move |((x, low), high)| {
+            let radius = 0.5 * (high - low) + noise;
             (radius > LEAST_RADIUS).then(|| (x - 0.5 * (high + low)).abs() / radius)
         })
     });
@@ -297,7 +301,7 @@ mod tests {
         let figure = sample::suite("S", 1);
         let run = &figure.runs[2];
         let states = at_samples(run, &figure.times);
-        let part = gauge(&states, &figure.band).unwrap();
+        let part = gauge(&states, &figure.band, &[0.0; 2]).unwrap();
         assert!((part - 0.04 * 2.0 / (0.01 + 0.05 * 2.0)).abs() < 1e-9, "{part}");
         let mut range = None;
         figure.runs.iter().for_each(|run| include(&mut range, at_samples(run, &figure.times)));

@@ -57,7 +57,9 @@ fn every_command_refuses_the_branch_and_takes_the_lock() {
             ]);
         }
         let run = lab.run(&format!("{command} --lock finger1=0.03"));
-        assert!(run.code == 0 || (run.code == 1 && command.starts_with("conform")), "{run:#?}");
+        // The torques are no torques, so that the sets are too wide to be of use.
+        let is_verdict = command.starts_with("conform") && [1, 3].contains(&run.code);
+        assert!(run.code == 0 || is_verdict, "{run:#?}");
     }
     let nothing = lab.run("robot show arm.urdf --lock finger1").exits(2).stderr;
     assert!(nothing.contains("locks no joint; give JOINT=VALUE"), "{nothing}");

@@ -16,7 +16,7 @@ const PART_OF_RANGE: f64 = 0.05;
 const FACTOR_OF_STARTS: f64 = 5.0;
 
 /// ... where it is also wider than this part of the recorded motion.
-const PART_OF_MOTION: f64 = 0.1;
+const PART_OF_MOTION: f64 = 0.5;
 
 /// Inputs and widths below this, N m, rad or rad/s, are rounding.
 const SMALLEST: f64 = 1e-6;
@@ -98,7 +98,9 @@ impl Usefulness {
         let width =
             |joint| JointWidth { half_width: half_width(joint), displacement: displacement(joint) };
         let joints: Vec<JointWidth> = (0..n).map(width).collect();
-        let vacuous = (0..n)
+        // A single sample shows no motion to compare with.
+        let compared = if horizon > 0.0 { n } else { 0 };
+        let vacuous = (0..compared)
             .flat_map(|joint| {
                 let reachable = of_reachable_set(fit, &joints[joint], joint);
                 reachable.into_iter().chain(of_sets(problem, &hulls.sets, fit, joint))
@@ -135,9 +137,9 @@ fn displacement(problem: &Problem, fit: &NominalFit, joint: usize) -> f64 {
 fn of_reachable_set(fit: &NominalFit, width: &JointWidth, joint: usize) -> Option<Vacuity> {
     let [low, high] = fit.recorded[joint];
     let (size, compared_with) = (2.0 * width.half_width?, high - low);
-    let says_nothing = size > compared_with && size > SMALLEST;
+    let is_vacuous = size > compared_with && size > SMALLEST;
     let set = VacuousSet::Reachable;
-    says_nothing.then_some(Vacuity { joint: joint + 1, set, size, compared_with })
+    is_vacuous.then_some(Vacuity { joint: joint + 1, set, size, compared_with })
 }
 
 fn of_sets(
@@ -153,8 +155,8 @@ fn of_sets(
         let [first, last] = fit.recorded[i];
         let limit = (FACTOR_OF_STARTS * explained).max(PART_OF_MOTION * (last - first));
         let (size, joint) = (high - low, joint + 1);
-        let says_nothing = size > limit.max(SMALLEST);
-        says_nothing.then_some(Vacuity { joint, set, size, compared_with: explained })
+        let is_vacuous = size > limit.max(SMALLEST);
+        is_vacuous.then_some(Vacuity { joint, set, size, compared_with: explained })
     };
     let (low, high) = sets.input_set.bounds(joint);
     let (size, compared_with) = (high.max(-low), fit.largest_input[joint]);

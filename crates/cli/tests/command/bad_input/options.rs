@@ -28,7 +28,11 @@ pub(super) const CASES: &[Case] = &[
         &["'--disturbence'", "--disturbance"],
     ),
     case("no data", "conform --robot arm.toml --torque motor", &["--data <FOLDER>"]),
-    case("no torque", "conform --robot arm.toml --data data", &["--torque <TORQUE>"]),
+    case(
+        "no torque",
+        "conform --robot arm.toml --data data",
+        &["--torque motor, link or compensated"],
+    ),
     case(
         "an unknown torque",
         "conform --robot arm.toml --data data --torque raw",
