@@ -7,6 +7,11 @@ use crate::error::{Error, Result};
 /// One motion in this many is held out.
 const ONE_IN: usize = 4;
 
+/// Recordings in place of motions are held out of fewer motions than this, if each was recorded at
+/// least [`REPEATS`] times.
+const FEW: usize = 8;
+const REPEATS: usize = 4;
+
 /// The part of a single motion that is used; the rest is held out.
 const PART_OF_ONE: f64 = 0.75;
 
@@ -31,8 +36,9 @@ pub(crate) struct Split {
 }
 
 impl Split {
-    /// Splits recordings of motions: the motions `given` are held out, or else every fourth in
-    /// the order of the recordings, the last of two or three, and the last quarter of a single one.
+    /// Splits recordings of motions: the motions or recordings `given` are held out, or else every
+    /// fourth motion in the order of the recordings, the last of two or three, and the last quarter
+    /// of a single one. If few motions were repeated, every fourth recording of each.
     ///
     /// # Errors
     ///
@@ -44,11 +50,21 @@ impl Split {
                 motions.push(recording.motion.clone());
             }
         }
-        if let Some(name) = given.into_iter().flatten().find(|name| !motions.contains(name)) {
+        let is_known = |name: &&String| {
+            motions.contains(name) || recordings.iter().any(|own| own.log.name == **name)
+        };
+        if let Some(name) = given.into_iter().flatten().find(|name| !is_known(name)) {
             return Err(Error::HeldOut { name: name.clone(), motions });
         }
         let (names, reason): (Vec<String>, String) = match (given, motions.len()) {
             (Some(names), _) => (names.to_vec(), "given".into()),
+            (None, count) if count < FEW && recordings.len() >= REPEATS * count => {
+                let reason = format!(
+                    "every fourth recording of each of {count} motions; nothing follows for other \
+                     motions"
+                );
+                (fourths(&recordings, &motions), reason)
+            }
             (None, 1) => return Ok(Self::in_time(recordings)),
             (None, count @ 2..ONE_IN) => {
                 (motions[count - 1..].to_vec(), format!("the last of {count} motions"))
@@ -58,7 +74,9 @@ impl Split {
                 (every.cloned().collect(), format!("every fourth of {count} motions"))
             }
         };
-        let is_held_out = |recording: &Recording| names.contains(&recording.motion);
+        let is_held_out = |recording: &Recording| {
+            names.contains(&recording.motion) || names.contains(&recording.log.name)
+        };
         let (held_out, kept): (Vec<_>, Vec<_>) = recordings.into_iter().partition(is_held_out);
         if kept.is_empty() {
             return Err(Error::NothingLeft);
@@ -78,6 +96,15 @@ impl Split {
                       other motions";
         Self { kept, held_out, names: Vec::new(), reason: reason.into() }
     }
+}
+
+/// Returns the names of every fourth recording of each motion.
+fn fourths(recordings: &[Recording], motions: &[String]) -> Vec<String> {
+    let of = |motion: &String| {
+        let own = recordings.iter().filter(|recording| recording.motion == *motion);
+        own.skip(ONE_IN - 1).step_by(ONE_IN).map(|recording| recording.log.name.clone()).collect()
+    };
+    motions.iter().flat_map(|motion| -> Vec<String> { of(motion) }).collect()
 }
 
 impl Recording {
@@ -134,6 +161,18 @@ mod tests {
         assert_eq!(split.names, ["b"]);
         let split = Split::new(recordings(&["a", "b"]), Some(&["a".into()])).unwrap();
         assert_eq!(split.kept[0].motion, "b");
+    }
+
+    #[test]
+    fn recordings_of_few_repeated_motions_are_held_out() {
+        let mut all = recordings(&["a", "a", "a", "a", "b", "b", "b", "b"]);
+        for (number, recording) in all.iter_mut().enumerate() {
+            recording.log.name = format!("{}{number}", recording.motion);
+        }
+        let split = Split::new(all.clone(), None).unwrap();
+        assert_eq!((&split.names[..], split.kept.len()), (&["a3".into(), "b7".into()][..], 6));
+        let again = Split::new(all, Some(&split.names)).unwrap();
+        assert_eq!(again.held_out.len(), 2);
     }
 
     #[test]
