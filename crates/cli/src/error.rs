@@ -193,7 +193,7 @@ pub(crate) enum Error {
     Export(ExportError),
     /// No model could be made of logs.
     #[error(transparent)]
-    Pipeline(PipelineError),
+    Pipeline(Box<PipelineError>),
     /// The library reported an error.
     #[error(transparent)]
     Library(Box<reachtube::Error>),
@@ -206,8 +206,10 @@ impl Error {
             Self::Usage(_) => "usage",
             Self::Output(_) => "file",
             Self::Refused { .. } => "recordings",
-            Self::Pipeline(PipelineError::NoSets { .. }) => "conform",
-            Self::Pipeline(_) => "recordings",
+            Self::Pipeline(error) => match **error {
+                PipelineError::NoSets { .. } => "conform",
+                _ => "recordings",
+            },
             Self::Log(error) => log_kind(error),
             Self::Export(_) => "export",
             Self::Library(error) => kind(error),
@@ -277,11 +279,11 @@ impl From<ExportError> for Error {
 impl From<PipelineError> for Error {
     fn from(error: PipelineError) -> Self {
         match error {
-            PipelineError::Identify(error) => error.into(),
-            PipelineError::Conform(error) => error.into(),
-            PipelineError::Robot(error) => error.into(),
-            PipelineError::Abstraction(error) => error.into(),
-            error => Self::Pipeline(error),
+            PipelineError::Identify(error) => (*error).into(),
+            PipelineError::Conform(error) => (*error).into(),
+            PipelineError::Robot(error) => (*error).into(),
+            PipelineError::Abstraction(error) => (*error).into(),
+            error => Self::Pipeline(Box::new(error)),
         }
     }
 }

@@ -6,16 +6,16 @@ use thiserror::Error;
 pub enum Error {
     /// Recordings could not be read or prepared, or a robot could not be identified.
     #[error(transparent)]
-    Identify(#[from] reachtube_identify::Error),
+    Identify(Box<reachtube_identify::Error>),
     /// A conformance could not be decided.
     #[error(transparent)]
-    Conform(#[from] reachtube_conform::Error),
+    Conform(Box<reachtube_conform::Error>),
     /// The robot's description is wrong.
     #[error(transparent)]
-    Robot(#[from] reachtube_robot::RobotError),
+    Robot(Box<reachtube_robot::RobotError>),
     /// The expansion point does not fit the robot.
     #[error(transparent)]
-    Abstraction(#[from] reachtube_abstraction::Error),
+    Abstraction(Box<reachtube_abstraction::Error>),
     /// No recording shows a motion of several joints.
     #[error(
         "none of the {recordings} recordings shows a motion of several joints: {rest} at rest, \
@@ -63,3 +63,21 @@ pub enum Error {
 
 /// A result of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Lets `?` pass on the errors of a crate below, boxed because they are large.
+macro_rules! from_below {
+    ($($variant:ident: $error:ty),* $(,)?) => {
+        $(impl From<$error> for Error {
+            fn from(error: $error) -> Self {
+                Self::$variant(Box::new(error))
+            }
+        })*
+    };
+}
+
+from_below!(
+    Identify: reachtube_identify::Error,
+    Conform: reachtube_conform::Error,
+    Robot: reachtube_robot::RobotError,
+    Abstraction: reachtube_abstraction::Error,
+);

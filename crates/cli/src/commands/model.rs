@@ -194,6 +194,8 @@ fn percent(ratio: f64) -> String {
 fn summary(built: &Built, args: &Arguments) -> String {
     let model = &built.answer.model;
     let horizon = built.choices.horizon.unwrap_or_default();
+    let is_cut = model.preparation.as_ref().is_some_and(|known| known.window.is_some());
+    let what = if is_cut { "windows" } else { "recordings" };
     let windows = model.data.run_count();
     let verdict = match (built.answer.holds(), built.is_useful(), model.is_vacuous()) {
         (false, ..) => "NOT PROVED conformant".to_string(),
@@ -201,12 +203,12 @@ fn summary(built: &Built, args: &Arguments) -> String {
         (true, false, true) => format!("conformant, but vacuous at {horizon} s"),
         (true, false, false) => format!("conformant, but too wide to be of use at {horizon} s"),
     };
-    let head = format!("{verdict}: {windows} windows, each sample proved with directed rounding");
+    let head = format!("{verdict}: {windows} {what}, each sample proved with directed rounding");
     let mut lines = vec![head];
     let vacuous = model.findings().into_iter().find(|finding| finding.code.name() == "vacuous");
     lines.extend(vacuous.map(|finding| finding.text));
     lines.push(joints(built));
-    lines.push(held_out(&built.held_out));
+    lines.push(held_out(&built.held_out, what));
     let growth =
         built.ladder.iter().map(|rung| format!("{} s {}", rung.horizon, percent(rung.worst().1)));
     let growth: Vec<String> = growth.collect();
@@ -249,15 +251,13 @@ fn joints(built: &Built) -> String {
     table(&["joint", &set, "of its motion", "U", "factor, held out"], &rows)
 }
 
-fn held_out(held_out: &HeldOut) -> String {
+fn held_out(held_out: &HeldOut, what: &str) -> String {
     match &held_out.failure {
         Some(why) => format!("held out: {why}"),
         None => {
             let HeldOut { rows, outside, windows, .. } = held_out;
             let part = 100.0 * *outside as f64 / (*rows).max(1) as f64;
-            format!(
-                "held out: {outside} of {rows} rows outside ({part:.1} %), in {windows} windows"
-            )
+            format!("held out: {outside} of {rows} rows outside ({part:.1} %), of {windows} {what}")
         }
     }
 }
