@@ -8,7 +8,7 @@ use reachtube_robot::Robot;
 
 use crate::choices::{Choice, Choices};
 use crate::compared::{Compared, HeldOut};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::held_out::Split;
 use crate::horizon::{Rung, ladder, longest};
 use crate::noise::noise;
@@ -34,6 +34,8 @@ pub struct Built {
     pub made: Vec<Choice>,
     /// What a user should know about the reading of the logs.
     pub notes: Vec<String>,
+    /// What contradicts the robot's description in the recorded torques, in sentences.
+    pub warnings: Vec<String>,
     /// How wide the sets are at each horizon that was tried.
     pub ladder: Vec<Rung>,
     /// What the motions that were held out say.
@@ -75,10 +77,7 @@ pub fn build(
     let settings = PrepareSettings { gains: given.gains.clone(), ..PrepareSettings::default() };
     let sorted = Sorted::read(&mut road, given, folder, robot, &settings)?;
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
-    let names = if split.names.is_empty() { "the end".into() } else { split.names.join(", ") };
-    road.choose("held-out", names, &split.reason);
-    road.choices.held_out = (!split.names.is_empty()).then(|| split.names.clone());
-
+    road.choose_held_out(&split);
     let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &recording.log).collect();
     let (mut trial, cut_off) = first_choices(&mut road, robot, torque, &raw, &settings)?;
 
@@ -93,7 +92,10 @@ pub fn build(
         cut_off,
         trial: &trial,
     };
-    let Nominal { robot, logs, is_identified, reason } = evidence.choose(robot, given.identify)?;
+    let warnings = evidence.contradictions(robot)?;
+    let because = |error: Error| error.because(&warnings);
+    let chosen = evidence.choose(robot, given.identify).map_err(because)?;
+    let Nominal { robot, logs, is_identified, reason } = chosen;
     road.choose("identify", is_identified.to_string(), reason);
     road.choices.identify = Some(is_identified);
     trial.robot = robot.clone();
@@ -102,21 +104,27 @@ pub fn build(
     let motions = motion_names(&split);
     let from_start = torque == Torque::Compensated;
     let recordings = Prepared { logs: &logs, motions: &motions, from_start };
-    let (mut answer, ladder) = sets(&mut road, &mut trial, &recordings)?;
+    let (mut answer, ladder) = sets(&mut road, &mut trial, &recordings).map_err(because)?;
     let raw: Vec<RawLog> = split.held_out.iter().map(|recording| recording.log.clone()).collect();
     let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
     let held_back = Prepared { logs: &held_back, ..recordings };
     let horizon = road.choices.horizon.unwrap_or_default();
-    answer.model = answer.model.with_preparation(Preparation {
-        torque,
-        gains: given.gains.clone(),
-        cut_off: road.choices.cut_off,
-        window: (!from_start).then_some(horizon),
-    });
+    answer.model = answer.model.with_preparation(preparation(&road.choices, torque));
     let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
     let Compared { held_out, shown, shown_held_out } = compared;
-    let Road { choices, made, .. } = road;
-    Ok(Built { answer, robot, choices, made, notes, ladder, held_out, shown, shown_held_out })
+    let (choices, made) = (road.choices, road.made);
+    Ok(Built {
+        answer,
+        robot,
+        choices,
+        made,
+        notes,
+        warnings,
+        ladder,
+        held_out,
+        shown,
+        shown_held_out,
+    })
 }
 
 /// Chooses the filter, the model of deviations about the mean of the motion, and what the noise of
@@ -233,6 +241,12 @@ fn choose_equations(
     road.choices.equations = Some(equations);
     trial.equations = equations;
     Ok(rungs)
+}
+
+/// Returns what was done to logs, to do it to others.
+fn preparation(choices: &Choices, torque: Torque) -> Preparation {
+    let window = choices.horizon.filter(|_| torque != Torque::Compensated);
+    Preparation { torque, gains: choices.gains.clone(), cut_off: choices.cut_off, window }
 }
 
 fn motion_names(split: &Split) -> BTreeMap<String, String> {

@@ -51,6 +51,14 @@ pub enum Error {
         /// Why.
         reason: String,
     },
+    /// Another error, most likely because the recordings contradict the robot's description.
+    #[error("{cause}; {error}")]
+    Because {
+        /// What contradicts it.
+        cause: String,
+        /// The error.
+        error: Box<Error>,
+    },
     /// No recording is as long as a window.
     #[error(
         "no recording that was kept is as long as the horizon of {horizon} s; give a shorter one"
@@ -63,6 +71,16 @@ pub enum Error {
 
 /// A result of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl Error {
+    /// Names the most likely cause of an error, if one is known.
+    pub(crate) fn because(self, causes: &[String]) -> Self {
+        match causes {
+            [] => self,
+            causes => Self::Because { cause: causes.join("; "), error: Box::new(self) },
+        }
+    }
+}
 
 /// Lets `?` pass on the errors of a crate below, boxed because they are large.
 macro_rules! from_below {

@@ -8,6 +8,7 @@ mod held_out;
 mod horizon;
 mod kinds;
 mod noise;
+mod plausible;
 mod prepared;
 mod road;
 mod robot;

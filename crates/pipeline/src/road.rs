@@ -1,6 +1,7 @@
 //! The choices so far.
 
 use crate::choices::{Choice, Choices};
+use crate::held_out::Split;
 
 /// The choices so far.
 pub(crate) struct Road<'a> {
@@ -21,5 +22,12 @@ impl Road<'_> {
         let choice = Choice { key, value: value.into(), reason };
         (self.say)(&choice);
         self.made.push(choice);
+    }
+
+    /// Reports which motions are held out.
+    pub(crate) fn choose_held_out(&mut self, split: &Split) {
+        let names = if split.names.is_empty() { "the end".into() } else { split.names.join(", ") };
+        self.choose("held-out", names, &split.reason);
+        self.choices.held_out = (!split.names.is_empty()).then(|| split.names.clone());
     }
 }

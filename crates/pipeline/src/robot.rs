@@ -12,6 +12,7 @@ use reachtube_robot::Robot;
 
 use crate::error::Result;
 use crate::held_out::Recording;
+use crate::plausible::contradictions;
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -118,6 +119,16 @@ impl Evidence<'_> {
         Ok(Nominal { reason, ..best })
     }
 
+    /// Returns what contradicts the description in the recorded torques, in sentences.
+    pub(crate) fn contradictions(&self, described: &Robot) -> Result<Vec<String>> {
+        if self.torque == Torque::Compensated {
+            return Ok(Vec::new());
+        }
+        let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
+        let logs = prepare(&raw, self.settings, self.cut_off, None)?.logs;
+        Ok(contradictions(described, &logs))
+    }
+
     /// Identifies the robot from what is not held out.
     fn identified(&self, described: &Robot) -> Result<Nominal> {
         let settings = IdentifySettings {
@@ -152,7 +163,9 @@ impl Evidence<'_> {
         let recordings = Prepared { logs: &nominal.logs, motions: &none, from_start: false };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
-        let errors = trial.run(windows, false)?.found.input_error;
+        // A model that runs away explains nothing.
+        let Ok(answer) = trial.run(windows, false) else { return Ok(f64::INFINITY) };
+        let errors = answer.found.input_error;
         let gains = &self.settings.gains;
         let torque = |joint: usize| {
             let runs = self.motions.iter().map(|motion| &motion.log.run);
@@ -187,5 +200,5 @@ pub(crate) fn prepare_for(
 }
 
 fn percent(part: f64) -> String {
-    format!("{:.0} %", 100.0 * part)
+    if part.is_finite() { format!("{:.0} %", 100.0 * part) } else { "all".into() }
 }

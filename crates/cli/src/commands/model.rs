@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::Silent;
-use reachtube::conform::{Answer, FrontEnd, JointWidth, Keep, Opened};
+use reachtube::conform::{Answer, Code, FrontEnd, JointWidth, Keep, Opened};
 use reachtube::number::significant;
 use reachtube::page::{Assets, Sources};
 use reachtube::pipeline::{Built, Choice, Choices, HeldOut, build};
@@ -204,9 +204,14 @@ fn summary(built: &Built, args: &Arguments) -> String {
         (true, false, false) => format!("conformant, but too wide to be of use at {horizon} s"),
     };
     let head = format!("{verdict}: {windows} {what}, each sample proved with directed rounding");
-    let mut lines = vec![head];
-    let vacuous = model.findings().into_iter().find(|finding| finding.code.name() == "vacuous");
-    lines.extend(vacuous.map(|finding| finding.text));
+    let mut lines: Vec<String> =
+        built.warnings.iter().map(|warning| format!("warning: {warning}")).collect();
+    lines.push(head);
+    if !built.is_useful() {
+        let said = [Code::Vacuous, Code::Cause];
+        let findings = model.findings().into_iter().filter(|finding| said.contains(&finding.code));
+        lines.extend(findings.map(|finding| finding.to_string()));
+    }
     lines.push(joints(built));
     lines.push(held_out(&built.held_out, what));
     let growth =
@@ -292,6 +297,7 @@ fn as_json(built: &Built) -> Value {
             "horizon": rung.horizon, "ratios": rung.ratios, "reason": rung.reason,
         })).collect::<Vec<Value>>(),
         "choices": built.made,
+        "warnings": built.warnings,
         "findings": built.answer.findings(),
     })
 }

@@ -1,0 +1,135 @@
+//! Whether recorded torques are what the robot's description needs, up to sign, size and order.
+
+use reachtube_identify::prepare::PreparedLog;
+use reachtube_robot::Robot;
+
+/// Torques whose median size differs from what the description needs by more than this factor are
+/// remarked. Published descriptions are off by a factor of 3 at times.
+const FACTOR: f64 = 5.0;
+
+/// A correlation below the negative of this shows a wrong sign ...
+const OPPOSITE: f64 = 0.5;
+
+/// ... and joints are swapped if both correlate better with each other by this.
+const BETTER: f64 = 0.4;
+
+/// Samples of a recording that are looked at, at most.
+const SAMPLES: usize = 2000;
+
+/// Returns what contradicts the robot's description in the torques of filtered recordings, in
+/// sentences. The torques must still contain gravity. A description that is no body has no torques
+/// to compare with.
+pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<String> {
+    let n = robot.joint_count();
+    if robot.check_physical().is_err() || logs.is_empty() {
+        return Vec::new();
+    }
+    // Means, and sums of products of what the description needs with what was recorded.
+    let (mut needed, mut recorded) = (vec![Vec::new(); n], vec![Vec::new(); n]);
+    for log in logs {
+        for k in (0..log.len()).step_by((log.len() / SAMPLES).max(1)) {
+            let torque = robot.inverse_dynamics(log.q(k), log.qd(k), log.qdd(k));
+            for joint in 0..n {
+                needed[joint].push(torque[joint]);
+                recorded[joint].push(log.tau(k)[joint]);
+            }
+        }
+    }
+    let fit = |column: usize, joint: usize| Correlation::new(&needed[joint], &recorded[column]);
+    let name = |joint: usize| robot.joints()[joint].name.as_str();
+    let mut found = Vec::new();
+    for a in 0..n {
+        let own = fit(a, a).value;
+        let swapped = (a + 1..n).find(|b| {
+            fit(a, *b).value > own + BETTER && fit(*b, a).value > fit(*b, *b).value + BETTER
+        });
+        if let Some(b) = swapped {
+            found.push(format!("the columns of {} and {} may be swapped", name(a), name(b)));
+        } else if own < -OPPOSITE {
+            found.push(format!(
+                "the torque of {} is opposite to what the description needs: its sign may be wrong",
+                name(a)
+            ));
+        }
+    }
+    let own = (0..n).map(|joint| fit(joint, joint)).filter(|own| own.value > OPPOSITE);
+    let mut gains: Vec<f64> = own.map(|own| own.gain).collect();
+    gains.sort_by(f64::total_cmp);
+    let median = gains.get(gains.len() / 2).copied().unwrap_or(1.0);
+    if !(1.0 / FACTOR..=FACTOR).contains(&median) {
+        found.push(format!(
+            "the recorded torques are {median:.2} times what the description needs: they may be \
+             currents, or of another unit; gains in N m/A turn currents into torques"
+        ));
+    }
+    found
+}
+
+/// How one signal follows another.
+struct Correlation {
+    /// The correlation, from -1 to 1; 0 where a signal is constant.
+    value: f64,
+    /// The factor of the one that is nearest to the other, both about their means.
+    gain: f64,
+}
+
+impl Correlation {
+    fn new(x: &[f64], y: &[f64]) -> Self {
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let (mx, my) = (mean(x), mean(y));
+        let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
+        for (x, y) in x.iter().zip(y) {
+            let (x, y) = (x - mx, y - my);
+            xx += x * x;
+            yy += y * y;
+            xy += x * y;
+        }
+        let size = (xx * yy).sqrt();
+        let value = if size > 0.0 { xy / size } else { 0.0 };
+        Self { value, gain: if xx > 0.0 { xy / xx } else { 0.0 } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A pendulum about a horizontal axis, and a log of it whose torques are `factor` times what it
+    /// needs.
+    fn pendulum(factor: f64) -> (Robot, PreparedLog) {
+        let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
+                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
+                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
+                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
+        let robot = Robot::from_toml(robot, "pendulum").unwrap();
+        let times: Vec<f64> = (0..500).map(|k| 0.01 * f64::from(k)).collect();
+        let state = |t: &f64| [(2.0 * t).sin(), 2.0 * (2.0 * t).cos()];
+        let torque = |t: &f64| {
+            let [q, qd] = state(t);
+            factor * robot.inverse_dynamics(&[q], &[qd], &[-4.0 * q])[0]
+        };
+        let states = times.iter().flat_map(state).collect();
+        let torques = times.iter().map(torque).collect();
+        let run = reachtube_recordings::Run::new(1, times, states, torques).unwrap();
+        let raw = reachtube_identify::prepare::RawLog {
+            name: "log".into(),
+            file: "log.csv".into(),
+            order: None,
+            notes: vec![],
+            run,
+        };
+        let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
+        (robot, log)
+    }
+
+    #[test]
+    fn torques_of_another_sign_or_size_are_named() {
+        let found = |factor: f64| {
+            let (robot, log) = pendulum(factor);
+            contradictions(&robot, &[log])
+        };
+        assert_eq!(found(1.0), Vec::<String>::new());
+        assert!(found(-1.0)[0].contains("hinge is opposite"), "{:?}", found(-1.0));
+        assert!(found(0.1)[0].contains("0.10 times"), "{:?}", found(0.1));
+    }
+}
