@@ -53,7 +53,7 @@ impl Failure {
 
     fn exception(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let errors = py.import("reachtube.errors")?;
-        let written = |text: &str| FrontEnd::Python.written(text);
+        let written = without_dashes;
         match self {
             Self::Defects(defects, text) => {
                 let class = errors.getattr("Defect")?;
@@ -75,6 +75,19 @@ impl Failure {
             Self::Other(text) => errors.getattr("ReachtubeError")?.call1((written(&text),)),
         }
     }
+}
+
+/// Returns a text in which arguments are written as in Python, such as `max_gap` for `--max-gap`:
+/// errors of crates below conform name an option of the command.
+fn without_dashes(text: &str) -> String {
+    let mut parts = text.split("--");
+    let first = parts.next().unwrap_or_default().to_string();
+    parts.fold(first, |text, part| {
+        let is_name = |c: char| c.is_ascii_lowercase() || c == '-';
+        let (name, rest) = part.split_at(part.find(|c| !is_name(c)).unwrap_or(part.len()));
+        let begins = name.starts_with(|c: char| c.is_ascii_lowercase());
+        if begins { text + &name.replace('-', "_") + rest } else { text + "--" + part }
+    })
 }
 
 /// Returns a text in which `dynamic_1` stands for the path of `dynamic_1.csv` in a folder.
@@ -100,7 +113,7 @@ impl From<recordings::Error> for Failure {
 
 impl From<conform::Error> for Failure {
     fn from(error: conform::Error) -> Self {
-        let text = error.to_string();
+        let text = error.written_for(FrontEnd::Python);
         match error {
             conform::Error::Recordings(error) => error.into(),
             conform::Error::ModelFile { .. } => Self::ModelFile(text),
@@ -158,10 +171,19 @@ macro_rules! others {
     };
 }
 
-others!(
-    reachtube::Error,
-    reachtube::page::Error,
-    reachtube::reach::ReachError,
-    reachtube_files::Error,
-    reachtube_logs::Error,
-);
+impl From<reachtube::Error> for Failure {
+    fn from(error: reachtube::Error) -> Self {
+        Self::Other(error.written_for(FrontEnd::Python))
+    }
+}
+
+impl From<reachtube::page::Error> for Failure {
+    fn from(error: reachtube::page::Error) -> Self {
+        match error {
+            reachtube::page::Error::Conform(error) => error.into(),
+            error => Self::Other(error.to_string()),
+        }
+    }
+}
+
+others!(reachtube::reach::ReachError, reachtube_files::Error, reachtube_logs::Error,);

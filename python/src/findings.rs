@@ -52,11 +52,9 @@ fn list(findings: &[Finding]) -> String {
     Value::from(findings.iter().map(value).collect::<Vec<_>>()).to_string()
 }
 
-/// Returns a finding as JSON, whose texts are for users of Python; `written` is the sentence with
-/// its remedy.
+/// Returns a finding as JSON; `written` is the sentence with its remedy, as Python writes it.
 fn value(finding: &Finding) -> Value {
     let mut value = serde_json::to_value(finding).expect("a finding has string keys");
-    value["text"] = FrontEnd::Python.written(&finding.text).into();
     value["written"] = finding.written_for(FrontEnd::Python).into();
     value
 }

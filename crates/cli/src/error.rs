@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use reachtube::conform::FrontEnd;
 use reachtube::export::ExportError;
 use reachtube::pipeline::Error as PipelineError;
 use reachtube::recordings::Refusal;
@@ -195,7 +196,7 @@ pub(crate) enum Error {
     #[error(transparent)]
     Pipeline(Box<PipelineError>),
     /// The library reported an error.
-    #[error(transparent)]
+    #[error("{}", .0.written_for(FrontEnd::CommandLine))]
     Library(Box<reachtube::Error>),
 }
 

@@ -4,6 +4,9 @@ use reachtube_reach::ReachError;
 use reachtube_recordings::State;
 use thiserror::Error;
 
+use crate::advice::{Advice, advised};
+use crate::result::front_end::{FrontEnd, Setting};
+
 /// Why a conformance could not be decided. A model that is not conformant is no error but a value.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -41,7 +44,7 @@ pub enum Error {
     /// The error of a model has no bound over its operating box.
     #[error(
         "the model's error in the acceleration of joint {joint} has no bound over its box; give \
-         `abstract` a smaller --box or more --most-boxes, or no box at all"
+         `abstract` a smaller box, or let it cut the box into more parts, or give no box at all"
     )]
     Unbounded {
         /// The joint, from 1.
@@ -50,7 +53,7 @@ pub enum Error {
     /// A recording starts outside the box over which the model's error was bounded.
     #[error(
         "{file}: {state} starts at {value}, outside the box [{low}, {high}] over which the model's \
-         error was bounded; give `abstract` a larger --box, or another --at"
+         error was bounded; give `abstract` a larger box, or expand the model elsewhere"
     )]
     StartsOutsideBox {
         /// The recording.
@@ -76,9 +79,9 @@ pub enum Error {
     NotLinear,
     /// Nominal motions by the robot's own equations were asked of a model that is not linear.
     #[error(
-        "nominal motions by the robot's own equations (--equations robot) need a linear model, \
-         which then describes deviations only; use model 1 of order 1 with --method program, or \
-         --equations model"
+        "nominal motions by the robot's own equations need a linear model, which then describes \
+         deviations only; use model 1 of order 1 with the method program, or let nominal motions \
+         follow the model's equations"
     )]
     Equations,
     /// The notion trace was asked of a problem that it is not for.
@@ -86,16 +89,16 @@ pub enum Error {
     Trace(&'static str),
     /// A certificate was asked of hulls, or of a model that is not linear.
     #[error(
-        "a certificate is about points in the reachable set of a linear model; ask for them by \
-         --notion exact or --notion phase-plane, with --model 1 --order 1"
+        "a certificate is about points in the reachable set of a linear model; ask for them by the \
+         notion exact or phase-plane, with model 1 of order 1"
     )]
     NotPoints,
     /// Motions cannot calibrate the sets.
     #[error("calibrate: {0}")]
-    Calibration(String),
+    Calibration(Advice),
     /// A fold cannot be made, merged or solved.
     #[error("fold: {0}")]
-    Fold(String),
+    Fold(Advice),
     /// A model file is not one, or of another version.
     #[error("{}: {problem}", path.display())]
     ModelFile {
@@ -107,8 +110,8 @@ pub enum Error {
     /// The nominal motion, without any disturbance, leaves every bound.
     #[error(
         "{case}: the model runs away after {time:.3} s under the recorded input alone, so no sets \
-         can be found for it; check that --torque says what was recorded, or use --until \
-         {time:.3}, shorter windows, another --model or --order, or --equations model"
+         can be found for it; check what the recorded torques are, or use the samples before, \
+         shorter windows, another model or order, or the model's equations for nominal motions"
     )]
     RunsAway {
         /// The suite or run.
@@ -134,6 +137,41 @@ pub enum Error {
     /// The reachable set could not be computed.
     #[error(transparent)]
     Reach(#[from] ReachError),
+}
+
+impl Error {
+    /// Returns the settings that help.
+    #[must_use]
+    pub fn settings(&self) -> Vec<Setting> {
+        match self {
+            Self::Unbounded { .. } => vec![Setting::new("box", ""), Setting::new("most-boxes", "")],
+            Self::StartsOutsideBox { .. } => vec![Setting::new("box", "")],
+            Self::Equations => vec![Setting::new("equations", "model")],
+            Self::Trace(_) => vec![Setting::new("noise", "0.001,0.01")],
+            Self::NotPoints => vec![Setting::new("notion", "exact")],
+            Self::Calibration(advice) | Self::Fold(advice) => advice.settings.clone(),
+            Self::RunsAway { time, .. } => {
+                vec![Setting::new("until", format!("{time:.3}")), Setting::new("torque", "")]
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Returns what is wrong, what to do, and the settings that do it as users of a front end write
+    /// them. `Display` leaves the settings to the words.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_conform::{Error, FrontEnd};
+    ///
+    /// let written = Error::Equations.written_for(FrontEnd::Python);
+    /// assert!(written.ends_with("(equations=\"model\")"));
+    /// ```
+    #[must_use]
+    pub fn written_for(&self, front_end: FrontEnd) -> String {
+        advised(self.to_string(), &self.settings(), front_end)
+    }
 }
 
 fn range(low: f64, high: f64) -> String {

@@ -6,6 +6,7 @@
 //! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
 //! [`explain()`] searches for the motion of the model closest to each run.
 
+mod advice;
 mod answer;
 mod any_run;
 mod check;
@@ -40,6 +41,7 @@ mod verdict;
 mod weights;
 mod witness;
 
+pub use advice::Advice;
 pub use answer::Answer;
 pub use any_run::AnyRun;
 pub use check::{Check, check, check_elsewhere};
@@ -97,7 +99,7 @@ pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use result::code::Code;
 pub use result::finding::{Finding, Severity};
-pub use result::front_end::FrontEnd;
+pub use result::front_end::{FrontEnd, Setting};
 pub use result::remedy::Remedy;
 pub use result::report::{Report, Section};
 pub use result::table::Table;

@@ -1,3 +1,4 @@
+use reachtube_conform::FrontEnd;
 use thiserror::Error;
 
 /// Why a job could not be done. A model that is not conformant is no error but a value, as in
@@ -38,6 +39,20 @@ pub enum Error {
     /// A figure or page could not be made.
     #[error(transparent)]
     Page(#[from] reachtube_page::Error),
+}
+
+impl Error {
+    /// Returns what is wrong, what to do, and the settings that do it as users of a front end write
+    /// them.
+    #[must_use]
+    pub fn written_for(&self, front_end: FrontEnd) -> String {
+        match self {
+            Self::Conform(error) | Self::Page(reachtube_page::Error::Conform(error)) => {
+                error.written_for(front_end)
+            }
+            error => error.to_string(),
+        }
+    }
 }
 
 /// A result of this crate.

@@ -48,7 +48,8 @@ pub(crate) struct SentAnswer {
 
 impl Remote<'_> {
     fn ask(&self, question: &Question) -> Result<Answer> {
-        let bytes = self.server.ask(&question_to_bytes(question)).map_err(Error::Fold)?;
+        let bytes =
+            self.server.ask(&question_to_bytes(question)).map_err(|why| Error::Fold(why.into()))?;
         let sent = SentAnswer::from_bytes(&bytes)?;
         if sent.tree.root() != self.root {
             return Err(Error::Fold(

@@ -210,7 +210,7 @@ impl Problem {
             return Err(Error::Fold(format!(
                 "it has not kept the samples of run {index}, and this step needs them; read the \
                  recordings on one machine for it"
-            )));
+            ).into()));
         };
         let run = source
             .read(index, &read_options(self.setup()))

@@ -11,8 +11,8 @@ use crate::error::{Error, Result};
 
 /// What the notion trace asks of the settings.
 pub(crate) const NEEDS_NOISE: &str = "needs a measurement noise V in every state, because no \
-                                      motion of a model meets measured states exactly; a model \
-                                      gets V by conform --noise, for example --noise 0.001,0.01";
+                                      motion of a model meets measured states exactly; give \
+                                      `conform` the radii of V";
 
 /// How the smallest sets are found (docs/method.md, correction K).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

@@ -57,7 +57,7 @@ impl Suite {
             self.entry.name,
             self.totals.count,
             self.runs.len()
-        )))
+        ).into()))
     }
 
     /// Returns the runs that statistics are of, in their order: all, or 256 of more.

@@ -3,6 +3,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::advice::Advice;
 use crate::claim::claim::{Claim, Rows};
 use crate::claim::look::Look;
 use crate::claim::notion::plant;
@@ -78,10 +79,14 @@ pub(crate) fn calibrate(
             None => match outer_gauge(problem, &suites, Effort::Whole, 1.0, &grown)? {
                 OuterGauge::Factor(factor) => Ok(Some(factor)),
                 OuterGauge::None => Ok(None),
-                OuterGauge::Lost(factor) => Err(Error::Calibration(lost(motion, factor))),
+                OuterGauge::Lost(factor) => {
+                    let lost = Advice::from(lost(motion, factor));
+                    Err(Error::Calibration(lost.with("until", "")))
+                }
             },
         }?;
-        let gauge = gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only)))?;
+        let gauge =
+            gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only).into()))?;
         Ok(Gauge { motion: (*motion).to_string(), gauge })
     };
     let gauges = kept_back.iter().map(gauge).collect::<Result<Vec<_>>>()?;
@@ -112,9 +117,8 @@ pub(crate) fn without_kept_back(problem: &Problem) -> Result<Option<Problem>> {
 /// Returns the motions that the settings keep back, or why that cannot be.
 fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
     if problem.settings().notion.asks_points() {
-        return Err(Error::Calibration(
-            "sets are calibrated for the notion hull only; use --notion hull".into(),
-        ));
+        let problem = "sets are calibrated for the notion hull only; use that notion";
+        return Err(Error::Calibration(Advice::from(problem).with("notion", "hull")));
     }
     let all = motions.distinct();
     let mut kept_back = BTreeSet::new();
@@ -126,7 +130,7 @@ fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet
                 all.join(", ")
             )
         };
-        kept_back.insert(*known.ok_or_else(|| Error::Calibration(unknown()))?);
+        kept_back.insert(*known.ok_or_else(|| Error::Calibration(unknown().into()))?);
     }
     if kept_back.len() == all.len() {
         return Err(Error::Calibration(
@@ -165,7 +169,7 @@ fn lost(motion: &str, factor: f64) -> String {
     format!(
         "the reachable sets of motion {motion} are lost when the sets grow {factor:.2} times, and \
          less does not enclose the motion; keep back other motions, find the sets with this one, \
-         or shorten the recordings with --until"
+         or shorten the recordings"
     )
 }
 

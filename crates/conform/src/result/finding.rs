@@ -87,10 +87,9 @@ impl Finding {
     /// Returns sentence and remedy as users of a front end write settings.
     #[must_use]
     pub fn written_for(&self, front_end: FrontEnd) -> String {
-        let text = front_end.written(&self.text);
         match &self.remedy {
-            Some(remedy) => format!("{text} {}", remedy.written_for(front_end)),
-            None => text,
+            Some(remedy) => format!("{} {}", self.text, remedy.written_for(front_end)),
+            None => self.text.clone(),
         }
     }
 }

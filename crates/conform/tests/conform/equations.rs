@@ -5,8 +5,8 @@ use std::path::Path;
 use crate::common::{Random, bent, conform_all, grid};
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind};
 use reachtube_conform::{
-    Conformance, Equations, Error, FitSettings, Group, Keep, Method, Model, Problem, Settings,
-    Setup, Silent, check, fit, reach,
+    Conformance, Equations, Error, FitSettings, FrontEnd, Group, Keep, Method, Model, Problem,
+    Settings, Setup, Silent, check, fit, reach,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem as Simulated, Tolerance};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
@@ -150,6 +150,7 @@ fn a_model_that_is_not_linear_has_equations_of_its_own() {
         [(cubic, Method::Program), (Abstraction::default(), Method::Bisection)]
     {
         let error = with(abstraction, method).unwrap_err();
-        assert!(matches!(error, Error::Equations) && error.to_string().contains("--equations"));
+        let written = error.written_for(FrontEnd::CommandLine);
+        assert!(matches!(error, Error::Equations) && written.ends_with("(--equations model)"));
     }
 }

@@ -5,8 +5,8 @@ use crate::common::{Disturbed, Random, grid, two_joints};
 use proptest::prelude::*;
 use reachtube_abstraction::{Abstraction, ModelKind, OperatingBox};
 use reachtube_conform::{
-    Error, Fold, Hulls, Keep, Model, NominalStart, OnDefect, Problem, Settings, Setup, Silent,
-    Tolerance, check, conform,
+    Error, Fold, FrontEnd, Hulls, Keep, Model, NominalStart, OnDefect, Problem, Settings, Setup,
+    Silent, Tolerance, check, conform,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
@@ -162,7 +162,7 @@ fn robots_that_warm_up_give_the_same_files_and_need_every_run() {
         let Err(Error::Fold(why)) = Problem::of_fold(setup, small, OnDefect::Refuse) else {
             panic!("the fold has not kept every run")
         };
-        assert!(why.contains("friction depends on it"), "{why}");
+        assert!(why.problem.contains("friction depends on it"), "{why}");
     }
 }
 
@@ -273,7 +273,9 @@ fn recordings_are_checked_by_fold_as_by_reading() {
         assert!(refused.is_ok());
         let mut stored = Fold::from_bytes(&setup, &fold.to_bytes()).unwrap();
         let refused = stored.take(1, &runs.runs()[20], runs.read(20, &Default::default()));
-        assert!(matches!(refused, Err(Error::Fold(why)) if why.contains("after it was in bytes")));
+        assert!(
+            matches!(refused, Err(Error::Fold(why)) if why.problem.contains("after it was in bytes"))
+        );
         let by_fold = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
         let (by_fold, once) = (checked(&by_fold), checked(&read(&setup, &other)));
         assert_eq!(by_fold, once);
@@ -352,19 +354,19 @@ fn what_a_fold_cannot_do_is_refused_by_name() {
     let robot = two_joints();
     let runs = campaign(&robot, &[("A", 3), ("D", 3)]);
     let refusal = |result: Result<Fold, Error>| match result {
-        Err(Error::Fold(why)) => why,
+        Err(error @ Error::Fold(_)) => error.written_for(FrontEnd::CommandLine),
         other => panic!("{other:?}"),
     };
     let explain = setup(&robot, |settings| settings.explain = Some(Tolerance::default()));
-    assert!(refusal(Fold::new(&explain)).contains("--explain"));
+    assert!(refusal(Fold::new(&explain)).contains("(--explain none)"));
     let setup_of = setup(&robot, |_| {});
     let fold = Fold::of_source(&setup_of, &runs, 0).unwrap();
     // The same recording twice, another setup, damage.
     let twice = fold.clone().merge(fold.clone());
-    assert!(matches!(twice, Err(Error::Fold(why)) if why.contains("same place")));
+    assert!(matches!(twice, Err(Error::Fold(why)) if why.problem.contains("same place")));
     let until = setup(&robot, |settings| settings.until = Some(0.2));
     let other = fold.clone().merge(Fold::new(&until).unwrap());
-    assert!(matches!(other, Err(Error::Fold(why)) if why.contains("another setup")));
+    assert!(matches!(other, Err(Error::Fold(why)) if why.problem.contains("another setup")));
     assert!(refusal(Fold::from_bytes(&until, &fold.to_bytes())).contains("another setup"));
     let mut bytes = fold.to_bytes();
     let middle = bytes.len() / 2;
@@ -383,11 +385,14 @@ fn what_a_fold_cannot_do_is_refused_by_name() {
     for fold in [small, mixed] {
         let refused = Problem::of_fold(setup_of.clone(), fold, OnDefect::Refuse);
         let Err(Error::Fold(why)) = refused else { panic!("{refused:?}") };
-        assert!(why.starts_with("suite D: of its ") && why.contains("on one machine"), "{why}");
+        assert!(
+            why.starts_with("suite D: of its ") && why.problem.contains("on one machine"),
+            "{why}"
+        );
     }
     // Samples that a fold has not kept.
     let problem = Problem::of_fold(setup_of, fold, OnDefect::Refuse).unwrap();
     let last = runs.runs().iter().rposition(|entry| entry.suite.as_deref() == Some("A")).unwrap();
-    assert!(matches!(problem.run(last), Err(Error::Fold(why)) if why.contains("not kept")));
+    assert!(matches!(problem.run(last), Err(Error::Fold(why)) if why.problem.contains("not kept")));
     assert!(problem.run(0).is_ok());
 }

@@ -126,7 +126,7 @@ fn motions_that_cannot_calibrate_are_refused() {
         let Err(Error::Calibration(problem)) = conform(&problem, &Silent, None) else {
             panic!("{calibrate:?} was accepted")
         };
-        assert!(problem.contains(words), "{problem}");
+        assert!(problem.problem.contains(words), "{problem}");
     }
 }
 
@@ -262,7 +262,7 @@ fn a_factor_is_found_below_those_under_which_the_reachable_set_is_lost() {
     let model = Model::new(&problem, &enclosed);
     assert!(!check(&model, &problem, &hulls).unwrap().verdict.lost.is_empty());
     let Err(Error::Calibration(words)) = found([10.0, 24.0]) else { panic!("a factor was found") };
-    assert!(words.contains("sets of motion b are lost when the sets grow 1."), "{words}");
+    assert!(words.problem.contains("sets of motion b are lost when the sets grow 1."), "{words}");
 }
 
 /// Records one suite whose second joint is off by a constant torque, in the order of `torques`.

@@ -10,8 +10,8 @@ use crate::common::{
 };
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
 use reachtube_conform::{
-    Conformance, Dynamics, Enclosure, Hulls, Method, Model, Notion, Progress, Settings, Setup,
-    Silent, UncertaintySets, Verdict, check, conform,
+    Conformance, Dynamics, Enclosure, FrontEnd, Hulls, Method, Model, Notion, Progress, Settings,
+    Setup, Silent, UncertaintySets, Verdict, check, conform,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
@@ -344,9 +344,9 @@ fn a_model_that_runs_away_is_refused_with_the_time() {
     runs.iter_mut().for_each(|run| run.torques.iter_mut().for_each(|u| *u = 40.0));
     write_data_set(folder.path(), &[("a", runs)]);
     let problem = read(&robot, folder.path(), &[], &settings(ModelKind::One, 3));
-    let text = conform(&problem, &Silent, None).unwrap_err().to_string();
+    let text = conform(&problem, &Silent, None).unwrap_err().written_for(FrontEnd::Python);
     assert!(
-        text.contains("suite a: the model runs away after 0.") && text.contains("--until"),
+        text.contains("suite a: the model runs away after 0.") && text.contains("(until=0."),
         "{text}"
     );
 }

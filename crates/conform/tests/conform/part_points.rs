@@ -190,7 +190,10 @@ fn points_of_other_recordings_are_refused() {
     let part = |index| if index == 5 { 9 } else { index % 2 };
     let (problem, server) = in_parts(&setup, &runs, 2, part, None);
     let refused = conform_elsewhere(&problem, &server, &Silent).unwrap_err();
-    assert!(matches!(&refused, Error::Fold(why) if why.contains("are missing")), "{refused}");
+    assert!(
+        matches!(&refused, Error::Fold(why) if why.problem.contains("are missing")),
+        "{refused}"
+    );
     // No part has the points.
     let fold = Fold::of_source(&setup, &runs, 0).unwrap();
     let problem = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
@@ -213,7 +216,7 @@ fn a_fit_is_refused_because_points_are_deviations_from_the_motions_before_it() {
 #[test]
 fn notions_that_need_whole_recordings_are_refused_by_name() {
     let refused = |setup: &Setup| match Fold::new(setup) {
-        Err(Error::Fold(why)) => assert!(why.contains("--notion hull"), "{why}"),
+        Err(Error::Fold(why)) => assert!(why.problem.contains("use the notion hull"), "{why}"),
         other => panic!("{other:?}"),
     };
     refused(&setup(Notion::Trace, Noise::Fixed(vec![1e-3; 4])));

@@ -8,8 +8,8 @@ use crate::common::{
 };
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
 use reachtube_conform::{
-    Error, Hulls, Keep, Model, Noise, Notion, Problem, Settings, Setup, Silent, UncertaintySets,
-    Verdict,
+    Error, FrontEnd, Hulls, Keep, Model, Noise, Notion, Problem, Settings, Setup, Silent,
+    UncertaintySets, Verdict,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
@@ -206,7 +206,7 @@ fn what_the_notion_is_not_for_is_refused_with_the_remedy() {
         let setup = Setup::new(two_joints(), settings).unwrap();
         let data = Box::new(DataSet::open(folder.path()).unwrap());
         match Problem::read(setup, data, &[], Keep::Needed, &Silent) {
-            Err(error @ Error::Trace(_)) => error.to_string(),
+            Err(error @ Error::Trace(_)) => error.written_for(FrontEnd::CommandLine),
             answer => panic!("{answer:?}"),
         }
     };

@@ -89,7 +89,7 @@ impl Fold {
     pub fn from_bytes(setup: &Setup, bytes: &[u8]) -> Result<Self> {
         let context = Context::new(setup)?;
         let wrong =
-            |what: &str| Error::Fold(format!("the bytes {what}; fold the recordings again"));
+            |what: &str| Error::Fold(format!("the bytes {what}; fold the recordings again").into());
         let body = bytes.strip_prefix(FORMAT).ok_or_else(|| wrong("are not a fold"))?;
         let (version, body) =
             body.split_first_chunk().ok_or_else(|| wrong("of a fold are cut off"))?;

@@ -4,6 +4,7 @@ use reachtube_recordings::{Defect, DefectKind, ReadOptions, Run, Torque};
 use reachtube_robot::Robot;
 use sha2::{Digest, Sha256};
 
+use crate::advice::Advice;
 use crate::data::input::RunInput;
 use crate::data::settings::{NominalStart, Notion, Settings};
 use crate::data::setup::{Setup, read_options, side};
@@ -34,11 +35,10 @@ impl Context {
         settings.validate(robot.joint_count())?;
         let is_linear = setup.dynamics.linear_system().is_some();
         if settings.notion == Notion::Trace || settings.notion != Notion::Hull && !is_linear {
-            return Err(Error::Fold(
-                "the notion trace, and for models that are not linear every notion but the hull, \
-                 need whole recordings: use --notion hull, or read the recordings on one machine"
-                    .into(),
-            ));
+            let problem = "the notion trace, and for models that are not linear every notion but \
+                           the hull, need whole recordings: use the notion hull, or read the \
+                           recordings on one machine";
+            return Err(Error::Fold(Advice::from(problem).with("notion", "hull")));
         }
         let is_own = settings.nominal == NominalStart::Own
             || setup.condition.is_none()
@@ -63,11 +63,9 @@ impl Context {
     /// [`Error::Fold`].
     pub(super) fn refuse_explanations(settings: &Settings) -> Result<()> {
         let refused = || {
-            Error::Fold(
-                "an explanation needs every recording sample by sample; omit --explain, or \
-                 read the recordings on one machine"
-                    .into(),
-            )
+            let problem = "an explanation needs every recording sample by sample; ask for none, or \
+                           read the recordings on one machine";
+            Error::Fold(Advice::from(problem).with("explain", "none"))
         };
         if settings.explain.is_some() { Err(refused()) } else { Ok(()) }
     }

@@ -191,14 +191,15 @@ impl Fold {
     ) -> Result<()> {
         let file = entry.file.as_str();
         let place = u32::try_from(index).ok().filter(|place| *place < u32::MAX);
-        let place = place.ok_or_else(|| {
-            Error::Fold(format!(
+        let place =
+            place.ok_or_else(|| {
+                Error::Fold(format!(
                 "{file} has place {index} in the manifest; a manifest has at most 4294967295 \
                  recordings: split it"
-            ))
-        })?;
+            ).into())
+            })?;
         let suite = entry.suite.as_deref().ok_or_else(|| {
-            Error::Fold(format!("{file} has no suite; name the suite of each recording"))
+            Error::Fold(format!("{file} has no suite; name the suite of each recording").into())
         })?;
         if self.state.compared.is_some() && self.fitted.is_none() {
             return Err(Error::Fold(
@@ -214,7 +215,7 @@ impl Fold {
         if !self.state.tree.insert(place, Leaf { file, suite, sha256 }) {
             return Err(Error::Fold(format!(
                 "{file}: place {index} of the manifest is taken already; give each recording once"
-            )));
+            ).into()));
         }
         match sound {
             Err(defects) => self.state.defects.take(place, defects),

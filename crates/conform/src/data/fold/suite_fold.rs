@@ -3,6 +3,7 @@ use std::sync::Arc;
 
 use reachtube_recordings::{Run, RunEntry, State};
 
+use crate::advice::Advice;
 use crate::data::envelope::Envelope;
 use crate::data::fold::context::Context;
 use crate::data::fold::whole_runs::{WholeRun, WholeRuns};
@@ -122,12 +123,13 @@ impl SuiteFold {
         } else {
             "they differ in input or sample times"
         };
-        Err(Error::Fold(format!(
+        let problem = format!(
             "suite {name}: of its {count} recordings {why}, so each is needed sample by sample, \
              and a fold keeps them only where no two share their input, up to {most} MiB: give \
-             recordings of different inputs suites of their own (--torque compensated where the \
-             input was recorded), fold fewer, or read them on one machine"
-        )))
+             recordings of different inputs suites of their own (they share an input where it was \
+             recorded as such), fold fewer, or read them on one machine"
+        );
+        Err(Error::Fold(Advice::from(problem).with("torque", "compensated")))
     }
 
     /// Returns the first run that starts outside the operating box.
