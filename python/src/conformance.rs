@@ -139,11 +139,9 @@ pub(crate) fn check_model(py: Python<'_>, text: String, origin: String) -> PyRes
 }
 
 /// Sets what differs from a model's settings.
-pub(crate) fn differing(settings: &mut Settings, mut given: Map<String, Value>) -> Result<()> {
-    settings.notion = take(&mut given, "notion")?.unwrap_or(settings.notion);
-    settings.until = take(&mut given, "until")?.or(settings.until);
-    settings.gap_limit = gap_limit(take(&mut given, "max_gap")?);
-    Ok(())
+pub(crate) fn differing(setup: Setup, mut given: Map<String, Value>) -> Result<Setup> {
+    let (notion, until) = (take(&mut given, "notion")?, take(&mut given, "until")?);
+    Ok(setup.judged_by(notion, until, gap_limit(take(&mut given, "max_gap")?)))
 }
 
 /// What is read for a model: the recordings, and what differs from the model's settings.

@@ -52,10 +52,8 @@ impl NativeFleet {
     ) -> PyResult<Self> {
         let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
         let setup = watched(py, None, move |_| {
-            let mut setup = setup(basis, &settings)?;
-            // No single recording is there for it.
-            setup.settings.explain = None;
-            Ok(setup)
+            // No single recording is there to be explained.
+            Ok(setup(basis, &settings)?.explain(None))
         })?;
         Ok(Self { setup: Arc::new(setup), model: None })
     }
@@ -64,11 +62,10 @@ impl NativeFleet {
     #[staticmethod]
     fn to_check(py: Python<'_>, model: String, settings: String) -> PyResult<Self> {
         watched(py, None, move |_| {
-            let (model, mut setup) = Model::parse(&model, Path::new("model"))?;
+            let (model, setup) = Model::parse(&model, Path::new("model"))?;
             let given: Map<String, Value> =
                 serde_json::from_str(&settings).map_err(Failure::setting)?;
-            differing(&mut setup.settings, given)?;
-            setup.settings.explain = None;
+            let setup = differing(setup, given)?.explain(None);
             Ok(Self { setup: Arc::new(setup), model: Some(Arc::new(model)) })
         })
     }
@@ -101,7 +98,7 @@ impl NativeFleet {
 
     /// Returns whether single points count, which `conform` and `check` ask for.
     fn asks_points(&self) -> bool {
-        self.setup.settings.notion != Notion::Hull
+        self.setup.settings().notion != Notion::Hull
     }
 
     /// Prepares what every part needs to find its points.
@@ -121,7 +118,7 @@ impl NativeFleet {
         watched(py, None, move |_| {
             if let Some(settings) = fit_settings(&fit, pull)? {
                 settings.check(&setup)?;
-                if setup.settings.notion != Notion::Hull {
+                if setup.settings().notion != Notion::Hull {
                     return Err(Failure::Setting(
                         "a fit moves the nominal motions, and the points that workers hold are \
                          deviations from those before it: fit with notion=\"hull\""

@@ -36,7 +36,7 @@ impl Opened {
         notion: Option<Notion>,
         keep: Keep,
     ) -> Result<Self> {
-        let settings = &setup.settings;
+        let settings = setup.settings();
         if let (None, Some(until)) = (args.until, settings.until) {
             output::note(&format!(
                 "samples later than {until} s after the first are not used, as when the sets were \

@@ -93,14 +93,11 @@ impl CheckJob {
     /// As [`Problem::read`] and [`Hulls::new`].
     pub fn open(self, progress: &dyn Progress) -> Result<Opened> {
         let Self { model, setup, source, suites, keep, .. } = self;
-        let mut setup = match setup {
+        let setup = match setup {
             Some(setup) => setup,
             None => model.setup()?,
         };
-        let settings = &mut setup.settings;
-        settings.notion = self.notion.unwrap_or(settings.notion);
-        settings.until = self.until.or(settings.until);
-        settings.gap_limit = self.gap_limit;
+        let setup = setup.judged_by(self.notion, self.until, self.gap_limit);
         let problem = Problem::read(setup, source, &suites, keep, progress)?;
         let hulls = Hulls::new(&problem, model.sets())?;
         Ok(Opened { model, problem, hulls })

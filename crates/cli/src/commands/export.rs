@@ -136,7 +136,7 @@ fn robot(
     write::try_at(&args.out.join("robot.xml"))?;
     let robot = match (&args.robot, &args.model) {
         (Some(robot), _) => args.lock.load(robot)?,
-        (None, Some(model)) => Model::open(model)?.1.robot,
+        (None, Some(model)) => Model::open(model)?.1.robot().clone(),
         (None, None) => return Err(Error::NoModel),
     };
     let files = files(&robot)?;

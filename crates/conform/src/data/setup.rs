@@ -1,13 +1,13 @@
 use std::collections::BTreeMap;
 
 use reachtube_abstraction::{OperatingBox, PolynomialModel};
-use reachtube_recordings::ReadOptions;
+use reachtube_recordings::{GapLimit, ReadOptions};
 use reachtube_robot::Robot;
 
 use crate::data::condition::Condition;
 use crate::data::correction::InputCorrection;
 use crate::data::dynamics::Dynamics;
-use crate::data::settings::{Equations, Settings};
+use crate::data::settings::{Equations, Notion, Settings, Tolerance};
 use crate::error::{Error, Result};
 
 /// What decides a conformance besides the recordings: the robot, its model and the settings.
@@ -17,19 +17,19 @@ use crate::error::{Error, Result};
 #[derive(Debug, Clone)]
 pub struct Setup {
     /// The robot.
-    pub robot: Robot,
+    pub(crate) robot: Robot,
     /// The model of its motion.
-    pub dynamics: Dynamics,
+    pub(crate) dynamics: Dynamics,
     /// The settings.
-    pub settings: Settings,
+    pub(crate) settings: Settings,
     /// The nominal initial states of suites by their name, 2n each, where they are known. Any
     /// other suite starts at the mean of the recordings at hand.
-    pub nominal_starts: BTreeMap<String, Vec<f64>>,
+    pub(crate) nominal_starts: BTreeMap<String, Vec<f64>>,
     /// What is taken off the recorded inputs along the nominal motions, where anything is.
-    pub correction: Option<InputCorrection>,
+    pub(crate) correction: Option<InputCorrection>,
     /// The condition that friction is taken in, whatever a run's condition is; `None` if each run
     /// has its own.
-    pub condition: Option<Condition>,
+    pub(crate) condition: Option<Condition>,
 }
 
 impl Setup {
@@ -59,12 +59,71 @@ impl Setup {
         Self::of(robot, dynamics, settings)
     }
 
-    fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Result<Self> {
+    /// Takes a model of the motion of `robot`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Equations`] for the robot's own equations about a model that is not linear.
+    pub fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Result<Self> {
         if settings.equations == Equations::Robot && dynamics.linear_system().is_none() {
             return Err(Error::Equations);
         }
         let nominal_starts = BTreeMap::new();
         Ok(Self { robot, dynamics, settings, nominal_starts, correction: None, condition: None })
+    }
+
+    /// Returns the robot.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// Returns the model of its motion.
+    #[must_use]
+    pub fn dynamics(&self) -> &Dynamics {
+        &self.dynamics
+    }
+
+    /// Returns the settings.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Replaces what recordings are judged by: the notion and the end of the runs where they are
+    /// given, and the limit of gaps.
+    #[must_use]
+    pub fn judged_by(
+        mut self,
+        notion: Option<Notion>,
+        until: Option<f64>,
+        gap_limit: GapLimit,
+    ) -> Self {
+        let Settings { notion: own_notion, until: own_until, .. } = self.settings;
+        self.settings.notion = notion.unwrap_or(own_notion);
+        self.settings.until = until.or(own_until);
+        self.settings.gap_limit = gap_limit;
+        self
+    }
+
+    /// Sets the tolerance of explanations; `None` asks for none.
+    #[must_use]
+    pub fn explain(mut self, tolerance: Option<Tolerance>) -> Self {
+        self.settings.explain = tolerance;
+        self
+    }
+
+    /// Sets the nominal initial state of the suite of a name, 2n.
+    #[must_use]
+    pub fn with_nominal_start(mut self, suite: impl Into<String>, state: Vec<f64>) -> Self {
+        self.nominal_starts.insert(suite.into(), state);
+        self
+    }
+
+    /// Takes nothing off the recorded inputs.
+    #[must_use]
+    pub fn without_correction(self) -> Self {
+        Self { correction: None, ..self }
     }
 
     /// Returns whether the model's input is the recorded one, with nothing taken off it along the

@@ -74,7 +74,7 @@ fn the_nominal_motion_is_that_of_the_robot_and_the_sets_hold_what_is_left() {
     // The file of the model says so, and checks as the model did.
     let model = Model::new(&problem, &by_robot);
     let (model, setup) = Model::parse(&model.to_json(), Path::new("model.json")).unwrap();
-    assert_eq!(setup.settings.equations, Equations::Robot);
+    assert_eq!(setup.settings().equations, Equations::Robot);
     let again = problem.with_setup(setup);
     let answer = check(&model, &again, &by_robot.hulls).unwrap();
     assert!(answer.verdict.conformant);

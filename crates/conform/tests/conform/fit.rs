@@ -175,7 +175,7 @@ fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
     let verdict = check(&read, &same, &Hulls::new(&same, read.sets()).unwrap()).unwrap();
     assert!(verdict.verdict.conformant, "{:?}", verdict.verdict);
     // Without the correction the recordings leave the same sets.
-    let none = Setup { correction: None, ..same.setup().clone() };
+    let none = same.setup().clone().without_correction();
     let other = same.with_setup(none);
     let verdict = check(&read, &other, &Hulls::new(&other, read.sets()).unwrap()).unwrap();
     assert!(!verdict.verdict.conformant);

@@ -84,14 +84,7 @@ fn assert_close(a: &UncertaintySets, b: &UncertaintySets, tolerance: f64) {
 /// The route of models that are not linear, on a linear one.
 fn the_long_way(robot: &Robot, folder: &Path, names: &[&str], settings: &Settings) -> Conformance {
     let dynamics = Dynamics::polynomial(model_of(robot, settings));
-    let setup = Setup {
-        robot: robot.clone(),
-        dynamics,
-        settings: settings.clone(),
-        nominal_starts: Default::default(),
-        correction: None,
-        condition: None,
-    };
+    let setup = Setup::of(robot.clone(), dynamics, settings.clone()).unwrap();
     conform_all(&read_with(setup, folder, names))
 }
 

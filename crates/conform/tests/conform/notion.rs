@@ -229,8 +229,8 @@ fn motions_inside_the_sets_are_inside_and_a_smaller_set_loses_some() {
         })
         .collect();
     write_data_set(other.path(), &[("a", runs)]);
-    let mut setup = Setup::new(two_joints(), model.settings.clone()).unwrap();
-    setup.nominal_starts.insert("a".into(), start.clone());
+    let setup = Setup::new(two_joints(), model.settings.clone()).unwrap();
+    let setup = setup.with_nominal_start("a", start.clone());
     let others = read_with(setup, other.path(), &[]);
     let hulls = Hulls::new(&others, model.sets()).unwrap();
     let verdict = check(&model, &others, &hulls).unwrap().verdict;

@@ -224,6 +224,6 @@ fn notions_that_need_whole_recordings_are_refused_by_name() {
     let exact =
         Settings { notion: Notion::Exact, abstraction, ..Settings::new(Torque::Compensated, 2) };
     let exact = Setup::new(two_joints(), exact).unwrap();
-    assert!(exact.dynamics.linear_system().is_none());
+    assert!(exact.dynamics().linear_system().is_none());
     refused(&exact);
 }

@@ -145,11 +145,11 @@ impl Found {
 impl FoundCase {
     /// Returns which states had to be enclosed.
     pub(super) fn states(&self) -> States {
-        self.setup.settings.states
+        self.setup.settings().states
     }
 
     fn row(&self) -> Table2Case {
-        let (settings, found) = (&self.setup.settings, &self.found);
+        let (settings, found) = (self.setup.settings(), &self.found);
         let all = settings.states == States::All;
         Table2Case {
             states: settings.states,
