@@ -5,11 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use reachtube::Model;
 use reachtube::conform::{
-    Answer, Calibration, Check, Conformance, FitSettings, FrontEnd, Group, Job, Keep, Settings,
-    Setup, conform,
+    Answer, Check, FitSettings, FrontEnd, Group, Job, Keep, Settings, Setup, conform,
 };
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
-use reachtube::number::{at_least, four_decimals};
 use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
@@ -102,9 +100,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         }))?;
     } else {
         let text = format!(
-            "{}\n{}\n{}\n{}",
+            "{}\n{}\n{}",
             model.report(),
-            story(&before, &model),
             held_out_heading(&recorded),
             held_out.report(&model.robot.kinds())
         );
@@ -147,22 +144,6 @@ fn check_held_out(
     let page = report_files::write(&sources, Assets::Inside, page)?;
     output::wrote(&page);
     Ok((opened.model, check))
-}
-
-/// Says what the fit and the calibration were worth.
-fn story(before: &Conformance, model: &Model) -> String {
-    let factor = |calibration: Option<&Calibration>| calibration.map_or(1.0, |c| c.factor);
-    let cost = model.cost.unwrap_or(f64::INFINITY);
-    format!(
-        "With the nominal model the calibrated sets cost {}, scaled by {}; with the fitted model \
-         {} \
-         ({:+.0} %), scaled by {}.",
-        four_decimals(before.cost),
-        at_least(factor(before.calibration.as_ref())),
-        four_decimals(cost),
-        100.0 * (cost / before.cost - 1.0),
-        at_least(factor(model.calibration.as_ref()))
-    )
 }
 
 fn held_out_heading(recorded: &RecordedDemo) -> String {
