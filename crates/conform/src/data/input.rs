@@ -4,13 +4,18 @@ use std::sync::Arc;
 use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Defect, Run, Torque, check_limits};
 use reachtube_robot::Robot;
+use serde::{Deserialize, Serialize};
+
+use crate::data::stored::{grid, values};
 
 /// The sample times of a run and the input u along it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunInput {
     /// The sample times.
+    #[serde(with = "grid")]
     pub grid: Arc<TimeGrid>,
     /// The input u, row-major, samples x n, N m.
+    #[serde(with = "values")]
     pub inputs: Arc<[f64]>,
 }
 
@@ -41,6 +46,11 @@ impl RunInput {
         Ok(Self { grid: Arc::new(grid), inputs: inputs.into() })
     }
 
+    /// Returns an input in place of one that bytes do not have.
+    pub(crate) fn none() -> Self {
+        Self { grid: Arc::new(TimeGrid::uniform(1.0, 0)), inputs: Arc::default() }
+    }
+
     /// Returns whether one of two inputs is the beginning of the other. The input of a run's last
     /// sample acts on nothing and is not compared.
     pub(crate) fn shares(&self, other: &Self, joints: usize) -> bool {
@@ -54,7 +64,7 @@ impl RunInput {
 /// The input that some runs share: the longest one, of which the others' are the beginning. Where
 /// several are as long, it is the input of the run of the smallest number, because their last
 /// samples may differ.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SharedInput {
     /// The run whose input it is.
     pub run: u32,

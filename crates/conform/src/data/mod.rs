@@ -17,6 +17,7 @@ pub(crate) mod sensor_noise;
 pub(crate) mod settings;
 pub(crate) mod setup;
 pub(crate) mod side;
+mod stored;
 mod subset;
 pub(crate) mod suite;
 pub(crate) mod summary;

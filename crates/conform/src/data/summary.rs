@@ -2,18 +2,21 @@ use std::sync::Arc;
 
 use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Run, RunEntry, noise_deviations, run_notes};
+use serde::{Deserialize, Serialize};
 
 use crate::data::condition::Condition;
 use crate::data::marks::Marks;
+use crate::data::stored::condition;
 
 /// Number of runs of a suite whose marks are kept and which its statistics are of: that many are
 /// drawn from a larger suite.
 pub(crate) const SAMPLE: usize = 256;
 
 /// What is kept of every run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunSummary {
     /// Index in the source.
+    #[serde(skip)]
     pub index: usize,
     /// Number of samples.
     pub samples: usize,
@@ -21,12 +24,14 @@ pub struct RunSummary {
     pub duration: f64,
     /// The run's grid, or a longer one of the suite that it is the beginning of: runs of one rate
     /// share one.
+    #[serde(skip, default = "no_grid")]
     pub grid: Arc<TimeGrid>,
     /// The first state, 2n.
     pub start: Vec<f64>,
     /// Some of its states; none where the run is not drawn from a suite of more than 256.
     pub(crate) marks: Marks,
     /// What friction may depend on.
+    #[serde(with = "condition")]
     pub condition: Condition,
     /// SHA-256 of the recording.
     pub sha256: String,
@@ -54,6 +59,22 @@ impl RunSummary {
             notes: run_notes(entry, run),
         }
     }
+}
+
+impl RunSummary {
+    /// Returns whether its parts are about states of `dimension` entries.
+    pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
+        let temperatures = self.condition.temperatures.as_ref();
+        self.start.len() == dimension
+            && self.marks.is_valid_for(dimension)
+            && self.noise.as_ref().is_none_or(|noise| noise.len() == dimension)
+            && temperatures.is_none_or(|all| 2 * all.len() == dimension)
+    }
+}
+
+/// Returns a grid in place of one that bytes do not have.
+fn no_grid() -> Arc<TimeGrid> {
+    Arc::new(TimeGrid::uniform(1.0, 0))
 }
 
 /// Returns the 256 runs with the lowest SHA-256, or all of fewer, in the order of their indices. A

@@ -1,7 +1,9 @@
 use std::collections::BTreeMap;
 
 use reachtube_scalar::ExactSum;
+use serde::{Deserialize, Serialize};
 
+use crate::data::stored::sums;
 use crate::data::summary::RunSummary;
 
 /// Number of runs of a suite whose notes are given in full.
@@ -9,7 +11,7 @@ pub(crate) const MOST_NOTED: usize = 20;
 
 /// Totals of all runs of a suite. Its size does not grow with the runs, and the order in which they
 /// are taken makes no difference.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Totals {
     /// Number of runs.
     pub(crate) count: usize,
@@ -20,10 +22,12 @@ pub(crate) struct Totals {
     /// The first and the last place in the order of the suite.
     pub(crate) places: [u64; 2],
     /// The sums of the first states, 2n.
+    #[serde(with = "sums")]
     pub(crate) starts: Vec<ExactSum>,
     /// The lowest and the highest of the first states, 2n.
     pub(crate) start_bounds: Vec<[f64; 2]>,
     /// The sums of the temperatures, n, over the runs that have them; empty where none has.
+    #[serde(with = "sums")]
     pub(crate) temperatures: Vec<ExactSum>,
     /// The notes about the runs that come first in the source.
     pub(crate) notes: BTreeMap<usize, Vec<String>>,
@@ -76,6 +80,13 @@ impl Totals {
         while self.notes.len() > MOST_NOTED {
             self.notes.pop_last();
         }
+    }
+
+    /// Returns whether its parts fit together and are about states of `dimension` entries.
+    pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
+        [self.starts.len(), self.start_bounds.len()] == [dimension; 2]
+            && [0, dimension / 2].contains(&self.temperatures.len())
+            && self.noted >= self.notes.len()
     }
 
     /// Returns the mean of the first states, 2n, rounded to nearest.

@@ -9,7 +9,6 @@ use sha2::{Digest, Sha256};
 use crate::data::fold::context::Context;
 use crate::data::fold::defects::Defects;
 use crate::data::fold::fold::{Fold, State, other_setup};
-use crate::data::fold::stored::StoredSuite;
 use crate::data::fold::suite_fold::SuiteFold;
 use crate::data::setup::Setup;
 use crate::data::tree::Tree;
@@ -31,7 +30,7 @@ struct Stored {
     tree: Tree,
     defects: Defects,
     compared: Option<(String, u64)>,
-    suites: Vec<(String, StoredSuite)>,
+    suites: Vec<(String, SuiteFold)>,
 }
 
 /// The same as it is written: a fold has many megabytes, so only one suite is copied at a time.
@@ -55,7 +54,7 @@ impl Serialize for Settled<'_> {
         out.collect_seq(self.0.suites.iter().map(|(name, suite)| {
             let mut suite = suite.clone();
             suite.settle(are_listed, true);
-            (name, StoredSuite::new(&suite))
+            (name, suite)
         }))
     }
 }
@@ -112,8 +111,7 @@ impl Fold {
         if stored.context != context.digest {
             return Err(other_setup());
         }
-        let suite =
-            |(name, suite): (String, StoredSuite)| Some((name, suite.into_suite(&context)?));
+        let suite = |(name, suite): (String, SuiteFold)| Some((name, suite.completed(&context)?));
         let suites: Option<BTreeMap<String, SuiteFold>> =
             stored.suites.into_iter().map(suite).collect();
         let state = State {

@@ -7,6 +7,5 @@ mod defects;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod fold;
 pub(crate) mod of_fold;
-mod stored;
 mod suite_fold;
 mod whole_runs;

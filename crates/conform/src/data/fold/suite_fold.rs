@@ -1,7 +1,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Run, RunEntry, State};
+use serde::{Deserialize, Serialize};
 
 use crate::advice::Advice;
 use crate::data::envelope::Envelope;
@@ -19,7 +21,7 @@ const SUPERFLUOUS: usize = SAMPLE / 4;
 const MOST_SUPERFLUOUS: usize = 256;
 
 /// What the runs of one suite are folded into.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct SuiteFold {
     /// The motion that the first run names which names one, with its place.
     pub motion: Option<(u32, String)>,
@@ -39,6 +41,7 @@ pub(super) struct SuiteFold {
     /// The first run that starts outside the operating box: state and value.
     pub outside: Option<(u32, usize, f64)>,
     /// Number of names that were looked through last.
+    #[serde(skip)]
     pub settled: usize,
 }
 
@@ -130,6 +133,39 @@ impl SuiteFold {
              recorded as such), fold fewer, or read them on one machine"
         );
         Err(Error::Fold(Advice::from(problem).with("torque", "compensated")))
+    }
+
+    /// Completes what was read from bytes: inputs of whole runs, and places and grids of summaries,
+    /// which share theirs. `None` if the parts do not fit together.
+    pub(super) fn completed(mut self, context: &Context) -> Option<Self> {
+        let states = 2 * context.robot.joint_count();
+        self.whole = self.whole.with_inputs(context)?;
+        let shared = self.shared.as_ref().map(|shared| &shared.input);
+        let input = shared.or_else(|| self.whole.iter().next().map(|(_, run)| &run.input))?;
+        let grid = Arc::clone(&input.grid);
+        let grids: BTreeMap<u32, Arc<TimeGrid>> = match self.whole.are_all() {
+            true => self.whole.iter().map(|(at, run)| (at, Arc::clone(&run.input.grid))).collect(),
+            false => BTreeMap::new(),
+        };
+        for (place, run) in &mut self.runs {
+            run.index = *place as usize;
+            run.grid = Arc::clone(grids.get(place).unwrap_or(&grid));
+        }
+        self.settled = self.names.len();
+        self.is_valid_for(states).then_some(self)
+    }
+
+    /// Returns whether its parts fit together and are about states of `dimension` entries.
+    fn is_valid_for(&self, dimension: usize) -> bool {
+        let is_named = |place: u32| self.names.contains_key(&place);
+        let places = self.whole.iter().map(|(place, _)| place).chain(self.runs.keys().copied());
+        let is_valid = |input: &RunInput| 2 * input.inputs.len() == input.grid.len() * dimension;
+        self.totals.is_valid_for(dimension)
+            && self.envelope.is_valid_for(dimension)
+            && self.shared.as_ref().is_none_or(|shared| is_valid(&shared.input))
+            && self.runs.values().all(|run| run.is_valid_for(dimension))
+            && places.chain(self.envelope.owners()).all(is_named)
+            && self.outside.is_none_or(|(at, i, _)| is_named(at) && i < dimension)
     }
 
     /// Returns the first run that starts outside the operating box.

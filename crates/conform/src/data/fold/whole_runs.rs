@@ -1,6 +1,8 @@
 use std::collections::BTreeMap;
 
 use reachtube_recordings::Run;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::data::fold::context::Context;
 use crate::data::input::RunInput;
@@ -14,11 +16,46 @@ pub(super) enum WholeRuns {
     First(u32, WholeRun),
 }
 
-/// A run with its input.
-#[derive(Debug, Clone, PartialEq)]
+/// A run with its input, which follows from the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct WholeRun {
+    #[serde(with = "RunForm")]
     pub run: Run,
+    #[serde(skip, default = "RunInput::none")]
     pub input: RunInput,
+}
+
+/// A run without the number of joints, which all runs share.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Run")]
+struct RunForm {
+    #[serde(skip)]
+    joints: usize,
+    start: f64,
+    times: Vec<f64>,
+    states: Vec<f64>,
+    torques: Vec<f64>,
+    temperatures: Vec<f64>,
+    sha256: String,
+}
+
+impl Serialize for WholeRuns {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        (self.are_all(), self.iter().collect::<Vec<_>>()).serialize(out)
+    }
+}
+
+impl<'a> Deserialize<'a> for WholeRuns {
+    fn deserialize<D: Deserializer<'a>>(from: D) -> Result<Self, D::Error> {
+        match <(bool, Vec<(u32, WholeRun)>)>::deserialize(from)? {
+            (true, runs) if !runs.is_empty() => Ok(Self::All(runs.into_iter().collect())),
+            (false, mut runs) if runs.len() == 1 => {
+                let (place, run) = runs.remove(0);
+                Ok(Self::First(place, run))
+            }
+            _ => Err(D::Error::custom("a suite has a run that is whole")),
+        }
+    }
 }
 
 impl WholeRun {
@@ -64,6 +101,20 @@ impl WholeRuns {
             Self::All(runs) => Box::new(runs.iter().map(|(place, run)| (*place, run))),
             Self::First(place, run) => Box::new(std::iter::once((*place, run))),
         }
+    }
+
+    /// Computes the inputs of runs that were read from bytes; `None` if a run is none.
+    pub(super) fn with_inputs(mut self, context: &Context) -> Option<Self> {
+        let complete = |WholeRun { run, input }: &mut WholeRun| {
+            run.joints = context.robot.joint_count();
+            *input = context.input("", run).ok()?;
+            Some(())
+        };
+        match &mut self {
+            Self::All(runs) => runs.values_mut().try_for_each(complete)?,
+            Self::First(_, run) => complete(run)?,
+        }
+        Some(self)
     }
 
     /// Returns whether all runs stay.
