@@ -148,4 +148,4 @@ impl Finding {
 }
 
 /// What the basis of a fitted nominal model says about settings in files of earlier versions.
-const HOW_TO_CALIBRATE: &str = "; --calibrate MOTION,.. holds motions out from both fits";
+const HOW_TO_CALIBRATE: &str = "; --calibrate MOTION,.. keeps motions back from both fits";
