@@ -44,7 +44,7 @@ pub struct Conformance {
     pub paper_cost: Option<f64>,
     /// Σ_k Δt Π_i width_i(t_k), eq. (2).
     pub hull_volume: f64,
-    /// What was proved.
+    /// The proof.
     pub verdict: Verdict,
     /// What may be expected of motions that were not recorded.
     pub trust: Trust,

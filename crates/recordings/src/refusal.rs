@@ -34,7 +34,7 @@ pub struct DefectPlace {
     pub line: Option<u64>,
     /// The joint, from 1.
     pub joint: Option<usize>,
-    /// What is wrong.
+    /// The problem.
     pub problem: String,
 }
 

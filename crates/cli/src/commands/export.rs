@@ -97,7 +97,7 @@ pub(crate) struct Arguments {
     pub max_gap: Option<f64>,
 }
 
-/// What is written.
+/// The files to write.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Target {

@@ -111,7 +111,7 @@ pub struct Model {
     /// N m, to lay beside U.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub input_error: Vec<f64>,
-    /// What was proved.
+    /// The proof.
     pub proof: Verdict,
     /// What may be expected of the next motion.
     pub trust: Trust,

@@ -31,7 +31,7 @@ pub(super) struct Evidence<'a> {
 /// What recordings may mean instead of what was stated: each number as it is read.
 #[derive(Debug, Clone)]
 pub(super) struct Hypothesis {
-    /// What is tried.
+    /// The meaning that is tried.
     pub reading: Reading,
     /// The recorded torques.
     pub torque: Torque,

@@ -6,7 +6,7 @@ use crate::result::remedy::Remedy;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Warning {
-    /// What is remarked.
+    /// The kind of remark.
     pub kind: WarningKind,
     /// The joints that it is about, from 1; none where it is about all.
     pub joints: Vec<usize>,

@@ -53,7 +53,7 @@ struct Sizes {
     coverage: CoverageOptions,
 }
 
-/// What was computed.
+/// The computed tables and figures.
 struct Reproduced {
     table1: Table1,
     table2: Table2,

@@ -8,7 +8,7 @@ use crate::fixture::{Lab, Run};
 
 /// A kind of bad input.
 struct Case {
-    /// What is wrong.
+    /// The mistake.
     what: &'static str,
     /// Makes it wrong.
     spoil: fn(&Lab),
