@@ -108,8 +108,8 @@ fn raw_logs_of_two_arms_become_useful_models() {
         let held_out = &answer["held_out"];
         let part = held_out["outside"].as_f64().unwrap() / held_out["rows"].as_f64().unwrap();
         assert!(part < 0.01, "{part}");
-        // The windows of all logs, prepared again: only what was held out may lie outside. One log of
-        // the pendulum moves a single joint, and is neither among the windows nor held out.
+        // The windows of all logs, prepared again: only what was held out may lie outside. One log
+        // of the pendulum moves a single joint, and is neither among the windows nor held out.
         if logs.ends_with("excitation") {
             let check = lab.run(&format!("check --model arm/model.json --data {shown} --json"));
             assert_eq!(json(&check.stdout)["violations"]["count"], held_out["outside"]);
