@@ -18,7 +18,8 @@ pub(crate) struct DataArguments {
     /// Names of the test suites to use, separated by commas [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// Meaning of the recorded torques, columns tau1 to taun in N m [default: the model file's]
+    /// Meaning of the recorded torques, columns tau1 to taun in N m; a model file
+    /// knows what its own are
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
     /// Use only samples up to this time after the first sample, above 0 s [default: all]

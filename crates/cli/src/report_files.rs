@@ -17,13 +17,25 @@ pub(crate) fn page_in(folder: &Path) -> PathBuf {
 
 /// Writes the page and its figures to `folder` and returns the page's path.
 pub(crate) fn write(sources: &Sources, assets: Assets, folder: &Path) -> Result<PathBuf> {
+    write_excerpt(sources, assets, folder, "")
+}
+
+/// Does what [`write()`] does for some of the recordings; `excerpt` ends the line under the title
+/// and says which.
+pub(crate) fn write_excerpt(
+    sources: &Sources,
+    assets: Assets,
+    folder: &Path,
+    excerpt: &str,
+) -> Result<PathBuf> {
     let path = page_in(folder);
     let library = folder.join(LIBRARY_FILE);
     output::claim(&path)?;
     if assets == Assets::Beside {
         output::claim(&library)?;
     }
-    let page = page(sources)?;
+    let mut page = page(sources)?;
+    page.subtitle += excerpt;
     let mut html = Vec::new();
     write_html(&page, assets, &mut html)?;
     write_figures(&page, folder)?;

@@ -52,9 +52,9 @@ pub fn page(sources: &Sources) -> Result<Page> {
 fn verdict(sources: &Sources) -> Verdict {
     let Sources { model, check, .. } = *sources;
     let of_check = |codes: &[Code]| of_codes(sources, &check.findings, codes);
-    let outside: Vec<&Finding> =
-        check.findings.iter().filter(|found| found.code == Code::FurthestOutside).collect();
-    let headline = check.findings.first().into_iter().chain(outside);
+    let said = [Code::Vacuous, Code::FurthestOutside];
+    let beside = check.findings.iter().filter(|found| said.contains(&found.code));
+    let headline = check.findings.first().into_iter().chain(beside);
     let words: Vec<String> = headline.map(|found| sentence(sources, found)).collect();
     let warnings = model.warnings.iter().map(Finding::from);
     let mut proved = of_check(&[Code::Traces, Code::Points, Code::Rows]);
@@ -70,6 +70,7 @@ fn verdict(sources: &Sources) -> Verdict {
     not_proved.extend(of_check(&[Code::SetLost]));
     Verdict {
         ok: check.verdict.conformant,
+        vacuous: model.is_vacuous(),
         words: words.join(" "),
         warnings: warnings.map(|warning| sentence(sources, &warning)).collect(),
         proved,

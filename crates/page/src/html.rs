@@ -86,10 +86,11 @@ fn links(sections: &[(&str, Markup)]) -> Markup {
 }
 
 fn verdict(verdict: &Verdict) -> Markup {
-    let (class, word) = match (verdict.ok, verdict.warnings.is_empty()) {
-        (true, true) => ("verdict ok", "Conformant"),
-        (true, false) => ("verdict doubtful", "Conformant, with warnings"),
-        (false, _) => ("verdict bad", "Not conformant"),
+    let (class, word) = match (verdict.ok, verdict.vacuous, verdict.warnings.is_empty()) {
+        (false, ..) => ("verdict bad", "Not conformant"),
+        (true, true, _) => ("verdict bad", "Conformant, but vacuous"),
+        (true, false, true) => ("verdict ok", "Conformant"),
+        (true, false, false) => ("verdict doubtful", "Conformant, with warnings"),
     };
     html! {
         section class=(class) aria-labelledby="verdict" {

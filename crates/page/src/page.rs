@@ -44,6 +44,8 @@ pub struct Page {
 pub struct Verdict {
     /// Whether every recording was proved to be enclosed, in the notion that `words` names.
     pub ok: bool,
+    /// Whether the model is vacuous: its sets do not limit the motion of some joint.
+    pub vacuous: bool,
     /// The outcome as one sentence.
     pub words: String,
     /// Implausible results, one sentence each.

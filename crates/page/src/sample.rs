@@ -86,6 +86,7 @@ pub(super) fn page() -> Page {
         cost: vec![TextTable { title: "drivers".into(), ..TextTable::default() }],
         cost_charts: vec![phase_plane()],
         verdict: Verdict {
+            vacuous: false,
             ok: true,
             words: hostile("words"),
             warnings: vec![hostile("warning")],

@@ -1,5 +1,4 @@
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use reachtube_conform::{Answer, Equations, FitSettings, NominalStart};
 use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
@@ -7,12 +6,12 @@ use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
 use crate::choices::{Choice, Choices};
+use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
 use crate::held_out::Split;
-use crate::horizon::{Rung, ladder, longest};
+use crate::horizon::{HorizonWidths, longest, try_horizons};
 use crate::noise::noise;
-use crate::road::Road;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::Sorted;
 use crate::trial::Trial;
@@ -34,10 +33,11 @@ pub struct Built {
     pub made: Vec<Choice>,
     /// What a user should know about the reading of the logs.
     pub notes: Vec<String>,
-    /// What contradicts the robot's description in the recorded torques, in sentences.
+    /// What contradicts the robot's description in the recorded torques, and whether the sets
+    /// carry over to what was held out, in sentences.
     pub warnings: Vec<String>,
     /// How wide the sets are at each horizon that was tried.
-    pub ladder: Vec<Rung>,
+    pub horizons: Vec<HorizonWidths>,
     /// What the motions that were held out say.
     pub held_out: HeldOut,
     /// Some windows for a page: windows that decide the sets, and others evenly spread.
@@ -47,8 +47,8 @@ pub struct Built {
 }
 
 impl Built {
-    /// Returns whether the sets were proved to enclose every window, say something about every
-    /// joint, and are narrow enough at the horizon.
+    /// Returns whether the sets were proved to enclose every window, limit every joint, and
+    /// are narrow enough at the horizon.
     #[must_use]
     pub fn is_useful(&self) -> bool {
         let model = &self.answer.model;
@@ -59,7 +59,7 @@ impl Built {
 }
 
 /// Makes a model of the recordings that `given` names, and compares it with motions that are held
-/// out. `folder` is where relative paths begin. `say` takes each choice when it is made.
+/// out. `say` takes each choice when it is made.
 ///
 /// # Errors
 ///
@@ -70,19 +70,17 @@ pub fn build(
     robot: &Robot,
     torque: Torque,
     given: &Choices,
-    folder: &Path,
     say: &mut dyn FnMut(&Choice),
 ) -> Result<Built> {
-    let mut road = Road { choices: given.clone(), made: Vec::new(), say };
+    let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say };
     let settings = PrepareSettings { gains: given.gains.clone(), ..PrepareSettings::default() };
-    let sorted = Sorted::read(&mut road, given, folder, robot, &settings)?;
+    let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
-    road.choose_held_out(&split);
+    chooser.choose_held_out(&split);
     let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &recording.log).collect();
-    let (mut trial, cut_off) = first_choices(&mut road, robot, torque, &raw, &settings)?;
+    let (mut trial, cut_off) = first_choices(&mut chooser, robot, torque, &raw, &settings)?;
 
     // The robot.
-    let notes = sorted.notes;
     let evidence = Evidence {
         rest: sorted.rest,
         one_joint: sorted.one_joint,
@@ -92,35 +90,37 @@ pub fn build(
         cut_off,
         trial: &trial,
     };
-    let warnings = evidence.contradictions(robot)?;
-    let because = |error: Error| error.because(&warnings);
-    let chosen = evidence.choose(robot, given.identify).map_err(because)?;
+    let mut warnings = evidence.contradictions(robot)?;
+    let chosen = evidence.choose(robot, given.identify);
+    let chosen = chosen.map_err(|error| error.because(&warnings))?;
     let Nominal { robot, logs, is_identified, reason } = chosen;
-    road.choose("identify", is_identified.to_string(), reason);
-    road.choices.identify = Some(is_identified);
+    chooser.choose("identify", is_identified.to_string(), reason);
+    chooser.choices.identify = Some(is_identified);
     trial.robot = robot.clone();
 
     // The horizon and the sets.
     let motions = motion_names(&split);
     let from_start = torque == Torque::Compensated;
     let recordings = Prepared { logs: &logs, motions: &motions, from_start };
-    let (mut answer, ladder) = sets(&mut road, &mut trial, &recordings).map_err(because)?;
+    let (mut answer, horizons) =
+        sets(&mut chooser, &mut trial, &recordings).map_err(|error| error.because(&warnings))?;
     let raw: Vec<RawLog> = split.held_out.iter().map(|recording| recording.log.clone()).collect();
     let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
     let held_back = Prepared { logs: &held_back, ..recordings };
-    let horizon = road.choices.horizon.unwrap_or_default();
-    answer.model = answer.model.with_preparation(preparation(&road.choices, torque));
+    let horizon = chooser.choices.horizon.unwrap_or_default();
+    answer.model = answer.model.with_preparation(preparation(&chooser.choices, torque));
     let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
     let Compared { held_out, shown, shown_held_out } = compared;
-    let (choices, made) = (road.choices, road.made);
+    warnings.extend(held_out.warning());
+    let (choices, made) = (chooser.choices, chooser.made);
     Ok(Built {
         answer,
         robot,
         choices,
         made,
-        notes,
+        notes: sorted.notes,
         warnings,
-        ladder,
+        horizons,
         held_out,
         shown,
         shown_held_out,
@@ -130,23 +130,27 @@ pub fn build(
 /// Chooses the filter, the model of deviations about the mean of the motion, and what the noise of
 /// the sensors is. Returns them with the cut-off, Hz, for `robot` as described.
 fn first_choices(
-    road: &mut Road,
+    chooser: &mut Chooser,
     robot: &Robot,
     torque: Torque,
     raw: &[&RawLog],
     settings: &PrepareSettings,
 ) -> Result<(Trial, f64)> {
-    let given = road.choices.clone();
+    let given = chooser.choices.clone();
     let is_filtered = torque != Torque::Compensated;
     let cut_off = cut_off(raw, &PrepareSettings { cut_off: given.cut_off, ..settings.clone() })?;
     let cut_off = (10.0 * cut_off).round() / 10.0;
     if is_filtered {
-        road.choose("cut-off", format!("{cut_off} Hz"), "1.5 times the bandwidth of the motions");
-        road.choices.cut_off = Some(cut_off);
+        chooser.choose(
+            "cut-off",
+            format!("{cut_off} Hz"),
+            "1.5 times the bandwidth of the motions",
+        );
+        chooser.choices.cut_off = Some(cut_off);
     }
     let expansion = given.expansion.unwrap_or_else(|| mean_position(raw));
-    road.choose("expansion", list(&expansion), "the mean position of the motions");
-    road.choices.expansion = Some(expansion.clone());
+    chooser.choose("expansion", list(&expansion), "the mean position of the motions");
+    chooser.choices.expansion = Some(expansion.clone());
     let measured = || noise(raw, is_filtered.then_some(cut_off));
     let sensor_noise = given.sensor_noise.unwrap_or_else(measured);
     let why = match is_filtered {
@@ -156,8 +160,8 @@ fn first_choices(
     let (q, qd) = sensor_noise.split_at(sensor_noise.len() / 2);
     let most = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
     let value = format!("up to {:.1e} rad and {:.1e} rad/s", most(q), most(qd));
-    road.choose("sensor-noise", value, why);
-    road.choices.sensor_noise = Some(sensor_noise.clone());
+    chooser.choose("sensor-noise", value, why);
+    chooser.choices.sensor_noise = Some(sensor_noise.clone());
     let equations = given.equations.unwrap_or(Equations::Robot);
     let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
     let robot = robot.clone();
@@ -166,65 +170,100 @@ fn first_choices(
 }
 
 /// Chooses the fit and the horizon, and finds the sets.
-fn sets(road: &mut Road, trial: &mut Trial, recordings: &Prepared) -> Result<(Answer, Vec<Rung>)> {
-    let largest = road.choices.largest_ratio.unwrap_or(LARGEST_RATIO);
-    road.choices.largest_ratio = Some(largest);
-    let mut rungs = choose_equations(road, trial, recordings, largest)?;
-    let groups = road.choices.fit.clone().unwrap_or_default();
-    let pull = road.choices.pull;
+fn sets(
+    chooser: &mut Chooser,
+    trial: &mut Trial,
+    recordings: &Prepared,
+) -> Result<(Answer, Vec<HorizonWidths>)> {
+    let largest = chooser.choices.largest_ratio.unwrap_or(LARGEST_RATIO);
+    chooser.choices.largest_ratio = Some(largest);
+    let mut horizons = choose_equations(chooser, trial, recordings, largest)?;
+    let groups = chooser.choices.fit.clone().unwrap_or_default();
+    let pull = chooser.choices.pull;
     let fit = (!groups.is_empty()).then(|| FitSettings { groups: groups.clone(), pull });
     let reason = match fit {
         Some(_) => "given",
-        None => "a fit takes minutes; it makes sets smaller",
+        None => "a fit makes sets smaller, but takes minutes",
     };
     let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
     let value = if names.is_empty() { "nothing".into() } else { names.join(", ") };
-    road.choose("fit", value, reason);
-    road.choices.fit = Some(groups);
+    chooser.choose("fit", value, reason);
+    chooser.choices.fit = Some(groups);
     if fit.is_some() {
         trial.fit = fit;
-        rungs = ladder(trial, recordings)?;
+        horizons = try_horizons(trial, recordings)?;
     }
-    let (horizon, reason) = match road.choices.horizon {
-        Some(horizon) => (horizon, "given".to_string()),
+    let (answer, horizon, reason) = match chooser.choices.horizon {
+        Some(horizon) => {
+            let answer = trial.run(recordings.cut(horizon, usize::MAX)?)?;
+            (answer, horizon, "given".to_string())
+        }
         None => {
-            let rung = longest(&rungs, largest);
-            (rung.horizon, reason_of_horizon(rung, &rungs, largest, &trial.robot))
+            let (answer, horizon) = longest_of_all(trial, recordings, &horizons, largest)?;
+            let reason = reason_of_horizon(&answer, horizon, &horizons, largest);
+            (answer, horizon, reason)
         }
     };
-    road.choose("horizon", format!("{horizon} s"), reason);
-    road.choices.horizon = Some(horizon);
-    let answer = trial.run(recordings.cut(horizon, usize::MAX)?, false)?;
-    Ok((answer, rungs))
+    chooser.choose("horizon", format!("{horizon} s"), reason);
+    chooser.choices.horizon = Some(horizon);
+    Ok((answer, horizons))
+}
+
+/// Finds the sets over all windows of the longest horizon at which none is wider beside the motion
+/// than `largest`. The horizons were tried on some windows only, so that all of them may need a
+/// shorter one.
+fn longest_of_all(
+    trial: &Trial,
+    recordings: &Prepared,
+    tried: &[HorizonWidths],
+    largest: f64,
+) -> Result<(Answer, f64)> {
+    let mut horizon = longest(tried, largest).horizon;
+    loop {
+        let answer = trial.run(recordings.cut(horizon, usize::MAX)?)?;
+        let is_narrow = worst(&answer).1 <= largest;
+        let shorter = tried.iter().rev().find(|other| other.horizon < horizon);
+        match shorter.filter(|shorter| !is_narrow && shorter.worst().1 <= largest) {
+            Some(shorter) => horizon = shorter.horizon,
+            None => return Ok((answer, horizon)),
+        }
+    }
+}
+
+/// Returns the joint, from 0, whose set is widest beside its motion, and the ratio.
+fn worst(answer: &Answer) -> (usize, f64) {
+    answer.found.usefulness.worst().unwrap_or((0, f64::INFINITY))
 }
 
 /// Chooses whose equations nominal motions satisfy: the equations with which sets stay narrow for
 /// longer, or are narrower. Returns how the sets grow with them.
 fn choose_equations(
-    road: &mut Road,
+    chooser: &mut Chooser,
     trial: &mut Trial,
     recordings: &Prepared,
     largest: f64,
-) -> Result<Vec<Rung>> {
-    let given = road.choices.equations;
+) -> Result<Vec<HorizonWidths>> {
+    let given = chooser.choices.equations;
     let grown = |equations: Equations| {
         let trial = Trial { equations, ..trial.clone() };
-        let rungs = ladder(&trial, recordings)?;
-        let rung = longest(&rungs, largest).clone();
-        Ok::<_, crate::error::Error>((rungs, rung))
+        let horizons = try_horizons(&trial, recordings)?;
+        let widths = longest(&horizons, largest).clone();
+        Ok::<_, Error>((horizons, widths))
     };
-    let (rungs, equations, reason) = match given {
+    let (horizons, equations, reason) = match given {
         Some(equations) => (grown(equations)?.0, equations, "given".to_string()),
         None => {
             let (of_robot, own) = grown(Equations::Robot)?;
             let (of_model, other) = grown(Equations::Model)?;
-            let is_narrow = |rung: &Rung| rung.worst().1 <= largest;
+            let is_narrow = |widths: &HorizonWidths| widths.worst().1 <= largest;
             let is_better = match (is_narrow(&own), is_narrow(&other)) {
                 (true, true) => other.horizon > own.horizon,
                 (false, false) => other.worst().1 < own.worst().1,
                 (own, _) => !own,
             };
-            let words = |rung: &Rung| format!("{} at {} s", percent(rung.worst().1), rung.horizon);
+            let words = |widths: &HorizonWidths| {
+                format!("{} at {} s", percent(widths.worst().1), widths.horizon)
+            };
             let reason = format!(
                 "the widest set is {} of the motion with the robot's equations, {} with the linear \
                  model's",
@@ -237,10 +276,10 @@ fn choose_equations(
             }
         }
     };
-    road.choose("equations", format!("{equations:?}").to_lowercase(), reason);
-    road.choices.equations = Some(equations);
+    chooser.choose("equations", format!("{equations:?}").to_lowercase(), reason);
+    chooser.choices.equations = Some(equations);
     trial.equations = equations;
-    Ok(rungs)
+    Ok(horizons)
 }
 
 /// Returns what was done to logs, to do it to others.
@@ -254,18 +293,26 @@ fn motion_names(split: &Split) -> BTreeMap<String, String> {
     all.map(|recording| (recording.log.name.clone(), recording.motion.clone())).collect()
 }
 
-fn reason_of_horizon(rung: &Rung, ladder: &[Rung], largest: f64, robot: &Robot) -> String {
-    let name = |joint: usize| &robot.joints()[joint].name;
-    let (joint, ratio) = rung.worst();
-    let next = ladder.iter().find(|other| other.horizon > rung.horizon);
+fn reason_of_horizon(
+    answer: &Answer,
+    horizon: f64,
+    tried: &[HorizonWidths],
+    largest: f64,
+) -> String {
+    let name = |joint: usize| &answer.model.robot.joints[joint].name;
+    let (joint, ratio) = worst(answer);
+    let next = tried.iter().find(|other| other.horizon > horizon);
     let mut words = format!("the widest set is {} of the motion ({})", percent(ratio), name(joint));
     if ratio > largest {
-        words +=
-            &format!(", more than {}, and at every other horizon it is wider", percent(largest));
+        words += &format!(", more than {}, and no other horizon is better", percent(largest));
     } else if let Some(next) = next {
         let (joint, ratio) = next.worst();
-        words +=
-            &format!("; at {} s it would be {} ({})", next.horizon, percent(ratio), name(joint));
+        words += &format!(
+            "; at {} s some of the windows give {} ({})",
+            next.horizon,
+            percent(ratio),
+            name(joint)
+        );
     }
     words
 }

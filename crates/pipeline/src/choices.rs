@@ -4,6 +4,10 @@ use std::path::PathBuf;
 use reachtube_conform::{Equations, Group};
 use reachtube_recordings::Torque;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+/// What the comment with the digest of the values begins with.
+const DIGEST: &str = "the reasons belong to the values with the digest ";
 
 /// Largest number of columns of a comment.
 const COLUMNS: usize = 96;
@@ -73,13 +77,18 @@ pub struct Choice {
 }
 
 impl Choices {
-    /// Reads choices and the reasons in the comments before them.
+    /// Reads choices and the reasons in the comments before them. The reasons do not count where a
+    /// value was edited since: they may be about another one.
     ///
     /// # Errors
     ///
     /// Text that is not TOML, and keys that do not exist, with line and column.
     pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
         let mut choices: Self = toml::from_str(text)?;
+        let digest = text.lines().find_map(|line| line.strip_prefix("# ")?.strip_prefix(DIGEST));
+        if digest != Some(choices.digest().as_str()) {
+            return Ok(choices);
+        }
         let mut reason: Vec<&str> = Vec::new();
         for line in text.lines() {
             match (line.strip_prefix("# "), line.split_once(" = ")) {
@@ -94,10 +103,11 @@ impl Choices {
         Ok(choices)
     }
 
-    /// Returns the choices as TOML, with the reasons of `made` as comments.
+    /// Returns the choices as TOML, with the reasons of `made` as comments, and a digest of the
+    /// values that the reasons belong to.
     #[must_use]
     pub fn to_toml(&self, made: &[Choice]) -> String {
-        let lines = toml::to_string(self).expect("choices are a TOML table");
+        let lines = self.values();
         let mut text = String::new();
         for line in lines.lines() {
             let key = line.split(" = ").next().unwrap_or_default();
@@ -107,7 +117,17 @@ impl Choices {
             text += line;
             text.push('\n');
         }
-        text
+        text + &format!("\n# {DIGEST}{}\n", self.digest())
+    }
+
+    fn values(&self) -> String {
+        toml::to_string(self).expect("choices are a TOML table")
+    }
+
+    /// Returns a digest of the values.
+    fn digest(&self) -> String {
+        let sha256 = Sha256::digest(self.values().as_bytes());
+        sha256.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
     }
 }
 
@@ -149,5 +169,8 @@ mod tests {
         let read = Choices::from_toml(&text).unwrap();
         assert_eq!(read.reasons["held-out"], reason.trim());
         assert_eq!(Choices { reasons: BTreeMap::new(), ..read }, choices);
+        // The reasons of an edited file may be about other values.
+        let edited = Choices::from_toml(&text.replace("-1.2", "-1.3")).unwrap();
+        assert!(edited.reasons.is_empty());
     }
 }

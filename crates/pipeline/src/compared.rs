@@ -10,6 +10,9 @@ use crate::windows::Prepared;
 /// Windows on a page, besides the deciding ones.
 const MOST_SHOWN: usize = 12;
 
+/// The part of the rows that were held out which may lie outside without a warning.
+const LARGEST_PART: f64 = 0.01;
+
 /// A model beside motions that were held out from every choice.
 #[derive(Debug, Clone, Serialize)]
 pub struct HeldOut {
@@ -53,6 +56,21 @@ impl Compared {
 }
 
 impl HeldOut {
+    /// Returns a warning where the sets do not carry over to what was held out.
+    pub(crate) fn warning(&self) -> Option<String> {
+        let part = self.outside as f64 / self.rows.max(1) as f64;
+        match &self.failure {
+            Some(failure) => Some(format!("what was held out could not be compared: {failure}")),
+            None => (part > LARGEST_PART).then(|| {
+                format!(
+                    "{:.1} % of the rows that were held out lie outside the sets: the other \
+                     recordings do not cover them; record more motions, and faster ones",
+                    100.0 * part
+                )
+            }),
+        }
+    }
+
     /// Compares a model with prepared recordings. Returns the windows that leave its sets, too.
     fn new(
         answer: &Answer,
@@ -117,6 +135,6 @@ fn some_windows(
     let stride = all.runs().len().div_ceil(MOST_SHOWN).max(1);
     let spread: BTreeSet<&str> =
         all.runs().iter().step_by(stride).map(|run| run.file.as_str()).collect();
-    let is_wanted = |_, name: &str| first.contains(name) || spread.contains(name);
-    Ok(recordings.cut_some(horizon, usize::MAX, is_wanted)?.0)
+    let is_wanted = |name: &str| first.contains(name) || spread.contains(name);
+    recordings.cut_some(horizon, usize::MAX, is_wanted)
 }

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn every_fourth_motion_is_kept_back() {
+    fn every_fourth_motion_is_held_out() {
         let split =
             Split::new(recordings(&["a", "a", "b", "c", "d", "e", "f", "g", "h"]), None).unwrap();
         assert_eq!((split.names, split.kept.len()), (vec!["d".into(), "h".into()], 7));
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn the_end_of_a_single_motion_is_kept_back() {
+    fn the_end_of_a_single_motion_is_held_out() {
         let split = Split::new(recordings(&["a"]), None).unwrap();
         let (kept, held_out) = (&split.kept[0].log.run, &split.held_out[0].log.run);
         assert_eq!((kept.len(), held_out.len()), (76, 26));

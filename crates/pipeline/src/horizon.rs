@@ -13,11 +13,11 @@ const MOST_WINDOWS: usize = 200;
 
 /// Longer horizons are not tried once the worst joint's set is wider than its motion by this
 /// factor.
-const HOPELESS: f64 = 1.5;
+const TOO_WIDE: f64 = 1.5;
 
 /// How wide the sets are at a horizon.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Rung {
+pub struct HorizonWidths {
     /// The horizon, s.
     pub horizon: f64,
     /// Half the width of each joint's set by the joint's displacement, n; empty where no sets were
@@ -28,7 +28,7 @@ pub struct Rung {
     pub reason: Option<String>,
 }
 
-impl Rung {
+impl HorizonWidths {
     /// Returns the joint, from 0, whose set is widest beside its motion, and the ratio; infinite
     /// where no sets were found.
     #[must_use]
@@ -43,31 +43,31 @@ impl Rung {
 /// # Errors
 ///
 /// [`Error::NoSets`] if none were found over the shortest horizon.
-pub(crate) fn ladder(trial: &Trial, recordings: &Prepared) -> Result<Vec<Rung>> {
-    let mut rungs: Vec<Rung> = Vec::new();
+pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<HorizonWidths>> {
+    let mut tried: Vec<HorizonWidths> = Vec::new();
     let steps = recordings.logs.iter().map(|log| log.step);
     let shortest = 3.0 * steps.fold(0.0, f64::max);
     // A recording that counts from its start moves most in its middle, so all horizons are tried.
     let whole = recordings.from_start.then(|| recordings.longest());
-    let horizons = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
-    for horizon in horizons.chain(whole).filter(|horizon| *horizon >= shortest) {
+    let shorter = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
+    for horizon in shorter.chain(whole).filter(|horizon| *horizon >= shortest) {
         let windows = match recordings.cut(horizon, MOST_WINDOWS) {
             Err(Error::NoWindow { .. }) => break,
             other => other?,
         };
-        let (ratios, reason) = match trial.run(windows, false) {
+        let (ratios, reason) = match trial.run(windows) {
             Ok(answer) => (ratios(&answer.found.usefulness.joints), None),
             Err(error) => (Vec::new(), Some(error.to_string())),
         };
-        rungs.push(Rung { horizon, ratios, reason });
-        let is_hopeless = rungs.last().is_some_and(|rung| rung.worst().1 > HOPELESS);
-        if is_hopeless && whole.is_none() {
+        tried.push(HorizonWidths { horizon, ratios, reason });
+        let is_too_wide = tried.last().is_some_and(|widths| widths.worst().1 > TOO_WIDE);
+        if is_too_wide && whole.is_none() {
             break;
         }
     }
-    match rungs.first() {
-        Some(Rung { reason: None, .. }) => Ok(rungs),
-        Some(Rung { horizon, reason: Some(reason), .. }) => {
+    match tried.first() {
+        Some(HorizonWidths { reason: None, .. }) => Ok(tried),
+        Some(HorizonWidths { horizon, reason: Some(reason), .. }) => {
             Err(Error::NoSets { shortest: *horizon, reason: reason.clone() })
         }
         None => Err(Error::NoWindow { horizon: HORIZONS[0] }),
@@ -80,10 +80,10 @@ fn ratios(joints: &[JointWidth]) -> Vec<f64> {
 
 /// Returns the longest horizon at which no set is wider beside the motion than `largest`; if there
 /// is none, the horizon at which the worst set is narrowest.
-pub(crate) fn longest(rungs: &[Rung], largest: f64) -> &Rung {
-    let fitting = rungs.iter().rev().find(|rung| rung.worst().1 <= largest);
-    let narrowest = || rungs.iter().min_by(|a, b| a.worst().1.total_cmp(&b.worst().1));
-    fitting.or_else(narrowest).expect("there is a rung")
+pub(crate) fn longest(tried: &[HorizonWidths], largest: f64) -> &HorizonWidths {
+    let fitting = tried.iter().rev().find(|widths| widths.worst().1 <= largest);
+    let narrowest = || tried.iter().min_by(|a, b| a.worst().1.total_cmp(&b.worst().1));
+    fitting.or_else(narrowest).expect("a horizon was tried")
 }
 
 #[cfg(test)]
@@ -92,12 +92,18 @@ mod tests {
 
     #[test]
     fn the_longest_horizon_whose_sets_are_narrow_is_chosen() {
-        let rung =
-            |horizon: f64, ratio: f64| Rung { horizon, ratios: vec![0.1, ratio], reason: None };
-        let rungs = [rung(0.05, 0.2), rung(0.1, 0.4), rung(0.2, 0.6), rung(0.3, 0.7)];
-        assert_eq!(longest(&rungs, 0.5).horizon, 0.1);
-        assert_eq!(longest(&rungs, 0.1).horizon, 0.05);
-        assert_eq!(longest(&[rung(0.05, 3.0), rung(0.1, 2.0)], 0.5).horizon, 0.1);
-        assert_eq!(Rung { horizon: 1.0, ratios: vec![], reason: None }.worst().1, f64::INFINITY);
+        let widths = |horizon: f64, ratio: f64| HorizonWidths {
+            horizon,
+            ratios: vec![0.1, ratio],
+            reason: None,
+        };
+        let tried = [widths(0.05, 0.2), widths(0.1, 0.4), widths(0.2, 0.6), widths(0.3, 0.7)];
+        assert_eq!(longest(&tried, 0.5).horizon, 0.1);
+        assert_eq!(longest(&tried, 0.1).horizon, 0.05);
+        assert_eq!(longest(&[widths(0.05, 3.0), widths(0.1, 2.0)], 0.5).horizon, 0.1);
+        assert_eq!(
+            HorizonWidths { horizon: 1.0, ratios: vec![], reason: None }.worst().1,
+            f64::INFINITY
+        );
     }
 }

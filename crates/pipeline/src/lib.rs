@@ -2,6 +2,7 @@
 
 mod build;
 mod choices;
+mod chooser;
 mod compared;
 mod error;
 mod held_out;
@@ -10,7 +11,7 @@ mod kinds;
 mod noise;
 mod plausible;
 mod prepared;
-mod road;
+
 mod robot;
 mod sorted;
 mod trial;
@@ -20,5 +21,5 @@ pub use build::{Built, build};
 pub use choices::{Choice, Choices};
 pub use compared::HeldOut;
 pub use error::{Error, Result};
-pub use horizon::Rung;
+pub use horizon::HorizonWidths;
 pub use prepared::prepared;

@@ -164,7 +164,7 @@ impl Evidence<'_> {
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
         // A model that runs away explains nothing.
-        let Ok(answer) = trial.run(windows, false) else { return Ok(f64::INFINITY) };
+        let Ok(answer) = trial.run(windows) else { return Ok(f64::INFINITY) };
         let errors = answer.found.input_error;
         let gains = &self.settings.gains;
         let torque = |joint: usize| {

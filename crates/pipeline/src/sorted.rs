@@ -8,10 +8,10 @@ use reachtube_recordings::{DataSet, RunEntry, RunSource};
 use reachtube_robot::Robot;
 
 use crate::choices::Choices;
+use crate::chooser::Chooser;
 use crate::error::{Error, Result};
 use crate::held_out::Recording;
 use crate::kinds::{Kind, motions};
-use crate::road::Road;
 
 /// Recordings by what they are.
 pub(crate) struct Sorted {
@@ -29,14 +29,13 @@ impl Sorted {
     ///
     /// Recordings that cannot be read; [`Error::NoMotion`].
     pub(crate) fn read(
-        road: &mut Road,
+        chooser: &mut Chooser,
         given: &Choices,
-        folder: &Path,
         robot: &Robot,
         settings: &PrepareSettings,
     ) -> Result<Self> {
         let entries: Vec<LogEntry> = given.data.iter().cloned().map(LogEntry::from).collect();
-        let raw = read(&entries, folder, robot, settings)?;
+        let raw = read(&entries, Path::new(""), robot, settings)?;
         let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
         let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
         let of = |kind: Kind| -> Vec<&RawLog> {
@@ -49,12 +48,12 @@ impl Sorted {
             let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
-        let known = indexed(given.data.iter().map(|path| folder.join(path)));
+        let known = indexed(given.data.iter().cloned());
         let known: Vec<Option<String>> =
             moving.iter().map(|log| known.get(&log.file).cloned()).collect();
         let names = motions(&moving, &known);
-        let distinct: BTreeSet<&String> = names.iter().collect();
-        road.choose(
+        let distinct = names.iter().collect::<BTreeSet<_>>().len();
+        chooser.choose(
             "data",
             format!("{} recordings", raw.len()),
             format!(
@@ -62,10 +61,9 @@ impl Sorted {
                 count(Kind::Rest),
                 count(Kind::OneJoint),
                 moving.len(),
-                distinct.len()
+                distinct
             ),
         );
-        drop(distinct);
         let recordings = moving.iter().zip(names).map(|(log, motion)| Recording {
             log: (*log).clone(),
             entry: entry(log),

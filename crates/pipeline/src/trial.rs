@@ -32,7 +32,7 @@ impl Trial {
     /// # Errors
     ///
     /// As [`Job::run`].
-    pub(crate) fn run(&self, windows: MemoryRuns, keep_runs: bool) -> Result<Answer> {
+    pub(crate) fn run(&self, windows: MemoryRuns) -> Result<Answer> {
         let n = self.robot.joint_count();
         let settings = Settings {
             expansion_point: ExpansionPoint::from_values(&self.expansion, n)?,
@@ -44,8 +44,7 @@ impl Trial {
         };
         let job = Job::new(self.robot.clone(), windows, Torque::Compensated)
             .settings(settings)
-            .fit(self.fit.clone())
-            .keep_runs(keep_runs);
+            .fit(self.fit.clone());
         Ok(job.run(&Silent)?)
     }
 }

@@ -30,11 +30,10 @@ impl Prepared<'_> {
     ///
     /// [`Error::NoWindow`] if no recording is as long.
     pub(crate) fn cut(&self, horizon: f64, most: usize) -> Result<MemoryRuns> {
-        Ok(self.cut_some(horizon, most, |_, _| true)?.0)
+        self.cut_some(horizon, most, |_| true)
     }
 
-    /// Does what [`cut`](Self::cut) does for what `is_wanted` takes, by the number of its motion
-    /// and its name, and returns how many motions there are.
+    /// Does what [`cut`](Self::cut) does for what `is_wanted` takes by its name.
     ///
     /// # Errors
     ///
@@ -43,8 +42,8 @@ impl Prepared<'_> {
         &self,
         horizon: f64,
         most: usize,
-        is_wanted: impl Fn(usize, &str) -> bool,
-    ) -> Result<(MemoryRuns, usize)> {
+        is_wanted: impl Fn(&str) -> bool,
+    ) -> Result<MemoryRuns> {
         let all = match self.from_start {
             true => self.beginnings(horizon),
             false => windows(self.logs, Some(horizon), false).windows,
@@ -56,23 +55,18 @@ impl Prepared<'_> {
         let motion = |index: usize| self.motion(&all[index].motion);
         let is_single = (0..all.len()).all(|index| motion(index) == motion(0));
         let mut runs = MemoryRuns::default();
-        let mut names: Vec<String> = Vec::new();
         for index in (0..count).map(|k| k * all.len() / count) {
             let window = &all[index];
             let motion = match is_single && !self.from_start {
                 true => format!("{} part {}", motion(index), 1 + PARTS * index / all.len()),
                 false => motion(index).to_string(),
             };
-            let number = names.iter().position(|name| *name == motion).unwrap_or_else(|| {
-                names.push(motion.clone());
-                names.len() - 1
-            });
             let name = if self.from_start { &window.log.name } else { &window.suite };
-            if is_wanted(number, name) {
+            if is_wanted(name) {
                 runs.push(name, Some(&window.suite), Some(&motion), run(&window.log));
             }
         }
-        Ok((runs, names.len()))
+        Ok(runs)
     }
 
     /// Returns the duration of the longest recording, s, to the microsecond.

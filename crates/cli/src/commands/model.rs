@@ -8,7 +8,7 @@ use reachtube::conform::{Answer, Code, FrontEnd, JointWidth, Keep, Opened};
 use reachtube::number::significant;
 use reachtube::page::{Assets, Sources};
 use reachtube::pipeline::{Built, Choice, Choices, HeldOut, build};
-use reachtube::recordings::{MemoryRuns, RunSource, Torque};
+use reachtube::recordings::{MemoryRuns, Torque};
 use reachtube::write;
 use reachtube_files::MARK;
 use reachtube_robot::{Lock, Robot};
@@ -68,7 +68,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let (choices, folder) = choices(args)?;
+    let choices = choices(args)?;
     let name = choices.robot.clone().ok_or(Error::NoRobot)?;
     let locks: Vec<Lock> =
         choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
@@ -80,39 +80,43 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let files = ["model.json", "robot.toml", "choices.toml"].map(|file| args.out.join(file));
     let page = args.out.join("page");
     output::claim_all(&files)?;
-    output::claim(&report_files::page_in(&page))?;
+    let held_out = args.out.join("held-out");
+    output::claim_all(&[&page, &held_out].map(|folder| report_files::page_in(folder)))?;
     let bar = Progress::of("making a model");
     let mut say = |choice: &Choice| {
         output::note(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
     };
-    let built = build(&robot, torque, &choices, &folder, &mut say)?;
+    let built = build(&robot, torque, &choices, &mut say)?;
     drop(bar);
     output::notes(&built.notes);
     save(&built, &files)?;
-    let held_out = args.out.join("held-out");
-    let Built { answer, shown, shown_held_out, .. } = &built;
-    for (runs, folder) in [(shown, &page), (shown_held_out, &held_out)] {
-        if !runs.runs().is_empty() && built.held_out.failure.is_none() {
-            output::wrote(&write_page(answer, runs.clone(), folder)?);
-        }
+    let Built { answer, shown, shown_held_out, held_out: other, .. } = &built;
+    let all = answer.model.data.run_count();
+    let excerpt = format!(", an excerpt of {all} with the ten that decide the sets most");
+    output::wrote(&write_page(answer, shown, &page, &excerpt)?);
+    if other.failure.is_none() {
+        let all = other.windows;
+        let excerpt =
+            format!(", an excerpt of {all} that were held out, with up to 12 that leave the sets");
+        output::wrote(&write_page(answer, shown_held_out, &held_out, &excerpt)?);
     }
     output::show(json, &as_json(&built), || summary(&built, args))?;
     Ok(outcome(&built))
 }
 
-/// Writes a page about some windows.
-fn write_page(answer: &Answer, runs: MemoryRuns, folder: &Path) -> Result<PathBuf> {
-    let opened = answer.model.check(runs).keep(Keep::All).open(&Silent)?;
+/// Writes a page about some windows; `excerpt` says which.
+fn write_page(answer: &Answer, runs: &MemoryRuns, folder: &Path, excerpt: &str) -> Result<PathBuf> {
+    let opened = answer.model.check(runs.clone()).keep(Keep::All).open(&Silent)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
     let front_end = FrontEnd::CommandLine;
     let sources = Sources { model, problem, reach: &reach, check: &check, front_end };
-    report_files::write(&sources, Assets::Inside, folder)
+    report_files::write_excerpt(&sources, Assets::Inside, folder, excerpt)
 }
 
 /// Returns the choices of the settings file and the command line, with paths from the working
-/// directory, and the folder that paths are relative to.
-fn choices(args: &Arguments) -> Result<(Choices, PathBuf)> {
+/// directory.
+fn choices(args: &Arguments) -> Result<Choices> {
     let mut choices = match &args.settings {
         None => Choices::default(),
         Some(path) => {
@@ -131,6 +135,7 @@ fn choices(args: &Arguments) -> Result<(Choices, PathBuf)> {
         }
     }
     choices.data.iter_mut().for_each(|path| *path = folder.join(&*path));
+    let before = choices.clone();
     choices.robot = args.robot.clone().or(choices.robot);
     choices.torque = args.torque.or(choices.torque);
     choices.horizon = args.horizon.or(choices.horizon);
@@ -146,7 +151,11 @@ fn choices(args: &Arguments) -> Result<(Choices, PathBuf)> {
     if !args.gains.is_empty() {
         choices.gains.clone_from(&args.gains);
     }
-    Ok((choices, PathBuf::new()))
+    // Reasons of a file are about its own values.
+    if choices != before {
+        choices.reasons.clear();
+    }
+    Ok(choices)
 }
 
 /// Writes the model, the robot and the choices.
@@ -214,8 +223,10 @@ fn summary(built: &Built, args: &Arguments) -> String {
     }
     lines.push(joints(built));
     lines.push(held_out(&built.held_out, what));
-    let growth =
-        built.ladder.iter().map(|rung| format!("{} s {}", rung.horizon, percent(rung.worst().1)));
+    let growth = built
+        .horizons
+        .iter()
+        .map(|widths| format!("{} s {}", widths.horizon, percent(widths.worst().1)));
     let growth: Vec<String> = growth.collect();
     lines.push(format!("widest set by horizon, of the motion: {}", growth.join(", ")));
     lines.push(format!(
@@ -293,8 +304,8 @@ fn as_json(built: &Built) -> Value {
             "outside": built.held_out.outside,
             "failure": built.held_out.failure,
         },
-        "horizons": built.ladder.iter().map(|rung| json!({
-            "horizon": rung.horizon, "ratios": rung.ratios, "reason": rung.reason,
+        "horizons": built.horizons.iter().map(|widths| json!({
+            "horizon": widths.horizon, "ratios": widths.ratios, "reason": widths.reason,
         })).collect::<Vec<Value>>(),
         "choices": built.made,
         "warnings": built.warnings,

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use crate::fixture::Lab;
 use crate::identify::lab as pendulum_lab;
+use crate::output_schema::fits;
 
 /// A lab with `pendulum.toml`, whose mass is wrong, and four logs in `logs`.
 fn lab() -> Lab {
@@ -28,6 +29,7 @@ fn logs_become_a_useful_model_that_takes_other_logs() {
     let run =
         lab.run("model --robot pendulum.toml --data logs --torque motor --out arm --json").exits(0);
     let answer = json(&run.stdout);
+    fits("model", &answer);
     assert_eq!((&answer["useful"], &answer["conformant"]), (&true.into(), &true.into()));
     // The description misses half of the mass, so that the robot is identified.
     let choice = |key: &str| {
@@ -54,6 +56,11 @@ fn the_same_choices_give_the_same_bytes() {
     lab.run("model --robot pendulum.toml --data logs --torque motor --out arm").exits(0);
     lab.run("model --settings arm/choices.toml --out again").exits(0);
     let read = |path: &str| std::fs::read_to_string(lab.path(path)).unwrap();
+    // Reasons are dropped where a value was edited: they may be about the value before.
+    let edited = read("arm/choices.toml").replace("held-out = [\"c\"]", "held-out = [\"b\"]");
+    lab.write("edited.toml", edited);
+    let run = lab.run("model --settings edited.toml --out other").exits(0);
+    assert!(run.stderr.contains("held-out: b (given)"), "{}", run.stderr);
     for file in ["model.json", "robot.toml", "choices.toml"] {
         assert_eq!(read(&format!("arm/{file}")), read(&format!("again/{file}")), "{file}");
     }
@@ -115,4 +122,15 @@ fn raw_logs_of_two_arms_become_useful_models() {
             assert_eq!(json(&check.stdout)["violations"]["count"], held_out["outside"]);
         }
     }
+}
+
+#[test]
+fn a_vacuous_model_is_called_so_on_its_page_and_by_its_exit_code() {
+    let lab = Lab::new();
+    // A measurement noise of 10 rad hides every motion.
+    let run = lab.conform("--noise 10,10 --out model.json --report page").exits(3);
+    assert!(run.stdout.starts_with("conformant, but vacuous"), "{}", run.stdout);
+    assert!(run.stdout.contains("Proved, but vacuous for joints 1, 2"), "{}", run.stdout);
+    assert!(lab.read("page/report.html").contains("Conformant, but vacuous"));
+    lab.check("").exits(3);
 }

@@ -28,29 +28,34 @@ const LAGS: [f64; 8] = [0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2];
 
 /// Returns what most likely makes an answer implausible: the reading of the recordings under which
 /// the robot's dynamics agree best with them, where it is much better than the one that was
-/// stated, and otherwise a calibration that scaled the sets by much.
+/// stated, and otherwise a calibration that scaled the sets by much. `None` where the recordings
+/// are too short to show one.
 ///
 /// # Errors
 ///
 /// As [`Problem::run`].
-pub(super) fn likely_cause(problem: &Problem, calibration: Option<&Calibration>) -> Result<Cause> {
+pub(super) fn likely_cause(
+    problem: &Problem,
+    calibration: Option<&Calibration>,
+) -> Result<Option<Cause>> {
     let evidence = Evidence::new(problem)?;
     let stated = stated(problem);
-    let rest = evidence.unexplained(&stated);
+    let scaled = calibration.filter(|found| found.factor >= LARGE_FACTOR).map(scaled_by);
+    let Some(rest) = evidence.unexplained(&stated) else { return Ok(scaled) };
     let tried = hypotheses(&stated);
-    let scored = tried.into_iter().map(|tried| (evidence.unexplained(&tried), tried));
+    let scored = tried.into_iter().filter_map(|tried| Some((evidence.unexplained(&tried)?, tried)));
     let best = scored.min_by(|a, b| a.0.total_cmp(&b.0));
     let likely =
         best.filter(|(least, _)| rest - least > LEAST_GAIN && *least < LARGEST_REST * rest);
     if let Some((unexplained, Hypothesis { reading, .. })) = likely {
-        return Ok(Cause::Reading { reading, unexplained, as_stated: rest });
+        return Ok(Some(Cause::Reading { reading, unexplained, as_stated: rest }));
     }
-    if let Some(calibration) = calibration.filter(|found| found.factor >= LARGE_FACTOR) {
-        return Ok(scaled_by(calibration));
+    if scaled.is_some() {
+        return Ok(scaled);
     }
     let is_fitted = problem.setup().correction.is_some();
-    Ok(lost_by_model(problem, &evidence, &stated, rest)
-        .unwrap_or(Cause::Parameters { unexplained: rest, is_fitted }))
+    let lost = lost_by_model(problem, &evidence, &stated, rest);
+    Ok(lost.or(Some(Cause::Parameters { unexplained: rest, is_fitted })))
 }
 
 /// Returns which motion that was held out made the sets as large as they are.
@@ -76,12 +81,12 @@ fn lost_by_model(
         evidence.unexplained(&Hypothesis { inertia_at: Some(q.to_vec()), ..stated.clone() })
     };
     let origin = &settings.expansion_point.q;
-    let lost = at(origin);
+    let lost = at(origin)?;
     if lost < LEAST_GAIN + rest || rest > LARGEST_REST * lost {
         return None;
     }
     let (mean, distance) = evidence.positions(origin);
-    let unexplained = at(&mean);
+    let unexplained = at(&mean)?;
     let is_mean_better = unexplained < LARGEST_OF_MEAN * lost;
     if settings.equations == Equations::Robot {
         return is_mean_better.then_some(Cause::ExpansionPoint { distance, mean });

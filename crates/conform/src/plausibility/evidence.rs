@@ -81,14 +81,19 @@ impl<'a> Evidence<'a> {
     /// Returns the part of the input that the motion does not explain under a hypothesis: the mean
     /// over the joints of Σ (u - u_m)² by Σ (u² + u_m²), where u is the recorded input and u_m the
     /// one that the robot needs for the recorded motion. It is 0 for equal inputs, about 1 for
-    /// unrelated ones and 2 for opposite ones.
-    pub(super) fn unexplained(&self, hypothesis: &Hypothesis) -> f64 {
+    /// unrelated ones and 2 for opposite ones. `None` where the runs are too short for it, or too
+    /// short for the lag.
+    pub(super) fn unexplained(&self, hypothesis: &Hypothesis) -> Option<f64> {
         let n = self.robot.joint_count();
         let mut sums = vec![[0.0; 2]; n];
         for run in self.runs.iter().filter(|run| run.len() >= FEWEST) {
             let step = hypothesis.time * run.times.last().unwrap_or(&0.0) / run.len() as f64;
             let half = ((HALF_WINDOW / step).round() as usize).clamp(1, run.len() / 8 + 1);
             let lag = (hypothesis.lag / step).round() as usize;
+            // A lag that leaves little of a run would be judged by other samples than no lag.
+            if lag > run.len() / 4 {
+                continue;
+            }
             let last = run.len().saturating_sub(half + lag);
             let stride = (last.saturating_sub(half) / SAMPLES).max(1);
             for k in (half..last).step_by(stride) {
@@ -102,7 +107,7 @@ impl<'a> Evidence<'a> {
         }
         let moving = sums.iter().filter(|[_, size]| *size > 0.0);
         let parts: Vec<f64> = moving.map(|[missed, size]| missed / size).collect();
-        parts.iter().sum::<f64>() / parts.len().max(1) as f64
+        (!parts.is_empty()).then(|| parts.iter().sum::<f64>() / parts.len() as f64)
     }
 
     /// Returns the motor torques `torques`, the means around sample `k`, less gravity and softened

@@ -43,7 +43,8 @@ pub(crate) fn warnings(
     let mut found: Vec<Warning> = WarningKind::OF_JOINTS.into_iter().filter_map(of_kind).collect();
     // X0 takes over from U where that is cheaper, whatever the recordings are.
     if found.iter().any(|warning| warning.kind != WarningKind::InitialSetStarts) {
-        found.push(Warning::from(&likely_cause(problem, calibration)?));
+        let cause = likely_cause(problem, calibration)?;
+        found.extend(cause.as_ref().map(Warning::from));
     }
     Ok(found)
 }

@@ -4,13 +4,13 @@ use crate::choices::{Choice, Choices};
 use crate::held_out::Split;
 
 /// The choices so far.
-pub(crate) struct Road<'a> {
+pub(crate) struct Chooser<'a> {
     pub choices: Choices,
     pub made: Vec<Choice>,
     pub say: &'a mut dyn FnMut(&Choice),
 }
 
-impl Road<'_> {
+impl Chooser<'_> {
     /// Reports a choice and notes it. A reason that came with the settings is kept.
     pub(crate) fn choose(
         &mut self,
