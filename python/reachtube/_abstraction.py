@@ -13,6 +13,7 @@ from . import _reachtube
 from ._arrays import Array, batch, numbers, whole
 from ._files import write_new
 from ._progress import Progress, shown
+from ._renamed import renamed
 from ._robot import Robot, native_of
 from .errors import ReachtubeError, SettingError
 
@@ -128,10 +129,11 @@ def _parsed(text: str) -> Abstraction:
     return Abstraction(_reachtube.Abstraction.parse(text, "bytes"))
 
 
+@renamed(model="paper_model")
 def abstract(
     robot: Robot,
     *,
-    model: Literal[1, 2, 3] = 1,
+    paper_model: Literal[1, 2, 3] = 1,
     order: int = 1,
     expansion: npt.ArrayLike | None = None,
     box: npt.ArrayLike | None = None,
@@ -144,7 +146,7 @@ def abstract(
     ----------
     robot
         The robot.
-    model, order
+    paper_model, order
         Which of the paper's models, and the order of its Taylor polynomials.
     expansion : n or 2n numbers, optional
         Where the model is expanded: positions, or also velocities; 0 where not given.
@@ -165,7 +167,8 @@ def abstract(
     """
     given = [] if expansion is None else numbers("expansion", expansion).ravel().tolist()
     radii = [] if box is None else numbers("box", box).ravel().tolist()
-    kind, power = whole("model", model, 1, 3), whole("order", order, 1, MOST_ORDER)
+    kind = whole("paper_model", paper_model, 1, 3)
+    power = whole("order", order, 1, MOST_ORDER)
     most = None if most_boxes is None else whole("most_boxes", most_boxes, 1)
     with shown(progress, "abstract") as tell:
         return Abstraction(

@@ -16,6 +16,7 @@ from ._arrays import names, real
 from ._model import Check, Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
+from ._renamed import renamed
 from ._robot import Robot
 from ._settings import Data, Group, Notion, Torque, differing, of_conformance
 from .errors import ReachtubeWarning
@@ -23,13 +24,14 @@ from .errors import ReachtubeWarning
 log = logging.getLogger("reachtube")
 
 
+@renamed(model="paper_model")
 def conform(
     robot: Robot | Abstraction,
     data: Data,
     *,
     torque: Torque,
     suites: str | Sequence[str] | None = None,
-    model: Literal[1, 2, 3] = 1,
+    paper_model: Literal[1, 2, 3] = 1,
     order: int = 1,
     expansion: npt.ArrayLike | None = None,
     fit: Sequence[Group] = (),
@@ -66,7 +68,7 @@ def conform(
         gear) or ``"link"`` (link-side torque of a joint torque sensor). It is never guessed.
     suites
         Names of the suites to use; all where none are given.
-    model, order, expansion
+    paper_model, order, expansion
         Model 1, 2 or 3 of the paper, the order of its Taylor polynomials, and where it is
         expanded: n positions, or also n velocities. Not for an abstraction, which has its own.
     fit, pull
@@ -127,7 +129,7 @@ def conform(
     settings = of_conformance(
         robot,
         torque=torque,
-        model=model,
+        paper_model=paper_model,
         order=order,
         expansion=expansion,
         disturbance=disturbance,
@@ -158,7 +160,7 @@ def conform(
             None if resume is None else fspath(resume),
             tell,
         )
-    return told(text, notes, 3)
+    return told(text, notes, 4)
 
 
 def told(text: str, notes: list[str], level: int) -> Model:

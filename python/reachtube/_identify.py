@@ -7,13 +7,14 @@ import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from . import _reachtube
 from ._files import write_new
 from ._progress import Progress, shown
 from ._record import Record
 from ._recordings import Run
+from ._renamed import renamed
 from ._robot import Robot, native_of
 from .errors import ReachtubeError, ReachtubeWarning, SettingError
 
@@ -119,6 +120,7 @@ def _recorded(logs: Logs) -> tuple[list[str], list[_reachtube.Run]]:
     return paths, [item._native for item in items if isinstance(item, Run)]
 
 
+@renamed(link_torque="torque=\"link\"")
 def identify(
     robot: Robot,
     *,
@@ -129,7 +131,7 @@ def identify(
     settings: str | PathLike[str] | None = None,
     prepare: dict[str, Any] | None = None,
     model: dict[str, Any] | None = None,
-    link_torque: bool = False,
+    torque: Literal["motor", "link"] | None = None,
     progress: Progress = None,
 ) -> Identification:
     """Identify gravity, friction and inertia of a robot from recordings of motor torques.
@@ -146,8 +148,10 @@ def identify(
     prepare, model
         Settings of the preparation and of the model, by the names of the TOML file's sections, for
         example ``prepare={"cut_off": 5.0}``, ``model={"stribeck": True}``.
-    link_torque
-        Whether the torque was measured behind the gear, so that motors are not part of it.
+    torque
+        What the recorded torques are: ``"motor"`` (motor torque at the output side of the gear) or
+        ``"link"`` (link-side torque, which does not drive the motors' inertia); as the settings say
+        where it is not given, and they say motor by default.
     progress
         As for `conform`.
 
@@ -174,8 +178,10 @@ def identify(
         if not isinstance(section or {}, Mapping):
             raise SettingError(f"{name} is {section!r}; give settings by their names")
     own = dict(model or {})
-    if link_torque:
-        own["motor_inertia"] = False
+    if torque not in (None, "motor", "link"):
+        raise SettingError(f"torque is {torque!r}; give \"motor\" or \"link\"")
+    if torque is not None:
+        own["motor_inertia"] = torque == "motor"
     given = json.dumps({"prepare": dict(prepare or {}), "model": own})
     here = Path.cwd()
     recorded = []
@@ -187,5 +193,5 @@ def identify(
             *_reachtube.identify(native_of(robot), recorded, toml, given, str(folder), tell)
         )
     for warning in found.warnings:
-        warnings.warn(warning, ReachtubeWarning, 2)
+        warnings.warn(warning, ReachtubeWarning, 3)
     return found

@@ -57,7 +57,7 @@ def of_conformance(
     robot: Robot | Abstraction,
     *,
     torque: Torque,
-    model: Literal[1, 2, 3] = 1,
+    paper_model: Literal[1, 2, 3] = 1,
     order: int = 1,
     expansion: npt.ArrayLike | None = None,
     disturbance: Literal["sample", "constant", "measurable"] = "sample",
@@ -92,10 +92,10 @@ def of_conformance(
         "method": method,
     }
     if isinstance(robot, Abstraction):
-        if (model, order, expansion) != (1, 1, None):
+        if (paper_model, order, expansion) != (1, 1, None):
             raise SettingError("the abstraction has its own model, order and expansion")
     else:
-        kind = whole("model", model, 1, 3)
+        kind = whole("paper_model", paper_model, 1, 3)
         settings["abstraction"] = {"model": kind, "order": whole("order", order, 1, 255)}
         if expansion is not None:
             settings["expansion"] = numbers("expansion", expansion).ravel().tolist()

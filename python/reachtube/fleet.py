@@ -20,6 +20,7 @@ from ._manifest import Recording, in_order, of_robots, read_manifest, write_mani
 from ._model import Check, Model, text_of
 from ._points import Points
 from ._progress import Progress, shown
+from ._renamed import renamed
 from ._robot import Robot
 from ._settings import Group, Notion, Torque, differing, of_conformance
 from .errors import ReachtubeError, SettingError
@@ -81,6 +82,7 @@ def _folded(
         return content, Points(job, parts, None, content)
 
 
+@renamed(model="paper_model")
 def conform(
     robot: Robot | Abstraction,
     manifest: str | PathLike[str],
@@ -158,7 +160,7 @@ def conform(
             )
     finally:
         points.close()
-    return told(found, notes, 3)
+    return told(found, notes, 4)
 
 
 def check(

@@ -147,7 +147,7 @@ def test_settings_reach_the_product(robot: rt.Robot, data: rt.Recordings) -> Non
         ({"until": -1.0}, "until is -1.0 s"),
         ({"suites": ["Z"]}, 'no suite "Z"'),
         ({"fit": ["mass"]}, "fit: unknown variant `mass`"),
-        ({"model": 4}, "model is 4; give 1 to 3"),
+        ({"paper_model": 4}, "paper_model is 4; give 1 to 3"),
         ({"order": 0}, "order"),
         ({"weights": [0.0, 1.0]}, "weight 1 is 0"),
     ],

@@ -27,7 +27,7 @@ def conform(robot: Any, data: Any, **settings: Any) -> object:
         ({"noise": [float("nan"), 1.0]}, r"noise is \[nan, 1.0\]; give finite numbers"),
         ({"order": "x"}, "order is 'x' of type str"),
         ({"order": -1}, "order is -1; give 1 to 255"),
-        ({"model": 2.5}, "model is 2.5 of type float"),
+        ({"paper_model": 2.5}, "paper_model is 2.5 of type float"),
     ],
 )
 def test_settings_of_wrong_types_are_named(
@@ -35,6 +35,22 @@ def test_settings_of_wrong_types_are_named(
 ) -> None:
     with pytest.raises(rt.SettingError, match=words):
         conform(robot, data, **settings)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda data: conform(None, data, model=2), r"conform\(\): model is now paper_model"),
+        (lambda data: rt.abstract(None, model=2), r"abstract\(\): model is now paper_model"),
+        (lambda data: rt.fleet.conform(None, "m", model=2), "model is now paper_model"),
+        (lambda data: rt.identify(None, link_torque=True), 'link_torque is now torque="link"'),
+    ],
+)
+def test_old_names_of_arguments_fail_with_the_new_one(
+    data: rt.Recordings, call: Callable[[rt.Recordings], object], words: str
+) -> None:
+    with pytest.raises(TypeError, match=words):
+        call(data)
 
 
 def test_numbers_of_numpy_are_numbers(robot: rt.Robot, data: rt.Recordings) -> None:

@@ -26,7 +26,7 @@ def test_an_interrupt_ends_a_long_call_at_once(robot: rt.Robot, after: float) ->
 
     threading.Thread(target=interrupt).start()
     with pytest.raises(KeyboardInterrupt):
-        rt.abstract(robot, model=3, order=9)
+        rt.abstract(robot, paper_model=3, order=9)
     assert time.process_time() - sent[0] < 0.2 * min(4, os.cpu_count() or 1)
 
 

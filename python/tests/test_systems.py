@@ -13,7 +13,7 @@ import reachtube as rt
 
 
 def test_an_abstraction_is_evaluated_over_arrays(robot: rt.Robot, tmp_path: Path) -> None:
-    made = rt.abstract(robot, model=2, order=3)
+    made = rt.abstract(robot, paper_model=2, order=3)
     random = np.random.default_rng(2)
     q, qd, u = random.uniform(-0.1, 0.1, (3, 5, 4, 6))
     x = made.state(q, qd)
@@ -33,7 +33,7 @@ def test_an_abstraction_is_evaluated_over_arrays(robot: rt.Robot, tmp_path: Path
 
 
 def test_the_error_of_an_abstraction_is_bounded(robot: rt.Robot) -> None:
-    made = rt.abstract(robot, model=1, order=1, box=[0.05, 0.1, 1.0], most_boxes=4)
+    made = rt.abstract(robot, paper_model=1, order=1, box=[0.05, 0.1, 1.0], most_boxes=4)
     bounds = made.error_bounds
     assert bounds is not None and len(bounds) == 6
     random = np.random.default_rng(5)
@@ -187,7 +187,7 @@ def test_wrong_settings_of_a_motion_are_named(
         ({"order": -1}, "order is -1; give 1 to 255"),
         ({"order": 2**40}, "order is 1099511627776"),
         ({"order": 1.5}, "order is 1.5 of type float"),
-        ({"model": 4}, "model is 4; give 1 to 3"),
+        ({"paper_model": 4}, "paper_model is 4; give 1 to 3"),
         ({"most_boxes": -1, "box": [0.1, 0.1, 1.0]}, "most_boxes is -1"),
     ],
 )

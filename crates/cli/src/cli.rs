@@ -37,11 +37,11 @@ Examples:
       record the paper's experiment on a virtual robot
   reachtube inspect --data recordings
       summarise a data set
-  reachtube convert --robot arm.urdf --log run.mcap --marker /run --out recordings
+  reachtube convert --robot arm.urdf --data run.mcap --marker /run --out recordings
       cut a robot's log into recordings
   reachtube identify --robot arm.urdf --dynamic a.csv b.csv --validate c.csv --out arm.toml
       identify gravity, friction and inertia
-  reachtube abstract --robot lwa4p --model 2 --order 5
+  reachtube abstract --robot lwa4p --paper-model 2 --order 5
       make a polynomial model of the forward dynamics
   reachtube conform --robot lwa4p --data recordings --suites A,B --torque compensated \\
       --out model.json

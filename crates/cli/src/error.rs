@@ -15,6 +15,14 @@ pub(crate) enum Error {
     /// The command line is wrong, or asks for help or the version.
     #[error("{}", usage_words(.0))]
     Usage(clap::Error),
+    /// An option has another name now.
+    #[error("--{old} is now --{new}")]
+    Renamed {
+        /// The name it had, without dashes.
+        old: String,
+        /// The name it has, without dashes, with its value if the old option had none.
+        new: &'static str,
+    },
     /// A settings file is not TOML.
     #[error("{}: {message}", path.display())]
     SettingsSyntax {
@@ -41,8 +49,8 @@ pub(crate) enum Error {
          again"
     )]
     Output(#[source] std::io::Error),
-    /// `--at` has the wrong number of positions.
-    #[error("--at lists {given}; give {joints} positions in {unit}, one per joint")]
+    /// `robot show --expansion` has the wrong number of positions.
+    #[error("--expansion lists {given}; give {joints} positions in {unit}, one per joint")]
     PositionCount {
         /// Number of values given.
         given: usize,
@@ -147,7 +155,7 @@ pub(crate) enum Error {
             "the windows are {window} s long, but the longest prepared recording lasts \
              {longest:.3} s; give a shorter --window"
         ),
-        None => "no log has two samples or more; give longer --logs".into(),
+        None => "no log has two samples or more; give longer --data".into(),
     })]
     NothingPrepared {
         /// Length of the windows, s, where it is given.
@@ -204,7 +212,7 @@ impl Error {
     /// Returns what the error is about, as `--json` prints it.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
-            Self::Usage(_) => "usage",
+            Self::Usage(_) | Self::Renamed { .. } => "usage",
             Self::Output(_) => "file",
             Self::Refused { .. } => "recordings",
             Self::Pipeline(error) => match **error {

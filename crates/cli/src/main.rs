@@ -14,6 +14,7 @@ mod outcome;
 mod output;
 mod progress;
 mod reference;
+mod renamed;
 mod report_files;
 mod settings_file;
 mod table;

@@ -28,7 +28,7 @@ pub(crate) const INITIAL_LIMITS: Choices = &[
     ("states", "positions and velocities no further than the recorded starts"),
 ];
 
-/// The models of the paper (Sec. IV-B), as `--model` names them.
+/// The models of the paper (Sec. IV-B), as `--paper-model` names them.
 pub(crate) const MODELS: Choices = &[
     ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),
     ("2", "also Coriolis terms, polynomial in sin q and cos q, eqs. (14), (15)"),

@@ -16,6 +16,7 @@ use toml::{Spanned, Value};
 
 use crate::cli::Cli;
 use crate::error::{Error, Result};
+use crate::renamed::{new_name, usage_error};
 
 /// The command that takes a settings file of its options.
 const COMMAND: &str = "conform";
@@ -27,21 +28,25 @@ const OPTION: &str = "settings";
 pub(crate) fn parse(line: Vec<OsString>) -> Result<Cli> {
     // Options that the file gives may be missing from the command line.
     let first = Cli::command().ignore_errors(true).try_get_matches_from(&line);
-    let given = first.as_ref().ok().and_then(|matches| matches.subcommand_matches(COMMAND));
+    let first = first.ok();
+    let given = first.as_ref().and_then(|matches| matches.subcommand_matches(COMMAND));
     let path = given.and_then(|given| given.try_get_one::<PathBuf>(OPTION).ok().flatten());
-    match given.zip(path) {
-        Some((given, path)) => with_file(&line, given, path),
-        None => cli(Cli::command().try_get_matches_from(&line)),
-    }
-}
-
-fn cli(matches: Result<ArgMatches, clap::Error>) -> Result<Cli> {
-    let parsed = matches.and_then(|matches| Cli::from_arg_matches(&matches));
-    parsed.map_err(|error| Error::Usage(error.format(&mut Cli::command())))
+    let parsed = match given.zip(path) {
+        Some((given, path)) => with_file(&line, given, path)?,
+        None => Cli::command().try_get_matches_from(&line),
+    };
+    let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
+    parsed.map_err(|error| usage_error(error, &mut Cli::command(), first.as_ref()))
 }
 
 /// Parses the command line together with the options in the file `path` that it does not give.
-fn with_file(line: &[OsString], given: &ArgMatches, path: &Path) -> Result<Cli> {
+/// An error of an option that the file gives names its line there; other errors are returned in the
+/// inner result.
+fn with_file(
+    line: &[OsString],
+    given: &ArgMatches,
+    path: &Path,
+) -> Result<Result<ArgMatches, clap::Error>> {
     let text =
         reachtube_files::read_text(path, "give a settings file as docs/commands.md describes")?;
     let file = SettingsFile::parse(path, &text)?;
@@ -49,10 +54,11 @@ fn with_file(line: &[OsString], given: &ArgMatches, path: &Path) -> Result<Cli> 
     let on_line = |key: &str| given.value_source(&id(key)) == Some(ValueSource::CommandLine);
     let from_file = file.arguments(on_line)?;
     let all = line[..at].iter().cloned().chain(from_file).chain(line[at..].iter().cloned());
-    Cli::command()
-        .try_get_matches_from(all)
-        .map_err(|error| file.blame(error))
-        .and_then(|matches| cli(Ok(matches)))
+    let parsed = Cli::command().try_get_matches_from(all);
+    match parsed.as_ref().err().and_then(|error| file.blame(error)) {
+        Some(blamed) => Err(blamed),
+        None => Ok(parsed),
+    }
 }
 
 /// Returns the name that clap derives from the option `--key`.
@@ -130,24 +136,22 @@ impl<'a> SettingsFile<'a> {
     }
 
     /// Names the line of the file that an error of the arguments comes from, if it does.
-    fn blame(&self, error: clap::Error) -> Error {
-        let option = match error.get(ContextKind::InvalidArg) {
-            Some(ContextValue::String(option)) => option.clone(),
-            _ => String::new(),
+    fn blame(&self, error: &clap::Error) -> Option<Error> {
+        let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else {
+            return None;
         };
         let name = option.trim_start_matches("--").split([' ', '=']).next().unwrap_or_default();
-        match self.values.keys().find(|key| key.get_ref() == name) {
-            Some(key) => {
-                let text = error.format(&mut Cli::command()).to_string();
-                let reason = text.split("\n\nUsage").next().unwrap_or(&text);
-                let reason = reason.split("\n\nFor more").next().unwrap_or(reason);
-                self.error(key, reason.trim_start_matches("error: ").trim().into())
-            }
-            None => Error::Usage(error.format(&mut Cli::command())),
-        }
+        let key = self.values.keys().find(|key| key.get_ref() == name)?;
+        let text = error.render().to_string();
+        let reason = text.split("\n\nUsage").next().unwrap_or(&text);
+        let reason = reason.split("\n\nFor more").next().unwrap_or(reason);
+        Some(self.error(key, reason.trim_start_matches("error: ").trim().into()))
     }
 
     fn unknown(&self, key: &Spanned<String>) -> Error {
+        if let Some(new) = new_name(COMMAND, key.get_ref()) {
+            return self.error(key, format!("the option is now {new}"));
+        }
         let names: Vec<&str> = self.options.iter().filter_map(Arg::get_long).collect();
         self.error(key, format!("there is no such option; the options are {}", names.join(", ")))
     }

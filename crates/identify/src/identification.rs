@@ -5,7 +5,7 @@ use crate::gravity::fit::GravityFit;
 use crate::inertia::description::friction_errors;
 use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
-use crate::law_gain::{LawGain, kept_back_residuals};
+use crate::law_gain::{LawGain, held_out_residuals};
 use crate::plausibility::gain::Gain;
 use crate::plausibility::offset::PositionOffset;
 use crate::plausibility::validation::{
@@ -53,7 +53,7 @@ pub struct Identification {
     /// Without validation recordings they are the errors in the exciting motions.
     pub validation: Vec<LogValidation>,
     /// Whether there were validation recordings, to which nothing was fitted.
-    pub kept_back: bool,
+    pub held_out: bool,
     /// Errors of forward simulations over the same recordings, one entry per duration.
     pub windows: Vec<WindowErrors>,
     /// Torque over time of the same recordings, for figures.
@@ -104,7 +104,7 @@ pub fn identify(
     progress(3, STEPS);
 
     // Validation and plausibility.
-    let (kept_back, tried) = inputs.validation();
+    let (held_out, tried) = inputs.validation();
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
     let windows = simulate(&warming_robot, tried, &model.windows);
     let mut warnings =
@@ -112,7 +112,7 @@ pub fn identify(
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
     let links = inertia.physical.is_some() && !model.separate_gravity;
-    warnings.extend(validation_warnings(robot, &validation, &windows, kept_back, links));
+    warnings.extend(validation_warnings(robot, &validation, &windows, held_out, links));
     progress(STEPS, STEPS);
     Ok(Identification {
         description,
@@ -126,7 +126,7 @@ pub fn identify(
         warming,
         laws,
         validation,
-        kept_back,
+        held_out,
         windows,
         traces,
         warnings,
@@ -143,14 +143,14 @@ fn fit_laws(
     plain: &ModelSettings,
 ) -> Result<(Option<WarmingFit>, Option<LawGain>)> {
     let before = (plain != model || model.warming != WarmingChoice::None)
-        .then(|| kept_back_residuals(fitted, inputs));
+        .then(|| held_out_residuals(fitted, inputs));
     if model.stribeck && !inputs.friction.is_empty() {
         *fitted = Fitted::new(robot, inputs, model)?;
     }
     let warming = fit_warming(robot, inputs, model, fitted)?;
     let laws = before.map(|before| {
-        let after = kept_back_residuals(fitted, inputs);
-        LawGain { kept_back: inputs.validation().0, before, after }
+        let after = held_out_residuals(fitted, inputs);
+        LawGain { held_out: inputs.validation().0, before, after }
     });
     Ok((warming, laws))
 }
@@ -180,15 +180,15 @@ fn validation_warnings(
     robot: &Robot,
     validation: &[LogValidation],
     windows: &[WindowErrors],
-    kept_back: bool,
+    held_out: bool,
     links: bool,
 ) -> Vec<String> {
-    let held_out = if kept_back { validation } else { &[] };
-    let costly = if kept_back && links { costly_links(robot, validation) } else { None };
+    let tried = if held_out { validation } else { &[] };
+    let costly = if held_out && links { costly_links(robot, validation) } else { None };
     costly
         .into_iter()
-        .chain(still_recordings(held_out))
-        .chain(poor_prediction(robot, held_out))
+        .chain(still_recordings(tried))
+        .chain(poor_prediction(robot, tried))
         .chain(useless_simulation(robot, windows))
         .collect()
 }

@@ -120,8 +120,8 @@ impl Inputs {
     /// Returns whether there are validation recordings, and the recordings for the validation:
     /// these or else the exciting motions.
     pub(crate) fn validation(&self) -> (bool, &[PreparedLog]) {
-        let kept_back = !self.validate.is_empty();
-        (kept_back, if kept_back { &self.validate } else { &self.dynamic })
+        let held_out = !self.validate.is_empty();
+        (held_out, if held_out { &self.validate } else { &self.dynamic })
     }
 }
 

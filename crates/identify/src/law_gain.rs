@@ -11,7 +11,7 @@ const WORSE: f64 = 1.01;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LawGain {
     /// Whether the recordings are validation recordings, to which nothing was fitted.
-    pub kept_back: bool,
+    pub held_out: bool,
     /// Root mean square of the residual while a joint moves \[N m\], without laws, n entries.
     pub before: Vec<f64>,
     /// The same with the chosen laws, n entries.
@@ -22,7 +22,7 @@ impl LawGain {
     /// Returns a warning for each joint that the laws predict worse on validation recordings.
     pub(crate) fn warnings(&self, robot: &Robot) -> Vec<String> {
         let pairs = self.before.iter().zip(&self.after).zip(robot.joints());
-        let worse = pairs.filter(|((old, new), _)| self.kept_back && **new > WORSE * **old);
+        let worse = pairs.filter(|((old, new), _)| self.held_out && **new > WORSE * **old);
         let warning = |((before, after), joint): ((&f64, &f64), &reachtube_robot::Joint)| {
             format!(
                 "{}: the friction laws predict the validation recordings worse (residual \
@@ -38,7 +38,7 @@ impl LawGain {
 
 /// Returns the residual of each joint \[N m\] over all validation recordings, or else over the
 /// exciting motions.
-pub(crate) fn kept_back_residuals(fitted: &Fitted, inputs: &Inputs) -> Vec<f64> {
+pub(crate) fn held_out_residuals(fitted: &Fitted, inputs: &Inputs) -> Vec<f64> {
     let (_, tried) = inputs.validation();
     let Fitted { found, known, inertia, .. } = fitted;
     let (validation, _) = predict_torque(found, known, tried, &inputs.sampling, inertia);

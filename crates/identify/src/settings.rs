@@ -92,7 +92,7 @@ pub struct ModelSettings {
     pub windows: Vec<f64>,
 }
 
-/// The laws that are tried by which friction falls while the joints warm up. Kept-back recordings
+/// The laws that are tried by which friction falls while the joints warm up. Held-out recordings
 /// decide which of them is used, if any.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -49,7 +49,7 @@ pub struct Summary<'a> {
     /// Errors of the predicted torque in the validation recordings.
     pub validation: &'a [LogValidation],
     /// Whether there were validation recordings, to which nothing was fitted.
-    pub kept_back: bool,
+    pub held_out: bool,
     /// Errors of forward simulations, one entry per duration.
     pub windows: &'a [WindowErrors],
     /// Warnings about implausible results and steps that were not possible.
@@ -76,7 +76,7 @@ impl Identification {
             warming: &self.warming,
             laws: &self.laws,
             validation: &self.validation,
-            kept_back: self.kept_back,
+            held_out: self.held_out,
             windows: &self.windows,
             warnings: &self.warnings,
         }

@@ -101,7 +101,7 @@ fn stacks(stacks: &[[Chart; 2]], height: Option<f64>) -> Result<Markup, Error> {
 }
 
 fn prediction(found: &Identification, joints: &[&str]) -> Result<Markup, Error> {
-    let which = if found.kept_back {
+    let which = if found.held_out {
         "These recordings were held out from the fits."
     } else {
         "No recording was held out: the fits used these recordings too."

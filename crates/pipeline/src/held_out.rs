@@ -84,7 +84,7 @@ impl Split {
         Ok(Self { kept, held_out, names, reason })
     }
 
-    /// Keeps back the end of each recording of a single motion.
+    /// Holds out the end of each recording of a single motion.
     fn in_time(recordings: Vec<Recording>) -> Self {
         let [mut kept, mut held_out] = [Vec::new(), Vec::new()];
         for recording in recordings {

@@ -22,9 +22,9 @@ use reachtube::units::ColumnUnit;
 
 const HELP: &str = "\
 Examples:
-  reachtube abstract --robot lwa4p --model 2 --order 5 --out model2.json
-  reachtube abstract --robot lwa4p --model 1 --order 1 --at 0,0.5,0,0,0,0 --out model1.json
-  reachtube abstract --robot lwa4p --model 3 --order 3 --box 0.2,0.3,2
+  reachtube abstract --robot lwa4p --paper-model 2 --order 5 --out model2.json
+  reachtube abstract --robot lwa4p --expansion 0,0.5,0,0,0,0 --out model1.json
+  reachtube abstract --robot lwa4p --paper-model 3 --order 3 --box 0.2,0.3,2
       with a proved bound of the model error over the box
 
 `conform --abstraction FILE` finds the uncertainty sets of a model that --out wrote.";
@@ -42,15 +42,20 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     pub lock: LockArguments,
     /// Model of the forward dynamics, numbered as in the paper
-    #[arg(long, default_value = "1", value_parser = numbered_choice::<ModelKind>(MODELS))]
-    pub model: ModelKind,
+    #[arg(
+        long,
+        default_value = "1",
+        value_name = "MODEL",
+        value_parser = numbered_choice::<ModelKind>(MODELS)
+    )]
+    pub paper_model: ModelKind,
     /// Order of the Taylor polynomials, 1 or more
     #[arg(long, default_value_t = 1, value_name = "P")]
     pub order: u32,
     /// Expansion point, separated by commas: n positions in rad; or also n velocities in rad/s; or
     /// also n inputs in N m [default: 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,..")]
-    pub at: Vec<f64>,
+    pub expansion: Vec<f64>,
     /// Prove a bound of the model error over a box about the expansion point: radii of positions
     /// in rad, velocities in rad/s and inputs in N m; 3 numbers, or 3n
     #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
@@ -70,12 +75,12 @@ pub(crate) struct Arguments {
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     robot.check_physical()?;
-    let point = ExpansionPoint::from_values(&args.at, robot.joint_count())?;
+    let point = ExpansionPoint::from_values(&args.expansion, robot.joint_count())?;
     if let Some(path) = &args.out {
         output::claim(path)?;
     }
     let started = Instant::now();
-    let mut model = PolynomialModel::new(&robot, args.model, args.order, &point)?;
+    let mut model = PolynomialModel::new(&robot, args.paper_model, args.order, &point)?;
     let seconds = started.elapsed().as_secs_f64();
     if !args.operating_box.is_empty() {
         let _bar = Progress::new();

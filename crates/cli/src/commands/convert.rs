@@ -21,15 +21,15 @@ use crate::table::table;
 
 const HELP: &str = "\
 Examples:
-  reachtube convert --robot arm.urdf --log run.mcap --out recordings
+  reachtube convert --robot arm.urdf --data run.mcap --out recordings
       one run for each log
-  reachtube convert --robot arm.urdf --log bag --intervals runs.csv --out recordings
+  reachtube convert --robot arm.urdf --data bag --intervals runs.csv --out recordings
       runs by a list of times, from the folder of a rosbag2 bag
-  reachtube convert --robot lwa4p --log day.mcap --marker /run --out recordings
+  reachtube convert --robot lwa4p --data day.mcap --marker /run --out recordings
       runs while /run is not empty; its text is the suite
-  reachtube convert --robot lwa4p --log day.mcap --repeats --out recordings
+  reachtube convert --robot lwa4p --data day.mcap --repeats --out recordings
       one run for each motion between rests; motions that repeat are suites
-  reachtube convert --robot lwa4p --log cut-off.mcap --recover --out recordings
+  reachtube convert --robot lwa4p --data cut-off.mcap --recover --out recordings
       what is whole in a damaged log
 
 Then: reachtube inspect --data recordings
@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     pub lock: LockArguments,
     /// Logs: MCAP files, .db3 files, or folders of rosbag2
     #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
-    pub log: Vec<PathBuf>,
+    pub data: Vec<PathBuf>,
     /// Topics with joint states; several complement each other at equal stamps
     #[arg(long, value_name = "NAME", num_args = 1.., default_value = "/joint_states")]
     pub topic: Vec<String>,
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim(&args.out.join("runs.csv"))?;
     let intervals = args.intervals.as_deref().map(Intervals::read).transpose()?;
     let logs: Vec<Log> =
-        args.log.iter().map(|path| read_log(path, &options)).collect::<Result<_>>()?;
+        args.data.iter().map(|path| read_log(path, &options)).collect::<Result<_>>()?;
     let mut cuts = match &intervals {
         Some(intervals) => intervals.runs(&logs)?,
         None if args.marker.is_some() => marked_runs(&logs)?,

@@ -17,7 +17,7 @@ use crate::output;
 
 const HELP: &str = "\
 Example:
-  reachtube prepare --robot arm.toml --logs repeated --repeats --window 1 --cut-off 6 \\
+  reachtube prepare --robot arm.toml --data repeated --repeats --window 1 --cut-off 6 \\
       --compensate --out windows
 
 Then: reachtube inspect --data windows";
@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     pub lock: LockArguments,
     /// Recordings: CSV files or folders
     #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
-    pub logs: Vec<PathBuf>,
+    pub data: Vec<PathBuf>,
     /// Treat logs whose names differ only after the last _ as repeats of one motion: align them in
     /// time, and make one suite from each window of all of them
     #[arg(long)]
@@ -80,7 +80,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let settings = settings(args);
     let index = args.out.join("runs.csv");
     output::claim(&index)?;
-    let entries: Vec<LogEntry> = args.logs.iter().cloned().map(LogEntry::from).collect();
+    let entries: Vec<LogEntry> = args.data.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, std::path::Path::new(""), &robot, &settings)?;
     let cut_off = cut_off(&raw.iter().collect::<Vec<&RawLog>>(), &settings)?;
     let prepared = prepare(&raw, &settings, cut_off, args.compensate.then_some(&robot))?;

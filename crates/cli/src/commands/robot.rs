@@ -23,7 +23,7 @@ pub(crate) enum RobotCommand {
 const SHOW_HELP: &str = "\
 Examples:
   reachtube robot show arm.toml
-  reachtube robot show lwa4p --at 0,0.5,0,0,0,0
+  reachtube robot show lwa4p --expansion 0,0.5,0,0,0,0
   reachtube robot show panda.urdf --lock panda_finger_joint1=0.02";
 
 /// Print a robot's geometry, inertia, friction and mass matrix
@@ -39,18 +39,18 @@ pub(crate) struct ShowArguments {
     /// Positions q_a of the mass matrix M(q_a), one per joint in rad, or in m for a prismatic
     /// joint, separated by commas [default: 0]
     #[arg(long, value_name = "Q,..", value_delimiter = ',', allow_hyphen_values = true)]
-    pub at: Vec<f64>,
+    pub expansion: Vec<f64>,
 }
 
 /// Runs `robot show`.
 pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     let joints = robot.joint_count();
-    if !args.at.is_empty() && args.at.len() != joints {
+    if !args.expansion.is_empty() && args.expansion.len() != joints {
         let unit = JointKind::units(&robot.kinds(), JointKind::position_unit);
-        return Err(Error::PositionCount { given: args.at.len(), joints, unit });
+        return Err(Error::PositionCount { given: args.expansion.len(), joints, unit });
     }
-    let at = ExpansionPoint::from_values(&args.at, joints)?;
+    let at = ExpansionPoint::from_values(&args.expansion, joints)?;
     let physicality = robot.check_physical()?;
     let mass = robot.mass_matrix(&at.q);
     let physical = physicality_sentence(&physicality, &robot);

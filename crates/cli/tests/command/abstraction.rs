@@ -17,17 +17,17 @@ fn schema() -> jsonschema::Validator {
 fn models_are_made_and_described() {
     let lab = Lab::new();
     for (arguments, degree, terms) in [
-        ("--model 1 --order 1", 1, 72),
-        ("--model 1 --order 5", 3, 144),
-        ("--model 2 --order 1", 1, 72),
-        ("--model 3 --order 1", 1, 72),
+        ("--paper-model 1 --order 1", 1, 72),
+        ("--paper-model 1 --order 5", 3, 144),
+        ("--paper-model 2 --order 1", 1, 72),
+        ("--paper-model 3 --order 1", 1, 72),
     ] {
         let made = lab.run(&format!("abstract --robot lwa4p {arguments} --json")).exits(0).json();
         let sum: u64 = made["terms"].as_array().unwrap().iter().map(|t| t.as_u64().unwrap()).sum();
         assert_eq!((made["degree"].as_u64().unwrap(), sum), (degree, terms), "{arguments}");
     }
-    let text =
-        lab.run("abstract --robot lwa4p --model 2 --order 4 --box 0.05,0.1,1").exits(0).stdout;
+    let made = lab.run("abstract --robot lwa4p --paper-model 2 --order 4 --box 0.05,0.1,1");
+    let text = made.exits(0).stdout;
     for part in
         ["model 2 of order 4 of Schunk LWA 4P", "24 states", "joint6", "proved", "q = 0 rad"]
     {
@@ -97,12 +97,15 @@ fn what_cannot_be_made_is_refused() {
     let refused = |arguments: &str, parts: &[&str]| {
         lab.run(arguments).fails_with(parts);
     };
-    let unknown = lab.run("abstract --robot lwa4p --model 4").exits(2).stderr;
+    let unknown = lab.run("abstract --robot lwa4p --paper-model 4").exits(2).stderr;
     assert!(unknown.contains("invalid value '4'") && unknown.contains("1, 2, 3"), "{unknown}");
     refused("abstract --robot lwa4p --order 0", &["order 1 at least"]);
-    refused("abstract --robot lwa4p --model 3 --order 20", &["GB for its terms", "fits"]);
-    refused("abstract --robot lwa4p --model 2 --order 40", &["up to order 31"]);
-    refused("abstract --robot lwa4p --at 1,2", &["expansion point has 2 values", "6 positions"]);
+    refused("abstract --robot lwa4p --paper-model 3 --order 20", &["GB for its terms", "fits"]);
+    refused("abstract --robot lwa4p --paper-model 2 --order 40", &["up to order 31"]);
+    refused(
+        "abstract --robot lwa4p --expansion 1,2",
+        &["expansion point has 2 values", "6 positions"],
+    );
     refused(
         "abstract --robot lwa4p --box 0.1,1.3,1",
         &["joint `joint1`", "beyond the limits [-1.2, 1.2]"],

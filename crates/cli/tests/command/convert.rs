@@ -49,7 +49,7 @@ fn lab() -> Lab {
     lab
 }
 
-const CONVERT: &str = "convert --robot arm.toml --out logged --log";
+const CONVERT: &str = "convert --robot arm.toml --out logged --data";
 
 /// Returns a model without what depends on names and digests of files.
 fn numbers(text: &str) -> Value {

@@ -72,7 +72,7 @@ fn a_model_that_a_tool_cannot_mean_is_refused_and_writes_nothing() {
     let lab = Lab::new();
     let cubic = lab.read("arm.toml").replace(", 0.0, 0.0] }", ", 0.0, 0.1] }");
     lab.write("arm.toml", cubic);
-    lab.conform("--suites A --model 1 --order 3 --until 0.05 --out model.json").exits(0);
+    lab.conform("--suites A --paper-model 1 --order 3 --until 0.05 --out model.json").exits(0);
     let run = |more: &str| lab.run(&format!("{EXPORT} {more}"));
     run("--to hylaa").fails_with_last(&["HyLAA takes affine systems only", "model 1 of order 3"]);
     run("--to cora --input deviation").fails_with_last(&["--input recorded"]);

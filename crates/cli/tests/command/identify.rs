@@ -62,7 +62,7 @@ fn a_pendulum_is_found_and_its_file_is_a_robot() {
         .notes("were filtered forward and backward");
     let found = run.json();
     crate::output_schema::fits("identify", &found);
-    assert_eq!(found["kept_back"], true);
+    assert_eq!(found["held_out"], true);
     // The low-pass filter smooths the steps of Coulomb friction where the joint reverses: 1 % of
     // the torque.
     assert!(found["validation"][0]["joints"][0]["relative"].as_f64().unwrap() < 0.02, "{found}");
@@ -109,8 +109,9 @@ fn a_urdf_gets_the_identified_values_and_keeps_the_rest() {
         lab.read("new.urdf")
             .contains(r#"<visual><geometry><mesh filename="arm.stl"/></geometry></visual>"#)
     );
-    let shown =
-        |robot: &str| lab.run(&format!("robot show {robot} --at 0.5 --json")).exits(0).json();
+    let shown = |robot: &str| {
+        lab.run(&format!("robot show {robot} --expansion 0.5 --json")).exits(0).json()
+    };
     let (new, found) = (shown("new.urdf"), shown("found.toml"));
     for part in ["mass_matrix", "gravity_torque"] {
         let value = |of: &serde_json::Value| {
@@ -185,7 +186,7 @@ fn recordings_that_cannot_serve_their_purpose_are_named() {
 #[test]
 fn windows_of_recordings_are_suites_and_motions_are_designed() {
     let lab = lab();
-    lab.run("prepare --robot pendulum.toml --logs a.csv b.csv --window 2 --out windows")
+    lab.run("prepare --robot pendulum.toml --data a.csv b.csv --window 2 --out windows")
         .exits(0)
         .notes("to windows");
     let inspected = lab.run("inspect --data windows").exits(0).stdout;
@@ -202,7 +203,7 @@ fn windows_free_of_friction_have_smaller_sets() {
     let lab = lab();
     lab.run("identify --robot pendulum.toml --dynamic a.csv b.csv --cut-off 15 --out found.toml")
         .exits(0);
-    let prepare = "prepare --robot found.toml --logs a.csv b.csv --window 0.5 --cut-off 5";
+    let prepare = "prepare --robot found.toml --data a.csv b.csv --window 0.5 --cut-off 5";
     lab.run(&format!("{prepare} --out recorded")).exits(0);
     lab.run(&format!("{prepare} --compensate --out free"))
         .exits(0)

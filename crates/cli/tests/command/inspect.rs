@@ -118,7 +118,7 @@ fn logs_are_described_as_they_were_understood() {
 fn logs_are_prepared_as_recordings() {
     let lab = Lab::new();
     log_of_a_driver(&lab);
-    lab.run("prepare --robot arm.toml --logs logs --window 0.5 --out windows").exits(0);
+    lab.run("prepare --robot arm.toml --data logs --window 0.5 --out windows").exits(0);
     let first = lab.read("windows/0001_motion.csv");
     assert!(first.starts_with("t,q1,q2,qd1,qd2,tau1,tau2\n"), "{first}");
 }

@@ -42,7 +42,7 @@ fn every_command_refuses_the_branch_and_takes_the_lock() {
         "robot show arm.urdf",
         "abstract --robot arm.urdf",
         "excite --robot arm.urdf --out motion.csv",
-        "prepare --robot arm.urdf --logs a.csv --out runs",
+        "prepare --robot arm.urdf --data a.csv --out runs",
         "conform --robot arm.urdf --data runs --torque motor --out model.json",
         "inspect --robot arm.urdf --data runs",
         "identify --robot arm.urdf --dynamic a.csv --cut-off 15 --urdf new.urdf",

@@ -20,6 +20,7 @@ mod outputs;
 mod overwrite;
 mod prismatic;
 mod reach;
+mod renamed;
 mod reproduce;
 #[path = "../../../logs/tests/logs/support.rs"]
 mod robot_logs;

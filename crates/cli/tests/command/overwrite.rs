@@ -28,7 +28,7 @@ fn files_of_others_are_overwritten_with_force_only() {
     let conform = format!("conform --robot arm.toml {with}");
     let reach = format!("reach --model model.json {with} --suites A");
     let excite = "excite --robot arm.toml --period 1 --harmonics 2";
-    let prepare = "prepare --robot one.toml --logs log.csv --cut-off 10";
+    let prepare = "prepare --robot one.toml --data log.csv --cut-off 10";
     for (file, command) in [
         ("m.json", format!("{conform} --out m.json")),
         ("page/report.html", format!("{conform} --report page")),
@@ -117,7 +117,7 @@ fn an_exciting_motion_has_a_limit() {
 #[test]
 fn windows_longer_than_the_recordings_are_an_error() {
     let lab = lab();
-    let prepare = "prepare --robot one.toml --logs log.csv --cut-off 10 --out windows";
+    let prepare = "prepare --robot one.toml --data log.csv --cut-off 10 --out windows";
     lab.run(&format!("{prepare} --window 1000")).fails_with_last(&[
         "no recording is left",
         "the windows are 1000 s long",

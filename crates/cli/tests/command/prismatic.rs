@@ -167,7 +167,7 @@ fn fits_the_schema(model: &str, schema: &str) {
 #[test]
 fn a_scara_is_shown_and_inspected_in_its_own_units() {
     let lab = scara_lab();
-    let text = lab.run("robot show scara.toml --at 0,0.5,0.1").exits(0).stdout;
+    let text = lab.run("robot show scara.toml --expansion 0,0.5,0.1").exits(0).stdout;
     contains(
         &text,
         &[
@@ -221,7 +221,7 @@ fn a_nonlinear_model_of_a_scara_conforms() {
     let lab = scara_lab();
     let made = lab
         .run(
-            "abstract --robot scara.toml --model 2 --order 4 --at 0.1,-0.2,0.1 \
+            "abstract --robot scara.toml --paper-model 2 --order 4 --expansion 0.1,-0.2,0.1 \
              --box 0.02,0.1,2 --out two.json",
         )
         .exits(0);

@@ -14,14 +14,14 @@ fn refused(from: &str, to: &str, parts: &[&str]) {
 #[test]
 fn a_robot_is_shown() {
     let lab = Lab::new();
-    let text = lab.run("robot show arm.toml --at 0.1,-0.2").exits(0).stdout;
+    let text = lab.run("robot show arm.toml --expansion 0.1,-0.2").exits(0).stdout;
     for part in
         ["two axes: 2 revolute joints", "axis1", "q_a = [0.1, -0.2] rad", "1.00000", "0.50000"]
     {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
-    lab.run("robot show arm.toml --at 1,2,3")
-        .fails_with(&["--at lists 3", "give 2 positions in rad"]);
+    lab.run("robot show arm.toml --expansion 1,2,3")
+        .fails_with(&["--expansion lists 3", "give 2 positions in rad"]);
     lab.run("robot show lwa4p").exits(0);
 }
 

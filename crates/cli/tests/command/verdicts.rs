@@ -140,7 +140,7 @@ fn trust_is_stated_for_recordings_that_were_held_out_only() {
 }
 
 #[test]
-fn motions_that_are_kept_back_calibrate_the_sets() {
+fn motions_that_are_held_out_calibrate_the_sets() {
     let lab = Lab::new();
     lab.edit("data/runs.csv", |lines| {
         lines.iter_mut().for_each(|line| *line = line.replace("motion ", "M"));

@@ -15,7 +15,7 @@ use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fit::search::{Effort, Optimum, Search};
 use crate::linear::program::Program;
-use crate::next_motion::calibration::{calibrate, without_kept_back};
+use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::nominal::input_error::InputError;
 use crate::progress::{Progress, Silent};
 use crate::weights::state_weights;
@@ -52,7 +52,7 @@ pub struct Fitted {
 /// [`conform`](crate::conform).
 pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
     refuse(problem, settings)?;
-    let kept = without_kept_back(problem)?;
+    let kept = without_held_out(problem)?;
     let fit_problem = kept.as_ref().unwrap_or(problem);
     let linear;
     let steering = match problem.dynamics().linear_system() {
@@ -158,9 +158,9 @@ fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
     Ok(())
 }
 
-fn one_motion(others_are_kept_back: bool) -> String {
-    let remedy = if others_are_kept_back {
-        "keep fewer motions back for the calibration"
+fn one_motion(others_are_held_out: bool) -> String {
+    let remedy = if others_are_held_out {
+        "hold fewer motions out for the calibration"
     } else {
         "record a second motion, or name the motions in the column motion of runs.csv"
     };

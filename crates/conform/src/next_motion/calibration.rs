@@ -48,7 +48,7 @@ pub struct Gauge {
     pub gauge: f64,
 }
 
-/// Finds the smallest sets for the motions that the settings do not keep back, and scales their
+/// Finds the smallest sets for the motions that the settings do not hold out, and scales their
 /// radii until they enclose the others too. V is not scaled, because it is the noise of the
 /// sensors; nor is X0 where that noise limits it.
 ///
@@ -62,8 +62,8 @@ pub(crate) fn calibrate(
     resume: Option<&Path>,
 ) -> Result<(Found, Calibration)> {
     let motions = Motions::new(problem.recordings());
-    let kept_back = kept_back(problem, &motions)?;
-    let fit = problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)));
+    let held_out = held_out(problem, &motions)?;
+    let fit = problem.with_suites(|suite| !held_out.contains(motions.of_suite(suite)));
     let first = smallest_sets(&fit, &Rows, progress, resume)?;
     let Found { hulls: Hulls { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
@@ -89,39 +89,39 @@ pub(crate) fn calibrate(
             gauge.ok_or_else(|| Error::Calibration(no_factor(motion, input_only).into()))?;
         Ok(Gauge { motion: (*motion).to_string(), gauge })
     };
-    let gauges = kept_back.iter().map(gauge).collect::<Result<Vec<_>>>()?;
+    let gauges = held_out.iter().map(gauge).collect::<Result<Vec<_>>>()?;
     let scale = linear.as_ref().map(Program::scale);
     let factor = gauges.iter().map(|gauge| gauge.gauge).fold(1.0, f64::max);
     let found = Found { search, left_out, ..scaled(problem, &grown(factor), scale)? };
     let all = motions.distinct().into_iter();
-    let others = all.filter(|motion| !kept_back.contains(motion)).map(String::from).collect();
+    let others = all.filter(|motion| !held_out.contains(motion)).map(String::from).collect();
     let calibration = Calibration { fitted: others, gauges, factor, input_only };
     Ok((found, calibration))
 }
 
-/// Returns the problem of the motions that the settings do not keep back; `None` if they keep
-/// none back.
+/// Returns the problem of the motions that the settings do not hold out; `None` if they hold
+/// none out.
 ///
 /// # Errors
 ///
 /// As [`calibrate`].
-pub(crate) fn without_kept_back(problem: &Problem) -> Result<Option<Problem>> {
+pub(crate) fn without_held_out(problem: &Problem) -> Result<Option<Problem>> {
     if problem.settings().calibrate.is_empty() {
         return Ok(None);
     }
     let motions = Motions::new(problem.recordings());
-    let kept_back = kept_back(problem, &motions)?;
-    Ok(Some(problem.with_suites(|suite| !kept_back.contains(motions.of_suite(suite)))))
+    let held_out = held_out(problem, &motions)?;
+    Ok(Some(problem.with_suites(|suite| !held_out.contains(motions.of_suite(suite)))))
 }
 
-/// Returns the motions that the settings keep back, or why that cannot be.
-fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
+/// Returns the motions that the settings hold out, or why that cannot be.
+fn held_out<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
     if problem.settings().notion.asks_points() {
         let problem = "sets are calibrated for the notion hull only; use that notion";
         return Err(Error::Calibration(Advice::from(problem).with("notion", "hull")));
     }
     let all = motions.distinct();
-    let mut kept_back = BTreeSet::new();
+    let mut held_out = BTreeSet::new();
     for name in &problem.settings().calibrate {
         let known = all.iter().find(|motion| *motion == name);
         let unknown = || {
@@ -130,16 +130,16 @@ fn kept_back<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet
                 all.join(", ")
             )
         };
-        kept_back.insert(*known.ok_or_else(|| Error::Calibration(unknown().into()))?);
+        held_out.insert(*known.ok_or_else(|| Error::Calibration(unknown().into()))?);
     }
-    if kept_back.len() == all.len() {
+    if held_out.len() == all.len() {
         return Err(Error::Calibration(
             "all motions are held out, so that none is left to find the sets with; name fewer \
              motions, or record more"
                 .into(),
         ));
     }
-    Ok(kept_back)
+    Ok(held_out)
 }
 
 fn no_factor(motion: &str, input_only: bool) -> String {
@@ -148,7 +148,7 @@ fn no_factor(motion: &str, input_only: bool) -> String {
     format!(
         "no factor of {sets} makes the sets of the other motions enclose motion {motion}; a set \
          may have no width in a direction in which it deviates, or its reachable set is lost; \
-         keep back other motions, or find the sets with this one"
+         hold out other motions, or find the sets with this one"
     )
 }
 
@@ -168,7 +168,7 @@ fn linear_gauge(
 fn lost(motion: &str, factor: f64) -> String {
     format!(
         "the reachable sets of motion {motion} are lost when the sets grow {factor:.2} times, and \
-         less does not enclose the motion; keep back other motions, find the sets with this one, \
+         less does not enclose the motion; hold out other motions, find the sets with this one, \
          or shorten the recordings"
     )
 }

@@ -21,7 +21,7 @@ const EFFECTS: &[(&str, &str)] = &[
     ("until", "uses only the samples before."),
     ("torque", "reads the recorded torques as such."),
     ("expansion", "expands the model there."),
-    ("model", "with order 2 follows how the inertia changes."),
+    ("paper-model", "with order 2 follows how the inertia changes."),
     ("equations", "lets the nominal motions follow the robot's own equations."),
     ("fit", "names the parameters to fit."),
     ("pull", "keeps the fitted values closer to the identified ones."),
@@ -57,6 +57,8 @@ impl Remedy {
     #[must_use]
     pub fn written_for(&self, front_end: FrontEnd) -> String {
         let Self { setting, value, effect } = self;
+        // Files of earlier versions have the name that the option had then.
+        let setting = if setting == "model" { "paper-model" } else { setting };
         let value = Some(value.as_str()).filter(|value| !value.is_empty());
         format!("`{}` {effect}", front_end.setting(setting, value))
     }

@@ -229,7 +229,7 @@ fn a_right_model_is_left_alone_and_bad_settings_are_refused() {
     assert!(refused(&one, &[Group::Viscous], None).contains("record a second motion"));
     let kept = |settings: &mut Settings| settings.calibrate = vec!["motion0".into()];
     let rest = problem(PLAIN, 2, kept);
-    assert!(refused(&rest, &[Group::Viscous], None).contains("keep fewer motions back"));
+    assert!(refused(&rest, &[Group::Viscous], None).contains("hold fewer motions out"));
     assert!(refused(&right, &[Group::Coulomb], None).contains("none of the parameters"));
     assert!(refused(&right, &[Group::Viscous], Some(2.0)).contains("from 0 to 1"));
     let link = problem(PLAIN, 2, |settings| settings.torque = Torque::Link);

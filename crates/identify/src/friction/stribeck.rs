@@ -3,7 +3,7 @@
 use crate::friction::form::CoulombForm;
 use crate::friction::model::FrictionModel;
 use crate::friction::sample::FrictionSample;
-use crate::kept_back::gains;
+use crate::held_out::gains;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -24,7 +24,7 @@ const SCAN: [f64; 2] = [0.05, 0.5];
 pub struct StribeckTrial {
     /// Root mean square of the torque residual over stretches of the slow motions that were held
     /// out in turn \[N m\], without and with the effect.
-    pub kept_back: [f64; 2],
+    pub held_out: [f64; 2],
     /// Whether the friction of the joint has the effect.
     pub accepted: bool,
     /// Reason why it does not.
@@ -43,11 +43,11 @@ pub(super) fn try_stribeck(
 ) -> (StribeckTrial, Option<f64>) {
     let range = scan_range(samples);
     let scan = StribeckScan::new(form, samples, weights, &geometric(range));
-    let (without, with) = scan.kept_back();
+    let (without, with) = scan.held_out();
     let size = |squares: &[f64]| (squares.iter().sum::<f64>() / samples.len() as f64).sqrt();
-    let kept_back = [size(&without), size(&with)];
+    let held_out = [size(&without), size(&with)];
     let refused =
-        |reason: String| (StribeckTrial { kept_back, accepted: false, reason: Some(reason) }, None);
+        |reason: String| (StribeckTrial { held_out, accepted: false, reason: Some(reason) }, None);
     if !gains(&without, &with) {
         return refused("held-out slow motions are not predicted better with it".into());
     }
@@ -73,7 +73,7 @@ pub(super) fn try_stribeck(
             "too few samples are slower than {speed:.4} rad/s (m/s) in both directions; record more"
         ));
     }
-    (StribeckTrial { kept_back, accepted: true, reason: None }, Some(speed))
+    (StribeckTrial { held_out, accepted: true, reason: None }, Some(speed))
 }
 
 /// Returns the slowest and the fastest Stribeck speed that the samples can show.
@@ -142,7 +142,7 @@ impl StribeckScan {
 
     /// Returns the sum of squared residuals of each stretch, held out in turn, without and with
     /// the effect.
-    fn kept_back(&self) -> (Vec<f64>, Vec<f64>) {
+    fn held_out(&self) -> (Vec<f64>, Vec<f64>) {
         let total = self.total();
         let base: Vec<usize> = (0..self.columns).collect();
         let of_stretch = |stretch: usize| {
@@ -219,7 +219,7 @@ mod tests {
             assert!(off.iter().all(|off| *off < 4.0), "{law:?} ± {error:?}");
             assert!(error.excess < 0.1 && error.speed < 0.01, "{error:?}");
             within += off.iter().filter(|off| **off < 2.0).count();
-            let [without, with] = found.stribeck.unwrap().kept_back;
+            let [without, with] = found.stribeck.unwrap().held_out;
             assert!(with < 0.9 * without, "{without} {with}");
         }
         assert!(within >= 16, "{within} of 20 within two standard errors");

@@ -1,4 +1,4 @@
-use crate::kept_back::gains;
+use crate::held_out::gains;
 use crate::warming::law_fit::{LawFit, Shape};
 use crate::warming::rows::{FrictionRow, FrictionRows};
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ const MIN_RUNS: usize = 3;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WarmingFit {
     /// What was held out in turn: "recordings", or "stretches" of few recordings.
-    pub kept_back_parts: &'static str,
+    pub held_out_parts: &'static str,
     /// The laws that were compared.
     pub candidates: Vec<WarmingCandidate>,
     /// The chosen law of each joint; empty where nothing could be compared.
@@ -36,7 +36,7 @@ pub struct WarmingCandidate {
     pub time_constant: Option<f64>,
     /// Torque residual over held-out parts relative to the residual without a law, as root mean
     /// square over the joints. A joint that a law does not help counts as 1.
-    pub kept_back: f64,
+    pub held_out: f64,
 }
 
 /// The law of one joint.
@@ -50,7 +50,7 @@ pub struct JointWarming {
     pub standard_errors: [f64; 2],
     /// Root mean square of the torque residual over held-out parts \[N m\], without and with the
     /// law.
-    pub kept_back: [f64; 2],
+    pub held_out: [f64; 2],
     #[serde(skip)]
     pub(crate) shape: Option<Shape>,
 }
@@ -62,7 +62,7 @@ impl WarmingFit {
         if laws.iter().any(Option::is_some) { laws } else { vec![] }
     }
 
-    /// Compares laws by keeping back one part in turn; `rows` gives the rows for a quantity, or the
+    /// Compares laws by holding out one part in turn; `rows` gives the rows for a quantity, or the
     /// reason why there are none.
     pub(crate) fn choose(
         names: &[&str],
@@ -70,7 +70,7 @@ impl WarmingFit {
         rows: &dyn Fn(WarmingBy) -> Result<FrictionRows, String>,
     ) -> Self {
         let mut out = Self {
-            kept_back_parts: "recordings",
+            held_out_parts: "recordings",
             candidates: vec![],
             joints: vec![],
             reasons: vec![],
@@ -86,7 +86,7 @@ impl WarmingFit {
                     continue;
                 }
             };
-            out.kept_back_parts = if rows.by_recording { "recordings" } else { "stretches" };
+            out.held_out_parts = if rows.by_recording { "recordings" } else { "stretches" };
             let thermal = *by == WarmingBy::Thermal;
             let constants: &[f64] = if thermal { &TIME_CONSTANTS } else { &[1.0] };
             for constant in constants {
@@ -98,10 +98,10 @@ impl WarmingFit {
                     .zip(&rows.joints)
                     .map(|(name, parts)| JointWarming::choose(name, law, parts))
                     .collect();
-                let kept_back = relative(&joints);
-                out.candidates.push(WarmingCandidate { by: *by, time_constant, kept_back });
-                if kept_back < best {
-                    (best, out.joints) = (kept_back, joints);
+                let held_out = relative(&joints);
+                out.candidates.push(WarmingCandidate { by: *by, time_constant, held_out });
+                if held_out < best {
+                    (best, out.joints) = (held_out, joints);
                 }
             }
         }
@@ -130,23 +130,23 @@ impl JointWarming {
     fn choose(name: &str, law: Warming, parts: &[Vec<FrictionRow>]) -> Self {
         let count = parts.iter().map(Vec::len).sum::<usize>().max(1) as f64;
         let size = |squares: &[f64]| (squares.iter().sum::<f64>() / count).sqrt();
-        let without = kept_back(Shape::Constant, law, parts);
+        let without = held_out(Shape::Constant, law, parts);
         let residual = without.as_deref().map_or(0.0, size);
         let mut best = Self {
             joint: name.into(),
             law: None,
             standard_errors: [0.0; 2],
-            kept_back: [residual; 2],
+            held_out: [residual; 2],
             shape: None,
         };
         let Some(without) = without else { return best };
         for shape in Shape::CHANGING {
-            let Some(with) = kept_back(shape, law, parts) else { continue };
+            let Some(with) = held_out(shape, law, parts) else { continue };
             if gains(&without, &with)
-                && size(&with) < best.kept_back[1]
+                && size(&with) < best.held_out[1]
                 && let Some(fit) = LawFit::new(shape, law, &parts.concat())
             {
-                best.kept_back[1] = size(&with);
+                best.held_out[1] = size(&with);
                 (best.law, best.shape) = (Some(fit.law), Some(shape));
                 best.standard_errors = fit.standard_errors;
             }
@@ -156,7 +156,7 @@ impl JointWarming {
 }
 
 /// Returns the sum of squared residuals of each part under a law fitted to the others.
-fn kept_back(shape: Shape, law: Warming, parts: &[Vec<FrictionRow>]) -> Option<Vec<f64>> {
+fn held_out(shape: Shape, law: Warming, parts: &[Vec<FrictionRow>]) -> Option<Vec<f64>> {
     let of_part = |at: usize| {
         let others = parts.iter().enumerate().filter(|(other, _)| *other != at);
         let others: Vec<FrictionRow> = others.flat_map(|(_, rows)| rows.iter().copied()).collect();
@@ -168,7 +168,7 @@ fn kept_back(shape: Shape, law: Warming, parts: &[Vec<FrictionRow>]) -> Option<V
 
 /// Returns the residual of joints with a law relative to that without, as root mean square.
 fn relative(joints: &[JointWarming]) -> f64 {
-    let ratio = |joint: &JointWarming| match joint.kept_back {
+    let ratio = |joint: &JointWarming| match joint.held_out {
         [without, with] if without > 0.0 => (with / without).powi(2),
         _ => 1.0,
     };

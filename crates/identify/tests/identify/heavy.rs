@@ -44,7 +44,7 @@ fn with(robot: &Robot, change: impl Fn(&mut RobotDescription)) -> Robot {
 /// Returns the largest ratio of the errors of the identified robot and of plain least squares over
 /// the joints, in recordings that were held out.
 fn worst_ratio(found: &Identification) -> f64 {
-    assert!(found.kept_back);
+    assert!(found.held_out);
     let joints = found.validation.last().unwrap().joints.iter();
     joints.map(|j| j.relative.unwrap() / j.relative_plain.unwrap()).fold(0.0, f64::max)
 }

@@ -42,7 +42,7 @@ impl Lab {
             recorder.record(&path, 24.0, excitation(robot.joint_count(), seed));
         }
         recorder.record(
-            &self.folder.path().join("kept_back.csv"),
+            &self.folder.path().join("held_out.csv"),
             12.0,
             excitation(robot.joint_count(), 9),
         );
@@ -53,7 +53,7 @@ impl Lab {
         let entry = |name: &str| PathBuf::from(name).into();
         let mut settings = IdentifySettings {
             dynamic: (1..=3).map(|k| entry(&format!("dynamic_{k}.csv"))).collect(),
-            validate: vec![entry("kept_back.csv")],
+            validate: vec![entry("held_out.csv")],
             ..IdentifySettings::default()
         };
         settings.prepare.cut_off = Some(8.0);

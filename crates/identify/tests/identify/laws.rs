@@ -83,7 +83,7 @@ fn assert_rates(found: &Identification, by: WarmingBy, [coulomb, viscous]: [f64;
     assert!(10 * within >= 8 * off.len(), "{off:?}");
     let laws = found.laws.as_ref().unwrap();
     for (before, after) in laws.before.iter().zip(&laws.after) {
-        assert!(laws.kept_back && after < before, "{laws:?}");
+        assert!(laws.held_out && after < before, "{laws:?}");
     }
     let robot = Robot::from_toml(&found.robot_toml(), "found").unwrap();
     assert_eq!(robot.warms_by(), [by]);
@@ -127,7 +127,7 @@ fn friction_that_changes_with_the_runs_is_predicted_better_by_a_law() {
     let laws = found.laws.unwrap();
     let is_better = |(before, after): (&f64, &f64)| *after < 0.95 * before;
     let better = laws.before.iter().zip(&laws.after).filter(|pair| is_better(*pair)).count();
-    assert!(laws.kept_back && better >= 4, "{laws:?}");
+    assert!(laws.held_out && better >= 4, "{laws:?}");
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn a_law_that_is_not_there_changes_next_to_nothing() {
     let joints = &found.warming.as_ref().unwrap().joints;
     let chosen = joints.iter().filter(|joint| joint.law.is_some()).count();
     assert!(chosen <= 2, "{joints:?}");
-    assert!(joints.iter().all(|joint| joint.kept_back[1] <= joint.kept_back[0]));
+    assert!(joints.iter().all(|joint| joint.held_out[1] <= joint.held_out[0]));
     let laws = found.laws.unwrap();
     assert!(laws.before.iter().zip(&laws.after).all(|(a, b)| *b < 1.01 * a), "{laws:?}");
     // Without the setting, nothing of the laws is computed.

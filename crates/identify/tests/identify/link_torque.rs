@@ -87,8 +87,8 @@ fn settings(model: &str) -> IdentifySettings {
 }
 
 /// Returns the errors over all held-out recordings.
-fn kept_back(found: &Identification) -> &LogValidation {
-    assert!(found.kept_back);
+fn held_out(found: &Identification) -> &LogValidation {
+    assert!(found.held_out);
     found.validation.last().unwrap()
 }
 
@@ -111,7 +111,7 @@ fn physical_links_predict_link_torque_as_well_as_plain_least_squares() {
         let plain = identified("model.physical = false\nmodel.robust = false");
         assert!(physical.inertia.physical.is_some() && plain.inertia.physical.is_none());
         assert!(physical.warnings.is_empty(), "{:?}", physical.warnings);
-        let joints = kept_back(&physical).joints.iter().zip(&kept_back(&plain).joints);
+        let joints = held_out(&physical).joints.iter().zip(&held_out(&plain).joints);
         for (squares, (physical, plain)) in squares.iter_mut().zip(joints) {
             squares[0] += physical.residual.powi(2);
             squares[1] += plain.residual.powi(2);

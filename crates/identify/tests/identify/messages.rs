@@ -75,7 +75,7 @@ fn a_recording_of_the_fit_cannot_validate() {
     };
     recorded.settings.dynamic[1] = part(0.0, Some(16.0));
     recorded.settings.validate = vec![part(16.0, None)];
-    assert!(recorded.found().kept_back);
+    assert!(recorded.found().held_out);
     recorded.settings.validate = vec![part(15.0, None)];
     assert_parts(&recorded.error(), &["not held out", "disjoint intervals"]);
 }
@@ -144,7 +144,7 @@ fn a_simulation_that_misses_by_more_than_the_motion_is_named() {
     recorded.settings.model.windows = vec![0.5];
     assert!(recorded.found().warnings.is_empty());
     // A constant torque that the fit has not seen moves the wrist away.
-    recorded.edit("kept_back.csv", |rows| rows.iter_mut().for_each(|row| row[18] += 40.0));
+    recorded.edit("held_out.csv", |rows| rows.iter_mut().for_each(|row| row[18] += 40.0));
     let warnings = recorded.found().warnings;
     let simulated = warnings.iter().find(|w| w.contains("simulated")).expect("a warning");
     assert_parts(simulated, &["over 0.5 s", "joint6 by", "where it moves", "do not use"]);

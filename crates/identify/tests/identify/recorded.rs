@@ -80,14 +80,14 @@ fn the_ur10e_predicts_validation_recordings() {
 #[ignore = "needs the recordings in ../shared"]
 fn healthy_suites_that_determine_little_have_no_faults() {
     // Three short motions, each repeated; every joint turns little, and some one way only.
-    for [a, b, kept_back] in ["AEB", "ABE", "BEA"].map(|s| [&s[..1], &s[1..2], &s[2..]]) {
+    for [a, b, held_out] in ["AEB", "ABE", "BEA"].map(|s| [&s[..1], &s[1..2], &s[2..]]) {
         for cut_off in ["", "prepare.cut_off = 6.0"] {
             let suite = |s: &str| format!("{{ path = \"suite_{s}\", compensated = true }}");
             let settings = format!(
                 "dynamic = [{}, {}]\nvalidate = [{}]\nmodel.physical = true\n{cut_off}\n",
                 suite(a),
                 suite(b),
-                suite(kept_back)
+                suite(held_out)
             );
             let settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
             let folder = Path::new(DATA).join("schunk_lwa4p");
@@ -142,7 +142,7 @@ const EXCITING: &str = "panda/excitation/traj1_000_015s.csv";
 #[ignore = "needs the recordings in ../shared"]
 fn physical_links_of_the_panda_predict_as_well_as_least_squares() {
     // For each part and joint, the squared errors of physical links and of least squares.
-    let parts: Vec<Vec<[f64; 2]>> = (0..15).map(errors_of_the_kept_back_second).collect();
+    let parts: Vec<Vec<[f64; 2]>> = (0..15).map(errors_of_the_held_out_second).collect();
     let mut ratios = Vec::new();
     for joint in 0..7 {
         let of_joint = parts.iter().map(|part| part[joint]);
@@ -160,7 +160,7 @@ fn physical_links_of_the_panda_predict_as_well_as_least_squares() {
 
 /// Returns the sums of squared torque errors in one second of the Panda's motion, when the rest is
 /// fitted: physical links and least squares, for each joint.
-fn errors_of_the_kept_back_second(second: u32) -> Vec<[f64; 2]> {
+fn errors_of_the_held_out_second(second: u32) -> Vec<[f64; 2]> {
     let (from, until) = (f64::from(second), f64::from(second + 1));
     let mut fitted = vec![];
     if second > 0 {

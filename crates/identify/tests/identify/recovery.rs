@@ -52,7 +52,7 @@ fn base_parameters_of_the_lwa_4p_lie_within_their_errors() {
     assert!(found.inertia.condition < 1e3, "{}", found.inertia.condition);
     assert!(found.warnings.is_empty(), "{:?}", found.warnings);
     assert!(
-        found.kept_back
+        found.held_out
             && found.validation[0].joints.iter().all(|joint| joint.relative.unwrap() < 0.05)
     );
 }

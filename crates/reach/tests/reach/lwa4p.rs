@@ -5,7 +5,8 @@ use reachtube_reach::{Hyperrectangle, PolynomialSystem};
 
 use crate::systems::{Polynomial, constant, variables};
 
-/// M⁻¹ at q = 0 in 1/(kg m²), as printed by `reachtube abstract --robot lwa4p --model 1 --order 3`.
+/// M⁻¹ at q = 0 in 1/(kg m²), as printed by
+/// `reachtube abstract --robot lwa4p --paper-model 1 --order 3`.
 const INVERSE_MASS: [[f64; 6]; 6] = [
     [
         0.5799185615516497,

@@ -27,8 +27,8 @@ Examples:
   reachtube conform --robot lwa4p --data recordings --torque compensated --notion exact \\
       --out model.json --certificate points.jsonl
       all states together lie in the reachable set itself
-  reachtube conform --robot lwa4p --model 2 --order 5 --data recordings --torque compensated \\
-      --resume search.json
+  reachtube conform --robot lwa4p --paper-model 2 --order 5 --data recordings \\
+      --torque compensated --resume search.json
   reachtube conform --robot arm.toml --data recordings --torque motor --calibrate M7,M8,M9
       find the sets on the other motions, and scale them to hold these three
 
@@ -56,9 +56,10 @@ pub(crate) struct Arguments {
         long,
         help_heading = "Model",
         default_value = "1",
+        value_name = "MODEL",
         value_parser = numbered_choice::<ModelKind>(MODELS)
     )]
-    pub model: ModelKind,
+    pub paper_model: ModelKind,
     /// Order of the model's Taylor polynomials, 1 or more
     #[arg(long, help_heading = "Model", default_value_t = 1, value_name = "P")]
     pub order: u32,
@@ -77,7 +78,7 @@ pub(crate) struct Arguments {
         long,
         help_heading = "Model",
         value_name = "FILE",
-        conflicts_with_all = ["robot", "lock", "expansion", "model", "order"]
+        conflicts_with_all = ["robot", "lock", "expansion", "paper_model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
     /// TOML file with values for the options of this command; its paths are relative to its

@@ -31,7 +31,7 @@ pub(super) fn explain(args: &Arguments) -> Result<Option<Option<Tolerance>>> {
 
 pub(super) fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
     let settings = Settings {
-        abstraction: Abstraction { model: args.model, order: args.order },
+        abstraction: Abstraction { model: args.paper_model, order: args.order },
         expansion_point: ExpansionPoint::from_values(&args.expansion, joints)?,
         method: args.method,
         disturbance: args.disturbance,

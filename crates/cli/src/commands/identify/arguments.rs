@@ -2,9 +2,9 @@ use std::path::PathBuf;
 
 use crate::lock_arguments::LockArguments;
 use clap::Args;
-use reachtube::recordings::ColumnSettings;
+use reachtube::recordings::{ColumnSettings, Torque};
 
-use crate::option_values::seconds;
+use crate::option_values::{Choices, choice, seconds};
 
 const HELP: &str = "\
 Examples:
@@ -12,10 +12,16 @@ Examples:
       --validate c.csv --out arm.toml
   reachtube identify --settings arm-identify.toml --report report
   reachtube identify --robot arm.urdf --dynamic run.mcap --topic /joint_states
-  reachtube identify --robot panda.toml --dynamic excitation --link-torque --cut-off 6
+  reachtube identify --robot panda.toml --dynamic excitation --torque link --cut-off 6
 
 A settings file holds all of these options and more, see docs/identify.md. Options on the command
 line override it.";
+
+/// The torques from which a robot can be identified.
+const TORQUES: Choices = &[
+    ("motor", "motor torque at the output side of the gear"),
+    ("link", "link-side torque, which does not drive the motor's inertia"),
+];
 
 /// Identify a robot's gravity, friction and inertia from its recordings
 ///
@@ -63,9 +69,9 @@ pub(crate) struct Arguments {
     /// also first=0, time_unit=ms and angle=deg
     #[arg(long, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
-    /// The torque was measured at the link side of the gear and does not drive the motor's inertia
-    #[arg(long)]
-    pub link_torque: bool,
+    /// Meaning of the recorded torques [default: motor, or as in the settings file]
+    #[arg(long, value_parser = choice::<Torque>(TORQUES))]
+    pub torque: Option<Torque>,
     /// Write the identified robot to this TOML file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

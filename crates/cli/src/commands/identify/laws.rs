@@ -42,8 +42,8 @@ fn stribeck(found: &Identification) -> String {
         };
         vec![
             joint.joint.clone(),
-            four_decimals(trial.kept_back[0]),
-            four_decimals(trial.kept_back[1]),
+            four_decimals(trial.held_out[0]),
+            four_decimals(trial.held_out[1]),
             excess,
             speed,
             trial.reason.clone().unwrap_or_else(|| "accepted".into()),
@@ -59,7 +59,7 @@ fn warming(found: &Identification, fit: &WarmingFit) -> String {
         return String::new();
     }
     let candidate = |candidate: &WarmingCandidate| {
-        vec![name(candidate.by, candidate.time_constant), four_decimals(candidate.kept_back)]
+        vec![name(candidate.by, candidate.time_constant), four_decimals(candidate.held_out)]
     };
     let candidates: Vec<_> = fit.candidates.iter().map(candidate).collect();
     let unit = force(found);
@@ -80,8 +80,8 @@ fn warming(found: &Identification, fit: &WarmingFit) -> String {
                 cells
             },
         );
-        let kept_back = joint.kept_back.map(|residual| unit.cell(i, four_decimals(residual)));
-        [vec![joint.joint.clone()], law, kept_back.to_vec()].concat()
+        let held_out = joint.held_out.map(|residual| unit.cell(i, four_decimals(residual)));
+        [vec![joint.joint.clone()], law, held_out.to_vec()].concat()
     };
     let rows: Vec<_> = fit.joints.iter().enumerate().map(row).collect();
     let header = [
@@ -93,7 +93,7 @@ fn warming(found: &Identification, fit: &WarmingFit) -> String {
         &unit.head("held-out residual without"),
         "with",
     ];
-    let parts = format!("residual over held-out {}, relative", fit.kept_back_parts);
+    let parts = format!("residual over held-out {}, relative", fit.held_out_parts);
     format!("{}{}", table(&["friction by", &parts], &candidates), table(&header, &rows))
 }
 
@@ -122,7 +122,7 @@ fn gains(found: &Identification, gain: &LawGain) -> String {
     };
     let joints = found.description.joints.iter().enumerate();
     let rows: Vec<_> = joints.zip(gain.before.iter().zip(&gain.after)).map(row).collect();
-    let what = if gain.kept_back { "validation recordings" } else { "exciting motions" };
+    let what = if gain.held_out { "validation recordings" } else { "exciting motions" };
     let head = unit.head(&format!("{what}: residual without laws"));
     table(&["joint", &head, "with", "change"], &rows)
 }

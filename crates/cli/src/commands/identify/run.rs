@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
 use reachtube::page::write_identified_html;
+use reachtube::recordings::Torque;
 use reachtube::write;
 use reachtube_files::MARK;
 use reachtube_logs::LogOptions;
@@ -139,7 +140,9 @@ fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     if !args.gains.is_empty() {
         settings.prepare.gains = args.gains.clone();
     }
-    settings.model.motor_inertia &= !args.link_torque;
+    if let Some(torque) = args.torque {
+        settings.model.motor_inertia = torque != Torque::Link;
+    }
     Ok((settings, folder))
 }
 

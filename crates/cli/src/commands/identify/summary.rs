@@ -244,7 +244,7 @@ fn offsets(found: &Identification) -> String {
 }
 
 fn validation(found: &Identification) -> String {
-    let recordings = if found.kept_back {
+    let recordings = if found.held_out {
         "recordings held out"
     } else {
         "the recordings of the fit, since none were held out"

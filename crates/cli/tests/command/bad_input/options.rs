@@ -80,7 +80,7 @@ pub(super) const CASES: &[Case] = &[
         "conform --abstraction a.json --data data --torque compensated --fit viscous",
         &["'--abstraction <FILE>' cannot be used with '--fit"],
     ),
-    case("a huge order", conform!("--model 3 --order 4000000000"), &["order"]),
+    case("a huge order", conform!("--paper-model 3 --order 4000000000"), &["order"]),
     case("an order of 0", conform!("--order 0"), &["order 1 at least"]),
     case(
         "a file that is a folder",
@@ -114,20 +114,20 @@ pub(super) const CASES: &[Case] = &[
     ),
     case(
         "no logs",
-        "prepare --robot arm.toml --logs none.csv --out windows",
+        "prepare --robot arm.toml --data none.csv --out windows",
         &["none.csv", "cannot read"],
     ),
     case(
         "a cut-off beyond the rate",
-        "prepare --robot arm.toml --logs data/A_1.csv --cut-off 1e6 --out windows",
+        "prepare --robot arm.toml --data data/A_1.csv --cut-off 1e6 --out windows",
         &["cut_off = 1000000 Hz must be above 0 and below 50.0000 Hz"],
     ),
     case("no robot for identify", "identify --dynamic data/A_1.csv", &["no robot is given"]),
     case("no exciting motions", "identify --robot arm.toml", &["--dynamic"]),
     case(
         "a position of another robot",
-        "robot show arm.toml --at 1",
-        &["--at lists 1; give 2 positions"],
+        "robot show arm.toml --expansion 1",
+        &["--expansion lists 1; give 2 positions"],
     ),
     case("a box with too few radii", "abstract --robot arm.toml --box 1,2", &["2 radii", "give 3"]),
     Case {
@@ -137,7 +137,7 @@ pub(super) const CASES: &[Case] = &[
             let samples: String = (0..300).map(zeros).collect();
             lab.write("log.csv", format!("t,q1,q2,qd1,qd2,tau1,tau2\n{samples}"));
         },
-        command: "prepare --robot arm.toml --logs log.csv --cut-off 10 --window 1000 --out windows",
+        command: "prepare --robot arm.toml --data log.csv --cut-off 10 --window 1000 --out windows",
         code: 2,
         words: &["no recording is left: the windows are 1000 s long, but the longest"],
     },

@@ -144,7 +144,7 @@ impl From<&Cause> for Warning {
                 remedy = Some(match (about_mean, can_follow_robot) {
                     (Some((mean, _)), _) => Remedy::new("expansion", point(mean)),
                     (None, true) => Remedy::new("equations", "robot"),
-                    (None, false) => Remedy::new("model", "3"),
+                    (None, false) => Remedy::new("paper-model", "3"),
                 });
                 constant_inertia_words(cause)
             }
