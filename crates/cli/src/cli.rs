@@ -18,7 +18,7 @@ use crate::outcome::Outcome;
 /// which every recorded sample lies in the interval hull of the model's reachable set. It checks
 /// this with directed rounding.
 #[derive(Debug, Parser)]
-#[command(name = "reachtube", version = VERSION, after_help = HELP)]
+#[command(name = "reachtube", version = VERSION, after_help = HELP, disable_help_flag = true)]
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -31,6 +31,8 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), env!("REACHTUBE_COMMIT"
 
 const HELP: &str = "\
 Examples:
+  reachtube model --robot arm.urdf --data logs --torque motor --out arm
+      from logs to a model, a page and a verdict
   reachtube demo --out demo
       run every step on a simulated arm
   reachtube campaign --out campaign
@@ -46,9 +48,9 @@ Examples:
   reachtube conform --robot lwa4p --data recordings --suites A,B --torque compensated \\
       --out model.json
       find the smallest uncertainty sets
-  reachtube check --model model.json --data recordings --suites C --torque compensated
+  reachtube check --model model.json --data recordings --suites C
       check other recordings against the model
-  reachtube report --model model.json --data recordings --torque compensated --out report
+  reachtube report --model model.json --data recordings --out report
       write an HTML page with figures
   reachtube reproduce table1
       repeat the paper's simulations
@@ -59,23 +61,23 @@ Results go to standard output; notes, warnings and errors go to standard error."
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     Model(model::Arguments),
+    Check(check::Arguments),
+    Inspect(inspect::Arguments),
+    Export(export::Arguments),
+    Report(report::Arguments),
+    Identify(identify::Arguments),
+    Prepare(prepare::Arguments),
+    Conform(conform::Arguments),
+    Abstract(r#abstract::Arguments),
+    Reach(reach::Arguments),
+    Excite(excite::Arguments),
+    Convert(convert::Arguments),
     Demo(demo::Arguments),
     Campaign(campaign::Arguments),
     #[command(subcommand)]
-    Robot(RobotCommand),
-    Inspect(inspect::Arguments),
-    Abstract(r#abstract::Arguments),
-    Excite(excite::Arguments),
-    Identify(identify::Arguments),
-    Prepare(prepare::Arguments),
-    Convert(convert::Arguments),
-    Conform(conform::Arguments),
-    Check(check::Arguments),
-    Reach(reach::Arguments),
-    Export(export::Arguments),
-    Report(report::Arguments),
-    #[command(subcommand)]
     Reproduce(ReproduceCommand),
+    #[command(subcommand)]
+    Robot(RobotCommand),
     Completions(completions::Arguments),
     Man(man::Arguments),
 }
@@ -85,21 +87,21 @@ pub(crate) fn run(cli: &Cli) -> Result<Outcome> {
     let json = cli.global.json;
     match &cli.command {
         Command::Model(args) => model::run(args, json),
-        Command::Demo(args) => demo::run(args, json),
-        Command::Campaign(args) => campaign::run(args, json),
-        Command::Robot(RobotCommand::Show(args)) => robot::show(args, json),
-        Command::Identify(args) => identify::run(args, json),
-        Command::Inspect(args) => inspect::run(args, json),
-        Command::Abstract(args) => r#abstract::run(args, json),
-        Command::Excite(args) => excite::run(args, json),
-        Command::Prepare(args) => prepare::run(args, json),
-        Command::Convert(args) => convert::run(args, json),
-        Command::Conform(args) => conform::run(args, json),
         Command::Check(args) => check::run(args, json),
-        Command::Reach(args) => reach::run(args, json),
+        Command::Inspect(args) => inspect::run(args, json),
         Command::Export(args) => export::run(args, json),
         Command::Report(args) => report::run(args, json),
+        Command::Identify(args) => identify::run(args, json),
+        Command::Prepare(args) => prepare::run(args, json),
+        Command::Conform(args) => conform::run(args, json),
+        Command::Abstract(args) => r#abstract::run(args, json),
+        Command::Reach(args) => reach::run(args, json),
+        Command::Excite(args) => excite::run(args, json),
+        Command::Convert(args) => convert::run(args, json),
+        Command::Demo(args) => demo::run(args, json),
+        Command::Campaign(args) => campaign::run(args, json),
         Command::Reproduce(command) => reproduce::run(command, json),
+        Command::Robot(RobotCommand::Show(args)) => robot::show(args, json),
         Command::Completions(args) => completions::run(args, Cli::command()),
         Command::Man(args) => man::run(args, Cli::command()),
     }

@@ -12,22 +12,27 @@ use crate::option_values::{Choices, choice, seconds, trimmed};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
 pub(crate) struct DataArguments {
-    /// Folder with runs.csv and the recordings; for a model that `model` made, logs like its own
+    /// Folder with runs.csv and the recordings.
+    ///
+    /// For a model that `model` made, logs like its own.
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
     /// Names of the test suites to use, separated by commas [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// Meaning of the recorded torques, columns tau1 to taun in N m; a model file
-    /// knows what its own are
+    /// Meaning of the recorded torques, columns tau1 to taun in N m.
+    ///
+    /// A model file has the meaning of its own.
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
     /// Use only samples up to this time after the first sample, above 0 s [default: all]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub until: Option<f64>,
     /// Longest time between two samples, above 0 s; the input is held over it [default: 1.9 times
     /// the usual sample time, 10 times where sample times jitter]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub max_gap: Option<f64>,
 }
 

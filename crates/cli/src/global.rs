@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use clap::Args;
+use clap::{ArgAction, Args};
 use reachtube_files::Overwrite;
 
 // A comment, not a doc comment: clap would show it as the description of the command.
@@ -10,7 +10,9 @@ use reachtube_files::Overwrite;
 #[derive(Debug, Clone, Copy, Default, Args)]
 #[command(next_help_heading = "Global options")]
 pub(crate) struct GlobalOptions {
-    /// Print the result as JSON on standard output, and an error as JSON on standard error
+    /// Print the result as JSON on standard output.
+    ///
+    /// An error is printed as JSON on standard error.
     #[arg(long, global = true)]
     pub json: bool,
     /// Overwrite existing files that carry no mark of reachtube
@@ -22,6 +24,12 @@ pub(crate) struct GlobalOptions {
     /// Print every note, and how long each step took
     #[arg(long, short, global = true)]
     pub verbose: bool,
+    /// Print the options used most
+    #[arg(long, short, global = true, action = ArgAction::HelpShort)]
+    help: Option<bool>,
+    /// Print all options and examples
+    #[arg(long, global = true, action = ArgAction::HelpLong)]
+    help_all: Option<bool>,
 }
 
 static OPTIONS: OnceLock<GlobalOptions> = OnceLock::new();

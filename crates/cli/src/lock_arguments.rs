@@ -12,7 +12,7 @@ pub(crate) struct LockArguments {
     /// Hold a joint of the robot at a position, in rad, or in m for a prismatic joint; joints that
     /// mimic it follow, and the links that they carry become part of the link before them. Repeat
     /// the option for more joints
-    #[arg(long, value_name = "JOINT=VALUE", help_heading = "Model")]
+    #[arg(long, hide_short_help = true, value_name = "JOINT=VALUE", help_heading = "Model")]
     pub lock: Vec<Lock>,
 }
 

@@ -6,6 +6,7 @@ mod data_arguments;
 mod error;
 mod file_names;
 mod global;
+mod help;
 mod lock_arguments;
 mod log_files;
 mod opened;

@@ -16,6 +16,7 @@ use toml::{Spanned, Value};
 
 use crate::cli::Cli;
 use crate::error::{Error, Result};
+use crate::help;
 use crate::renamed::{new_name, usage_error};
 
 /// The command that takes a settings file of its options.
@@ -27,16 +28,17 @@ const OPTION: &str = "settings";
 /// Parses the command line, with the settings file that it names.
 pub(crate) fn parse(line: Vec<OsString>) -> Result<Cli> {
     // Options that the file gives may be missing from the command line.
-    let first = Cli::command().ignore_errors(true).try_get_matches_from(&line);
+    let command = help::command(&line);
+    let first = command.clone().ignore_errors(true).try_get_matches_from(&line);
     let first = first.ok();
     let given = first.as_ref().and_then(|matches| matches.subcommand_matches(COMMAND));
     let path = given.and_then(|given| given.try_get_one::<PathBuf>(OPTION).ok().flatten());
     let parsed = match given.zip(path) {
         Some((given, path)) => with_file(&line, given, path)?,
-        None => Cli::command().try_get_matches_from(&line),
+        None => command.clone().try_get_matches_from(&line),
     };
     let parsed = parsed.and_then(|matches| Cli::from_arg_matches(&matches));
-    parsed.map_err(|error| usage_error(error, &mut Cli::command(), first.as_ref()))
+    parsed.map_err(|error| usage_error(error, &mut command.clone(), first.as_ref()))
 }
 
 /// Parses the command line together with the options in the file `path` that it does not give.
@@ -54,7 +56,7 @@ fn with_file(
     let on_line = |key: &str| given.value_source(&id(key)) == Some(ValueSource::CommandLine);
     let from_file = file.arguments(on_line)?;
     let all = line[..at].iter().cloned().chain(from_file).chain(line[at..].iter().cloned());
-    let parsed = Cli::command().try_get_matches_from(all);
+    let parsed = help::command(line).try_get_matches_from(all);
     match parsed.as_ref().err().and_then(|error| file.blame(error)) {
         Some(blamed) => Err(blamed),
         None => Ok(parsed),

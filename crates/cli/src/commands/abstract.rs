@@ -61,11 +61,11 @@ pub(crate) struct Arguments {
     #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
     pub operating_box: Vec<f64>,
     /// Print the polynomials, one line per joint, instead of the summary
-    #[arg(long, conflicts_with = "json")]
+    #[arg(long, hide_short_help = true, conflicts_with = "json")]
     pub print: bool,
     /// Largest number of parts that --box is cut into. Cutting ends where the bound is at most 1.25
     /// times the largest error found [default: 4 to 1000, for at most some 20 s on two cores]
-    #[arg(long, value_name = "COUNT")]
+    #[arg(long, hide_short_help = true, value_name = "COUNT")]
     pub most_boxes: Option<usize>,
     /// Write the model to this JSON file
     #[arg(long, value_name = "FILE")]

@@ -46,19 +46,19 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 15, value_name = "COUNT")]
     pub runs: usize,
     /// Longest duration of a run, s
-    #[arg(long, default_value_t = 5.0, value_name = "SECONDS")]
+    #[arg(long, hide_short_help = true, default_value_t = 5.0, value_name = "SECONDS")]
     pub longest: f64,
     /// Number of static poses, for gravity: two at each position, reached from both sides
-    #[arg(long, default_value_t = 1000, value_name = "COUNT")]
+    #[arg(long, hide_short_help = true, default_value_t = 1000, value_name = "COUNT")]
     pub poses: usize,
     /// Number of recordings of slow motions for each joint, for friction
-    #[arg(long, default_value_t = 6, value_name = "COUNT")]
+    #[arg(long, hide_short_help = true, default_value_t = 6, value_name = "COUNT")]
     pub friction: usize,
     /// Number of exciting motions, for the inertial parameters
-    #[arg(long, default_value_t = 6, value_name = "COUNT")]
+    #[arg(long, hide_short_help = true, default_value_t = 6, value_name = "COUNT")]
     pub excitation: usize,
     /// Number of exciting motions to validate with
-    #[arg(long, default_value_t = 2, value_name = "COUNT")]
+    #[arg(long, hide_short_help = true, default_value_t = 2, value_name = "COUNT")]
     pub validation: usize,
     #[command(flatten)]
     pub robot: VirtualRobotArguments,

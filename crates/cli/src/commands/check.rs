@@ -12,8 +12,8 @@ use crate::output;
 
 const HELP: &str = "\
 Examples:
-  reachtube check --model model.json --data recordings --suites C,F --torque compensated
-  reachtube check --model model.json --data recordings --torque compensated --notion exact
+  reachtube check --model model.json --data recordings --suites C,F
+  reachtube check --model model.json --data recordings --notion exact
       also demands that all states together lie in the reachable set itself
 
 A model that is not linear is compared by its computed outer set, an enclosure of the reachable set.

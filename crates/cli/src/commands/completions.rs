@@ -18,7 +18,7 @@ Examples:
   reachtube completions --out \"$DESTDIR/usr/share\"
       for a package: the scripts of all shells, and the manual pages of all commands";
 
-/// Print a script that completes commands and options in a shell, or write all shells' scripts
+/// Print a script that completes commands and options in a shell
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

@@ -61,7 +61,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME", num_args = 1.., default_value = "/joint_states")]
     pub topic: Vec<String>,
     /// Names of the joints in the log, in the robot's order [default: the robot's names]
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
     /// CSV file with one run per line: start,end in s from the log's first sample, or
     /// start_stamp,end_stamp; suite, motion and log may follow
@@ -76,18 +76,19 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub repeats: bool,
     /// Speed below which a joint rests, above 0 rad/s or m/s
-    #[arg(long, value_name = "SPEED", value_parser = speed, default_value = "0.01",
-        requires = "repeats")]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "SPEED", value_parser = speed, default_value = "0.01", requires = "repeats")]
     pub rest_speed: f64,
     /// Times of the samples
-    #[arg(long, value_name = "TIMES", value_parser = explained(TIMES), default_value = "header")]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "TIMES", value_parser = explained(TIMES), default_value = "header")]
     pub time: String,
     /// Read what is whole in a damaged log, and print what is lost
     #[arg(long)]
     pub recover: bool,
     /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, 10
     /// times where sample times jitter]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
     /// Folder for the recordings and runs.csv
     #[arg(long, value_name = "FOLDER")]

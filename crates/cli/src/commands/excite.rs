@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     pub period: f64,
     /// Number of harmonics of each joint
     #[arg(
-        long,
+        long, hide_short_help = true,
         default_value = "5",
         value_name = "COUNT",
         value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST_HARMONICS)
@@ -54,13 +54,13 @@ pub(crate) struct Arguments {
     pub speed: f64,
     /// Minimise the condition number of the base regressor, instead of maximising the determinant
     /// of its information matrix
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     pub condition: bool,
     /// Sample rate of the CSV file, above 0 Hz
     #[arg(long, value_name = "HZ", value_parser = hertz, default_value = "100")]
     pub rate: f64,
     /// Largest number of samples that the CSV file may hold
-    #[arg(long, value_name = "COUNT", default_value_t = 1_000_000)]
+    #[arg(long, hide_short_help = true, value_name = "COUNT", default_value_t = 1_000_000)]
     pub most_samples: u64,
     /// Seed of the search; the same seed gives the same motion
     #[arg(long, default_value_t = 1)]

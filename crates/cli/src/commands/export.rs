@@ -87,12 +87,14 @@ pub(crate) struct Arguments {
     #[arg(help_heading = "Data")]
     pub suites: Vec<String>,
     /// Use only samples up to this time after the first sample, above 0 s [default: all]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     #[arg(help_heading = "Data")]
     pub until: Option<f64>,
     /// Longest time between two samples, above 0 s; the input is held over it [default: 1.9 times
     /// the usual sample time, 10 times where sample times jitter]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     #[arg(help_heading = "Data")]
     pub max_gap: Option<f64>,
 }

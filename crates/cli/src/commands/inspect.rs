@@ -48,7 +48,8 @@ pub(crate) struct Arguments {
     pub columns: Option<ColumnSettings>,
     /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, 10
     /// times where sample times jitter]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub max_gap: Option<f64>,
 }
 

@@ -53,7 +53,7 @@ pub(crate) struct Arguments {
     pub gains: Vec<f64>,
     /// Names of the robot's joints in the order of the recorded columns [default: the robot's
     /// order]
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
     /// Write the input u, which is the motor torque less the robot's gravity and dry friction, in
     /// place of the torque; read it with `--torque compensated`
@@ -61,10 +61,10 @@ pub(crate) struct Arguments {
     pub compensate: bool,
     /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
     /// also first=0, time_unit=ms and angle=deg
-    #[arg(long, value_name = "KEY=VALUE,..")]
+    #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
     /// Longest time between two samples, above 0 s [default: 10 times the usual sample time]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
     /// Folder for the recordings and runs.csv
     #[arg(long, value_name = "FOLDER")]

@@ -21,14 +21,14 @@ use reachtube_robot::JointKind;
 
 const HELP: &str = "\
 Example:
-  reachtube reach --model model.json --data recordings --suites A --torque compensated --out reach
+  reachtube reach --model model.json --data recordings --suites A --out reach
 
 Writes A.csv (reachable set at samples), A_tube.csv (over each step, an outer enclosure) and the
 figures A_*.svg to the folder.
 
 Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
 
-/// Compute a model's reachable sets along recorded test suites, at samples and between them
+/// Compute a model's reachable sets along recordings, at samples and between them
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

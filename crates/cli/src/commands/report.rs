@@ -15,7 +15,7 @@ use crate::{output, report_files};
 
 const HELP: &str = "\
 Example:
-  reachtube report --model model.json --data recordings --torque compensated --out report
+  reachtube report --model model.json --data recordings --out report
 
 Writes report.html, which works offline, and one SVG file per figure to the folder.";
 

@@ -14,8 +14,13 @@ use crate::table::{plural, table};
 use reachtube::number::{fixed, six_digits};
 use reachtube::units::ColumnUnit;
 
+const HELP: &str = "\
+Example:
+  reachtube robot show arm.toml";
+
 /// Show how reachtube understands a robot's description
 #[derive(Debug, Subcommand)]
+#[command(after_help = HELP)]
 pub(crate) enum RobotCommand {
     Show(ShowArguments),
 }

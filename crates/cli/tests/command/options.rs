@@ -2,43 +2,70 @@
 
 use crate::fixture::{Lab, SAMPLES};
 
+/// Largest number of lines of a screen.
+const SCREEN: usize = 45;
+
+/// Returns every command, from the reference.
+fn commands(lab: &Lab) -> Vec<String> {
+    let reference = lab.run("man --markdown").exits(0).stdout;
+    let names = reference.lines().filter_map(|line| line.strip_prefix("## reachtube "));
+    let names: Vec<String> = names.map(String::from).collect();
+    assert!(names.len() > 20, "{names:?}");
+    names
+}
+
 #[test]
-fn help_has_examples_and_exit_codes() {
+fn help_fits_a_screen_and_begins_with_an_example() {
     let lab = Lab::new();
-    for command in [
-        "",
-        "demo",
-        "campaign",
-        "robot show",
-        "inspect",
-        "abstract",
-        "excite",
-        "identify",
-        "prepare",
-        "convert",
-        "conform",
-        "check",
-        "reach",
-        "export",
-        "report",
-        "reproduce table1",
-        "reproduce table2",
-        "reproduce coverage",
-        "completions",
-        "man",
-    ] {
+    for command in commands(&lab).iter().map(String::as_str).chain([""]) {
         let help = lab.run(&format!("{command} --help")).exits(0).stdout;
-        assert!(
-            help.contains("Example") && help.contains(&format!("reachtube {command}")),
-            "{command}: {help}"
-        );
+        assert!(help.lines().count() <= SCREEN, "{command}: {help}");
         assert!(help.lines().all(|line| line.chars().count() <= 100), "{command}: {help}");
+        let [usage, example, options] =
+            ["Usage: reachtube", "\nExample", "ptions:\n"].map(|part| help.find(part).unwrap());
+        assert!(usage < example && example < options, "{command}: {help}");
+        let of_group = command.split(' ').next().unwrap();
+        assert!(help[example..options].contains(&format!("reachtube {of_group}")), "{help}");
+        assert_eq!(lab.run(&format!("{command} -h")).exits(0).stdout, help);
     }
-    assert!(
-        lab.run("--help")
-            .stdout
-            .contains("Exit codes: 0 conformant (or done), 1 not conformant, 2 error")
-    );
+}
+
+#[test]
+fn help_all_has_every_option_and_example() {
+    let lab = Lab::new();
+    let reference = lab.run("man --markdown").exits(0).stdout;
+    let sections = reference.split("\n## reachtube ").skip(1);
+    for section in sections {
+        let command = section.lines().next().unwrap();
+        let all = lab.run(&format!("{command} --help-all")).exits(0).stdout;
+        let options = section.lines().filter_map(|line| line.strip_prefix("- `--"));
+        for option in options.map(|line| line.split(['`', ' ']).next().unwrap()) {
+            assert!(all.contains(&format!("--{option}")), "{command}: --{option}: {all}");
+        }
+        let calls = section.lines().filter_map(|line| line.strip_prefix("    reachtube "));
+        for call in calls.filter(|call| !call.ends_with(" [OPTIONS]")) {
+            assert!(all.contains(&format!("  reachtube {call}")), "{command}: {call}: {all}");
+        }
+        assert!(all.lines().all(|line| line.chars().count() <= 100), "{command}: {all}");
+    }
+    let conform = lab.run("conform --help-all").exits(0).stdout;
+    assert!(conform.contains("velocities in rad/s") && conform.contains("Sets:"), "{conform}");
+}
+
+#[test]
+fn the_first_screen_begins_with_the_commands_for_logs() {
+    let lab = Lab::new();
+    let screen = lab.run("--help").exits(0).stdout;
+    assert!(screen.contains("Exit codes: 0 conformant (or done), 1 not conformant, 2 error"));
+    let listed = screen.lines().filter_map(|line| line.strip_prefix("  "));
+    let words = listed.filter(|line| line.starts_with(|c: char| c.is_lowercase()));
+    let names: Vec<&str> = words.map(|line| line.split(' ').next().unwrap()).collect();
+    let expected = "reachtube reachtube model check inspect export report identify prepare conform \
+                    abstract reach excite convert demo campaign reproduce robot completions man";
+    assert_eq!(names.join(" "), expected);
+    // Without a command, the same screen is an error.
+    let bare = lab.run("").exits(2);
+    assert_eq!(bare.stderr, screen);
 }
 
 /// A clone of the repository has a commit, a source archive has none.

@@ -134,7 +134,7 @@ fn bash_completes_commands_and_options() {
         assert!(output.stderr.is_empty(), "{output:?}");
         String::from_utf8(output.stdout).unwrap()
     };
-    assert_eq!(complete("reachtube con", 1), "convert conform\n");
+    assert_eq!(complete("reachtube con", 1), "conform convert\n");
     assert_eq!(complete("reachtube conform --calib", 2), "--calibrate\n");
     assert_eq!(complete("reachtube conform --notion ph", 3), "phase-plane\n");
 }

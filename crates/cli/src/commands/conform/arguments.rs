@@ -35,7 +35,7 @@ Examples:
 Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error, 3 conformant but vacuous:
 the sets do not limit some joint.";
 
-/// Find the smallest uncertainty sets for which a model encloses every recording, and prove it
+/// Find the smallest sets for which a model encloses every recording, and prove it
 ///
 /// The sets are the initial set X0, the input set U and, with --noise, the measurement noise V.
 #[derive(Debug, Args)]
@@ -53,7 +53,7 @@ pub(crate) struct Arguments {
     pub lock: LockArguments,
     /// Model of the forward dynamics, numbered as in the paper
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Model",
         default_value = "1",
         value_name = "MODEL",
@@ -61,12 +61,19 @@ pub(crate) struct Arguments {
     )]
     pub paper_model: ModelKind,
     /// Order of the model's Taylor polynomials, 1 or more
-    #[arg(long, help_heading = "Model", default_value_t = 1, value_name = "P")]
+    #[arg(
+        long,
+        hide_short_help = true,
+        help_heading = "Model",
+        default_value_t = 1,
+        value_name = "P"
+    )]
     pub order: u32,
     /// Expansion point, separated by commas: n positions in rad, or also n velocities in rad/s
     /// [default: 0]
     #[arg(
         long,
+        hide_short_help = true,
         help_heading = "Model",
         value_name = "Q,..",
         value_delimiter = ',',
@@ -75,14 +82,15 @@ pub(crate) struct Arguments {
     pub expansion: Vec<f64>,
     /// Model file that `abstract --out` wrote, instead of a robot
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Model",
         value_name = "FILE",
         conflicts_with_all = ["robot", "lock", "expansion", "paper_model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
-    /// TOML file with values for the options of this command; its paths are relative to its
-    /// folder, and options on the command line come before it
+    /// TOML file with values for the options of this command.
+    ///
+    /// Its paths are relative to its folder, and options on the command line come before it.
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     #[command(flatten)]
@@ -102,6 +110,7 @@ pub(crate) struct Arguments {
     /// chosen by leaving one motion out]
     #[arg(
         long,
+        hide_short_help = true,
         help_heading = "Fit",
         value_name = "WEIGHT",
         requires = "fit",
@@ -111,7 +120,7 @@ pub(crate) struct Arguments {
     /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable
     /// disturbances in any case
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Sets",
         default_value = "sample",
         value_parser = choice::<Disturbance>(DISTURBANCES)
@@ -119,7 +128,7 @@ pub(crate) struct Arguments {
     pub disturbance: Disturbance,
     /// Centres of the sets X0 and U
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Sets",
         default_value = "free",
         value_parser = choice::<Centre>(CENTRES)
@@ -135,7 +144,7 @@ pub(crate) struct Arguments {
     pub notion: Notion,
     /// States that the reachable set must enclose
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Sets",
         default_value = "all",
         value_parser = choice::<States>(STATES)
@@ -143,7 +152,7 @@ pub(crate) struct Arguments {
     pub states: States,
     /// How far X0 may reach. Where nothing limits it, X0 may take over what U would cover later
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Sets",
         default_value = "none",
         value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
@@ -154,15 +163,17 @@ pub(crate) struct Arguments {
     /// first
     #[arg(
         long,
+        hide_short_help = true,
         help_heading = "Sets",
         default_value = "unit",
         value_name = "unit|spread|W,W,..",
         allow_hyphen_values = true
     )]
     pub weights: String,
-    /// Measurement noise V: none; fitted (its radii are found with the sets and are at most the
-    /// sensor noise's); or its radii, 2 or 2n numbers between 0 and 1e9: positions in rad, then
-    /// velocities in rad/s
+    /// Measurement noise V: none, fitted, or its radii in rad and rad/s.
+    ///
+    /// Fitted radii are found with the sets and are at most the sensor noise's. Given radii are 2
+    /// or 2n numbers between 0 and 1e9: positions in rad, then velocities in rad/s.
     #[arg(
         long,
         help_heading = "Sets",
@@ -174,18 +185,26 @@ pub(crate) struct Arguments {
     /// Radii of the sensors' noise, 2 or 2n numbers between 0 and 1e9: positions in rad, then
     /// velocities in rad/s. They limit V of --noise fitted and X0 of --nominal own [default:
     /// estimated from the recordings]
-    #[arg(long, help_heading = "Sets", value_name = "R,R,..", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        hide_short_help = true,
+        help_heading = "Sets",
+        value_name = "R,R,..",
+        allow_hyphen_values = true
+    )]
     pub sensor_noise: Option<String>,
     /// First state of the nominal solutions
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Sets",
         default_value = "mean",
         value_parser = choice::<NominalStart>(NOMINAL_STARTS)
     )]
     pub nominal: NominalStart,
-    /// Equations of motion that nominal solutions satisfy. With the robot's equations U covers only
-    /// what the robot itself does not explain; this needs a linear model
+    /// Equations of motion that nominal solutions satisfy.
+    ///
+    /// With the robot's equations U covers only what the robot itself does not explain; this needs
+    /// a linear model.
     #[arg(
         long,
         help_heading = "Model",
@@ -193,14 +212,15 @@ pub(crate) struct Arguments {
         value_parser = choice::<Equations>(EQUATIONS)
     )]
     pub equations: Equations,
-    /// Motions that are held out from the fit, separated by commas, as runs.csv names them. The
-    /// sets found on the others are scaled until they enclose these too, which bounds the
-    /// probability that the next motion leaves them
+    /// Motions that are held out from the fit, separated by commas.
+    ///
+    /// Their names are in runs.csv. The sets found on the other motions are scaled until they
+    /// enclose these too, which bounds the probability that the next motion leaves them.
     #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
     pub calibrate: Vec<String>,
     /// Method that finds the sets
     #[arg(
-        long,
+        long, hide_short_help = true,
         help_heading = "Method",
         default_value = "program",
         value_parser = choice::<Method>(METHODS)
@@ -209,17 +229,17 @@ pub(crate) struct Arguments {
     /// Search for a motion of the model itself near each recording, within these tolerances in rad
     /// and rad/s: 2 numbers, 0 or more, or none [default: none for a linear model, otherwise
     /// 0.001,0.01]
-    #[arg(long, help_heading = "Method", value_name = "none|Q,QD")]
+    #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "none|Q,QD")]
     pub explain: Option<String>,
     /// Save the progress of a long search to this file, and continue from it if it exists
-    #[arg(long, help_heading = "Method", value_name = "FILE")]
+    #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "FILE")]
     pub resume: Option<PathBuf>,
     /// Write the model to this JSON file
     #[arg(long, help_heading = "Output", value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Write for every recorded point what another program needs to prove that it lies in the
     /// reachable set, for --notion exact and phase-plane: one line of JSON for each point
-    #[arg(long, help_heading = "Output", value_name = "FILE")]
+    #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]
     pub certificate: Option<PathBuf>,
     /// Write an HTML page and its figures to this folder
     #[arg(long, help_heading = "Output", value_name = "FOLDER")]

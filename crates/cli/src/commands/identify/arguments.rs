@@ -52,22 +52,29 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub validate: Vec<PathBuf>,
     /// Topics with joint states in recordings that are logs
-    #[arg(long, value_name = "NAME", num_args = 1.., default_value = "/joint_states")]
+    #[arg(long, hide_short_help = true)]
+    #[arg(value_name = "NAME", num_args = 1.., default_value = "/joint_states")]
     pub topic: Vec<String>,
     /// Cut-off frequency of the low-pass filter, above 0 and below half the sample rate, Hz
     /// [default: chosen from the recordings]
     #[arg(long, value_name = "HZ")]
     pub cut_off: Option<f64>,
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
-    #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(
+        long,
+        hide_short_help = true,
+        value_name = "G,..",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
     pub gains: Vec<f64>,
     /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, or 10
     /// times where the sample times jitter]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
     /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
     /// also first=0, time_unit=ms and angle=deg
-    #[arg(long, value_name = "KEY=VALUE,..")]
+    #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
     /// Meaning of the recorded torques [default: motor, or as in the settings file]
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]

@@ -13,8 +13,15 @@ use clap::Subcommand;
 use crate::error::Result;
 use crate::outcome::Outcome;
 
-/// Reproduce a table or a figure of the paper, or put the bounds for the next motion to the test
+const HELP: &str = "\
+Examples:
+  reachtube reproduce all --out paper
+      every table and figure, on one page
+  reachtube reproduce table1";
+
+/// Reproduce tables and figures of the paper, and test the bounds for the next motion
 #[derive(Debug, Subcommand)]
+#[command(after_help = HELP)]
 pub(crate) enum ReproduceCommand {
     All(all::Arguments),
     Table1(table1::Arguments),
