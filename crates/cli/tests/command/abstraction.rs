@@ -47,9 +47,10 @@ fn files_fit_the_schema_and_conform_takes_them() {
     let (schema, lab) = (schema(), Lab::new());
     let usual = lab.conform("--json").exits(0).json();
     for model in [1, 2, 3] {
-        let arguments =
-            format!("abstract --robot arm.toml --model {model} --box 0.3,2,1 --out m{model}.json");
-        lab.run(&arguments).exits(0);
+        lab.run(&format!(
+            "abstract --robot arm.toml --paper-model {model} --box 0.3,2,1 --out m{model}.json"
+        ))
+        .exits(0);
         let file: Value = serde_json::from_str(&lab.read(&format!("m{model}.json"))).unwrap();
         let complaints: Vec<String> = schema.iter_errors(&file).map(|e| e.to_string()).collect();
         assert_eq!(complaints, Vec::<String>::new());

@@ -123,7 +123,7 @@ fn a_robot_is_written_for_simulators() {
 
 #[test]
 fn help_names_each_tool_and_what_it_means() {
-    let help = Lab::new().run("export --help").exits(0).stdout;
+    let help = Lab::new().run("export --help-all").exits(0).stdout;
     for (tool, _) in TOOLS {
         assert!(help.matches(tool).count() >= 2, "{tool}");
     }
