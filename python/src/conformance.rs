@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use reachtube::abstraction::ExpansionPoint;
+use reachtube::conform::result::FrontEnd;
+use reachtube::conform::settings::Tolerance;
 use reachtube::conform::{
-    Answer, Basis, CheckJob, FitSettings, FrontEnd, Group, Job, Keep, Model, Opened, Settings,
-    Setup, SuiteReach, Tolerance,
+    Answer, Basis, CheckJob, FitSettings, Group, Job, Keep, Model, Opened, Settings, Setup,
+    SuiteReach,
 };
 use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
 use reachtube::recordings::GapLimit;

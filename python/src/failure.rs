@@ -4,7 +4,8 @@ use std::path::{MAIN_SEPARATOR, Path};
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use reachtube::conform::{self, FrontEnd};
+use reachtube::conform::result::FrontEnd;
+use reachtube::conform::{self};
 use reachtube::recordings::{self, Defect};
 use reachtube::robot::RobotError;
 

@@ -1,7 +1,8 @@
 //! What an answer says, as users of Python write settings.
 
 use pyo3::prelude::*;
-use reachtube::conform::{Finding, FrontEnd, Model, Report};
+use reachtube::conform::result::{FrontEnd, Report};
+use reachtube::conform::{Finding, Model};
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, Result};

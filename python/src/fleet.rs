@@ -5,9 +5,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
-use reachtube::conform::{
-    self as product, Answer, FleetProblem, Fold, Hulls, Model, Notion, OnDefect, Problem, Setup,
-};
+use reachtube::conform::fleet::{FleetProblem, Fold, OnDefect};
+use reachtube::conform::{self as product, Answer, Hulls, Model, Notion, Problem, Setup};
 use reachtube::recordings::{Defect, DefectKind};
 use serde_json::{Map, Value};
 
@@ -175,7 +174,9 @@ impl NativeFleet {
                 let problem = problem(&setup, &fold, report)?;
                 let hulls = Hulls::new(&problem, model.sets())?;
                 let check = match server.as_deref() {
-                    Some(server) => product::check_elsewhere(&model, &problem, &hulls, server)?,
+                    Some(server) => {
+                        product::fleet::check_elsewhere(&model, &problem, &hulls, server)?
+                    }
                     None => product::check(&model, &problem, &hulls)?,
                 };
                 Ok(serde_json::to_string(&check).expect("a check has string keys"))

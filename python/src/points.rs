@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyBytes;
-use reachtube::conform::{FleetProblem, PartPoints, PartReader, PointServer};
+use reachtube::conform::fleet::{FleetProblem, PartPoints, PartReader, PointServer};
 
 use crate::failure::Failure;
 use crate::manifest::{Entry, Read, entry, read_csv, read_run};

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use reachtube::conform::FrontEnd;
+use reachtube::conform::result::FrontEnd;
 use reachtube::export::ExportError;
 use reachtube::pipeline::Error as PipelineError;
 use reachtube::recordings::Refusal;

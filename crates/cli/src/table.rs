@@ -1,6 +1,6 @@
 //! Tables and plurals.
 
-use reachtube::conform::Table;
+use reachtube::conform::result::Table;
 use reachtube::page::TextTable;
 use reachtube::printable;
 

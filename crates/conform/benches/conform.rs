@@ -4,9 +4,11 @@ use divan::counter::BytesCount;
 use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
+use reachtube_conform::data::Envelope;
+use reachtube_conform::linear::{Block, Program};
+use reachtube_conform::tube::{Deviation, Grid};
 use reachtube_conform::{
-    Block, Check, Deviation, Envelope, Grid, Hulls, Keep, Model, Problem, Program, Settings, Setup,
-    Silent, check, conform, reach,
+    Check, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform, reach,
 };
 use reachtube_reach::{Disturbance, Propagation, TimeGrid};
 use reachtube_recordings::{DataSet, Torque};

@@ -4,9 +4,8 @@
 use divan::Bencher;
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
-use reachtube_conform::{
-    FitSettings, Group, Keep, NominalStart, Problem, Settings, Setup, Silent, fit,
-};
+use reachtube_conform::settings::NominalStart;
+use reachtube_conform::{FitSettings, Group, Keep, Problem, Settings, Setup, Silent, fit};
 use reachtube_reach::TimeGrid;
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::{Parameter, ParameterKind, Robot};

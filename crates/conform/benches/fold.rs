@@ -1,7 +1,8 @@
 //! Folding of recordings: a part of 1000 runs of 5 s at 250 Hz, its bytes, and the merge of parts.
 
 use divan::Bencher;
-use reachtube_conform::{Fold, Settings, Setup};
+use reachtube_conform::fleet::Fold;
+use reachtube_conform::{Settings, Setup};
 use reachtube_recordings::{MemoryRuns, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
 

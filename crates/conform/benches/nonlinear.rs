@@ -5,7 +5,8 @@ use std::path::Path;
 
 use divan::Bencher;
 use reachtube_abstraction::{Abstraction, ModelKind};
-use reachtube_conform::{Keep, Method, Problem, Settings, Setup, Silent, Tolerance, conform};
+use reachtube_conform::settings::{Method, Tolerance};
+use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
 

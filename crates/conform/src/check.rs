@@ -2,19 +2,19 @@ use serde::Serialize;
 
 use crate::claim::notion::judged;
 use crate::claim::remote::PointServer;
+use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
 use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
 use crate::error::Result;
-use crate::growth::Growth;
-use crate::hulls::Hulls;
 use crate::model::file::Model;
+use crate::next_motion::growth::Growth;
 use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
 use crate::result::code::Code;
 use crate::result::finding::Finding;
-use crate::verdict::Verdict;
-use crate::witness::Witness;
+use crate::tube::hulls::Hulls;
+use crate::tube::witness::Witness;
 
 /// The answer of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -7,10 +7,10 @@ use crate::data::problem::{Keep, Problem};
 use crate::data::settings::Notion;
 use crate::data::setup::Setup;
 use crate::error::Result;
-use crate::hulls::Hulls;
 use crate::model::file::Model;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
+use crate::tube::hulls::Hulls;
 
 /// A model to compare with recordings, whose torques are of the model's kind.
 #[derive(Debug)]

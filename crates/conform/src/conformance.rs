@@ -2,28 +2,28 @@
 
 use std::path::Path;
 
-use crate::any_run::AnyRun;
 use crate::claim::claim::Claim;
 use crate::claim::notion::claim;
 use crate::claim::remote::PointServer;
+use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
-use crate::found::{Found, SearchSummary};
-use crate::hulls::Hulls;
+use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::{Calibration, calibrate};
 use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
 use crate::nominal::input_error::InputError;
-use crate::optimality::LARGEST_GAP;
 use crate::plausibility::{NominalFit, Usefulness, Warning, warnings};
 use crate::progress::Progress;
+use crate::search::found::{Found, SearchSummary};
+use crate::search::optimality::LARGEST_GAP;
 use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
-use crate::verdict::Verdict;
-use crate::witness::Witness;
+use crate::tube::hulls::Hulls;
+use crate::tube::witness::Witness;
 
 /// The result of [`conform`].
 #[derive(Debug)]

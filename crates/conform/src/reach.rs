@@ -8,12 +8,12 @@ use reachtube_scalar::rounding::{add_down, add_up};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
-use crate::deviation::Nominal;
 use crate::error::Result;
-use crate::grids::Grid;
-use crate::hulls::{HullKind, Hulls, Lost};
 use crate::nominal::simulate::nominal;
 use crate::sets::UncertaintySets;
+use crate::tube::deviation::Nominal;
+use crate::tube::grids::Grid;
+use crate::tube::hulls::{HullKind, Hulls, Lost};
 
 /// The reachable set over one suite, or over one run that has its own nominal solution.
 #[derive(Debug, Clone)]

@@ -1,4 +1,4 @@
-use reachtube_conform::FrontEnd;
+use reachtube_conform::result::FrontEnd;
 use thiserror::Error;
 
 /// Why a job could not be done. A model that is not conformant is no error but a value, as in

@@ -1,6 +1,8 @@
 //! Assembly of a page from a model and recordings.
 
-use reachtube_conform::{Code, Equations, Finding, Model, States};
+use reachtube_conform::result::Code;
+use reachtube_conform::settings::{Equations, States};
+use reachtube_conform::{Finding, Model};
 use reachtube_reach::Hyperrectangle;
 
 use crate::cost::{cost_charts, cost_tables};

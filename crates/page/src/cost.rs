@@ -1,6 +1,7 @@
 //! What the cost of the sets comes from: joints, runs and motions.
 
-use reachtube_conform::{Model, Weights};
+use reachtube_conform::Model;
+use reachtube_conform::settings::Weights;
 
 use crate::chart::{Chart, Series};
 use crate::suite_figure::{Band, Nominal, RunTrace, SuiteFigure};
@@ -158,7 +159,7 @@ fn by_motion(model: &Model) -> TextTable {
     let mut motions: Vec<_> =
         model.left_out.iter().filter_map(|left| Some((left, left.cost?))).collect();
     motions.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let row = |(left, without): &(&reachtube_conform::LeftOut, f64)| {
+    let row = |(left, without): &(&reachtube_conform::next_motion::LeftOut, f64)| {
         vec![
             left.motion.clone(),
             four_decimals(*without),

@@ -4,7 +4,7 @@ use super::decimate::Point;
 use super::packed::{self, Packed};
 use super::panel::relative;
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot, View};
-use reachtube_conform::Side;
+use reachtube_conform::data::Side;
 use serde::Serialize;
 
 /// Number of columns of a band where not all runs are drawn; a panel has about twice the pixels.

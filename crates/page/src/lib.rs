@@ -48,7 +48,7 @@ pub use identified::write_identified_html;
 pub use identified_charts::{load_chart, viscous_chart};
 pub use library::{Assets, LIBRARY_FILE, write_library};
 pub use page::{Bounds, JointSets, Page, SetsTable, Verdict};
-pub use reachtube_conform::Side;
+pub use reachtube_conform::data::Side;
 pub use skeleton::{document, long_table, section};
 pub use sources::Sources;
 pub use suite_figure::{Band, Nominal, RunGauge, RunTrace, SuiteFigure, TightSpot, View};

@@ -1,6 +1,8 @@
 //! Tables of a nominal model that was fitted, and facts about calibrated sets.
 
-use reachtube_conform::{Code, Finding, FitRecord, FittedParameter, Model};
+use reachtube_conform::fit::{FitRecord, FittedParameter};
+use reachtube_conform::result::Code;
+use reachtube_conform::{Finding, Model};
 
 use crate::text_table::TextTable;
 use reachtube_scalar::number::four_decimals;

@@ -1,6 +1,7 @@
 //! Phase planes: the reachable set in position and velocity of one joint.
 
-use reachtube_conform::{Model, PhasePlane, Problem};
+use reachtube_conform::claim::PhasePlane;
+use reachtube_conform::{Model, Problem};
 use reachtube_robot::JointKind;
 
 use super::chart::{Chart, Series};

@@ -4,7 +4,7 @@ use super::chart::{Chart, Series};
 use super::page::{JointSets, Page, SetsTable, Verdict};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 use super::text_table::TextTable;
-use reachtube_conform::Side;
+use reachtube_conform::data::Side;
 use reachtube_robot::JointKind;
 
 /// Returns a suite of sine motions with three runs, two bands, and two tight spots.

@@ -1,6 +1,7 @@
 //! What a page is made from.
 
-use reachtube_conform::{Check, FrontEnd, Model, Problem, SuiteReach};
+use reachtube_conform::result::FrontEnd;
+use reachtube_conform::{Check, Model, Problem, SuiteReach};
 
 /// The sources of a page.
 #[derive(Debug, Clone, Copy)]

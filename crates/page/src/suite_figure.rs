@@ -1,6 +1,6 @@
 //! The contents of a figure: one test suite with its reachable set, its runs, and its tight spots.
 
-use reachtube_conform::Side;
+use reachtube_conform::data::Side;
 use reachtube_robot::JointKind;
 
 /// One test suite: the reachable set, its runs, and the samples that touch the set.

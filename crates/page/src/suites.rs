@@ -1,6 +1,8 @@
 //! Assembly of the figures of the suites.
 
-use reachtube_conform::{Problem, Suite, SuiteReach, Witness};
+use reachtube_conform::data::Suite;
+use reachtube_conform::tube::Witness;
+use reachtube_conform::{Problem, SuiteReach};
 
 use crate::error::Error;
 use crate::error::Result;

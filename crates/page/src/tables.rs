@@ -6,7 +6,7 @@ use super::suite_figure::{SuiteFigure, TightSpot};
 use super::text::Text;
 use super::text_table::TextTable;
 use maud::{Markup, PreEscaped, html};
-use reachtube_conform::Side;
+use reachtube_conform::data::Side;
 use reachtube_robot::JointKind;
 use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::{column_decimals, outward, significant};

@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
-use reachtube_conform::{Answer, Equations, FitSettings, NominalStart};
+use reachtube_conform::settings::{Equations, NominalStart};
+use reachtube_conform::{Answer, FitSettings};
 use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;

@@ -1,7 +1,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use reachtube_conform::{Equations, Group};
+use reachtube_conform::Group;
+use reachtube_conform::settings::Equations;
 use reachtube_recordings::Torque;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

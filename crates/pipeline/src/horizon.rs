@@ -1,4 +1,4 @@
-use reachtube_conform::JointWidth;
+use reachtube_conform::plausibility::JointWidth;
 use serde::Serialize;
 
 use crate::error::{Error, Result};

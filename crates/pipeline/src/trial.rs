@@ -1,9 +1,8 @@
 //! A conformance over windows, as every step of the pipeline asks for it.
 
 use reachtube_abstraction::ExpansionPoint;
-use reachtube_conform::{
-    Answer, Equations, FitSettings, Job, Noise, NominalStart, Settings, Silent,
-};
+use reachtube_conform::settings::{Equations, NominalStart};
+use reachtube_conform::{Answer, FitSettings, Job, Noise, Settings, Silent};
 use reachtube_recordings::{MemoryRuns, Torque};
 use reachtube_robot::Robot;
 

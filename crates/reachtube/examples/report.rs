@@ -1,6 +1,6 @@
 //! The report page of a virtual arm, written to the folder `reachtube-report`.
 
-use reachtube::conform::FrontEnd;
+use reachtube::conform::result::FrontEnd;
 use reachtube::demo::{DemoOptions, record};
 use reachtube::page::{Assets, Sources, page, write_html};
 use reachtube::{

@@ -6,10 +6,10 @@ pub mod prelude;
 pub use reachtube_abstraction::{
     self as abstraction, Abstraction, ExpansionPoint, ModelKind, OperatingBox, PolynomialModel,
 };
+pub use reachtube_conform::tube::{Enclosure, Witness};
 pub use reachtube_conform::{
-    self as conform, Check, Conformance, Dynamics, Enclosure, Hulls, Keep, Model, Problem,
-    Progress, Settings, Setup, Silent, SuiteReach, UncertaintySets, Verdict, Witness, check,
-    conform, explain, reach,
+    self as conform, Check, Conformance, Dynamics, Hulls, Keep, Model, Problem, Progress, Settings,
+    Setup, Silent, SuiteReach, UncertaintySets, Verdict, check, conform, explain, reach,
 };
 #[cfg(feature = "report")]
 pub use reachtube_experiment::{Error, Result, campaign, demo, reproduce, virtual_robot};

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::Model;
-use reachtube::conform::{
-    Answer, Check, FitSettings, FrontEnd, Group, Job, Keep, Settings, Setup, conform,
-};
+use reachtube::conform::result::FrontEnd;
+use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::Silent;
-use reachtube::conform::{Answer, Code, FrontEnd, JointWidth, Keep, Opened};
+use reachtube::conform::plausibility::JointWidth;
+use reachtube::conform::result::{Code, FrontEnd};
+use reachtube::conform::{Answer, Keep, Opened};
 use reachtube::number::significant;
 use reachtube::page::{Assets, Sources};
 use reachtube::pipeline::{Built, Choice, Choices, HeldOut, build};

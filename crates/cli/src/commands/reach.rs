@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::conform::{Finding, FrontEnd, Keep, SuiteReach};
+use reachtube::conform::result::FrontEnd;
+use reachtube::conform::{Finding, Keep, SuiteReach};
 use reachtube::page::{Sources, page};
 use reachtube::write;
 use serde_json::json;

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use reachtube::conform::{FrontEnd, Keep};
+use reachtube::conform::Keep;
+use reachtube::conform::result::FrontEnd;
 use reachtube::page::{Assets, Sources};
 use serde_json::json;
 

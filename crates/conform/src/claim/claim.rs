@@ -2,9 +2,9 @@
 
 use crate::claim::look::Look;
 use crate::error::{Error, Result};
-use crate::hulls::Hulls;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
+use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
 

@@ -14,4 +14,10 @@ mod sample_points;
 mod sample_set;
 pub(crate) mod touching;
 mod traces;
+pub(crate) mod verdict;
 pub(crate) mod witness;
+
+pub use certificate::Certificate;
+pub use phase_plane::PhasePlane;
+pub use verdict::{SuiteVerdict, Violations};
+pub use witness::{PointVerdict, PointWitness};

@@ -16,8 +16,8 @@ use crate::data::fold::of_fold::OnDefect;
 use crate::data::problem::Problem;
 use crate::data::setup::Setup;
 use crate::data::tree::{Leaf, Tree};
-use crate::deviation::Nominal;
 use crate::error::{Error, Result};
+use crate::tube::deviation::Nominal;
 use crate::tube::linear::Linear;
 
 /// What every part of a fleet needs to find its points: the problem of the whole fold, and the

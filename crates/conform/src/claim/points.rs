@@ -10,8 +10,8 @@ use crate::claim::sample_set::{CentredPoints, OUTSIDE, SampleSet};
 use crate::data::problem::Problem;
 use crate::data::settings::{Noise, Settings};
 use crate::error::Result;
-use crate::hulls::Hulls;
 use crate::sets::UncertaintySets;
+use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At, Judged, PointOutside};
 use crate::tube::plant::{Plant, Slice};
 

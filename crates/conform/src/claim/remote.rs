@@ -8,8 +8,8 @@ use crate::claim::claim::{Claim, other_answer};
 use crate::claim::look::{Answer, Look, Question};
 use crate::data::tree::Tree;
 use crate::error::{Error, Result};
-use crate::hulls::Hulls;
 use crate::sets::UncertaintySets;
+use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
 

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
-use crate::deviation::Nominal;
 use crate::error::Result;
+use crate::tube::deviation::Nominal;
 use crate::tube::judged::At;
 
 /// The points of runs at one sample of one strand: a grid of a linear model, a case of any other.

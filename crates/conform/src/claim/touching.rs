@@ -5,12 +5,12 @@ use std::collections::HashSet;
 use crate::claim::witness::{PointWitness, SeparatedPoint};
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::found::TOUCHING;
-use crate::hulls::Hulls;
 use crate::linear::program::Program;
+use crate::search::found::TOUCHING;
 use crate::tube::direction::Direction;
+use crate::tube::hulls::Hulls;
 use crate::tube::plant::Plant;
-use crate::witness::Witness;
+use crate::tube::witness::Witness;
 
 /// Returns the points that touch what the program's sets reach in the direction of one of its cuts,
 /// the closest first, each once, under the state that counts most in the direction.

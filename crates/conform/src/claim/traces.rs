@@ -6,9 +6,9 @@ use crate::claim::points::Points;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::explain::trace::{TraceFactor, trace_factors};
-use crate::hulls::Hulls;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
+use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
 

@@ -9,9 +9,9 @@ use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::data::side::Side;
 use crate::error::{Error, Result};
-use crate::hulls::Hulls;
+use crate::tube::hulls::Hulls;
 use crate::tube::judged::{At, Judged, PointOutside};
-use crate::witness::Witness;
+use crate::tube::witness::Witness;
 
 /// A state is named in a combination when its part is at least this of the largest.
 const NAMED: f64 = 0.1;

@@ -15,10 +15,10 @@ use crate::data::sensor_noise::SensorNoise;
 use crate::data::settings::Settings;
 use crate::data::setup::{Setup, read_options, side};
 use crate::data::suite::SuiteReader;
-use crate::deviation::Deviation;
 use crate::error::{Error, Result};
-use crate::grids::Grids;
 use crate::progress::Progress;
+use crate::tube::deviation::Deviation;
+use crate::tube::grids::Grids;
 
 /// Which runs stay in memory, sample by sample, after they were folded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,3 +1,5 @@
+//! The settings of a conformance.
+
 use std::ops::RangeInclusive;
 
 use reachtube_abstraction::{

@@ -9,4 +9,5 @@ mod steps;
 mod tests;
 pub(crate) mod trace;
 
-pub use explanation::{Explanation, explain};
+pub use explanation::Explanation;
+pub use trace::TraceVerdict;

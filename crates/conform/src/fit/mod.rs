@@ -19,3 +19,6 @@ pub(crate) mod record;
 pub(crate) mod search;
 pub(crate) mod slopes;
 pub(crate) mod step;
+
+pub use fit::Fitted;
+pub use record::{FitRecord, FittedParameter, GroupCost, PullCost, TorquePrediction, UnseenMotion};

@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
-use crate::deviation::Deviation;
-use crate::grids::Grid;
+use crate::tube::deviation::Deviation;
+use crate::tube::grids::Grid;
 
 /// The rows of one sample grid of one linear system, ready to be evaluated at the speed of memory.
 #[derive(Debug, Clone)]

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
-use crate::deviation::Deviation;
 use crate::linear::program::{Program, RowIndex, dot};
-use crate::rows::NEGLIGIBLE_RADIUS;
 use crate::sets::UncertaintySets;
+use crate::tube::deviation::Deviation;
+use crate::tube::rows::NEGLIGIBLE_RADIUS;
 
 impl Program<'_> {
     /// Returns the program with other deviations on each of its blocks: the cost is the same.

@@ -22,7 +22,7 @@ use crate::linear::costs::{cost, shares};
 use crate::linear::cut::Cut;
 use crate::linear::layout::{Layout, Limits};
 use crate::linear::solver::{FINE, Triplets, polished, solve_cone};
-use crate::optimality::optimality_gap;
+use crate::search::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
 
 /// A row counts as violated beyond this part of its own size.

@@ -14,7 +14,7 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::any_run::AnyRun;
+use crate::claim::verdict::Verdict;
 use crate::conformance::Conformance;
 use crate::data::correction::InputCorrection;
 use crate::data::problem::Problem;
@@ -24,17 +24,17 @@ use crate::data::settings::Settings;
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::record::FitRecord;
-use crate::found::SearchSummary;
 use crate::model::records::{DataRecord, Explained};
+use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::Calibration;
 use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
 use crate::plausibility::{Usefulness, Warning};
+use crate::search::found::SearchSummary;
 use crate::sets::UncertaintySets;
-use crate::verdict::Verdict;
-use crate::witness::Witness;
+use crate::tube::witness::Witness;
 
 /// What the field `format` of every model file says.
 pub(crate) const FORMAT: &str = "reachtube-model";

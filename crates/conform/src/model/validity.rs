@@ -5,12 +5,12 @@ use reachtube_abstraction::{PolynomialModel, Records};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_robot::Robot;
 
+use crate::claim::verdict::SuiteVerdict;
 use crate::data::dynamics::Dynamics;
 use crate::data::settings::Settings;
 use crate::data::setup::Setup;
 use crate::model::file::Model;
 use crate::model::records::SuiteRecord;
-use crate::verdict::SuiteVerdict;
 
 /// Relative difference up to which numbers that were computed twice count as the same.
 const SAME: f64 = 1e-9;

@@ -10,16 +10,16 @@ use crate::claim::notion::plant;
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
-use crate::flowpipes::Effort;
-use crate::found::{Deciding, Found};
-use crate::hulls::Hulls;
 use crate::linear::program::{Program, TIGHT};
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, STEP, outer_gauge};
 use crate::progress::Progress;
+use crate::search::found::{Deciding, Found};
 use crate::search::prove::prove;
 use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
+use crate::tube::flowpipes::Effort;
+use crate::tube::hulls::Hulls;
 use crate::tube::plant::Costs;
 
 /// Sets that were found on some motions and then scaled so that they enclose the others, which were

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::data::suite::Suite;
-use crate::deviation::Deviation;
 use crate::error::Result;
 use crate::linear::program::Program;
-use crate::witness::Witness;
+use crate::tube::deviation::Deviation;
+use crate::tube::witness::Witness;
 
 /// Number of runs that are named.
 const MOST_NAMED: usize = 10;

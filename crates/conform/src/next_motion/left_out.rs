@@ -3,13 +3,13 @@ use rayon::prelude::*;
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
 use crate::error::Result;
-use crate::flowpipes::{Effort, rows_outside};
 use crate::linear::program::Program;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, outer_gauge};
 use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
+use crate::tube::flowpipes::{Effort, rows_outside};
 
 /// Number of motions at most for which the program is solved again.
 const MOST_PROGRAMS: usize = 60;

@@ -1,9 +1,11 @@
 //! Statements about motions that were not recorded: bounds, calibration by held-out motions, and
 //! descriptions of how far the sets depend on single motions and runs.
 
+pub(crate) mod any_run;
 pub(crate) mod bounds;
 pub(crate) mod calibration;
 pub(crate) mod deciding_runs;
+pub(crate) mod growth;
 pub(crate) mod left_out;
 pub(crate) mod motions;
 mod outer_gauge;
@@ -11,3 +13,12 @@ pub(crate) mod rates;
 pub(crate) mod trends;
 pub(crate) mod trust;
 pub(crate) mod without_motion;
+
+pub use any_run::AnyRun;
+pub use calibration::{Calibration, Gauge};
+pub use deciding_runs::{DecidingRun, DecidingRuns};
+pub use growth::Growth;
+pub use rates::{Rate, Rates};
+pub use trends::Trend;
+pub use trust::{CONFIDENCE, Trust};
+pub use without_motion::LeftOut;

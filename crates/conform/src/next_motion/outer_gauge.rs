@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::flowpipes::{Effort, Enclosed, enclosed};
 use crate::sets::UncertaintySets;
+use crate::tube::flowpipes::{Effort, Enclosed, enclosed};
 
 /// Ratio of the factors that are tried for a model that is not linear.
 pub(super) const STEP: f64 = 1.01;

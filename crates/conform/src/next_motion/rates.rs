@@ -2,10 +2,10 @@ use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde::Serialize;
 
+use crate::claim::verdict::Verdict;
 use crate::data::recordings::Recordings;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::trust::CONFIDENCE;
-use crate::verdict::Verdict;
 
 /// Number of times that the motions are drawn anew.
 const RESAMPLES: usize = 10_000;

@@ -5,13 +5,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::claim::verdict::Verdict;
 use crate::data::recordings::Recordings;
 use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::motions::Motions;
-use crate::rows::NEGLIGIBLE_RADIUS;
-use crate::verdict::Verdict;
-use crate::witness::Witness;
+use crate::tube::rows::NEGLIGIBLE_RADIUS;
+use crate::tube::witness::Witness;
 
 /// Confidence of the bounds that are reported.
 pub const CONFIDENCE: f64 = 0.95;

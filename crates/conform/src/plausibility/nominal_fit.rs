@@ -1,8 +1,8 @@
 use crate::data::case::Case;
 use crate::data::problem::Problem;
-use crate::deviation::Nominal;
 use crate::error::Result;
 use crate::nominal::simulate::nominal;
+use crate::tube::deviation::Nominal;
 
 /// How well the nominal solutions alone reproduce the recordings, and how far these move.
 #[derive(Debug, Clone)]

@@ -3,9 +3,9 @@ use serde::{Deserialize, Serialize};
 use crate::data::problem::Problem;
 use crate::data::suite::Suite;
 use crate::error::Result;
-use crate::hulls::Hulls;
 use crate::plausibility::nominal_fit::NominalFit;
 use crate::sets::UncertaintySets;
+use crate::tube::hulls::Hulls;
 
 /// The part of a joint's range over all recordings that counts as its motion within one recording
 /// at least, so that a joint that rests there decides nothing.

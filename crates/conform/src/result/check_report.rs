@@ -3,11 +3,11 @@
 use reachtube_robot::JointKind;
 
 use crate::check::Check;
+use crate::claim::verdict::SuiteVerdict;
 use crate::result::code::Code;
 use crate::result::finding::Finding;
 use crate::result::report::{Report, Section};
 use crate::result::table::Table;
-use crate::verdict::SuiteVerdict;
 
 impl Check {
     /// Returns the answer for people, with one row for each suite; `kinds` belong to the joints.

@@ -11,3 +11,11 @@ mod model_report;
 pub(crate) mod remedy;
 pub(crate) mod report;
 pub(crate) mod table;
+
+pub use crate::advice::Advice;
+pub use code::Code;
+pub use finding::Severity;
+pub use front_end::{FrontEnd, Setting};
+pub use remedy::Remedy;
+pub use report::{Report, Section};
+pub use table::Table;

@@ -13,7 +13,7 @@ use crate::result::finding::Finding;
 use crate::result::fit_report::fit;
 use crate::result::report::{Report, Section};
 use crate::result::table::Table;
-use crate::witness::Witness;
+use crate::tube::witness::Witness;
 
 /// Largest number of touching values in the table.
 const MOST_PLACES: usize = 6;

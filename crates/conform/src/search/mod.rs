@@ -2,8 +2,12 @@
 //! as a baseline.
 
 mod bisection;
+pub(crate) mod found;
 mod journal;
+pub(crate) mod optimality;
 pub(crate) mod prove;
 #[expect(clippy::module_inception, reason = "the folder and its main function share the noun")]
 mod search;
 pub(crate) mod smallest_sets;
+
+pub use found::SearchSummary;

@@ -4,8 +4,8 @@ use crate::claim::claim::Claim;
 use crate::claim::look::Look;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::hulls::Hulls;
 use crate::sets::UncertaintySets;
+use crate::tube::hulls::Hulls;
 use crate::tube::judged::At;
 use crate::tube::plant::Plant;
 

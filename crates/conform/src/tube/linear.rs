@@ -9,12 +9,12 @@ use reachtube_scalar::Interval;
 
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::grids::Grid;
-use crate::hulls::{HullKind, Hulls};
 use crate::linear::cut::Cut;
 use crate::linear::program::Program;
 use crate::sets::UncertaintySets;
 use crate::tube::direction::Direction;
+use crate::tube::grids::Grid;
+use crate::tube::hulls::{HullKind, Hulls};
 use crate::tube::judged::{At, Judged};
 use crate::tube::plant::{Costs, Plant, Round, Slice, Watch};
 use crate::tube::state::SearchState;

@@ -3,9 +3,9 @@
 use reachtube_reach::GeneratorRows;
 
 use crate::error::Result;
-use crate::hulls::Hulls;
 use crate::linear::program::{Program, RowIndex};
 use crate::sets::UncertaintySets;
+use crate::tube::hulls::Hulls;
 use crate::tube::judged::{At, Judged};
 use crate::tube::state::SearchState;
 

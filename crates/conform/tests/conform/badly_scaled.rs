@@ -3,7 +3,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::common::{Random, grid};
-use reachtube_conform::{Keep, Noise, NominalStart, Problem, Settings, Setup, Silent, conform};
+use reachtube_conform::settings::NominalStart;
+use reachtube_conform::{Keep, Noise, Problem, Settings, Setup, Silent, conform};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
 

@@ -3,9 +3,12 @@
 use crate::common::{Random, conform_all, grid, read, shared, step, two_joints};
 use nalgebra::DVector;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, OperatingBox, linear_model};
+use reachtube_conform::fit::{FitRecord, Fitted};
+use reachtube_conform::fleet::{Fold, OnDefect};
+use reachtube_conform::plausibility::WarningKind;
+use reachtube_conform::settings::{Centre, NominalStart};
 use reachtube_conform::{
-    Centre, FitRecord, FitSettings, Fitted, Fold, Group, Hulls, Keep, Model, NominalStart,
-    OnDefect, Problem, Settings, Setup, Silent, WarningKind, check, fit,
+    FitSettings, Group, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, fit,
 };
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, RunSource, Torque};

@@ -4,9 +4,11 @@
 use crate::common::{Disturbed, Random, grid, two_joints};
 use proptest::prelude::*;
 use reachtube_abstraction::{Abstraction, ModelKind, OperatingBox};
+use reachtube_conform::fleet::{Fold, OnDefect};
+use reachtube_conform::result::FrontEnd;
+use reachtube_conform::settings::{NominalStart, Tolerance};
 use reachtube_conform::{
-    Error, Fold, FrontEnd, Hulls, Keep, Model, NominalStart, OnDefect, Problem, Settings, Setup,
-    Silent, Tolerance, check, conform,
+    Error, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;

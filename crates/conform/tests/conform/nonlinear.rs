@@ -9,9 +9,12 @@ use crate::common::{
     self, Random, Recorded, bent, check_against, conform_all, grid, read, read_with, write_data_set,
 };
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
+use reachtube_conform::result::FrontEnd;
+use reachtube_conform::settings::Method;
+use reachtube_conform::tube::Enclosure;
 use reachtube_conform::{
-    Conformance, Dynamics, Enclosure, FrontEnd, Hulls, Method, Model, Notion, Progress, Settings,
-    Setup, Silent, UncertaintySets, Verdict, check, conform,
+    Conformance, Dynamics, Hulls, Model, Notion, Progress, Settings, Setup, Silent,
+    UncertaintySets, Verdict, check, conform,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};

@@ -8,9 +8,12 @@ use crate::common::{
 use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome, Variable};
 use nalgebra::{DMatrix, DVector};
 use reachtube_abstraction::{ExpansionPoint, linear_model};
+use reachtube_conform::claim::Certificate;
+use reachtube_conform::plausibility::WarningKind;
+use reachtube_conform::settings::{Centre, InitialLimit, States};
 use reachtube_conform::{
-    Centre, Certificate, Conformance, Error, Hulls, InitialLimit, Keep, Model, Notion, Problem,
-    Settings, Setup, Silent, States, WarningKind, check, conform,
+    Conformance, Error, Hulls, Keep, Model, Notion, Problem, Settings, Setup, Silent, check,
+    conform,
 };
 use reachtube_reach::{Disturbance, LinearSystem};
 use reachtube_recordings::{DataSet, Torque};
@@ -175,7 +178,7 @@ fn deviations(problem: &Problem) -> Vec<Vec<DVector<f64>>> {
     for suite in &problem.recordings().suites {
         let case =
             problem.cases().unwrap().iter().find(|case| case.name.ends_with(&suite.entry.name));
-        let nominal = reachtube_conform::Nominal::new(grids, case.unwrap());
+        let nominal = reachtube_conform::tube::Nominal::new(grids, case.unwrap());
         for summary in &suite.runs {
             let run = problem.run(summary.index).unwrap();
             let at = |k: usize| {

@@ -6,10 +6,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::common::{Disturbed, Random, grid, two_joints};
 use reachtube_abstraction::{Abstraction, ModelKind};
+use reachtube_conform::fleet::{
+    FleetProblem, Fold, OnDefect, PartPoints, PartReader, PointServer, check_elsewhere,
+    conform_elsewhere,
+};
 use reachtube_conform::{
-    Conformance, Error, FitSettings, FleetProblem, Fold, Group, Hulls, Keep, Model, Noise, Notion,
-    OnDefect, PartPoints, PartReader, PointServer, Problem, Settings, Setup, Silent, check,
-    check_elsewhere, conform, conform_elsewhere, fit,
+    Conformance, Error, FitSettings, Group, Hulls, Keep, Model, Noise, Notion, Problem, Settings,
+    Setup, Silent, check, conform, fit,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunSource, Torque};
 

@@ -1,9 +1,10 @@
 //! Recordings that were read in a wrong way give an answer, and the answer says what is wrong.
 
 use crate::common::{Random, grid};
+use reachtube_conform::plausibility::{Warning, WarningKind};
+use reachtube_conform::settings::{Equations, Method, NominalStart};
 use reachtube_conform::{
-    Conformance, Equations, Finding, Keep, Method, Model, Noise, NominalStart, Problem, Settings,
-    Setup, Silent, Warning, WarningKind, conform,
+    Conformance, Finding, Keep, Model, Noise, Problem, Settings, Setup, Silent, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;

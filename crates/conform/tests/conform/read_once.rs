@@ -5,9 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::common::{Disturbed, Random, grid, two_joints};
-use reachtube_conform::{
-    Check, Keep, Model, NominalStart, Problem, Settings, Setup, Silent, Tolerance, conform, reach,
-};
+use reachtube_conform::settings::{NominalStart, Tolerance};
+use reachtube_conform::{Check, Keep, Model, Problem, Settings, Setup, Silent, conform, reach};
 use reachtube_recordings::{Defect, MemoryRuns, ReadOptions, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
 

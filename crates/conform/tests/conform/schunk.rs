@@ -5,7 +5,9 @@ use std::path::Path;
 
 use crate::common::{self, check_against, conform_all, read};
 use nalgebra::{DMatrix, DVector};
-use reachtube_conform::{Centre, Conformance, Dynamics, Model, Problem, Settings, States, Trend};
+use reachtube_conform::next_motion::Trend;
+use reachtube_conform::settings::{Centre, States};
+use reachtube_conform::{Conformance, Dynamics, Model, Problem, Settings};
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;

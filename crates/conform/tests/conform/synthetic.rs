@@ -9,10 +9,8 @@ use crate::common::{
 use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome};
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
-use reachtube_conform::{
-    Centre, Conformance, Model, Noise, NominalStart, Problem, Settings, UncertaintySets, Weights,
-    explain,
-};
+use reachtube_conform::settings::{Centre, NominalStart, Weights};
+use reachtube_conform::{Conformance, Model, Noise, Problem, Settings, UncertaintySets, explain};
 use reachtube_reach::{
     Disturbance, Hyperrectangle, IntervalMatrix, LinearSystem, Propagation, TimeGrid,
 };

@@ -7,9 +7,10 @@ use crate::common::{
     write_data_set,
 };
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
+use reachtube_conform::result::FrontEnd;
 use reachtube_conform::{
-    Error, FrontEnd, Hulls, Keep, Model, Noise, Notion, Problem, Settings, Setup, Silent,
-    UncertaintySets, Verdict,
+    Error, Hulls, Keep, Model, Noise, Notion, Problem, Settings, Setup, Silent, UncertaintySets,
+    Verdict,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};

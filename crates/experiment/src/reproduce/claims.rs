@@ -1,7 +1,8 @@
 //! What the paper says of its experiment, laid beside what came out here.
 
 use reachtube_abstraction::ModelKind;
-use reachtube_conform::{Notion, States};
+use reachtube_conform::Notion;
+use reachtube_conform::settings::States;
 use serde::Serialize;
 
 use super::coverage::{Coverage, CoverageRow};

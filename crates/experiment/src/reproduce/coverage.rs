@@ -4,8 +4,9 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use rayon::prelude::*;
+use reachtube_conform::next_motion::CONFIDENCE;
 use reachtube_conform::{
-    CONFIDENCE, Check, Hulls, Keep, Model, Problem, Settings, Setup, Silent, Verdict, conform,
+    Check, Hulls, Keep, Model, Problem, Settings, Setup, Silent, Verdict, conform,
 };
 use reachtube_recordings::{MemoryRuns, Torque};
 use reachtube_robot::Robot;

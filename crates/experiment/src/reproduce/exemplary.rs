@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use reachtube_conform::next_motion::Trend;
+use reachtube_conform::result::FrontEnd;
+use reachtube_conform::settings::States;
 use reachtube_conform::{
-    Check, Conformance, FrontEnd, Hulls, Keep, Model, Problem, Progress, Setup, Silent, States,
-    Trend, Verdict, reach,
+    Check, Conformance, Hulls, Keep, Model, Problem, Progress, Setup, Silent, Verdict, reach,
 };
 use reachtube_recordings::DataSet;
 
@@ -124,7 +126,7 @@ const LEAST_SPREAD: f64 = 0.01;
 /// the joints, among suites with two samples or more.
 fn furthest_apart(problem: &Problem) -> Option<String> {
     let suites = problem.recordings().suites.iter().filter(|suite| suite.envelope.len() > 1);
-    let spread = |suite: &reachtube_conform::Suite| {
+    let spread = |suite: &reachtube_conform::data::Suite| {
         let last = suite.envelope.len() - 1;
         let width = |i: usize| suite.envelope.upper(last, i) - suite.envelope.lower(last, i);
         (0..problem.joints()).map(|i| (width(i) + LEAST_SPREAD).ln()).sum::<f64>()

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use reachtube_conform::settings::{Centre, InitialLimit, States};
 use reachtube_conform::{
-    Centre, Conformance, InitialLimit, Keep, Notion, Problem, Progress, Settings, Setup, States,
-    UncertaintySets, conform,
+    Conformance, Keep, Notion, Problem, Progress, Settings, Setup, UncertaintySets, conform,
 };
 use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::{DataSet, Torque};

@@ -1,6 +1,7 @@
 //! What is exported: a model over one recorded input, with its sets and our bounds.
 
-use reachtube_conform::{Case, Hulls, Problem, SuiteReach, UncertaintySets, reach};
+use reachtube_conform::data::Case;
+use reachtube_conform::{Hulls, Problem, SuiteReach, UncertaintySets, reach};
 use reachtube_reach::{Disturbance, Hyperrectangle, TimeGrid};
 use reachtube_scalar::Interval;
 

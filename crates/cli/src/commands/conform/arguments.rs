@@ -2,9 +2,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use reachtube::abstraction::ModelKind;
-use reachtube::conform::{
-    Centre, Equations, Group, InitialLimit, Method, NominalStart, Notion, States,
-};
+use reachtube::conform::settings::{Centre, Equations, InitialLimit, Method, NominalStart, States};
+use reachtube::conform::{Group, Notion};
 use reachtube_reach::Disturbance;
 
 use crate::data_arguments::DataArguments;

@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
-use reachtube::conform::{Answer, FitSettings, FrontEnd, Job};
+use reachtube::conform::result::FrontEnd;
+use reachtube::conform::{Answer, FitSettings, Job};
 use reachtube::page::{Assets, Sources};
 use reachtube::recordings::DataSet;
 use reachtube::write;

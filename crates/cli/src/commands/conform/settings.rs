@@ -1,7 +1,8 @@
 //! The settings of `conform` from its arguments.
 
 use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
-use reachtube::conform::{Basis, Noise, Settings, Tolerance, Weights};
+use reachtube::conform::settings::{Tolerance, Weights};
+use reachtube::conform::{Basis, Noise, Settings};
 
 use super::arguments::Arguments;
 use crate::data_arguments::gap_limit;

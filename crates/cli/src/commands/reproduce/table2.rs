@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::conform::{InitialLimit, Notion};
+use reachtube::conform::Notion;
+use reachtube::conform::settings::InitialLimit;
 use reachtube::reach::Disturbance;
 use reachtube::reproduce::{Table2, Table2Options, table2};
 

@@ -3,7 +3,7 @@
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::at_least;
 
-use crate::growth::Growth;
+use crate::next_motion::growth::Growth;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 

@@ -2,8 +2,8 @@
 
 use reachtube_scalar::number::four_decimals;
 
-use crate::any_run::AnyRun;
 use crate::fit::record::{FitRecord, FittedParameter, MOST_ERRORS};
+use crate::next_motion::any_run::AnyRun;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::counted;

@@ -1,11 +1,11 @@
 //! What an answer does not say: how far a proof reaches, and what must not be concluded.
 
+use crate::claim::verdict::Verdict;
 use crate::data::settings::{Notion, States};
-use crate::hulls::Enclosure;
 use crate::next_motion::trust::Trust;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::verdict::Verdict;
+use crate::tube::hulls::Enclosure;
 
 /// A bound above this probability is not useful.
 const USELESS: f64 = 0.5;

@@ -3,11 +3,11 @@
 use reachtube_robot::JointKind;
 
 use crate::data::settings::Tolerance;
-use crate::hulls::Enclosure;
 use crate::model::file::{MOST_TIGHT, Model};
 use crate::model::records::{Explained, Residual};
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
+use crate::tube::hulls::Enclosure;
 
 impl Finding {
     /// How many recorded values touch the reachable set.

@@ -4,18 +4,18 @@ use reachtube_reach::Disturbance;
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::{at_least, four_decimals};
 
+use crate::claim::verdict::Verdict;
 use crate::claim::witness::{PointVerdict, PointWitness};
 use crate::data::settings::Notion;
 use crate::explain::trace::TraceVerdict;
-use crate::found::SearchSummary;
-use crate::hulls::{Enclosure, Lost};
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::{counted, notion_words, plural};
 use crate::result::remedy::Remedy;
-use crate::verdict::Verdict;
-use crate::witness::Witness;
+use crate::search::found::SearchSummary;
+use crate::tube::hulls::{Enclosure, Lost};
+use crate::tube::witness::Witness;
 
 /// Returns the code and the severity of a verdict.
 fn outcome(is_conformant: bool) -> (Severity, Code) {

@@ -9,10 +9,10 @@ use crate::data::settings::{Settings, States};
 use crate::data::suite::Suite;
 use crate::error::Result;
 use crate::explain::trace::{TraceVerdict, trace_factors};
-use crate::hulls::{Enclosure, Hulls, Lost};
-use crate::rows::Row;
+use crate::tube::hulls::{Enclosure, Hulls, Lost};
 use crate::tube::judged::Judged;
-use crate::witness::Witness;
+use crate::tube::rows::Row;
+use crate::tube::witness::Witness;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
 /// the recordings of one suite at one time in one state (of one run, where it has a set of its

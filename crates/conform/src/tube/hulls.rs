@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::rows::{Hull, Row, rows};
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{At, Judged};
+use crate::tube::rows::{Hull, Row, rows};
 
 /// The reachable set that recordings are compared with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

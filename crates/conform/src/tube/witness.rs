@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
 use crate::data::side::Side;
-use crate::rows::{Edge, Row};
+use crate::tube::rows::{Edge, Row};
 
 /// A recorded value at the edge of the reachable set or beyond it, in the words of the recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

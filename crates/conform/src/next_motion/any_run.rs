@@ -2,13 +2,13 @@ use reachtube_scalar::ExactSum;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::notion::claim;
+use crate::claim::verdict::Verdict;
 use crate::data::condition::Condition;
 use crate::data::problem::Problem;
 use crate::data::setup::Setup;
 use crate::error::Result;
 use crate::search::smallest_sets::smallest_sets_alone;
 use crate::sets::UncertaintySets;
-use crate::verdict::Verdict;
 
 /// The smallest sets of a model whose friction depends on the run, that hold for every run: the
 /// nominal motion is taken in one condition in the middle.

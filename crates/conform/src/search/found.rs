@@ -3,10 +3,10 @@ use std::collections::HashSet;
 use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
-use crate::hulls::Hulls;
 use crate::next_motion::without_motion::LeftOut;
-use crate::rows::{Edge, Row};
-use crate::witness::Witness;
+use crate::tube::hulls::Hulls;
+use crate::tube::rows::{Edge, Row};
+use crate::tube::witness::Witness;
 
 /// Sets that were found for a problem, before the verdict.
 pub(crate) struct Found {

@@ -5,8 +5,8 @@ use reachtube_reach::{Flowpipe, FlowpipeSettings, PolynomialSystem, UncertainInp
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::rows::rows;
 use crate::sets::UncertaintySets;
+use crate::tube::rows::rows;
 
 /// Variables over whose vertices remainders are bounded, one number after the other while a set is
 /// lost: with 14 a step takes four times as long as with 8, with 18 a hundred times.

@@ -6,7 +6,7 @@ use reachtube_scalar::rounding::{sub_down, sub_up};
 
 use crate::data::case::Case;
 use crate::data::envelope::Envelope;
-use crate::grids::Grids;
+use crate::tube::grids::Grids;
 
 /// The envelope of the deviations of one suite on one grid.
 #[derive(Debug, Clone)]
