@@ -61,7 +61,7 @@ impl Answer {
     ///
     /// # Errors
     ///
-    /// As [`conform_elsewhere`](crate::conform_elsewhere).
+    /// As [`conform_elsewhere`](crate::fleet::conform_elsewhere).
     pub fn elsewhere(
         problem: Problem,
         server: &dyn PointServer,

@@ -83,9 +83,9 @@ pub struct Conformance {
 
 /// Finds the smallest uncertainty sets for which the problem's model is reachset conformant with
 /// its recordings, and proves the result with directed rounding. A linear model's sets solve one
-/// linear program; for others see [`Method`](crate::Method). A search for the sets of a model that
-/// is not linear keeps what is finished in the file `resume`, goes on from it, and removes it at
-/// the end.
+/// linear program; for others see [`Method`](crate::settings::Method). A search for the sets of a
+/// model that is not linear keeps what is finished in the file `resume`, goes on from it, and
+/// removes it at the end.
 ///
 /// # Guarantee
 ///

@@ -163,7 +163,8 @@ impl Error {
     /// # Examples
     ///
     /// ```
-    /// use reachtube_conform::{Error, FrontEnd};
+    /// use reachtube_conform::Error;
+    /// use reachtube_conform::result::FrontEnd;
     ///
     /// let written = Error::Equations.written_for(FrontEnd::Python);
     /// assert!(written.ends_with("(equations=\"model\")"));

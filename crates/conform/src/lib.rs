@@ -4,13 +4,13 @@
 //! A [`Problem`] is a model, [`Settings`] and recordings that are read once. [`conform`] finds its
 //! sets, [`Model`] writes them to a file, [`check()`] compares other recordings with the reachable
 //! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
-//! [`explain()`] searches for the motion of the model closest to each run. A [`Job`] runs all of it,
-//! as the command does.
+//! [`explain()`] searches for the motion of the model closest to each run. A [`Job`] runs all of
+//! it, as the command does.
 //!
 //! The parts of an answer are in the modules: findings and the report in [`result`], what a model
-//! file holds in [`model`], [`fit`] and [`next_motion`], warnings in [`plausibility`], reachable
-//! sets and what lies outside in [`tube`] and [`claim`]. [`fleet`] is for recordings that stay on
-//! several machines.
+//! file holds in [`model`], [`mod@fit`] and [`next_motion`], warnings in [`plausibility`],
+//! reachable sets and what lies outside in [`tube`] and [`claim`]. [`fleet`] is for recordings that
+//! stay on several machines.
 
 mod advice;
 mod answer;

@@ -37,8 +37,9 @@ type SuiteNominals = Vec<(Nominal, Option<usize>)>;
 /// with n joints. It goes between machines in bytes.
 ///
 /// The cutting planes of the notions phase-plane and exact, and the proof of every point, ask all
-/// parts in rounds ([`PointServer`](crate::PointServer)). Each answer is small, and the merged
-/// answer depends on the points alone: neither their grouping nor their order changes a bit of it.
+/// parts in rounds ([`PointServer`](crate::fleet::PointServer)). Each answer is small, and the
+/// merged answer depends on the points alone: neither their grouping nor their order changes a bit
+/// of it.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PartPoints {
     tree: Tree,

@@ -17,10 +17,10 @@ use crate::tube::plant::Plant;
 const VERSION: u32 = 2;
 
 /// The way to the points of a fold's recordings, which other processes have in parts
-/// ([`PartPoints`](crate::PartPoints)).
+/// ([`PartPoints`](crate::fleet::PartPoints)).
 pub trait PointServer: Debug + Send + Sync {
     /// Asks every part a question, and merges the answers
-    /// ([`PartPoints::merge`](crate::PartPoints::merge)) in any order.
+    /// ([`PartPoints::merge`](crate::fleet::PartPoints::merge)) in any order.
     ///
     /// # Errors
     ///

@@ -9,7 +9,7 @@ use crate::data::side::Side;
 /// # Examples
 ///
 /// ```
-/// use reachtube_conform::Envelope;
+/// use reachtube_conform::data::Envelope;
 ///
 /// let mut envelope = Envelope::new(1);
 /// envelope.include(7, &[1.0, 5.0]);

@@ -184,8 +184,8 @@ impl Problem {
     /// # Panics
     ///
     /// Where the source has no run `index`, or the fold that the problem was made of has not kept
-    /// its entry; it keeps the entries of the runs in [`Suite::runs`](crate::Suite::runs) and of
-    /// the runs that have a bound of an envelope.
+    /// its entry; it keeps the entries of the runs in [`Suite::runs`](crate::data::Suite::runs) and
+    /// of the runs that have a bound of an envelope.
     #[must_use]
     pub fn entry(&self, index: usize) -> &RunEntry {
         self.read.origin.entry(index)

@@ -3,10 +3,9 @@
 //!
 //! The paper identifies the model by least squares of torque, which predicts torque best, but is
 //! not what makes sets small. Here the cost of the program itself is minimised, by linear programs
-//! in the sets and the parameters together within a trust region ([`step`]); the cost of the
-//! program at the new parameters decides each step ([`search`]). A pull toward the identified
-//! values keeps the fit from covering only these motions; its weight is chosen by leaving one
-//! motion out ([`pull`]).
+//! in the sets and the parameters together within a trust region; the cost of the program at the
+//! new parameters decides each step. A pull toward the identified values keeps the fit from
+//! covering only these motions; its weight is chosen by leaving one motion out.
 
 pub(crate) mod data;
 pub(crate) mod evaluation;

@@ -49,9 +49,9 @@ impl Steps {
     }
 
     /// Returns the entries of E_k and R_k of a linear program at every `stride`-th sample, for
-    /// `samples` samples: as a [`Block`](crate::Block) has them, but rounded to nearest, and exact
-    /// for spans of one length only. A disturbance that is measurable counts as one that is
-    /// constant over samples.
+    /// `samples` samples: as a [`Block`](crate::linear::Block) has them, but rounded to nearest,
+    /// and exact for spans of one length only. A disturbance that is measurable counts as one that
+    /// is constant over samples.
     #[must_use]
     pub(crate) fn coefficients(&self, samples: usize, stride: usize, constant: bool) -> Vec<f64> {
         let (states, inputs) = (self.states, self.inputs);

@@ -25,7 +25,8 @@ pub enum Severity {
 /// # Examples
 ///
 /// ```
-/// use reachtube_conform::{Code, Finding, FrontEnd, Remedy, Severity};
+/// use reachtube_conform::Finding;
+/// use reachtube_conform::result::{Code, FrontEnd, Remedy, Severity};
 ///
 /// let finding = Finding {
 ///     place: Some("suite A".into()),

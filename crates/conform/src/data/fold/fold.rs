@@ -31,7 +31,8 @@ const LISTED_BELOW: u64 = 1000;
 /// # Examples
 ///
 /// ```
-/// use reachtube_conform::{Fold, OnDefect, Problem, Settings, Setup, Silent, conform};
+/// use reachtube_conform::fleet::{Fold, OnDefect};
+/// use reachtube_conform::{Problem, Settings, Setup, Silent, conform};
 /// use reachtube_recordings::{MemoryRuns, Run, Torque};
 /// use reachtube_robot::Robot;
 ///

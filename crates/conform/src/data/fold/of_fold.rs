@@ -29,7 +29,7 @@ impl Problem {
     /// [`read`](Self::read) over the same recordings: the same sets, verdicts and model files to
     /// the last bit. What needs single recordings again ends with [`Error::Fold`]: figures,
     /// explanations, the notion trace, and `fit` where runs differ. The notions phase-plane and
-    /// exact ask the points ([`conform_elsewhere`](crate::conform_elsewhere)).
+    /// exact ask the points ([`conform_elsewhere`](crate::fleet::conform_elsewhere)).
     ///
     /// # Errors
     ///
