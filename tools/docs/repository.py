@@ -27,6 +27,9 @@ PAGES = {
 }
 SOURCES = {page: path for path, page in PAGES.items()}
 
+# Pages that are a section of their own: their width is for transcripts, not for a list of one page.
+ALONE = {"your-arm.md"}
+
 # The words and the target of a link or an image, outside of code in one line.
 LINK = re.compile(r"(`[^`\n]*`)|(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 
@@ -45,6 +48,8 @@ def on_page_markdown(markdown, page, config, files):
     """Turns links, outside of blocks of code, to the pages of the site."""
     uri = page.file.src_uri
     source = SOURCES.get(uri, f"docs/{uri}")
+    if uri in ALONE:
+        page.meta["hide"] = ["navigation"]
     blocks = BLOCKS.split(markdown)
     for i, block in enumerate(blocks):
         if not block.startswith(("```", "    ")):

@@ -1,5 +1,6 @@
 //! The reference of all commands as one page of Markdown, from the definitions that clap parses by.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use clap::{Arg, Command};
@@ -20,6 +21,11 @@ command means something else by them, its section says so.
 
 const GLOBAL: &str = "Global options";
 
+const SHARED: &str = "Shared options";
+
+/// Number of commands from which on an option's text is printed once.
+const SEVERAL: usize = 3;
+
 /// Returns the page for a command line that was built.
 pub(crate) fn markdown(command: Command) -> String {
     let mut page = OPENING.to_string();
@@ -27,14 +33,80 @@ pub(crate) fn markdown(command: Command) -> String {
     for arg in command.get_arguments().filter(|arg| arg.get_help_heading() == Some(GLOBAL)) {
         page += &item(arg);
     }
+    let _ = writeln!(page, "\n## {SHARED}\n");
+    let shared = [Shared::new(SHARED, &command)];
+    shared[0].list(&mut page);
     for below in command.get_subcommands() {
-        section(&mut page, below, "reachtube");
+        section(&mut page, below, "reachtube", &shared);
     }
     page
 }
 
+/// Options that several of the commands below a command have.
+#[derive(Clone)]
+struct Shared {
+    /// Heading of the section that lists them.
+    heading: String,
+    /// What is printed of each.
+    texts: Vec<String>,
+}
+
+impl Shared {
+    /// Finds the options. If an option has two texts, the more frequent one is taken.
+    fn new(heading: &str, command: &Command) -> Self {
+        let mut found: BTreeMap<(String, String), usize> = BTreeMap::new();
+        for below in command.get_subcommands() {
+            let args = below_and_self(below).into_iter().flat_map(shown);
+            let args = args.filter(|arg| arg.get_long().is_some());
+            let texts: BTreeSet<_> = args.map(|arg| (call(arg), text(arg))).collect();
+            texts.into_iter().for_each(|of_arg| *found.entry(of_arg).or_default() += 1);
+        }
+        let mut found: Vec<_> = found.into_iter().filter(|(_, n)| *n >= SEVERAL).collect();
+        found.sort_by_key(|((call, _), n)| (call.clone(), usize::MAX - n));
+        found.dedup_by(|((a, _), _), ((b, _), _)| a == b);
+        Self {
+            heading: heading.into(),
+            texts: found.into_iter().map(|((_, text), _)| text).collect(),
+        }
+    }
+
+    fn has(&self, arg: &Arg) -> bool {
+        self.texts.contains(&text(arg))
+    }
+
+    /// Appends the options.
+    fn list(&self, page: &mut String) {
+        self.texts.iter().for_each(|text| page.push_str(&wrap(text, "- ", "  ")));
+    }
+
+    /// Appends a sentence that names these options of a command, if it has some.
+    fn name(&self, page: &mut String, command: &Command) {
+        let args = shown(command).filter(|arg| self.has(arg)).filter_map(Arg::get_long);
+        let names = args.map(|long| format!("`--{long}`")).collect::<Vec<_>>().join(", ");
+        if !names.is_empty() {
+            let anchor = self.heading.to_lowercase().replace(' ', "-");
+            leave_a_blank_line(page);
+            page.push_str(&wrap(&format!("[{SHARED}](#{anchor}): {names}."), "", ""));
+        }
+    }
+}
+
+/// Returns a command and all commands below it.
+fn below_and_self(command: &Command) -> Vec<&Command> {
+    let below = command.get_subcommands().flat_map(below_and_self);
+    std::iter::once(command).chain(below).collect()
+}
+
+/// Returns the options that are printed with a command.
+fn shown(command: &Command) -> impl Iterator<Item = &Arg> {
+    command.get_arguments().filter(|arg| {
+        let is_help = matches!(arg.get_id().as_str(), "help" | "version");
+        !arg.is_hide_set() && !is_help && arg.get_help_heading() != Some(GLOBAL)
+    })
+}
+
 /// Appends the sections of a command and of the commands below it.
-fn section(page: &mut String, command: &Command, parent: &str) {
+fn section(page: &mut String, command: &Command, parent: &str, shared: &[Shared]) {
     let name = format!("{parent} {}", command.get_name());
     let _ = writeln!(page, "\n## {name}\n");
     let about = command.get_long_about().or(command.get_about());
@@ -47,13 +119,19 @@ fn section(page: &mut String, command: &Command, parent: &str) {
         let names = command.get_subcommands().map(|below| format!("`{}`", below.get_name()));
         let names = names.collect::<Vec<_>>().join(", ");
         page.push_str(&wrap(&format!("Its commands are {names}."), "", ""));
+        let own = Shared::new(&name, command);
+        if !own.texts.is_empty() {
+            page.push_str("\nSeveral of them have these options:\n\n");
+            own.list(page);
+        }
+        let shared = [shared, &[own]].concat();
         for below in command.get_subcommands() {
-            section(page, below, &name);
+            section(page, below, &name, &shared);
         }
         return;
     }
     let _ = writeln!(page, "{}", usage(&name, command));
-    options(page, command);
+    options(page, command, shared);
     if let Some(help) = command.get_after_help() {
         page.push('\n');
         page.push_str(&after(&help.to_string()));
@@ -74,13 +152,11 @@ fn usage(name: &str, command: &Command) -> String {
     text
 }
 
-/// Appends the options, by their headings, in the order of their definition.
-fn options(page: &mut String, command: &Command) {
-    let shown = |arg: &&Arg| {
-        let is_help = matches!(arg.get_id().as_str(), "help" | "version");
-        !arg.is_hide_set() && !is_help && arg.get_help_heading() != Some(GLOBAL)
-    };
-    let args: Vec<&Arg> = command.get_arguments().filter(shown).collect();
+/// Appends the options, by their headings, in the order of their definition. Options in `shared`
+/// are named only.
+fn options(page: &mut String, command: &Command, shared: &[Shared]) {
+    let is_own = |arg: &&Arg| !shared.iter().any(|shared| shared.has(arg));
+    let args: Vec<&Arg> = shown(command).filter(is_own).collect();
     let mut headings: Vec<Option<&str>> = Vec::new();
     for arg in &args {
         if !headings.contains(&arg.get_help_heading()) {
@@ -90,16 +166,24 @@ fn options(page: &mut String, command: &Command) {
     headings.sort_by_key(Option::is_some);
     for heading in headings {
         if let Some(heading) = heading {
-            let _ = writeln!(page, "\n**{heading}**\n");
+            leave_a_blank_line(page);
+            let _ = writeln!(page, "**{heading}**\n");
         }
         for arg in args.iter().filter(|arg| arg.get_help_heading() == heading) {
             page.push_str(&item(arg));
         }
     }
+    shared.iter().for_each(|shared| shared.name(page, command));
 }
 
-/// Returns one option as an item of a list: call, help, values and default.
+/// Returns one option as an item of a list: call, help, values, default, and whether it is needed.
 fn item(arg: &Arg) -> String {
+    let required = if arg.is_required_set() { " Required." } else { "" };
+    wrap(&(text(arg) + required), "- ", "  ")
+}
+
+/// Returns one option's call, help, values and default.
+fn text(arg: &Arg) -> String {
     let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
     let mut text = format!("`{}`: {}", call(arg), sentence(&escape(&joined(&help))));
     let possible = arg.get_possible_values();
@@ -116,10 +200,7 @@ fn item(arg: &Arg) -> String {
         let values: Vec<_> = defaults.iter().map(|value| value.to_string_lossy()).collect();
         let _ = write!(text, " Default: `{}`.", values.join(","));
     }
-    if arg.is_required_set() {
-        text.push_str(" Required.");
-    }
-    wrap(&text, "- ", "  ")
+    text
 }
 
 /// Returns what to type for an option, for example `-q, --quiet` or `--out <FILE>`.
@@ -161,6 +242,12 @@ fn after(text: &str) -> String {
         page.push('\n');
     }
     page.trim_end().to_string() + "\n"
+}
+
+/// Ends the page with one blank line.
+fn leave_a_blank_line(page: &mut String) {
+    page.truncate(page.trim_end().len());
+    page.push_str("\n\n");
 }
 
 /// Joins the lines of a paragraph.
