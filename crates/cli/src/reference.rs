@@ -316,7 +316,24 @@ fn wrap(text: &str, first: &str, next: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{after, escape, sentence, wrap};
+    use clap::{Arg, Command};
+
+    use super::{after, escape, markdown, sentence, wrap};
+
+    #[test]
+    fn an_option_of_three_commands_is_printed_once() {
+        let arg = |name: &'static str, help: &'static str| Arg::new(name).long(name).help(help);
+        let command = |name: &'static str| Command::new(name).arg(arg("lock", "Hold a joint"));
+        let all = Command::new("reachtube")
+            .subcommand(command("a").arg(arg("out", "A file")))
+            .subcommand(command("b").arg(arg("out", "A file")))
+            .subcommand(command("c").arg(arg("out", "A folder")));
+        let page = markdown(all);
+        assert_eq!(page.matches("Hold a joint.").count(), 1, "{page}");
+        assert_eq!(page.matches("[Shared options](#shared-options): `--lock`.").count(), 3);
+        assert_eq!(page.matches("A file.").count(), 2);
+        assert_eq!(page.matches("A folder.").count(), 1);
+    }
 
     #[test]
     fn help_becomes_markdown() {
