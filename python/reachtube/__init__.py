@@ -1,14 +1,16 @@
 """Robot models that provably cover recordings.
 
-Load a robot (`Robot`), open recordings (`Recordings`), find the smallest uncertainty sets for which
-a model encloses them (`conform`), check other recordings (`check`), compute reachable sets
-(`reach`), and draw a page (`report`). `identify` makes the robot from recordings, `excite` the
+Load a robot (`Robot`), and make a model of its logs in one call (`model`). Or open recordings
+(`Recordings`), filter and cut them (`prepare`), find the smallest uncertainty sets for which a
+model encloses them (`conform`), check other recordings (`check`), compute reachable sets (`reach`),
+and draw a page (`report`). `identify` makes the robot from recordings, `excite` the
 motions for it, `abstract` models of any order, and `flowpipe` reachable sets of your own system.
 """
 
 from . import errors, fleet, io
 from ._abstraction import Abstraction, abstract
 from ._box import Box
+from ._built import BuiltModel, Choice, HeldOut, HorizonWidths, JointRow, model
 from ._conform import check, conform
 from ._excite import Excitation, excite
 from ._findings import Finding, Report
@@ -16,6 +18,7 @@ from ._flowpipe import Flowpipe, flowpipe
 from ._identify import Identification, identify
 from ._model import Check, Model
 from ._polynomial import Polynomial, cos, sin, variables
+from ._prepare import prepare
 from ._reach import ReachableSet, reach, report
 from ._reachtube import version as _version
 from ._recordings import Recordings, Run
@@ -34,13 +37,18 @@ __version__ = _version()
 __all__ = [
     "Abstraction",
     "Box",
+    "BuiltModel",
     "Check",
+    "Choice",
     "Defect",
     "DefectsError",
     "Excitation",
     "Finding",
     "Flowpipe",
+    "HeldOut",
+    "HorizonWidths",
     "Identification",
+    "JointRow",
     "Model",
     "ModelFileError",
     "Polynomial",
@@ -62,6 +70,8 @@ __all__ = [
     "flowpipe",
     "identify",
     "io",
+    "model",
+    "prepare",
     "reach",
     "report",
     "sin",

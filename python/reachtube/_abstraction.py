@@ -146,13 +146,16 @@ def abstract(
     ----------
     robot
         The robot.
-    paper_model, order
-        Which of the paper's models, and the order of its Taylor polynomials.
-    expansion : n or 2n numbers, optional
-        Where the model is expanded: positions, or also velocities; 0 where not given.
-    box : 3 or 3n numbers, optional
-        Radii of the box about the expansion point over which the model's error is bounded:
-        positions, velocities and inputs.
+    paper_model
+        Which of the paper's models.
+    order
+        The order of its Taylor polynomials.
+    expansion
+        Where the model is expanded: n positions, or 2n positions and velocities, rad and rad/s; 0
+        where not given.
+    box
+        Radii of the box about the expansion point over which the model's error is bounded: 3 or 3n
+        numbers, positions, velocities and inputs, rad, rad/s and N m.
     most_boxes
         Largest number of parts that the box is cut into.
     progress

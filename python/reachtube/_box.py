@@ -15,8 +15,10 @@ class Box(Values):
 
     Attributes
     ----------
-    centre, radius : array of shape (n,)
-        rad and rad/s for states, q then q̇; N m for inputs. They cannot be written to.
+    centre : array of shape (n,)
+        The centre, rad and rad/s for states, q then q̇; N m for inputs. It cannot be written to.
+    radius : array of shape (n,)
+        The radius, in the same units. It cannot be written to.
     """
 
     centre: Array

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _reachtube
 from ._abstraction import Abstraction
 from ._arrays import names, real
+from ._logs import Logs, source_for
 from ._model import Check, Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
@@ -68,13 +69,18 @@ def conform(
         gear) or ``"link"`` (link-side torque of a joint torque sensor). It is never guessed.
     suites
         Names of the suites to use; all where none are given.
-    paper_model, order, expansion
-        Model 1, 2 or 3 of the paper, the order of its Taylor polynomials, and where it is
-        expanded: n positions, or also n velocities. Not for an abstraction, which has its own.
-    fit, pull
-        Groups of parameters of the nominal model that are chosen for the smallest sets, and the
-        weight of the pull toward the identified values, from 0 to 1; chosen by leaving one motion
-        out where it is not given.
+    paper_model
+        Model 1, 2 or 3 of the paper. Not for an abstraction, which has its own.
+    order
+        The order of its Taylor polynomials. Not for an abstraction.
+    expansion
+        Where the model is expanded: n positions, rad, or also n velocities, rad/s. Not for an
+        abstraction.
+    fit
+        Groups of parameters of the nominal model that are chosen for the smallest sets.
+    pull
+        The weight of the pull of a fit toward the identified values, from 0 to 1; chosen by leaving
+        one motion out where it is not given.
     disturbance
         How the disturbance may change: from sample to sample, not at all, or at any time.
     centre
@@ -87,9 +93,12 @@ def conform(
         How far X0 may reach: positions or states no further than the recorded starts.
     weights
         Weights of the states in the cost: 1, the reciprocal of the spread, or 2 or 2n numbers.
-    noise, sensor_noise
-        Measurement noise V, or its radii, 2 or 2n numbers; and the sensors' radii, which limit
-        it, estimated from the recordings where they are not given.
+    noise
+        Measurement noise V: none, fitted to the recordings, or its radii, 2 or 2n numbers, rad and
+        rad/s.
+    sensor_noise
+        Radii of the sensors' noise, 2 or 2n numbers, rad and rad/s, which limit V; estimated from
+        the recordings where they are not given.
     nominal
         Where nominal motions start: at the mean of a suite's first states, or at each run's own.
     equations
@@ -176,7 +185,7 @@ def told(text: str, notes: list[str], level: int) -> Model:
 
 def check(
     model: Model,
-    data: Data,
+    data: Data | Logs,
     *,
     suites: str | Sequence[str] | None = None,
     notion: Notion | None = None,
@@ -188,12 +197,22 @@ def check(
 
     Parameters
     ----------
-    model, data
-        The model, and the recordings.
-    suites, until, max_gap, progress
-        As for `conform`; ``until`` is the model's if it is not given.
+    model
+        The model.
+    data
+        The recordings. For a model that `model` made they are logs, which are prepared as its own
+        were.
+    suites
+        Names of the suites to use; all where none are given.
     notion
         Directions in which recordings must lie in the set; the model's own where not given.
+    until
+        Samples later than this many seconds after the first are not used; the model's own limit
+        where it is not given.
+    max_gap
+        Longest time between two samples, s.
+    progress
+        As for `conform`.
 
     Returns
     -------
@@ -203,6 +222,6 @@ def check(
     with shown(progress, "check") as tell:
         return Check(
             _reachtube.check(
-                text_of(model), source(data), names(suites), differing(notion, until, max_gap), tell
+                text_of(model), source_for(model, data), names(suites), differing(notion, until, max_gap), tell
             )
         )

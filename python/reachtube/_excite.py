@@ -25,10 +25,16 @@ class Excitation(Values):
     ----------
     t : array of shape (K,)
         Times over one period, s.
-    q, qd, qdd : array of shape (K, n)
-        Positions, velocities and accelerations.
-    condition, random_condition
-        Condition numbers of the base regressor, of this motion and of a random one.
+    q : array of shape (K, n)
+        Positions, rad.
+    qd : array of shape (K, n)
+        Velocities, rad/s.
+    qdd : array of shape (K, n)
+        Accelerations, rad/s².
+    condition
+        Condition number of the base regressor of this motion.
+    random_condition
+        Condition number of the base regressor of a random motion.
     """
 
     t: Array
@@ -78,19 +84,26 @@ def excite(
     ----------
     robot
         The robot.
-    period, harmonics
-        Period, s, and the number of harmonics of each joint's Fourier series.
+    period
+        Period, s.
+    harmonics
+        Number of harmonics of each joint's Fourier series.
     criterion
         The determinant of the information matrix (D-optimal), or the condition number.
     margin
         The part of the limits that the motion may use.
     speed
         Largest speed of joints without a limit, rad/s.
-    acceleration, torque_noise
-        Largest accelerations, rad/s², and standard deviations of the torque, N m: none, one, or n
-        numbers.
-    starts, trials, seed
-        Number of searches, of motions in each, and the seed.
+    acceleration
+        Largest accelerations, rad/s²: none, one, or n numbers.
+    torque_noise
+        Standard deviations of the torque, N m: none, one, or n numbers.
+    starts
+        Number of searches.
+    trials
+        Number of motions that each search tries.
+    seed
+        The seed of the random numbers.
     rate
         Samples per second; the period has 10 million samples at most.
 

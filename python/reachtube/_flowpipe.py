@@ -37,10 +37,14 @@ class Flowpipe(Values):
         Names of the states, N.
     t : array of shape (K,)
         Times since the first sample, s; they end early where ``ended`` says so.
-    lower, upper : array of shape (K, N)
-        Bounds at samples.
-    step_lower, step_upper : array of shape (K - 1, N)
-        Bounds over steps.
+    lower : array of shape (K, N)
+        Lower bounds at samples.
+    upper : array of shape (K, N)
+        Upper bounds at samples.
+    step_lower : array of shape (K - 1, N)
+        Lower bounds over the steps from one sample to the next.
+    step_upper : array of shape (K - 1, N)
+        Upper bounds over the steps.
     ended
         The time, and the state whose bounds grew the most, where no enclosure could be verified
         further; ``None`` where the flowpipe reached the last sample.
@@ -177,14 +181,18 @@ def flowpipe(
         Sample times, s, which increase.
     inputs
         The set of each input: any measurable function with values in it.
-    measured : arrays of shape (K,)
-        Measured inputs, held from sample to sample, about which the sets are; 0 where not given.
-    method, taylor_order
-        Conservative linearisation of zonotopes, for large inputs, or Taylor models of some order
-        in the initial state, for large initial sets.
-    vertex_variables, order
-        Number of variables over whose vertices linearisation errors are bounded, and the most
-        generators in multiples of the states.
+    measured
+        Measured inputs, arrays of shape (K,), held from sample to sample, about which the sets are;
+        0 where not given.
+    method
+        Conservative linearisation of zonotopes, for large inputs, or Taylor models in the initial
+        state, for large initial sets.
+    taylor_order
+        The order of the Taylor models.
+    vertex_variables
+        Number of variables over whose vertices linearisation errors are bounded.
+    order
+        The most generators of a zonotope, in multiples of the states.
     pieces
         Number of pieces of the initial set along a state; 1 where not given.
 

@@ -7,6 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ._built import BuiltModel
     from ._findings import Finding
     from ._model import Check, Model
 
@@ -100,3 +101,24 @@ def check(found: Check) -> str:
         count = str(suite["violations"]["count"])
         rows.append([escape(suite["suite"]), str(suite["runs"]), count, excess, escape(place)])
     return text + table(["suite", "runs", "outside", "furthest", "where"], rows)
+
+
+def built(found: BuiltModel, words: str) -> str:
+    """Return verdict, sets beside the motion, and the comparison with what was held out."""
+    text = verdict(found.useful, words)
+    text += "".join(f"<p>{escape(warning)}</p>" for warning in found.warnings)
+
+    def number(value: float | None, form: str) -> str:
+        return "-" if value is None else format(value, form)
+
+    rows = [
+        [
+            escape(row.name),
+            number(row.half_width, ".3g"),
+            number(row.ratio, ".0%"),
+            number(row.growth, ".3g"),
+        ]
+        for row in found.joints
+    ]
+    header = ["joint", "half the set [rad or m]", "of its motion", "factor, held out"]
+    return text + table(header, rows)

@@ -140,14 +140,22 @@ def identify(
     ----------
     robot
         Its geometry, and the prior of its links.
-    dynamic, rest, friction, validate
-        Recordings of exciting motions, of poses at rest, of slow motions of single joints, and of
-        motions that are held out: runs, or paths of CSV files or folders of them.
+    dynamic
+        Recordings of exciting motions: runs, or paths of CSV files or folders of them.
+    rest
+        Recordings of poses at rest, likewise.
+    friction
+        Recordings of slow motions of single joints, likewise.
+    validate
+        Recordings of motions that are held out, likewise.
     settings
         A TOML file with recordings and settings, whose paths are relative to its folder.
-    prepare, model
-        Settings of the preparation and of the model, by the names of the TOML file's sections, for
-        example ``prepare={"cut_off": 5.0}``, ``model={"stribeck": True}``.
+    prepare
+        Settings of the preparation by their names in the TOML file's section, for example
+        ``prepare={"cut_off": 5.0}``.
+    model
+        Settings of the model by their names in the TOML file's section, for example
+        ``model={"stribeck": True}``.
     torque
         What the recorded torques are: ``"motor"`` (motor torque at the output side of the gear) or
         ``"link"`` (link-side torque, which does not drive the motors' inertia); as the settings say

@@ -22,8 +22,10 @@ class Recording(NamedTuple):
     ----------
     file
         Path of a CSV or Parquet file, relative to the manifest's folder, or a whole address.
-    suite, motion
-        The test suite, and the motion that it is part of.
+    suite
+        The test suite.
+    motion
+        The motion that the suite is part of.
     order
         Place in the order in which the suite's runs were recorded, from 1.
     sha256

@@ -17,6 +17,7 @@ from ._robot import Robot
 from .errors import ModelFileError, ReachtubeError, SettingError
 
 if TYPE_CHECKING:
+    from ._logs import Logs
     from ._progress import Progress
     from ._settings import Data, Notion
 
@@ -134,6 +135,11 @@ class Model(Record):
         return dict(self._content["proof"])
 
     @property
+    def simulated(self) -> bool:
+        """Whether it was made of simulated recordings."""
+        return bool(self._content["data"].get("simulated", False))
+
+    @property
     def settings(self) -> dict[str, Any]:
         """The settings."""
         return dict(self._content["settings"])
@@ -171,7 +177,7 @@ class Model(Record):
 
     def check(
         self,
-        data: Data,
+        data: Data | Logs,
         *,
         suites: str | Sequence[str] | None = None,
         notion: Notion | None = None,

@@ -15,9 +15,9 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, frozen, names
 from ._files import check_new
+from ._logs import Logs, source_for
 from ._model import Model, text_of
 from ._progress import Progress, shown
-from ._recordings import source
 from ._settings import Data, differing
 from ._values import Values
 
@@ -31,14 +31,22 @@ class ReachableSet(Values):
 
     Attributes
     ----------
-    suite, run
-        The suite, and the run where it has a nominal motion of its own.
+    suite
+        The suite.
+    run
+        The run, where it has a nominal motion of its own.
     t : array of shape (K,)
         Times since the first sample, s.
-    nominal, lower, upper : array of shape (K, 2n)
-        The nominal motion, and the bounds at samples; q then q̇.
-    step_lower, step_upper : array of shape (K - 1, 2n)
-        The bounds over the steps from one sample to the next.
+    nominal : array of shape (K, 2n)
+        The nominal motion at samples; q then q̇.
+    lower : array of shape (K, 2n)
+        Lower bounds at samples.
+    upper : array of shape (K, 2n)
+        Upper bounds at samples.
+    step_lower : array of shape (K - 1, 2n)
+        Lower bounds over the steps from one sample to the next.
+    step_upper : array of shape (K - 1, 2n)
+        Upper bounds over the steps.
     lost
         Where and why the set ended before its suite; ``None`` where it did not.
     units
@@ -88,7 +96,7 @@ class ReachableSet(Values):
 
 def reach(
     model: Model,
-    data: Data,
+    data: Data | Logs,
     *,
     suites: str | Sequence[str] | None = None,
     until: float | None = None,
@@ -99,8 +107,19 @@ def reach(
 
     Parameters
     ----------
-    model, data, suites, until, max_gap, progress
-        As for `check`.
+    model
+        The model.
+    data
+        The recordings, as for `check`.
+    suites
+        Names of the suites to use; all where none are given.
+    until
+        Samples later than this many seconds after the first are not used; the model's own limit
+        where it is not given.
+    max_gap
+        Longest time between two samples, s.
+    progress
+        As for `conform`.
 
     Returns
     -------
@@ -109,7 +128,7 @@ def reach(
     """
     with shown(progress, "reach") as tell:
         found = _reachtube.reach(
-            text_of(model), source(data), names(suites), differing(None, until, max_gap), tell
+            text_of(model), source_for(model, data), names(suites), differing(None, until, max_gap), tell
         )
     return [
         ReachableSet(
@@ -130,7 +149,7 @@ def reach(
 
 def report(
     model: Model,
-    data: Data,
+    data: Data | Logs,
     folder: str | PathLike[str],
     *,
     suites: str | Sequence[str] | None = None,
@@ -144,14 +163,25 @@ def report(
 
     Parameters
     ----------
-    model, data, suites, until, max_gap, progress
-        As for `check`.
+    model
+        The model.
+    data
+        The recordings, as for `check`.
     folder
         Where ``report.html`` is written; it works offline.
+    suites
+        Names of the suites to use; all where none are given.
+    until
+        Samples later than this many seconds after the first are not used; the model's own limit
+        where it is not given.
+    max_gap
+        Longest time between two samples, s.
     assets
         Whether the library of the figures (5 MB) is in the page or beside it.
     force
         Whether a page that exists is replaced.
+    progress
+        As for `conform`.
 
     Returns
     -------
@@ -164,7 +194,7 @@ def report(
         return Path(
             _reachtube.report(
                 text_of(model),
-                source(data),
+                source_for(model, data),
                 names(suites),
                 settings,
                 fspath(folder),

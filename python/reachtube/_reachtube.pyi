@@ -23,8 +23,11 @@ __all__ = [
     "excite",
     "flowpipe",
     "identify",
+    "model",
     "model_findings",
     "model_report",
+    "prepare",
+    "prepared",
     "reach",
     "read_log",
     "report",
@@ -79,10 +82,12 @@ class Source:
     @staticmethod
     def of_runs(
         runs: Sequence[tuple[Run, str, str | None, str | None, int | None, float | None]],
+        simulated: bool,
     ) -> Source: ...
     def index(
         self,
     ) -> list[tuple[str, str | None, str | None, str | None, int, float | None]]: ...
+    def simulated(self) -> bool: ...
     def read(self, index: int) -> Run: ...
     def inspection(self, max_gap: float | None = None) -> str | None: ...
 
@@ -201,6 +206,24 @@ def identify(
     folder: str,
     progress: _Progress = None,
 ) -> tuple[str, str, str]: ...
+def model(
+    robot: Robot,
+    paths: list[str],
+    runs: Source | None,
+    settings: str | None,
+    given: str,
+    progress: _Progress = None,
+) -> tuple[str, list[str]]: ...
+def prepared(model: str, paths: list[str], runs: Source | None) -> Source: ...
+def prepare(
+    robot: Robot,
+    paths: list[str],
+    runs: Source | None,
+    settings: str,
+    window: float | None,
+    repeats: bool,
+    compensate: bool,
+) -> tuple[Source, float, list[str]]: ...
 def excite(
     robot: Robot,
     period: float,

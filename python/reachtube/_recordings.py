@@ -22,8 +22,10 @@ class Run:
     ----------
     t : array of shape (K,)
         Times, s, which increase.
-    q, qd : array of shape (K, n)
-        Positions and velocities, rad and rad/s (m and m/s for prismatic joints).
+    q : array of shape (K, n)
+        Positions, rad (m for prismatic joints).
+    qd : array of shape (K, n)
+        Velocities, rad/s (m/s for prismatic joints).
     tau : array of shape (K, n)
         Torques, N m; the caller that uses the run states what they mean.
     suite
@@ -219,6 +221,8 @@ class Recordings:
     ----------
     runs
         The runs.
+    simulated
+        Whether they are simulated, and not measured; models and pages then say so.
 
     Examples
     --------
@@ -231,7 +235,7 @@ class Recordings:
 
     __slots__ = ("_folder", "_index", "_native")
 
-    def __init__(self, runs: Iterable[Run]) -> None:
+    def __init__(self, runs: Iterable[Run], *, simulated: bool = False) -> None:
         if isinstance(runs, (str, bytes, PathLike)):
             raise SettingError(
                 f"{runs!r} is a path, not runs; Recordings.open({runs!r}) opens a folder"
@@ -246,7 +250,7 @@ class Recordings:
                 )
             name = run.name or f"run {k}"
             named.append((run._native, name, run.suite, run.motion, run.order, None))
-        self._set(_reachtube.Source.of_runs(named), None)
+        self._set(_reachtube.Source.of_runs(named, bool(simulated)), None)
 
     @classmethod
     def open(cls, folder: str | PathLike[str]) -> Recordings:
@@ -261,6 +265,12 @@ class Recordings:
         data._set(_reachtube.Source.open(fspath(folder)), fspath(folder))
         return data
 
+    @classmethod
+    def _of(cls, native: _reachtube.Source) -> Recordings:
+        data = cls.__new__(cls)
+        data._set(native, None)
+        return data
+
     def _set(self, native: _reachtube.Source, folder: str | None) -> None:
         self._native, self._folder, self._index = native, folder, native.index()
 
@@ -268,6 +278,11 @@ class Recordings:
     def suites(self) -> list[str]:
         """The names of the test suites, in the order of their first runs."""
         return list(dict.fromkeys(row[1] for row in self._index if row[1] is not None))
+
+    @property
+    def simulated(self) -> bool:
+        """Whether a run is marked as simulated, and not measured."""
+        return self._native.simulated()
 
     def inspect(self, *, max_gap: float | None = None) -> dict[str, Any] | None:
         """Read all recordings of a folder and return a summary; ``None`` for runs in memory."""
@@ -304,7 +319,12 @@ class Recordings:
     def __reduce__(self) -> tuple[Any, ...]:
         if self._folder is not None:
             return Recordings.open, (self._folder,)
-        return Recordings, (list(self),)
+        return _restored_set, (list(self), self.simulated)
+
+
+def _restored_set(runs: list[Run], simulated: bool) -> Recordings:
+    """Return the data set that was pickled."""
+    return Recordings(runs, simulated=simulated)
 
 
 def _iterated(runs: object) -> Iterable[object]:

@@ -47,16 +47,18 @@ class Robot:
     (6, (6,))
     """
 
-    __slots__ = ("_description", "_native")
+    __slots__ = ("_description", "_native", "_source")
 
     def __init__(self, native: _reachtube.Robot) -> None:
         self._native = native
+        # What a file of choices says of the robot.
+        self._source: dict[str, Any] = {}
         self._description: dict[str, Any] = json.loads(native.description())
 
     @classmethod
     def lwa4p(cls) -> Robot:
         """Return the Schunk LWA 4P of Liu and Althoff (IROS 2018)."""
-        return cls(_reachtube.Robot.load("lwa4p"))
+        return cls.load("lwa4p")
 
     @classmethod
     def load(
@@ -76,7 +78,10 @@ class Robot:
         ReachtubeError
             With file, line, joint and remedy.
         """
-        return cls(_reachtube.Robot.load(fspath(path), None, None, _locks(lock)))
+        locks = _locks(lock)
+        robot = cls(_reachtube.Robot.load(fspath(path), None, None, locks))
+        robot._source = {"robot": fspath(path), "lock": locks}
+        return robot
 
     @classmethod
     def from_urdf(
@@ -93,8 +98,10 @@ class Robot:
         ----------
         path
             A file whose name ends with ``.urdf``.
-        base, tip
-            Links at the ends of the chain, where the URDF has several chains.
+        base
+            First link of the chain, where the URDF has several chains.
+        tip
+            Last link of the chain, likewise.
         lock
             Joints that are held at a position, in rad or m.
 
@@ -110,7 +117,11 @@ class Robot:
                 f"{fspath(path)}: the name of a URDF ends with .urdf; Robot.load reads robot files "
                 "in TOML and embedded robots"
             )
-        return cls(_reachtube.Robot.load(fspath(path), base, tip, _locks(lock)))
+        locks = _locks(lock)
+        robot = cls(_reachtube.Robot.load(fspath(path), base, tip, locks))
+        if base is None and tip is None:
+            robot._source = {"robot": fspath(path), "lock": locks}
+        return robot
 
     @classmethod
     def from_toml(cls, text: str, origin: str = "text") -> Robot:
@@ -161,8 +172,12 @@ class Robot:
 
         Parameters
         ----------
-        q, qd, qdd : array of shape (..., n)
-            Positions, velocities and accelerations.
+        q : array of shape (..., n)
+            Positions, rad.
+        qd : array of shape (..., n)
+            Velocities, rad/s.
+        qdd : array of shape (..., n)
+            Accelerations, rad/s².
 
         Returns
         -------
@@ -177,8 +192,12 @@ class Robot:
 
         Parameters
         ----------
-        q, qd, tau : array of shape (..., n)
-            Positions, velocities and link-side torques.
+        q : array of shape (..., n)
+            Positions, rad.
+        qd : array of shape (..., n)
+            Velocities, rad/s.
+        tau : array of shape (..., n)
+            Link-side torques, N m.
 
         Returns
         -------
@@ -205,29 +224,86 @@ class Robot:
         return self._native.mass_matrix(q).reshape((*shape, n, n))
 
     def gravity(self, q: npt.ArrayLike) -> Array:
-        """Return the torque of gravity, shape (..., n), at positions of shape (..., n)."""
+        """Return the torque of gravity.
+
+        Parameters
+        ----------
+        q : array of shape (..., n)
+            Positions, rad.
+
+        Returns
+        -------
+        array of shape (..., n)
+            Torques, N m.
+        """
         shape, [q] = batch(self.joints, q=q)
         return self._native.gravity(q).reshape((*shape, self.joints))
 
     def coriolis(self, q: npt.ArrayLike, qd: npt.ArrayLike) -> Array:
-        """Return the torque of Coriolis and centrifugal forces c(q, q̇), shape (..., n)."""
+        """Return the torque of Coriolis and centrifugal forces c(q, q̇).
+
+        Parameters
+        ----------
+        q : array of shape (..., n)
+            Positions, rad.
+        qd : array of shape (..., n)
+            Velocities, rad/s.
+
+        Returns
+        -------
+        array of shape (..., n)
+            Torques, N m.
+        """
         shape, [q, qd] = batch(self.joints, q=q, qd=qd)
         return self._native.coriolis(q, qd).reshape((*shape, self.joints))
 
     def viscous_friction(self, qd: npt.ArrayLike) -> Array:
-        """Return the torque of viscous friction, shape (..., n)."""
+        """Return the torque of viscous friction.
+
+        Parameters
+        ----------
+        qd : array of shape (..., n)
+            Velocities, rad/s.
+
+        Returns
+        -------
+        array of shape (..., n)
+            Torques, N m.
+        """
         shape, [qd] = batch(self.joints, qd=qd)
         viscous, _ = self._native.friction(np.zeros_like(qd), qd)
         return viscous.reshape((*shape, self.joints))
 
     def coulomb_friction(self, q: npt.ArrayLike, qd: npt.ArrayLike) -> Array:
-        """Return the torque of dry friction under the load of gravity, shape (..., n)."""
+        """Return the torque of dry friction under the load of gravity.
+
+        Parameters
+        ----------
+        q : array of shape (..., n)
+            Positions, rad.
+        qd : array of shape (..., n)
+            Velocities, rad/s.
+
+        Returns
+        -------
+        array of shape (..., n)
+            Torques, N m.
+        """
         shape, [q, qd] = batch(self.joints, q=q, qd=qd)
         _, coulomb = self._native.friction(q, qd)
         return coulomb.reshape((*shape, self.joints))
 
     def regressor(self, q: npt.ArrayLike, qd: npt.ArrayLike, qdd: npt.ArrayLike) -> Array:
         """Return the matrix Y of ``rnea(q, qd, qdd) = Y @ parameter_values``.
+
+        Parameters
+        ----------
+        q : array of shape (..., n)
+            Positions, rad.
+        qd : array of shape (..., n)
+            Velocities, rad/s.
+        qdd : array of shape (..., n)
+            Accelerations, rad/s².
 
         Returns
         -------

@@ -20,12 +20,16 @@ class Defect:
     ----------
     file
         The file, or the name of a run in memory.
-    line, joint
-        Line of the file and number of the joint, from 1; ``None`` where there is none.
+    line
+        Line of the file, from 1; ``None`` where there is none.
+    joint
+        Number of the joint, from 1; ``None`` where there is none.
     kind
         ``"header"``, ``"gap"``, ``"value"``, ...
-    problem, remedy
-        What is wrong, and what to do.
+    problem
+        The problem, as a sentence.
+    remedy
+        The remedy, as a sentence.
     """
 
     file: str

@@ -107,12 +107,18 @@ def conform(
 
     Parameters
     ----------
-    robot, torque, fit, pull
-        As for `reachtube.conform`. What is fitted are envelopes, and no recording is read again;
-        so warm-up, which is another for each run, is only fitted where a fold keeps whole
-        recordings, as with ``nominal="own"``.
+    robot
+        A robot, or an abstraction of one made by `abstract`.
     manifest
         A Parquet file, in any store that fsspec opens; see `read_manifest`.
+    torque
+        What the recorded torques are, as for `reachtube.conform`.
+    fit
+        Groups of parameters of the nominal model that are fitted, as for `reachtube.conform`. What
+        is fitted are envelopes, and no recording is read again; so warm-up, which is another for
+        each run, is only fitted where a fold keeps whole recordings, as with ``nominal="own"``.
+    pull
+        The weight of the pull of a fit, as for `reachtube.conform`.
     robots
         Names in the manifest's column ``robot``, whose recordings are used. A manifest of several
         robots is refused where none is chosen; ``None`` in a list stands for rows without a name.
@@ -128,7 +134,9 @@ def conform(
     summaries
         A folder for what was read of each recording, as a Parquet data set.
     storage_options
-        For fsspec.
+        Options of the store, for fsspec.
+    progress
+        As for `reachtube.conform`.
     settings
         The other settings of `reachtube.conform`. The notions ``"phase-plane"`` and ``"exact"``
         of a linear model need all points: workers keep them, 24 n bytes for each sample of a
@@ -185,11 +193,32 @@ def check(
     ----------
     model
         The model.
-    manifest, robots, client, runs_per_task, on_defect, resume, summaries, storage_options, progress
-        As for `conform`.
-    notion, until, max_gap
-        As for `reachtube.check`: they are the model's own where they are not given. Points of the
-        notions ``"phase-plane"`` and ``"exact"`` are asked as by `conform`.
+    manifest
+        A Parquet file, in any store that fsspec opens; see `read_manifest`.
+    robots
+        Names in the manifest's column ``robot``, whose recordings are used, as for `conform`.
+    client
+        A Dask client; this process does everything where none is given.
+    runs_per_task
+        Number of recordings that a task folds.
+    on_defect
+        Whether recordings with defects end the job, or are left out and counted.
+    resume
+        A folder for finished tasks, from which a job that was stopped goes on.
+    summaries
+        A folder for what was read of each recording, as a Parquet data set.
+    storage_options
+        Options of the store, for fsspec.
+    notion
+        Directions in which recordings must lie in the set; the model's own where not given. Points
+        of the notions ``"phase-plane"`` and ``"exact"`` are asked as by `conform`.
+    until
+        Samples later than this many seconds after the first are not used; the model's own limit
+        where it is not given.
+    max_gap
+        Longest time between two samples, s.
+    progress
+        As for `reachtube.conform`.
 
     Returns
     -------

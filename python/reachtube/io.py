@@ -69,15 +69,18 @@ def bag(
         ``robot.joint_names``. Joints are matched by name, whatever their order in a message.
     marker
         A topic that marks runs: a suite's name starts a run, empty text ends it.
-    repeats, rest_speed
-        Whether motions between rests are runs, and repeated motions suites; and the speed below
-        which a joint rests.
+    repeats
+        Whether motions between rests are runs, and repeated motions suites.
+    rest_speed
+        The speed below which a joint rests, rad/s.
     time
         The stamps in the messages' headers, or the times at which the log received them.
     recover
         Whether the whole parts of a damaged log are read; lost parts produce a warning.
-    suite, motion
-        Suite and motion of runs that are not cut by markers or repeats.
+    suite
+        The suite of runs that are not cut by markers or repeats.
+    motion
+        The motion of runs that are not cut by markers or repeats.
     max_gap
         Longest time between two samples, s.
 
@@ -190,8 +193,10 @@ def parquet(
     joints
         Names of the robot's joints, in its order, where the columns are ``position.NAME``,
         ``velocity.NAME`` and ``effort.NAME``, in any order.
-    suite, motion
-        Suite and motion of the run.
+    suite
+        The suite of the run.
+    motion
+        The motion of the run.
     """
     from pyarrow import parquet as files
 
@@ -216,8 +221,10 @@ def npz(
         The file. An array ``joints`` names the columns of the others where there is one.
     joints
         Names of the robot's joints, in its order; the file must name its own then.
-    suite, motion
-        Suite and motion of the run.
+    suite
+        The suite of the run.
+    motion
+        The motion of the run.
     """
     with _opened(path), np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
@@ -236,10 +243,17 @@ def hdf5(
 
     Parameters
     ----------
-    path, group
-        The file, and the group in it.
-    joints, suite, motion
-        As for `npz`; the file may have the joints' names as a data set or an attribute.
+    path
+        The file.
+    group
+        The group in it.
+    joints
+        Names of the robot's joints, in its order; the file then has the names of its own as a data
+        set or an attribute ``joints``.
+    suite
+        The suite of the run.
+    motion
+        The motion of the run.
     """
     import h5py
 
@@ -310,12 +324,16 @@ def ros1(
 
     Parameters
     ----------
-    path, topic
-        The bag, and the topic. Times are the stamps in the messages' headers.
+    path
+        The bag.
+    topic
+        The topic. Times are the stamps in the messages' headers.
     joints
         Names of the robot's joints, in its order; messages may have them in any other.
-    suite, motion
-        Suite and motion of the run.
+    suite
+        The suite of the run.
+    motion
+        The motion of the run.
     """
     from rosbags.highlevel import AnyReader
 

@@ -9,6 +9,7 @@ use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, Polynomial
 
 use crate::arrays::{Input, Output, array, values};
 use crate::failure::{Failure, Result};
+use crate::pool;
 use crate::robot::NativeRobot;
 use crate::watched::watched;
 
@@ -82,6 +83,7 @@ impl NativeAbstraction {
 
     /// Returns ẋ, count x N, at states (count x N) and inputs (count x n).
     fn rate<'py>(&self, py: Python<'py>, x: Input<'py>, u: Input<'py>) -> PyResult<Output<'py>> {
+        pool::check()?;
         let found = || -> Result<_> {
             let (width, n) = (self.model.states(), self.model.joints());
             let count = x.as_array().shape().first().copied().unwrap_or(0);

@@ -92,7 +92,7 @@ fn without_dashes(text: &str) -> String {
 }
 
 /// Returns a text in which `dynamic_1` stands for the path of `dynamic_1.csv` in a folder.
-fn without_folder(text: &str, folder: &Path) -> String {
+pub(crate) fn without_folder(text: &str, folder: &Path) -> String {
     let prefix = format!("{}{MAIN_SEPARATOR}", folder.display());
     let mut parts = text.split(&prefix);
     let first = parts.next().unwrap_or_default().to_string();
@@ -157,6 +157,22 @@ impl From<RobotError> for Failure {
         match error {
             RobotError::Setting { .. } | RobotError::NotALock { .. } => Self::Setting(text),
             _ => Self::Other(text),
+        }
+    }
+}
+
+impl From<reachtube::pipeline::Error> for Failure {
+    fn from(error: reachtube::pipeline::Error) -> Self {
+        use reachtube::pipeline::Error;
+        match error {
+            Error::Identify(error) => (*error).into(),
+            Error::Conform(error) => (*error).into(),
+            Error::Robot(error) => (*error).into(),
+            Error::Abstraction(error) => (*error).into(),
+            Error::Settings { .. } | Error::HeldOut { .. } | Error::NothingLeft => {
+                Self::Setting(error.to_string())
+            }
+            error => Self::Other(error.to_string()),
         }
     }
 }

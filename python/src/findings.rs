@@ -49,7 +49,7 @@ fn model(text: &str) -> Result<Model> {
     serde_json::from_str(text).map_err(|error| Failure::ModelFile(error.to_string()))
 }
 
-fn list(findings: &[Finding]) -> String {
+pub(crate) fn list(findings: &[Finding]) -> String {
     Value::from(findings.iter().map(value).collect::<Vec<_>>()).to_string()
 }
 

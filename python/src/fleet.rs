@@ -15,6 +15,7 @@ use crate::conformance::{basis, differing, fit_settings, setup, told};
 use crate::failure::{Failure, Result};
 use crate::manifest::{Entry, entry, read_csv, read_run};
 use crate::points::{NativeFleetProblem, asking};
+use crate::pool;
 use crate::recordings::NativeRun;
 use crate::robot::NativeRobot;
 use crate::watched::watched;
@@ -211,6 +212,7 @@ impl NativeFold {
         row: &Entry,
         read: impl FnOnce(&Fold) -> Result<reachtube::Run, Vec<Defect>> + Send,
     ) -> PyResult<Taken> {
+        pool::check()?;
         let entry = entry(row);
         let taken = py.detach(|| {
             let mut fold = self.lock();
@@ -258,6 +260,7 @@ impl NativeFold {
 
     /// Merges the bytes of another fold of the same job.
     fn merge(&self, py: Python<'_>, fleet: PyRef<'_, NativeFleet>, part: &[u8]) -> PyResult<()> {
+        pool::check()?;
         let setup = &fleet.setup;
         let merged = py.detach(|| self.lock().merge(Fold::from_bytes(setup, part)?));
         merged.map_err(|error| Failure::from(error).raised(py))

@@ -7,12 +7,11 @@ use pyo3::prelude::*;
 use reachtube::identify::IdentifySettings;
 use reachtube::identify::prepare::LogEntry;
 use reachtube::page::write_identified_html;
-use reachtube::recordings::column_names;
 use reachtube::{Robot, Run};
 use serde_json::{Map, Value};
 
 use crate::failure::{Failure, Result};
-use crate::recordings::NativeRun;
+use crate::recordings::{NativeRun, csv};
 use crate::robot::NativeRobot;
 use crate::watched::watched;
 
@@ -33,13 +32,7 @@ fn entries(
     let mut entries: Vec<LogEntry> = paths.into_iter().map(LogEntry::Path).collect();
     for (number, run) in runs.iter().enumerate() {
         let path = folder.join(format!("{name}_{}.csv", number + 1));
-        let mut text = String::from("t");
-        column_names(run.joints).for_each(|column| text += &format!(",{column}"));
-        for k in 0..run.len() {
-            text += &format!("\n{}", run.times[k]);
-            let numbers = run.state(k).iter().chain(run.torque(k));
-            numbers.for_each(|number| text += &format!(",{number}"));
-        }
+        let text = csv(run);
         reachtube::write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
         entries.push(LogEntry::Path(path));
     }

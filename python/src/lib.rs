@@ -12,8 +12,12 @@ mod fleet;
 mod flowpipe;
 mod identification;
 mod logs;
+mod logs_on_disk;
 mod manifest;
+mod model;
 mod points;
+mod pool;
+mod prepare;
 mod recordings;
 mod robot;
 mod watched;
@@ -39,7 +43,11 @@ mod _reachtube {
     #[pymodule_export]
     use crate::logs::read_log;
     #[pymodule_export]
+    use crate::model::{model, prepared};
+    #[pymodule_export]
     use crate::points::{NativeFleetProblem, NativePartPoints};
+    #[pymodule_export]
+    use crate::prepare::prepare;
     #[pymodule_export]
     use crate::recordings::{NativeRun, NativeSource};
     #[pymodule_export]

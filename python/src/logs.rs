@@ -12,7 +12,7 @@ use reachtube_logs::{
 
 use crate::failure::{Failure, Result};
 use crate::recordings::NativeRun;
-use crate::watched::watched;
+use crate::watched::watched_alone;
 
 /// How a log is cut into runs.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub(crate) fn read_log(
 ) -> PyResult<(Vec<NamedRun>, Vec<String>, Vec<String>)> {
     let (marker, repeats, rest_speed, max_gap) = cutting;
     let cutting = Cutting { marker, repeats, rest_speed, max_gap };
-    watched(py, None, move |_| {
+    watched_alone(py, None, move |_| {
         let time = if receipt_time { LogTime::Receipt } else { LogTime::Header };
         let marker = cutting.marker.clone();
         let options = LogOptions { topics, joints, marker, time, recover };

@@ -20,6 +20,7 @@ pub(crate) fn entry(row: &Entry) -> RunEntry {
         kind: None,
         temperature,
         sha256,
+        simulated: false,
         order,
         line: index + 1,
     }

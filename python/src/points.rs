@@ -9,6 +9,7 @@ use reachtube::conform::fleet::{FleetProblem, PartPoints, PartReader, PointServe
 
 use crate::failure::Failure;
 use crate::manifest::{Entry, Read, entry, read_csv, read_run};
+use crate::pool;
 use crate::recordings::NativeRun;
 
 /// What every part of a fleet needs to find its points.
@@ -63,6 +64,7 @@ impl NativePartPoints {
         fleet: PyRef<'_, NativeFleetProblem>,
         question: &[u8],
     ) -> PyResult<Vec<u8>> {
+        pool::check()?;
         let fleet = &fleet.problem;
         let answer = py.detach(|| self.points.answer(fleet, question));
         answer.map_err(|error| Failure::from(error).raised(py))
@@ -71,6 +73,7 @@ impl NativePartPoints {
     /// Merges the answers of parts to one question, in any order.
     #[staticmethod]
     fn merge(py: Python<'_>, answers: Vec<PyBackedBytes>) -> PyResult<Vec<u8>> {
+        pool::check()?;
         let merged = py.detach(|| PartPoints::merge(answers.iter().map(|answer| &**answer)));
         merged.map_err(|error| Failure::from(error).raised(py))
     }

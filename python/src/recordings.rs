@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use reachtube::recordings::{
-    DataSet, Defect, GapLimit, MemoryRuns, ReadOptions, RunEntry, inspect, picoseconds,
+    DataSet, Defect, GapLimit, MemoryRuns, ReadOptions, RunEntry, column_names, inspect,
+    picoseconds,
 };
 use reachtube::{Run, RunSource};
 
 use crate::arrays::{Input, Output, array, values};
 use crate::failure::{Failure, Result};
-use crate::watched::watched;
+use crate::watched::{watched, watched_alone};
 
 /// One run.
 #[pyclass(frozen, name = "Run", module = "reachtube._reachtube")]
@@ -152,11 +153,30 @@ impl RunSource for SharedSource {
     }
 }
 
+/// Returns a run as a CSV file, whose numbers are read back to the last bit.
+pub(crate) fn csv(run: &Run) -> String {
+    let mut text = String::from("t");
+    column_names(run.joints).for_each(|column| text += &format!(",{column}"));
+    for k in 0..run.len() {
+        text += &format!("\n{}", run.times[k]);
+        let numbers = run.state(k).iter().chain(run.torque(k));
+        numbers.for_each(|number| text += &format!(",{number}"));
+    }
+    text
+}
+
 /// A folder of recordings, or runs in memory.
 #[pyclass(frozen, name = "Source", module = "reachtube._reachtube")]
 pub struct NativeSource {
     pub source: SharedSource,
     folder: Option<DataSet>,
+}
+
+impl NativeSource {
+    /// Makes a source of runs in memory.
+    pub(crate) fn in_memory(runs: MemoryRuns) -> Self {
+        Self { source: SharedSource(Arc::new(runs)), folder: None }
+    }
 }
 
 /// A run with its name, suite, motion and place in the order of the suite.
@@ -175,15 +195,16 @@ impl NativeSource {
     }
 
     #[staticmethod]
-    fn of_runs(runs: Vec<NamedRun<'_>>) -> Self {
+    fn of_runs(runs: Vec<NamedRun<'_>>, simulated: bool) -> Self {
         let mut all = MemoryRuns::default();
         for (run, name, suite, motion, order, temperature) in &runs {
             let run = (*run.run).clone();
             let entry = all.push(name, suite.as_deref(), motion.as_deref(), run);
             entry.order = order.unwrap_or(entry.order);
             entry.temperature = *temperature;
+            entry.simulated = simulated;
         }
-        Self { source: SharedSource(Arc::new(all)), folder: None }
+        Self::in_memory(all)
     }
 
     /// Returns what the index says of each run.
@@ -195,10 +216,15 @@ impl NativeSource {
         self.source.runs().iter().map(row).collect()
     }
 
+    /// Returns whether a run is marked as simulated.
+    fn simulated(&self) -> bool {
+        self.source.runs().iter().any(|run| run.simulated)
+    }
+
     /// Reads a run.
     fn read(&self, py: Python<'_>, index: usize) -> PyResult<NativeRun> {
         let source = self.source.clone();
-        watched(py, None, move |_| {
+        watched_alone(py, None, move |_| {
             let options =
                 ReadOptions { gap_limit: GapLimit::Seconds(f64::INFINITY), ..Default::default() };
             let run = source.read(index, &options);

@@ -9,6 +9,7 @@ use reachtube::robot::{Lock, Parameter, ParameterKind, Urdf, UrdfOptions};
 use crate::arrays::{Input, Output, array, values};
 use crate::dynamics::{Kernel, friction, over_states, regressors};
 use crate::failure::{Failure, Result};
+use crate::pool;
 
 /// A robot, and the URDF it was read from if there is one.
 #[pyclass(frozen, name = "Robot", module = "reachtube._reachtube")]
@@ -53,6 +54,7 @@ impl NativeRobot {
         let (count, arguments) = self.arguments(py, arguments)?;
         let width = shape.iter().product();
         let robot = &*self.robot;
+        pool::check()?;
         let found = py.detach(|| over_states(robot, &arguments, width, kernel));
         Ok(array(py, found, &[&[count], shape].concat()))
     }
@@ -186,6 +188,7 @@ impl NativeRobot {
         let n = self.robot.joint_count();
         let (count, arguments) = self.arguments(py, &[("q", &q), ("qd", &qd)])?;
         let robot = &*self.robot;
+        pool::check()?;
         let [viscous, coulomb] = py.detach(|| friction(robot, &arguments));
         Ok((array(py, viscous, &[count, n]), array(py, coulomb, &[count, n])))
     }
@@ -200,6 +203,7 @@ impl NativeRobot {
         let (count, motion) = self.arguments(py, &[("q", &q), ("qd", &qd), ("qdd", &qdd)])?;
         let parameters = self.inertial_parameters();
         let robot = &*self.robot;
+        pool::check()?;
         let found = py.detach(|| regressors(robot, &parameters, &motion));
         Ok(array(py, found, &[count, robot.joint_count(), parameters.len()]))
     }

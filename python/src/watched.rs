@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 use reachtube::Progress;
 
 use crate::failure::{Failure, Result};
+use crate::pool;
 
 /// How often Python is asked for an interrupt.
 const POLL: Duration = Duration::from_millis(50);
@@ -67,13 +68,27 @@ impl Progress for Watch {
 }
 
 /// Runs a job on a thread of its own, without the interpreter, and returns its result. `progress`
-/// is called as in [`Watch::tell`].
+/// is called as in [`Watch::tell`]. The job may use the pool.
+///
+/// # Errors
+///
+/// As [`watched_alone`] and [`pool::check`].
+pub(crate) fn watched<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    job: impl FnOnce(&Watch) -> Result<T> + Send + 'static,
+) -> PyResult<T> {
+    pool::check()?;
+    watched_alone(py, progress, job)
+}
+
+/// Does what [`watched`] does for a job that does not use the pool.
 ///
 /// # Errors
 ///
 /// The exception of the job's failure; the exception of a signal, within [`POLL`] and [`GRACE`]:
 /// the job is then cancelled, and must have written nothing.
-pub(crate) fn watched<T: Send + 'static>(
+pub(crate) fn watched_alone<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
     job: impl FnOnce(&Watch) -> Result<T> + Send + 'static,

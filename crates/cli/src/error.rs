@@ -292,6 +292,8 @@ impl From<PipelineError> for Error {
             PipelineError::Conform(error) => (*error).into(),
             PipelineError::Robot(error) => (*error).into(),
             PipelineError::Abstraction(error) => (*error).into(),
+            PipelineError::File(error) => error.into(),
+            PipelineError::Settings { path, message } => Self::SettingsSyntax { path, message },
             error => Self::Pipeline(Box::new(error)),
         }
     }

@@ -3,64 +3,43 @@
 use std::path::{Path, PathBuf};
 
 use reachtube::page::{
-    Assets, LIBRARY_FILE, Page, Sources, page, suite_svg, write_html, write_library,
+    Assets, LIBRARY_FILE, PAGE_FILE, Page, PageFile, Sources, figure_files, page, page_files,
 };
 use reachtube::write;
 
 use crate::error::Result;
-use crate::{file_names, output};
+use crate::output;
 
 /// Returns where the page is written in `folder`.
 pub(crate) fn page_in(folder: &Path) -> PathBuf {
-    folder.join("report.html")
+    folder.join(PAGE_FILE)
 }
 
-/// Writes the page and its figures to `folder` and returns the page's path.
+/// Writes the page about `sources` and its figures to `folder` and returns the page's path.
 pub(crate) fn write(sources: &Sources, assets: Assets, folder: &Path) -> Result<PathBuf> {
-    write_excerpt(sources, assets, folder, "")
+    output::claim(&page_in(folder))?;
+    if assets == Assets::Beside {
+        output::claim(&folder.join(LIBRARY_FILE))?;
+    }
+    write_page(&page(sources)?, assets, folder)
 }
 
-/// Does what [`write()`] does for some of the recordings; `excerpt` ends the line under the title
-/// and says which.
-pub(crate) fn write_excerpt(
-    sources: &Sources,
-    assets: Assets,
-    folder: &Path,
-    excerpt: &str,
-) -> Result<PathBuf> {
-    let path = page_in(folder);
-    let library = folder.join(LIBRARY_FILE);
-    output::claim(&path)?;
-    if assets == Assets::Beside {
-        output::claim(&library)?;
-    }
-    let mut page = page(sources)?;
-    page.subtitle += excerpt;
-    let mut html = Vec::new();
-    write_html(&page, assets, &mut html)?;
-    write_figures(&page, folder)?;
-    if assets == Assets::Beside {
-        let mut text = Vec::new();
-        write_library(&mut text)?;
-        write::atomically(&library, |out| out.write_all(&text))?;
-    }
-    write::atomically(&path, |out| out.write_all(&html))?;
-    Ok(path)
+/// Writes a page and its figures to `folder` and returns the page's path.
+pub(crate) fn write_page(page: &Page, assets: Assets, folder: &Path) -> Result<PathBuf> {
+    write_files(&page_files(page, assets)?, folder)?;
+    Ok(page_in(folder))
 }
 
 /// Writes one SVG file per suite and view: A_motion.svg, A_deviation.svg.
 pub(crate) fn write_figures(page: &Page, folder: &Path) -> Result<()> {
-    let mut figures = Vec::new();
-    for (figure, name) in page.suites.iter().zip(file_names::of_figures(&page.suites)) {
-        for &view in figure.views() {
-            let view_name = format!("{view:?}").to_lowercase();
-            figures.push((folder.join(format!("{name}_{view_name}.svg")), figure, view));
-        }
-    }
-    output::claim_all(figures.iter().map(|(path, ..)| path))?;
-    for (path, figure, view) in figures {
-        let svg = suite_svg(figure, view)?;
-        write::atomically(&path, |out| out.write_all(svg.as_bytes()))?;
+    write_files(&figure_files(page)?, folder)
+}
+
+fn write_files(files: &[PageFile], folder: &Path) -> Result<()> {
+    let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.path)).collect();
+    output::claim_all(&paths)?;
+    for (path, file) in paths.iter().zip(files) {
+        write::atomically(path, |out| out.write_all(&file.content))?;
     }
     Ok(())
 }

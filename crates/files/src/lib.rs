@@ -22,6 +22,7 @@
 mod digest;
 mod error;
 pub mod json;
+mod names;
 mod overwrite;
 mod printable;
 mod read;
@@ -29,6 +30,7 @@ pub mod write;
 
 pub use digest::hex;
 pub use error::{Error, Result};
+pub use names::distinct_names;
 pub use overwrite::{MARK, Overwrite};
 pub use printable::printable;
 pub use read::{bytes, read, read_text};

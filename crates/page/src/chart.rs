@@ -5,7 +5,7 @@ use super::decimate::{Point, decimate};
 use super::error::Error;
 use super::layout::units;
 use super::skeleton::own_mark;
-use super::style::{GRID, INK, centred, font, tick_style};
+use super::style::{BAND, GRID, INK, centred, font, tick_style};
 use super::text::{Text, clean};
 use maud::{PreEscaped, html};
 use plotters::coord::types::RangedCoordf64;
@@ -16,6 +16,8 @@ use reachtube_scalar::number::tick_label;
 const WIDTH: f64 = 400.0;
 /// Height of the document \[px\].
 const HEIGHT: f64 = 230.0;
+/// Room above the range of the values, as a part of it, and below.
+const MARGIN: f64 = 0.05;
 /// Height of the title \[px\].
 const TITLE: f64 = 20.0;
 /// Room left of the plot \[px\].
@@ -45,6 +47,8 @@ pub struct Chart {
     pub x: String,
     /// Label of the vertical axis with its unit.
     pub y: String,
+    /// Corners of a grey area behind the series, one after the other; none where it is empty.
+    pub area: Vec<(f64, f64)>,
     /// The series, each drawn over the one before it.
     pub series: Vec<Series>,
 }
@@ -77,10 +81,19 @@ pub(crate) fn chart_svg(chart: &Chart) -> Result<String, Error> {
 ///
 /// As [`chart_svg`].
 pub(super) fn chart_svg_of_height(chart: &Chart, height: f64) -> Result<String, Error> {
+    chart_svg_of_size(chart, [WIDTH, height])
+}
+
+/// Draws a chart as [`chart_svg`] does, with a width and a height \[px\].
+///
+/// # Errors
+///
+/// As [`chart_svg`].
+pub(super) fn chart_svg_of_size(chart: &Chart, size: [f64; 2]) -> Result<String, Error> {
     check(chart)?;
-    svg_document([WIDTH, height], &chart.title, |canvas| draw(canvas, chart, height)).map_err(
-        |cause| Error::Draw { figure: format!("chart {}", chart.title), cause: cause.to_string() },
-    )
+    svg_document(size, &chart.title, |canvas| draw(canvas, chart, size)).map_err(|cause| {
+        Error::Draw { figure: format!("chart {}", chart.title), cause: cause.to_string() }
+    })
 }
 
 /// Draws charts side by side, `columns` in a row, as one complete SVG document. Readers that do not
@@ -108,8 +121,13 @@ pub fn charts_svg(charts: &[Chart], columns: usize, label: &str) -> Result<Strin
     Ok(document.into_string() + "\n")
 }
 
+/// Returns all points of a chart.
+fn points(chart: &Chart) -> impl Iterator<Item = &Point> {
+    chart.area.iter().chain(chart.series.iter().flat_map(|series| &series.points))
+}
+
 fn check(chart: &Chart) -> Result<(), Error> {
-    let mut points = chart.series.iter().flat_map(|series| &series.points).enumerate();
+    let mut points = points(chart).enumerate();
     match points.find(|(_, (x, y))| !(x.is_finite() && y.is_finite())) {
         None => Ok(()),
         Some((index, (x, y))) => Err(Error::NotFinite {
@@ -121,12 +139,12 @@ fn check(chart: &Chart) -> Result<(), Error> {
     }
 }
 
-fn draw(canvas: &Canvas, chart: &Chart, height: f64) -> DrawResult {
-    labels(canvas, chart, height)?;
+fn draw(canvas: &Canvas, chart: &Chart, [width, height]: [f64; 2]) -> DrawResult {
+    labels(canvas, chart, [width, height])?;
     let [x, y] = [range(chart, |p| p.0), range(chart, |p| p.1)];
     let plot = canvas.clone().shrink(
         (units(Y_LABEL), units(TITLE)),
-        (units(WIDTH - Y_LABEL - RIGHT), units(height - TITLE - X_LABEL)),
+        (units(width - Y_LABEL - RIGHT), units(height - TITLE - X_LABEL)),
     );
     let mut axes = ChartBuilder::on(&plot)
         .set_label_area_size(LabelAreaPosition::Left, units(LEFT - Y_LABEL))
@@ -143,7 +161,13 @@ fn draw(canvas: &Canvas, chart: &Chart, height: f64) -> DrawResult {
         .x_label_formatter(&|value| tick_label(*value, x[1] - x[0]))
         .y_label_formatter(&|value| tick_label(*value, y[1] - y[0]))
         .draw()?;
-    let (column, tolerance) = ((x[1] - x[0]) / (2.0 * WIDTH), (y[1] - y[0]) / (20.0 * height));
+    let (column, tolerance) = ((x[1] - x[0]) / (2.0 * width), (y[1] - y[0]) / (20.0 * height));
+    if !chart.area.is_empty() {
+        let [fill, edge] = BAND;
+        axes.draw_series([Polygon::new(chart.area.clone(), fill.filled())])?;
+        let outline = chart.area.iter().chain(&chart.area[..1]).copied().collect::<Vec<_>>();
+        axes.draw_series([PathElement::new(outline, edge.stroke_width(6))])?;
+    }
     chart.series.iter().try_for_each(|series| match series.dots {
         true => dots(&mut axes, series),
         false => line(&mut axes, series, column, tolerance),
@@ -151,8 +175,8 @@ fn draw(canvas: &Canvas, chart: &Chart, height: f64) -> DrawResult {
 }
 
 /// Writes the title and the labels of the axes.
-fn labels(canvas: &Canvas, chart: &Chart, height: f64) -> DrawResult {
-    let middle = units(LEFT + 0.5 * (WIDTH - LEFT - RIGHT));
+fn labels(canvas: &Canvas, chart: &Chart, [width, height]: [f64; 2]) -> DrawResult {
+    let middle = units(LEFT + 0.5 * (width - LEFT - RIGHT));
     let title = centred(font(12.0, FontStyle::Bold));
     let label = font(11.0, FontStyle::Normal);
     let turned = centred(label.transform(FontTransform::Rotate270));
@@ -187,12 +211,12 @@ fn colour(series: &Series) -> RGBColor {
 
 /// Returns the range of a coordinate with a margin of 5 %; a width of 1 around a constant.
 fn range(chart: &Chart, coordinate: fn(&Point) -> f64) -> [f64; 2] {
-    let values = || chart.series.iter().flat_map(|series| series.points.iter().map(coordinate));
+    let values = || points(chart).map(coordinate);
     let (low, high) =
         (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     // Values that differ by rounding only count as constant.
     match (low.is_finite(), high - low > 1e-9 * high.abs().max(low.abs()).max(1e-3)) {
-        (true, true) => [low - 0.05 * (high - low), high + 0.05 * (high - low)],
+        (true, true) => [low - MARGIN * (high - low), high + MARGIN * (high - low)],
         (true, false) => [low - 0.5, high + 0.5],
         _ => [0.0, 1.0],
     }
@@ -211,6 +235,7 @@ mod tests {
             title: "a <b> & c".into(),
             x: "time [s]".into(),
             y: "torque [N m]".into(),
+            area: vec![(0.0, -0.5), (20.0, -0.5), (20.0, 0.5), (0.0, 0.5)],
             series: vec![
                 Series { points: points.clone(), dots: true, colour: [1, 2, 3] },
                 Series { points, dots: false, colour: [9, 8, 7] },
@@ -221,7 +246,7 @@ mod tests {
         let tags = |name: &str| {
             document.descendants().filter(|node| node.tag_name().name() == name).count()
         };
-        assert_eq!((tags("circle"), tags("b")), (500, 0));
+        assert_eq!((tags("circle"), tags("b"), tags("polygon")), (500, 0, 1));
         assert_eq!(document.root_element().attribute("aria-label"), Some("a <b> & c"));
         assert!(
             svg.contains("stroke=\"#090807\"") && !svg.contains("<b>") && svg.ends_with("</svg>\n")

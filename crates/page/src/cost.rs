@@ -32,6 +32,7 @@ pub(super) fn cost_charts(figures: &[SuiteFigure]) -> Vec<Chart> {
         title: format!("Part of the set that each run uses, {title}"),
         x: x.into(),
         y: "part of the radius".into(),
+        area: Vec::new(),
         series: vec![
             Series { points: edge(&points), dots: false, colour: EDGE },
             Series { points, dots: true, colour: RUN },

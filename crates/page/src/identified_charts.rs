@@ -48,6 +48,7 @@ pub(super) fn torque_charts(
         title: name.into(),
         x: "time [s]".into(),
         y: format!("torque [{unit}]"),
+        area: Vec::new(),
         series: torque,
     };
     // The line at 0 gives both charts the same times.
@@ -58,6 +59,7 @@ pub(super) fn torque_charts(
         title: String::new(),
         x: "time [s]".into(),
         y: format!("residual [{unit}]"),
+        area: Vec::new(),
         series: residuals,
     };
     [torque, residual]
@@ -102,6 +104,7 @@ fn friction_chart(
         title: format!("{}, {part}", fit.joint.joint),
         x,
         y: format!("friction [{}]", kind.force_unit()),
+        area: Vec::new(),
         series: vec![
             Series { points: points(1.0), dots: true, colour: MEASURED },
             Series { points: points(0.0), dots: true, colour: FITTED },

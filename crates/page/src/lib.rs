@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod assemble;
+mod built;
 mod canvas;
 mod chart;
 mod check;
@@ -22,6 +23,7 @@ mod library;
 mod nominal;
 mod packed;
 mod page;
+mod page_files;
 mod panel;
 mod phase_planes;
 mod scripts;
@@ -40,6 +42,7 @@ mod browser;
 mod sample;
 
 pub use assemble::page;
+pub use built::built_pages;
 pub use chart::{Chart, Series, charts_svg};
 pub use error::{Error, Result};
 pub use figure::suite_svg;
@@ -48,6 +51,7 @@ pub use identified::write_identified_html;
 pub use identified_charts::{load_chart, viscous_chart};
 pub use library::{Assets, LIBRARY_FILE, write_library};
 pub use page::{Bounds, JointSets, Page, SetsTable, Verdict};
+pub use page_files::{PAGE_FILE, PageFile, figure_files, page_files};
 pub use reachtube_conform::data::Side;
 pub use skeleton::{document, long_table, section};
 pub use sources::Sources;

@@ -41,6 +41,7 @@ fn chart(plane: &PhasePlane, model: &Model) -> Chart {
         title: format!("{}, {:.3} s", joint.name, plane.time),
         x: format!("position [{}]", kind.position_unit()),
         y: format!("velocity [{}]", kind.velocity_unit()),
+        area: Vec::new(),
         series,
     }
 }

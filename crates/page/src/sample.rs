@@ -115,6 +115,7 @@ fn phase_plane() -> Chart {
         title: "joint 1, 0.500 s".into(),
         x: "position [rad]".into(),
         y: "velocity [rad/s]".into(),
+        area: Vec::new(),
         series: vec![
             line(vec![(-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]),
             line(vec![(-0.5, 0.0), (0.0, 0.5), (0.5, 0.0)]),

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use reachtube_conform::settings::{Equations, NominalStart};
-use reachtube_conform::{Answer, FitSettings};
+use reachtube_conform::{Answer, FitSettings, Progress};
 use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
@@ -60,7 +60,7 @@ impl Built {
 }
 
 /// Makes a model of the recordings that `given` names, and compares it with motions that are held
-/// out. `say` takes each choice when it is made.
+/// out. `say` takes each choice when it is made; `progress` may cancel the job.
 ///
 /// # Errors
 ///
@@ -72,8 +72,9 @@ pub fn build(
     torque: Torque,
     given: &Choices,
     say: &mut dyn FnMut(&Choice),
+    progress: &dyn Progress,
 ) -> Result<Built> {
-    let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say };
+    let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
     let settings = PrepareSettings { gains: given.gains.clone(), ..PrepareSettings::default() };
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
@@ -101,10 +102,10 @@ pub fn build(
 
     // The horizon and the sets.
     let motions = motion_names(&split);
-    let from_start = torque == Torque::Compensated;
-    let recordings = Prepared { logs: &logs, motions: &motions, from_start };
-    let (mut answer, horizons) =
-        sets(&mut chooser, &mut trial, &recordings).map_err(|error| error.because(&warnings))?;
+    let (from_start, simulated) = (torque == Torque::Compensated, sorted.simulated);
+    let recordings = Prepared { logs: &logs, motions: &motions, from_start, simulated };
+    let found = sets(&mut chooser, &mut trial, &recordings);
+    let (mut answer, horizons) = found.map_err(|error| error.because(&warnings))?;
     let raw: Vec<RawLog> = split.held_out.iter().map(|recording| recording.log.clone()).collect();
     let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
     let held_back = Prepared { logs: &held_back, ..recordings };
@@ -113,12 +114,11 @@ pub fn build(
     let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
     let Compared { held_out, shown, shown_held_out } = compared;
     warnings.extend(held_out.warning());
-    let (choices, made) = (chooser.choices, chooser.made);
     Ok(Built {
         answer,
         robot,
-        choices,
-        made,
+        choices: chooser.choices,
+        made: chooser.made,
         notes: sorted.notes,
         warnings,
         horizons,
@@ -130,13 +130,13 @@ pub fn build(
 
 /// Chooses the filter, the model of deviations about the mean of the motion, and what the noise of
 /// the sensors is. Returns them with the cut-off, Hz, for `robot` as described.
-fn first_choices(
-    chooser: &mut Chooser,
+fn first_choices<'a>(
+    chooser: &mut Chooser<'a>,
     robot: &Robot,
     torque: Torque,
     raw: &[&RawLog],
     settings: &PrepareSettings,
-) -> Result<(Trial, f64)> {
+) -> Result<(Trial<'a>, f64)> {
     let given = chooser.choices.clone();
     let is_filtered = torque != Torque::Compensated;
     let cut_off = cut_off(raw, &PrepareSettings { cut_off: given.cut_off, ..settings.clone() })?;
@@ -166,7 +166,8 @@ fn first_choices(
     let equations = given.equations.unwrap_or(Equations::Robot);
     let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
     let robot = robot.clone();
-    let trial = Trial { robot, expansion, sensor_noise, equations, nominal, fit: None };
+    let progress = chooser.progress;
+    let trial = Trial { robot, expansion, sensor_noise, equations, nominal, fit: None, progress };
     Ok((trial, cut_off))
 }
 

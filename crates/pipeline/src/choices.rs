@@ -1,11 +1,13 @@
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use reachtube_conform::Group;
 use reachtube_conform::settings::Equations;
 use reachtube_recordings::Torque;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+
+use crate::error::{Error, Result};
 
 /// What the comment with the digest of the values begins with.
 const DIGEST: &str = "the reasons belong to the values with the digest ";
@@ -104,6 +106,60 @@ impl Choices {
         Ok(choices)
     }
 
+    /// Reads a file of choices, with its paths from the working directory.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::File`] if the file cannot be read, [`Error::Settings`] as
+    /// [`from_toml`](Self::from_toml).
+    pub fn load(path: &Path) -> Result<Self> {
+        let text = reachtube_files::read_text(path, "give a file that `model` wrote")?;
+        let read = Self::from_toml(&text);
+        let mut choices = read
+            .map_err(|error| Error::Settings { path: path.into(), message: error.to_string() })?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        if let Some(robot) = &choices.robot {
+            let beside = folder.join(robot);
+            if beside.exists() {
+                choices.robot = Some(beside.display().to_string());
+            }
+        }
+        choices.data.iter_mut().for_each(|path| *path = folder.join(&*path));
+        Ok(choices)
+    }
+
+    /// Returns the choices with those that `given` has in place of their own. Reasons are about
+    /// values, and are dropped where one is another.
+    #[must_use]
+    pub fn replaced_by(self, given: Self) -> Self {
+        fn filled<T>(given: Vec<T>, own: Vec<T>) -> Vec<T> {
+            if given.is_empty() { own } else { given }
+        }
+        let before = self.clone();
+        let mut choices = Self {
+            robot: given.robot.or(self.robot),
+            data: filled(given.data, self.data),
+            torque: given.torque.or(self.torque),
+            gains: filled(given.gains, self.gains),
+            held_out: given.held_out.or(self.held_out),
+            cut_off: given.cut_off.or(self.cut_off),
+            identify: given.identify.or(self.identify),
+            equations: given.equations.or(self.equations),
+            expansion: given.expansion.or(self.expansion),
+            sensor_noise: given.sensor_noise.or(self.sensor_noise),
+            largest_ratio: given.largest_ratio.or(self.largest_ratio),
+            horizon: given.horizon.or(self.horizon),
+            fit: given.fit.or(self.fit),
+            pull: given.pull.or(self.pull),
+            lock: filled(given.lock, self.lock),
+            reasons: self.reasons,
+        };
+        if choices != before {
+            choices.reasons.clear();
+        }
+        choices
+    }
+
     /// Returns the choices as TOML, with the reasons of `made` as comments, and a digest of the
     /// values that the reasons belong to.
     #[must_use]
@@ -170,6 +226,13 @@ mod tests {
         let read = Choices::from_toml(&text).unwrap();
         assert_eq!(read.reasons["held-out"], reason.trim());
         assert_eq!(Choices { reasons: BTreeMap::new(), ..read }, choices);
+        // A choice that is given replaces the one in the file, and its reason with it.
+        let longer = Choices { horizon: Some(0.5), ..Choices::default() };
+        let replaced = Choices::from_toml(&text).unwrap().replaced_by(longer);
+        assert!(replaced.reasons.is_empty());
+        assert_eq!(replaced, Choices { horizon: Some(0.5), ..choices.clone() });
+        let same = Choices::from_toml(&text).unwrap().replaced_by(Choices::default());
+        assert_eq!(same.reasons.len(), 1);
         // The reasons of an edited file may be about other values.
         let edited = Choices::from_toml(&text.replace("-1.2", "-1.3")).unwrap();
         assert!(edited.reasons.is_empty());

@@ -1,5 +1,7 @@
 //! The choices so far.
 
+use reachtube_conform::Progress;
+
 use crate::choices::{Choice, Choices};
 use crate::held_out::Split;
 
@@ -8,6 +10,7 @@ pub(crate) struct Chooser<'a> {
     pub choices: Choices,
     pub made: Vec<Choice>,
     pub say: &'a mut dyn FnMut(&Choice),
+    pub progress: &'a dyn Progress,
 }
 
 impl Chooser<'_> {

@@ -1,3 +1,5 @@
+use std::path::PathBuf;
+
 use thiserror::Error;
 
 /// Why no model could be made of the recordings.
@@ -16,6 +18,17 @@ pub enum Error {
     /// The expansion point does not fit the robot.
     #[error(transparent)]
     Abstraction(Box<reachtube_abstraction::Error>),
+    /// A file could not be read.
+    #[error(transparent)]
+    File(#[from] reachtube_files::Error),
+    /// A file of choices is not what `model` writes.
+    #[error("{}: {message}", path.display())]
+    Settings {
+        /// The file.
+        path: PathBuf,
+        /// The problem, with line and column.
+        message: String,
+    },
     /// No recording shows a motion of several joints.
     #[error(
         "none of the {recordings} recordings shows a motion of several joints: {rest} at rest, \

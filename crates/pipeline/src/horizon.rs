@@ -57,6 +57,7 @@ pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<H
         };
         let (ratios, reason) = match trial.run(windows) {
             Ok(answer) => (ratios(&answer.found.usefulness.joints), None),
+            Err(error) if trial.progress.is_cancelled() => return Err(error),
             Err(error) => (Vec::new(), Some(error.to_string())),
         };
         tried.push(HorizonWidths { horizon, ratios, reason });

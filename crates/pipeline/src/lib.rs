@@ -5,15 +5,17 @@ mod choices;
 mod chooser;
 mod compared;
 mod error;
+mod files;
 mod held_out;
 mod horizon;
+mod joint_row;
 mod kinds;
 mod noise;
 mod plausible;
 mod prepared;
-
 mod robot;
 mod sorted;
+mod summary;
 mod trial;
 mod windows;
 
@@ -22,4 +24,5 @@ pub use choices::{Choice, Choices};
 pub use compared::HeldOut;
 pub use error::{Error, Result};
 pub use horizon::HorizonWidths;
+pub use joint_row::JointRow;
 pub use prepared::prepared;

@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use reachtube_conform::Model;
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, read};
-use reachtube_recordings::{MemoryRuns, Preparation};
+use reachtube_recordings::{MemoryRuns, Preparation, any_simulated};
 use reachtube_robot::Robot;
 
 use crate::error::Result;
@@ -25,7 +25,8 @@ pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> 
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
     let (motions, from_start) = (index_names(paths, &raw), window.is_none());
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
-    let prepared = Prepared { logs: &logs, motions: &motions, from_start };
+    let simulated = any_simulated(raw.iter().map(|log| &*log.file));
+    let prepared = Prepared { logs: &logs, motions: &motions, from_start, simulated };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),

@@ -52,7 +52,7 @@ pub(crate) struct Evidence<'a> {
     /// Cut-off frequency of the low-pass, Hz.
     pub cut_off: f64,
     /// The trial without a robot of its own.
-    pub trial: &'a Trial,
+    pub trial: &'a Trial<'a>,
 }
 
 impl Evidence<'_> {
@@ -160,7 +160,8 @@ impl Evidence<'_> {
     /// the root mean square of what is left by the root mean square of the torque.
     fn unexplained(&self, nominal: &Nominal) -> Result<f64> {
         let none = BTreeMap::new();
-        let recordings = Prepared { logs: &nominal.logs, motions: &none, from_start: false };
+        let recordings =
+            Prepared { logs: &nominal.logs, motions: &none, from_start: false, simulated: false };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
         // A model that runs away explains nothing.

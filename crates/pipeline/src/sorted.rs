@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
-use reachtube_recordings::{DataSet, RunEntry, RunSource};
+use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated};
 use reachtube_robot::Robot;
 
 use crate::choices::Choices;
@@ -20,6 +20,8 @@ pub(crate) struct Sorted {
     pub motions: Vec<Recording>,
     /// What a user should know about the reading of the recordings.
     pub notes: Vec<String>,
+    /// Whether a recording is marked as simulated.
+    pub simulated: bool,
 }
 
 impl Sorted {
@@ -73,7 +75,8 @@ impl Sorted {
         let [rest, one_joint] =
             [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
-        Ok(Self { rest, one_joint, motions, notes })
+        let simulated = any_simulated(raw.iter().map(|log| &*log.file));
+        Ok(Self { rest, one_joint, motions, notes, simulated })
     }
 }
 

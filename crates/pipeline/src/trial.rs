@@ -2,15 +2,15 @@
 
 use reachtube_abstraction::ExpansionPoint;
 use reachtube_conform::settings::{Equations, NominalStart};
-use reachtube_conform::{Answer, FitSettings, Job, Noise, Settings, Silent};
+use reachtube_conform::{Answer, FitSettings, Job, Noise, Progress, Settings};
 use reachtube_recordings::{MemoryRuns, Torque};
 use reachtube_robot::Robot;
 
 use crate::error::Result;
 
 /// What a conformance over windows needs besides the windows.
-#[derive(Debug, Clone)]
-pub(crate) struct Trial {
+#[derive(Clone)]
+pub(crate) struct Trial<'a> {
     /// The robot, whose own equations the nominal motions may satisfy.
     pub robot: Robot,
     /// The position about which deviations are linear, n, rad.
@@ -23,9 +23,20 @@ pub(crate) struct Trial {
     pub nominal: NominalStart,
     /// What is fitted.
     pub fit: Option<FitSettings>,
+    /// Who may cancel the job.
+    pub progress: &'a dyn Progress,
 }
 
-impl Trial {
+/// An observer of a job of many trials, who cancels each of them and counts none.
+struct OnlyCancels<'a>(&'a dyn Progress);
+
+impl Progress for OnlyCancels<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+impl Trial<'_> {
     /// Finds the sets for windows.
     ///
     /// # Errors
@@ -44,6 +55,6 @@ impl Trial {
         let job = Job::new(self.robot.clone(), windows, Torque::Compensated)
             .settings(settings)
             .fit(self.fit.clone());
-        Ok(job.run(&Silent)?)
+        Ok(job.run(&OnlyCancels(self.progress))?)
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct Prepared<'a> {
     /// Whether a recording counts from its start, and recordings of a motion are one suite, as
     /// where inputs were commanded; else each is cut into windows, which are suites of their own.
     pub from_start: bool,
+    /// Whether the recordings are simulated.
+    pub simulated: bool,
 }
 
 impl Prepared<'_> {
@@ -63,7 +65,8 @@ impl Prepared<'_> {
             };
             let name = if self.from_start { &window.log.name } else { &window.suite };
             if is_wanted(name) {
-                runs.push(name, Some(&window.suite), Some(&motion), run(&window.log));
+                let run = run(&window.log);
+                runs.push(name, Some(&window.suite), Some(&motion), run).simulated = self.simulated;
             }
         }
         Ok(runs)

@@ -11,6 +11,25 @@ use crate::source::{ReadOptions, RunSource};
 /// The file in a folder of recordings that lists them.
 const INDEX: &str = "runs.csv";
 
+/// Number of folders above a recording in which an index may list it.
+const LEVELS: usize = 3;
+
+/// Returns whether an index marks one of some recordings as simulated. The index lies in the
+/// recording's folder, or up to two folders above; the nearest one counts.
+pub fn any_simulated<'a>(recordings: impl IntoIterator<Item = &'a Path>) -> bool {
+    let recordings: BTreeSet<&Path> = recordings.into_iter().collect();
+    let index = |recording: &&'a Path| {
+        let mut folders = recording.ancestors().skip(1).take(LEVELS);
+        folders.find(|folder| folder.join(INDEX).is_file())
+    };
+    let folders: BTreeSet<&Path> = recordings.iter().filter_map(index).collect();
+    let sets = folders.into_iter().filter_map(|folder| DataSet::open(folder).ok());
+    sets.into_iter().any(|data| {
+        let marked = data.runs.iter().filter(|run| run.simulated);
+        marked.into_iter().any(|run| recordings.contains(&*data.root.join(&run.file)))
+    })
+}
+
 /// A folder of recordings with its index `runs.csv`.
 #[derive(Debug, Clone)]
 pub struct DataSet {

@@ -27,6 +27,8 @@ pub struct RunEntry {
     pub temperature: Option<f64>,
     /// SHA-256 that the file should have, in hexadecimal.
     pub sha256: Option<String>,
+    /// Whether the recording is marked as simulated, and not measured.
+    pub simulated: bool,
     /// Place in the order in which the runs of the suite were recorded, from 1.
     pub order: u64,
     /// Line in `runs.csv`, or number of a run in memory, from 1.
@@ -41,6 +43,7 @@ struct IndexRow {
     kind: Option<String>,
     temperature: Option<f64>,
     sha256: Option<String>,
+    simulated: Option<bool>,
     order: Option<String>,
     repeat: Option<String>,
 }
@@ -55,6 +58,7 @@ impl IndexRow {
             kind: filled(self.kind),
             temperature: self.temperature,
             sha256: filled(self.sha256),
+            simulated: self.simulated.unwrap_or(false),
             order,
             line,
         }

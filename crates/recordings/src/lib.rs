@@ -57,7 +57,7 @@ mod text;
 mod torque;
 mod units;
 
-pub use data_set::DataSet;
+pub use data_set::{DataSet, any_simulated};
 pub use decimal::picoseconds;
 pub use defect::{Defect, DefectKind};
 pub use error::{Error, Result};

@@ -66,6 +66,7 @@ impl<'a> LoggedRuns<'a> {
                 kind: Some("logs".into()),
                 temperature: None,
                 sha256: None,
+                simulated: false,
                 order: line,
                 line,
             }

@@ -30,7 +30,7 @@ impl MemoryRuns {
     /// SHA-256 becomes the SHA-256 of its numbers.
     ///
     /// Returns the run's entry. The run counts as the latest of its suite unless its `order` is
-    /// set there, and its `temperature` can be set likewise.
+    /// set there; its `temperature`, and whether it is `simulated`, can be set likewise.
     pub fn push(
         &mut self,
         name: &str,
@@ -47,6 +47,7 @@ impl MemoryRuns {
             kind: None,
             temperature: None,
             sha256: None,
+            simulated: false,
             order: latest + 1,
             line: self.entries.len() as u64 + 1,
         });

@@ -6,7 +6,7 @@ use clap::Args;
 use reachtube::identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, cut_off, prepare, read, windows,
 };
-use reachtube::recordings::ColumnSettings;
+use reachtube::recordings::{ColumnSettings, any_simulated};
 use serde_json::json;
 
 use crate::error::{Error, Result};
@@ -84,7 +84,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let raw = read(&entries, std::path::Path::new(""), &robot, &settings)?;
     let cut_off = cut_off(&raw.iter().collect::<Vec<&RawLog>>(), &settings)?;
     let prepared = prepare(&raw, &settings, cut_off, args.compensate.then_some(&robot))?;
-    let cut = windows(&prepared.logs, args.window, args.repeats);
+    let mut cut = windows(&prepared.logs, args.window, args.repeats);
+    cut.simulated = any_simulated(raw.iter().map(|log| &*log.file));
     if cut.windows.is_empty() {
         return Err(nothing_left(args, &prepared.logs));
     }

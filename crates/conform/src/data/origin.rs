@@ -24,6 +24,14 @@ impl Origin {
         }
     }
 
+    /// Returns whether a recording is marked as simulated. A fold has no such marks.
+    pub(crate) fn is_simulated(&self) -> bool {
+        match self {
+            Self::Source(source) => source.runs().iter().any(|run| run.simulated),
+            Self::Fold(_) => false,
+        }
+    }
+
     /// Returns the name of run `index` for messages.
     pub(crate) fn run_name(&self, index: usize) -> PathBuf {
         match self {

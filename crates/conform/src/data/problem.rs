@@ -191,6 +191,12 @@ impl Problem {
         self.read.origin.entry(index)
     }
 
+    /// Returns whether a recording of the source is marked as simulated.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        self.read.origin.is_simulated()
+    }
+
     /// Returns whether the problem was made of a fold.
     pub(crate) fn is_folded(&self) -> bool {
         matches!(self.read.origin, Origin::Fold(_))

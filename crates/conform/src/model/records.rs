@@ -49,6 +49,9 @@ pub struct DataRecord {
     /// Number of recordings of the manifest that were left out because they have defects.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub skipped: usize,
+    /// Whether recordings are simulated, and not measured.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub simulated: bool,
     /// The suites.
     pub suites: Vec<SuiteRecord>,
 }
@@ -152,7 +155,8 @@ impl DataRecord {
         };
         let suites = suites.iter().map(suite).collect();
         let root = (!are_listed).then(|| root.clone());
-        let record = Self { sha256: String::new(), root, skipped: *skipped, suites };
+        let simulated = problem.is_simulated();
+        let record = Self { sha256: String::new(), root, skipped: *skipped, simulated, suites };
         Self { sha256: record.digest(), ..record }
     }
 

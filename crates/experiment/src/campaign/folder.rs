@@ -20,7 +20,8 @@ use crate::virtual_robot::VirtualRobot;
 /// The index of the data set.
 const INDEX: &str = "runs.csv";
 
-const INDEX_HEADER: &str = "file,kind,suite,motion,repeat,rows,duration_s,temperature,sha256\n";
+const INDEX_HEADER: &str =
+    "file,kind,suite,motion,repeat,rows,duration_s,temperature,sha256,simulated\n";
 
 /// Advice where a recording of the campaign cannot be read back.
 const REMEDY: &str = "delete it, and start the campaign again";
@@ -111,7 +112,8 @@ pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
     let temperature = temperatures.iter().sum::<f64>() / temperatures.len() as f64;
     let hash = hex(&Sha256::digest(text));
     format!(
-        "{file},{kind},{suite},{motion},{repeat},{rows},{duration:.3},{temperature:.2},{hash}\n"
+        "{file},{kind},{suite},{motion},{repeat},{rows},{duration:.3},{temperature:.2},{hash},\
+         true\n"
     )
 }
 

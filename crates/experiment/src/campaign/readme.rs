@@ -61,7 +61,8 @@ that it finds, as in the description.
 `t` s, `q` rad, `qd` rad/s, `tau` N m, `temp` °C. Samples are 4 ms apart, 20 ms in `poses/`, where
 the arm mostly rests. Positions have 6 decimals (the encoders have steps of {step:.1e} rad),
 velocities 5, torques 3 (the controller commands whole mN m), temperatures 1. In `runs.csv`,
-`temperature` is the mean over the joints when the recording begins.
+`temperature` is the mean over the joints when the recording begins, and `simulated` marks all
+recordings, so that pages about them say so.
 
 ## What the nominal model does not know
 

@@ -16,7 +16,8 @@ use crate::virtual_robot::{Recording, VirtualRobot};
 /// First line of the README, which marks the folder of a demo.
 const TITLE: &str = "# Recordings of a virtual robot";
 
-const INDEX_HEADER: &str = "file,kind,suite,motion,use,repeat,rows,duration_s,temperature,sha256\n";
+const INDEX_HEADER: &str =
+    "file,kind,suite,motion,use,repeat,rows,duration_s,temperature,sha256,simulated\n";
 
 /// Refuses a folder that holds files but no README of a demo.
 pub(super) fn refuse_foreign(folder: &Path) -> Result<(), DemoError> {
@@ -47,7 +48,7 @@ pub(super) fn write_suite(
         let (temperature, hash) = (run.first_temperature(), sha256(&text));
         Ok(format!(
             "{file},test_suite,{name},{motion},{use_for},{repeat},{rows},{duration:.3},\
-             {temperature:.2},{hash}\n"
+             {temperature:.2},{hash},true\n"
         ))
     };
     (1..).zip(runs).map(write).collect()
@@ -91,7 +92,8 @@ run.
 
 Columns: `t` s, `q` rad, `qd` rad/s, `tau` N m, `temp` °C. `tau` is the input u, without gravity and
 Coulomb friction: read it with `--torque compensated`. In `runs.csv` the column `use` marks the
-suites for `reachtube check`, and `temperature` is the mean over the joints when the run begins.
+suites for `reachtube check`, `temperature` is the mean over the joints when the run begins, and
+`simulated` marks the recordings, so that pages about them say so.
 
 The nominal model does not contain these effects:
 

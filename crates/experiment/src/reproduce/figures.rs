@@ -85,6 +85,7 @@ pub fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
         title: title.into(),
         x: "time [s]".into(),
         y: y.into(),
+        area: Vec::new(),
         series,
     };
     let position = "position [rad]";
@@ -203,6 +204,7 @@ fn planned_chart(motion: &Motion, starts: &[OpenLoop], joint: usize) -> Chart {
         title: format!("joint{}", joint + 1),
         x: "time [s]".into(),
         y: "position [rad]".into(),
+        area: Vec::new(),
         series,
     }
 }

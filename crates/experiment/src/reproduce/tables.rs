@@ -191,6 +191,7 @@ impl Coverage {
                 ),
                 x: "stated probability".into(),
                 y: "true probability".into(),
+                area: Vec::new(),
                 series: vec![line, dots],
             }
         };

@@ -2,7 +2,7 @@ use crate::error::Result;
 use crate::prepare::align::delay;
 use crate::prepare::log::PreparedLog;
 use reachtube_files::write::atomically;
-use reachtube_recordings::column_names;
+use reachtube_recordings::{MemoryRuns, Run, column_names};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -13,6 +13,8 @@ pub struct Windows {
     pub windows: Vec<Window>,
     /// Shifts of repeats, one sentence each.
     pub changes: Vec<String>,
+    /// Whether the logs are simulated, which the index of the windows then says.
+    pub simulated: bool,
 }
 
 /// An interval of a log.
@@ -46,7 +48,7 @@ pub fn windows(logs: &[PreparedLog], duration: Option<f64>, repeats: bool) -> Wi
         reference => delay(&logs[reference], &logs[index]).unwrap_or(0.0),
     };
     let delays: Vec<f64> = (0..logs.len()).map(late).collect();
-    let mut found = Windows { windows: Vec::new(), changes: Vec::new() };
+    let mut found = Windows { windows: Vec::new(), changes: Vec::new(), simulated: false };
     for (index, (log, motion)) in logs.iter().zip(&motions).enumerate() {
         if delays[index] != 0.0 {
             let reference = &logs[first(index)].name;
@@ -85,6 +87,29 @@ impl Windows {
         windows.map(|(number, window)| format!("{:04}_{}.csv", number + 1, window.log.name))
     }
 
+    /// Returns the windows as recordings in memory, with the numbers that [`write`](Self::write)
+    /// writes.
+    ///
+    /// # Panics
+    ///
+    /// Never: a window has one row of finite numbers for each sample.
+    #[must_use]
+    pub fn runs(&self) -> MemoryRuns {
+        let mut runs = MemoryRuns::default();
+        for (file, window) in self.file_names().zip(&self.windows) {
+            let log = &window.log;
+            let times = (0..log.len()).map(|k| decimals(k as f64 * log.step, 6)).collect();
+            let row = |k: usize| log.q(k).iter().chain(log.qd(k)).map(|value| decimals(*value, 7));
+            let states = (0..log.len()).flat_map(row).collect();
+            let torques = log.tau.iter().map(|value| decimals(*value, 7)).collect();
+            let run = Run::new(log.joints, times, states, torques);
+            let run = run.expect("a window has one row of finite numbers for each sample");
+            let entry = runs.push(&file, Some(&window.suite), Some(&window.motion), run);
+            entry.simulated = self.simulated;
+        }
+        runs
+    }
+
     /// Writes the windows as CSV files into a folder, with their index runs.csv.
     ///
     /// Times in a file count from the start of its window.
@@ -93,15 +118,21 @@ impl Windows {
     ///
     /// [`Error::File`](crate::Error::File) if a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        let mut index = String::from("file,suite,motion\n");
+        let mut index = String::from("file,suite,motion,simulated\n");
         for (file, window) in self.file_names().zip(&self.windows) {
-            let _ = writeln!(index, "{file},{},{}", window.suite, window.motion);
+            let _ = writeln!(index, "{file},{},{},{}", window.suite, window.motion, self.simulated);
             let text = csv(&window.log);
             atomically(&folder.join(&file), |out| out.write_all(text.as_bytes()))?;
         }
         atomically(&folder.join("runs.csv"), |out| out.write_all(index.as_bytes()))?;
         Ok(())
     }
+}
+
+/// Returns a number as it is read back from a file with some decimals.
+fn decimals(value: f64, count: usize) -> f64 {
+    let text = format!("{value:.count$}");
+    text.parse().expect("a number is read back")
 }
 
 fn csv(log: &PreparedLog) -> String {
@@ -155,5 +186,9 @@ mod tests {
         let data = reachtube_recordings::DataSet::open(folder.path()).unwrap();
         let run = data.read(0, &ReadOptions::default()).unwrap();
         assert_eq!((run.len(), data.suites()[0].name.as_str()), (400, "a"));
+        let in_memory = windows(&[bump("a", 1.0)], None, false).runs();
+        let own = in_memory.read(0, &ReadOptions::default()).unwrap();
+        assert_eq!((own.times, own.states, own.torques), (run.times, run.states, run.torques));
+        assert_eq!(in_memory.runs()[0].file, data.runs()[0].file);
     }
 }

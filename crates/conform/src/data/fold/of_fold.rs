@@ -92,6 +92,7 @@ fn entries_of(name: &str, fold: &SuiteFold) -> impl Iterator<Item = (usize, RunE
             kind: None,
             temperature: None,
             sha256: None,
+            simulated: false,
             order: *order,
             line: u64::from(*place) + 1,
         };

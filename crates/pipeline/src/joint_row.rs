@@ -1,0 +1,40 @@
+use serde::Serialize;
+
+use crate::build::Built;
+
+/// The set of one joint's position at the horizon, beside the joint's motion.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointRow {
+    /// The joint's name.
+    pub name: String,
+    /// Half the width of the set, rad (m); `None` where the reachable set was lost.
+    pub half_width: Option<f64>,
+    /// How far the joint moves in a window, root mean square, and at least 5 % of its range, rad
+    /// (m).
+    pub displacement: f64,
+    /// Half the width by the displacement; `None` where the reachable set was lost.
+    pub ratio: Option<f64>,
+    /// The factor by which the set would have to grow where a motion that was held out leaves it
+    /// furthest; `None` where none could be compared.
+    pub growth: Option<f64>,
+}
+
+impl Built {
+    /// Returns the set of each joint at the horizon.
+    #[must_use]
+    pub fn joints(&self) -> Vec<JointRow> {
+        let model = &self.answer.model;
+        let widths = model.usefulness.iter().flat_map(|said| &said.joints).enumerate();
+        let row = |(joint, width): (usize, &reachtube_conform::plausibility::JointWidth)| {
+            let growth = self.held_out.growth[joint];
+            JointRow {
+                name: model.robot.joints[joint].name.clone(),
+                half_width: width.half_width,
+                displacement: width.displacement,
+                ratio: width.half_width.map(|_| width.ratio()),
+                growth: growth.is_finite().then_some(growth),
+            }
+        };
+        widths.map(row).collect()
+    }
+}

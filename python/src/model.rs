@@ -1,0 +1,111 @@
+//! From logs to a model.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use reachtube::conform::Model;
+use reachtube::conform::result::FrontEnd;
+use reachtube::page::{Assets, built_pages, page_files};
+use reachtube::pipeline::{Built, Choice, Choices, build};
+use reachtube::{Progress, Robot};
+use serde_json::json;
+
+use crate::failure::{Failure, Result};
+use crate::findings::list;
+use crate::logs_on_disk::LogsOnDisk;
+use crate::recordings::NativeSource;
+use crate::robot::NativeRobot;
+use crate::watched::watched;
+
+/// Makes a model of logs. `given` are choices as JSON, which come before the choices of the file
+/// `settings`. Returns what Python keeps of the model as JSON, and notes about the logs.
+#[pyfunction]
+#[pyo3(signature = (robot, paths, runs, settings, given, progress=None))]
+pub(crate) fn model(
+    py: Python<'_>,
+    robot: PyRef<'_, NativeRobot>,
+    paths: Vec<PathBuf>,
+    runs: Option<PyRef<'_, NativeSource>>,
+    settings: Option<PathBuf>,
+    given: String,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<(String, Vec<String>)> {
+    let robot = Arc::clone(&robot.robot);
+    let runs = runs.map(|runs| runs.source.clone());
+    watched(py, progress.as_ref(), move |watch| {
+        let given: Choices = serde_json::from_str(&given).map_err(Failure::setting)?;
+        let of_file = settings.as_deref().map(Choices::load).transpose()?.unwrap_or_default();
+        // The robot is here already; the file of choices may name another.
+        let of_file = Choices { robot: None, lock: Vec::new(), ..of_file };
+        let mut choices = of_file.replaced_by(given);
+        if !paths.is_empty() || runs.is_some() {
+            choices.data.clear();
+        }
+        let named = std::mem::take(&mut choices.data).into_iter().chain(paths);
+        let logs = LogsOnDisk::new(named.collect(), runs.as_ref())?;
+        choices.data.clone_from(&logs.paths);
+        let mut built = made(&robot, &choices, watch).map_err(|failure| logs.named(failure))?;
+        if logs.has_runs() {
+            // The folder is gone when the choices are read.
+            built.choices.data.clear();
+        }
+        let notes = built.notes.iter().map(|note| logs.renamed(note)).collect();
+        Ok((kept(&built)?, notes))
+    })
+}
+
+fn made(robot: &Robot, choices: &Choices, watch: &dyn Progress) -> Result<Built> {
+    let missing = |what: &str| Failure::Setting(format!("{what}, or in the file of settings"));
+    let torque = choices.torque.ok_or_else(|| {
+        missing("torque is not given; say \"motor\", \"link\" or \"compensated\"")
+    })?;
+    if choices.data.is_empty() {
+        return Err(missing("no recordings are given; name them in data"));
+    }
+    let mut say = |choice: &Choice| {
+        watch.finished(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
+    };
+    Ok(build(robot, torque, choices, &mut say, watch)?)
+}
+
+/// Returns what Python keeps of a model: the answer, its summary, and the files that `save` writes.
+fn kept(built: &Built) -> Result<String> {
+    let front_end = FrontEnd::Python;
+    let mut answer = built.to_json();
+    answer["findings"] =
+        serde_json::from_str(&list(&built.answer.findings())).map_err(Failure::setting)?;
+    let mut files: Vec<(String, String)> =
+        built.files().map(|(name, text)| (name.to_string(), text)).into();
+    for (folder, page) in built_pages(built, front_end)? {
+        for file in page_files(&page, Assets::Inside)? {
+            let content = String::from_utf8_lossy(&file.content).into_owned();
+            files.push((format!("{folder}/{}", file.path.display()), content));
+        }
+    }
+    let (verdict, summary) = (built.verdict(), built.summary(front_end));
+    let kept = json!({ "answer": answer, "verdict": verdict, "summary": summary, "files": files });
+    Ok(kept.to_string())
+}
+
+/// Reads logs and does to them what was done to the recordings of a model, whose text is `model`.
+#[pyfunction]
+pub(crate) fn prepared(
+    py: Python<'_>,
+    model: String,
+    paths: Vec<PathBuf>,
+    runs: Option<PyRef<'_, NativeSource>>,
+) -> PyResult<NativeSource> {
+    let runs = runs.map(|runs| runs.source.clone());
+    let windows = watched(py, None, move |_| {
+        let model: Model =
+            serde_json::from_str(&model).map_err(|error| Failure::ModelFile(error.to_string()))?;
+        let preparation = model.preparation.as_ref();
+        let preparation = preparation
+            .ok_or_else(|| Failure::ModelFile("the model takes recordings as they are".into()))?;
+        let logs = LogsOnDisk::new(paths, runs.as_ref())?;
+        let windows = reachtube::pipeline::prepared(&model, preparation, &logs.paths);
+        windows.map_err(|error| logs.named(error))
+    })?;
+    Ok(NativeSource::in_memory(windows))
+}

@@ -1,0 +1,83 @@
+//! Recordings filtered and cut into windows.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use pyo3::prelude::*;
+use reachtube::Robot;
+use reachtube::identify::prepare::{
+    LogEntry, PrepareSettings, RawLog, cut_off, prepare as prepared, read, windows,
+};
+use reachtube::recordings::{MemoryRuns, any_simulated};
+
+use crate::failure::{Failure, Result};
+use crate::logs_on_disk::LogsOnDisk;
+use crate::recordings::NativeSource;
+use crate::robot::NativeRobot;
+use crate::watched::watched;
+
+/// How logs are cut.
+#[derive(Debug, Clone, Copy)]
+struct Cutting {
+    window: Option<f64>,
+    repeats: bool,
+    compensate: bool,
+}
+
+/// Filters logs and cuts them into windows; returns the windows, the cut-off frequency, Hz, and
+/// what was changed.
+#[pyfunction]
+#[pyo3(signature = (robot, paths, runs, settings, window, repeats, compensate))]
+pub(crate) fn prepare(
+    py: Python<'_>,
+    robot: PyRef<'_, NativeRobot>,
+    paths: Vec<PathBuf>,
+    runs: Option<PyRef<'_, NativeSource>>,
+    settings: String,
+    window: Option<f64>,
+    repeats: bool,
+    compensate: bool,
+) -> PyResult<(NativeSource, f64, Vec<String>)> {
+    let robot = Arc::clone(&robot.robot);
+    let runs = runs.map(|runs| runs.source.clone());
+    let cutting = Cutting { window, repeats, compensate };
+    let (windows, cut_off, changes) = watched(py, None, move |_| {
+        let settings: PrepareSettings =
+            serde_json::from_str(&settings).map_err(Failure::setting)?;
+        let logs = LogsOnDisk::new(paths, runs.as_ref())?;
+        let (windows, cut_off, changes) =
+            cut(&robot, &logs, &settings, cutting).map_err(|failure| logs.named(failure))?;
+        let changes = changes.iter().map(|change| logs.renamed(change)).collect();
+        Ok((windows, cut_off, changes))
+    })?;
+    Ok((NativeSource::in_memory(windows), cut_off, changes))
+}
+
+fn cut(
+    robot: &Robot,
+    logs: &LogsOnDisk,
+    settings: &PrepareSettings,
+    cutting: Cutting,
+) -> Result<(MemoryRuns, f64, Vec<String>)> {
+    let Cutting { window, repeats, compensate } = cutting;
+    if compensate {
+        // A robot without masses has no gravity that could be taken off.
+        robot.check_physical()?;
+    }
+    let entries: Vec<LogEntry> = logs.paths.iter().cloned().map(LogEntry::from).collect();
+    let raw = read(&entries, std::path::Path::new(""), robot, settings)?;
+    let cut_off = cut_off(&raw.iter().collect::<Vec<&RawLog>>(), settings)?;
+    let prepared = prepared(&raw, settings, cut_off, compensate.then_some(robot))?;
+    let mut cut = windows(&prepared.logs, window, repeats);
+    cut.simulated = any_simulated(raw.iter().map(|log| &*log.file));
+    let runs = cut.runs();
+    if cut.windows.is_empty() {
+        let what = match window {
+            Some(window) => format!("no recording is as long as the window of {window} s"),
+            None => "no recording has two samples or more".into(),
+        };
+        return Err(Failure::Other(what));
+    }
+    let notes: Vec<String> = raw.iter().flat_map(|log| log.notes.clone()).collect();
+    Ok((runs, cut_off, [notes, prepared.changes, cut.changes].concat()))
+}

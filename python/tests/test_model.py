@@ -1,0 +1,167 @@
+"""From logs to a model in one call, against the command's files and the recordings."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reachtube as rt
+
+from conftest import write_csv
+
+
+def wave(robot: rt.Robot, number: int, joints: int) -> rt.Run:
+    """Return a motion of some joints, with torques of the robot's own dynamics."""
+    random = np.random.default_rng(number)
+    t = 0.004 * np.arange(750)
+    rates = random.uniform(1.0, 3.0, joints)
+    size = 0.4 / rates
+    phase = rates * t[:, None] + random.uniform(0, 6, joints)
+    q, qd, qdd = size * np.sin(phase), size * rates * np.cos(phase), -size * rates**2 * np.sin(phase)
+    tau = robot.rnea(q, qd, qdd) + robot.viscous_friction(qd) + robot.coulomb_friction(q, qd)
+    noise = random.standard_normal((3, len(t), joints))
+    return rt.Run(
+        t,
+        q + 1e-5 * noise[0],
+        qd + 1e-3 * noise[1],
+        tau + 0.02 * noise[2],
+        motion=f"wave {number}",
+        name=f"wave_{number}",
+    )
+
+
+@pytest.fixture(scope="module")
+def arm() -> rt.Robot:
+    return rt.Robot.lwa4p()
+
+
+@pytest.fixture(scope="module")
+def logs(arm: rt.Robot) -> list[rt.Run]:
+    return [wave(arm, number, arm.joints) for number in range(4)]
+
+
+@pytest.fixture(scope="module")
+def built(arm: rt.Robot, logs: list[rt.Run]) -> rt.BuiltModel:
+    return rt.model(arm, logs, torque="motor", horizon=0.1)
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_arrays_become_a_useful_model(built: rt.BuiltModel, arm: rt.Robot) -> None:
+    assert built and built.useful and built.conformant and built.model.verified
+    assert built.horizon == 0.1
+    assert [row.name for row in built.joints] == arm.joint_names
+    assert all(row.ratio is not None and row.ratio < 0.5 for row in built.joints)
+    assert built.held_out.windows > 0 and built.held_out.failure is None
+    # One motion of four is held out.
+    chosen = {choice.key: choice for choice in built.choices}
+    assert chosen["held-out"].value == "wave 3" and "every fourth" in chosen["held-out"].reason
+    assert [w.horizon for w in built.horizons][:2] == [0.05, 0.1]
+    assert len(built.horizons[0].ratios) == arm.joints
+    assert built.findings[0].code == "conformant"
+    assert "conformant and useful up to 0.1 s" in str(built) and "conformant" in repr(built)
+    assert "--" not in str(built)
+    assert "<table" in built._repr_html_()
+    assert pickle.loads(pickle.dumps(built)) == built
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_logs_are_prepared_for_the_model(built: rt.BuiltModel, logs: list[rt.Run]) -> None:
+    verdict = rt.check(built.model, logs[:3])
+    assert verdict and verdict.violations == 0
+    everything = built.model.check(rt.Recordings(logs))
+    assert everything.violations == built.held_out.outside
+    # A torque that no robot of this kind has leaves the sets.
+    run = logs[0]
+    pushed = rt.Run(run.t, run.q, run.qd, run.tau + 30.0 * np.sin(20 * run.t)[:, None], name="odd")
+    assert not rt.check(built.model, pushed)
+    assert len(rt.reach(built.model, logs[:1])) == len(verdict.suites) / 3
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_paths_give_the_files_of_the_command(
+    built: rt.BuiltModel, arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
+) -> None:
+    folder, out = tmp_path / "logs", tmp_path / "arm"
+    folder.mkdir()
+    for run in logs:
+        named = rt.Run(run.t, run.q, run.qd, run.tau)
+        write_csv(folder, [named])
+        (folder / "1.csv").rename(folder / f"{run.name}.csv")
+    (folder / "runs.csv").unlink()
+    file = tmp_path / "arm.toml"
+    arm.save(file)
+    told: list[str] = []
+    other = rt.model(
+        rt.Robot.load(file),
+        folder,
+        "motor",
+        horizon=0.1,
+        progress=lambda done, total, sentences: told.extend(sentences),
+    )
+    assert any(sentence.startswith("horizon: 0.1 s") for sentence in told)
+    # Runs in memory have the same numbers; only their motions have other names.
+    np.testing.assert_array_equal(
+        other.model.initial_set.radius, built.model.initial_set.radius
+    )
+    other.save(out)
+    for name in ["model.json", "robot.toml", "choices.toml", "page/report.html",
+                 "held-out/report.html"]:
+        assert (out / name).is_file(), name
+    assert rt.Model.load(out / "model.json") == other.model
+    with pytest.raises(rt.ReachtubeError, match="exists"):
+        other.save(out)
+    # The same choices give the same bytes, and one that is given replaces its own.
+    again = rt.model(rt.Robot.load(file), settings=out / "choices.toml")
+    again.save(out, force=True)
+    assert again.model == other.model
+    assert str(folder) in (out / "choices.toml").read_text()
+    shorter = rt.model(rt.Robot.load(file), settings=out / "choices.toml", horizon=0.05)
+    assert shorter.horizon == 0.05
+    assert json.loads(json.dumps(shorter.to_dict()))["horizon"] == 0.05
+
+
+def test_wrong_arguments_are_named(arm: rt.Robot, logs: list[rt.Run], tmp_path: Path) -> None:
+    for arguments, words in [
+        ({"data": logs}, "torque is not given"),
+        ({"torque": "motor"}, "no recordings are given"),
+        ({"data": logs, "torque": "motors"}, "torque"),
+        ({"data": logs, "torque": "motor", "held_out": ["z"]}, "the motions are wave 0, wave 1"),
+        ({"data": [1], "torque": "motor"}, "a recording is of type int"),
+        ({"data": tmp_path / "none", "torque": "motor"}, "none"),
+        ({"settings": tmp_path / "none.toml"}, "none.toml"),
+    ]:
+        with pytest.raises(rt.ReachtubeError, match=words):
+            rt.model(arm, **arguments)  # type: ignore[arg-type]
+    still = np.zeros((500, arm.joints))
+    rest = rt.Run(0.004 * np.arange(500), still, still, arm.gravity(still), name="rest")
+    with pytest.raises(rt.ReachtubeError, match="1 at rest"):
+        rt.model(arm, rest, torque="motor")
+
+
+def test_windows_of_logs_are_what_the_command_writes(
+    arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
+) -> None:
+    windows = rt.prepare(arm, logs[:2], window=0.5, cut_off=20.0, compensate=True)
+    assert len(windows) == 10 and windows.suites[0] == "wave_0_w01"
+    first = windows[0]
+    assert first.motion == "wave_0" and len(first) == 126 and first.duration == 0.5
+    # Gravity and friction are taken off: what is left is the inertia's part.
+    assert np.abs(first.tau).max() < 0.5 * np.abs(logs[0].tau).max()
+    model = rt.conform(arm, windows, torque="compensated", nominal="own", noise="fitted")
+    assert rt.check(model, windows)
+    # Names of repeats, columns in another order, and gains are taken as the command takes them.
+    names = arm.joint_names[::-1]
+    turned = rt.Run(logs[0].t, logs[0].q[:, ::-1], logs[0].qd[:, ::-1], logs[0].tau[:, ::-1] / 2)
+    by_name = rt.prepare(arm, turned, joints=names, gains=[2.0] * arm.joints, cut_off=20.0)
+    plain = rt.prepare(arm, logs[0], cut_off=20.0)
+    np.testing.assert_allclose(by_name[0].tau, plain[0].tau, atol=2e-7)
+    with pytest.raises(rt.ReachtubeError, match="as long as the window of 9 s"):
+        rt.prepare(arm, logs, window=9.0)
+    with pytest.raises(rt.SettingError, match="window is -1"):
+        rt.prepare(arm, logs, window=-1.0)
+    with pytest.raises(rt.SettingError, match="unknown field"):
+        rt.prepare(arm, logs, columns={"torque": "m_{}"})
