@@ -23,7 +23,7 @@ from ._progress import Progress, shown
 from ._record import Record
 from ._robot import Robot, native_of
 from ._settings import Torque
-from .errors import ReachtubeWarning
+from .errors import ReachtubeWarning, SettingError
 
 log = logging.getLogger("reachtube")
 
@@ -273,6 +273,8 @@ def model(
     if torque is not None:
         given["torque"] = torque
     if horizon is not None:
+        if not 0 < real("horizon", horizon) < float("inf"):
+            raise SettingError(f"horizon is {horizon} s; it must be above 0")
         given["horizon"] = real("horizon", horizon)
     if held_out is not None:
         given["held-out"] = names(held_out)

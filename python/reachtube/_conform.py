@@ -222,6 +222,10 @@ def check(
     with shown(progress, "check") as tell:
         return Check(
             _reachtube.check(
-                text_of(model), source_for(model, data), names(suites), differing(notion, until, max_gap), tell
+                text_of(model),
+                source_for(model, data),
+                names(suites),
+                differing(notion, until, max_gap),
+                tell,
             )
         )

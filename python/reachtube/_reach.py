@@ -128,7 +128,11 @@ def reach(
     """
     with shown(progress, "reach") as tell:
         found = _reachtube.reach(
-            text_of(model), source_for(model, data), names(suites), differing(None, until, max_gap), tell
+            text_of(model),
+            source_for(model, data),
+            names(suites),
+            differing(None, until, max_gap),
+            tell,
         )
     return [
         ReachableSet(

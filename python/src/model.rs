@@ -9,7 +9,7 @@ use reachtube::conform::result::FrontEnd;
 use reachtube::page::{Assets, built_pages, page_files};
 use reachtube::pipeline::{Built, Choice, Choices, build};
 use reachtube::{Progress, Robot};
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use crate::failure::{Failure, Result};
 use crate::findings::list;
@@ -34,7 +34,7 @@ pub(crate) fn model(
     let robot = Arc::clone(&robot.robot);
     let runs = runs.map(|runs| runs.source.clone());
     watched(py, progress.as_ref(), move |watch| {
-        let given: Choices = serde_json::from_str(&given).map_err(Failure::setting)?;
+        let given = choices_of(&given)?;
         let of_file = settings.as_deref().map(Choices::load).transpose()?.unwrap_or_default();
         // The robot is here already; the file of choices may name another.
         let of_file = Choices { robot: None, lock: Vec::new(), ..of_file };
@@ -52,6 +52,16 @@ pub(crate) fn model(
         }
         let notes = built.notes.iter().map(|note| logs.renamed(note)).collect();
         Ok((kept(&built)?, notes))
+    })
+}
+
+/// Reads choices that a caller gives, each by itself, so that an error names it.
+fn choices_of(text: &str) -> Result<Choices> {
+    let given: Map<String, Value> = serde_json::from_str(text).map_err(Failure::setting)?;
+    given.into_iter().try_fold(Choices::default(), |choices, (key, value)| {
+        let one = serde_json::from_value(json!({ &key: value }));
+        let wrong = |error| Failure::Setting(format!("{}: {error}", key.replace('-', "_")));
+        Ok(choices.replaced_by(one.map_err(wrong)?))
     })
 }
 

@@ -11,9 +11,11 @@ import pytest
 
 import reachtube as rt
 
-#: Sections whose entries are arguments or attributes.
-SECTION = re.compile(r"^(Parameters|Attributes)\n-+\n(.*?)(?=^\S.*\n-+\n|\Z)", re.M | re.S)
-ENTRY = re.compile(r"^(\S.*)$", re.M)
+#: A section of arguments or attributes, up to the heading of the next.
+SECTION = re.compile(
+    r"^(Parameters|Attributes)\n-+\n((?:(?!^[^\s][^\n]*\n-+$)[^\n]*\n?)*)", re.MULTILINE
+)
+ENTRY = re.compile(r"^(\S.*)$", re.MULTILINE)
 
 
 def public() -> Iterator[tuple[str, Any]]:
@@ -45,24 +47,30 @@ def entries(value: Any) -> dict[str, list[str]]:
     return sections
 
 
-@pytest.mark.parametrize("name, value", public(), ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize("name, value", [pytest.param(*item, id=item[0]) for item in public()])
 def test_each_argument_has_an_entry_of_its_own(name: str, value: Any) -> None:
     sections = entries(value)
     for entry in [entry for section in sections.values() for entry in section]:
         assert re.fullmatch(r"\w+", entry), f"{name}: {entry!r} is not one name"
     if "Parameters" in sections:
-        arguments = [own for own in inspect.signature(value).parameters if own not in ("self", "cls")]
-        assert sections["Parameters"] == arguments, name
+        arguments = list(inspect.signature(value).parameters)
+        assert sections["Parameters"] == [own for own in arguments if own not in ("self", "cls")]
 
 
 def test_a_grouped_argument_is_found() -> None:
-    def grouped(a: int, b: int) -> None:
+    def grouped(a: int, b: int, c: int) -> None:
         """Do it.
 
         Parameters
         ----------
         a, b : int
             Both.
+        c
+            Another.
+
+        Returns
+        -------
+        None
         """
 
-    assert entries(grouped) == {"Parameters": ["a, b"]}
+    assert entries(grouped) == {"Parameters": ["a, b", "c"]}

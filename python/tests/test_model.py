@@ -21,7 +21,8 @@ def wave(robot: rt.Robot, number: int, joints: int) -> rt.Run:
     rates = random.uniform(1.0, 3.0, joints)
     size = 0.4 / rates
     phase = rates * t[:, None] + random.uniform(0, 6, joints)
-    q, qd, qdd = size * np.sin(phase), size * rates * np.cos(phase), -size * rates**2 * np.sin(phase)
+    q, qd = size * np.sin(phase), size * rates * np.cos(phase)
+    qdd = -(rates**2) * q
     tau = robot.rnea(q, qd, qdd) + robot.viscous_friction(qd) + robot.coulomb_friction(q, qd)
     noise = random.standard_normal((3, len(t), joints))
     return rt.Run(
@@ -128,7 +129,9 @@ def test_wrong_arguments_are_named(arm: rt.Robot, logs: list[rt.Run], tmp_path: 
     for arguments, words in [
         ({"data": logs}, "torque is not given"),
         ({"torque": "motor"}, "no recordings are given"),
-        ({"data": logs, "torque": "motors"}, "torque"),
+        ({"data": logs, "torque": "motors"}, "torque: unknown variant `motors`"),
+        ({"data": logs, "torque": "motor", "horizon": -1.0}, "horizon is -1.0 s"),
+        ({"data": logs, "torque": "motor", "horizon": 9.0}, "as long as the horizon of 9 s"),
         ({"data": logs, "torque": "motor", "held_out": ["z"]}, "the motions are wave 0, wave 1"),
         ({"data": [1], "torque": "motor"}, "a recording is of type int"),
         ({"data": tmp_path / "none", "torque": "motor"}, "none"),

@@ -14,6 +14,10 @@ def main() -> None:
     radius: float = float(model.initial_set.radius.max())
     verdict: rt.Check = rt.check(model, data)
     sets: list[rt.ReachableSet] = rt.reach(model, data)
+    built: rt.BuiltModel = rt.model(robot, ["logs"], "motor", horizon=0.2, gains=[1.0] * 6)
+    ratios: list[float | None] = [row.ratio for row in built.joints]
+    windows: rt.Recordings = rt.prepare(robot, "logs", window=0.5, compensate=True)
+    print(built.held_out.outside, built.model.check("logs"), ratios, len(windows))
     q, qd = rt.variables("q qd")
     pipe: rt.Flowpipe = rt.flowpipe({q: qd, qd: -rt.sin(q)}, {q: 1.0, qd: (0.0, 0.1)}, t)
     print(verdict.conformant, radius, sets[0].upper.shape, pipe.is_reached)

@@ -128,8 +128,8 @@ impl Choices {
         Ok(choices)
     }
 
-    /// Returns the choices with those that `given` has in place of their own. Reasons are about
-    /// values, and are dropped where one is another.
+    /// Replaces choices by the ones that `given` has. Reasons are about values, and are dropped
+    /// where a value is another.
     #[must_use]
     pub fn replaced_by(self, given: Self) -> Self {
         fn filled<T>(given: Vec<T>, own: Vec<T>) -> Vec<T> {

@@ -146,3 +146,28 @@ fn csv_files(folder: &Path) -> Vec<PathBuf> {
     files.sort();
     files
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_index_marks_recordings_as_simulated() {
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("inner");
+        std::fs::create_dir(&inner).unwrap();
+        let paths = ["inner/a.csv", "inner/b.csv", "c.csv"].map(|file| folder.path().join(file));
+        paths.each_ref().map(|path| std::fs::write(path, "").unwrap());
+        let write = |text: &str| std::fs::write(folder.path().join(INDEX), text).unwrap();
+        let found = |count: usize| any_simulated(paths[..count].iter().map(|path| &**path));
+        assert!(!found(3), "there is no index");
+        write("file,suite\ninner/a.csv,A\n");
+        assert!(!found(3), "there is no mark");
+        write("file,suite,simulated\ninner/a.csv,A,\ninner/b.csv,A,false\nc.csv,B,true\n");
+        assert_eq!([found(2), found(3)], [false, true]);
+        let marks = DataSet::open(folder.path()).unwrap().runs;
+        assert_eq!(marks.iter().map(|run| run.simulated).collect::<Vec<_>>(), [false, false, true]);
+        write("file,suite,simulated\nc.csv,B,perhaps\n");
+        assert!(DataSet::open(folder.path()).is_err());
+    }
+}

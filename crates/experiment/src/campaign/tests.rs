@@ -64,6 +64,7 @@ fn the_folder_is_a_data_set_of_all_recordings() {
     for (index, entry) in data.runs().iter().enumerate() {
         let run = data.read(index, &ReadOptions::default()).unwrap();
         assert_eq!(entry.sha256.as_ref(), Some(&run.sha256), "{}", entry.file);
+        assert!(entry.simulated, "{}", entry.file);
         assert_eq!(run.temperatures.len(), run.torques.len(), "{}", entry.file);
         match &entry.suite {
             Some(suite) => {

@@ -77,6 +77,7 @@ fn the_folder_is_a_data_set() {
     for (index, entry) in data.runs().iter().enumerate() {
         let run = data.read(index, &ReadOptions::default()).unwrap();
         assert_eq!(entry.sha256.as_ref(), Some(&run.sha256));
+        assert!(entry.simulated, "the index marks what was simulated");
         assert!(entry.suite.as_ref().unwrap().starts_with(entry.motion.as_ref().unwrap()));
     }
 }
