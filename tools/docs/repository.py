@@ -3,15 +3,20 @@
 Markdown links are relative to the file that they are in, as a code-hosting site reads them. Pages
 of the site come from two places: `docs/`, and the files of `PAGES` beside it. A link to one of them
 is turned to its page. A link to any other file of the repository loses its address and keeps its
-words, because the site has no copy of the file. A link to nothing is an error.
+words, because the site has no copy of the file. A link to nothing is an error. A notebook that was
+executed is a page with its outputs.
 """
 
 import posixpath
 import re
+import sys
 from pathlib import Path
 
 from mkdocs.plugins import get_plugin_logger
 from mkdocs.structure.files import File
+
+sys.path.insert(0, str(Path(__file__).parent))
+import notebooks  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
 LOG = get_plugin_logger("repository")
@@ -38,10 +43,19 @@ BLOCKS = re.compile(r"(^```[\s\S]*?^```|^(?: {4}.*\n)+)", flags=re.M)
 
 
 def on_files(files, config):
-    """Adds the pages that do not lie in docs/."""
+    """Adds the pages that do not lie in docs/, and the notebooks with outputs."""
     for path, page in PAGES.items():
         files.append(File.generated(config, page, abs_src_path=str(ROOT / path)))
+    for path in executed():
+        text = notebooks.as_markdown(path)
+        files.append(File.generated(config, f"notebooks/{path.stem}.md", content=text))
     return files
+
+
+def executed():
+    """Returns the notebooks with outputs."""
+    found = sorted((ROOT / "docs/notebooks").glob("*.ipynb"))
+    return [path for path in found if notebooks.is_executed(path)]
 
 
 def on_page_markdown(markdown, page, config, files):
@@ -69,6 +83,8 @@ def turned(link, source, uri):
         return link.group()
     if path in PAGES:
         page = PAGES[path]
+    elif ROOT / path in executed():
+        page = path.removeprefix("docs/").removesuffix(".ipynb") + ".md"
     elif path.startswith("docs/") and (ROOT / path).is_file():
         page = path.removeprefix("docs/")
     else:

@@ -5,8 +5,9 @@ use reachtube_conform::settings::{Equations, States};
 use reachtube_conform::{Finding, Model};
 use reachtube_reach::Hyperrectangle;
 
-use crate::cost::{cost_charts, cost_tables};
+use crate::cost::{cost_charts, cost_tables, cost_unit};
 use crate::error::Result;
+use crate::lead::lead;
 use crate::nominal::{nominal_facts, nominal_tables};
 use crate::page::{JointSets, Page, SetsTable, Verdict};
 use crate::phase_planes::phase_planes;
@@ -36,6 +37,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
             check.verdict.suites.len()
         ),
         verdict: verdict(sources),
+        lead: lead(sources)?,
         cost: cost_tables(model, &figures),
         cost_charts: cost_charts(&figures),
         suites: figures,
@@ -73,6 +75,7 @@ fn verdict(sources: &Sources) -> Verdict {
     Verdict {
         ok: check.verdict.conformant,
         vacuous: model.is_vacuous(),
+        useful: None,
         words: words.join(" "),
         warnings: warnings.map(|warning| sentence(sources, &warning)).collect(),
         proved,
@@ -120,17 +123,19 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         (None, None) => number(model.cost),
     };
     let volume = model.hull_volume.map_or_else(|| "none".into(), |volume| format!("{volume:.4e}"));
+    let cost_name = format!("Cost {}", cost_unit(model));
+    let paper_name = format!("The paper's sum (21) {}", cost_unit(model));
     [
-        ("Cost", cost),
-        ("The paper's sum (21)", number(model.cost_paper)),
-        ("Volume of the hull, eq. (2)", volume),
+        (&*cost_name, cost),
+        (&paper_name, number(model.cost_paper)),
+        ("Volume of the hull, eq. (2) [s times the states' SI units]", volume),
         ("Sets found by", word(settings.method)),
         ("Notion of conformance", word(settings.notion)),
         ("Disturbance", word(settings.disturbance)),
         ("Centres of the sets", word(settings.centre)),
         ("States enclosed", word(settings.states)),
-        ("Weights", word(&settings.weights)),
-        ("Measurement noise", word(&settings.noise)),
+        ("Weights [SI units]", word(&settings.weights)),
+        ("Measurement noise [SI units]", word(&settings.noise)),
         ("Nominal solution starts at", word(settings.nominal)),
         ("Nominal solution satisfies the equations of", word(settings.equations)),
         ("Recorded torque", word(settings.torque)),
@@ -180,7 +185,11 @@ fn of_codes(sources: &Sources, findings: &[Finding], codes: &[Code]) -> Vec<Stri
 
 /// Returns a finding as a sentence.
 fn sentence(sources: &Sources, finding: &Finding) -> String {
-    let words = finding.written_for(sources.front_end);
+    as_sentence(&finding.written_for(sources.front_end))
+}
+
+/// Returns words with a capital letter in front and a full stop at the end.
+pub(super) fn as_sentence(words: &str) -> String {
     let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
     let end = if rest.ends_with(['.', ':']) { "" } else { "." };
     format!("{}{rest}{end}", first.to_uppercase())

@@ -5,10 +5,18 @@ use reachtube_conform::{Keep, Opened, Silent};
 use reachtube_pipeline::Built;
 use reachtube_recordings::MemoryRuns;
 
-use crate::assemble::page;
+use crate::assemble::{as_sentence, page};
 use crate::error::Result;
+use crate::lead::of_built;
 use crate::page::Page;
+use crate::page_files::PAGE_FILE;
 use crate::sources::Sources;
+
+/// The words of a link to the page about motions that were held out.
+pub const TO_HELD_OUT: &str = "the same sets on motions that were held out";
+
+/// The words of a link to the page about the model's own recordings.
+pub const TO_OWN: &str = "the recordings that the model was made of";
 
 /// Returns the pages about a model that was made of logs, each with the name of its folder: `page`
 /// about some of the model's recordings, and `held-out` about some that were held out, if they
@@ -19,15 +27,22 @@ use crate::sources::Sources;
 /// As [`page`](fn@crate::page), and as [`CheckJob::open`](reachtube_conform::CheckJob::open).
 pub fn built_pages(built: &Built, front_end: FrontEnd) -> Result<Vec<(&'static str, Page)>> {
     let all = built.answer.model.data.run_count();
-    let own = format!(", an excerpt of {all} with the ten that decide the sets most");
-    let mut pages = vec![("page", excerpt(built, &built.shown, front_end, &own)?)];
-    if built.held_out.failure.is_none() {
-        let all = built.held_out.windows;
-        let other =
-            format!(", an excerpt of {all} that were held out, with up to 12 that leave the sets");
-        pages.push(("held-out", excerpt(built, &built.shown_held_out, front_end, &other)?));
+    let which = format!(", an excerpt of {all} with the ten that decide the sets most");
+    let mut own = excerpt(built, &built.shown, front_end, &which)?;
+    of_built(built, &mut own.lead);
+    own.verdict.words = as_sentence(&built.verdict());
+    own.verdict.useful = Some(built.is_useful());
+    if built.held_out.failure.is_some() {
+        return Ok(vec![("page", own)]);
     }
-    Ok(pages)
+    let all = built.held_out.windows;
+    let which =
+        format!(", an excerpt of {all} that were held out, with up to 12 that leave the sets");
+    let mut other = excerpt(built, &built.shown_held_out, front_end, &which)?;
+    other.verdict.words = format!("Held out: {}. {}", built.held_out_words(), other.verdict.words);
+    own.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
+    other.lead.links = vec![(TO_OWN.into(), format!("../page/{PAGE_FILE}"))];
+    Ok(vec![("page", own), ("held-out", other)])
 }
 
 /// Returns a page about some recordings; `which` ends the line under its title.

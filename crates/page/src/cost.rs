@@ -16,6 +16,20 @@ const EDGE: [u8; 3] = [140, 149, 159];
 /// Number of runs and of motions that are listed.
 const MOST_ROWS: usize = 20;
 
+/// Returns the unit of the cost, in brackets: it adds positions and velocities.
+pub(super) fn cost_unit(model: &Model) -> String {
+    let kinds = model.robot.kinds();
+    let is_shared = kinds.iter().all(|kind| *kind == kinds[0]);
+    match &model.settings.weights {
+        Weights::Unit if is_shared && !kinds.is_empty() => {
+            format!("[{} + {}]", kinds[0].position_unit(), kinds[0].velocity_unit())
+        }
+        Weights::Unit => "[SI units, added]".into(),
+        Weights::Spread => "[parts of the spread, added]".into(),
+        Weights::Given(_) => "[weighted SI units, added]".into(),
+    }
+}
+
 /// Returns the tables of the shares of the joints, of the runs that decide, and of the motions.
 pub(super) fn cost_tables(model: &Model, figures: &[SuiteFigure]) -> Vec<TextTable> {
     let tables = [by_joint(model, figures), by_run(model, figures), by_motion(model)];
@@ -134,10 +148,11 @@ fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
     let without = model.deciding_runs.cost_without.zip(model.cost);
     let without = without.map_or_else(String::new, |(without, cost)| {
         format!(
-            "; without the first {} the sets would cost about {} instead of {}",
+            "; without the first {} the sets would cost about {} instead of {} {}",
             model.deciding_runs.most.len(),
             four_decimals(without),
-            four_decimals(cost)
+            four_decimals(cost),
+            cost_unit(model)
         )
     });
     let mut table = TextTable {
@@ -173,7 +188,9 @@ fn by_motion(model: &Model) -> TextTable {
             "{} found without a motion, and the factor by which they must grow to hold it",
             if linearised.is_some() { "Linearised sets" } else { "Sets" }
         ),
-        header: ["Without", "Cost", "Change", "Factor"].map(String::from).to_vec(),
+        header: ["Without", &format!("Cost {}", cost_unit(model)), "Change", "Factor"]
+            .map(String::from)
+            .to_vec(),
         rows: motions.iter().take(MOST_ROWS).map(row).collect(),
     }
 }

@@ -1,16 +1,20 @@
 //! The page of a model as HTML: verdict, figures, sets, tight spots, settings, and their meaning.
 
-use super::chart::{Chart, chart_svg};
+use super::chart::{Chart, chart_svg, chart_svg_of_size};
 use super::error::Error;
 use super::figures::{self, FIGURES};
 use super::library::Assets;
-use super::page::{Page, Verdict};
+use super::page::{Lead, Page, Verdict};
 use super::skeleton::{anchor, document, pair_of_lists, section};
+use super::terms::{self, Explained};
 use super::text::Text;
 use super::text_table::TextTable;
 use super::{check, scripts, tables};
 use maud::{Markup, PreEscaped, html};
 use std::io::Write;
+
+/// Width and height of the first figure \[px\].
+const LEAD: [f64; 2] = [480.0, 280.0];
 
 /// Writes the page as one HTML file that can be mailed, archived and printed.
 ///
@@ -44,7 +48,9 @@ pub fn write_html(page: &Page, assets: Assets, out: &mut impl Write) -> Result<(
     page.suites.iter().try_for_each(check::suite)?;
     let sections = sections(page)?;
     let body = html! {
+        (badges(&page.lead.badges))
         (verdict(&page.verdict))
+        (lead(&page.lead)?)
         (links(&sections))
         @for (_, section) in &sections { (section) }
     };
@@ -61,6 +67,11 @@ fn sections(page: &Page) -> Result<Vec<(&'static str, Markup)>, Error> {
             sections.push((title, section(title, &body)));
         }
     };
+    let Verdict { warnings, proved, not_proved, .. } = &page.verdict;
+    add(!warnings.is_empty(), "Warnings", warning_list(warnings));
+    let proofs = [("Proved", "yes", &proved[..]), ("Not proved", "no", &not_proved[..])];
+    let is_there = !proved.is_empty() || !not_proved.is_empty();
+    add(is_there, "What is proved", pair_of_lists(proofs));
     let suites = !page.suites.is_empty();
     add(suites, FIGURES, figures::figures(page)?);
     add(!page.phase_planes.is_empty(), "Phase planes", phase_planes(&page.phase_planes)?);
@@ -71,6 +82,7 @@ fn sections(page: &Page) -> Result<Vec<(&'static str, Markup)>, Error> {
     add(!page.trust.is_empty() || !page.caution.is_empty(), "What may be trusted", meaning(page));
     add(!page.facts.is_empty(), "Settings and provenance", tables::facts(&page.facts));
     add(!page.notes.is_empty(), "Notes", notes(page));
+    add(suites, "Terms", terms::list());
     Ok(sections)
 }
 
@@ -86,25 +98,61 @@ fn links(sections: &[(&str, Markup)]) -> Markup {
 }
 
 fn verdict(verdict: &Verdict) -> Markup {
-    let (class, word) = match (verdict.ok, verdict.vacuous, verdict.warnings.is_empty()) {
+    let Verdict { ok, vacuous, useful, warnings, .. } = verdict;
+    let (class, word) = match (ok, vacuous, useful, warnings.is_empty()) {
         (false, ..) => ("verdict bad", "Not conformant"),
-        (true, true, _) => ("verdict bad", "Conformant, but vacuous"),
-        (true, false, true) => ("verdict ok", "Conformant"),
-        (true, false, false) => ("verdict doubtful", "Conformant, with warnings"),
+        (true, true, ..) => ("verdict bad", "Conformant, but vacuous"),
+        (true, false, Some(false), _) => ("verdict bad", "Conformant, but too wide to be of use"),
+        (true, false, Some(true), true) => ("verdict ok", "Conformant and useful"),
+        (true, false, None, true) => ("verdict ok", "Conformant"),
+        (true, false, Some(true), false) => {
+            ("verdict doubtful", "Conformant and useful, with warnings")
+        }
+        (true, false, None, false) => ("verdict doubtful", "Conformant, with warnings"),
     };
     html! {
         section class=(class) aria-labelledby="verdict" {
             h2 #verdict { (word) }
-            p.words { (Text(&verdict.words)) }
-            @if !verdict.warnings.is_empty() {
-                ul.warnings { @for warning in &verdict.warnings { li { (Text(warning)) } } }
-            }
-            (pair_of_lists([
-                ("Proved", "yes", &verdict.proved),
-                ("Not proved", "no", &verdict.not_proved),
-            ]))
+            p.words { (Explained(&verdict.words)) }
         }
     }
+}
+
+fn warning_list(warnings: &[String]) -> Markup {
+    html! { ul.warnings { @for warning in warnings { li { (Explained(warning)) } } } }
+}
+
+/// Returns the marks of the whole page.
+fn badges(badges: &[String]) -> Markup {
+    html! {
+        @if !badges.is_empty() {
+            p.badges { @for badge in badges { span.badge { (Text(badge)) } } }
+        }
+    }
+}
+
+/// Returns the answer in numbers beside the figure of the widest set.
+fn lead(lead: &Lead) -> Result<Markup, Error> {
+    let figure = lead.figure.as_ref().map(|chart| chart_svg_of_size(chart, LEAD)).transpose()?;
+    Ok(html! {
+        @if !lead.facts.is_empty() || figure.is_some() {
+            section.lead aria-label="The answer in numbers" {
+                div {
+                    dl {
+                        @for (name, value) in &lead.facts {
+                            div { dt { (Explained(name)) } dd { (Explained(value)) } }
+                        }
+                    }
+                    @for (words, address) in &lead.links {
+                        p { "See also: " a href=(address) { (Text(words)) } }
+                    }
+                }
+                @if let Some(svg) = figure {
+                    figure { (PreEscaped(svg)) figcaption { (Explained(&lead.caption)) } }
+                }
+            }
+        }
+    })
 }
 
 /// Returns the phase planes under a sentence that says what they are.
@@ -142,6 +190,11 @@ fn text_tables(all: &[TextTable]) -> Markup {
 fn cost(page: &Page) -> Result<Markup, Error> {
     let svgs: String = page.cost_charts.iter().map(chart_svg).collect::<Result<_, _>>()?;
     Ok(html! {
+        p {
+            (Explained("The cost is the sum of the set's widths over states and samples. It adds \
+                        rad to rad/s and grows with the number of samples, so it is compared only \
+                        within one data set."))
+        }
         div.charts { (PreEscaped(svgs)) }
         (text_tables(&page.cost))
     })
@@ -176,8 +229,8 @@ mod tests {
     #[test]
     fn each_view_of_each_suite_has_a_figure() {
         let html = written(&sample::page());
-        assert_eq!(html.matches("<svg").count(), 6, "with one phase plane and one of the cost");
-        assert_eq!(html.matches("</svg>").count(), 6);
+        assert_eq!(html.matches("<svg").count(), 7, "with the first, a phase plane and the cost");
+        assert_eq!(html.matches("</svg>").count(), 7);
         assert_eq!(html.matches("<section").count(), html.matches("</section>").count());
         assert_eq!(html.matches("<table").count(), html.matches("</table>").count());
     }
@@ -188,7 +241,7 @@ mod tests {
         assert_eq!(html.matches("<script>").count(), 1);
         for what in [
             "title", "subtitle", "words", "proved", "A", "name", "value", "trust", "caution",
-            "note", "header", "cell",
+            "note", "header", "cell", "badge", "fact", "number", "caption", "link",
         ] {
             assert!(html.contains(&format!("{what} &lt;script&gt;")), "{what}");
         }
@@ -208,8 +261,27 @@ mod tests {
         assert!(written(&page).contains(">Conformant, with warnings<"));
         page.verdict.warnings.clear();
         assert!(written(&page).contains(">Conformant<"));
+        page.verdict.useful = Some(true);
+        assert!(written(&page).contains(">Conformant and useful<"));
+        page.verdict.useful = Some(false);
+        assert!(written(&page).contains(">Conformant, but too wide to be of use<"));
         page.verdict.ok = false;
         assert!(written(&page).contains(">Not conformant<"));
+    }
+
+    #[test]
+    fn the_answer_and_one_figure_come_before_any_table_with_the_mark_of_a_simulation() {
+        let mut page = sample::page();
+        page.lead.badges = vec!["simulated data".into()];
+        let html = written(&page);
+        let place = |part: &str| html.find(part).unwrap_or_else(|| panic!("{part}"));
+        let body = place("<body");
+        let order = ["simulated data", "id=\"verdict\"", "<dl", "<figure", "<nav", "<table"];
+        let places = order.map(|part| body + html[body..].find(part).unwrap());
+        assert!(places.is_sorted(), "{places:?}");
+        assert!(html.contains("href=\"../held-out/report.html\""));
+        page.lead.badges.clear();
+        assert!(!written(&page).contains("class=\"badge\""));
     }
 
     #[test]
@@ -218,7 +290,7 @@ mod tests {
         let condensed = SuiteFigure { undrawn: 12, ..sample::suite("S", 1) };
         page.suites = vec![condensed; 40];
         let html = written(&page);
-        assert_eq!(html.matches("<svg").count(), 2 * 3 + 2);
+        assert_eq!(html.matches("<svg").count(), 2 * 3 + 3);
         assert!(html.contains("id=\"data-39\"") && html.contains("id=\"suite-search\""));
     }
 

@@ -4,6 +4,7 @@ use reachtube_conform::fit::{FitRecord, FittedParameter};
 use reachtube_conform::result::Code;
 use reachtube_conform::{Finding, Model};
 
+use crate::cost::cost_unit;
 use crate::text_table::TextTable;
 use reachtube_scalar::number::four_decimals;
 
@@ -19,7 +20,8 @@ pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
         add("Calibration", calibrated.text);
     }
     if let Some(any) = &model.any_run {
-        add("Cost of the sets for any run", four_decimals(any.cost));
+        let unit = cost_unit(model);
+        add(&format!("Cost of the sets for any run {unit}"), four_decimals(any.cost));
     }
     facts
 }
@@ -39,11 +41,11 @@ pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
         parameters.header.remove(STANDARD_ERROR);
         parameters.rows.iter_mut().for_each(|row| drop(row.remove(STANDARD_ERROR)));
     }
-    vec![costs(fit), parameters]
+    vec![costs(model, fit), parameters]
 }
 
 /// Returns the costs of the smallest sets for all motions, for several nominal models.
-fn costs(fit: &FitRecord) -> TextTable {
+fn costs(model: &Model, fit: &FitRecord) -> TextTable {
     let row = |name: String, cost: Option<f64>| {
         let change = |cost| format!("{:+.1} %", 100.0 * (cost / fit.identified_cost - 1.0));
         let none = || "a nominal motion runs away".into();
@@ -63,7 +65,9 @@ fn costs(fit: &FitRecord) -> TextTable {
         .map(|cost| row("Identified, calibrated (not the smallest)".into(), Some(cost)));
     TextTable {
         title: "Cost of the smallest sets".into(),
-        header: ["Nominal model", "Cost", "Change"].map(String::from).to_vec(),
+        header: ["Nominal model", &format!("Cost {}", cost_unit(model)), "Change"]
+            .map(String::from)
+            .to_vec(),
         rows: first
             .map(|(name, cost)| row(name.into(), Some(cost)))
             .into_iter()

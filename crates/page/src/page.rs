@@ -17,6 +17,8 @@ pub struct Page {
     pub subtitle: String,
     /// The answer, shown first.
     pub verdict: Verdict,
+    /// The first lines below it.
+    pub lead: Lead,
     /// The figures, in the order of their buttons; the first one is open.
     pub suites: Vec<SuiteFigure>,
     /// The phase planes of the joints, where the model is linear.
@@ -39,6 +41,21 @@ pub struct Page {
     pub notes: Vec<String>,
 }
 
+/// The first lines of a page: the answer in numbers, and one figure, before any table.
+#[derive(Debug, Clone, Default)]
+pub struct Lead {
+    /// Marks of the whole page, such as "simulated data".
+    pub badges: Vec<String>,
+    /// The answer in numbers with units: name and value.
+    pub facts: Vec<(String, String)>,
+    /// The figure of the widest set.
+    pub figure: Option<Chart>,
+    /// What the figure shows.
+    pub caption: String,
+    /// Other pages about the same model: words, and the address from this page.
+    pub links: Vec<(String, String)>,
+}
+
 /// The outcome in words.
 #[derive(Debug, Clone, Default)]
 pub struct Verdict {
@@ -46,6 +63,8 @@ pub struct Verdict {
     pub ok: bool,
     /// Whether the model is vacuous: its sets do not limit the motion of some joint.
     pub vacuous: bool,
+    /// Whether the sets are narrow enough beside the motion; `None` if no limit was set.
+    pub useful: Option<bool>,
     /// The outcome as one sentence.
     pub words: String,
     /// Implausible results, one sentence each.

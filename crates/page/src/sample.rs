@@ -1,7 +1,7 @@
 //! A small invented result, for the tests of this module.
 
 use super::chart::{Chart, Series};
-use super::page::{JointSets, Page, SetsTable, Verdict};
+use super::page::{JointSets, Lead, Page, SetsTable, Verdict};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 use super::text_table::TextTable;
 use reachtube_conform::data::Side;
@@ -87,11 +87,19 @@ pub(super) fn page() -> Page {
         cost_charts: vec![phase_plane()],
         verdict: Verdict {
             vacuous: false,
+            useful: None,
             ok: true,
             words: hostile("words"),
             warnings: vec![hostile("warning")],
             proved: vec![hostile("proved")],
             not_proved: vec![hostile("not proved")],
+        },
+        lead: Lead {
+            badges: vec![hostile("badge")],
+            facts: vec![(hostile("fact"), hostile("number"))],
+            figure: Some(phase_plane()),
+            caption: hostile("caption"),
+            links: vec![(hostile("link"), "../held-out/report.html".into())],
         },
         suites: vec![suite(&hostile("A"), 2), suite("B", 7)],
         nominal: vec![TextTable {

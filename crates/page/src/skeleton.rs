@@ -1,5 +1,6 @@
 //! The parts that all pages share: the document around a page, sections, and lists.
 
+use super::terms::Explained;
 use super::text::Text;
 use super::text_table::TextTable;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -67,7 +68,7 @@ pub(super) fn pair_of_lists(lists: [(&str, &str, &[String]); 2]) -> Markup {
                     div {
                         h3 { (title) }
                         ul class=(class) {
-                            @for point in points { li { (Text(point)) } }
+                            @for point in points { li { (Explained(point)) } }
                         }
                     }
                 }
@@ -82,7 +83,7 @@ pub(super) fn wide_table(class: &str, caption: &str, head: &Markup, rows: &Marku
     html! {
         div.wide tabindex="0" role="region" aria-label=(Text(caption)) {
             table class=(class) {
-                caption { (Text(caption)) }
+                caption { (Explained(caption)) }
                 thead { tr { (head) } }
                 tbody { (rows) }
             }
@@ -93,7 +94,7 @@ pub(super) fn wide_table(class: &str, caption: &str, head: &Markup, rows: &Marku
 /// Returns a table of texts whose cells are broken into lines.
 pub fn long_table(table: &TextTable) -> Markup {
     let head = html! {
-        @for name in &table.header { th scope="col" { (Text(name)) } }
+        @for name in &table.header { th scope="col" { (Explained(name)) } }
     };
     let rows = html! {
         @for cells in &table.rows {

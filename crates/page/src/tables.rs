@@ -3,6 +3,7 @@
 use super::page::{Bounds, JointSets, Page, SetsTable};
 use super::skeleton::wide_table;
 use super::suite_figure::{SuiteFigure, TightSpot};
+use super::terms::{self, Explained};
 use super::text::Text;
 use super::text_table::TextTable;
 use maud::{Markup, PreEscaped, html};
@@ -11,10 +12,15 @@ use reachtube_robot::JointKind;
 use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::{column_decimals, outward, significant};
 
+/// The set X0: as HTML, and as a term.
+const X0: [&str; 2] = ["X<sub>0</sub>", "X0"];
+
 /// A column of a table of sets.
 struct Column {
     /// The set, as HTML.
     set: &'static str,
+    /// What the set is.
+    meaning: &'static str,
     /// The quantity.
     quantity: &'static str,
     unit: ColumnUnit,
@@ -43,22 +49,24 @@ pub(super) fn sets(table: &SetsTable) -> Markup {
 
 fn columns(table: &SetsTable) -> Vec<Column> {
     let kinds: Vec<_> = table.joints.iter().map(|joint| joint.kind).collect();
-    let column = |set, quantity, unit, pick: fn(&JointSets) -> Bounds| Column {
-        set,
-        quantity,
-        unit: ColumnUnit::new(&kinds, unit),
-        intervals: table.joints.iter().map(pick).collect(),
-    };
+    let column =
+        |[set, term]: [&'static str; 2], quantity, unit, pick: fn(&JointSets) -> Bounds| Column {
+            set,
+            meaning: terms::meaning(term),
+            quantity,
+            unit: ColumnUnit::new(&kinds, unit),
+            intervals: table.joints.iter().map(pick).collect(),
+        };
     let mut columns = vec![
-        column("X<sub>0</sub>", ": q", JointKind::position_unit, |joint| joint.x0_q),
-        column("X<sub>0</sub>", ": q̇", JointKind::velocity_unit, |joint| joint.x0_qd),
-        column("U", "", JointKind::force_unit, |joint| joint.u),
+        column(X0, ": q", JointKind::position_unit, |joint| joint.x0_q),
+        column(X0, ": q̇", JointKind::velocity_unit, |joint| joint.x0_qd),
+        column(["U", "U"], "", JointKind::force_unit, |joint| joint.u),
     ];
     if table.joints.iter().any(|joint| joint.noise.is_some()) {
         let position = |joint: &JointSets| joint.noise.unwrap_or_default()[0];
         let velocity = |joint: &JointSets| joint.noise.unwrap_or_default()[1];
-        columns.push(column("V", ": q", JointKind::position_unit, position));
-        columns.push(column("V", ": q̇", JointKind::velocity_unit, velocity));
+        columns.push(column(["V", "V"], ": q", JointKind::position_unit, position));
+        columns.push(column(["V", "V"], ": q̇", JointKind::velocity_unit, velocity));
     }
     columns
 }
@@ -66,7 +74,7 @@ fn columns(table: &SetsTable) -> Vec<Column> {
 fn column_head(column: &Column) -> Markup {
     html! {
         th scope="col" {
-            (PreEscaped(column.set)) (column.quantity)
+            abbr title=(column.meaning) { (PreEscaped(column.set)) } (column.quantity)
             @if let Some(shared) = column.unit.shared() { " " (unit(shared)) }
         }
     }
@@ -105,12 +113,12 @@ pub(super) fn tight(page: &Page) -> Markup {
             table {
                 thead {
                     tr {
-                        th scope="col" { "Suite" }
+                        th scope="col" { (Explained("Suite")) }
                         th scope="col" { "Run" }
                         th.number scope="col" { "Time " (unit("s")) }
                         th scope="col" { "State" }
                         th scope="col" { "Side" }
-                        th.number scope="col" { "Margin" }
+                        th.number scope="col" { (Explained("Margin")) }
                         th scope="col" { "Unit" }
                     }
                 }
@@ -148,7 +156,7 @@ fn spot_row(index: usize, suite: &SuiteFigure, spot: &TightSpot) -> Markup {
 pub(super) fn texts(table: &TextTable) -> Markup {
     let head = html! {
         @for (column, name) in table.header.iter().enumerate() {
-            th.number[column > 0] scope="col" { (Text(name)) }
+            th.number[column > 0] scope="col" { (Explained(name)) }
         }
     };
     let rows = html! {
@@ -167,12 +175,14 @@ pub(super) fn texts(table: &TextTable) -> Markup {
 /// Returns a table of names and values.
 pub(super) fn facts(facts: &[(String, String)]) -> Markup {
     html! {
-        table.facts {
-            tbody {
-                @for (name, value) in facts {
-                    tr {
-                        th scope="row" { (Text(name)) }
-                        td { (Text(value)) }
+        div.wide tabindex="0" role="region" aria-label="Names and values" {
+            table.facts {
+                tbody {
+                    @for (name, value) in facts {
+                        tr {
+                            th scope="row" { (Explained(name)) }
+                            td { (Text(value)) }
+                        }
                     }
                 }
             }

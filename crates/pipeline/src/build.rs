@@ -54,8 +54,13 @@ impl Built {
     pub fn is_useful(&self) -> bool {
         let model = &self.answer.model;
         let worst = model.usefulness.as_ref().and_then(|said| said.worst());
-        let largest = self.choices.largest_ratio.unwrap_or(LARGEST_RATIO);
-        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= largest)
+        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
+    }
+
+    /// Returns half a joint's set by the joint's displacement that is accepted at most.
+    #[must_use]
+    pub fn largest_ratio(&self) -> f64 {
+        self.choices.largest_ratio.unwrap_or(LARGEST_RATIO)
     }
 }
 

@@ -41,7 +41,7 @@ impl Built {
             lines.extend(findings.map(|finding| finding.written_for(front_end)));
         }
         lines.push(self.table_of_joints().to_string());
-        lines.push(self.held_out_words());
+        lines.push(format!("held out: {}", self.held_out_words()));
         let growth = self
             .horizons
             .iter()
@@ -60,19 +60,17 @@ impl Built {
         }
     }
 
-    /// Returns how many rows that were held out lie outside the sets, as one line.
+    /// Returns how many rows that were held out lie outside the sets, in a few words.
     #[must_use]
     pub fn held_out_words(&self) -> String {
         let held_out = &self.held_out;
         match &held_out.failure {
-            Some(why) => format!("held out: {why}"),
+            Some(why) => why.clone(),
             None => {
                 let (rows, outside, windows) = (held_out.rows, held_out.outside, held_out.windows);
                 let part = 100.0 * outside as f64 / rows.max(1) as f64;
                 let what = self.unit();
-                format!(
-                    "held out: {outside} of {rows} rows outside ({part:.1} %), of {windows} {what}"
-                )
+                format!("{outside} of {rows} rows outside ({part:.1} %), of {windows} {what}")
             }
         }
     }

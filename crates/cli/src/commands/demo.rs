@@ -7,7 +7,7 @@ use reachtube::Model;
 use reachtube::conform::result::FrontEnd;
 use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
-use reachtube::page::{Assets, Sources};
+use reachtube::page::{Assets, PAGE_FILE, Sources, TO_HELD_OUT, TO_OWN};
 use reachtube::recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
 use serde_json::json;
@@ -87,8 +87,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     drop(bar);
     answer.model.save(&path)?;
     output::wrote(&path);
-    let page = conform_command::report(&answer, &pages[0])?;
-    output::wrote(&page);
+    let mut page = conform_command::page_of(&answer)?;
+    page.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
+    output::wrote(&report_files::write_page(&page, Assets::Inside, &pages[0])?);
     // Try them on the motions held out.
     let Answer { model, problem, .. } = answer;
     let setup = problem.setup().clone();
@@ -140,8 +141,9 @@ fn check_held_out(
     let Opened { model, problem, .. } = &opened;
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
-    let page = report_files::write(&sources, Assets::Inside, page)?;
-    output::wrote(&page);
+    let mut own = reachtube::page::page(&sources)?;
+    own.lead.links = vec![(TO_OWN.into(), format!("../report/{PAGE_FILE}"))];
+    output::wrote(&report_files::write_page(&own, Assets::Inside, page)?);
     Ok((opened.model, check))
 }
 

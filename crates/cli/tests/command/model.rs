@@ -43,6 +43,18 @@ fn logs_become_a_useful_model_that_takes_other_logs() {
     for file in ["model.json", "robot.toml", "choices.toml", "page/report.html"] {
         assert!(lab.path("arm").join(file).is_file(), "{file}");
     }
+    let page = lab.read("arm/page/report.html");
+    for part in [
+        ">Conformant and useful",
+        "and useful up to",
+        "each sample proved",
+        "Half the set of",
+        "../held-out/report.html",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(lab.read("arm/held-out/report.html").contains("../page/report.html"));
+    assert!(!page.contains("class=\"badge\""), "nothing says that the logs are simulated");
     // Nothing that the model was made of lies outside, prepared again from the logs.
     let check = lab.run("check --model arm/model.json --data logs/a.csv --json").exits(0);
     assert_eq!(json(&check.stdout)["violations"]["count"], 0);

@@ -60,7 +60,15 @@ fn results_fit_the_schema() {
 
 #[test]
 fn a_demo_fits_the_schema() {
-    fits("demo", &Lab::new().run("demo --out demo --json").exits(0).json());
+    let lab = Lab::new();
+    fits("demo", &lab.run("demo --out demo --json").exits(0).json());
+    // Its pages say that nothing was measured, and lead to each other.
+    for (page, other) in [("report", "held-out"), ("held-out", "report")] {
+        let html = lab.read(&format!("demo/{page}/report.html"));
+        assert!(html.contains("<span class=\"badge\">simulated data</span>"), "{page}");
+        assert!(html.contains(&format!("href=\"../{other}/report.html\"")), "{page}");
+    }
+    assert!(lab.read("demo/model.json").contains("\"simulated\": true"));
 }
 
 #[test]

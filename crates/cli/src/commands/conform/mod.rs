@@ -5,4 +5,4 @@ mod run;
 mod settings;
 
 pub(crate) use arguments::Arguments;
-pub(crate) use run::{report, run};
+pub(crate) use run::{page_of, run};

@@ -1,8 +1,6 @@
-use std::path::{Path, PathBuf};
-
 use reachtube::conform::result::FrontEnd;
 use reachtube::conform::{Answer, FitSettings, Job};
-use reachtube::page::{Assets, Sources};
+use reachtube::page::{Assets, Page, Sources, page};
 use reachtube::recordings::DataSet;
 use reachtube::write;
 
@@ -41,8 +39,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print(&answer.report().to_string())?;
     }
     if let Some(folder) = &args.report {
-        let page = report(&answer, folder)?;
-        output::wrote(&page);
+        let page = page_of(&answer)?;
+        output::wrote(&report_files::write_page(&page, Assets::Inside, folder)?);
     }
     Ok(Outcome::of_model(answer.holds(), &answer.model))
 }
@@ -66,11 +64,11 @@ fn job(args: &Arguments) -> Result<Job> {
     Ok(job)
 }
 
-/// Writes the page about the recordings that the sets were found for, from what is in memory.
-pub(crate) fn report(answer: &Answer, folder: &Path) -> Result<PathBuf> {
+/// Returns the page about the recordings that the sets were found for, from what is in memory.
+pub(crate) fn page_of(answer: &Answer) -> Result<Page> {
     let Answer { model, problem, .. } = answer;
     let (check, reach) = (answer.check(), answer.reach()?);
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
-    report_files::write(&sources, Assets::Inside, folder)
+    Ok(page(&sources)?)
 }

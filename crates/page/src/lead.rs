@@ -1,0 +1,183 @@
+//! The first lines of a page: the answer in numbers, and one figure of the widest set.
+
+use reachtube_conform::plausibility::JointWidth;
+use reachtube_conform::{Model, SuiteReach};
+use reachtube_pipeline::{Built, HorizonWidths};
+use reachtube_robot::JointKind;
+use reachtube_scalar::number::significant;
+
+use crate::chart::{Chart, Series};
+use crate::error::Result;
+use crate::page::Lead;
+use crate::sources::{Sources, joint_name};
+
+/// Blue, grey, black and red.
+const MAIN: [u8; 3] = [18, 70, 200];
+const OTHER: [u8; 3] = [140, 149, 159];
+const CHOSEN: [u8; 3] = [31, 35, 40];
+const LIMIT: [u8; 3] = [207, 19, 34];
+
+/// Number of recordings of the suite that are drawn.
+const MOST_RUNS: usize = 20;
+
+/// Number of samples at which the set is drawn.
+const MOST_SAMPLES: usize = 400;
+
+/// Returns the first lines of a page about recordings.
+///
+/// # Errors
+///
+/// As [`Problem::run`](reachtube_conform::Problem::run).
+pub(super) fn lead(sources: &Sources) -> Result<Lead> {
+    let Sources { model, problem, check, .. } = *sources;
+    let badges = match (problem.is_simulated(), model.data.simulated) {
+        (true, _) => vec!["simulated data".into()],
+        (false, true) => vec!["model made of simulated data".into()],
+        (false, false) => Vec::new(),
+    };
+    let mut facts = facts_of_sets(model);
+    let verdict = &check.verdict;
+    let (outside, rows) = (verdict.violations.count, verdict.rows);
+    facts.push(("Outside the set".into(), format!("{outside} of {rows} rows")));
+    let (figure, caption) = over_time(sources)?.unzip();
+    Ok(Lead { badges, facts, figure, caption: caption.unwrap_or_default(), links: Vec::new() })
+}
+
+/// Puts what is known of a model that was made of logs in place of the lines of its page.
+pub(super) fn of_built(built: &Built, lead: &mut Lead) {
+    lead.facts = facts_of_sets(&built.answer.model);
+    lead.facts.push(("Held out".into(), built.held_out_words()));
+    if let Some((figure, caption)) = over_horizons(built) {
+        (lead.figure, lead.caption) = (Some(figure), caption);
+    }
+}
+
+/// Returns the horizon and the widest set.
+fn facts_of_sets(model: &Model) -> Vec<(String, String)> {
+    let Some(said) = &model.usefulness else { return Vec::new() };
+    let horizon = format!("{} s", significant(said.horizon, 3));
+    let widest = said.worst().map(|(joint, _)| {
+        let kind = model.robot.joints[joint].kind;
+        ("Widest set".into(), words(&joint_name(model, joint), &said.joints[joint], kind))
+    });
+    [("Horizon".into(), horizon)].into_iter().chain(widest).collect()
+}
+
+fn words(name: &str, width: &JointWidth, kind: JointKind) -> String {
+    let unit = kind.position_unit();
+    match width.half_width {
+        None => format!("{name}: it has no bound"),
+        Some(half) => format!(
+            "{name}: ± {} {unit}, {:.0} % of its motion",
+            significant(half, 2),
+            100.0 * width.ratio()
+        ),
+    }
+}
+
+/// Returns the joint, from 0, whose set is the widest beside its motion.
+fn worst(model: &Model) -> usize {
+    let worst = model.usefulness.as_ref().and_then(|said| said.worst());
+    worst.map_or(0, |(joint, _)| joint)
+}
+
+/// Draws the sets beside the motion by horizon, and returns the chart with its caption. `None` if
+/// fewer than two horizons have sets.
+fn over_horizons(built: &Built) -> Option<(Chart, String)> {
+    let model = &built.answer.model;
+    let (joint, name) = (worst(model), joint_name(model, worst(model)));
+    let horizon = built.choices.horizon?;
+    let percent = |widths: &HorizonWidths, joint: usize| {
+        let ratio = widths.ratios.get(joint).copied().filter(|ratio| ratio.is_finite())?;
+        Some((widths.horizon, 100.0 * ratio))
+    };
+    let of = |joint: usize| -> Vec<(f64, f64)> {
+        built.horizons.iter().filter_map(|widths| percent(widths, joint)).collect()
+    };
+    let own = of(joint);
+    let ([first, .., last], most) = (&own[..], built.largest_ratio()) else { return None };
+    let line = |points, colour| Series { points, dots: false, colour };
+    let others = (0..model.joints()).filter(|other| *other != joint);
+    let mut series: Vec<Series> = others.map(|other| line(of(other), OTHER)).collect();
+    let highest = series.iter().flat_map(|series| &series.points).chain(&own);
+    let highest = highest.map(|point| point.1).fold(100.0 * most, f64::max);
+    series.push(line(vec![(first.0, 100.0 * most), (last.0, 100.0 * most)], LIMIT));
+    series.push(line(vec![(horizon, 0.0), (horizon, highest)], CHOSEN));
+    series.push(line(own.clone(), MAIN));
+    series.push(Series { points: own.clone(), dots: true, colour: MAIN });
+    let caption = format!(
+        "How wide the sets are beside the motion, by horizon, on up to 200 windows: {name} (blue), \
+         whose set is the widest at {horizon} s (black line), and the other joints (grey). Up to \
+         the red line, {:.0} %, sets are useful. The ratio may be compared across horizons; the \
+         cost may not: it adds rad to rad/s and grows with the number of samples, so it is \
+         compared only within one data set.",
+        100.0 * most
+    );
+    let chart = Chart {
+        title: format!("Half the set of {name} by its motion"),
+        x: "horizon [s]".into(),
+        y: "half the set / motion [%]".into(),
+        area: Vec::new(),
+        series,
+    };
+    Some((chart, caption))
+}
+
+/// Draws the widest set over time within the longest suite, with its recordings, and returns the
+/// chart with its caption.
+fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
+    let Sources { model, problem, reach, .. } = *sources;
+    let joint = worst(model);
+    let end = |reach: &&SuiteReach| reach.times.last().copied().unwrap_or(0.0);
+    let longest = reach.iter().max_by(|a, b| end(a).total_cmp(&end(b)));
+    let Some(longest) = longest.filter(|reach| reach.times.len() > 1) else { return Ok(None) };
+    let noise = model.sets().noise_radius(joint);
+    let column = |values: &[f64]| -> Vec<f64> {
+        values.iter().skip(joint).step_by(longest.dimension).copied().collect()
+    };
+    let [nominal, lower, upper] =
+        [&longest.nominal, &longest.lower, &longest.upper].map(|values| column(values));
+    if !lower.iter().chain(&upper).all(|bound| bound.is_finite()) {
+        return Ok(None);
+    }
+    // The range of both edges over a few samples, so that the drawn set is not too small.
+    let step = longest.times.len().div_ceil(MOST_SAMPLES);
+    let edge = |values: &[f64], sign: f64| -> Vec<(f64, f64)> {
+        let of = |(times, values): (&[f64], &[f64])| {
+            let furthest = values.iter().map(|x| sign * x).fold(f64::MIN, f64::max);
+            (times[times.len() - 1], sign * furthest + sign * noise)
+        };
+        longest.times.chunks(step).zip(values.chunks(step)).map(of).collect()
+    };
+    let back = edge(&lower, -1.0).into_iter().rev();
+    let area = edge(&upper, 1.0).into_iter().chain(back).collect();
+    let mut series = vec![Series {
+        points: longest.times.iter().copied().zip(nominal).collect(),
+        dots: false,
+        colour: OTHER,
+    }];
+    let suites = problem.recordings().suites.iter();
+    let runs = suites.filter(|suite| suite.entry.name == longest.suite).flat_map(|s| &s.runs);
+    let is_drawn =
+        |index: usize| longest.run.as_ref().is_none_or(|run| *run == problem.entry(index).file);
+    for summary in runs.filter(|run| is_drawn(run.index)).take(MOST_RUNS) {
+        let run = problem.run(summary.index)?;
+        let points = (0..run.len()).map(|k| (run.times[k], run.q(k)[joint])).collect();
+        series.push(Series { points, dots: false, colour: MAIN });
+    }
+    let (name, suite) = (joint_name(model, joint), &longest.suite);
+    let with = if noise > 0.0 { " with V" } else { "" };
+    let caption = format!(
+        "The widest set beside the motion, of {name}, in the longest suite: the reachable set{with} \
+         (grey area), the nominal motion (grey line) and the recorded motion (blue)."
+    );
+    let unit = model.robot.joints[joint].kind.position_unit();
+    let chart = Chart {
+        title: format!("{name} in suite {suite}"),
+        x: "time [s]".into(),
+        y: format!("position [{unit}]"),
+        area,
+        series,
+    };
+    Ok(Some((chart, caption)))
+}
