@@ -191,6 +191,15 @@ fn dark_and_phone_pages_do_not_overflow() {
         assert_eq!(colours[0], colours[1]);
         assert_eq!(colours[0] == "#e4e8ee", dark);
         assert!(tab.messages.is_empty(), "{:?}", tab.messages);
+        // A table that is wider scrolls in a box of its own, which lies in the window.
+        let cut = tab.script(
+            "[...document.querySelectorAll('table')].filter(table => {
+                 const box = table.closest('.wide, .tall');
+                 const inside = box && box.getBoundingClientRect().right <= innerWidth;
+                 return !inside || getComputedStyle(box).overflowX !== 'auto';
+             }).map(table => table.textContent)",
+        );
+        assert_eq!(cut, json!([]), "in {width} px");
     }
 }
 

@@ -17,6 +17,9 @@ const OTHER: [u8; 3] = [140, 149, 159];
 const CHOSEN: [u8; 3] = [31, 35, 40];
 const LIMIT: [u8; 3] = [207, 19, 34];
 
+/// The farthest horizon that is drawn, in multiples of the one that was chosen.
+const FARTHEST: f64 = 4.0;
+
 /// Number of recordings of the suite that are drawn.
 const MOST_RUNS: usize = 20;
 
@@ -87,12 +90,17 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     let model = &built.answer.model;
     let (joint, name) = (worst(model), joint_name(model, worst(model)));
     let horizon = built.choices.horizon?;
+    // The horizon of the model was tried on some windows too; its own sets hold for all of them.
+    let joints = built.joints();
     let percent = |widths: &HorizonWidths, joint: usize| {
-        let ratio = widths.ratios.get(joint).copied().filter(|ratio| ratio.is_finite())?;
-        Some((widths.horizon, 100.0 * ratio))
+        let chosen = joints.get(joint).and_then(|row| row.ratio);
+        let tried = widths.ratios.get(joint).copied();
+        let ratio = if widths.horizon == horizon { chosen } else { tried };
+        Some((widths.horizon, 100.0 * ratio.filter(|ratio| ratio.is_finite())?))
     };
+    let shown = built.horizons.iter().filter(|widths| widths.horizon <= FARTHEST * horizon);
     let of = |joint: usize| -> Vec<(f64, f64)> {
-        built.horizons.iter().filter_map(|widths| percent(widths, joint)).collect()
+        shown.clone().filter_map(|widths| percent(widths, joint)).collect()
     };
     let own = of(joint);
     let ([first, .., last], most) = (&own[..], built.largest_ratio()) else { return None };
@@ -106,11 +114,11 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     series.push(line(own.clone(), MAIN));
     series.push(Series { points: own.clone(), dots: true, colour: MAIN });
     let caption = format!(
-        "How wide the sets are beside the motion, by horizon, on up to 200 windows: {name} (blue), \
-         whose set is the widest at {horizon} s (black line), and the other joints (grey). Up to \
-         the red line, {:.0} %, sets are useful. The ratio may be compared across horizons; the \
-         cost may not: it adds rad to rad/s and grows with the number of samples, so it is \
-         compared only within one data set.",
+        "How wide the sets are beside the motion, by horizon: {name} (blue), whose set is the \
+         widest at {horizon} s (black line), and the other joints (grey). Up to the red line, \
+         {:.0} %, sets are useful. Other horizons were tried on up to 200 windows. The ratio may \
+         be compared across horizons; the cost may not: it adds rad to rad/s and grows with the \
+         number of samples, so it is compared only within one data set.",
         100.0 * most
     );
     let chart = Chart {
@@ -123,13 +131,27 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     Some((chart, caption))
 }
 
+/// Returns the longest reachable set; of those that are as long, as windows are, the one in which a
+/// joint moves most.
+fn longest(reach: &[SuiteReach], joint: usize) -> Option<&SuiteReach> {
+    let end = |reach: &SuiteReach| reach.times.last().copied().unwrap_or(0.0);
+    let motion = |reach: &SuiteReach| {
+        let positions = reach.nominal.iter().skip(joint).step_by(reach.dimension);
+        let [low, high] = positions
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], q| [low.min(*q), high.max(*q)]);
+        high - low
+    };
+    reach
+        .iter()
+        .max_by(|a, b| end(a).total_cmp(&end(b)).then_with(|| motion(a).total_cmp(&motion(b))))
+}
+
 /// Draws the widest set over time within the longest suite, with its recordings, and returns the
 /// chart with its caption.
 fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
     let Sources { model, problem, reach, .. } = *sources;
     let joint = worst(model);
-    let end = |reach: &&SuiteReach| reach.times.last().copied().unwrap_or(0.0);
-    let longest = reach.iter().max_by(|a, b| end(a).total_cmp(&end(b)));
+    let longest = longest(reach, joint);
     let Some(longest) = longest.filter(|reach| reach.times.len() > 1) else { return Ok(None) };
     let noise = model.sets().noise_radius(joint);
     let column = |values: &[f64]| -> Vec<f64> {
