@@ -46,7 +46,7 @@ pub(super) fn lead(sources: &Sources) -> Result<Lead> {
     Ok(Lead { badges, facts, figure, caption: caption.unwrap_or_default(), links: Vec::new() })
 }
 
-/// Puts what is known of a model that was made of logs in place of the lines of its page.
+/// Replaces the first lines of the page of a model that was made of logs by the lines about it.
 pub(super) fn of_built(built: &Built, lead: &mut Lead) {
     lead.facts = facts_of_sets(&built.answer.model);
     lead.facts.push(("Held out".into(), built.held_out_words()));
@@ -131,8 +131,8 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     Some((chart, caption))
 }
 
-/// Returns the longest reachable set; of those that are as long, as windows are, the one in which a
-/// joint moves most.
+/// Returns the longest reachable set. Windows are equally long: of several longest sets it is the
+/// one in which the joint moves most.
 fn longest(reach: &[SuiteReach], joint: usize) -> Option<&SuiteReach> {
     let end = |reach: &SuiteReach| reach.times.last().copied().unwrap_or(0.0);
     let motion = |reach: &SuiteReach| {
@@ -190,8 +190,8 @@ fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
     let (name, suite) = (joint_name(model, joint), &longest.suite);
     let with = if noise > 0.0 { " with V" } else { "" };
     let caption = format!(
-        "The widest set beside the motion, of {name}, in the longest suite: the reachable set{with} \
-         (grey area), the nominal motion (grey line) and the recorded motion (blue)."
+        "The widest set beside the motion, of {name}, in the longest suite: the reachable \
+         set{with} (grey area), the nominal motion (grey line) and the recorded motion (blue)."
     );
     let unit = model.robot.joints[joint].kind.position_unit();
     let chart = Chart {
