@@ -107,9 +107,7 @@ def prepare(
         paths,
         runs,
         json.dumps(settings),
-        None if window is None else real("window", window),
-        repeats,
-        compensate,
+        (None if window is None else real("window", window), repeats, compensate),
     )
     log.info("the cut-off frequency is %g Hz", used)
     for change in changes:

@@ -220,9 +220,7 @@ def prepare(
     paths: list[str],
     runs: Source | None,
     settings: str,
-    window: float | None,
-    repeats: bool,
-    compensate: bool,
+    cutting: tuple[float | None, bool, bool],
 ) -> tuple[Source, float, list[str]]: ...
 def excite(
     robot: Robot,

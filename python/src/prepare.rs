@@ -27,19 +27,18 @@ struct Cutting {
 /// Filters logs and cuts them into windows; returns the windows, the cut-off frequency, Hz, and
 /// what was changed.
 #[pyfunction]
-#[pyo3(signature = (robot, paths, runs, settings, window, repeats, compensate))]
+#[pyo3(signature = (robot, paths, runs, settings, cutting))]
 pub(crate) fn prepare(
     py: Python<'_>,
     robot: PyRef<'_, NativeRobot>,
     paths: Vec<PathBuf>,
     runs: Option<PyRef<'_, NativeSource>>,
     settings: String,
-    window: Option<f64>,
-    repeats: bool,
-    compensate: bool,
+    cutting: (Option<f64>, bool, bool),
 ) -> PyResult<(NativeSource, f64, Vec<String>)> {
     let robot = Arc::clone(&robot.robot);
     let runs = runs.map(|runs| runs.source.clone());
+    let (window, repeats, compensate) = cutting;
     let cutting = Cutting { window, repeats, compensate };
     let (windows, cut_off, changes) = watched(py, None, move |_| {
         let settings: PrepareSettings =
