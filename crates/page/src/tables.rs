@@ -200,7 +200,7 @@ mod tests {
         let html = sets(&sample::sets(3)).into_string();
         assert_eq!(html.matches("<td>[-2.7201, 3.6017]").count(), 3);
         assert_eq!(html.matches("scope=\"row\"").count(), 3);
-        assert!(html.contains("V: q ") && html.contains("[N m]"));
+        assert!(html.contains(">V</abbr>: q ") && html.contains("[N m]"));
     }
 
     #[test]
@@ -218,13 +218,13 @@ mod tests {
     fn noise_has_no_columns_where_none_was_modelled() {
         let mut table = sample::sets(1);
         table.joints[0].noise = None;
-        assert!(!sets(&table).into_string().contains("V: q"));
+        assert!(!sets(&table).into_string().contains(">V</abbr>: q"));
     }
 
     #[test]
     fn a_sample_outside_is_marked() {
         let mut page = sample::page();
-        assert!(!tight(&page).into_string().contains("outside"));
+        assert!(!tight(&page).into_string().contains("class=\"outside\""));
         page.suites[0].tight[0].margin = -0.01;
         let html = tight(&page).into_string();
         assert!(html.contains("class=\"outside\"") && html.contains("-0.01 outside"));
