@@ -157,7 +157,7 @@ mod tests {
         let inner = folder.path().join("inner");
         std::fs::create_dir(&inner).unwrap();
         let paths = ["inner/a.csv", "inner/b.csv", "c.csv"].map(|file| folder.path().join(file));
-        paths.each_ref().map(|path| std::fs::write(path, "").unwrap());
+        paths.iter().for_each(|path| std::fs::write(path, "").unwrap());
         let write = |text: &str| std::fs::write(folder.path().join(INDEX), text).unwrap();
         let found = |count: usize| any_simulated(paths[..count].iter().map(|path| &**path));
         assert!(!found(3), "there is no index");
