@@ -32,7 +32,7 @@ impl NativeRobot {
         let locks = lock.iter().map(|text| text.parse::<Lock>()).collect::<Result<Vec<_>, _>>();
         let locks = locks.map_err(Failure::setting)?;
         if path.to_ascii_lowercase().ends_with(".urdf") {
-            let urdf = Urdf::load(path, &UrdfOptions { base, tip, locks })?;
+            let urdf = Urdf::load(path, &UrdfOptions { base, tip, locks, ..Default::default() })?;
             let robot = Arc::new(urdf.robot().clone());
             return Ok(Self { robot, urdf: Some(Arc::new(urdf)) });
         }

@@ -4,6 +4,7 @@ use clap::Args;
 use reachtube_robot::{Lock, Robot};
 
 use crate::error::Result;
+use crate::output;
 
 // A comment, not a doc comment: clap would show it as the description of the command.
 // The option that holds joints of a robot file at positions.
@@ -20,5 +21,13 @@ impl LockArguments {
     /// Loads a robot by name or path.
     pub(crate) fn load(&self, robot: &str) -> Result<Robot> {
         Ok(Robot::load_locked(robot, &self.lock)?)
+    }
+
+    /// Loads a robot whose parameters are to be identified, so that links of a URDF may have
+    /// inertias that no body has; a warning names them.
+    pub(crate) fn load_to_identify(&self, robot: &str) -> Result<Robot> {
+        let (robot, warning) = Robot::load_to_identify(robot, &self.lock)?;
+        warning.iter().for_each(|warning| output::warn(warning));
+        Ok(robot)
     }
 }

@@ -60,6 +60,10 @@ pub struct Identification {
     pub traces: Vec<TorqueTrace>,
     /// Warnings about implausible results and steps that were not possible.
     pub warnings: Vec<String>,
+    /// The warnings by which the recordings contradict the dynamics of rigid bodies: columns that
+    /// are exchanged or have the wrong sign, units, gains, friction that drives, and torque that
+    /// stays unexplained.
+    pub implausible: Vec<String>,
 }
 
 /// Identifies a robot from recordings.
@@ -108,7 +112,8 @@ pub fn identify(
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
     let windows = simulate(&warming_robot, tried, &model.windows);
     let mut warnings =
-        [inputs.warnings, first.warnings, law_warnings, gain_warnings, implausible].concat();
+        [inputs.warnings, first.warnings, law_warnings, gain_warnings, implausible.clone()]
+            .concat();
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
     let links = inertia.physical.is_some() && !model.separate_gravity;
@@ -130,6 +135,7 @@ pub fn identify(
         windows,
         traces,
         warnings,
+        implausible,
     })
 }
 

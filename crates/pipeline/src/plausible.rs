@@ -1,4 +1,4 @@
-//! Whether recorded torques are what the robot's description needs, up to sign, size and order.
+//! Whether recorded torques are what the robot's description needs, up to sign and size.
 
 use reachtube_identify::prepare::PreparedLog;
 use reachtube_robot::Robot;
@@ -7,11 +7,8 @@ use reachtube_robot::Robot;
 /// remarked. Published descriptions are off by a factor of 3 at times.
 const FACTOR: f64 = 5.0;
 
-/// A correlation below the negative of this shows a wrong sign ...
+/// A correlation below the negative of this shows a wrong sign.
 const OPPOSITE: f64 = 0.5;
-
-/// ... and joints are swapped if both correlate better with each other by this.
-const BETTER: f64 = 0.4;
 
 /// Samples of a recording that are looked at, at most.
 const SAMPLES: usize = 2000;
@@ -35,24 +32,15 @@ pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<String>
             }
         }
     }
-    let fit = |column: usize, joint: usize| Correlation::new(&needed[joint], &recorded[column]);
-    let name = |joint: usize| robot.joints()[joint].name.as_str();
+    let fit = |joint: usize| Correlation::new(&needed[joint], &recorded[joint]);
     let mut found = Vec::new();
-    for a in 0..n {
-        let own = fit(a, a).value;
-        let swapped = (a + 1..n).find(|b| {
-            fit(a, *b).value > own + BETTER && fit(*b, a).value > fit(*b, *b).value + BETTER
-        });
-        if let Some(b) = swapped {
-            found.push(format!("the columns of {} and {} may be swapped", name(a), name(b)));
-        } else if own < -OPPOSITE {
-            found.push(format!(
-                "the torque of {} is opposite to what the description needs: its sign may be wrong",
-                name(a)
-            ));
-        }
+    for joint in (0..n).filter(|joint| fit(*joint).value < -OPPOSITE) {
+        found.push(format!(
+            "the torque of {} is opposite to what the description needs: its sign may be wrong",
+            robot.joints()[joint].name
+        ));
     }
-    let own = (0..n).map(|joint| fit(joint, joint)).filter(|own| own.value > OPPOSITE);
+    let own = (0..n).map(fit).filter(|own| own.value > OPPOSITE);
     let mut gains: Vec<f64> = own.map(|own| own.gain).collect();
     gains.sort_by(f64::total_cmp);
     let median = gains.get(gains.len() / 2).copied().unwrap_or(1.0);

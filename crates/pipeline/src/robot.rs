@@ -35,6 +35,9 @@ pub(crate) struct Nominal {
     pub is_identified: bool,
     /// Why.
     pub reason: String,
+    /// What contradicts the dynamics of rigid bodies in the recordings, where the robot was
+    /// identified or an identification was tried.
+    pub implausible: Vec<String>,
 }
 
 /// What the choice of the robot needs.
@@ -115,8 +118,9 @@ impl Evidence<'_> {
             percent(error),
             percent(after)
         );
+        let implausible = identified.implausible.clone();
         let best = if after < BETTER * error { identified } else { nominal };
-        Ok(Nominal { reason, ..best })
+        Ok(Nominal { reason, implausible, ..best })
     }
 
     /// Returns what contradicts the description in the recorded torques, in sentences.
@@ -146,14 +150,15 @@ impl Evidence<'_> {
         };
         let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
         let nominal = self.prepared(&Robot::from_description(&found.description)?)?;
-        Ok(Nominal { is_identified: true, ..nominal })
+        Ok(Nominal { is_identified: true, implausible: found.implausible, ..nominal })
     }
 
     /// Prepares the motions for a robot.
     fn prepared(&self, robot: &Robot) -> Result<Nominal> {
         let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
         let logs = prepare_for(&raw, robot, self.torque, self.settings, self.cut_off)?;
-        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason: String::new() })
+        let (reason, implausible) = (String::new(), Vec::new());
+        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason, implausible })
     }
 
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of

@@ -61,6 +61,35 @@ impl Robot {
         Self::from_description(&robot.description().with_locks(locks)?)
     }
 
+    /// Loads a robot as [`Robot::load_locked`] does, for an identification: links of a URDF may have
+    /// masses and inertias that no body has. Returns the robot and a warning that names such links;
+    /// with any, the parameters of the robot count as base parameters.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Robot::load_locked`].
+    pub fn load_to_identify(
+        name_or_path: &str,
+        locks: &[Lock],
+    ) -> Result<(Self, Option<String>), RobotError> {
+        let path = Path::new(name_or_path);
+        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) {
+            return Ok((Self::load_locked(name_or_path, locks)?, None));
+        }
+        let options =
+            UrdfOptions { locks: locks.to_vec(), any_inertia: true, ..Default::default() };
+        let robot = Urdf::load(path, &options)?.into_robot();
+        let impossible = robot.description().impossible_links();
+        let warning = (!impossible.is_empty()).then(|| {
+            format!(
+                "no body has the mass and inertia of the links that {} move: only the geometry of \
+                 {name_or_path} is used",
+                impossible.join(", ")
+            )
+        });
+        Ok((robot, warning))
+    }
+
     /// Loads an embedded robot or a TOML file.
     fn load_description(name_or_path: &str) -> Result<Self, RobotError> {
         if let Some((name, text)) = EMBEDDED.iter().find(|(name, _)| *name == name_or_path) {
@@ -104,5 +133,26 @@ mod tests {
         std::fs::remove_dir_all(&folder).unwrap();
         let missing = Robot::load("none.xacro").unwrap_err();
         assert!(matches!(missing, RobotError::Read { .. }));
+    }
+
+    #[test]
+    fn a_urdf_with_a_link_that_is_no_body_has_a_geometry() {
+        let text = r#"<robot name="arm"><link name="base"/>
+            <link name="link"><inertial><mass value="1"/>
+              <inertia ixx="1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+            <joint name="hinge" type="continuous">
+              <parent link="base"/><child link="link"/><axis xyz="0 1 0"/></joint></robot>"#;
+        let folder = std::env::temp_dir().join(format!("reachtube-bodies-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("arm.urdf");
+        std::fs::write(&path, text).unwrap();
+        let name = path.to_str().unwrap();
+        assert!(matches!(Robot::load(name), Err(RobotError::Invalid { .. })), "no body");
+        let (robot, warning) = Robot::load_to_identify(name, &[]).unwrap();
+        assert_eq!(robot.joint_count(), 1);
+        assert!(warning.is_some_and(|warning| warning.contains("that hinge move")));
+        std::fs::write(&path, text.replace("ixx=\"1\"", "ixx=\"0.1\"")).unwrap();
+        assert_eq!(Robot::load_to_identify(name, &[]).unwrap().1, None);
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 }

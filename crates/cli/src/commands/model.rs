@@ -9,7 +9,6 @@ use reachtube::page::{Assets, built_pages};
 use reachtube::pipeline::{Built, Choice, Choices, build};
 use reachtube::recordings::Torque;
 use reachtube::write;
-use reachtube_robot::{Lock, Robot};
 
 use crate::data_arguments::TORQUES;
 use crate::error::{Error, Result};
@@ -66,9 +65,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let choices = choices(args)?;
     let name = choices.robot.clone().ok_or(Error::NoRobot)?;
-    let locks: Vec<Lock> =
-        choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
-    let robot = Robot::load_locked(&name, &locks)?;
+    let lock = choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
+    let robot = LockArguments { lock }.load_to_identify(&name)?;
     let torque = choices.torque.ok_or(Error::NoTorque)?;
     if choices.data.is_empty() {
         return Err(Error::NoData);

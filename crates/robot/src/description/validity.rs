@@ -39,6 +39,14 @@ fn require(
 }
 
 impl RobotDescription {
+    /// Returns the joints whose link has a mass and an inertia that no body has.
+    pub(crate) fn impossible_links(&self) -> Vec<&str> {
+        let is_impossible = |joint: &&JointDescription| {
+            check_link_numbers(joint).is_ok() && check_body(joint).is_err()
+        };
+        self.joints.iter().filter(is_impossible).map(|joint| joint.name.as_str()).collect()
+    }
+
     /// Checks all values; the error is the first invalid one.
     pub(crate) fn check(&self) -> Result<(), InvalidValue> {
         self.check_robot().map_err(|e| invalid(None, e))?;

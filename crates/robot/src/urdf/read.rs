@@ -3,6 +3,7 @@
 use super::companion::Companion;
 use super::describe::MovedLink;
 use super::document::{UrdfTree, parse_document};
+use crate::description::robot_description::ParameterSet;
 use crate::error::RobotError;
 use crate::lock::Lock;
 use crate::robot::Robot;
@@ -20,6 +21,10 @@ pub struct UrdfOptions {
     /// Joints that are held at a position. The links that they carry are lumped like links behind
     /// fixed joints. A joint that mimics one of them is held as well.
     pub locks: Vec<Lock>,
+    /// Whether links may have masses and inertias that no body has, as some published files do.
+    /// Only the geometry of such a robot is of use, for an identification; its parameters count as
+    /// base parameters.
+    pub any_inertia: bool,
 }
 
 /// A URDF and the robot read from it. It keeps the text, so that identified values can be written
@@ -128,6 +133,9 @@ impl Urdf {
         )?;
         let (mut description, moved) = tree.describe(&chain)?;
         companion.apply(&mut description)?;
+        if options.any_inertia && !description.impossible_links().is_empty() {
+            description.parameters = ParameterSet::Base;
+        }
         let robot = Robot::checked(&description, |value| tree.locate(&moved, value))?;
         let base = chain.base.to_string();
         Ok(Self { origin: origin.into(), base, moved, locks, robot, text })

@@ -21,9 +21,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (mut settings, folder) = settings(args)?;
     let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);
-    let robot = args.lock.load(&name)?;
+    let robot = args.lock.load_to_identify(&name)?;
     check_urdf(args, &name)?;
-    let options = UrdfOptions { locks: args.lock.lock.clone(), ..UrdfOptions::default() };
+    let options =
+        UrdfOptions { locks: args.lock.lock.clone(), any_inertia: true, ..UrdfOptions::default() };
     let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &options)).transpose()?;
     output::claim_all(&outputs(args))?;
     let _files = logs_as_csv(&mut settings, &folder, args, &robot)?;
