@@ -61,9 +61,9 @@ impl Robot {
         Self::from_description(&robot.description().with_locks(locks)?)
     }
 
-    /// Loads a robot as [`Robot::load_locked`] does, for an identification: links of a URDF may have
-    /// masses and inertias that no body has. Returns the robot and a warning that names such links;
-    /// with any, the parameters of the robot count as base parameters.
+    /// Loads a robot for an identification, as [`Robot::load_locked`] does, but for links of a URDF
+    /// whose masses and inertias no body has. Returns the robot and a warning that names such
+    /// links; with any, the parameters of the robot count as base parameters.
     ///
     /// # Errors
     ///
