@@ -205,8 +205,8 @@ fn locks_hold_anywhere_in_the_tree() {
     assert!((slide.robot().gravity_torque(&[0.3])[0] - expected).abs() < 1e-12);
     let base = UrdfOptions {
         base: Some("upper".into()),
-        tip: None,
         locks: vec!["finger1=0.01".parse().unwrap(), "shoulder=0.5".parse().unwrap()],
+        ..UrdfOptions::default()
     };
     let from_upper = Urdf::parse(HAND, "hand.urdf", &base).unwrap();
     assert!((from_upper.robot().gravity_torque(&[0.3])[0] - expected).abs() < 1e-12);

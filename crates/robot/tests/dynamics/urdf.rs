@@ -127,7 +127,7 @@ fn a_base_may_be_named_and_keeps_the_direction_of_gravity() {
     let ends = |base: &str, tip: &str| UrdfOptions {
         base: Some(base.into()),
         tip: Some(tip.into()),
-        locks: Vec::new(),
+        ..UrdfOptions::default()
     };
     let whole = read(ARM);
     let from_mount = Urdf::parse(ARM, "arm.urdf", &ends("mount", "tool")).unwrap();
