@@ -68,7 +68,7 @@ def conform(
         friction are already subtracted), ``"motor"`` (motor torque at the output side of the
         gear) or ``"link"`` (link-side torque of a joint torque sensor). It is never guessed.
     suites
-        Names of the suites to use; all where none are given.
+        Names of the suites to use, or patterns such as ``"A*"``; all where none are given.
     paper_model
         Model 1, 2 or 3 of the paper. Not for an abstraction, which has its own.
     order

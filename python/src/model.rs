@@ -93,7 +93,8 @@ fn kept(built: &Built) -> Result<String> {
             files.push((format!("{folder}/{}", file.path.display()), content));
         }
     }
-    let (verdict, summary) = (built.verdict(), built.summary(front_end));
+    let verdict = built.verdict();
+    let summary = built.summary(front_end)?.to_string();
     let kept = json!({ "answer": answer, "verdict": verdict, "summary": summary, "files": files });
     Ok(kept.to_string())
 }

@@ -17,7 +17,7 @@ pub(crate) struct DataArguments {
     /// For a model that `model` made, logs like its own.
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
-    /// Names of the test suites to use, separated by commas [default: all]
+    /// Test suites to use, separated by commas; * and ? match as in A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
     /// Meaning of the recorded torques, columns tau1 to taun in N m.

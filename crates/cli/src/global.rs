@@ -21,7 +21,7 @@ pub(crate) struct GlobalOptions {
     /// Print no notes and no progress; warnings and errors remain
     #[arg(long, short, global = true, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Print every note, and how long each step took
+    /// Print the whole answer, every note, and how long each step took
     #[arg(long, short, global = true)]
     pub verbose: bool,
     /// Print the options used most

@@ -14,9 +14,7 @@ use crate::output;
 pub(crate) fn read_log(path: &Path, options: &LogOptions) -> Result<Log> {
     let log = Log::read(path, options)?;
     output::notes(log.notes());
-    for loss in log.losses() {
-        output::warn(&loss.to_string());
-    }
+    output::warnings(&log.losses().iter().map(ToString::to_string).collect::<Vec<_>>());
     if !log.losses().is_empty() {
         output::warn(&format!("{}: {} samples are kept", path.display(), log.len()));
     }

@@ -5,6 +5,7 @@ mod commands;
 mod data_arguments;
 mod error;
 mod file_names;
+mod folded;
 mod global;
 mod help;
 mod lock_arguments;

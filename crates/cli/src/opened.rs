@@ -1,6 +1,7 @@
 //! A model and the recordings it is compared with.
 
 use reachtube::Model;
+use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::conform::{
     self, Check, CheckJob, Hulls, Keep, Notion, Problem, Setup, SuiteReach, check, reach,
 };
@@ -78,6 +79,11 @@ impl Opened {
     pub(crate) fn check(&self) -> Result<Check> {
         let _bar = Progress::new();
         Ok(check(&self.model, &self.problem, &self.hulls)?)
+    }
+
+    /// Returns a check on a few lines.
+    pub(crate) fn summary(&self, check: &Check) -> Result<Summary> {
+        Ok(check.summary(&self.model, &self.problem, &self.hulls, FrontEnd::CommandLine)?)
     }
 
     /// Returns the reachable set of each suite, at samples and between them.

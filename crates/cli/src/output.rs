@@ -1,13 +1,17 @@
-//! Results on standard output, notes on standard error.
+//! Results on standard output, notes on standard error. Both have colours on a terminal, unless
+//! `NO_COLOR` is set.
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use anstyle::{AnsiColor, Style};
 use reachtube::printable;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::folded::folded;
 use crate::global::global;
+use crate::outcome::Outcome;
 
 /// Largest number of notes that one command prints.
 const MOST_NOTES: usize = 20;
@@ -17,9 +21,33 @@ pub(crate) fn print(text: &str) -> Result<()> {
     write_out(printable(text).as_bytes())
 }
 
+/// Prints an answer, with its verdict (the first line up to the colon) in the colour of the
+/// outcome.
+pub(crate) fn print_verdict(text: &str, outcome: &Outcome) -> Result<()> {
+    let colour = match outcome {
+        Outcome::Done => AnsiColor::Green,
+        Outcome::NotConformant => AnsiColor::Red,
+        Outcome::Vacuous => AnsiColor::Yellow,
+    };
+    let text = printable(text);
+    let (verdict, rest) = text.split_at(text.find([':', '\n']).unwrap_or(0));
+    let coloured = format!("{}{rest}", painted(verdict, colour));
+    // The stream drops the colours unless it is a terminal.
+    written(anstream::stdout().lock(), coloured.as_bytes())
+}
+
+/// Returns a word in bold and a colour.
+fn painted(word: &str, colour: AnsiColor) -> String {
+    let style = Style::new().bold().fg_color(Some(colour.into()));
+    format!("{style}{word}{style:#}")
+}
+
 /// Writes bytes to standard output.
 pub(crate) fn write_out(bytes: &[u8]) -> Result<()> {
-    let mut out = std::io::stdout().lock();
+    written(std::io::stdout().lock(), bytes)
+}
+
+fn written(mut out: impl Write, bytes: &[u8]) -> Result<()> {
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Output(error)),
         _ => Ok(()),
@@ -102,14 +130,32 @@ pub(crate) fn json_error(error: &str, kind: &str, exit_code: u8) {
 }
 
 fn line(kind: &str, text: &str) {
-    let _ = writeln!(std::io::stderr(), "{kind}: {}", printable(text));
+    let kind = match kind {
+        "warning" => painted(kind, AnsiColor::Yellow),
+        "error" => painted(kind, AnsiColor::Red),
+        kind => kind.into(),
+    };
+    let _ = writeln!(anstream::stderr(), "{kind}: {}", printable(text));
 }
 
-/// Prints the first notes of a list, and the number of the others; all notes with `--verbose`.
+/// Prints the first notes of a list, and the number of the others. Notes that repeat for each file
+/// are one line. With `--verbose`, all are printed.
 pub(crate) fn notes(notes: &[String]) {
-    let most = if global().verbose { notes.len() } else { MOST_NOTES };
-    notes.iter().take(most).for_each(|text| note(text));
-    if notes.len() > most {
-        note(&format!("{} more notes; --verbose prints all", notes.len() - most));
+    if global().verbose {
+        return notes.iter().for_each(|text| note(text));
     }
+    let notes = folded(notes);
+    notes.iter().take(MOST_NOTES).for_each(|text| note(text));
+    if notes.len() > MOST_NOTES {
+        note(&format!("{} more notes; --verbose prints all", notes.len() - MOST_NOTES));
+    }
+}
+
+/// Prints warnings. Warnings that repeat for each file are one line; with `--verbose`, all are
+/// printed.
+pub(crate) fn warnings(warnings: &[String]) {
+    if global().verbose {
+        return warnings.iter().for_each(|text| warn(text));
+    }
+    folded(warnings).iter().for_each(|text| warn(text));
 }

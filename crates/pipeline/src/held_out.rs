@@ -1,6 +1,7 @@
 //! Which motions are held out, before anything is looked at.
 
 use reachtube_identify::prepare::{LogEntry, RawLog};
+use reachtube_recordings::matching;
 
 use crate::error::{Error, Result};
 
@@ -50,14 +51,9 @@ impl Split {
                 motions.push(recording.motion.clone());
             }
         }
-        let is_known = |name: &&String| {
-            motions.contains(name) || recordings.iter().any(|own| own.log.name == **name)
-        };
-        if let Some(name) = given.into_iter().flatten().find(|name| !is_known(name)) {
-            return Err(Error::HeldOut { name: name.clone(), motions });
-        }
+        let given = given.map(|given| named(given, &recordings, &motions)).transpose()?;
         let (names, reason): (Vec<String>, String) = match (given, motions.len()) {
-            (Some(names), _) => (names.to_vec(), "given".into()),
+            (Some(names), _) => (names, "given".into()),
             (None, count) if count < FEW && recordings.len() >= REPEATS * count => {
                 let reason = format!(
                     "every fourth recording of each of {count} motions; nothing follows for other \
@@ -96,6 +92,24 @@ impl Split {
                       other motions";
         Self { kept, held_out, names: Vec::new(), reason: reason.into() }
     }
+}
+
+/// Returns the motions, or else the recordings, that names and patterns select.
+fn named(given: &[String], recordings: &[Recording], motions: &[String]) -> Result<Vec<String>> {
+    let mut names: Vec<String> = Vec::new();
+    for name in given {
+        let mut selected = matching(name, motions.iter().map(String::as_str));
+        if selected.is_empty() {
+            let all = recordings.iter().map(|recording| recording.log.name.as_str());
+            selected = matching(name, all);
+        }
+        if selected.is_empty() {
+            return Err(Error::HeldOut { name: name.clone(), motions: motions.to_vec() });
+        }
+        names.extend(selected.into_iter().map(String::from));
+    }
+    names.dedup();
+    Ok(names)
 }
 
 /// Returns the names of every fourth recording of each motion.
@@ -161,6 +175,8 @@ mod tests {
         assert_eq!(split.names, ["b"]);
         let split = Split::new(recordings(&["a", "b"]), Some(&["a".into()])).unwrap();
         assert_eq!(split.kept[0].motion, "b");
+        let split = Split::new(recordings(&["a1", "a2", "b"]), Some(&["a*".into()])).unwrap();
+        assert_eq!((split.names, split.kept.len()), (vec!["a1".into(), "a2".into()], 1));
     }
 
     #[test]

@@ -1,12 +1,12 @@
-//! The answer in a few lines.
+//! The answer on a few lines.
 
-use std::path::Path;
-
-use reachtube_conform::result::{Code, FrontEnd, Table};
-use reachtube_scalar::number::significant;
+use reachtube_conform::result::{Code, FrontEnd, Summary};
 
 use crate::build::Built;
-use crate::joint_row::JointRow;
+use crate::error::Result;
+
+/// Number of horizons beyond the chosen one whose sets are listed.
+const BEYOND: usize = 2;
 
 impl Built {
     /// Returns the verdict as one sentence: whether the sets were proved, and up to which time they
@@ -27,37 +27,26 @@ impl Built {
         format!("{verdict}: {windows} {what}, each sample proved with directed rounding")
     }
 
-    /// Returns the answer in a few lines: warnings, verdict, sets, what was held out, and the sets
-    /// by horizon.
-    #[must_use]
-    pub fn summary(&self, front_end: FrontEnd) -> String {
-        let mut lines: Vec<String> =
-            self.warnings.iter().map(|warning| format!("warning: {warning}")).collect();
-        lines.push(self.verdict());
+    /// Returns the answer on a few lines, for users of a front end: the verdict with the horizon,
+    /// the sets of each joint there, what was held out, and how the sets grow.
+    ///
+    /// # Errors
+    ///
+    /// Sets that could not be computed again at the horizon.
+    pub fn summary(&self, front_end: FrontEnd) -> Result<Summary> {
+        let mut summary = self.answer.summary(front_end)?;
+        summary.verdict[0] = self.verdict();
         if !self.is_useful() {
-            let said = [Code::Vacuous, Code::Cause];
             let findings = self.answer.model.findings().into_iter();
-            let findings = findings.filter(|finding| said.contains(&finding.code));
-            lines.extend(findings.map(|finding| finding.written_for(front_end)));
+            let causes = findings.filter(|finding| finding.code == Code::Cause);
+            summary.verdict.extend(causes.map(|finding| finding.written_for(front_end)));
         }
-        lines.push(self.table_of_joints().to_string());
-        lines.push(format!("held out: {}", self.held_out_words()));
-        let growth = self
-            .horizons
-            .iter()
-            .map(|widths| format!("{} s {}", widths.horizon, percent(Some(widths.worst().1))));
-        let growth: Vec<String> = growth.collect();
-        lines.push(format!("widest set by horizon, of the motion: {}", growth.join(", ")));
-        lines.join("\n") + "\n"
-    }
-
-    /// Returns what to do next with the files in a folder, as one line.
-    #[must_use]
-    pub fn next_step(&self, folder: &Path) -> String {
-        match self.is_useful() {
-            true => format!("next: open {}", folder.join("page").join("report.html").display()),
-            false => format!("next: read {}", folder.join("choices.toml").display()),
-        }
+        summary.table = self.answer.table_at_horizon(&self.held_out.growth)?;
+        summary.warnings.clone_from(&self.warnings);
+        summary.facts.insert(0, ("held out".into(), self.held_out_words()));
+        summary.fact("widest set by horizon, of the motion", self.growth());
+        summary.next = None;
+        Ok(summary)
     }
 
     /// Returns how many rows that were held out lie outside the sets, in a few words.
@@ -75,27 +64,18 @@ impl Built {
         }
     }
 
-    /// Returns the set of each joint at the horizon as a table, with its input set.
-    #[must_use]
-    pub fn table_of_joints(&self) -> Table {
-        let model = &self.answer.model;
-        let kinds = model.robot.kinds();
-        let row = |(joint, row): (usize, JointRow)| {
-            let (low, high) = model.input_set.bounds(joint);
-            let (low, high) = (significant(low, 2), significant(high, 2));
-            let half = significant(row.half_width.unwrap_or(f64::INFINITY), 2);
-            vec![
-                row.name,
-                format!("± {half} {}", kinds[joint].position_unit()),
-                percent(row.ratio),
-                format!("[{low}, {high}] {}", kinds[joint].force_unit()),
-                row.growth.map_or_else(|| "-".into(), |growth| significant(growth, 2)),
-            ]
-        };
-        let rows = self.joints().into_iter().enumerate().map(row).collect();
-        let horizon = model.usefulness.as_ref().map_or(0.0, |said| said.horizon);
-        let set = format!("set at {horizon:.3} s");
-        Table::new(["joint", &set, "of its motion", "U", "factor, held out"], rows)
+    /// Returns how the widest set grows up to the horizon, and a little beyond.
+    fn growth(&self) -> String {
+        let horizon = self.choices.horizon.unwrap_or_default();
+        let shorter = self.horizons.iter().filter(|widths| widths.horizon <= horizon).count();
+        let shown = self.horizons.iter().take(shorter + BEYOND);
+        let all = shown.map(|widths| {
+            let (_, ratio) = widths.worst();
+            format!("{} s {}", widths.horizon, percent(ratio))
+        });
+        let mut all: Vec<String> = all.collect();
+        all.extend((all.len() < self.horizons.len()).then(|| "..".into()));
+        all.join(", ")
     }
 
     /// Returns what the recordings of the model are called.
@@ -107,7 +87,6 @@ impl Built {
 }
 
 /// Returns a ratio in percent.
-fn percent(ratio: Option<f64>) -> String {
-    let finite = ratio.filter(|ratio| ratio.is_finite());
-    finite.map_or_else(|| "-".into(), |ratio| format!("{:.0} %", 100.0 * ratio))
+fn percent(ratio: f64) -> String {
+    if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "-".into() }
 }

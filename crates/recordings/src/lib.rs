@@ -46,6 +46,7 @@ mod logged_runs;
 mod memory;
 mod notes;
 mod order;
+mod pattern;
 mod preparation;
 mod reading;
 mod refusal;
@@ -71,6 +72,7 @@ pub use logged::{
 pub use logged_runs::{LogInspection, inspect_logs};
 pub use memory::MemoryRuns;
 pub use notes::{copies_note, run_notes};
+pub use pattern::matching;
 pub use preparation::Preparation;
 pub use reading::{parse_csv, read_csv};
 pub use refusal::{DefectPlace, Refusal};

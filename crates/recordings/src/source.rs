@@ -6,6 +6,7 @@ use crate::defect::Defect;
 use crate::error::{Error, Result};
 use crate::gap_limit::GapLimit;
 use crate::index::RunEntry;
+use crate::pattern::matching;
 use crate::run::Run;
 
 /// A test suite: its name and the indices of its runs, in the order of the source.
@@ -100,11 +101,12 @@ pub trait RunSource: fmt::Debug + Send + Sync {
         suites
     }
 
-    /// Returns the named suites in the order of `names`, and all suites when `names` is empty.
+    /// Returns the suites whose names or [patterns](matching) are given, in the order of `names`,
+    /// and all suites when `names` is empty.
     ///
     /// # Errors
     ///
-    /// [`Error::UnknownSuite`] when a named suite does not exist or there is no suite at all, and
+    /// [`Error::UnknownSuite`] when a name or pattern selects no suite or there is none at all, and
     /// [`Error::RepeatedSuite`] when a name is given more than once.
     fn select(&self, names: &[String]) -> Result<Vec<SuiteEntry>> {
         let suites = self.suites();
@@ -120,10 +122,20 @@ pub trait RunSource: fmt::Debug + Send + Sync {
         if distinct.len() < names.len() {
             return Err(Error::RepeatedSuite { names: names.to_vec() });
         }
-        let find = |name: &String| {
-            suites.iter().find(|suite| suite.name == *name).cloned().ok_or_else(|| unknown(name))
-        };
-        names.iter().map(find).collect()
+        let mut selected: Vec<SuiteEntry> = Vec::new();
+        for name in names {
+            let matched = matching(name, suites.iter().map(|suite| suite.name.as_str()));
+            if matched.is_empty() {
+                return Err(unknown(name));
+            }
+            let is_new = |suite: &&SuiteEntry| {
+                matched.contains(&suite.name.as_str())
+                    && selected.iter().all(|own| own.name != suite.name)
+            };
+            let new: Vec<SuiteEntry> = suites.iter().filter(is_new).cloned().collect();
+            selected.extend(new);
+        }
+        Ok(selected)
     }
 }
 
@@ -168,6 +180,8 @@ mod tests {
         assert_eq!(selected(&[]), ["B", "A"]);
         assert_eq!(selected(&["A", "B"]), ["A", "B"]);
         assert_eq!(selected(&["A"]), ["A"]);
+        assert_eq!(selected(&["?"]), ["B", "A"]);
+        assert_eq!(selected(&["A", "*"]), ["A", "B"]);
     }
 
     #[test]
@@ -177,6 +191,8 @@ mod tests {
         assert!(matches!(&unknown, Error::UnknownSuite { name, .. } if name == "C"));
         let text = unknown.to_string();
         assert_eq!(text, "runs in memory: there is no suite \"C\"; the data set has B, A");
+        let unmatched = error(&THREE, &["A", "C*"]).to_string();
+        assert!(unmatched.contains("no suite \"C*\"; the data set has B, A"), "{unmatched}");
         assert!(matches!(error(&THREE, &["A", "A"]), Error::RepeatedSuite { .. }));
         let none = error(&THREE[2..3], &[]).to_string();
         assert!(none.contains("no run has a suite"), "{none}");

@@ -5,6 +5,7 @@ use reachtube::conform::{Finding, Keep, Notion};
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
+use crate::global::global;
 use crate::opened::Opened;
 use crate::option_values::{NOTIONS, choice};
 use crate::outcome::Outcome;
@@ -38,9 +39,18 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = Opened::new(&args.model, args.notion, Keep::Needed)?;
     let check = opened.check()?;
     output::notes(&check.notes);
+    let outcome = Outcome::of_model(check.verdict.conformant, &opened.model);
+    if !json && !global().verbose {
+        output::print_verdict(&opened.summary(&check)?.to_string(), &outcome)?;
+        return Ok(outcome);
+    }
     let warnings = opened.model.warnings.iter().map(Finding::from);
     warnings.for_each(|warning| output::warn(&format!("of the model itself: {warning}")));
-    let kinds = opened.model.robot.kinds();
-    output::show(json, &check, || check.report(&kinds).to_string())?;
-    Ok(Outcome::of_model(check.verdict.conformant, &opened.model))
+    if json {
+        output::print_json(&check)?;
+    } else {
+        let report = check.report(&opened.model.robot.kinds());
+        output::print_verdict(&report.to_string(), &outcome)?;
+    }
+    Ok(outcome)
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::Model;
-use reachtube::conform::result::FrontEnd;
+use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::page::{Assets, PAGE_FILE, Sources, TO_HELD_OUT, TO_OWN};
@@ -15,6 +15,7 @@ use serde_json::json;
 use super::conform as conform_command;
 use crate::data_arguments::DataArguments;
 use crate::error::Result;
+use crate::global::global;
 use crate::opened::Opened;
 use crate::outcome::Outcome;
 use crate::output;
@@ -90,24 +91,42 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let mut page = conform_command::page_of(&answer)?;
     page.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
     output::wrote(&report_files::write_page(&page, Assets::Inside, &pages[0])?);
+    let summary = answer.summary(FrontEnd::CommandLine)?;
     // Try them on the motions held out.
     let Answer { model, problem, .. } = answer;
     let setup = problem.setup().clone();
-    let (model, held_out) = check_held_out(model, setup, &folder, &recorded.check, &pages[1])?;
+    let (opened, held_out) = check_held_out(model, setup, &folder, &recorded.check, &pages[1])?;
+    let model = &opened.model;
+    let outcome = Outcome::of_model(model.verified, model);
     if json {
         output::print_json(&json!({
             "nominal_cost": before.cost, "model": model, "held_out": held_out
         }))?;
     } else {
-        let text = format!(
-            "{}\n{}\n{}",
-            model.report(),
-            held_out_heading(&recorded),
-            held_out.report(&model.robot.kinds())
-        );
-        output::print(&text)?;
+        let text = text(&opened, &held_out, summary, &recorded, &pages[0])?;
+        output::print_verdict(&text, &outcome)?;
     }
-    Ok(Outcome::of_model(model.verified, &model))
+    Ok(outcome)
+}
+
+/// Returns the answer about the model, and the one about motions that were held out.
+fn text(
+    opened: &Opened,
+    held_out: &Check,
+    summary: Summary,
+    recorded: &RecordedDemo,
+    page: &Path,
+) -> Result<String> {
+    let heading = held_out_heading(recorded);
+    let model = &opened.model;
+    if global().verbose {
+        let report = held_out.report(&model.robot.kinds());
+        return Ok(format!("{}\n{heading}\n{report}", model.report()));
+    }
+    let model = Summary { next: None, ..summary };
+    let tried = Summary { next: None, ..opened.summary(held_out)? };
+    let page = report_files::page_in(page);
+    Ok(format!("{model}\n{heading}\n{tried}\nnext: open {} in a browser\n", page.display()))
 }
 
 fn options(args: &Arguments) -> Result<DemoOptions> {
@@ -128,7 +147,7 @@ fn check_held_out(
     folder: &Path,
     suites: &[String],
     page: &Path,
-) -> Result<(Model, Check)> {
+) -> Result<(Opened, Check)> {
     let args = DataArguments {
         data: folder.to_path_buf(),
         suites: suites.to_vec(),
@@ -144,7 +163,7 @@ fn check_held_out(
     let mut own = reachtube::page::page(&sources)?;
     own.lead.links = vec![(TO_OWN.into(), format!("../report/{PAGE_FILE}"))];
     output::wrote(&report_files::write_page(&own, Assets::Inside, page)?);
-    Ok((opened.model, check))
+    Ok((opened, check))
 }
 
 fn held_out_heading(recorded: &RecordedDemo) -> String {

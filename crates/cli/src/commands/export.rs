@@ -82,7 +82,7 @@ pub(crate) struct Arguments {
     /// Folder with runs.csv and the recordings, whose torques mean what they meant to `conform`
     #[arg(long, value_name = "FOLDER", help_heading = "Data")]
     pub data: Option<PathBuf>,
-    /// Names of the test suites to use, separated by commas [default: all]
+    /// Test suites to use, separated by commas; * and ? match as in A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     #[arg(help_heading = "Data")]
     pub suites: Vec<String>,

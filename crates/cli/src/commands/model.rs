@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::Silent;
-use reachtube::conform::result::FrontEnd;
+use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::page::{Assets, built_pages};
 use reachtube::pipeline::{Built, Choice, Choices, build};
 use reachtube::recordings::Torque;
@@ -12,6 +12,7 @@ use reachtube::write;
 
 use crate::data_arguments::TORQUES;
 use crate::error::{Error, Result};
+use crate::global::global;
 use crate::lock_arguments::LockArguments;
 use crate::option_values::{choice, seconds};
 use crate::outcome::Outcome;
@@ -51,7 +52,8 @@ pub(crate) struct Arguments {
     /// wider than half the motion]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub horizon: Option<f64>,
-    /// Motions that are held out from every choice, separated by commas [default: every fourth]
+    /// Motions that are held out from every choice, separated by commas; * and ? match as in M*
+    /// [default: every fourth]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     pub held_out: Vec<String>,
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
@@ -83,18 +85,28 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     drop(bar);
     output::notes(&built.notes);
     let front_end = FrontEnd::CommandLine;
-    let files = built.files().map(|(name, text)| (args.out.join(name), text));
-    for (path, text) in files {
+    let mut written = Vec::new();
+    for (name, text) in built.files() {
+        let path = args.out.join(name);
         write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
-        output::wrote(&path);
+        written.push(path);
     }
     for (folder, page) in built_pages(&built, front_end)? {
-        output::wrote(&report_files::write_page(&page, Assets::Inside, &args.out.join(folder))?);
+        let folder = args.out.join(folder);
+        written.push(report_files::write_page(&page, Assets::Inside, &folder)?);
     }
-    output::show(json, &built.to_json(), || {
-        format!("{}{}\n", built.summary(front_end), built.next_step(&args.out))
-    })?;
-    Ok(outcome(&built))
+    let outcome = outcome(&built);
+    if json {
+        written.iter().for_each(|path| output::wrote(path));
+        output::print_json(&built.to_json())?;
+    } else {
+        let mut text = summary(&built, &written, args)?.to_string();
+        if global().verbose {
+            text += &format!("\n{}", built.answer.report());
+        }
+        output::print_verdict(&text, &outcome)?;
+    }
+    Ok(outcome)
 }
 
 /// Returns the choices of the settings file and the command line, with paths from the working
@@ -119,4 +131,18 @@ fn outcome(built: &Built) -> Outcome {
         true if built.is_useful() => Outcome::Done,
         true => Outcome::Vacuous,
     }
+}
+
+/// Returns the answer on a few lines, with the files that were written.
+fn summary(built: &Built, written: &[PathBuf], args: &Arguments) -> Result<Summary> {
+    let mut summary = built.summary(FrontEnd::CommandLine)?;
+    let inside =
+        |path: &PathBuf| path.strip_prefix(&args.out).unwrap_or(path).display().to_string();
+    let names: Vec<String> = written.iter().map(inside).collect();
+    summary.fact(format!("wrote to {}", args.out.display()), names.join(", "));
+    summary.next = Some(match built.is_useful() {
+        true => format!("open {}", report_files::page_in(&args.out.join("page")).display()),
+        false => format!("read {}", args.out.join("choices.toml").display()),
+    });
+    Ok(summary)
 }

@@ -8,7 +8,8 @@ use crate::fixture::Lab;
 #[test]
 fn the_page_and_its_figures_are_written() {
     let lab = Lab::new();
-    lab.conform("--out model.json --report report").exits(0).notes("wrote report/report.html");
+    let run = lab.conform("--out model.json --report report").exits(0);
+    assert!(run.stdout.contains("wrote: model.json, report/report.html\n"), "{}", run.stdout);
     let figures = ["A_deviation.svg", "A_motion.svg", "B_deviation.svg", "B_motion.svg"];
     assert_eq!(lab.names("report"), [&figures[..], &["report.html"]].concat());
     for name in figures {

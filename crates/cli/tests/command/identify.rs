@@ -230,7 +230,8 @@ fn windows_free_of_friction_have_smaller_sets() {
     assert!((nonlinear / free - 1.0).abs() < 0.01, "{nonlinear} {free}");
     // The model file and the page say whose equations count.
     let job = "conform --robot found.toml --nominal own --data free --torque compensated";
-    let run = lab.run(&format!("{job} --equations robot --out robot.json --report page")).exits(0);
+    let run = lab.run(&format!("{job} --equations robot --out robot.json --report page -v"));
+    let run = run.exits(0);
     assert!(run.stdout.contains("motions, by the robot's own equations:"), "{}", run.stdout);
     assert!(lab.read("page/report.html").contains("about nominal motions by the robot"));
     lab.run("check --model robot.json --data free --torque compensated").exits(0);

@@ -58,6 +58,12 @@ fn lines_that_are_wrong() {
 fn suites_that_are_not_there() {
     let lab = Lab::new();
     lab.conform("--suites A,C").fails_with(&["there is no suite \"C\"", "the data set has A, B"]);
+    lab.conform("--suites A,C*").fails_with(&["there is no suite \"C*\"", "the data set has A, B"]);
+    for (patterns, suites) in [("*", ["A", "B"]), ("B,?", ["B", "A"])] {
+        let model = lab.conform(&format!("--suites {patterns} --json")).exits(0).json();
+        let found: Vec<_> = model["data"]["suites"].as_array().unwrap().iter().collect();
+        assert_eq!([&found[0]["name"], &found[1]["name"]], suites, "{patterns}");
+    }
     lab.conform("--suites A,A").fails_with(&["named twice", "once"]);
     lab.edit("data/runs.csv", |lines| {
         lines[1..]
@@ -86,7 +92,7 @@ fn a_changed_file_is_noted() {
         lines[0] += ",sha256";
         lines[1..].iter_mut().for_each(|line| line.push_str(&format!(",{}", "0".repeat(64))));
     });
-    for run in [lab.conform("").exits(0), lab.run("inspect --data data").exits(0)] {
+    for run in [lab.conform("-v").exits(0), lab.run("inspect --data data -v").exits(0)] {
         run.notes("B_3.csv: its SHA-256 is not the one in runs.csv (line 7)");
     }
 }

@@ -28,5 +28,6 @@ mod robots;
 mod schema;
 mod schunk;
 mod settings;
+mod short;
 mod terminal;
 mod verdicts;

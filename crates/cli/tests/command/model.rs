@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::fixture::Lab;
 use crate::identify::lab as pendulum_lab;
 use crate::output_schema::fits;
+use crate::short::is_short;
 
 /// A lab with `pendulum.toml`, whose mass is wrong, and four logs in `logs`.
 fn lab() -> Lab {
@@ -65,7 +66,13 @@ fn logs_become_a_useful_model_that_takes_other_logs() {
 #[test]
 fn the_same_choices_give_the_same_bytes() {
     let lab = lab();
-    lab.run("model --robot pendulum.toml --data logs --torque motor --out arm").exits(0);
+    let run = lab.run("model --robot pendulum.toml --data logs --torque motor --out arm").exits(0);
+    is_short(&run.stdout, "conformant and useful up to ");
+    for part in
+        ["\nheld out: ", "\nwrote to arm: model.json, robot.toml, ", "\nnext: open arm/page"]
+    {
+        assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
+    }
     lab.run("model --settings arm/choices.toml --out again").exits(0);
     let read = |path: &str| std::fs::read_to_string(lab.path(path)).unwrap();
     // Reasons are dropped where a value was edited: they may be about the value before.
@@ -142,7 +149,7 @@ fn a_vacuous_model_is_called_so_on_its_page_and_by_its_exit_code() {
     // A measurement noise of 10 rad hides every motion.
     let run = lab.conform("--noise 10,10 --out model.json --report page").exits(3);
     assert!(run.stdout.starts_with("conformant, but vacuous"), "{}", run.stdout);
-    assert!(run.stdout.contains("Proved, but vacuous for joints 1, 2"), "{}", run.stdout);
+    assert!(run.stdout.contains("\nvacuous for joints 1, 2: "), "{}", run.stdout);
     assert!(lab.read("page/report.html").contains("Conformant, but vacuous"));
     lab.check("").exits(3);
 }

@@ -36,7 +36,7 @@ fn fits(schema: &jsonschema::Validator, model: &Value) {
 #[test]
 fn a_nonlinear_model_goes_through_every_command() {
     let lab = bent();
-    let run = conform(&lab, "--out model.json --report report")
+    let run = conform(&lab, "--out model.json --report report --verbose")
         .exits(0)
         .notes("round 1: the linearised sets cost");
     for part in [
@@ -186,12 +186,13 @@ fn a_model_that_runs_away_is_refused_and_a_lost_set_is_an_answer() {
         *radius = json!(30.0);
     }
     lab.write("model.json", sealed(model));
-    let check = lab.check("").exits(1);
-    assert!(
-        check.stdout.contains("the reachable set could not be computed beyond"),
-        "{}",
-        check.stdout
-    );
+    for (options, words) in [
+        ("", "suite A: the set ends at "),
+        ("--verbose", "the reachable set could not be computed beyond"),
+    ] {
+        let check = lab.check(options).exits(1).stdout;
+        assert!(check.contains(words) && check.contains("`--until "), "{check}");
+    }
     lab.run("reach --model model.json --data data --torque compensated --out reach")
         .exits(1)
         .notes("the reachable set could not be computed beyond");

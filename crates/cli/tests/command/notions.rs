@@ -6,7 +6,8 @@ use crate::fixture::{Lab, set_cell};
 fn points_are_proved_and_certified() {
     let lab = Lab::new();
     let run = lab.conform("--notion exact --out exact.json --certificate points.jsonl");
-    let run = run.exits(0).notes("wrote points.jsonl");
+    let run = run.exits(0);
+    assert!(run.stdout.contains("wrote: exact.json, points.jsonl\n"), "{}", run.stdout);
     let points = "recorded points (all states together) proved to lie in the reachable set";
     assert!(run.stdout.contains(points), "{}", run.stdout);
     let certificate = lab.read("points.jsonl");
@@ -29,7 +30,7 @@ fn a_point_outside_is_named_with_the_states_that_show_it() {
         set_cell(&mut lines[middle], 1, "10");
     });
     let check = "check --model model.json --data data --torque compensated --suites A";
-    let run = lab.run(&format!("{check} --notion exact")).exits(1);
+    let run = lab.run(&format!("{check} --notion exact --verbose")).exits(1);
     for part in ["recorded points (all states together) proved", "Furthest outside: A_1.csv", "q1"]
     {
         assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);

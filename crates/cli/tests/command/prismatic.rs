@@ -201,7 +201,7 @@ fn a_scara_conforms() {
     let run = lab
         .run(
             "conform --robot scara.toml --data runs --torque motor --expansion 0.1,-0.2,0.1 \
-             --out scara.json --report report",
+             --out scara.json --report report --verbose",
         )
         .exits(0);
     contains(&run.stdout, &["conformant: 6 recordings", "] rad ", "] m ", "] m/s ", "] N\n"]);
@@ -210,7 +210,7 @@ fn a_scara_conforms() {
     contains(&lab.run(check).exits(0).stdout, &["conformant: 6 recordings"]);
     // A value beyond the set is named with the unit of its joint.
     lab.edit("runs/A_1.csv", |lines| crate::fixture::set_cell(&mut lines[20], 3, "0.19"));
-    let outside = lab.run(check).exits(1);
+    let outside = lab.run(&format!("{check} --verbose")).exits(1);
     contains(&outside.stdout, &["joint 3, q3 is 0.0", " m beyond the upper bound"]);
     let page = lab.read("report/report.html");
     contains(&page, &["spindle [m, m/s]", "shoulder [rad, rad/s]", "] N<", "] m<"]);
@@ -236,7 +236,7 @@ fn a_nonlinear_model_of_a_scara_conforms() {
     );
     fits_the_schema(&lab.read("two.json"), "abstraction.schema.json");
     let run = lab
-        .run("conform --abstraction two.json --data runs --torque motor --out scara.json")
+        .run("conform --abstraction two.json --data runs --torque motor --out scara.json -v")
         .exits(0);
     contains(&run.stdout, &["conformant: 6 recordings", "rad or m and", "rad/s or m/s."]);
     fits_the_schema(&lab.read("scara.json"), "model.schema.json");

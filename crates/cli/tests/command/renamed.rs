@@ -51,6 +51,6 @@ fn a_remedy_in_a_file_of_an_earlier_version_has_the_new_name() {
         "remedy": {"setting": "model", "value": "3", "effect": "with order 2 follows it."},
     }]);
     lab.write("model.json", crate::fixture::sealed(model));
-    let run = lab.check("").exits(0);
+    let run = lab.check("--verbose").exits(0);
     assert!(run.stderr.contains("`--paper-model 3` with order 2 follows it."), "{}", run.stderr);
 }

@@ -6,7 +6,7 @@ use crate::fixture::{Lab, robot_toml};
 fn quiet_and_verbose() {
     let lab = Lab::new();
     std::fs::copy(lab.path("data/A_1.csv"), lab.path("data/A_4.csv")).unwrap();
-    lab.conform("--out model.json").exits(0).notes("is not in runs.csv").notes("wrote model.json");
+    lab.conform("--out model.json").exits(0).notes("is not in runs.csv");
     for option in ["--quiet", "-q"] {
         let run = lab.conform(&format!("--out model.json {option}")).exits(0);
         assert!(run.stderr.is_empty() && !run.stdout.is_empty(), "{run:?}");
@@ -25,8 +25,8 @@ fn quiet_and_verbose() {
         });
     }
     let cut = lab.run("inspect --data data").exits(0);
-    assert_eq!(cut.stderr.lines().count(), 21, "{}", cut.stderr);
-    cut.notes("more notes; --verbose prints all");
+    assert!(cut.stderr.lines().count() < 8, "{}", cut.stderr);
+    cut.notes("(25 files: C_0.csv, C_1.csv, C_2.csv, ..)");
     let all = lab.run("inspect --data data --verbose").exits(0).notes("reading recordings");
     assert!(
         all.stderr.lines().count() > 25 && !all.stderr.contains("more notes"),

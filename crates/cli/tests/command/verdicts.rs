@@ -45,7 +45,7 @@ fn a_table_shows_the_sets() {
 #[test]
 fn printed_sets_are_rounded_outward() {
     let lab = Lab::new();
-    let text = lab.conform("").exits(0).stdout;
+    let text = lab.conform("--verbose").exits(0).stdout;
     let model = lab.conform("--json").exits(0).json();
     let row = text.lines().find(|line| line.trim_start().starts_with("axis1")).unwrap();
     let cells: Vec<&str> =
@@ -127,6 +127,8 @@ fn one_value_outside_is_found_with_its_place() {
     assert_eq!(check["suites"][0]["violations"]["count"], 0);
     let text = lab.check("").exits(1).stdout;
     assert!(text.starts_with("not conformant: 6 recordings; 1 of 408 rows"), "{text}");
+    assert!(text.contains("B_2.csv, 0.200 s: q1 by 0.50 rad"), "{text}");
+    let text = lab.check("--verbose").exits(1).stdout;
     assert!(text.contains("B_2.csv at 0.200 s: joint 1, q1 is 0.4"), "{text}");
 }
 
@@ -145,7 +147,7 @@ fn motions_that_are_held_out_calibrate_the_sets() {
     lab.edit("data/runs.csv", |lines| {
         lines.iter_mut().for_each(|line| *line = line.replace("motion ", "M"));
     });
-    let text = lab.conform("--calibrate MB --out model.json").exits(0).stdout;
+    let text = lab.conform("--calibrate MB --out model.json --verbose").exits(0).stdout;
     for words in [
         "(calibrated, not the smallest)",
         "for 1 motion was scaled about the centres by",
@@ -155,6 +157,9 @@ fn motions_that_are_held_out_calibrate_the_sets() {
         assert!(text.contains(words), "{words} is not in\n{text}");
     }
     assert_eq!(lab.check("--json").exits(0).json()["trust"], Value::Null);
+    let text = lab.conform("--calibrate ?B").exits(0).stdout;
+    assert!(text.contains("new motions: at most 1 in 2 leaves the sets"), "{text}");
+    lab.conform("--calibrate C*").fails_with(&["no motion \"C*\"", "MA, MB"]);
     lab.conform("--calibrate MC").fails_with(&["no motion \"MC\"", "MA, MB"]);
     lab.conform("--calibrate MA,MB").fails_with(&["all motions are held out", "name fewer"]);
 }
@@ -162,11 +167,11 @@ fn motions_that_are_held_out_calibrate_the_sets() {
 #[test]
 fn what_each_motion_decides_is_a_table() {
     let lab = Lab::new();
-    let text = lab.conform("").exits(0).stdout;
+    let text = lab.conform("--verbose").exits(0).stdout;
     for words in ["without motion", "factor needed", "describe these motions"] {
         assert!(text.contains(words), "{words} is not in\n{text}");
     }
-    let text = lab.conform("--suites A").exits(0).stdout;
+    let text = lab.conform("--suites A --verbose").exits(0).stdout;
     assert!(!text.contains("without motion"), "{text}");
 }
 

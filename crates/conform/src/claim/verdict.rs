@@ -70,6 +70,14 @@ pub struct SuiteVerdict {
     pub violating_runs: Vec<String>,
 }
 
+impl SuiteVerdict {
+    /// Returns whether a row, a point or a trace of the suite was not proved.
+    pub(crate) fn fails(&self) -> bool {
+        let unproved = [self.points_unproved, self.traces_unproved];
+        self.violations.count > 0 || unproved.into_iter().flatten().any(|count| count > 0)
+    }
+}
+
 /// Rows that do not hold.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

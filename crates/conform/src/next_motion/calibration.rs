@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use reachtube_recordings::matching;
 use serde::{Deserialize, Serialize};
 
 use crate::advice::Advice;
@@ -123,14 +124,14 @@ fn held_out<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<
     let all = motions.distinct();
     let mut held_out = BTreeSet::new();
     for name in &problem.settings().calibrate {
-        let known = all.iter().find(|motion| *motion == name);
-        let unknown = || {
-            format!(
-                "there is no motion \"{name}\"; the motions of the recordings are {}",
-                all.join(", ")
-            )
-        };
-        held_out.insert(*known.ok_or_else(|| Error::Calibration(unknown().into()))?);
+        let known = matching(name, all.iter().copied());
+        if known.is_empty() {
+            let all = all.join(", ");
+            let unknown =
+                format!("there is no motion \"{name}\"; the motions of the recordings are {all}");
+            return Err(Error::Calibration(unknown.into()));
+        }
+        held_out.extend(known);
     }
     if held_out.len() == all.len() {
         return Err(Error::Calibration(

@@ -25,7 +25,9 @@ impl Check {
         });
         // The table has the furthest values, but not the furthest points.
         first.findings.extend(furthest.cloned());
-        let rows = self.verdict.suites.iter().map(|suite| row(suite, kinds)).collect();
+        let mut suites: Vec<&SuiteVerdict> = self.verdict.suites.iter().collect();
+        suites.sort_by_key(|suite| !suite.fails());
+        let rows = suites.into_iter().map(|suite| row(suite, kinds)).collect();
         let header = ["suite", "runs", "rows", "outside", "furthest outside"];
         let suites = Section { tables: vec![Table::new(header, rows)], ..Section::default() };
         let others = [

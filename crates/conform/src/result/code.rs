@@ -24,6 +24,14 @@ macro_rules! codes {
                     $(Self::$code => $name,)*
                 }
             }
+
+            /// Returns what findings of the code state, as a sentence.
+            #[must_use]
+            pub fn meaning(self) -> &'static str {
+                match self {
+                    $(Self::$code => concat!($($doc),*).trim_ascii(),)*
+                }
+            }
         }
     };
 }

@@ -211,7 +211,7 @@ pub(crate) struct Arguments {
         value_parser = choice::<Equations>(EQUATIONS)
     )]
     pub equations: Equations,
-    /// Motions that are held out from the fit, separated by commas.
+    /// Motions that are held out from the fit, separated by commas; * and ? match as in M*.
     ///
     /// Their names are in runs.csv. The sets found on the other motions are scaled until they
     /// enclose these too, which bounds the probability that the next motion leaves them.

@@ -1,4 +1,6 @@
-use reachtube::conform::result::FrontEnd;
+use std::path::{Path, PathBuf};
+
+use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::conform::{Answer, FitSettings, Job};
 use reachtube::page::{Assets, Page, Sources, page};
 use reachtube::recordings::DataSet;
@@ -7,6 +9,7 @@ use reachtube::write;
 use super::arguments::Arguments;
 use super::settings::{basis, explain, settings};
 use crate::error::Result;
+use crate::global::global;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
@@ -24,25 +27,50 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let answer = job.run(&bar)?;
     drop(bar);
     output::notes(&answer.problem.recordings().notes);
+    let mut written: Vec<&Path> = Vec::new();
     if let Some(path) = &args.out {
         answer.model.save(path)?;
-        output::wrote(path);
+        written.push(path);
     }
     if let Some(path) = &args.certificate {
         let certificate = answer.certificate()?;
         write::atomically(path, |out| certificate.write(out))?;
-        output::wrote(path);
+        written.push(path);
     }
-    if json {
-        output::print_json_text(&answer.model.to_json_with_findings())?;
-    } else {
-        output::print(&answer.report().to_string())?;
+    // The answer is printed even if the page cannot be written.
+    let page = args.report.as_ref().map(|folder| report(&answer, folder)).transpose();
+    written.extend(page.as_ref().ok().and_then(Option::as_deref));
+    let outcome = Outcome::of_model(answer.holds(), &answer.model);
+    if json || global().verbose {
+        written.iter().for_each(|path| output::wrote(path));
     }
-    if let Some(folder) = &args.report {
-        let page = page_of(&answer)?;
-        output::wrote(&report_files::write_page(&page, Assets::Inside, folder)?);
+    match json {
+        true => output::print_json_text(&answer.model.to_json_with_findings())?,
+        false if global().verbose => {
+            output::print_verdict(&answer.report().to_string(), &outcome)?;
+        }
+        false => output::print_verdict(&summary(&answer, &written, args)?.to_string(), &outcome)?,
     }
-    Ok(Outcome::of_model(answer.holds(), &answer.model))
+    page?;
+    Ok(outcome)
+}
+
+/// Returns the answer on a few lines, with the files that were written.
+fn summary(answer: &Answer, written: &[&Path], args: &Arguments) -> Result<Summary> {
+    let mut summary = answer.summary(FrontEnd::CommandLine)?;
+    if !written.is_empty() {
+        let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+        summary.fact("wrote", names.join(", "));
+    }
+    let next = match &args.out {
+        _ if !answer.holds() => "`--verbose` prints every finding".into(),
+        Some(path) => {
+            format!("`reachtube check --model {} --data FOLDER` tries it", path.display())
+        }
+        None => "`--out FILE` keeps the model".into(),
+    };
+    summary.next.get_or_insert(next);
+    Ok(summary)
 }
 
 /// Returns the job that the arguments describe.
@@ -71,4 +99,9 @@ pub(crate) fn page_of(answer: &Answer) -> Result<Page> {
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     Ok(page(&sources)?)
+}
+
+/// Writes the page, and returns where it is.
+fn report(answer: &Answer, folder: &Path) -> Result<PathBuf> {
+    report_files::write_page(&page_of(answer)?, Assets::Inside, folder)
 }

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::notes(&found.changes);
     files(args, &found, urdf.as_ref())?;
     output::show(json, &found.summary(), || summary(&found))?;
-    found.warnings.iter().for_each(|warning| output::warn(warning));
+    output::warnings(&found.warnings);
     Ok(Outcome::Done)
 }
 

@@ -198,7 +198,7 @@ pub(super) const CASES: &[Case] = &[
         spoil: |lab| column(lab, 1, |q| q + 0.5),
         command: CHECK,
         code: 1,
-        words: &["not conformant: 6 recordings", "A_2.csv at", "joint 1, q1 is 0.4"],
+        words: &["not conformant: 6 recordings", "A_2.csv, 0.000 s: q1 by 0.50 rad"],
     },
     Case {
         what: "many gaps, inspected",

@@ -13,33 +13,16 @@ const MOST_GROWTH: f64 = 100.0;
 impl Finding {
     /// Which set would have to grow to enclose the recordings, and by how much.
     pub(crate) fn growth_needed(growth: &Growth, kinds: &[JointKind]) -> Self {
-        let noise = format!(
-            "V is wider by {} {} and {} {}",
-            at_least(growth.noise_position),
-            JointKind::any_unit(kinds, JointKind::position_unit),
-            at_least(growth.noise_velocity),
-            JointKind::any_unit(kinds, JointKind::velocity_unit)
-        );
-        let sets = [
-            ("U is", growth.input_set),
-            ("X0 is", growth.initial_set),
-            ("X0 and U are", growth.both_sets),
-        ];
+        let ways = ways(growth, kinds);
         let helps = |factor: &f64| *factor <= MOST_GROWTH;
-        let wide = |(name, factor): &(&str, Option<f64>)| {
-            let factor = factor.filter(helps)?;
-            Some(format!("{name} {} times as wide", at_least(factor)))
-        };
         let useless = |(name, factor): &(&str, Option<f64>)| {
             let set = name.split_once(' ').map_or(*name, |(set, _)| set);
             let is_single = !name.contains("and");
             let is_useless = factor.is_none_or(|factor| !helps(&factor));
             (growth.both_sets.is_some() && is_single && is_useless).then(|| set.to_string())
         };
-        let mut ways: Vec<String> = sets.iter().filter_map(wide).collect();
-        ways.push(noise);
         let mut text = format!("The recordings are covered if {}.", ways.join(", or if "));
-        let useless: Vec<String> = sets.iter().filter_map(useless).collect();
+        let useless: Vec<String> = widened(growth).iter().filter_map(useless).collect();
         if !useless.is_empty() {
             text += &format!(" Widening {} alone does not help.", useless.join(" or "));
         }
@@ -51,6 +34,11 @@ impl Finding {
             .with("both_sets", infinite(growth.both_sets))
             .with("noise_position", growth.noise_position)
             .with("noise_velocity", growth.noise_velocity)
+    }
+
+    /// Returns the first way in which the sets could grow to enclose the recordings.
+    pub(crate) fn least_growth(growth: &Growth, kinds: &[JointKind]) -> String {
+        ways(growth, kinds).swap_remove(0)
     }
 
     /// Why it cannot be known whether the recordings were used in the fit.
@@ -83,6 +71,27 @@ impl Finding {
     pub(crate) fn recordings(note: &str) -> Self {
         Self::new(Severity::Info, Code::Recordings, note)
     }
+}
+
+/// Returns the sets with the factors by which they would have to grow.
+fn widened(growth: &Growth) -> [(&'static str, Option<f64>); 3] {
+    [("U is", growth.input_set), ("X0 is", growth.initial_set), ("X0 and U are", growth.both_sets)]
+}
+
+/// Returns the ways in which the sets could grow to enclose the recordings; V comes last.
+fn ways(growth: &Growth, kinds: &[JointKind]) -> Vec<String> {
+    let wide = |(name, factor): (&str, Option<f64>)| {
+        let factor = factor.filter(|factor| *factor <= MOST_GROWTH)?;
+        Some(format!("{name} {} times as wide", at_least(factor)))
+    };
+    let noise = format!(
+        "V is wider by {} {} and {} {}",
+        at_least(growth.noise_position),
+        JointKind::any_unit(kinds, JointKind::position_unit),
+        at_least(growth.noise_velocity),
+        JointKind::any_unit(kinds, JointKind::velocity_unit)
+    );
+    widened(growth).into_iter().filter_map(wide).chain([noise]).collect()
 }
 
 #[cfg(test)]

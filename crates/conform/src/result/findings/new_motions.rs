@@ -102,6 +102,31 @@ impl Finding {
         with_numbers(Code::NextMotion, text)
     }
 
+    /// Returns the strongest statement about the next motion in a few words; `role` says what the
+    /// deciding motions do.
+    pub(crate) fn next_motion_in_brief(trust: &Trust, role: &str) -> String {
+        let Trust { motions, deciding, violation_probability: bound, confidence, .. } = trust;
+        let of_motions = counted(*motions, "motion");
+        if trust.average_probability.is_some() {
+            return format!(
+                "at most 1 in {} leaves the sets, on average over the {of_motions} held out",
+                motions + 1
+            );
+        }
+        match *bound > LARGEST_BOUND {
+            true if *deciding == 0 => {
+                format!("no guarantee: {}", trust.basis.replace(HOW_TO_CALIBRATE, ""))
+            }
+            true if *motions == 1 => "no guarantee: 1 motion is too few".into(),
+            true => format!("no guarantee: {of_motions} are too few"),
+            false => format!(
+                "the next leaves the sets with probability at most {bound:.3}, at confidence {:.0} \
+                 % ({deciding} of {of_motions} {role})",
+                100.0 * confidence
+            ),
+        }
+    }
+
     /// That there is no bound, because recordings of the check were used in the fit.
     pub(crate) fn fitted_to_these() -> Self {
         let text =

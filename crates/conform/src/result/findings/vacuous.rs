@@ -16,13 +16,8 @@ impl Finding {
     pub(crate) fn vacuous(model: &Model) -> Option<Self> {
         let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
         let kinds = model.robot.kinds();
-        let mut sets: Vec<&Vacuity> = said.vacuous.iter().collect();
-        sets.sort_by(|a, b| factor(b).total_cmp(&factor(a)));
-        let mut joints: Vec<usize> = sets.iter().map(|set| set.joint).collect();
-        joints.sort_unstable();
-        joints.dedup();
-        let names: Vec<String> = joints.iter().map(ToString::to_string).collect();
-        let place = format!("{} {}", plural(names.len(), "joint"), listed(&names));
+        let sets = worst_first(said);
+        let place = place(&sets);
         let first = sets.iter().take(MOST_SETS);
         let mut words: Vec<String> =
             first.map(|set| described(set, said, kinds[set.joint - 1])).collect();
@@ -41,6 +36,31 @@ impl Finding {
                 .with("compared_with", worst.compared_with),
         )
     }
+
+    /// Returns the worst vacuous set in a few words, with all joints that have one.
+    pub(crate) fn vacuous_in_brief(model: &Model) -> Option<String> {
+        let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
+        let sets = worst_first(said);
+        let worst = sets.first()?;
+        let kind = model.robot.kinds()[worst.joint - 1];
+        Some(format!("vacuous for {}: {}", place(&sets), described(worst, said, kind)))
+    }
+}
+
+/// Returns the vacuous sets, the worst first.
+fn worst_first(said: &Usefulness) -> Vec<&Vacuity> {
+    let mut sets: Vec<&Vacuity> = said.vacuous.iter().collect();
+    sets.sort_by(|a, b| factor(b).total_cmp(&factor(a)));
+    sets
+}
+
+/// Names the joints of some sets.
+fn place(sets: &[&Vacuity]) -> String {
+    let mut joints: Vec<usize> = sets.iter().map(|set| set.joint).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    let names: Vec<String> = joints.iter().map(ToString::to_string).collect();
+    format!("{} {}", plural(names.len(), "joint"), listed(&names))
 }
 
 /// Returns by which factor a set exceeds what it is compared with.

@@ -50,16 +50,10 @@ impl Finding {
                 "lie in the computed outer set, an enclosure with directed rounding"
             }
         };
-        let outcome_words = match (model.verified, model.gap_of_not_minimal()) {
-            _ if model.is_vacuous() => "conformant, but vacuous",
-            (false, _) => "NOT PROVED conformant",
-            (true, Some(_)) => "conformant, not minimal",
-            (true, None) => "conformant",
-        };
         let text = format!(
-            "{outcome_words}: {} in {}; {} of {rows} rows (suite, sample, state) {how}, at samples",
-            counted(model.data.run_count(), "recording"),
-            counted(model.data.suites.len(), "suite"),
+            "{}: {}; {} of {rows} rows (suite, sample, state) {how}, at samples",
+            Self::outcome_of_fit(model),
+            Self::recordings_of_fit(model),
             rows - violations.count,
         );
         let (severity, code) = outcome(model.verified);
@@ -67,6 +61,35 @@ impl Finding {
             .with("recordings", *runs as f64)
             .with("rows", *rows as f64)
             .with("rows_outside", violations.count as f64)
+    }
+
+    /// Returns the verdict in one or two words.
+    pub(crate) fn outcome_of_fit(model: &Model) -> &'static str {
+        match (model.verified, model.gap_of_not_minimal()) {
+            _ if model.is_vacuous() => "conformant, but vacuous",
+            (false, _) => "NOT PROVED conformant",
+            (true, Some(_)) => "conformant, not minimal",
+            (true, None) => "conformant",
+        }
+    }
+
+    /// Counts the recordings and suites that a model was made from.
+    pub(crate) fn recordings_of_fit(model: &Model) -> String {
+        format!(
+            "{} in {}",
+            counted(model.data.run_count(), "recording"),
+            counted(model.data.suites.len(), "suite")
+        )
+    }
+
+    /// Returns where the first reachable set ends before its suite, and the number of the others.
+    pub(crate) fn lost_in_brief(lost: &[Lost]) -> Option<String> {
+        let (Lost { case, time, state }, others) = lost.split_first()?;
+        let more = match others.len() {
+            0 => String::new(),
+            others => format!("; so do {others} more"),
+        };
+        Some(format!("{case}: the set ends at {time:.3} s, where {state} grew fastest{more}"))
     }
 
     /// The verdict on recordings that are compared with a model.

@@ -1,0 +1,152 @@
+//! The summary of a check: the verdict, the suites that leave the sets, and what follows.
+
+use reachtube_robot::JointKind;
+
+use crate::check::Check;
+use crate::claim::verdict::{SuiteVerdict, Verdict};
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::model::file::Model;
+use crate::result::code::Code;
+use crate::result::finding::Finding;
+use crate::result::findings::words::counted;
+use crate::result::front_end::FrontEnd;
+use crate::result::model_summary::{AtHorizon, brief, share, table_of_sets, up, widest_first};
+use crate::result::remedy::Remedy;
+use crate::result::summary::Summary;
+use crate::result::table::Table;
+use crate::tube::hulls::Hulls;
+
+impl Check {
+    /// Returns the answer on a few lines, for users of a front end: the verdict, the suites that
+    /// leave the sets or else the sets of each joint at the horizon, and what follows. `hulls` are
+    /// the reachable sets that were compared.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn summary(
+        &self,
+        model: &Model,
+        problem: &Problem,
+        hulls: &Hulls,
+        front_end: FrontEnd,
+    ) -> Result<Summary> {
+        let kinds = model.robot.kinds();
+        let sets = AtHorizon::new(hulls, problem)?;
+        let failing = failing(&self.verdict);
+        // The cause and its remedy are part of the model's own answer.
+        let warnings = model.warnings.iter().map(Finding::from);
+        let warnings = warnings.filter(|warning| warning.code != Code::Cause);
+        let warnings = warnings.map(|warning| format!("of the model itself: {}", brief(&warning)));
+        let mut summary = Summary {
+            verdict: self.verdict_lines(model),
+            warnings: warnings.collect(),
+            ..Summary::default()
+        };
+        if failing.is_empty() {
+            summary.table = table_of_sets(model, &sets, None);
+            summary.importance = widest_first(model, &sets);
+        } else {
+            summary.table = table_of_suites(&failing, &kinds);
+            summary.facts.push(widest(model, &sets, &kinds));
+        }
+        if let Some(growth) = &self.growth {
+            summary.fact("covered, without a proof, if", Finding::least_growth(growth, &kinds));
+        }
+        summary.fact(
+            "new motions",
+            match &self.trust {
+                Some(trust) => Finding::next_motion_in_brief(trust, "left them"),
+                None => "no guarantee: the model was fitted to some of these recordings".into(),
+            },
+        );
+        let lost = self.verdict.lost.first().map(|lost| Remedy::until(lost.time));
+        let is_wide = model.calibration.is_none() && !self.verdict.conformant;
+        let helps = lost.or_else(|| is_wide.then(|| Remedy::new("calibrate", "MOTION,..")));
+        summary.next = helps.map(|remedy| remedy.written_for(front_end));
+        Ok(summary)
+    }
+
+    /// Returns the verdict, and what else speaks against the sets.
+    fn verdict_lines(&self, model: &Model) -> Vec<String> {
+        let Verdict { conformant, runs, rows, violations, suites, lost, .. } = &self.verdict;
+        let set = self.verdict.enclosure.set_name();
+        let words = match conformant {
+            true if model.is_vacuous() => "conformant, but vacuous",
+            true => "conformant",
+            false => "not conformant",
+        };
+        let outside = suites.iter().filter(|suite| suite.violations.count > 0).count();
+        let percent = match violations.count {
+            0 => String::new(),
+            count => format!(" ({:.1} %)", 100.0 * count as f64 / (*rows).max(1) as f64),
+        };
+        let mut lines = vec![format!(
+            "{words}: {}; {} of {rows} rows outside the {set}{percent}, in {outside} of {}",
+            counted(*runs, "recording"),
+            violations.count,
+            counted(suites.len(), "suite"),
+        )];
+        lines.extend(Finding::vacuous_in_brief(model));
+        let points = self.verdict.points.as_ref();
+        lines.extend(
+            points.map(|points| {
+                Finding::points(points, self.verdict.enclosure, !lost.is_empty()).text
+            }),
+        );
+        let traces = self.verdict.traces.as_ref();
+        lines.extend(
+            traces.map(|traces| Finding::traces(traces, *runs, model.settings.disturbance).text),
+        );
+        lines.extend(Finding::lost_in_brief(lost));
+        lines
+    }
+}
+
+/// Returns the suites that were not proved, the ones with the most rows outside first.
+fn failing(verdict: &Verdict) -> Vec<&SuiteVerdict> {
+    let mut failing: Vec<&SuiteVerdict> =
+        verdict.suites.iter().filter(|suite| suite.fails()).collect();
+    failing.sort_by_key(|suite| std::cmp::Reverse(suite.violations.count));
+    failing
+}
+
+fn table_of_suites(failing: &[&SuiteVerdict], kinds: &[JointKind]) -> Table {
+    let row = |suite: &&SuiteVerdict| {
+        let worst = suite.violations.worst.as_ref();
+        let place = worst.map(|worst| {
+            let unit = worst.state.kind.unit(kinds[worst.state.joint]);
+            let excess = up(worst.excess);
+            format!("{}, {:.3} s: {} by {excess} {unit}", worst.run, worst.time, worst.state)
+        });
+        vec![
+            suite.suite.clone(),
+            suite.rows.to_string(),
+            suite.violations.count.to_string(),
+            place.unwrap_or_else(|| "-".into()),
+        ]
+    };
+    Table::new(["suite", "rows", "outside", "furthest"], failing.iter().map(row).collect())
+}
+
+/// Returns the widest sets at the horizon: of the position that is widest beside its motion, and of
+/// the velocities.
+fn widest(model: &Model, sets: &AtHorizon, kinds: &[JointKind]) -> (String, String) {
+    let n = model.joints();
+    let name = |joint: usize| &model.robot.joints[joint].name;
+    let q = widest_first(model, sets).first().copied().unwrap_or_default();
+    let speed = |joint: &usize| sets.radii[n + joint];
+    let qd = (0..n).max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or_default();
+    let value = format!(
+        "± {} {} ({}, {} of its motion), ± {} {} ({})",
+        up(sets.radii[q]),
+        kinds[q].position_unit(),
+        name(q),
+        share(model, q, sets.radii[q]),
+        up(sets.radii[n + qd]),
+        kinds[qd].velocity_unit(),
+        name(qd),
+    );
+    (format!("widest sets at {:.3} s", sets.horizon), value)
+}

@@ -1,0 +1,245 @@
+//! The summary of a model: the verdict, the sets at the horizon, and what follows.
+
+use reachtube_robot::JointKind;
+use reachtube_robot::units::ColumnUnit;
+use reachtube_scalar::number::{at_least, interval, outward};
+
+use crate::answer::Answer;
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::model::file::Model;
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+use crate::result::front_end::FrontEnd;
+use crate::result::summary::Summary;
+use crate::result::table::Table;
+use crate::tube::hulls::{Enclosure, Hulls};
+
+/// Ratios from here on are factors, not percent.
+const LARGE: f64 = 100.0;
+
+/// How wide the sets are at the end of the longest recording.
+pub(crate) struct AtHorizon {
+    /// The end of the longest recording, s.
+    pub horizon: f64,
+    /// Half the widths of the sets with V, 2n; infinite where a set was lost.
+    pub radii: Vec<f64>,
+}
+
+impl AtHorizon {
+    pub(crate) fn new(hulls: &Hulls, problem: &Problem) -> Result<Self> {
+        let (horizon, radii) = hulls.at_end(problem)?;
+        Ok(Self { horizon, radii })
+    }
+}
+
+impl Answer {
+    /// Returns the answer on a few lines, for users of a front end: the verdict, the sets of each
+    /// joint at the horizon, what follows for new motions, and what helps most.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn summary(&self, front_end: FrontEnd) -> Result<Summary> {
+        let Self { model, problem, found } = self;
+        let sets = AtHorizon::new(&found.hulls, problem)?;
+        let mut summary = Summary {
+            verdict: vec![verdict(model, &sets)],
+            table: table_of_sets(model, &sets, None),
+            importance: widest_first(model, &sets),
+            warnings: model.warnings.iter().map(|warning| brief(&warning.into())).collect(),
+            ..Summary::default()
+        };
+        summary.verdict.extend(against(model));
+        summary.facts.extend(model.motion_left_out());
+        summary.fact("new motions", Finding::next_motion_in_brief(&model.trust, "decide"));
+        summary.next = model.most_helpful().map(|finding| remedy(&finding, front_end));
+        Ok(summary)
+    }
+
+    /// Returns the sets of each joint at the horizon, with the factors by which they would have to
+    /// grow for other motions, n.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub fn table_at_horizon(&self, factors: &[f64]) -> Result<Table> {
+        let sets = AtHorizon::new(&self.found.hulls, &self.problem)?;
+        Ok(table_of_sets(&self.model, &sets, Some(factors)))
+    }
+}
+
+impl Model {
+    /// Returns the factor that the motion needs whose absence changes the sets most.
+    fn motion_left_out(&self) -> Option<(String, String)> {
+        let gauges = self.left_out.iter().filter_map(|left| Some((left.gauge?, &left.motion)));
+        let (gauge, motion) = gauges.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let of = self.left_out.len();
+        let value = format!("at most {}, of {of} motions ({motion})", up(gauge));
+        Some(("factor for a motion left out".into(), value))
+    }
+
+    /// Returns the finding with the remedy that helps most: what ended a set, the cause of
+    /// warnings, another warning, or the way to a guarantee.
+    fn most_helpful(&self) -> Option<Finding> {
+        let lost = self.proof.lost.iter().map(Finding::from);
+        let warnings: Vec<Finding> = self.warnings.iter().map(Finding::from).collect();
+        let causes = warnings.iter().filter(|finding| finding.code == Code::Cause).cloned();
+        let new_motions = [Finding::next_motion_of_fit(self)];
+        let all = lost.chain(causes).chain(warnings.iter().cloned()).chain(new_motions);
+        all.into_iter().find(|finding| finding.remedy.is_some())
+    }
+}
+
+/// Returns the remedy of a finding as a sentence.
+fn remedy(finding: &Finding, front_end: FrontEnd) -> String {
+    finding.remedy.as_ref().map(|remedy| remedy.written_for(front_end)).unwrap_or_default()
+}
+
+/// Returns the verdict on the recordings that a model was made from.
+fn verdict(model: &Model, sets: &AtHorizon) -> String {
+    let words = Finding::outcome_of_fit(model);
+    let proof = &model.proof;
+    let how = match proof.enclosure {
+        Enclosure::Inner => "proved",
+        Enclosure::Outer => "in the computed outer set",
+    };
+    format!(
+        "{words}: {}; {} of {} rows {how}, up to {:.3} s",
+        Finding::recordings_of_fit(model),
+        proof.rows - proof.violations.count,
+        proof.rows,
+        sets.horizon
+    )
+}
+
+/// Returns what speaks against the sets of a model, or limits the proof.
+pub(super) fn against(model: &Model) -> Vec<String> {
+    let proof = &model.proof;
+    let mut lines: Vec<String> = Finding::vacuous_in_brief(model).into_iter().collect();
+    let points = proof.points.as_ref();
+    lines.extend(
+        points.map(|points| Finding::points(points, proof.enclosure, !proof.lost.is_empty()).text),
+    );
+    let traces = proof.traces.as_ref();
+    lines.extend(traces.map(|traces| {
+        Finding::traces(traces, model.data.run_count(), model.settings.disturbance).text
+    }));
+    lines.extend(Finding::lost_in_brief(&proof.lost));
+    lines
+}
+
+/// Returns a finding in a few words.
+pub(super) fn brief(finding: &Finding) -> String {
+    let meaning = finding.code.meaning().trim_end_matches('.');
+    match &finding.place {
+        _ if finding.code == Code::Cause || finding.severity != Severity::Warning => {
+            finding.text.clone()
+        }
+        Some(place) => format!("{meaning} ({place})"),
+        None => format!("{meaning}."),
+    }
+}
+
+/// Returns the sets at the horizon joint by joint.
+pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f64]>) -> Table {
+    let n = model.joints();
+    let kinds = model.robot.kinds();
+    let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
+    let [q, qd, u] = units.map(|unit| ColumnUnit::new(&kinds, unit));
+    let mut header = vec![
+        "joint".into(),
+        q.head(&format!("q at {:.3} s", sets.horizon)),
+        "of motion".into(),
+        qd.head("qd"),
+        u.head("U"),
+    ];
+    header.extend(factors.map(|_| "held out".into()));
+    let half = |unit: &ColumnUnit, joint: usize, radius: f64| match radius.is_finite() {
+        true => unit.cell(joint, format!("± {}", up(radius))),
+        false => "lost".into(),
+    };
+    let row = |joint: usize| {
+        let mut row = vec![
+            model.robot.joints[joint].name.clone(),
+            half(&q, joint, sets.radii[joint]),
+            share(model, joint, sets.radii[joint]),
+            half(&qd, joint, sets.radii[n + joint]),
+            u.cell(joint, bounds(model.input_set.bounds(joint))),
+        ];
+        row.extend(factors.map(|factors| match factors[joint] {
+            factor if factor.is_finite() => up(factor),
+            _ => "-".into(),
+        }));
+        row
+    };
+    Table::new(header, (0..n).map(row).collect())
+}
+
+/// Returns the joints, the one whose set is widest beside its motion first.
+pub(super) fn widest_first(model: &Model, sets: &AtHorizon) -> Vec<usize> {
+    let displacement = |joint: usize| {
+        model.usefulness.as_ref().map_or(1.0, |said| said.joints[joint].displacement)
+    };
+    let ratio = |joint: &usize| sets.radii[*joint] / displacement(*joint);
+    let mut joints: Vec<usize> = (0..model.joints()).collect();
+    joints.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
+    joints
+}
+
+/// Numbers that are written with decimals.
+const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
+
+/// Returns the decimals that show two digits of a number.
+fn decimals(size: f64) -> usize {
+    (1.0 - size.log10().floor()).clamp(0.0, 6.0) as usize
+}
+
+/// Returns a number of two digits that is not below `size`.
+pub(super) fn up(size: f64) -> String {
+    if size == 0.0 {
+        return "0".into();
+    }
+    if !PLAIN.contains(&size) {
+        return at_least(size);
+    }
+    let [_, up] = outward([0.0, size], decimals(size));
+    up
+}
+
+/// Returns an interval whose larger bound has two digits, rounded outward.
+fn bounds((low, high): (f64, f64)) -> String {
+    let size = high.max(-low);
+    if low == high && low == 0.0 {
+        return "0".into();
+    }
+    if !PLAIN.contains(&size) {
+        return interval((low, high));
+    }
+    let [low, high] = outward([low, high], decimals(size));
+    format!("[{low}, {high}]")
+}
+
+/// Returns half a set's width as a share of the joint's motion.
+pub(super) fn share(model: &Model, joint: usize, radius: f64) -> String {
+    let joints = model.usefulness.as_ref().map(|said| &said.joints);
+    match joints.map(|joints| radius / joints[joint].displacement) {
+        Some(ratio) if ratio < LARGE => format!("{:.0} %", 100.0 * ratio),
+        Some(ratio) if ratio.is_finite() => format!("x {ratio:.0e}"),
+        _ => "-".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{bounds, up};
+
+    #[test]
+    fn short_numbers_are_rounded_outward() {
+        let all = [0.0, 0.0461, 0.99, 1.0, 12.34, 123.4, 2.14e-9].map(up);
+        assert_eq!(all, ["0", "0.047", "0.99", "1.0", "13", "124", "2.2e-9"]);
+        assert_eq!(bounds((-5.661, 7.612)), "[-5.7, 7.7]");
+        assert_eq!(bounds((-0.001, 0.052)), "[-0.001, 0.052]");
+        assert_eq!(bounds((0.0, 0.0)), "0");
+    }
+}
