@@ -159,6 +159,7 @@ mod tests {
             facts: vec![("new motions".into(), "no guarantee ".repeat(12))],
             warnings: vec!["U reaches beyond the input ".repeat(5); warnings],
             next: Some("`--calibrate` ".repeat(10)),
+            ..Summary::default()
         }
     }
 
