@@ -111,9 +111,8 @@ pub fn identify(
     let (held_out, tried) = inputs.validation();
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
     let windows = simulate(&warming_robot, tried, &model.windows);
-    let mut warnings =
-        [inputs.warnings, first.warnings, law_warnings, gain_warnings, implausible.clone()]
-            .concat();
+    let mut warnings = [inputs.warnings, first.warnings, law_warnings, gain_warnings].concat();
+    warnings.extend_from_slice(&implausible);
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
     let links = inertia.physical.is_some() && !model.separate_gravity;

@@ -97,14 +97,8 @@ pub fn build(
         cut_off,
         trial: &trial,
     };
-    let mut warnings = evidence.contradictions(robot)?;
-    let chosen = evidence.choose(robot, given.identify);
-    let chosen = chosen.map_err(|error| error.because(&warnings))?;
-    let Nominal { robot, logs, is_identified, reason, implausible } = chosen;
-    // An identification tells columns that are wrong from a description that is.
-    if !implausible.is_empty() {
-        warnings = implausible;
-    }
+    let chosen = evidence.choose(robot, given.identify)?;
+    let Nominal { robot, logs, is_identified, reason, mut warnings } = chosen;
     chooser.choose("identify", is_identified.to_string(), reason);
     chooser.choices.identify = Some(is_identified);
     trial.robot = robot.clone();

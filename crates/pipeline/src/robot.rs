@@ -35,9 +35,8 @@ pub(crate) struct Nominal {
     pub is_identified: bool,
     /// Why.
     pub reason: String,
-    /// What contradicts the dynamics of rigid bodies in the recordings, where the robot was
-    /// identified or an identification was tried.
-    pub implausible: Vec<String>,
+    /// What contradicts the robot or rigid-body dynamics in the recordings, in sentences.
+    pub warnings: Vec<String>,
 }
 
 /// What the choice of the robot needs.
@@ -66,6 +65,18 @@ impl Evidence<'_> {
     ///
     /// As [`identify`], if the description is no alternative.
     pub(crate) fn choose(&self, described: &Robot, given: Option<bool>) -> Result<Nominal> {
+        let contradictions = self.contradictions(described)?;
+        let chosen = self.chosen(described, given);
+        let mut chosen = chosen.map_err(|error| error.because(&contradictions))?;
+        // An identification tells columns that are wrong from a description that is.
+        if chosen.warnings.is_empty() {
+            chosen.warnings = contradictions;
+        }
+        Ok(chosen)
+    }
+
+    /// Chooses the robot, with the warnings of an identification.
+    fn chosen(&self, described: &Robot, given: Option<bool>) -> Result<Nominal> {
         let is_physical = described.check_physical().map(|_| ());
         let own = match (given, &is_physical) {
             (Some(true), _) | (_, Err(_)) => None,
@@ -118,13 +129,13 @@ impl Evidence<'_> {
             percent(error),
             percent(after)
         );
-        let implausible = identified.implausible.clone();
+        let warnings = identified.warnings.clone();
         let best = if after < BETTER * error { identified } else { nominal };
-        Ok(Nominal { reason, implausible, ..best })
+        Ok(Nominal { reason, warnings, ..best })
     }
 
     /// Returns what contradicts the description in the recorded torques, in sentences.
-    pub(crate) fn contradictions(&self, described: &Robot) -> Result<Vec<String>> {
+    fn contradictions(&self, described: &Robot) -> Result<Vec<String>> {
         if self.torque == Torque::Compensated {
             return Ok(Vec::new());
         }
@@ -150,15 +161,15 @@ impl Evidence<'_> {
         };
         let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
         let nominal = self.prepared(&Robot::from_description(&found.description)?)?;
-        Ok(Nominal { is_identified: true, implausible: found.implausible, ..nominal })
+        Ok(Nominal { is_identified: true, warnings: found.implausible, ..nominal })
     }
 
     /// Prepares the motions for a robot.
     fn prepared(&self, robot: &Robot) -> Result<Nominal> {
         let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
         let logs = prepare_for(&raw, robot, self.torque, self.settings, self.cut_off)?;
-        let (reason, implausible) = (String::new(), Vec::new());
-        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason, implausible })
+        let (reason, warnings) = (String::new(), Vec::new());
+        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason, warnings })
     }
 
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of
