@@ -248,3 +248,8 @@ pub(crate) fn set_cell(line: &mut String, column: usize, value: &str) {
 pub(crate) fn cell(line: &str, column: usize) -> f64 {
     line.split(',').nth(column).unwrap().parse().unwrap()
 }
+
+/// Returns the text of a page without its tags.
+pub(crate) fn text_of(page: &str) -> String {
+    page.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text)).collect()
+}

@@ -1,6 +1,6 @@
 //! The notions of enclosure: recorded points in the reachable set itself.
 
-use crate::fixture::{Lab, set_cell};
+use crate::fixture::{Lab, set_cell, text_of};
 
 #[test]
 fn points_are_proved_and_certified() {
@@ -14,7 +14,7 @@ fn points_are_proved_and_certified() {
     assert!(certificate.starts_with("{\"format\":\"reachtube-certificate\""), "{certificate}");
     lab.run("check --model exact.json --data data --torque compensated").exits(0);
     lab.run("report --model exact.json --data data --torque compensated --out page").exits(0);
-    let page = lab.read("page/report.html");
+    let page = text_of(&lab.read("page/report.html"));
     for part in [points, "Phase planes", "notion is exact"] {
         assert!(page.contains(part), "{part} is not on the page");
     }
@@ -61,7 +61,7 @@ fn the_shares_of_the_cost_are_of_all_states_and_add_up() {
     let lab = Lab::new();
     lab.conform("--states positions --nominal own --report page");
     let page = lab.read("page/report.html");
-    let table = page.split("over the drawn suites</caption>").nth(1).unwrap();
+    let table = page.split("over the drawn suites\"><table").nth(1).unwrap();
     let cells = table
         .split("</table>")
         .next()
