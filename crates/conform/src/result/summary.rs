@@ -13,7 +13,7 @@ const COLUMNS: usize = 100;
 /// Smallest number of rows that a table keeps.
 const FEWEST_ROWS: usize = 2;
 
-/// An answer for people on at most 15 lines of 100 columns. The [`Report`](crate::Report) has the
+/// An answer for people on at most 15 lines of 100 columns. The [`Report`](crate::result::Report) has the
 /// rest.
 ///
 /// # Examples
