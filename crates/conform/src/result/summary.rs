@@ -13,8 +13,8 @@ const COLUMNS: usize = 100;
 /// Smallest number of rows that a table keeps.
 const FEWEST_ROWS: usize = 2;
 
-/// An answer for people on at most 15 lines of 100 columns. The [`Report`](crate::result::Report) has the
-/// rest.
+/// An answer for people on at most 15 lines of 100 columns. The
+/// [`Report`](crate::result::Report) has the rest.
 ///
 /// # Examples
 ///
