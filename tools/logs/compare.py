@@ -6,8 +6,9 @@
 import json
 import sys
 
-# What names recordings, and the motions that a log does not name, which `basis` mentions.
-NAMES = {"sha256", "file", "run", "motion", "basis"}
+# What names recordings, and what a log does not have: motions, which `basis` mentions, and the mark
+# of a simulation.
+NAMES = {"sha256", "file", "run", "motion", "basis", "simulated"}
 
 
 def numbers(value):

@@ -46,5 +46,5 @@ fn the_page_opens() {
     let mut tab = Tab::new(1400, 900, false);
     tab.open(lab.read("report/report.html").as_bytes()).unwrap();
     assert!(tab.messages.is_empty(), "{:?}", tab.messages);
-    assert_eq!(tab.script("document.querySelectorAll('figure').length"), json!(4));
+    assert_eq!(tab.script("document.querySelectorAll('figure').length"), json!(5));
 }
