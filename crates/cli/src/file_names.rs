@@ -5,7 +5,7 @@ use reachtube::export::ExportCase;
 use reachtube_files::distinct_names;
 
 /// Returns one file name for each reachable set: the suite's name, with the run's where runs have
-/// nominal solutions of their own. The names are distinct and contain no path separators.
+/// nominal motions of their own. The names are distinct and contain no path separators.
 pub(crate) fn of_reach(reach: &[SuiteReach]) -> Vec<String> {
     distinct_names(reach.iter().map(SuiteReach::name), &["", "_tube"])
 }

@@ -1,13 +1,8 @@
-//! Tables and plurals.
+//! Tables.
 
 use reachtube::conform::result::Table;
 use reachtube::page::TextTable;
 use reachtube::printable;
-
-/// Returns the word in the number that `count` asks for.
-pub(crate) fn plural(count: usize, word: &str) -> String {
-    format!("{word}{}", if count == 1 { "" } else { "s" })
-}
 
 /// Returns the text of a cell on one line, so that no name can pretend to be a row of its own.
 fn one_line(text: &str) -> String {

@@ -15,16 +15,16 @@ use crate::tube::deviation::Nominal;
 use crate::tube::grids::Grid;
 use crate::tube::hulls::{HullKind, Hulls, Lost};
 
-/// The reachable set over one suite, or over one run that has its own nominal solution.
+/// The reachable set over one suite, or over one run that has its own nominal motion.
 #[derive(Debug, Clone)]
 pub struct SuiteReach {
     /// The suite.
     pub suite: String,
-    /// The run, where it has its own nominal solution.
+    /// The run, where it has its own nominal motion.
     pub run: Option<String>,
     /// Sample times, s, K.
     pub times: Vec<f64>,
-    /// The nominal solution, K x 2n.
+    /// The nominal motion, K x 2n.
     pub nominal: Vec<f64>,
     /// Lower bounds at samples, K x 2n.
     pub lower: Vec<f64>,
@@ -133,7 +133,7 @@ impl SuiteReach {
         }
     }
 
-    /// Returns a name for files: the suite, and the run where it has its own nominal solution.
+    /// Returns a name for files: the suite, and the run where it has its own nominal motion.
     #[must_use]
     pub fn name(&self) -> String {
         match &self.run {
@@ -196,7 +196,7 @@ impl SuiteReach {
     }
 }
 
-/// Returns the suite of a case, and its run where it has its own nominal solution.
+/// Returns the suite of a case, and its run where it has its own nominal motion.
 fn names(problem: &Problem, case: &Case) -> (String, Option<String>) {
     let suite = problem.recordings().suites[case.suite].entry.name.clone();
     (suite, case.run.map(|index| problem.entry(index).file.clone()))

@@ -4,6 +4,7 @@ use reachtube_conform::result::Code;
 use reachtube_conform::settings::{Equations, States};
 use reachtube_conform::{Finding, Model};
 use reachtube_reach::Hyperrectangle;
+use reachtube_scalar::number::counted;
 
 use crate::cost::{cost_charts, cost_tables, cost_unit};
 use crate::error::Result;
@@ -26,15 +27,15 @@ pub fn page(sources: &Sources) -> Result<Page> {
     Ok(Page {
         title: format!("{}: reachset conformance", model.robot.name),
         subtitle: format!(
-            "Model {} of order {}{}, {} recordings in {} test suites",
+            "Model {} of order {}{}, {} in {}",
             u32::from(model.settings.abstraction.model),
             model.settings.abstraction.order,
             match model.settings.equations {
                 Equations::Model => "",
                 Equations::Robot => " about nominal motions by the robot's own equations",
             },
-            check.verdict.runs,
-            check.verdict.suites.len()
+            counted(check.verdict.runs, "recording"),
+            counted(check.verdict.suites.len(), "test suite")
         ),
         verdict: verdict(sources),
         lead: lead(sources)?,
@@ -136,8 +137,8 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("States enclosed", word(settings.states)),
         ("Weights [SI units]", word(&settings.weights)),
         ("Measurement noise [SI units]", word(&settings.noise)),
-        ("Nominal solution starts at", word(settings.nominal)),
-        ("Nominal solution satisfies the equations of", word(settings.equations)),
+        ("Nominal motion starts at", word(settings.nominal)),
+        ("Nominal motion satisfies the equations of", word(settings.equations)),
         ("Recorded torque", word(settings.torque)),
         ("Fitted to", format!("{runs} runs of suites {}", suites.join(", "))),
         ("SHA-256 of the data", model.data.sha256.clone()),

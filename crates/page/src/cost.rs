@@ -104,7 +104,7 @@ fn weight(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {
     }
 }
 
-/// Returns the largest deviation of a recording from the nominal solution at the samples.
+/// Returns the largest deviation of a recording from the nominal motion at the samples.
 fn largest_deviation(figure: &SuiteFigure, state: usize) -> f64 {
     let nominal = match &figure.nominal {
         Nominal::Shared(rows) => rows[state].as_slice(),

@@ -50,7 +50,7 @@ pub enum Error {
         /// Its time \[s\].
         value: f64,
     },
-    /// The view needs a nominal solution that the suite does not have, or has for each run only.
+    /// The view needs a nominal motion that the suite does not have, or has for each run only.
     #[error("suite {suite} has no {view:?} view; draw one of SuiteFigure::views")]
     View {
         /// The suite.

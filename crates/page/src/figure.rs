@@ -117,7 +117,7 @@ fn labels(canvas: &Canvas, figure: &SuiteFigure, layout: &Layout, state: usize) 
 fn description(figure: &SuiteFigure, view: View) -> String {
     let what = match view {
         View::Motion => "reachable set",
-        View::Deviation => "reachable set of the deviation from the nominal solution",
+        View::Deviation => "reachable set of the deviation from the nominal motion",
     };
     let span = figure.times[figure.times.len() - 1] - figure.times[0];
     let (runs, joints) = (figure.runs.len(), figure.joints.len());

@@ -171,7 +171,7 @@ fn figure(suite: &SuiteFigure, view: View) -> Result<Markup, Error> {
 fn caption(suite: &SuiteFigure, view: View) -> String {
     let what = match view {
         View::Motion => "The recorded states",
-        View::Deviation => "The recorded states minus the nominal solution",
+        View::Deviation => "The recorded states minus the nominal motion",
     };
     let rings = match suite.tight.len() {
         0 => "",

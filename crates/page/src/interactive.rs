@@ -18,11 +18,11 @@ struct SuiteData<'a> {
     /// Units of the states.
     units: Vec<&'static str>,
     views: Vec<String>,
-    /// Times of the bands and of the nominal solution.
+    /// Times of the bands and of the nominal motion.
     times: String,
     /// Empty if bands and runs are deviations already.
     nominal: Option<Vec<Packed>>,
-    /// The bands as deviations from the unpacked nominal solution, the outer one first.
+    /// The bands as deviations from the unpacked nominal motion, the outer one first.
     bands: Vec<BandData<'a>>,
     /// Whether each bound holds from its time to the next one; else at its time.
     columns: bool,
@@ -85,7 +85,7 @@ fn whole<'a>(figure: &'a SuiteFigure) -> SuiteData<'a> {
         Nominal::Shared(rows) => Some(rows.iter().map(|row| Packed::new(row)).collect()),
         _ => None,
     };
-    // Bands are relative to the nominal solution as the script will have it.
+    // Bands are relative to the nominal motion as the script will have it.
     let origin = match &nominal {
         Some(rows) => rows.iter().map(Packed::unpacked).collect(),
         None => vec![vec![0.0; figure.times.len()]; states],

@@ -4,7 +4,7 @@ use reachtube_conform::plausibility::JointWidth;
 use reachtube_conform::{Model, SuiteReach};
 use reachtube_pipeline::{Built, HorizonWidths};
 use reachtube_robot::JointKind;
-use reachtube_scalar::number::significant;
+use reachtube_scalar::number::{significant, two_digits_up};
 
 use crate::chart::{Chart, Series};
 use crate::error::Result;
@@ -72,7 +72,7 @@ fn words(name: &str, width: &JointWidth, kind: JointKind) -> String {
         None => format!("{name}: it has no bound"),
         Some(half) => format!(
             "{name}: ± {} {unit}, {:.0} % of its motion",
-            significant(half, 2),
+            two_digits_up(half),
             100.0 * width.ratio()
         ),
     }

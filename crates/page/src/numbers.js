@@ -66,7 +66,7 @@ function valueAt(times, values, t, columns = false) {
   return values[after - 1] + (values[after] - values[after - 1]) * part;
 }
 
-// Returns the line of a run in a view: the state, or the state minus the nominal solution.
+// Returns the line of a run in a view: the state, or the state minus the nominal motion.
 function runLine(suite, run, state, view) {
   const values = run.states[state];
   if (view === "motion" || !suite.nominal) return values;

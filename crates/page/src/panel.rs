@@ -77,8 +77,8 @@ fn mark(spot: &TightSpot, line: &[Point]) -> Option<(Point, bool)> {
     (!line.is_empty()).then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
 }
 
-/// Returns a line, minus the nominal solution where there is one. With a nominal solution, the line
-/// covers only the times of `grid`, at which the nominal solution is given.
+/// Returns a line, minus the nominal motion where there is one. With a nominal motion, the line
+/// covers only the times of `grid`, at which the nominal motion is given.
 pub(super) fn relative(
     times: &[f64],
     values: &[f64],

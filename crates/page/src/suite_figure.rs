@@ -15,14 +15,14 @@ pub struct SuiteFigure {
     pub joints: Vec<String>,
     /// Kinds of the joints; an empty list stands for revolute joints.
     pub kinds: Vec<JointKind>,
-    /// Times of the bands and of the nominal solution \[s\], strictly increasing, at least two.
+    /// Times of the bands and of the nominal motion \[s\], strictly increasing, at least two.
     pub times: Vec<f64>,
     /// The reachable set, drawn light grey.
     pub band: Band,
     /// A second band, drawn dark grey, such as the position-conformant reachable set of Fig. 4, or
     /// the lowest and highest values of all runs.
     pub inner: Option<Band>,
-    /// The nominal solution, from which deviations are measured.
+    /// The nominal motion, from which deviations are measured.
     pub nominal: Nominal,
     /// The recorded runs that are drawn.
     pub runs: Vec<RunTrace>,
@@ -47,16 +47,16 @@ pub struct Band {
     pub upper: Vec<Vec<f64>>,
 }
 
-/// The nominal solution x̂, which decides the views that can be drawn.
+/// The nominal motion x̂, which decides the views that can be drawn.
 #[derive(Debug, Clone, Default)]
 pub enum Nominal {
     /// Not known: the bands and runs are drawn as they are.
     #[default]
     Unknown,
-    /// One nominal solution for all runs, shape `[2n][times]`: the motion is drawn, and the
+    /// One nominal motion for all runs, shape `[2n][times]`: the motion is drawn, and the
     /// deviation x - x̂ from it.
     Shared(Vec<Vec<f64>>),
-    /// Each run has its own nominal solution: bands and runs are given as deviations, and only
+    /// Each run has its own nominal motion: bands and runs are given as deviations, and only
     /// these are drawn.
     PerRun,
 }
@@ -112,7 +112,7 @@ pub struct TightSpot {
 pub enum View {
     /// The states themselves.
     Motion,
-    /// The states minus the nominal solution.
+    /// The states minus the nominal motion.
     Deviation,
 }
 

@@ -70,7 +70,7 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     spots.retain(|spot| chosen.contains(&spot.run));
     let sets = model.sets();
     let noise: Vec<f64> = (0..2 * joints).map(|i| sets.noise_radius(i)).collect();
-    // Each run as a line, relative to its own nominal solution where it has one.
+    // Each run as a line, relative to its own nominal motion where it has one.
     let (mut runs, mut range, mut gauges) = (Vec::new(), None, Vec::new());
     for (order, summary) in suite.runs.iter().enumerate() {
         let file = &problem.entry(summary.index).file;
@@ -211,7 +211,7 @@ fn include(range: &mut Option<[Vec<Vec<f64>>; 2]>, states: Vec<Vec<f64>>) {
     }
 }
 
-/// Returns the band of a suite. Runs with nominal solutions of their own share the hull of their
+/// Returns the band of a suite. Runs with nominal motions of their own share the hull of their
 /// deviations.
 fn band(own: &[&SuiteReach], longest: &SuiteReach, joints: usize, set: &str) -> Band {
     let shared = longest.run.is_none();
@@ -235,7 +235,7 @@ fn spot(witness: &Witness, run: usize, joints: usize) -> TightSpot {
     TightSpot { run, time_s: time, state: state.index(joints), side, margin: -excess }
 }
 
-/// Returns a run as a line, relative to its own nominal solution where it has one.
+/// Returns a run as a line, relative to its own nominal motion where it has one.
 fn trace(
     problem: &Problem,
     index: usize,

@@ -5,7 +5,7 @@ use maud::{Markup, Render, html};
 use super::text::clean;
 
 /// The terms and their explanations. A term of capital letters is found as it is written.
-const TERMS: [(&str, &str); 21] = [
+const TERMS: [(&str, &str); 20] = [
     (
         "conformant",
         "every recording was proved to lie in the model's reachable set, at its samples",
@@ -27,7 +27,6 @@ const TERMS: [(&str, &str); 21] = [
     ("interval hull", "the smallest box around a set: bounds of each state by itself"),
     ("margin", "distance of a sample to the boundary of the set; negative outside"),
     ("nominal motion", "the model's own motion from the nominal start under the recorded input"),
-    ("nominal solution", "the model's own motion from the nominal start under the recorded input"),
     ("notion", "the directions in which recordings must lie in the set"),
     (
         "of its motion",

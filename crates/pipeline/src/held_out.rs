@@ -106,9 +106,12 @@ fn named(given: &[String], recordings: &[Recording], motions: &[String]) -> Resu
         if selected.is_empty() {
             return Err(Error::HeldOut { name: name.clone(), motions: motions.to_vec() });
         }
-        names.extend(selected.into_iter().map(String::from));
+        for name in selected {
+            if !names.iter().any(|other| other == name) {
+                names.push(name.into());
+            }
+        }
     }
-    names.dedup();
     Ok(names)
 }
 

@@ -12,6 +12,9 @@ const TINY: f64 = 1e-5;
 /// Magnitude from which decimals carry no information.
 const LARGE: f64 = 1e5;
 
+/// Sizes whose two digits decimals show.
+const DECIMALS_SHOW: std::ops::Range<f64> = 1e-4..1e6;
+
 /// Decimals of the uncertainty sets in Table II of the paper.
 const PAPER_DECIMALS: i32 = 4;
 
@@ -103,6 +106,74 @@ fn about(low: f64, high: f64, decimals: usize) -> String {
 #[must_use]
 pub fn at_least(value: f64) -> String {
     upward(value, |value| downward_to(value, four_decimals))
+}
+
+/// Formats a size in two digits, rounded up.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_scalar::number::two_digits_up;
+///
+/// assert_eq!([1.91, 0.0312, 2.14e-9].map(two_digits_up), ["2.0", "0.032", "2.2e-9"]);
+/// ```
+#[must_use]
+pub fn two_digits_up(size: f64) -> String {
+    if size == 0.0 {
+        return "0".into();
+    }
+    if !DECIMALS_SHOW.contains(&size) {
+        return at_least(size);
+    }
+    let [_, up] = outward([0.0, size], decimals_of_two_digits(size));
+    up
+}
+
+/// Formats an interval so that its larger bound has two digits, rounded outward.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_scalar::number::two_digits_outward;
+///
+/// assert_eq!(two_digits_outward((-5.661, 7.612)), "[-5.7, 7.7]");
+/// ```
+#[must_use]
+pub fn two_digits_outward((low, high): (f64, f64)) -> String {
+    let size = high.max(-low);
+    if low == high && low == 0.0 {
+        return "0".into();
+    }
+    if !DECIMALS_SHOW.contains(&size) {
+        return interval((low, high));
+    }
+    let [low, high] = outward([low, high], decimals_of_two_digits(size));
+    format!("[{low}, {high}]")
+}
+
+/// Returns the number of decimals that shows two digits of a number.
+fn decimals_of_two_digits(size: f64) -> usize {
+    (1.0 - size.log10().floor()).clamp(0.0, 6.0) as usize
+}
+
+/// Returns the word in the number that `count` asks for.
+#[must_use]
+pub fn plural(count: usize, word: &str) -> String {
+    format!("{word}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Returns a number with its word.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_scalar::number::counted;
+///
+/// assert_eq!([1, 3].map(|count| counted(count, "suite")), ["1 suite", "3 suites"]);
+/// ```
+#[must_use]
+pub fn counted(count: usize, word: &str) -> String {
+    format!("{count} {}", plural(count, word))
 }
 
 /// Formats a number with `decimals` decimals; a result of zero has no sign.
@@ -223,6 +294,14 @@ fn last_digit(text: &str) -> f64 {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn two_digits_are_rounded_outward() {
+        let all = [0.0, 0.0461, 0.99, 1.0, 12.34, 123.4, 2.14e-9].map(two_digits_up);
+        assert_eq!(all, ["0", "0.047", "0.99", "1.0", "13", "124", "2.2e-9"]);
+        assert_eq!(two_digits_outward((-0.001, 0.052)), "[-0.001, 0.052]");
+        assert_eq!(two_digits_outward((0.0, 0.0)), "0");
+    }
 
     proptest! {
         #[test]

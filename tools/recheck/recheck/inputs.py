@@ -24,7 +24,7 @@ NO_LOAD = 1e-9
 
 @dataclass
 class Case:
-    """Runs with one nominal solution."""
+    """Runs with one nominal motion."""
 
     suite: str
     runs: list
@@ -32,7 +32,7 @@ class Case:
     start: list
     # How far each joint's inputs may be from the inputs that define the model, N m.
     doubt: list
-    # The run where the suite's runs have nominal solutions of their own.
+    # The run where the suite's runs have nominal motions of their own.
     own: Run | None
 
     @property

@@ -27,7 +27,7 @@ def samples(model, system, grid, cases):
     """Yields the sample after sample of the cases, whose grids are the beginning of `grid`.
 
     With phi and gamma of a span h, e^{A(t+h)} = phi e^{At}, Gamma(t+h) = phi Gamma(t) + gamma,
-    and the nominal solution goes on as x <- phi x + gamma u + drift.
+    and the nominal motion goes on as x <- phi x + gamma u + drift.
     """
     e, gamma = identity(system.states), zeros(system.states, system.inputs)
     kappa = gains(model.settings["disturbance"], system, grid)

@@ -16,8 +16,8 @@ use crate::option_values::{MODELS, numbered_choice};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
-use crate::table::{plural, table};
-use reachtube::number::{four_decimals, interval};
+use crate::table::table;
+use reachtube::number::{four_decimals, interval, plural};
 use reachtube::units::ColumnUnit;
 
 const HELP: &str = "\

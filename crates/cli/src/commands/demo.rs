@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::Model;
-use reachtube::conform::result::{FrontEnd, Summary};
+use reachtube::conform::result::{FrontEnd, Summary, Table};
 use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::page::{Assets, PAGE_FILE, Sources, TO_HELD_OUT, TO_OWN};
@@ -124,7 +124,8 @@ fn text(
         return Ok(format!("{}\n{heading}\n{report}", model.report()));
     }
     let model = Summary { next: None, ..summary };
-    let tried = Summary { next: None, ..opened.summary(held_out)? };
+    // The sets are those above.
+    let tried = Summary { table: Table::default(), next: None, ..opened.summary(held_out)? };
     let page = report_files::page_in(page);
     Ok(format!("{model}\n{heading}\n{tried}\nnext: open {} in a browser\n", page.display()))
 }

@@ -16,9 +16,9 @@ use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
-use crate::table::{plural, table};
+use crate::table::table;
 use crate::understood::understood;
-use reachtube::number::four_decimals;
+use reachtube::number::{four_decimals, plural};
 use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 

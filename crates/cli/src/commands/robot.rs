@@ -10,8 +10,8 @@ use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::{plural, table};
-use reachtube::number::{fixed, six_digits};
+use crate::table::table;
+use reachtube::number::{fixed, plural, six_digits};
 use reachtube::units::ColumnUnit;
 
 const HELP: &str = "\

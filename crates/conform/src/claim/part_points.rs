@@ -21,7 +21,7 @@ use crate::tube::deviation::Nominal;
 use crate::tube::linear::Linear;
 
 /// What every part of a fleet needs to find its points: the problem of the whole fold, and the
-/// nominal solutions of its suites, which are computed when they are first needed.
+/// nominal motions of its suites, which are computed when they are first needed.
 #[derive(Debug)]
 pub struct FleetProblem {
     problem: Problem,
@@ -30,7 +30,7 @@ pub struct FleetProblem {
     nominals: Vec<OnceLock<SuiteNominals>>,
 }
 
-/// The nominal solutions of a suite, with the run where it belongs to one run.
+/// The nominal motions of a suite, with the run where it belongs to one run.
 type SuiteNominals = Vec<(Nominal, Option<usize>)>;
 
 /// The recorded points of a part of a fleet's recordings: 24 n bytes for each sample of a recording
@@ -76,7 +76,7 @@ impl FleetProblem {
         Ok(Self { problem, context, suites, nominals })
     }
 
-    /// Returns the nominal solution of a run of a suite.
+    /// Returns the nominal motion of a run of a suite.
     fn nominal(&self, suite: usize, run: u32) -> Result<&Nominal> {
         if self.nominals[suite].get().is_none() {
             let found = nominals(&self.problem, suite)?;

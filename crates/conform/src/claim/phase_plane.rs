@@ -12,7 +12,7 @@ use crate::tube::linear::Linear;
 use crate::tube::plant::Slice;
 
 /// The reachable set of one joint's position and velocity at one sample, with the recordings
-/// there. All values are deviations from the nominal solution.
+/// there. All values are deviations from the nominal motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhasePlane {
     /// The joint, from 0.

@@ -1,4 +1,4 @@
-//! The recorded points, sample by sample: the deviations of all runs from the nominal solutions of
+//! The recorded points, sample by sample: the deviations of all runs from the nominal motions of
 //! a linear model, their states for any other.
 
 use reachtube_recordings::Run;
@@ -69,7 +69,7 @@ impl SamplePoints {
 ///
 /// # Guarantee
 ///
-/// Outer: the exact deviation from the nominal solution of a linear model lies within `errors` of
+/// Outer: the exact deviation from the nominal motion of a linear model lies within `errors` of
 /// its point. Recorded states are exact.
 ///
 /// # Errors
@@ -103,7 +103,7 @@ fn states(problem: &Problem) -> Result<Vec<SamplePoints>> {
     Ok(all.into_samples())
 }
 
-/// Collects the deviations of all runs from the nominal solutions of a linear model.
+/// Collects the deviations of all runs from the nominal motions of a linear model.
 fn deviations(problem: &Problem) -> Result<Vec<SamplePoints>> {
     let mut all = AllPoints::new(problem)?;
     for (index, suite) in problem.recordings().suites.iter().enumerate() {
@@ -119,7 +119,7 @@ fn deviations(problem: &Problem) -> Result<Vec<SamplePoints>> {
     Ok(all.into_samples())
 }
 
-/// Returns the nominal solutions of a suite, with the run where it belongs to one run.
+/// Returns the nominal motions of a suite, with the run where it belongs to one run.
 ///
 /// # Errors
 ///

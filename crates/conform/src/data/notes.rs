@@ -43,13 +43,13 @@ fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
     if suite.shared.is_none() && count > 1 && nominal == NominalStart::Mean {
         notes.push(format!(
             "suite {name}: its runs differ in input or sample times, so each run has its own \
-             nominal solution"
+             nominal motion"
         ));
     }
     let is_known = nominal_starts.is_empty() || nominal_starts.contains_key(name);
     if nominal == NominalStart::Mean && !is_known {
         notes.push(format!(
-            "suite {name}: the model has no nominal initial state for it, so its nominal solution \
+            "suite {name}: the model has no nominal initial state for it, so its nominal motion \
              starts at the mean of the first states of its {count} recordings; the verdict on one \
              of them depends on the others"
         ));

@@ -23,7 +23,7 @@ use crate::tube::grids::Grids;
 /// Which runs stay in memory, sample by sample, after they were folded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Keep {
-    /// Suites that have a nominal solution of their own.
+    /// Suites that have a nominal motion of their own.
     #[default]
     Needed,
     /// All, as figures and explanations need them; up to 256 MiB, beyond which runs are read again.
@@ -247,7 +247,7 @@ impl Problem {
         Ok(self.grids.get_or_init(|| grids))
     }
 
-    /// Returns the deviations of all suites from the nominal solutions of the linear model. They
+    /// Returns the deviations of all suites from the nominal motions of the linear model. They
     /// are computed when first asked for.
     ///
     /// # Guarantee

@@ -95,7 +95,7 @@ pub enum Notion {
     Trace,
 }
 
-/// Where the nominal solution of a run starts.
+/// Where the nominal motion of a run starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum NominalStart {
@@ -107,7 +107,7 @@ pub enum NominalStart {
     Own,
 }
 
-/// Whose equations of motion the nominal solutions satisfy.
+/// Whose equations of motion the nominal motions satisfy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Equations {
@@ -205,9 +205,9 @@ pub struct Settings {
     /// nominal start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensor_noise: Option<Vec<f64>>,
-    /// Where nominal solutions start.
+    /// Where nominal motions start.
     pub nominal: NominalStart,
-    /// Whose equations of motion nominal solutions satisfy.
+    /// Whose equations of motion nominal motions satisfy.
     #[serde(default, skip_serializing_if = "is_default")]
     pub equations: Equations,
     /// The motions that are held out from the fit and then calibrate its sets. They are not

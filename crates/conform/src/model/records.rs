@@ -65,7 +65,7 @@ pub struct SuiteRecord {
     /// The motion it is part of, where the index says so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
-    /// The initial state of its nominal solutions, 2n, rad and rad/s; `None` if each run
+    /// The initial state of its nominal motions, 2n, rad and rad/s; `None` if each run
     /// starts at its own first state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub nominal_start: Option<Vec<f64>>,

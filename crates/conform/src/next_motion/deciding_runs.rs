@@ -120,7 +120,7 @@ fn at_marks(
     Deviation { suite: deviation.suite, grid: deviation.grid, envelope }
 }
 
-/// The nominal solution of a suite, to rounding: what lies between its states and deviations.
+/// The nominal motion of a suite, to rounding: what lies between its states and deviations.
 fn nominal(suite: &Suite, deviations: &Envelope, k: usize, i: usize) -> f64 {
     suite.envelope.upper(k, i) - deviations.upper(k, i)
 }

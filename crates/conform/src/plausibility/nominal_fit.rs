@@ -4,10 +4,10 @@ use crate::error::Result;
 use crate::nominal::simulate::nominal;
 use crate::tube::deviation::Nominal;
 
-/// How well the nominal solutions alone reproduce the recordings, and how far these move.
+/// How well the nominal motions alone reproduce the recordings, and how far these move.
 #[derive(Debug, Clone)]
 pub(crate) struct NominalFit {
-    /// The part of each state's variance that the nominal solutions explain, 2n: 1 minus the
+    /// The part of each state's variance that the nominal motions explain, 2n: 1 minus the
     /// square of what they miss by the square of the motion about its mean. Below 0 where they are
     /// further away than the mean. `None` if the state hardly moves.
     pub explained: Vec<Option<f64>>,
@@ -24,18 +24,18 @@ pub(crate) struct NominalFit {
 struct Sums {
     /// Σ of the squared distance from the case's mean, 2n.
     motion: Vec<f64>,
-    /// Σ of the squared distance from the nominal solution, 2n.
+    /// Σ of the squared distance from the nominal motion, 2n.
     missed: Vec<f64>,
     largest_input: Vec<f64>,
 }
 
 impl NominalFit {
-    /// Compares the nominal solution of each case with the middle between its highest and its
+    /// Compares the nominal motion of each case with the middle between its highest and its
     /// lowest recording.
     ///
     /// # Errors
     ///
-    /// As [`Problem::run`]; a nominal solution that runs away.
+    /// As [`Problem::run`]; a nominal motion that runs away.
     pub(crate) fn new(problem: &Problem) -> Result<Self> {
         let n = problem.joints();
         let mut all = Sums::zero(n);
@@ -95,7 +95,7 @@ impl Sums {
     }
 }
 
-/// The nominal solution of a case, samples x 2n, to rounding.
+/// The nominal motion of a case, samples x 2n, to rounding.
 fn nominal_states(problem: &Problem, case: &Case) -> Result<Vec<f64>> {
     if problem.dynamics().linear_system().is_none() {
         return nominal(problem.dynamics().polynomials(), case);

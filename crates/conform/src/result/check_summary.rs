@@ -1,6 +1,7 @@
 //! The summary of a check: the verdict, the suites that leave the sets, and what follows.
 
 use reachtube_robot::JointKind;
+use reachtube_scalar::number::{counted, two_digits_up};
 
 use crate::check::Check;
 use crate::claim::verdict::{SuiteVerdict, Verdict};
@@ -9,9 +10,8 @@ use crate::error::Result;
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::result::finding::Finding;
-use crate::result::findings::words::counted;
 use crate::result::front_end::FrontEnd;
-use crate::result::model_summary::{AtHorizon, brief, share, table_of_sets, up, widest_first};
+use crate::result::model_summary::{AtHorizon, brief, share, table_of_sets, widest_first};
 use crate::result::remedy::Remedy;
 use crate::result::summary::Summary;
 use crate::result::table::Table;
@@ -117,7 +117,7 @@ fn table_of_suites(failing: &[&SuiteVerdict], kinds: &[JointKind]) -> Table {
         let worst = suite.violations.worst.as_ref();
         let place = worst.map(|worst| {
             let unit = worst.state.kind.unit(kinds[worst.state.joint]);
-            let excess = up(worst.excess);
+            let excess = two_digits_up(worst.excess);
             format!("{}, {:.3} s: {} by {excess} {unit}", worst.run, worst.time, worst.state)
         });
         vec![
@@ -140,11 +140,11 @@ fn widest(model: &Model, sets: &AtHorizon, kinds: &[JointKind]) -> (String, Stri
     let qd = (0..n).max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or_default();
     let value = format!(
         "± {} {} ({}, {} of its motion), ± {} {} ({})",
-        up(sets.radii[q]),
+        two_digits_up(sets.radii[q]),
         kinds[q].position_unit(),
         name(q),
         share(model, q, sets.radii[q]),
-        up(sets.radii[n + qd]),
+        two_digits_up(sets.radii[n + qd]),
         kinds[qd].velocity_unit(),
         name(qd),
     );

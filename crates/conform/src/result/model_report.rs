@@ -77,7 +77,7 @@ fn verdict(model: &Model) -> Section {
     Section { findings, ..Section::default() }
 }
 
-/// Returns the sets, how much of the motion the nominal solutions explain, and warnings.
+/// Returns the sets, how much of the motion the nominal motions explain, and warnings.
 fn sets(model: &Model) -> Section {
     let mut section = Section {
         tables: vec![table_of_sets(model)],

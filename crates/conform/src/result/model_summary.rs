@@ -2,7 +2,7 @@
 
 use reachtube_robot::JointKind;
 use reachtube_robot::units::ColumnUnit;
-use reachtube_scalar::number::{at_least, interval, outward};
+use reachtube_scalar::number::{two_digits_outward, two_digits_up};
 
 use crate::answer::Answer;
 use crate::data::problem::Problem;
@@ -75,7 +75,7 @@ impl Model {
         let gauges = self.left_out.iter().filter_map(|left| Some((left.gauge?, &left.motion)));
         let (gauge, motion) = gauges.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let of = self.left_out.len();
-        let value = format!("at most {}, of {of} motions ({motion})", up(gauge));
+        let value = format!("at most {}, of {of} motions ({motion})", two_digits_up(gauge));
         Some(("factor for a motion left out".into(), value))
     }
 
@@ -156,7 +156,7 @@ pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f
     ];
     header.extend(factors.map(|_| "held out".into()));
     let half = |unit: &ColumnUnit, joint: usize, radius: f64| match radius.is_finite() {
-        true => unit.cell(joint, format!("± {}", up(radius))),
+        true => unit.cell(joint, format!("± {}", two_digits_up(radius))),
         false => "lost".into(),
     };
     let row = |joint: usize| {
@@ -165,10 +165,10 @@ pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f
             half(&q, joint, sets.radii[joint]),
             share(model, joint, sets.radii[joint]),
             half(&qd, joint, sets.radii[n + joint]),
-            u.cell(joint, bounds(model.input_set.bounds(joint))),
+            u.cell(joint, two_digits_outward(model.input_set.bounds(joint))),
         ];
         row.extend(factors.map(|factors| match factors[joint] {
-            factor if factor.is_finite() => up(factor),
+            factor if factor.is_finite() => two_digits_up(factor),
             _ => "-".into(),
         }));
         row
@@ -187,39 +187,6 @@ pub(super) fn widest_first(model: &Model, sets: &AtHorizon) -> Vec<usize> {
     joints
 }
 
-/// Numbers that are written with decimals.
-const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
-
-/// Returns the decimals that show two digits of a number.
-fn decimals(size: f64) -> usize {
-    (1.0 - size.log10().floor()).clamp(0.0, 6.0) as usize
-}
-
-/// Returns a number of two digits that is not below `size`.
-pub(super) fn up(size: f64) -> String {
-    if size == 0.0 {
-        return "0".into();
-    }
-    if !PLAIN.contains(&size) {
-        return at_least(size);
-    }
-    let [_, up] = outward([0.0, size], decimals(size));
-    up
-}
-
-/// Returns an interval whose larger bound has two digits, rounded outward.
-fn bounds((low, high): (f64, f64)) -> String {
-    let size = high.max(-low);
-    if low == high && low == 0.0 {
-        return "0".into();
-    }
-    if !PLAIN.contains(&size) {
-        return interval((low, high));
-    }
-    let [low, high] = outward([low, high], decimals(size));
-    format!("[{low}, {high}]")
-}
-
 /// Returns half a set's width as a share of the joint's motion.
 pub(super) fn share(model: &Model, joint: usize, radius: f64) -> String {
     let joints = model.usefulness.as_ref().map(|said| &said.joints);
@@ -227,19 +194,5 @@ pub(super) fn share(model: &Model, joint: usize, radius: f64) -> String {
         Some(ratio) if ratio < LARGE => format!("{:.0} %", 100.0 * ratio),
         Some(ratio) if ratio.is_finite() => format!("x {ratio:.0e}"),
         _ => "-".into(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{bounds, up};
-
-    #[test]
-    fn short_numbers_are_rounded_outward() {
-        let all = [0.0, 0.0461, 0.99, 1.0, 12.34, 123.4, 2.14e-9].map(up);
-        assert_eq!(all, ["0", "0.047", "0.99", "1.0", "13", "124", "2.2e-9"]);
-        assert_eq!(bounds((-5.661, 7.612)), "[-5.7, 7.7]");
-        assert_eq!(bounds((-0.001, 0.052)), "[-0.001, 0.052]");
-        assert_eq!(bounds((0.0, 0.0)), "0");
     }
 }

@@ -1,4 +1,4 @@
-//! The deviation d = x_m(t_k) - x̂(t_k) of recordings from the nominal solution of a linear model:
+//! The deviation d = x_m(t_k) - x̂(t_k) of recordings from the nominal motion of a linear model:
 //! what the uncertainty sets must cover.
 
 use reachtube_reach::Trajectory;
@@ -19,7 +19,7 @@ pub struct Deviation {
     pub envelope: Envelope,
 }
 
-/// The nominal solution x̂ of a linear model along a case.
+/// The nominal motion x̂ of a linear model along a case.
 #[derive(Debug, Clone)]
 pub struct Nominal {
     /// Index of the grid.
@@ -44,7 +44,7 @@ impl Nominal {
 }
 
 impl Deviation {
-    /// Computes the deviations of a case from its nominal solution.
+    /// Computes the deviations of a case from its nominal motion.
     ///
     /// # Guarantee
     ///
@@ -61,7 +61,7 @@ impl Deviation {
     }
 
     /// Merges the deviations of one suite on one grid: they face the same set, whether or not they
-    /// share their nominal solution.
+    /// share their nominal motion.
     pub(crate) fn merge(parts: impl IntoIterator<Item = Self>) -> Vec<Self> {
         let mut merged: Vec<Self> = Vec::new();
         for part in parts {

@@ -171,7 +171,7 @@ fn cost_with_factors(problem: &Problem, system: &LinearSystem, h: f64) -> f64 {
     }
 }
 
-/// The deviations of every run from its nominal solution, sample by sample.
+/// The deviations of every run from its nominal motion, sample by sample.
 fn deviations(problem: &Problem) -> Vec<Vec<DVector<f64>>> {
     let grids = problem.grids().unwrap();
     let mut all = Vec::new();

@@ -42,7 +42,7 @@ fn sets_cost_no_more_than_the_disturbances_that_were_there() {
     );
     let (_, found) = run(&robot, folder.path(), &Settings::new(Torque::Compensated, 2));
     assert!(found.verdict.conformant);
-    // The nominal solution starts at the mean of the runs, so what was there lies in sets of twice
+    // The nominal motion starts at the mean of the runs, so what was there lies in sets of twice
     // the radius of the starts.
     let truth = |start: f64, input: f64| {
         let propagation = Propagation::new(

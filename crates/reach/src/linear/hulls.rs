@@ -12,7 +12,7 @@ const SAMPLES_PER_TASK: usize = 64;
 /// Interval hulls of the reachable sets of the deviation δẋ = A δx + B δu, δx(0) ∈ X0, δu ∈ U, at
 /// the samples of a grid.
 ///
-/// Each hull has a centre c_k and a radius r_k. The hull plus the nominal solution is the hull of
+/// Each hull has a centre c_k and a radius r_k. The hull plus the nominal motion is the hull of
 /// the reachable set of the system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReachSets {

@@ -88,7 +88,7 @@ impl Case {
         }
     }
 
-    /// Returns the hull at sample k in state i, around the nominal solution.
+    /// Returns the hull at sample k in state i, around the nominal motion.
     fn hull(&self, k: usize, i: usize) -> Interval {
         let nominal = self.nominal.state(k)[i];
         let deviation =

@@ -192,7 +192,7 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pub sensor_noise: Option<String>,
-    /// First state of the nominal solutions
+    /// First state of the nominal motions
     #[arg(
         long, hide_short_help = true,
         help_heading = "Sets",
@@ -200,7 +200,7 @@ pub(crate) struct Arguments {
         value_parser = choice::<NominalStart>(NOMINAL_STARTS)
     )]
     pub nominal: NominalStart,
-    /// Equations of motion that nominal solutions satisfy.
+    /// Equations of motion that nominal motions satisfy.
     ///
     /// With the robot's equations U covers only what the robot itself does not explain; this needs
     /// a linear model.

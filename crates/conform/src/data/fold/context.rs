@@ -16,7 +16,7 @@ pub(crate) struct Context {
     pub robot: Robot,
     pub torque: Torque,
     pub options: ReadOptions,
-    /// Whether every run has a nominal solution of its own, whatever its input.
+    /// Whether every run has a nominal motion of its own, whatever its input.
     pub is_own: bool,
     /// The box that runs must start in, 2n, where there is one.
     pub start_box: Option<Vec<[f64; 2]>>,

@@ -34,7 +34,7 @@ impl Problem {
     /// # Errors
     ///
     /// Defects, unless they are to be reported; a fold of another setup or of no recording; runs
-    /// with nominal solutions of their own that the fold could not keep; a run that starts outside
+    /// with nominal motions of their own that the fold could not keep; a run that starts outside
     /// the box over which the model's error was bounded.
     pub fn of_fold(setup: Setup, fold: Fold, on_defect: OnDefect) -> Result<Self> {
         let Fold { context, mut state, .. } = fold;

@@ -113,7 +113,7 @@ impl SuiteFold {
     ///
     /// # Errors
     ///
-    /// Runs with nominal solutions of their own that could not be kept.
+    /// Runs with nominal motions of their own that could not be kept.
     pub(super) fn check(&self, name: &str, context: &Context, most_bytes: usize) -> Result<()> {
         let can_share = self.shared.is_some() && !context.is_own;
         if can_share || self.whole.are_all() {
@@ -121,7 +121,7 @@ impl SuiteFold {
         }
         let (count, most) = (self.totals.count, most_bytes >> 20);
         let why = if context.is_own {
-            "each has a nominal solution of its own, because the nominal start is the run's or \
+            "each has a nominal motion of its own, because the nominal start is the run's or \
             friction depends on it"
         } else {
             "they differ in input or sample times"

@@ -1,6 +1,6 @@
 //! How far the sets depend on single motions and runs.
 
-use reachtube_scalar::number::at_least;
+use reachtube_scalar::number::{at_least, counted, plural};
 
 use crate::model::file::Model;
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -8,7 +8,7 @@ use crate::next_motion::trends::Trend;
 use crate::next_motion::without_motion::LeftOut;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::result::findings::words::{counted, listed, plural};
+use crate::result::findings::words::listed;
 
 impl Finding {
     /// The meaning of the table of the sets without each motion, and the motion that the others

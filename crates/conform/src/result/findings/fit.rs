@@ -1,12 +1,11 @@
 //! What a fit of the nominal model changed.
 
-use reachtube_scalar::number::four_decimals;
+use reachtube_scalar::number::{counted, four_decimals};
 
 use crate::fit::record::{FitRecord, FittedParameter, MOST_ERRORS};
 use crate::next_motion::any_run::AnyRun;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::result::findings::words::counted;
 
 /// A parameter beyond this factor, or below 1 over it, no longer is what its name says.
 const MOST_FACTOR: f64 = 1.5;

@@ -1,6 +1,6 @@
 //! What an answer says of motions that were not recorded.
 
-use reachtube_scalar::number::at_least;
+use reachtube_scalar::number::{at_least, counted, plural};
 
 use crate::data::settings::Notion;
 use crate::model::file::Model;
@@ -9,7 +9,7 @@ use crate::next_motion::rates::{FEWEST_MOTIONS, Rate, Rates};
 use crate::next_motion::trust::Trust;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::result::findings::words::{counted, listed, plural};
+use crate::result::findings::words::listed;
 use crate::result::remedy::Remedy;
 
 /// Largest number of gauges that are listed.

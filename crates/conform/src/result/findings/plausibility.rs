@@ -5,8 +5,9 @@ use crate::plausibility::cause::{Cause, Reading};
 use crate::plausibility::warning::{Remark, Warning, WarningKind};
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::result::findings::words::{listed, plural};
+use crate::result::findings::words::listed;
 use crate::result::remedy::Remedy;
+use reachtube_scalar::number::plural;
 
 impl From<&Warning> for Finding {
     /// Makes the finding of a warning, as model files have it.

@@ -1,12 +1,13 @@
 //! Which sets are vacuous, although they were proved to enclose every recording.
 
 use reachtube_robot::JointKind;
+use reachtube_scalar::number::{counted, plural};
 
 use crate::model::file::Model;
 use crate::plausibility::{Usefulness, Vacuity, VacuousSet};
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::result::findings::words::{counted, listed, plural};
+use crate::result::findings::words::listed;
 
 /// Largest number of sets that the sentence describes.
 const MOST_SETS: usize = 3;

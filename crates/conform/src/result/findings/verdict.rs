@@ -2,7 +2,7 @@
 
 use reachtube_reach::Disturbance;
 use reachtube_robot::JointKind;
-use reachtube_scalar::number::{at_least, four_decimals};
+use reachtube_scalar::number::{at_least, counted, four_decimals, plural};
 
 use crate::claim::verdict::Verdict;
 use crate::claim::witness::{PointVerdict, PointWitness};
@@ -11,7 +11,7 @@ use crate::explain::trace::TraceVerdict;
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::result::findings::words::{counted, notion_words, plural};
+use crate::result::findings::words::notion_words;
 use crate::result::remedy::Remedy;
 use crate::search::found::SearchSummary;
 use crate::tube::hulls::{Enclosure, Lost};
