@@ -94,7 +94,7 @@ impl Tube {
 }
 
 /// Radii of the tube over each step of a grid, which depend on the sets but not on the nominal
-/// solution.
+/// motion.
 #[derive(Debug, Clone)]
 pub struct TubeRadii {
     dimension: usize,

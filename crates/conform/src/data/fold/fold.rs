@@ -91,7 +91,7 @@ impl Fold {
     }
 
     /// Returns the same, with another limit for the recordings of a suite that have a nominal
-    /// solution of their own; the usual limit is 256 MiB of samples. Folds merge where their
+    /// motion of their own; the usual limit is 256 MiB of samples. Folds merge where their
     /// limits are the same.
     ///
     /// # Errors
