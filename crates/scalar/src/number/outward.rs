@@ -1,6 +1,6 @@
 //! Sizes and intervals, rounded outward.
 
-use super::{LARGE, SMALL, TINY, fixed, four_decimals};
+use super::digits::{LARGE, SMALL, TINY, fixed, four_decimals};
 
 /// Sizes whose two digits decimals show.
 const DECIMALS_SHOW: std::ops::Range<f64> = 1e-4..1e6;
