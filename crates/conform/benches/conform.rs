@@ -5,7 +5,7 @@ use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::data::Envelope;
-use reachtube_conform::linear::{Block, Program};
+use reachtube_conform::program::{Block, Program};
 use reachtube_conform::tube::{Deviation, Grid};
 use reachtube_conform::{
     Check, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform, reach,

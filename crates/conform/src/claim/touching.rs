@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use crate::claim::witness::{PointWitness, SeparatedPoint};
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::program::Program;
+use crate::program::program::Program;
 use crate::search::found::TOUCHING;
 use crate::tube::direction::Direction;
 use crate::tube::hulls::Hulls;

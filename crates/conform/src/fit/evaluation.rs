@@ -12,11 +12,11 @@ use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
 use crate::fit::parameters::Parameters;
-use crate::linear::block::Block;
-use crate::linear::layout::Limits;
-use crate::linear::program::{Program, RowIndex};
 use crate::nominal::motion::Corrected;
 use crate::nominal::steps::Steps;
+use crate::program::block::Block;
+use crate::program::layout::Limits;
+use crate::program::program::{Program, RowIndex};
 use crate::sets::UncertaintySets;
 
 /// Rows within this part of the largest deviation are kept for the next program.

@@ -14,9 +14,9 @@ use crate::fit::parameters::{Parameter, Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fit::search::{Effort, Optimum, Search};
-use crate::linear::program::Program;
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::nominal::input_error::InputError;
+use crate::program::program::Program;
 use crate::progress::{Progress, Silent};
 use crate::weights::state_weights;
 

@@ -18,9 +18,9 @@ use crate::error::Result;
 use crate::fit::evaluation::{Fit, Model, Smallest};
 use crate::fit::group::Group;
 use crate::fit::slopes::Slope;
-use crate::linear::layout::Layout;
-use crate::linear::program::{Program, dot};
-use crate::linear::solver::{Triplets, solve_cone};
+use crate::program::layout::Layout;
+use crate::program::program::{Program, dot};
+use crate::program::solver::{Triplets, solve_cone};
 
 /// A row counts as violated beyond this part of the largest row.
 const TOLERANCE: f64 = 1e-7;

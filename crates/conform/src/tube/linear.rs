@@ -9,8 +9,8 @@ use reachtube_scalar::Interval;
 
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::cut::Cut;
-use crate::linear::program::Program;
+use crate::program::cut::Cut;
+use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 use crate::tube::direction::Direction;
 use crate::tube::grids::Grid;

@@ -3,7 +3,7 @@
 use reachtube_reach::GeneratorRows;
 
 use crate::error::Result;
-use crate::linear::program::{Program, RowIndex};
+use crate::program::program::{Program, RowIndex};
 use crate::sets::UncertaintySets;
 use crate::tube::hulls::Hulls;
 use crate::tube::judged::{At, Judged};

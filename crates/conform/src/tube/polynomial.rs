@@ -10,7 +10,7 @@ use reachtube_reach::{Flowpipe, GeneratorRows, Zonotope};
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::costs::shares;
+use crate::program::costs::shares;
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::{Effort, attempt, furthest};
 use crate::tube::hulls::{HullKind, Hulls};

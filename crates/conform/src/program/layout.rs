@@ -2,8 +2,8 @@ use reachtube_reach::Hyperrectangle;
 
 use crate::data::settings::{Centre, Noise, Settings};
 use crate::data::side::Side;
-use crate::linear::cut::Cut;
-use crate::linear::solver::Triplets;
+use crate::program::cut::Cut;
+use crate::program::solver::Triplets;
 use crate::sets::UncertaintySets;
 
 /// The largest that V and X0 may be, 2n each, rad and rad/s, where that is limited.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
-use crate::linear::program::{Program, RowIndex, dot};
+use crate::program::program::{Program, RowIndex, dot};
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Deviation;
 use crate::tube::rows::NEGLIGIBLE_RADIUS;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::linear::block::Block;
+use crate::program::block::Block;
 
 /// Returns, for each of several lists of sample times, how much each sample counts: samples at one
 /// time together count 1.

@@ -1,6 +1,6 @@
 //! The repair of the solver's answer: sets that satisfy every row up to rounding.
 
-use crate::linear::program::{Program, ROUNDING, RowIndex, dot};
+use crate::program::program::{Program, ROUNDING, RowIndex, dot};
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {
@@ -69,9 +69,9 @@ mod tests {
 
     use crate::data::envelope::Envelope;
     use crate::data::settings::Settings;
-    use crate::linear::block::Block;
-    use crate::linear::layout::Limits;
-    use crate::linear::program::Program;
+    use crate::program::block::Block;
+    use crate::program::layout::Limits;
+    use crate::program::program::Program;
     use crate::sets::UncertaintySets;
 
     /// A mass that is pushed for one second from rest, and comes 1 m and 1 m/s further than the

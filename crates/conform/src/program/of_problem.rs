@@ -3,8 +3,8 @@
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::block::Block;
-use crate::linear::program::Program;
+use crate::program::block::Block;
+use crate::program::program::Program;
 use crate::weights::state_weights;
 
 impl<'a> Program<'a> {

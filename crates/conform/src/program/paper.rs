@@ -1,6 +1,6 @@
 //! The sums of the paper over the reachable set of some sets.
 
-use crate::linear::program::{Program, dot};
+use crate::program::program::{Program, dot};
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {

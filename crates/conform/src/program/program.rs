@@ -17,11 +17,11 @@ use reachtube_reach::Hyperrectangle;
 use crate::data::settings::{Noise, Settings};
 use crate::data::side::Side;
 use crate::error::{Error, Result};
-use crate::linear::block::Block;
-use crate::linear::costs::{cost, shares};
-use crate::linear::cut::Cut;
-use crate::linear::layout::{Layout, Limits};
-use crate::linear::solver::{FINE, Triplets, polished, solve_cone};
+use crate::program::block::Block;
+use crate::program::costs::{cost, shares};
+use crate::program::cut::Cut;
+use crate::program::layout::{Layout, Limits};
+use crate::program::solver::{FINE, Triplets, polished, solve_cone};
 use crate::search::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
 
