@@ -3,7 +3,7 @@
 //!
 //! A [`Problem`] is a model, [`Settings`] and recordings that are read once. [`conform`] finds its
 //! sets, [`Model`] writes them to a file, [`check()`] compares other recordings with the reachable
-//! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
+//! sets ([`Tube`]) of a model, [`reach()`] returns these sets at samples and between them, and
 //! [`explain()`] searches for the motion of the model closest to each run. A [`Job`] runs all of
 //! it, as the command does.
 //!
@@ -28,7 +28,7 @@ pub mod model;
 pub mod next_motion;
 mod nominal;
 pub mod plausibility;
-pub mod program;
+mod program;
 mod progress;
 mod reach;
 pub mod result;
@@ -57,4 +57,4 @@ pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use result::finding::Finding;
 pub use sets::UncertaintySets;
-pub use tube::hulls::Hulls;
+pub use tube::tube::Tube;

@@ -14,6 +14,3 @@ pub(crate) mod program;
 mod repair;
 pub(crate) mod solver;
 mod units;
-
-pub use block::Block;
-pub use program::{Program, Solution};
