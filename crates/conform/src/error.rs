@@ -142,7 +142,7 @@ pub enum Error {
 impl Error {
     /// Returns the settings that help.
     #[must_use]
-    pub fn settings(&self) -> Vec<Setting> {
+    pub(crate) fn settings(&self) -> Vec<Setting> {
         match self {
             Self::Unbounded { .. } => vec![Setting::new("box", ""), Setting::new("most-boxes", "")],
             Self::StartsOutsideBox { .. } => vec![Setting::new("box", "")],

@@ -179,7 +179,7 @@ impl IdentifySettings {
     ///
     /// [`Error::NoExcitingMotions`], [`Error::GainCount`], [`Error::Gain`],
     /// [`Error::SeparateGravity`] or [`Error::NotPositive`].
-    pub fn validate(&self, joints: usize) -> Result<()> {
+    pub(crate) fn validate(&self, joints: usize) -> Result<()> {
         if self.dynamic.is_empty() {
             return Err(Error::NoExcitingMotions);
         }

@@ -131,7 +131,7 @@ impl RunTrace {
 impl SuiteFigure {
     /// Returns the views of this suite that [`suite_svg`](crate::suite_svg) can draw.
     #[must_use]
-    pub fn views(&self) -> &'static [View] {
+    pub(crate) fn views(&self) -> &'static [View] {
         match self.nominal {
             Nominal::Unknown => &[View::Motion],
             Nominal::Shared(_) => &[View::Motion, View::Deviation],

@@ -32,7 +32,7 @@ impl HorizonWidths {
     /// Returns the joint, from 0, whose set is widest beside its motion, and the ratio; infinite
     /// where no sets were found.
     #[must_use]
-    pub fn worst(&self) -> (usize, f64) {
+    pub(crate) fn worst(&self) -> (usize, f64) {
         let ratios = self.ratios.iter().copied().enumerate();
         ratios.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
     }

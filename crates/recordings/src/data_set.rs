@@ -64,7 +64,7 @@ impl DataSet {
 
     /// Returns the folder.
     #[must_use]
-    pub fn root(&self) -> &Path {
+    pub(crate) fn root(&self) -> &Path {
         &self.root
     }
 

@@ -24,7 +24,11 @@ pub struct LinkInertia {
 
 impl LinkInertia {
     /// Makes a link from its inertia tensor about the frame's origin \[kg m²\].
-    pub fn about_origin(mass: f64, first_moment: Vector3<f64>, inertia: &Matrix3<f64>) -> Self {
+    pub(crate) fn about_origin(
+        mass: f64,
+        first_moment: Vector3<f64>,
+        inertia: &Matrix3<f64>,
+    ) -> Self {
         let second_moments = Matrix3::identity() * (0.5 * inertia.trace()) - inertia;
         Self { mass, first_moment, second_moments }
     }
@@ -107,7 +111,7 @@ impl LinkInertia {
     }
 
     /// Returns m, m c_x, m c_y, m c_z, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's origin.
-    pub fn parameters(&self) -> [f64; INERTIAL] {
+    pub(crate) fn parameters(&self) -> [f64; INERTIAL] {
         let (h, i) = (&self.first_moment, self.tensor());
         let [xx, xy, yy, xz, yz, zz] =
             [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)].map(|k| i[k]);

@@ -18,13 +18,13 @@ use crate::tube::tube::Tube;
 impl Notion {
     /// Returns whether recorded points are judged, and not only each state by itself.
     #[must_use]
-    pub fn asks_points(self) -> bool {
+    pub(crate) fn asks_points(self) -> bool {
         self != Self::Hull
     }
 
     /// Returns whether one motion of the model must pass through all samples of a recording.
     #[must_use]
-    pub fn asks_motions(self) -> bool {
+    pub(crate) fn asks_motions(self) -> bool {
         self == Self::Trace
     }
 

@@ -128,7 +128,7 @@ impl PointWitness {
 
     /// Returns the state that counts most in the combination.
     #[must_use]
-    pub fn leading_state(&self) -> State {
+    pub(crate) fn leading_state(&self) -> State {
         State::from_index(self.leading_index(), self.direction.len() / 2)
     }
 

@@ -38,7 +38,7 @@ impl Case {
 
     /// Returns the nominal initial state as intervals without width, 2n. Exact.
     #[must_use]
-    pub fn start_interval(&self) -> IntervalVector {
+    pub(crate) fn start_interval(&self) -> IntervalVector {
         IntervalVector::from_iterator(self.start.len(), self.start.iter().map(|&x| x.into()))
     }
 }

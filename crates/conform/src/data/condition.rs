@@ -28,7 +28,7 @@ impl Condition {
     /// Returns the robot as warm as it is in this condition; `None` if its friction does not
     /// change. A law of temperature without a recorded temperature keeps its reference.
     #[must_use]
-    pub fn warm(&self, robot: &Robot) -> Option<Robot> {
+    pub(crate) fn warm(&self, robot: &Robot) -> Option<Robot> {
         if robot.warms_by().is_empty() {
             return None;
         }

@@ -41,19 +41,19 @@ pub struct JointCorrection {
 impl InputCorrection {
     /// Returns the correction that changes nothing.
     #[must_use]
-    pub fn none(joints: usize) -> Self {
+    pub(crate) fn none(joints: usize) -> Self {
         Self { joints: vec![JointCorrection::default(); joints], payload: 0.0 }
     }
 
     /// Returns whether runs that share their recorded input may differ in their nominal motion.
     #[must_use]
-    pub fn differs_by_run(&self) -> bool {
+    pub(crate) fn differs_by_run(&self) -> bool {
         self.joints.iter().any(|joint| joint.warm_up != 0.0)
     }
 
     /// Returns whether all numbers are finite and there is one entry per joint.
     #[must_use]
-    pub fn is_valid_for(&self, joints: usize) -> bool {
+    pub(crate) fn is_valid_for(&self, joints: usize) -> bool {
         let finite = |joint: &JointCorrection| {
             let JointCorrection { quadratic, cubic, coulomb, warm_up } = joint;
             [quadratic, cubic, warm_up].into_iter().chain(coulomb).all(|x| x.is_finite())

@@ -43,7 +43,7 @@ impl Envelope {
     }
 
     /// Returns the number of states.
-    pub fn dimension(&self) -> usize {
+    pub(crate) fn dimension(&self) -> usize {
         self.dimension
     }
 
@@ -59,7 +59,7 @@ impl Envelope {
     /// # Guarantee
     ///
     /// Outer: exact comparisons, no rounding.
-    pub fn include_bounds(&mut self, run: u32, lower: &[f64], upper: &[f64]) {
+    pub(crate) fn include_bounds(&mut self, run: u32, lower: &[f64], upper: &[f64]) {
         self.extend(upper.len());
         extend_bounds(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new >= old);
         extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new <= old);

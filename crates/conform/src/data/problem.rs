@@ -263,7 +263,7 @@ impl Problem {
     /// # Errors
     ///
     /// As [`grids`](Self::grids) and [`run`](Self::run).
-    pub fn deviations(&self) -> Result<&[Deviation]> {
+    pub(crate) fn deviations(&self) -> Result<&[Deviation]> {
         if let Some(deviations) = self.deviations.get() {
             return Ok(deviations);
         }

@@ -24,14 +24,14 @@ pub struct SensorNoise {
 impl SensorNoise {
     /// Returns the radii that were given.
     #[must_use]
-    pub fn given(radius: Vec<f64>) -> Self {
+    pub(crate) fn given(radius: Vec<f64>) -> Self {
         Self { radius, estimated: false }
     }
 
     /// Estimates the noise from recordings of `joints` joints. Runs of fewer than 20 samples do not
     /// count; without any other the radii are 0.
     #[must_use]
-    pub fn estimate(recordings: &Recordings, joints: usize) -> Self {
+    pub(crate) fn estimate(recordings: &Recordings, joints: usize) -> Self {
         let runs = recordings.suites.iter().flat_map(Suite::sample);
         let of_runs: Vec<&Vec<f64>> = runs.filter_map(|run| run.noise.as_ref()).collect();
         let median = |i: usize| {

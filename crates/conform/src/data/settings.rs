@@ -275,7 +275,7 @@ impl Settings {
     /// # Errors
     ///
     /// [`Error::Unbounded`] when the model's error was found to have no bound over its box.
-    pub fn with_abstraction(self, model: &PolynomialModel) -> Result<Self> {
+    pub(crate) fn with_abstraction(self, model: &PolynomialModel) -> Result<Self> {
         let unbounded = |remainder: &Remainder| remainder.bounds.iter().position(Option::is_none);
         if let Some(joint) = model.remainder().and_then(unbounded) {
             return Err(Error::Unbounded { joint: joint + 1 });

@@ -12,7 +12,7 @@ pub enum Side {
 
 impl Side {
     /// Both sides, the upper one first.
-    pub const BOTH: [Self; 2] = [Self::Upper, Self::Lower];
+    pub(crate) const BOTH: [Self; 2] = [Self::Upper, Self::Lower];
 
     /// Returns 1 for the upper side and -1 for the lower one.
     #[must_use]

@@ -38,7 +38,7 @@ pub struct Suite {
 impl Suite {
     /// Returns the number of runs.
     #[must_use]
-    pub fn run_count(&self) -> usize {
+    pub(crate) fn run_count(&self) -> usize {
         self.totals.count
     }
 

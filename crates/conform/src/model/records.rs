@@ -174,7 +174,7 @@ impl DataRecord {
 
     /// Returns the number of distinct motions; a suite without a motion counts as one.
     #[must_use]
-    pub fn motions(&self) -> usize {
+    pub(crate) fn motions(&self) -> usize {
         let motion = |suite: &'_ SuiteRecord| suite.motion.as_ref().unwrap_or(&suite.name).clone();
         self.suites.iter().map(motion).collect::<BTreeSet<String>>().len()
     }

@@ -61,7 +61,7 @@ impl Trust {
     /// Returns the statement about sets that are not the smallest, `gap` above the program's bound:
     /// there is none, because the scenario bound holds for an optimum only.
     #[must_use]
-    pub fn without_optimum(recordings: &Recordings, gap: f64) -> Self {
+    pub(crate) fn without_optimum(recordings: &Recordings, gap: f64) -> Self {
         let motions = Motions::new(recordings);
         let basis = format!(
             "no scenario bound: it holds for the smallest sets only, and the cost of these is \
@@ -73,7 +73,7 @@ impl Trust {
     /// Returns that there is no guarantee, because the nominal model was chosen for these motions:
     /// the scenario bound counts what decides the sets only.
     #[must_use]
-    pub fn of_fitted_nominal(recordings: &Recordings) -> Self {
+    pub(crate) fn of_fitted_nominal(recordings: &Recordings) -> Self {
         let basis = "no scenario bound: the nominal model was fitted to the same motions";
         Self::unknown(Motions::new(recordings).count(), basis.into())
     }
@@ -86,7 +86,7 @@ impl Trust {
     /// For independent motions, the probability given the held-out ones is above ε with probability
     /// at most (1 - ε)^n, which is the hold-out bound without a violation.
     #[must_use]
-    pub fn of_calibration(
+    pub(crate) fn of_calibration(
         recordings: &Recordings,
         calibration: &Calibration,
         is_proved: bool,
@@ -114,7 +114,7 @@ impl Trust {
 
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
     #[must_use]
-    pub fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
+    pub(crate) fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
         let motions = Motions::new(recordings);
         let violating = verdict.suites.iter().filter(|suite| !suite.holds());
         let violating = motions.count_of(violating.map(|suite| suite.suite.as_str()));

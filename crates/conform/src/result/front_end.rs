@@ -37,7 +37,7 @@ impl Setting {
 impl FrontEnd {
     /// Returns a setting with its value, as users of the front end write it.
     #[must_use]
-    pub fn setting(self, name: &str, value: Option<&str>) -> String {
+    pub(crate) fn setting(self, name: &str, value: Option<&str>) -> String {
         match (self, value) {
             (Self::CommandLine, None) => format!("--{name}"),
             // A value that begins with a minus would be taken for an option.

@@ -26,7 +26,7 @@ impl Grid {
     ///
     /// As [`ReachSets::new`].
     #[must_use]
-    pub fn reach(&self, sets: &UncertaintySets) -> ReachSets {
+    pub(crate) fn reach(&self, sets: &UncertaintySets) -> ReachSets {
         let UncertaintySets { initial_set, input_set, .. } = sets;
         ReachSets::new(&self.propagation, &self.input_gains, initial_set, input_set)
     }
@@ -71,7 +71,7 @@ impl Grids {
     ///
     /// When `grid` was not given to [`new`](Self::new).
     #[must_use]
-    pub fn find(&self, grid: &TimeGrid) -> usize {
+    pub(crate) fn find(&self, grid: &TimeGrid) -> usize {
         let fits = |candidate: &Grid| grid.is_prefix_of(&candidate.times);
         self.grids.iter().position(fits).expect("every grid of the recordings is in the list")
     }

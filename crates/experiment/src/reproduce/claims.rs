@@ -56,7 +56,7 @@ const TRAJECTORIES: &str = "The paper's two trajectories are unpublished. Ours a
 impl Table1 {
     /// Lays what the paper concludes from Table I beside ours.
     #[must_use]
-    pub fn claims(&self) -> Vec<Claim> {
+    pub(crate) fn claims(&self) -> Vec<Claim> {
         let mean = |kind, order, speed| self.cell(kind, order, speed).and_then(|cell| cell.mean);
         let words = |values: &[Option<f64>]| {
             let word = |value: &Option<f64>| value.map_or_else(|| "-".into(), four_decimals);
@@ -121,7 +121,7 @@ impl Table1 {
 impl Table2 {
     /// Lays what the paper concludes from Table II beside ours, by the cases in the notion `hull`.
     #[must_use]
-    pub fn claims(&self) -> Vec<Claim> {
+    pub(crate) fn claims(&self) -> Vec<Claim> {
         let of = |states: States| {
             self.cases.iter().find(|case| (case.notion, case.states) == (Notion::Hull, states))
         };
@@ -181,7 +181,7 @@ fn width((low, high): (f64, f64)) -> f64 {
 impl Exemplary {
     /// Lays what the paper concludes from Fig. 4 beside ours.
     #[must_use]
-    pub fn claims(&self) -> Vec<Claim> {
+    pub(crate) fn claims(&self) -> Vec<Claim> {
         let n = self.joints();
         let narrower = (0..n).filter(|joint| {
             let [both, positions] = self.widths(*joint);
@@ -214,7 +214,7 @@ impl Exemplary {
 impl Table3 {
     /// Lays the identified model beside the arm that moved.
     #[must_use]
-    pub fn claims(&self) -> Vec<Claim> {
+    pub(crate) fn claims(&self) -> Vec<Claim> {
         let rows = |is_biased: bool| {
             let of = move |row: &&Table3Row| row.effects.is_empty() != is_biased;
             self.rows.iter().filter(of).filter_map(|row| row.deviation)
@@ -237,7 +237,7 @@ impl Table3 {
 impl Coverage {
     /// Lays the bounds beside how often they were wrong.
     #[must_use]
-    pub fn claims(&self) -> Vec<Claim> {
+    pub(crate) fn claims(&self) -> Vec<Claim> {
         let claim = |row: &CoverageRow| {
             Claim::new(
                 "Next motion",

@@ -92,7 +92,7 @@ impl Exemplary {
 
     /// Returns how far the runs lie apart in a state at most, at one sample, rad or rad/s.
     #[must_use]
-    pub fn spread(&self, state: usize) -> f64 {
+    pub(crate) fn spread(&self, state: usize) -> f64 {
         let samples = self.figure.runs.iter().map(|run| run.times.len()).max().unwrap_or(0);
         let at = |k: usize| {
             let values = self.figure.runs.iter().filter_map(|run| run.states[state].get(k));
@@ -107,7 +107,7 @@ impl Exemplary {
     /// Returns the largest width of the reachable set in a state, of the velocity conformant case
     /// and of the position conformant one, rad or rad/s.
     #[must_use]
-    pub fn widths(&self, state: usize) -> [f64; 2] {
+    pub(crate) fn widths(&self, state: usize) -> [f64; 2] {
         let SuiteFigure { band, inner, .. } = &self.figure;
         [Some(band), inner.as_ref()].map(|band| {
             let edges = band.map(|band| band.lower[state].iter().zip(&band.upper[state]));

@@ -79,7 +79,7 @@ pub struct Table3 {
 
 impl Table3 {
     /// Returns the rows of a part.
-    pub fn part(&self, part: Part) -> impl Iterator<Item = &Table3Row> {
+    pub(crate) fn part(&self, part: Part) -> impl Iterator<Item = &Table3Row> {
         self.rows.iter().filter(move |row| row.part == part)
     }
 }

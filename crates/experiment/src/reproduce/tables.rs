@@ -175,7 +175,7 @@ impl Coverage {
     /// Returns a chart for each statement at confidence: one dot per campaign, its true probability
     /// over the stated one. The statement is wrong above the line.
     #[must_use]
-    pub fn charts(&self) -> Vec<Chart> {
+    pub(crate) fn charts(&self) -> Vec<Chart> {
         let at_confidence = self.rows.iter().filter(|row| row.is_at_confidence());
         let chart = |row: &CoverageRow| {
             let all = row.campaigns.iter().flat_map(|(bound, truth)| [*bound, *truth]);

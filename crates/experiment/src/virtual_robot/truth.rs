@@ -55,7 +55,7 @@ impl VirtualRobot {
 
     /// Returns the parameters.
     #[must_use]
-    pub fn parameters(&self) -> &VirtualRobotParameters {
+    pub(crate) fn parameters(&self) -> &VirtualRobotParameters {
         &self.parameters
     }
 

@@ -118,7 +118,7 @@ impl PreparedLog {
 
     /// Returns the time of sample k, counted from the first sample of the recording \[s\].
     #[must_use]
-    pub fn time(&self, k: usize) -> f64 {
+    pub(crate) fn time(&self, k: usize) -> f64 {
         self.start + k as f64 * self.step
     }
 

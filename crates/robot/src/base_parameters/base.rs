@@ -120,7 +120,7 @@ impl BaseParameters {
 
     /// Returns the singular values of the regressor with columns of unit length, in descending
     /// order, relative to the largest.
-    pub fn singular_values(&self) -> Vec<f64> {
+    pub(crate) fn singular_values(&self) -> Vec<f64> {
         let largest = self.singular_values.first().copied().unwrap_or(0.0);
         self.singular_values
             .iter()

@@ -120,7 +120,7 @@ impl FrictionDescription {
     /// Returns the friction where Coulomb and viscous friction have these factors, without the law
     /// of warming.
     #[must_use]
-    pub fn scaled(&self, [coulomb, viscous]: [f64; 2]) -> Self {
+    pub(crate) fn scaled(&self, [coulomb, viscous]: [f64; 2]) -> Self {
         let scaled = |law: Stribeck| Stribeck { excess: coulomb * law.excess, ..law };
         Self {
             coulomb: self.coulomb.map(|a| coulomb * a),

@@ -133,11 +133,6 @@ impl<C: Scalar> PolynomialMap<C> {
         }
     }
 
-    /// Returns the number of variables k.
-    pub fn variables(&self) -> usize {
-        self.variables
-    }
-
     /// Returns the number of components m.
     pub fn components(&self) -> usize {
         self.constants.len()

@@ -289,11 +289,6 @@ impl Fold {
         self.state.runs
     }
 
-    /// Returns the names of the suites, in alphabetical order.
-    pub fn suite_names(&self) -> impl Iterator<Item = &str> {
-        self.state.suites.keys().map(String::as_str)
-    }
-
     /// Returns the root of the Merkle tree over the recordings' entries, in lower-case hexadecimal.
     #[must_use]
     pub fn root(&self) -> String {
