@@ -15,13 +15,13 @@ use crate::output;
 use crate::progress::Progress;
 
 /// A model, the recordings read with its settings, and its reachable sets over them.
-pub(crate) struct Opened {
+pub(crate) struct OpenedCheck {
     pub model: Model,
     pub problem: Problem,
     tube: Tube,
 }
 
-impl Opened {
+impl OpenedCheck {
     /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
     /// judged by `notion`, or by the notion in the file.
     pub(crate) fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::data_set::DataSet;
 use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
-use crate::inspect_run::{RunSummary, range};
+use crate::inspect_run::{InspectedRun, range};
 use crate::notes::{copies_note, temperature_notes};
 use crate::refusal::{Refusal, merge};
 use crate::source::{ReadOptions, RunSource};
@@ -100,9 +100,9 @@ pub(crate) fn inspect_source(
     let mut read: Vec<(usize, Summary)> = groups.par_iter().flat_map_iter(read).collect();
     read.sort_by_key(|(index, _)| *index);
     let first = read.iter().find_map(|(_, run)| run.as_ref().ok());
-    let joints = first.map_or(0, RunSummary::joint_count);
+    let joints = first.map_or(0, InspectedRun::joint_count);
     let mut refused = Vec::new();
-    let mut sound: Vec<Option<RunSummary>> = data.runs().iter().map(|_| None).collect();
+    let mut sound: Vec<Option<InspectedRun>> = data.runs().iter().map(|_| None).collect();
     for (index, summary) in read {
         match summary.and_then(|run| same_joints(data, index, run, joints)) {
             Ok(run) => sound[index] = Some(run),
@@ -127,7 +127,7 @@ pub(crate) fn inspect_source(
 }
 
 /// The summary of a run, or why it is refused.
-type Summary = Result<RunSummary, Vec<Refusal>>;
+type Summary = Result<InspectedRun, Vec<Refusal>>;
 
 /// Reads the runs of a group, and compares each with the first that has no defect. At most the
 /// first run and one for each core are held at once.
@@ -142,9 +142,9 @@ fn read_group(
         match read(index) {
             Err(refusals) => summaries.push((index, Err(refusals))),
             Ok(first) => {
-                summaries.push((index, Ok(RunSummary::new(data, index, &first, &first))));
+                summaries.push((index, Ok(InspectedRun::new(data, index, &first, &first))));
                 let others = members[count + 1..].par_iter().map(|&index| {
-                    (index, read(index).map(|run| RunSummary::new(data, index, &run, &first)))
+                    (index, read(index).map(|run| InspectedRun::new(data, index, &run, &first)))
                 });
                 summaries.par_extend(others);
                 break;
@@ -155,7 +155,7 @@ fn read_group(
 }
 
 /// Refuses a run whose number of joints differs from the first run's.
-fn same_joints(data: &dyn RunSource, index: usize, run: RunSummary, joints: usize) -> Summary {
+fn same_joints(data: &dyn RunSource, index: usize, run: InspectedRun, joints: usize) -> Summary {
     let found = run.joint_count();
     if found == joints {
         return Ok(run);
@@ -181,7 +181,7 @@ fn groups(data: &dyn RunSource) -> Vec<(String, bool, Vec<usize>)> {
     groups
 }
 
-fn notes(data: &dyn RunSource, runs: &[Option<RunSummary>]) -> Vec<String> {
+fn notes(data: &dyn RunSource, runs: &[Option<InspectedRun>]) -> Vec<String> {
     let mut notes = data.notes();
     let sound = || runs.iter().enumerate().filter_map(|(index, run)| Some((index, run.as_ref()?)));
     notes.extend(sound().flat_map(|(_, run)| run.notes.iter().cloned()));
@@ -193,7 +193,7 @@ fn notes(data: &dyn RunSource, runs: &[Option<RunSummary>]) -> Vec<String> {
 }
 
 impl RunGroup {
-    fn new(name: String, suite: bool, motion: Option<String>, runs: &[&RunSummary]) -> Self {
+    fn new(name: String, suite: bool, motion: Option<String>, runs: &[&InspectedRun]) -> Self {
         let shortest = runs.iter().map(|run| run.steps[0]).fold(f64::INFINITY, f64::min);
         let longest = runs.iter().map(|run| run.steps[1]).fold(0.0, f64::max);
         let first = runs[0].step;
@@ -218,7 +218,7 @@ impl RunGroup {
 }
 
 impl JointSummary {
-    fn new(joint: usize, runs: &[&RunSummary]) -> Self {
+    fn new(joint: usize, runs: &[&InspectedRun]) -> Self {
         let of = || runs.iter().map(|run| &run.joints[joint]);
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let longest = runs.iter().map(|run| run.samples).max().unwrap_or(0);

@@ -11,7 +11,7 @@ use crate::units::integral_gap;
 const STICKING: f64 = 0.01;
 
 /// The summary of one run.
-pub(crate) struct RunSummary {
+pub(crate) struct InspectedRun {
     /// Place in the order of recording, from 1.
     pub order: u64,
     /// Number of samples.
@@ -52,7 +52,7 @@ pub(crate) struct JointOfRun {
     pub integral_gap: f64,
 }
 
-impl RunSummary {
+impl InspectedRun {
     /// Summarises run `index` of a source; `first` is the first run of its group.
     pub(crate) fn new(source: &dyn RunSource, index: usize, run: &Run, first: &Run) -> Self {
         let steps = run.times.windows(2).map(|pair| pair[1] - pair[0]);

@@ -6,7 +6,7 @@ use reachtube::conform::{Finding, Keep, Notion};
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
 use crate::global::global;
-use crate::opened::Opened;
+use crate::opened::OpenedCheck;
 use crate::option_values::{NOTIONS, choice};
 use crate::outcome::Outcome;
 use crate::output;
@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let opened = Opened::new(&args.model, args.notion, Keep::Needed)?;
+    let opened = OpenedCheck::new(&args.model, args.notion, Keep::Needed)?;
     let check = opened.check()?;
     output::notes(&check.notes);
     let outcome = Outcome::of_model(check.verdict.conformant, &opened.model);

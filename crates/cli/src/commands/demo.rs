@@ -16,7 +16,7 @@ use super::conform as conform_command;
 use crate::data_arguments::DataArguments;
 use crate::error::Result;
 use crate::global::global;
-use crate::opened::Opened;
+use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
@@ -111,7 +111,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Returns the answer about the model, and the one about motions that were held out.
 fn text(
-    opened: &Opened,
+    opened: &OpenedCheck,
     held_out: &Check,
     summary: Summary,
     recorded: &RecordedDemo,
@@ -148,7 +148,7 @@ fn check_held_out(
     folder: &Path,
     suites: &[String],
     page: &Path,
-) -> Result<(Opened, Check)> {
+) -> Result<(OpenedCheck, Check)> {
     let args = DataArguments {
         data: folder.to_path_buf(),
         suites: suites.to_vec(),
@@ -156,9 +156,9 @@ fn check_held_out(
         until: None,
         max_gap: None,
     };
-    let opened = Opened::with(model, setup, &args, None, Keep::All)?;
+    let opened = OpenedCheck::with(model, setup, &args, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
-    let Opened { model, problem, .. } = &opened;
+    let OpenedCheck { model, problem, .. } = &opened;
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     let mut own = reachtube::page::page(&sources)?;

@@ -14,7 +14,7 @@ use crate::data_arguments::DataArguments;
 use crate::error::{Error, Result};
 use crate::file_names;
 use crate::lock_arguments::LockArguments;
-use crate::opened::Opened;
+use crate::opened::OpenedCheck;
 use crate::option_values::{Choices, choice, seconds, trimmed};
 use crate::outcome::Outcome;
 use crate::output;
@@ -178,7 +178,7 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
         until: args.until,
         max_gap: args.max_gap,
     };
-    let opened = Opened::with(model, setup, &data, None, Keep::Needed)?;
+    let opened = OpenedCheck::with(model, setup, &data, None, Keep::Needed)?;
     output::notes(&opened.problem.recordings().notes);
     let cases = opened.export_cases()?;
     let names = file_names::of_cases(&cases);

@@ -12,7 +12,7 @@ use serde_json::json;
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
 use crate::file_names;
-use crate::opened::Opened;
+use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::report_files;
@@ -49,8 +49,8 @@ struct Written<'a> {
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&args.out.join("A.csv"))?;
-    let opened = Opened::new(&args.model, None, Keep::All)?;
-    let Opened { model, problem, .. } = &opened;
+    let opened = OpenedCheck::new(&args.model, None, Keep::All)?;
+    let OpenedCheck { model, problem, .. } = &opened;
     output::notes(&problem.recordings().notes);
     let (reach, check) = (opened.reach()?, opened.check()?);
     let file = |reach, name: String| Written {

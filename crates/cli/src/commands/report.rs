@@ -10,7 +10,7 @@ use serde_json::json;
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
-use crate::opened::Opened;
+use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
 use crate::{output, report_files};
 
@@ -54,9 +54,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim(&report_files::page_in(&args.out))?;
-    let opened = Opened::new(&args.model, None, Keep::All)?;
+    let opened = OpenedCheck::new(&args.model, None, Keep::All)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
-    let Opened { model, problem, .. } = &opened;
+    let OpenedCheck { model, problem, .. } = &opened;
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     let page = report_files::write(&sources, args.assets.into(), &args.out)?;

@@ -48,13 +48,13 @@ pub(crate) enum Question {
 
 /// The answer to a question.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) enum Answer {
+pub(crate) enum Reply {
     Judged(Judged),
     /// One for each direction, where its sample has points.
     Furthest(Vec<Option<Along>>),
 }
 
-impl Answer {
+impl Reply {
     /// Merges the answer of other points to the same question; `None` where it is one to another
     /// question.
     #[must_use]
@@ -79,7 +79,7 @@ mod stored_sets {
 
     use super::{Deserialize, Hyperrectangle, Serialize, UncertaintySets};
 
-    type Stored = (Hyperrectangle, Hyperrectangle, Option<Hyperrectangle>);
+    type StoredSets = (Hyperrectangle, Hyperrectangle, Option<Hyperrectangle>);
 
     pub(super) fn serialize<S: Serializer>(
         sets: &UncertaintySets,
@@ -91,7 +91,7 @@ mod stored_sets {
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(
         from: D,
     ) -> Result<UncertaintySets, D::Error> {
-        let (initial_set, input_set, noise_set) = Stored::deserialize(from)?;
+        let (initial_set, input_set, noise_set) = StoredSets::deserialize(from)?;
         Ok(UncertaintySets { initial_set, input_set, noise_set })
     }
 }

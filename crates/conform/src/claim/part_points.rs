@@ -8,7 +8,7 @@ use reachtube_recordings::{Defect, ReadOptions, Run, RunEntry};
 use serde::{Deserialize, Serialize};
 
 use crate::claim::points::{KnownLists, Points};
-use crate::claim::remote::{SentAnswer, question_from_bytes};
+use crate::claim::remote::{SentReply, question_from_bytes};
 use crate::claim::sample_points::{AllPoints, SamplePoints, nominals};
 use crate::data::fold::context::Context;
 use crate::data::fold::fold::Fold;
@@ -156,7 +156,7 @@ impl PartPoints {
         let settings = (fleet.problem.settings(), fleet.problem.joints());
         let points = Points::of(samples, settings, lists, Box::new(file));
         let answer = points.answer(&Linear::new(&fleet.problem)?, &question)?;
-        Ok(SentAnswer::new(self.tree.clone(), answer).to_bytes())
+        Ok(SentReply::new(self.tree.clone(), answer).to_bytes())
     }
 
     /// Merges the answers of parts to one question, in any order.
@@ -165,7 +165,7 @@ impl PartPoints {
     ///
     /// [`Error::Fold`] for no answers, answers to different questions, and two answers of one part.
     pub fn merge<'b>(answers: impl IntoIterator<Item = &'b [u8]>) -> Result<Vec<u8>> {
-        let mut answers = answers.into_iter().map(SentAnswer::from_bytes);
+        let mut answers = answers.into_iter().map(SentReply::from_bytes);
         let first = answers.next().ok_or_else(|| Error::Fold("there is no answer".into()))??;
         let merged = answers.try_fold(first, |all, part| all.merge(part?))?;
         Ok(merged.to_bytes())

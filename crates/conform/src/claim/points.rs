@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use crate::claim::claim::{Claim, other_answer};
-use crate::claim::look::{Answer, Look, Near, Question};
+use crate::claim::look::{Look, Near, Question, Reply};
 use crate::claim::sample_points::{SamplePoints, points};
 use crate::claim::sample_set::{CentredPoints, OUTSIDE, SampleSet};
 use crate::data::problem::Problem;
@@ -70,13 +70,13 @@ impl<'a> Points<'a> {
     /// # Errors
     ///
     /// As [`Claim::judge`].
-    pub(crate) fn answer(&self, plant: &dyn Plant, question: &Question) -> Result<Answer> {
+    pub(crate) fn answer(&self, plant: &dyn Plant, question: &Question) -> Result<Reply> {
         Ok(match question {
             Question::Judge { sets, look } => {
-                Answer::Judged(self.judge(plant, sets, look)?.judged.unwrap_or_default())
+                Reply::Judged(self.judge(plant, sets, look)?.judged.unwrap_or_default())
             }
             Question::Furthest { directions } => {
-                Answer::Furthest(directions.iter().map(|along| self.along(along)).collect())
+                Reply::Furthest(directions.iter().map(|along| self.along(along)).collect())
             }
         })
     }

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::claim::{Claim, other_answer};
-use crate::claim::look::{Answer, Look, Question};
+use crate::claim::look::{Look, Question, Reply};
 use crate::data::tree::Tree;
 use crate::error::{Error, Result};
 use crate::sets::UncertaintySets;
@@ -40,17 +40,17 @@ pub(crate) struct Remote<'a> {
 
 /// An answer, with the recordings that it is of.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct SentAnswer {
+pub(crate) struct SentReply {
     version: u32,
     tree: Tree,
-    answer: Answer,
+    answer: Reply,
 }
 
 impl Remote<'_> {
-    fn ask(&self, question: &Question) -> Result<Answer> {
+    fn ask(&self, question: &Question) -> Result<Reply> {
         let bytes =
             self.server.ask(&question_to_bytes(question)).map_err(|why| Error::Fold(why.into()))?;
-        let sent = SentAnswer::from_bytes(&bytes)?;
+        let sent = SentReply::from_bytes(&bytes)?;
         if sent.tree.root() != self.root {
             return Err(Error::Fold(
                 "the points do not belong to the recordings that were folded: a recording was \
@@ -65,13 +65,13 @@ impl Remote<'_> {
 impl Claim for Remote<'_> {
     fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Tube> {
         let question = Question::Judge { sets: sets.clone(), look: look.clone() };
-        let Answer::Judged(judged) = self.ask(&question)? else { return Err(other_answer()) };
+        let Reply::Judged(judged) = self.ask(&question)? else { return Err(other_answer()) };
         Ok(Tube { judged: Some(judged), ..plant.tube(sets, None)?.0 })
     }
 
     fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {
         let question = Question::Furthest { directions: directions.to_vec() };
-        let Answer::Furthest(found) = self.ask(&question)? else { return Err(other_answer()) };
+        let Reply::Furthest(found) = self.ask(&question)? else { return Err(other_answer()) };
         if found.len() != directions.len() {
             return Err(other_answer());
         }
@@ -83,8 +83,8 @@ impl Claim for Remote<'_> {
     }
 }
 
-impl SentAnswer {
-    pub(crate) fn new(tree: Tree, answer: Answer) -> Self {
+impl SentReply {
+    pub(crate) fn new(tree: Tree, answer: Reply) -> Self {
         Self { version: VERSION, tree, answer }
     }
 

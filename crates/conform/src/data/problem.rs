@@ -242,7 +242,7 @@ impl Problem {
     ///
     /// [`Error::NotLinear`] for any other model; when the solution of the system cannot be enclosed
     /// over a grid.
-    pub fn grids(&self) -> Result<&Grids> {
+    pub(crate) fn grids(&self) -> Result<&Grids> {
         if let Some(grids) = self.grids.get() {
             return Ok(grids);
         }

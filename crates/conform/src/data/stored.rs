@@ -28,26 +28,26 @@ pub(super) mod grid {
     use std::sync::Arc;
 
     #[derive(Serialize, Deserialize)]
-    enum Stored {
+    enum StoredGrid {
         Uniform(f64, usize),
         Times(Vec<f64>),
     }
 
     pub(crate) fn serialize<S: Serializer>(grid: &TimeGrid, out: S) -> Result<S::Ok, S::Error> {
         let stored = match grid.step() {
-            Some(step) => Stored::Uniform(step, grid.len()),
-            None => Stored::Times(grid.times().to_vec()),
+            Some(step) => StoredGrid::Uniform(step, grid.len()),
+            None => StoredGrid::Times(grid.times().to_vec()),
         };
         stored.serialize(out)
     }
 
     pub(crate) fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Arc<TimeGrid>, D::Error> {
-        let grid = match Stored::deserialize(from)? {
-            Stored::Uniform(step, count) => {
+        let grid = match StoredGrid::deserialize(from)? {
+            StoredGrid::Uniform(step, count) => {
                 let is_sound = step > 0.0 && step.is_finite() && count < 1 << 32;
                 is_sound.then(|| TimeGrid::uniform(step, count))
             }
-            Stored::Times(times) => TimeGrid::from_times(&times).ok(),
+            StoredGrid::Times(times) => TimeGrid::from_times(&times).ok(),
         };
         grid.map(Arc::new).ok_or_else(|| D::Error::custom("no grid has these times"))
     }

@@ -8,7 +8,7 @@ use reachtube_scalar::rounding::{add_down, add_up, sub_up};
 use crate::data::case::Case;
 use crate::explain::chain::Chain;
 use crate::explain::regulate::regulate;
-use crate::explain::steps::{Step, Steps};
+use crate::explain::steps::{ModelSteps, Step};
 use crate::nominal::simulate::{STEP_NORM, simulate};
 use crate::sets::UncertaintySets;
 
@@ -148,7 +148,7 @@ impl<'a> ClosestMotion<'a> {
             radii.chain(repeat_n(CONSTANT_UNITS, constant)),
             distances.chain(repeat_n(0.0, constant)),
         );
-        let mut steps = Steps::new(self.model, self.substeps);
+        let mut steps = ModelSteps::new(self.model, self.substeps);
         for k in 1..self.recorded.len() {
             let (before, after) = states[(k - 1) * 2 * n..(k + 1) * 2 * n].split_at(2 * n);
             let held = &inputs[(k - 1) * n..k * n];

@@ -3,7 +3,7 @@ use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
 use reachtube_ode::RungeKutta4;
 
 /// The model from one sample to the next, with its derivatives.
-pub(super) struct Steps<'a> {
+pub(super) struct ModelSteps<'a> {
     model: &'a PolynomialModel,
     linearisation: Linearisation,
     field: ModelField<'a, f64>,
@@ -21,7 +21,7 @@ pub(super) struct Step {
     pub gain: DMatrix<f64>,
 }
 
-impl<'a> Steps<'a> {
+impl<'a> ModelSteps<'a> {
     pub(super) fn new(model: &'a PolynomialModel, substeps: usize) -> Self {
         let (linearisation, field) = (Linearisation::new(model), ModelField::new(model));
         Self { model, linearisation, field, method: RungeKutta4::new(model.states()), substeps }

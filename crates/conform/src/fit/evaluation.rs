@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::fit::data::Data;
 use crate::fit::parameters::Parameters;
 use crate::nominal::motion::Corrected;
-use crate::nominal::steps::Steps;
+use crate::nominal::steps::LinearSteps;
 use crate::program::block::Block;
 use crate::program::layout::Limits;
 use crate::program::program::{Program, RowIndex};
@@ -25,7 +25,7 @@ const CLOSE: f64 = 0.02;
 
 /// What does not change during a fit.
 #[derive(Clone)]
-pub(crate) struct Fit<'a> {
+pub(crate) struct FitTask<'a> {
     pub parameters: &'a Parameters<'a>,
     pub data: &'a Data,
     /// Every how many samples rows are taken.
@@ -37,7 +37,7 @@ pub(crate) struct Fit<'a> {
 }
 
 /// The model of one choice of the parameters beside the recordings.
-pub(crate) struct Model {
+pub(crate) struct FitModel {
     /// For each grid, the entries of E_k and R_k at the samples that are rows, as in a [`Block`].
     pub coefficients: Vec<Arc<Vec<f64>>>,
     /// For each track, the nominal motion at the samples that are rows, samples x 2n; empty for a
@@ -51,7 +51,7 @@ pub(crate) struct Smallest {
     pub cost: f64,
 }
 
-impl Fit<'_> {
+impl FitTask<'_> {
     /// Returns the number of joints.
     pub(crate) fn joints(&self) -> usize {
         self.weights.len() / 2
@@ -67,28 +67,34 @@ impl Fit<'_> {
         &self,
         numbers: &[f64],
         tracks: &[usize],
-        known: Option<&Model>,
-    ) -> Result<Model> {
+        known: Option<&FitModel>,
+    ) -> Result<FitModel> {
         let setup = self.parameters.apply(numbers)?;
         let system = setup.dynamics.linear_system().ok_or(Error::NotLinear)?;
         let grids = self.data.grids.iter();
-        let steps: Vec<Steps> = grids.map(|grid| Steps::new(system, grid.times())).collect();
+        let steps: Vec<LinearSteps> =
+            grids.map(|grid| LinearSteps::new(system, grid.times())).collect();
         let coefficients = match known {
             Some(model) => model.coefficients.clone(),
             None => self.coefficients(&steps),
         };
-        Ok(Model { coefficients, motions: self.motions(&setup, &steps, tracks)? })
+        Ok(FitModel { coefficients, motions: self.motions(&setup, &steps, tracks)? })
     }
 
-    fn coefficients(&self, steps: &[Steps]) -> Vec<Arc<Vec<f64>>> {
+    fn coefficients(&self, steps: &[LinearSteps]) -> Vec<Arc<Vec<f64>>> {
         let constant = self.settings.disturbance == Disturbance::Constant;
-        let of = |(steps, grid): (&Steps, &Arc<TimeGrid>)| {
+        let of = |(steps, grid): (&LinearSteps, &Arc<TimeGrid>)| {
             Arc::new(steps.coefficients(grid.len(), self.stride, constant))
         };
         steps.iter().zip(&self.data.grids).map(of).collect()
     }
 
-    fn motions(&self, setup: &Setup, steps: &[Steps], tracks: &[usize]) -> Result<Vec<Vec<f64>>> {
+    fn motions(
+        &self,
+        setup: &Setup,
+        steps: &[LinearSteps],
+        tracks: &[usize],
+    ) -> Result<Vec<Vec<f64>>> {
         let none = InputCorrection::none(self.joints());
         let correction = setup.correction.as_ref().unwrap_or(&none);
         let (robot, dynamics) = (&setup.robot, &setup.dynamics);
@@ -109,7 +115,7 @@ impl Fit<'_> {
     }
 
     /// Returns the program of `model` for the tracks named.
-    pub(crate) fn program(&self, model: &Model, tracks: &[usize]) -> Program<'_> {
+    pub(crate) fn program(&self, model: &FitModel, tracks: &[usize]) -> Program<'_> {
         let (stride, states) = (self.stride, 2 * self.joints());
         let mut blocks: Vec<Block> = Vec::new();
         for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
@@ -146,7 +152,7 @@ impl Fit<'_> {
     /// # Errors
     ///
     /// As [`Program::solve`].
-    pub(crate) fn smallest(&self, model: &Model, tracks: &[usize]) -> Result<Smallest> {
+    pub(crate) fn smallest(&self, model: &FitModel, tracks: &[usize]) -> Result<Smallest> {
         self.smallest_from(model, tracks, &mut Vec::new())
     }
 
@@ -158,7 +164,7 @@ impl Fit<'_> {
     /// As [`Program::solve`].
     pub(crate) fn smallest_from(
         &self,
-        model: &Model,
+        model: &FitModel,
         tracks: &[usize],
         rows: &mut Vec<RowIndex>,
     ) -> Result<Smallest> {

@@ -8,12 +8,12 @@ use crate::data::settings::{Method, Weights};
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
-use crate::fit::evaluation::Fit;
+use crate::fit::evaluation::FitTask;
 use crate::fit::group::{FitSettings, Group};
-use crate::fit::parameters::{Parameter, Parameters, Quantity};
+use crate::fit::parameters::{FreeParameter, Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fit::search::{Effort, Optimum, Search};
+use crate::fit::search::{FoundNumbers, Search, SearchEffort};
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::nominal::input_error::InputError;
 use crate::program::program::Program;
@@ -73,7 +73,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
     }
     let envelopes: Vec<&Envelope> = steering.deviations()?.iter().map(|d| &d.envelope).collect();
-    let fit = Fit {
+    let fit = FitTask {
         parameters: &parameters,
         data: &data,
         stride: data.stride(),
@@ -111,7 +111,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
 ///
 /// The cost has more than one local optimum. One search moves all groups from the beginning, and
 /// one for each group first the others; the best answer counts.
-fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
+fn search(fit: &FitTask, groups: &[Group], pull: f64) -> Result<FoundNumbers> {
     let (start, tracks) = (vec![0.0; fit.parameters.len()], fit.tracks(None));
     let pull = pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
     let search = |tracks: &[usize], held, effort| {
@@ -121,14 +121,14 @@ fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
     let fewest = fit.few_tracks(None, FEWEST);
     let of_held = |held: Option<Group>| {
         let first = match held {
-            Some(_) => search(&fewest, held, Effort::START).run(&start)?.numbers,
+            Some(_) => search(&fewest, held, SearchEffort::START).run(&start)?.numbers,
             None => start.clone(),
         };
-        search(&fewest, None, Effort::START).run(&first)
+        search(&fewest, None, SearchEffort::START).run(&first)
     };
     let held = groups.iter().map(|group| Some(*group)).filter(|_| groups.len() > 1);
     let starts: Vec<Option<Group>> = std::iter::once(None).chain(held).collect();
-    let mut answers: Vec<Result<Optimum>> = starts.into_par_iter().map(of_held).collect();
+    let mut answers: Vec<Result<FoundNumbers>> = starts.into_par_iter().map(of_held).collect();
     let mut best = answers.remove(0)?;
     for other in answers.into_iter().flatten() {
         if other.value < best.value {
@@ -136,13 +136,13 @@ fn search(fit: &Fit, groups: &[Group], pull: f64) -> Result<Optimum> {
         }
     }
     let few = fit.few_tracks(None, FEW);
-    let found = search(&few, None, Effort::WHOLE).run(&best.numbers)?;
+    let found = search(&few, None, SearchEffort::WHOLE).run(&best.numbers)?;
     let steps = best.steps + found.steps;
     if few.len() == tracks.len() {
-        return Ok(Optimum { steps, ..found });
+        return Ok(FoundNumbers { steps, ..found });
     }
-    let last = search(&tracks, None, Effort::LAST).run(&found.numbers)?;
-    Ok(Optimum { steps: steps + last.steps, ..last })
+    let last = search(&tracks, None, SearchEffort::LAST).run(&found.numbers)?;
+    Ok(FoundNumbers { steps: steps + last.steps, ..last })
 }
 
 /// Refuses what cannot be fitted, whatever the recordings are.
@@ -195,7 +195,7 @@ fn linear_setup(setup: &Setup) -> Result<Setup> {
 }
 
 fn record(
-    fit: &Fit,
+    fit: &FitTask,
     settings: &FitSettings,
     choice: PullChoice,
     numbers: &[f64],
@@ -203,7 +203,7 @@ fn record(
 ) -> Result<FitRecord> {
     let setup = fit.parameters.setup();
     let cost_without = |group: &Group| {
-        let kept = |(x, parameter): (&f64, &Parameter)| match parameter.quantity.group() {
+        let kept = |(x, parameter): (&f64, &FreeParameter)| match parameter.quantity.group() {
             of if of == *group => 0.0,
             _ => *x,
         };
@@ -240,9 +240,9 @@ fn coulomb_name(quadrants: [bool; 4]) -> &'static str {
     }
 }
 
-fn parameters_of(fit: &Fit, numbers: &[f64], setup: &Setup) -> Vec<FittedParameter> {
+fn parameters_of(fit: &FitTask, numbers: &[f64], setup: &Setup) -> Vec<FittedParameter> {
     let of = |p: usize| {
-        let Parameter { quantity, joint, .. } = fit.parameters.list[p];
+        let FreeParameter { quantity, joint, .. } = fit.parameters.list[p];
         let kind = setup.robot.joints()[joint].kind;
         let (identified, fitted, factor) = fit.parameters.values(p, numbers[p]);
         let of_velocity =

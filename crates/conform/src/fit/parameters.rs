@@ -35,7 +35,7 @@ pub(crate) enum Quantity {
 
 /// One number that a fit moves. The number 0 stands for the identified value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Parameter {
+pub(crate) struct FreeParameter {
     pub quantity: Quantity,
     /// The joint, from 0.
     pub joint: usize,
@@ -50,7 +50,7 @@ pub(crate) struct Parameters<'a> {
     inertia: Vec<f64>,
     /// The inertial parameters of each link, 10 n.
     links: Vec<f64>,
-    pub list: Vec<Parameter>,
+    pub list: Vec<FreeParameter>,
 }
 
 /// Numbers of logarithms lie within this distance from 0: a factor of 10.
@@ -91,7 +91,7 @@ impl<'a> Parameters<'a> {
         for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
             for joint in 0..robot.joint_count() {
                 let of_joint = parameters.of_joint(group, joint);
-                let make = |(quantity, bounds)| Parameter { quantity, joint, bounds };
+                let make = |(quantity, bounds)| FreeParameter { quantity, joint, bounds };
                 parameters.list.extend(of_joint.into_iter().map(make));
             }
         }
@@ -165,7 +165,7 @@ impl<'a> Parameters<'a> {
     /// Returns the identified and the fitted value of parameter `p`, and what multiplies the
     /// identified value where that is how it changes.
     pub(crate) fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {
-        let Parameter { quantity, joint, .. } = self.list[p];
+        let FreeParameter { quantity, joint, .. } = self.list[p];
         let viscous = &self.setup.robot.joints()[joint].friction.viscous;
         let times = |identified: f64, factor: f64| (identified, identified * factor, Some(factor));
         match quantity {
@@ -185,7 +185,7 @@ impl<'a> Parameters<'a> {
     /// Returns the standard error of the identified value of parameter `p`, where the robot's
     /// description has it.
     pub(crate) fn standard_error(&self, p: usize) -> Option<f64> {
-        let Parameter { quantity, joint, .. } = self.list[p];
+        let FreeParameter { quantity, joint, .. } = self.list[p];
         let errors = self.setup.robot.description().joints[joint].friction.standard_errors?;
         let error = match quantity {
             Quantity::Viscous => errors.viscous[0],
@@ -210,7 +210,7 @@ impl<'a> Parameters<'a> {
             values.push(value);
         };
         for (parameter, &number) in self.list.iter().zip(numbers) {
-            let Parameter { quantity, joint, .. } = *parameter;
+            let FreeParameter { quantity, joint, .. } = *parameter;
             let drive = &robot.joints()[joint];
             let viscous = &drive.friction.viscous;
             let corrected = &mut correction.joints[joint];

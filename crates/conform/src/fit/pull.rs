@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::fit::evaluation::Fit;
+use crate::fit::evaluation::FitTask;
 use crate::fit::record::{PullCost, UnseenMotion};
-use crate::fit::search::{Effort, Search};
+use crate::fit::search::{Search, SearchEffort};
 
 /// The weights that are tried, in parts of the identified model's cost per unit, the strongest
 /// first.
@@ -30,7 +30,7 @@ pub(crate) struct PullChoice {
 /// # Errors
 ///
 /// As [`Search::run`].
-pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
+pub(crate) fn choose(fit: &FitTask, given: Option<f64>) -> Result<PullChoice> {
     let pulls = given.map_or_else(|| PULLS.to_vec(), |pull| vec![pull]);
     let of_motion = |motion: usize| leave_out(fit, motion, &pulls);
     let motions = fit.data.motions.len();
@@ -53,7 +53,7 @@ pub(crate) fn choose(fit: &Fit, given: Option<f64>) -> Result<PullChoice> {
 
 /// Fits without a motion for each weight, each from the answer before, and returns the costs of the
 /// sets of all motions; `None` if a nominal motion runs away.
-fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<Option<f64>>> {
+fn leave_out(fit: &FitTask, motion: usize, pulls: &[f64]) -> Result<Vec<Option<f64>>> {
     let tracks = fit.few_tracks(Some(motion), FEW);
     let mut numbers = vec![0.0; fit.parameters.len()];
     let identified = fit.smallest(&fit.model(&numbers, &tracks, None)?, &tracks)?.cost;
@@ -64,7 +64,7 @@ fn leave_out(fit: &Fit, motion: usize, pulls: &[f64]) -> Result<Vec<Option<f64>>
             tracks: tracks.clone(),
             pull: pull * identified,
             held: None,
-            effort: Effort::QUICK,
+            effort: SearchEffort::QUICK,
         };
         numbers = search.run(&numbers)?.numbers;
         costs.push(fit.whole_cost(&numbers)?);

@@ -1,5 +1,5 @@
 use crate::error::{Error, Result};
-use crate::fit::evaluation::{Fit, Model, Smallest};
+use crate::fit::evaluation::{FitModel, FitTask, Smallest};
 use crate::fit::group::Group;
 use crate::fit::slopes::slopes;
 use crate::fit::step::{StepProgram, StepRow};
@@ -13,7 +13,7 @@ const LEAST_TRUST: f64 = 2e-3;
 
 /// What a search found.
 #[derive(Debug, Clone)]
-pub(crate) struct Optimum {
+pub(crate) struct FoundNumbers {
     /// The numbers of the parameters.
     pub numbers: Vec<f64>,
     /// Number of steps that were accepted.
@@ -24,18 +24,18 @@ pub(crate) struct Optimum {
 
 /// The parameters for which the sets of some tracks cost least, with a pull.
 pub(crate) struct Search<'a> {
-    pub fit: &'a Fit<'a>,
+    pub fit: &'a FitTask<'a>,
     pub tracks: Vec<usize>,
     /// Cost of a number's distance from 0.
     pub pull: f64,
     /// A group whose numbers stay as they are.
     pub held: Option<Group>,
-    pub effort: Effort,
+    pub effort: SearchEffort,
 }
 
 /// When a search ends.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Effort {
+pub(crate) struct SearchEffort {
     /// It ends when a step promises, or gains, less than this part of the cost.
     pub settled: f64,
     /// Steps at most.
@@ -44,7 +44,7 @@ pub(crate) struct Effort {
     pub is_physical: bool,
 }
 
-impl Effort {
+impl SearchEffort {
     /// For the answer.
     pub(crate) const WHOLE: Self = Self { settled: 5e-5, steps: 40, is_physical: true };
     /// For an answer that was found on fewer tracks.
@@ -58,7 +58,7 @@ impl Effort {
 /// A point of the search.
 struct Point {
     numbers: Vec<f64>,
-    model: Model,
+    model: FitModel,
     smallest: Smallest,
 }
 
@@ -68,7 +68,7 @@ impl Search<'_> {
     /// # Errors
     ///
     /// When the first program is not solved.
-    pub(crate) fn run(&self, start: &[f64]) -> Result<Optimum> {
+    pub(crate) fn run(&self, start: &[f64]) -> Result<FoundNumbers> {
         let (mut rows, mut own_rows) = (Vec::<StepRow>::new(), Vec::new());
         let mut point = self.point(start.to_vec(), &mut own_rows)?;
         let (mut trust, mut steps) = (FIRST_TRUST, 0);
@@ -120,7 +120,7 @@ impl Search<'_> {
                 }
             }
         }
-        Ok(Optimum { value: self.value(&point), numbers: point.numbers, steps })
+        Ok(FoundNumbers { value: self.value(&point), numbers: point.numbers, steps })
     }
 
     fn point(&self, numbers: Vec<f64>, rows: &mut Vec<RowIndex>) -> Result<Point> {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::fit::evaluation::{Fit, Model, Smallest};
+use crate::fit::evaluation::{FitModel, FitTask, Smallest};
 
 /// The step of a difference, in the numbers of the parameters.
 const DIFFERENCE: f64 = 1e-4;
@@ -23,12 +23,12 @@ pub(crate) struct Slope {
 ///
 /// # Errors
 ///
-/// As [`Fit::model`].
+/// As [`FitTask::model`].
 pub(crate) fn slopes(
-    fit: &Fit,
+    fit: &FitTask,
     numbers: &[f64],
     tracks: &[usize],
-    model: &Model,
+    model: &FitModel,
     smallest: &Smallest,
 ) -> Result<Vec<Slope>> {
     let n = fit.joints();

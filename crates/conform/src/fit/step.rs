@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::data::settings::Noise;
 use crate::data::side::Side;
 use crate::error::Result;
-use crate::fit::evaluation::{Fit, Model, Smallest};
+use crate::fit::evaluation::{FitModel, FitTask, Smallest};
 use crate::fit::group::Group;
 use crate::fit::slopes::Slope;
 use crate::program::layout::Layout;
@@ -54,8 +54,8 @@ pub(crate) type StepRow = (usize, usize, usize, Side);
 
 /// The program of one step.
 pub(crate) struct StepProgram<'a> {
-    pub fit: &'a Fit<'a>,
-    pub model: &'a Model,
+    pub fit: &'a FitTask<'a>,
+    pub model: &'a FitModel,
     pub slopes: &'a [Slope],
     /// The program at the present parameters.
     pub program: &'a Program<'a>,
@@ -74,7 +74,7 @@ pub(crate) struct StepProgram<'a> {
 }
 
 /// Where a step leads.
-pub(crate) struct Answer {
+pub(crate) struct StepSolution {
     pub numbers: Vec<f64>,
     /// The cost and the pull that the linearised program foretells.
     pub cost: f64,
@@ -87,7 +87,7 @@ impl StepProgram<'_> {
     /// # Errors
     ///
     /// [`Error::Program`](crate::Error::Program).
-    pub(crate) fn solve(&self, rows: &mut Vec<StepRow>) -> Result<Answer> {
+    pub(crate) fn solve(&self, rows: &mut Vec<StepRow>) -> Result<StepSolution> {
         if rows.is_empty() {
             rows.extend(self.first_rows());
         }
@@ -103,7 +103,7 @@ impl StepProgram<'_> {
         let (unknowns, cost) = found;
         let numbers = self.numbers_of(&unknowns);
         self.keep_tight(&unknowns, rows);
-        Ok(Answer { numbers, cost })
+        Ok(StepSolution { numbers, cost })
     }
 
     fn layout(&self) -> Layout {

@@ -16,7 +16,7 @@ use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
 use crate::error::Result;
 use crate::nominal::motion::Corrected;
-use crate::nominal::steps::Steps;
+use crate::nominal::steps::LinearSteps;
 
 impl Problem {
     /// Returns the cases of all suites, in their order. They are made when first asked for and
@@ -133,7 +133,8 @@ impl Problem {
             None => return Ok(case),
         };
         let model = Corrected { robot, dynamics, correction, settings: self.settings() };
-        let steps = dynamics.linear_system().map(|system| Steps::new(system, case.grid.times()));
+        let steps =
+            dynamics.linear_system().map(|system| LinearSteps::new(system, case.grid.times()));
         let inputs = model.motion(&case, steps.as_ref())?.inputs.into();
         Ok(Case { inputs, ..case })
     }

@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::nominal::corrector::Corrector;
 use crate::nominal::robot_equations::RobotEquations;
 use crate::nominal::simulate::{BOUND, runs_away, substeps};
-use crate::nominal::steps::Steps;
+use crate::nominal::steps::LinearSteps;
 
 /// A nominal motion with the inputs that cause it, unrounded.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ impl Corrected<'_> {
     /// # Errors
     ///
     /// [`Error::RunsAway`](crate::Error::RunsAway).
-    pub(crate) fn motion(&self, case: &Case, steps: Option<&Steps>) -> Result<NominalMotion> {
+    pub(crate) fn motion(&self, case: &Case, steps: Option<&LinearSteps>) -> Result<NominalMotion> {
         let mut corrector =
             Corrector::new(self.robot, self.correction, self.settings, &case.condition)?;
         let mut equations = match self.settings.equations {
@@ -66,7 +66,7 @@ impl Corrected<'_> {
 
 fn linear(
     case: &Case,
-    steps: &Steps,
+    steps: &LinearSteps,
     mut correct: impl FnMut(&[f64], &mut [f64]),
 ) -> Result<NominalMotion> {
     let (n, samples) = (case.joints(), case.grid.len());

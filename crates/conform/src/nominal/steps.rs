@@ -7,7 +7,7 @@ use reachtube_reach::LinearSystem;
 
 /// e^{Ah} and ∫e^{Aτ}B dτ for each span of a grid, rounded to nearest.
 #[derive(Debug, Clone)]
-pub(crate) struct Steps {
+pub(crate) struct LinearSteps {
     states: usize,
     inputs: usize,
     /// The distinct maps (x, u, 1) -> x, each 2n x (3n + 1), row by row.
@@ -16,7 +16,7 @@ pub(crate) struct Steps {
     of_span: Vec<usize>,
 }
 
-impl Steps {
+impl LinearSteps {
     /// Discretises `system` over the spans between `times` (s). Spans that differ by less than a
     /// picosecond share a map.
     #[must_use]

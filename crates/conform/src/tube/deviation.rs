@@ -10,7 +10,7 @@ use crate::tube::grids::Grids;
 
 /// The envelope of the deviations of one suite on one grid.
 #[derive(Debug, Clone)]
-pub struct Deviation {
+pub(crate) struct Deviation {
     /// Index of the suite.
     pub suite: usize,
     /// Index of the grid.
@@ -21,7 +21,7 @@ pub struct Deviation {
 
 /// The nominal motion x̂ of a linear model along a case.
 #[derive(Debug, Clone)]
-pub struct Nominal {
+pub(crate) struct Nominal {
     /// Index of the grid.
     pub grid: usize,
     /// x̂ at the samples, enclosed.
@@ -35,7 +35,7 @@ impl Nominal {
     ///
     /// Outer: the exact solution lies in the trajectory.
     #[must_use]
-    pub fn new(grids: &Grids, case: &Case) -> Self {
+    pub(crate) fn new(grids: &Grids, case: &Case) -> Self {
         let grid = grids.find(&case.grid);
         let trajectory =
             grids.as_slice()[grid].propagation.solve(&case.start_interval(), &case.inputs);
@@ -51,7 +51,7 @@ impl Deviation {
     /// Outer: the exact deviation of every run from the exact solution of the model lies in the
     /// envelope.
     #[must_use]
-    pub fn new(grids: &Grids, case: &Case) -> Self {
+    pub(crate) fn new(grids: &Grids, case: &Case) -> Self {
         let Nominal { grid, trajectory } = Nominal::new(grids, case);
         let envelope = case.measured.map(
             |k, i, upper| sub_up(upper, trajectory.state(k)[i].lo()),

@@ -6,7 +6,7 @@ use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::sets::UncertaintySets;
-use crate::tube::rows::{Recorded, Row, rows};
+use crate::tube::rows::{RecordedBounds, Row, rows};
 use crate::tube::strand::Strand;
 
 /// Variables over whose vertices remainders are bounded, one number after the other while a set is
@@ -124,7 +124,7 @@ fn for_each_row(
     sets: &UncertaintySets,
     visit: impl FnMut(&Row),
 ) -> bool {
-    let (recorded, strand) = (Recorded::of_case((0, case)), Strand::along(case, flowpipe));
+    let (recorded, strand) = (RecordedBounds::of_case((0, case)), Strand::along(case, flowpipe));
     rows(&recorded, &strand, sets, problem.settings().states, visit);
     strand.lost.is_none()
 }

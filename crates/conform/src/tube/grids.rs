@@ -10,7 +10,7 @@ use crate::sets::UncertaintySets;
 
 /// A sample grid that suites share, with all that depends on the system and the grid only.
 #[derive(Debug)]
-pub struct Grid {
+pub(crate) struct Grid {
     /// The sample times.
     pub times: Arc<TimeGrid>,
     /// e^{A t_k} and Γ(t_k) at the samples.
@@ -34,7 +34,7 @@ impl Grid {
 
 /// The distinct grids of some recordings; a grid that is the beginning of another is not distinct.
 #[derive(Debug)]
-pub struct Grids {
+pub(crate) struct Grids {
     grids: Vec<Grid>,
 }
 
@@ -44,7 +44,7 @@ impl Grids {
     /// # Errors
     ///
     /// When the solution of the system cannot be enclosed over a grid.
-    pub fn new<'a>(
+    pub(crate) fn new<'a>(
         times: impl Iterator<Item = &'a TimeGrid>,
         system: &LinearSystem,
         disturbance: Disturbance,
@@ -61,7 +61,7 @@ impl Grids {
 
     /// Returns the grids.
     #[must_use]
-    pub fn as_slice(&self) -> &[Grid] {
+    pub(crate) fn as_slice(&self) -> &[Grid] {
         &self.grids
     }
 

@@ -18,8 +18,6 @@ pub(crate) mod tube;
 pub(crate) mod witness;
 mod worst_case;
 
-pub use deviation::{Deviation, Nominal};
-pub use grids::{Grid, Grids};
 pub use strand::Lost;
 pub use tube::Enclosure;
 pub use witness::Witness;

@@ -58,7 +58,7 @@ impl Row {
 }
 
 /// Recorded values beside the sets of a strand: deviations of a linear model, states of any other.
-pub(crate) struct Recorded<'a> {
+pub(crate) struct RecordedBounds<'a> {
     /// Index of the suite.
     pub suite: usize,
     /// Index of the strand.
@@ -67,7 +67,7 @@ pub(crate) struct Recorded<'a> {
     pub envelope: &'a Envelope,
 }
 
-impl<'a> Recorded<'a> {
+impl<'a> RecordedBounds<'a> {
     /// Returns the recorded values of a problem, beside the strands of its tubes.
     ///
     /// # Errors
@@ -99,13 +99,13 @@ impl<'a> Recorded<'a> {
 /// Excesses are upper bounds for the hull as its bounds are given, widened by the noise set V
 /// rounded inward; directed rounding.
 pub(crate) fn rows(
-    recorded: &Recorded,
+    recorded: &RecordedBounds,
     Strand { times, hull, .. }: &Strand,
     sets: &UncertaintySets,
     states: States,
     mut visit: impl FnMut(&Row),
 ) {
-    let &Recorded { suite, strand, envelope } = recorded;
+    let &RecordedBounds { suite, strand, envelope } = recorded;
     let checked = states.rows(envelope.dimension());
     for (sample, &time) in times.times().iter().enumerate().take(envelope.len()) {
         for state in 0..checked {

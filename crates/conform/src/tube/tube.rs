@@ -4,7 +4,7 @@ use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{At, Judged};
-use crate::tube::rows::{Recorded, Row, rows};
+use crate::tube::rows::{RecordedBounds, Row, rows};
 use crate::tube::strand::{Lost, Strand};
 
 /// The reachable set that recordings are compared with.
@@ -107,7 +107,7 @@ impl Tube {
         mut visit: impl FnMut(&Row),
     ) -> Result<()> {
         let states = problem.settings().states;
-        for recorded in Recorded::all(problem)? {
+        for recorded in RecordedBounds::all(problem)? {
             rows(&recorded, &self.strands[recorded.strand], &self.sets, states, &mut visit);
         }
         Ok(())

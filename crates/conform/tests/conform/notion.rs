@@ -12,9 +12,10 @@ use reachtube_conform::claim::Certificate;
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::{Centre, InitialLimit, States};
 use reachtube_conform::{
-    Conformance, Error, Keep, Model, Notion, Problem, Settings, Setup, Silent, Tube, check, conform,
+    Conformance, Error, Keep, Model, Notion, Problem, Settings, Setup, Silent, Tube,
+    UncertaintySets, check, conform, reach,
 };
-use reachtube_reach::{Disturbance, LinearSystem};
+use reachtube_reach::{Disturbance, Hyperrectangle, LinearSystem};
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
 
@@ -172,18 +173,15 @@ fn cost_with_factors(problem: &Problem, system: &LinearSystem, h: f64) -> f64 {
 
 /// The deviations of every run from its nominal motion, sample by sample.
 fn deviations(problem: &Problem) -> Vec<Vec<DVector<f64>>> {
-    let grids = problem.grids().unwrap();
+    let (initial_set, input_set) = (Hyperrectangle::zero(4), Hyperrectangle::zero(2));
+    let none = UncertaintySets { initial_set, input_set, noise_set: None };
+    let nominal = reach(problem, &Tube::new(problem, none).unwrap()).unwrap();
     let mut all = Vec::new();
-    for suite in &problem.recordings().suites {
-        let case =
-            problem.cases().unwrap().iter().find(|case| case.name.ends_with(&suite.entry.name));
-        let nominal = reachtube_conform::tube::Nominal::new(grids, case.unwrap());
+    for (suite, reach) in problem.recordings().suites.iter().zip(&nominal) {
         for summary in &suite.runs {
             let run = problem.run(summary.index).unwrap();
-            let at = |k: usize| {
-                let nominal = nominal.trajectory.state(k);
-                DVector::from_fn(4, |i, _| run.state(k)[i] - nominal[i].mid())
-            };
+            let at =
+                |k: usize| DVector::from_fn(4, |i, _| run.state(k)[i] - reach.nominal[4 * k + i]);
             all.push((0..run.len()).map(at).collect());
         }
     }

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::data::fold::context::Context;
 use crate::data::fold::defects::Defects;
-use crate::data::fold::fold::{Fold, State, other_setup};
+use crate::data::fold::fold::{Fold, FoldState, other_setup};
 use crate::data::fold::suite_fold::SuiteFold;
 use crate::data::setup::Setup;
 use crate::data::tree::Tree;
@@ -22,7 +22,7 @@ const VERSION: u32 = 1;
 
 /// A fold in bytes, after the format and its version and before their SHA-256.
 #[derive(Deserialize)]
-struct Stored {
+struct StoredFold {
     /// The digest of what the reading depends on.
     context: [u8; 32],
     most_bytes: usize,
@@ -46,7 +46,7 @@ struct StoredRef<'a> {
 }
 
 /// The suites of a fold without what is superfluous.
-struct Settled<'a>(&'a State);
+struct Settled<'a>(&'a FoldState);
 
 impl Serialize for Settled<'_> {
     fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
@@ -103,7 +103,7 @@ impl Fold {
         if Sha256::digest(&bytes[..bytes.len() - 32])[..] != digest[..] {
             return Err(wrong("of a fold were damaged"));
         }
-        let stored: Stored =
+        let stored: StoredFold =
             postcard::from_bytes(body).map_err(|_| wrong("of a fold were damaged"))?;
         if !stored.tree.is_valid() {
             return Err(wrong("of a fold contradict themselves"));
@@ -114,7 +114,7 @@ impl Fold {
         let suite = |(name, suite): (String, SuiteFold)| Some((name, suite.completed(&context)?));
         let suites: Option<BTreeMap<String, SuiteFold>> =
             stored.suites.into_iter().map(suite).collect();
-        let state = State {
+        let state = FoldState {
             most_bytes: stored.most_bytes,
             runs: stored.runs,
             tree: stored.tree,

@@ -58,14 +58,14 @@ const LISTED_BELOW: u64 = 1000;
 #[derive(Clone)]
 pub struct Fold {
     pub(super) context: Arc<Context>,
-    pub(super) state: State,
+    pub(super) state: FoldState,
     /// The SHA-256 of the recordings that a model was fitted to, where the fold is to check one.
     pub(super) fitted: Option<Arc<HashSet<String>>>,
 }
 
 /// What a fold has of its recordings.
 #[derive(Debug, Clone)]
-pub(super) struct State {
+pub(super) struct FoldState {
     /// Bytes of whole runs that a suite keeps at most.
     pub most_bytes: usize,
     /// Number of recordings without a defect.
@@ -104,7 +104,7 @@ impl Fold {
 
     fn with_context(setup: &Setup, most_bytes: usize) -> Result<Self> {
         let (tree, suites, defects) = Default::default();
-        let state = State { most_bytes, runs: 0, tree, suites, defects, compared: None };
+        let state = FoldState { most_bytes, runs: 0, tree, suites, defects, compared: None };
         Ok(Self { context: Arc::new(Context::new(setup)?), state, fitted: None })
     }
 
@@ -129,7 +129,7 @@ impl Fold {
     fn empty(&self) -> Self {
         let (tree, suites, defects) = Default::default();
         let compared = self.state.compared.as_ref().map(|(digest, _)| (digest.clone(), 0));
-        let state = State { runs: 0, tree, suites, defects, compared, ..self.state };
+        let state = FoldState { runs: 0, tree, suites, defects, compared, ..self.state };
         Self { context: Arc::clone(&self.context), state, fitted: self.fitted.clone() }
     }
 
@@ -309,7 +309,7 @@ impl Fold {
     }
 }
 
-impl State {
+impl FoldState {
     /// Returns the digest of the recordings of the model that the fold is to check.
     fn model(&self) -> Option<&str> {
         self.compared.as_ref().map(|(digest, _)| digest.as_str())
@@ -329,7 +329,7 @@ impl State {
 
 impl fmt::Debug for Fold {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let State { runs, suites, defects, .. } = &self.state;
+        let FoldState { runs, suites, defects, .. } = &self.state;
         let (suites, defects) = (suites.len(), defects.recordings);
         write!(f, "Fold {{ runs: {runs}, suites: {suites}, defects: {defects} }}")
     }
