@@ -37,9 +37,9 @@ pub(crate) struct Strand {
 /// The interval hulls of reachable sets over time.
 #[derive(Debug)]
 pub(crate) enum Hull {
-    /// Of the deviation from the nominal motion, bounded from inside too.
+    /// Hulls of the deviation from the nominal motion, bounded from inside too.
     Deviation(ReachSets),
-    /// Of the state, enclosed.
+    /// Enclosures of the state.
     State(Flowpipe),
 }
 
