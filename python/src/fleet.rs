@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use reachtube::conform::fleet::{FleetProblem, Fold, OnDefect};
-use reachtube::conform::{self as product, Answer, Hulls, Model, Notion, Problem, Setup};
+use reachtube::conform::{self as product, Answer, Model, Notion, Problem, Setup, Tube};
 use reachtube::recordings::{Defect, DefectKind};
 use serde_json::{Map, Value};
 
@@ -173,12 +173,12 @@ impl NativeFleet {
             watched(py, None, move |_| {
                 let model = model.ok_or_else(|| Failure::Setting("there is no model".into()))?;
                 let problem = problem(&setup, &fold, report)?;
-                let hulls = Hulls::new(&problem, model.sets())?;
+                let tube = Tube::new(&problem, model.sets())?;
                 let check = match server.as_deref() {
                     Some(server) => {
-                        product::fleet::check_elsewhere(&model, &problem, &hulls, server)?
+                        product::fleet::check_elsewhere(&model, &problem, &tube, server)?
                     }
-                    None => product::check(&model, &problem, &hulls)?,
+                    None => product::check(&model, &problem, &tube)?,
                 };
                 Ok(serde_json::to_string(&check).expect("a check has string keys"))
             })

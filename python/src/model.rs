@@ -94,7 +94,7 @@ fn kept(built: &Built) -> Result<String> {
         }
     }
     let verdict = built.verdict();
-    let summary = built.summary(front_end)?.to_string();
+    let summary = built.summary(front_end).to_string();
     let kept = json!({ "answer": answer, "verdict": verdict, "summary": summary, "files": files });
     Ok(kept.to_string())
 }

@@ -3,7 +3,7 @@
 use reachtube::Model;
 use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::conform::{
-    self, Check, CheckJob, Hulls, Keep, Notion, Problem, Setup, SuiteReach, check, reach,
+    self, Check, CheckJob, Keep, Notion, Problem, Setup, SuiteReach, Tube, check, reach,
 };
 use reachtube::export::ExportCase;
 use reachtube::pipeline::prepared;
@@ -18,7 +18,7 @@ use crate::progress::Progress;
 pub(crate) struct Opened {
     pub model: Model,
     pub problem: Problem,
-    hulls: Hulls,
+    tube: Tube,
 }
 
 impl Opened {
@@ -65,30 +65,30 @@ impl Opened {
             .gap_limit(gap_limit(args.max_gap))
             .keep(keep);
         let bar = Progress::new();
-        let conform::Opened { model, problem, hulls } = job.open(&bar)?;
-        Ok(Self { model, problem, hulls })
+        let conform::Opened { model, problem, tube } = job.open(&bar)?;
+        Ok(Self { model, problem, tube })
     }
 
     /// Returns each suite, or run with a nominal motion of its own, as exports take it.
     pub(crate) fn export_cases(&self) -> Result<Vec<ExportCase>> {
         let _bar = Progress::new();
-        Ok(ExportCase::all(&self.problem, &self.hulls)?)
+        Ok(ExportCase::all(&self.problem, &self.tube)?)
     }
 
     /// Compares the recordings with the reachable sets.
     pub(crate) fn check(&self) -> Result<Check> {
         let _bar = Progress::new();
-        Ok(check(&self.model, &self.problem, &self.hulls)?)
+        Ok(check(&self.model, &self.problem, &self.tube)?)
     }
 
     /// Returns a check on a few lines.
-    pub(crate) fn summary(&self, check: &Check) -> Result<Summary> {
-        Ok(check.summary(&self.model, &self.problem, &self.hulls, FrontEnd::CommandLine)?)
+    pub(crate) fn summary(&self, check: &Check) -> Summary {
+        check.summary(&self.model, &self.tube, FrontEnd::CommandLine)
     }
 
     /// Returns the reachable set of each suite, at samples and between them.
     pub(crate) fn reach(&self) -> Result<Vec<SuiteReach>> {
         let _bar = Progress::new();
-        Ok(reach(&self.problem, &self.hulls)?)
+        Ok(reach(&self.problem, &self.tube)?)
     }
 }

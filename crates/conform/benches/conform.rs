@@ -5,10 +5,8 @@ use divan::{Bencher, black_box};
 use rayon::prelude::*;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::data::Envelope;
-use reachtube_conform::linear::{Block, Program};
-use reachtube_conform::tube::{Deviation, Grid};
 use reachtube_conform::{
-    Check, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform, reach,
+    Check, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform, reach,
 };
 use reachtube_reach::{Disturbance, Propagation, TimeGrid};
 use reachtube_recordings::{DataSet, Torque};
@@ -45,13 +43,6 @@ fn deviations(run: usize) -> Vec<f64> {
 
 fn recordings() -> Vec<Vec<f64>> {
     (0..RUNS).map(deviations).collect()
-}
-
-fn grid(disturbance: Disturbance) -> Grid {
-    let system = linear_model(&Robot::lwa4p(), &ExpansionPoint::zero(6)).unwrap();
-    let propagation = Propagation::new(&system, &TimeGrid::uniform(0.004, SAMPLES)).unwrap();
-    let input_gains = disturbance.input_gains(&propagation);
-    Grid { propagation, input_gains }
 }
 
 #[divan::bench(sample_count = 10)]
@@ -105,26 +96,16 @@ fn reading_2280_runs(bencher: Bencher) {
     });
 }
 
-#[divan::bench(args = [Disturbance::Constant, Disturbance::Sample], sample_count = 10)]
-fn program_of_152_suites(bencher: Bencher, disturbance: Disturbance) {
-    let grids = [grid(disturbance)];
-    let mut envelope = Envelope::new(STATES);
-    (0..RUNS).for_each(|run| envelope.include(run as u32, &deviations(run)));
-    let deviations = [Deviation { suite: 0, grid: 0, envelope }];
-    let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
-    bencher.bench(|| {
-        let program = Program::new(
-            &settings,
-            &[1.0; STATES],
-            Block::of_grids(&grids, &deviations, STATES / 2),
-        );
-        program.solve().unwrap()
-    });
-}
-
+/// e^{At}, Γ(t) and κ(t) of one grid.
 #[divan::bench(sample_count = 10)]
 fn matrices_of_5_s(bencher: Bencher) {
-    bencher.bench(|| grid(Disturbance::Sample));
+    let system = linear_model(&Robot::lwa4p(), &ExpansionPoint::zero(6)).unwrap();
+    let grid = TimeGrid::uniform(0.004, SAMPLES);
+    bencher.bench(|| {
+        let propagation = Propagation::new(&system, &grid).unwrap();
+        let input_gains = Disturbance::Sample.input_gains(&propagation);
+        (propagation, input_gains)
+    });
 }
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/schunk_lwa4p");
@@ -157,7 +138,7 @@ fn conform_and_page_from_one_problem(bencher: Bencher) {
         let found = conform(&problem, &Silent, None).unwrap();
         let model = Model::new(&problem, &found);
         let answer = Check::new(&model, &problem, found.verdict.clone());
-        (answer, reach(&problem, &found.hulls).unwrap())
+        (answer, reach(&problem, &found.tube).unwrap())
     });
 }
 
@@ -172,10 +153,10 @@ fn conform_and_page_from_three_problems(bencher: Bencher) {
         let found = conform(&problem, &Silent, None).unwrap();
         let model = Model::new(&problem, &found);
         let problem = schunk(Keep::Needed).unwrap();
-        let hulls = Hulls::new(&problem, model.sets()).unwrap();
-        let answer = check(&model, &problem, &hulls).unwrap();
+        let tube = Tube::new(&problem, model.sets()).unwrap();
+        let answer = check(&model, &problem, &tube).unwrap();
         let problem = schunk(Keep::All).unwrap();
-        let hulls = Hulls::new(&problem, model.sets()).unwrap();
-        (answer, reach(&problem, &hulls).unwrap())
+        let tube = Tube::new(&problem, model.sets()).unwrap();
+        (answer, reach(&problem, &tube).unwrap())
     });
 }

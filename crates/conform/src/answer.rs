@@ -116,6 +116,6 @@ impl Answer {
     ///
     /// As [`reach()`](crate::reach()).
     pub fn reach(&self) -> Result<Vec<SuiteReach>> {
-        reach(&self.problem, &self.found.hulls)
+        reach(&self.problem, &self.found.tube)
     }
 }

@@ -13,7 +13,7 @@ use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
 use crate::result::code::Code;
 use crate::result::finding::Finding;
-use crate::tube::hulls::Hulls;
+use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
 
 /// The answer of a check.
@@ -48,8 +48,8 @@ pub struct Check {
 /// # Errors
 ///
 /// As [`Problem::run`]. A violation is no error.
-pub fn check(model: &Model, problem: &Problem, hulls: &Hulls) -> Result<Check> {
-    check_asking(model, problem, hulls, None)
+pub fn check(model: &Model, problem: &Problem, tube: &Tube) -> Result<Check> {
+    check_asking(model, problem, tube, None)
 }
 
 /// Does what [`check`] does for the problem of a fold whose points `server` asks: the notions
@@ -65,29 +65,29 @@ pub fn check(model: &Model, problem: &Problem, hulls: &Hulls) -> Result<Check> {
 pub fn check_elsewhere(
     model: &Model,
     problem: &Problem,
-    hulls: &Hulls,
+    tube: &Tube,
     server: &dyn PointServer,
 ) -> Result<Check> {
-    check_asking(model, problem, hulls, Some(server))
+    check_asking(model, problem, tube, Some(server))
 }
 
 fn check_asking(
     model: &Model,
     problem: &Problem,
-    hulls: &Hulls,
+    tube: &Tube,
     server: Option<&dyn PointServer>,
 ) -> Result<Check> {
-    let judged = judged(problem, hulls, server)?;
-    let hulls = judged.as_ref().unwrap_or(hulls);
+    let judged = judged(problem, tube, server)?;
+    let tube = judged.as_ref().unwrap_or(tube);
     let mut excess = vec![0.0f64; 2 * problem.joints()];
     let mut worst: Vec<Option<Witness>> = vec![None; 2 * problem.joints()];
-    let verdict = Verdict::new(problem, hulls, |suite, _, row| {
+    let verdict = Verdict::visiting(problem, tube, |row| {
         let largest = row.edges.iter().map(|edge| edge.excess).fold(0.0, f64::max);
         excess[row.state] = excess[row.state].max(largest);
         for edge in row.edges.iter().filter(|edge| edge.excess > 0.0 && edge.excess.is_finite()) {
             let worst = &mut worst[row.state];
             if worst.as_ref().is_none_or(|worst| edge.excess > worst.excess) {
-                *worst = Some(Witness::new(problem, suite, row, edge));
+                *worst = Some(Witness::new(problem, row, edge));
             }
         }
     })?;
@@ -95,7 +95,7 @@ fn check_asking(
     let can_grow = !problem.settings().notion.asks_points()
         && !verdict.conformant
         && excess.iter().all(|excess| excess.is_finite());
-    let growth = can_grow.then(|| Growth::new(problem, &hulls.sets, &excess)).transpose()?;
+    let growth = can_grow.then(|| Growth::new(problem, &tube.sets, &excess)).transpose()?;
     Ok(Check { worst_by_state, growth, ..Check::new(model, problem, verdict) }.with_findings(model))
 }
 

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::model::file::Model;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
-use crate::tube::hulls::Hulls;
+use crate::tube::tube::Tube;
 
 /// A model to compare with recordings, whose torques are of the model's kind.
 #[derive(Debug)]
@@ -34,7 +34,7 @@ pub struct Opened {
     /// The recordings.
     pub problem: Problem,
     /// The reachable sets.
-    pub hulls: Hulls,
+    pub tube: Tube,
 }
 
 impl CheckJob {
@@ -90,7 +90,7 @@ impl CheckJob {
     ///
     /// # Errors
     ///
-    /// As [`Problem::read`] and [`Hulls::new`].
+    /// As [`Problem::read`] and [`Tube::new`].
     pub fn open(self, progress: &dyn Progress) -> Result<Opened> {
         let Self { model, setup, source, suites, keep, .. } = self;
         let setup = match setup {
@@ -99,8 +99,8 @@ impl CheckJob {
         };
         let setup = setup.judged_by(self.notion, self.until, self.gap_limit);
         let problem = Problem::read(setup, source, &suites, keep, progress)?;
-        let hulls = Hulls::new(&problem, model.sets())?;
-        Ok(Opened { model, problem, hulls })
+        let tube = Tube::new(&problem, model.sets())?;
+        Ok(Opened { model, problem, tube })
     }
 
     /// Checks whether the recordings lie in the reachable sets.
@@ -132,7 +132,7 @@ impl Opened {
     ///
     /// As [`check()`](crate::check()).
     pub fn check(&self) -> Result<Check> {
-        check(&self.model, &self.problem, &self.hulls)
+        check(&self.model, &self.problem, &self.tube)
     }
 
     /// Returns the reachable set of each suite, at samples and between them.
@@ -141,6 +141,6 @@ impl Opened {
     ///
     /// As [`reach()`](crate::reach()).
     pub fn reach(&self) -> Result<Vec<SuiteReach>> {
-        reach(&self.problem, &self.hulls)
+        reach(&self.problem, &self.tube)
     }
 }

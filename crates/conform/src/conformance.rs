@@ -22,7 +22,7 @@ use crate::search::found::{Found, SearchSummary};
 use crate::search::optimality::LARGEST_GAP;
 use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
+use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
 
 /// The result of [`conform`].
@@ -78,7 +78,7 @@ pub struct Conformance {
     /// N m, to lay beside U.
     pub input_error: Vec<f64>,
     /// The reachable sets.
-    pub hulls: Hulls,
+    pub tube: Tube,
 }
 
 /// Finds the smallest uncertainty sets for which the problem's model is reachset conformant with
@@ -134,27 +134,27 @@ fn conform_claim(
         let (found, calibration) = calibrate(problem, progress, resume)?;
         (found, Some(calibration))
     };
-    let Found { hulls, cost, lower_bound, optimality_gap, .. } = found;
+    let Found { tube, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
     let mut tight = found.touching;
     let mut radii = vec![0.0f64; 2 * problem.joints()];
-    let verdict = Verdict::new(problem, &hulls, |suite, case, row| {
+    let verdict = Verdict::visiting(problem, &tube, |row| {
         radii[row.state] = radii[row.state].max(row.radius);
-        let decide = row.edges.iter().filter(|edge| deciding.contains(case, row, edge));
-        tight.extend(decide.map(|edge| Witness::new(problem, suite, row, edge)));
+        let decide = row.edges.iter().filter(|edge| deciding.contains(row, edge));
+        tight.extend(decide.map(|edge| Witness::new(problem, row, edge)));
     })?;
     tight.sort_by(|a, b| b.excess.total_cmp(&a.excess));
     let explanations = match problem.settings().explain {
-        Some(_) => explain(problem, &hulls.sets)?,
+        Some(_) => explain(problem, &tube.sets)?,
         None => Vec::new(),
     };
     let fit = NominalFit::new(problem)?;
-    let warnings = warnings(problem, &hulls.sets, &radii, &fit, calibration.as_ref())?;
+    let warnings = warnings(problem, &tube.sets, &radii, &fit, calibration.as_ref())?;
     let is_smallest = calibration.is_none() && !problem.settings().notion.asks_points();
     Ok(Conformance {
-        sets: hulls.sets.clone(),
+        sets: tube.sets.clone(),
         warnings,
-        usefulness: Usefulness::new(problem, &hulls, &fit)?,
+        usefulness: Usefulness::new(problem, &tube, &fit),
         nominal_explains: fit.explained,
         cost,
         lower_bound,
@@ -172,7 +172,7 @@ fn conform_claim(
         explanations,
         input_error: InputError::of_problem(problem)?,
         any_run: if problem.settings().calibrate.is_empty() { AnyRun::new(problem)? } else { None },
-        hulls,
+        tube,
     })
 }
 

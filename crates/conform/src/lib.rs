@@ -3,7 +3,7 @@
 //!
 //! A [`Problem`] is a model, [`Settings`] and recordings that are read once. [`conform`] finds its
 //! sets, [`Model`] writes them to a file, [`check()`] compares other recordings with the reachable
-//! sets ([`Hulls`]) of a model, [`reach()`] returns these sets at samples and between them, and
+//! sets ([`Tube`]) of a model, [`reach()`] returns these sets at samples and between them, and
 //! [`explain()`] searches for the motion of the model closest to each run. A [`Job`] runs all of
 //! it, as the command does.
 //!
@@ -24,11 +24,11 @@ pub mod explain;
 pub mod fit;
 pub mod fleet;
 mod job;
-pub mod linear;
 pub mod model;
 pub mod next_motion;
 mod nominal;
 pub mod plausibility;
+mod program;
 mod progress;
 mod reach;
 pub mod result;
@@ -57,4 +57,4 @@ pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use result::finding::Finding;
 pub use sets::UncertaintySets;
-pub use tube::hulls::Hulls;
+pub use tube::tube::Tube;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use reachtube_reach::{Flowpipe, ReachSets, Trajectory, Tube, TubeRadii};
+use reachtube_reach::{Flowpipe, ReachSets, StepBounds, StepRadii, Trajectory};
 use reachtube_recordings::State;
 use reachtube_scalar::rounding::{add_down, add_up};
 
@@ -13,7 +13,8 @@ use crate::nominal::simulate::nominal;
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Nominal;
 use crate::tube::grids::Grid;
-use crate::tube::hulls::{HullKind, Hulls, Lost};
+use crate::tube::strand::{Lost, Strand};
+use crate::tube::tube::{Enclosure, Tube};
 
 /// The reachable set over one suite, or over one run that has its own nominal motion.
 #[derive(Debug, Clone)]
@@ -31,14 +32,14 @@ pub struct SuiteReach {
     /// Upper bounds at samples, K x 2n.
     pub upper: Vec<f64>,
     /// Bounds over each step between samples, (K - 1) x 2n.
-    pub tube: Tube,
+    pub tube: StepBounds,
     /// Number of states 2n.
     pub dimension: usize,
     /// Where the set could not be followed further, if so: times end there.
     pub lost: Option<Lost>,
 }
 
-/// Computes the reachable sets over the recorded suites under the sets of `hulls`, at samples and
+/// Computes the reachable sets over the recorded suites under the sets of `tube`, at samples and
 /// between them.
 ///
 /// # Guarantee
@@ -49,36 +50,36 @@ pub struct SuiteReach {
 /// # Errors
 ///
 /// As [`Problem::run`]; a model that runs away without any uncertainty.
-pub fn reach(problem: &Problem, hulls: &Hulls) -> Result<Vec<SuiteReach>> {
-    match &hulls.kind {
-        HullKind::Linear(reach) => linear(problem, &hulls.sets, reach),
-        HullKind::Outer(outer) => {
-            let of_case = |(case, flowpipe): (&Case, &Flowpipe)| {
-                let nominal = nominal(problem.dynamics().polynomials(), case)?;
-                Ok(SuiteReach::of_flowpipe(problem, case, nominal, flowpipe))
+pub fn reach(problem: &Problem, tube: &Tube) -> Result<Vec<SuiteReach>> {
+    match tube.enclosure {
+        Enclosure::Inner => linear(problem, tube),
+        Enclosure::Outer => {
+            let of_case = |(case, strand): (&Case, &Strand)| {
+                let flowpipe = strand.flowpipe()?;
+                let nominal = nominal(problem.dynamics().polynomials(), case);
+                let lost = strand.lost.clone();
+                let of = |nominal| SuiteReach::of_flowpipe(problem, case, nominal, flowpipe, lost);
+                Some(nominal.map(of))
             };
-            problem.cases()?.iter().zip(outer).map(of_case).collect()
+            problem.cases()?.iter().zip(&tube.strands).filter_map(of_case).collect()
         }
     }
 }
 
-fn linear(
-    problem: &Problem,
-    sets: &UncertaintySets,
-    reach: &[ReachSets],
-) -> Result<Vec<SuiteReach>> {
+fn linear(problem: &Problem, tube: &Tube) -> Result<Vec<SuiteReach>> {
     let (grids, disturbance) = (problem.grids()?, problem.settings().disturbance);
-    let radii_on = |grid: &Grid| {
-        TubeRadii::new(&grid.propagation, disturbance, &sets.initial_set, &sets.input_set)
-    };
-    let radii: Vec<TubeRadii> = grids.as_slice().iter().map(radii_on).collect();
+    let UncertaintySets { initial_set, input_set, .. } = &tube.sets;
+    let radii_on =
+        |grid: &Grid| StepRadii::new(&grid.propagation, disturbance, initial_set, input_set);
+    let radii: Vec<StepRadii> = grids.as_slice().iter().map(radii_on).collect();
+    let reach: Vec<&ReachSets> = tube.strands.iter().filter_map(Strand::deviation).collect();
     let of_case = |case: Case| {
         let nominal = Nominal::new(grids, &case);
-        let propagation = &grids.as_slice()[nominal.grid].propagation;
-        let (reach, radii) = (&reach[nominal.grid], &radii[nominal.grid]);
+        let Grid { times, propagation, .. } = &grids.as_slice()[nominal.grid];
+        let (reach, radii) = (reach[nominal.grid], &radii[nominal.grid]);
         let Nominal { trajectory, .. } = nominal;
-        let tube = Tube::new(propagation, &trajectory, &case.inputs, reach, &sets.input_set, radii);
-        let times = propagation.grid().times()[..trajectory.len()].to_vec();
+        let tube = StepBounds::new(propagation, &trajectory, &case.inputs, reach, input_set, radii);
+        let times = times.times()[..trajectory.len()].to_vec();
         Ok(SuiteReach::new(problem, &case, times, &trajectory, reach, tube))
     };
     let suites = 0..problem.recordings().suites.len();
@@ -93,7 +94,7 @@ impl SuiteReach {
         times: Vec<f64>,
         trajectory: &Trajectory,
         reach: &ReachSets,
-        tube: Tube,
+        tube: StepBounds,
     ) -> Self {
         let dimension = 2 * case.joints();
         let (mut nominal, mut lower, mut upper) = (Vec::new(), Vec::new(), Vec::new());
@@ -114,6 +115,7 @@ impl SuiteReach {
         case: &Case,
         mut nominal: Vec<f64>,
         flowpipe: &Flowpipe,
+        lost: Option<Lost>,
     ) -> Self {
         let (dimension, samples) = (2 * case.joints(), flowpipe.len());
         nominal.truncate(samples * dimension);
@@ -127,9 +129,9 @@ impl SuiteReach {
             nominal,
             lower: hulls().map(|hull| hull.lo()).collect(),
             upper: hulls().map(|hull| hull.hi()).collect(),
-            tube: Tube::from_boxes(dimension, steps.collect()),
+            tube: StepBounds::from_boxes(dimension, steps.collect()),
             dimension,
-            lost: Lost::new(case, flowpipe),
+            lost,
         }
     }
 

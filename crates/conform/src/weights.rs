@@ -1,18 +1,16 @@
 use crate::data::envelope::Envelope;
 use crate::data::settings::Weights;
 
-/// Returns the weight of each state in the cost, s, 2n, for these deviations.
+/// Returns the weight of each state in the cost, s, for these deviations.
 pub(crate) fn state_weights(
     weights: &Weights,
     deviations: &[&Envelope],
-    joints: usize,
+    states: usize,
 ) -> Vec<f64> {
     match weights {
-        Weights::Unit => vec![1.0; 2 * joints],
+        Weights::Unit => vec![1.0; states],
         Weights::Given(weights) => weights.clone(),
-        Weights::Spread => {
-            (0..2 * joints).map(|i| 1.0 / largest_deviation(deviations, i)).collect()
-        }
+        Weights::Spread => (0..states).map(|i| 1.0 / largest_deviation(deviations, i)).collect(),
     }
 }
 

@@ -3,7 +3,6 @@
 use reachtube_conform::result::{Code, FrontEnd, Summary};
 
 use crate::build::Built;
-use crate::error::Result;
 
 /// Number of horizons beyond the chosen one whose sets are listed.
 const BEYOND: usize = 2;
@@ -29,24 +28,21 @@ impl Built {
 
     /// Returns the answer on a few lines, for users of a front end: the verdict with the horizon,
     /// the sets of each joint there, what was held out, and how the sets grow.
-    ///
-    /// # Errors
-    ///
-    /// Sets that could not be computed again at the horizon.
-    pub fn summary(&self, front_end: FrontEnd) -> Result<Summary> {
-        let mut summary = self.answer.summary(front_end)?;
+    #[must_use]
+    pub fn summary(&self, front_end: FrontEnd) -> Summary {
+        let mut summary = self.answer.summary(front_end);
         summary.verdict[0] = self.verdict();
         if !self.is_useful() {
             let findings = self.answer.model.findings().into_iter();
             let causes = findings.filter(|finding| finding.code == Code::Cause);
             summary.verdict.extend(causes.map(|finding| finding.written_for(front_end)));
         }
-        summary.table = self.answer.table_at_horizon(&self.held_out.growth)?;
+        summary.table = self.answer.table_at_horizon(&self.held_out.growth);
         summary.warnings.clone_from(&self.warnings);
         summary.facts.insert(0, ("held out".into(), self.held_out_words()));
         summary.fact("widest set by horizon, of the motion", self.growth());
         summary.next = None;
-        Ok(summary)
+        summary
     }
 
     /// Returns how many rows that were held out lie outside the sets, in a few words.

@@ -7,7 +7,8 @@ mod arm;
 use arm::arm;
 use divan::{Bencher, black_box};
 use reachtube_reach::{
-    Disturbance, Hyperrectangle, IntervalVector, Propagation, ReachSets, TimeGrid, Tube, TubeRadii,
+    Disturbance, Hyperrectangle, IntervalVector, Propagation, ReachSets, StepBounds, StepRadii,
+    TimeGrid,
 };
 use reachtube_scalar::Interval;
 
@@ -84,7 +85,7 @@ fn tube_radii(bencher: Bencher) {
     let propagation = propagation(&uniform());
     let (initial, input) = sets();
     bencher
-        .bench(|| TubeRadii::new(black_box(&propagation), Disturbance::Constant, &initial, &input));
+        .bench(|| StepRadii::new(black_box(&propagation), Disturbance::Constant, &initial, &input));
 }
 
 #[divan::bench]
@@ -93,11 +94,13 @@ fn tube(bencher: Bencher) {
     let (initial, input) = sets();
     let gains = Disturbance::Constant.input_gains(&propagation);
     let reach = ReachSets::new(&propagation, &gains, &initial, &input);
-    let radii = TubeRadii::new(&propagation, Disturbance::Constant, &initial, &input);
+    let radii = StepRadii::new(&propagation, Disturbance::Constant, &initial, &input);
     let inputs = vec![0.3; 6 * SAMPLES];
     let nominal =
         propagation.solve(&IntervalVector::from_element(12, Interval::point(0.1)), &inputs);
-    bencher.bench(|| Tube::new(black_box(&propagation), &nominal, &inputs, &reach, &input, &radii));
+    bencher.bench(|| {
+        StepBounds::new(black_box(&propagation), &nominal, &inputs, &reach, &input, &radii)
+    });
 }
 
 /// Measures the whole computation, from the model and its sets to the hulls at all samples.

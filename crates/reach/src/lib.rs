@@ -11,7 +11,7 @@ pub use error::ReachError;
 pub use grid::TimeGrid;
 pub use linear::{
     Disturbance, LinearSystem, Propagation, PropagationStep, ReachSets, SampleGenerators,
-    Trajectory, Tube, TubeRadii, step,
+    StepBounds, StepRadii, Trajectory, step,
 };
 pub use polynomial::{
     Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,

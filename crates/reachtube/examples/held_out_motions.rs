@@ -2,7 +2,7 @@
 
 use reachtube::demo::{DemoOptions, record};
 use reachtube::{
-    DataSet, Hulls, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, check, conform,
+    DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, Tube, check, conform,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("training: {} of {} rows hold", found.verdict.rows, found.verdict.rows);
 
     let held_out = Problem::read(setup, open()?, &recorded.check, Keep::Needed, &Silent)?;
-    let answer = check(&model, &held_out, &Hulls::new(&held_out, model.sets())?)?;
+    let answer = check(&model, &held_out, &Tube::new(&held_out, model.sets())?)?;
     let verdict = &answer.verdict;
     println!("held out: {} of {} rows outside", verdict.violations.count, verdict.rows);
     if let Some(witness) = &verdict.violations.worst {

@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = Model::new(&problem, &found);
 
     let check = Check::new(&model, &problem, found.verdict.clone());
-    let reach = reach(&problem, &found.hulls)?;
+    let reach = reach(&problem, &found.tube)?;
     let sources = Sources {
         model: &model,
         problem: &problem,

@@ -8,8 +8,8 @@ pub use reachtube_abstraction::{
 };
 pub use reachtube_conform::tube::{Enclosure, Witness};
 pub use reachtube_conform::{
-    self as conform, Check, Conformance, Dynamics, Hulls, Keep, Model, Problem, Progress, Settings,
-    Setup, Silent, SuiteReach, UncertaintySets, Verdict, check, conform, explain, reach,
+    self as conform, Check, Conformance, Dynamics, Keep, Model, Problem, Progress, Settings, Setup,
+    Silent, SuiteReach, Tube, UncertaintySets, Verdict, check, conform, explain, reach,
 };
 #[cfg(feature = "report")]
 pub use reachtube_experiment::{Error, Result, campaign, demo, reproduce, virtual_robot};

@@ -4,7 +4,7 @@
 pub use reachtube_experiment::Result;
 
 pub use reachtube_conform::{
-    Answer, Check, Finding, Hulls, Job, Model, Noise, Notion, Settings, Silent,
+    Answer, Check, Finding, Job, Model, Noise, Notion, Settings, Silent, Tube,
 };
 pub use reachtube_recordings::{DataSet, Torque};
 pub use reachtube_robot::Robot;

@@ -91,7 +91,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let mut page = conform_command::page_of(&answer)?;
     page.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
     output::wrote(&report_files::write_page(&page, Assets::Inside, &pages[0])?);
-    let summary = answer.summary(FrontEnd::CommandLine)?;
+    let summary = answer.summary(FrontEnd::CommandLine);
     // Try them on the motions held out.
     let Answer { model, problem, .. } = answer;
     let setup = problem.setup().clone();
@@ -103,7 +103,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
             "nominal_cost": before.cost, "model": model, "held_out": held_out
         }))?;
     } else {
-        let text = text(&opened, &held_out, summary, &recorded, &pages[0])?;
+        let text = text(&opened, &held_out, summary, &recorded, &pages[0]);
         output::print_verdict(&text, &outcome)?;
     }
     Ok(outcome)
@@ -116,18 +116,18 @@ fn text(
     summary: Summary,
     recorded: &RecordedDemo,
     page: &Path,
-) -> Result<String> {
+) -> String {
     let heading = held_out_heading(recorded);
     let model = &opened.model;
     if global().verbose {
         let report = held_out.report(&model.robot.kinds());
-        return Ok(format!("{}\n{heading}\n{report}", model.report()));
+        return format!("{}\n{heading}\n{report}", model.report());
     }
     let model = Summary { next: None, ..summary };
     // The sets are those above.
-    let tried = Summary { table: Table::default(), next: None, ..opened.summary(held_out)? };
+    let tried = Summary { table: Table::default(), next: None, ..opened.summary(held_out) };
     let page = report_files::page_in(page);
-    Ok(format!("{model}\n{heading}\n{tried}\nnext: open {} in a browser\n", page.display()))
+    format!("{model}\n{heading}\n{tried}\nnext: open {} in a browser\n", page.display())
 }
 
 fn options(args: &Arguments) -> Result<DemoOptions> {

@@ -100,7 +100,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         written.iter().for_each(|path| output::wrote(path));
         output::print_json(&built.to_json())?;
     } else {
-        let mut text = summary(&built, &written, args)?.to_string();
+        let mut text = summary(&built, &written, args).to_string();
         if global().verbose {
             text += &format!("\n{}", built.answer.report());
         }
@@ -134,8 +134,8 @@ fn outcome(built: &Built) -> Outcome {
 }
 
 /// Returns the answer on a few lines, with the files that were written.
-fn summary(built: &Built, written: &[PathBuf], args: &Arguments) -> Result<Summary> {
-    let mut summary = built.summary(FrontEnd::CommandLine)?;
+fn summary(built: &Built, written: &[PathBuf], args: &Arguments) -> Summary {
+    let mut summary = built.summary(FrontEnd::CommandLine);
     let inside =
         |path: &PathBuf| path.strip_prefix(&args.out).unwrap_or(path).display().to_string();
     let names: Vec<String> = written.iter().map(inside).collect();
@@ -144,5 +144,5 @@ fn summary(built: &Built, written: &[PathBuf], args: &Arguments) -> Result<Summa
         true => format!("open {}", report_files::page_in(&args.out.join("page")).display()),
         false => format!("read {}", args.out.join("choices.toml").display()),
     });
-    Ok(summary)
+    summary
 }

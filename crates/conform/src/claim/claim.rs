@@ -4,9 +4,9 @@ use crate::claim::look::Look;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
+use crate::tube::tube::Tube;
 
 /// What recordings must satisfy beyond the rows.
 pub(crate) trait Claim: Sync {
@@ -21,7 +21,7 @@ pub(crate) trait Claim: Sync {
     /// # Errors
     ///
     /// As [`Plant::tube`], and failures to reach the recordings.
-    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Hulls>;
+    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Tube>;
 
     /// Returns the recorded point that is furthest along each direction, of all at its sample.
     ///
@@ -48,7 +48,7 @@ pub(crate) trait Claim: Sync {
 pub(crate) struct Rows;
 
 impl Claim for Rows {
-    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, _: &Look) -> Result<Hulls> {
+    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, _: &Look) -> Result<Tube> {
         Ok(plant.tube(sets, None)?.0)
     }
 

@@ -10,10 +10,10 @@ use crate::data::settings::{Notion, States};
 use crate::error::Result;
 use crate::search::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::{HullKind, Hulls};
 use crate::tube::linear::Linear;
 use crate::tube::plant::Plant;
 use crate::tube::polynomial::Polynomial;
+use crate::tube::tube::Tube;
 
 impl Notion {
     /// Returns whether recorded points are judged, and not only each state by itself.
@@ -31,7 +31,7 @@ impl Notion {
     /// Returns the states of each projection in which recorded points must lie in the reachable
     /// set.
     pub(crate) fn projections(self, states: States, joints: usize) -> Vec<Vec<usize>> {
-        let rows = states.rows(joints);
+        let rows = states.rows(2 * joints);
         match self {
             Self::Exact | Self::Trace => vec![(0..rows).collect()],
             _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
@@ -103,7 +103,7 @@ pub(crate) fn plant(problem: &Problem) -> Result<Box<dyn Plant + '_>> {
     })
 }
 
-impl Hulls {
+impl Tube {
     /// Computes the reachable sets under `sets` on all cores.
     ///
     /// # Guarantee
@@ -117,11 +117,7 @@ impl Hulls {
     /// As [`Problem::run`]; when a solution cannot be enclosed.
     pub fn new(problem: &Problem, sets: UncertaintySets) -> Result<Self> {
         match problem.dynamics().linear_system() {
-            Some(_) => {
-                let grids = problem.grids()?.as_slice();
-                let reach = grids.iter().map(|grid| grid.reach(&sets)).collect();
-                Ok(Self::of(sets, HullKind::Linear(reach)))
-            }
+            Some(_) => Ok(Linear::tube_without_points(problem.grids()?.as_slice(), sets)),
             // These sets are not computed twice: the points are judged on the way.
             None => claim(problem, None)?.judge(&Polynomial::new(problem), &sets, &Look::proof()),
         }
@@ -136,12 +132,12 @@ impl Hulls {
 /// As [`Claim::judge`].
 pub(crate) fn judged(
     problem: &Problem,
-    hulls: &Hulls,
+    tube: &Tube,
     server: Option<&dyn PointServer>,
-) -> Result<Option<Hulls>> {
-    if !problem.settings().notion.asks_points() || hulls.judged.is_some() {
+) -> Result<Option<Tube>> {
+    if !problem.settings().notion.asks_points() || tube.judged.is_some() {
         return Ok(None);
     }
     let claim = claim(problem, server)?;
-    claim.judge(&*plant(problem)?, &hulls.sets, &Look::proof()).map(Some)
+    claim.judge(&*plant(problem)?, &tube.sets, &Look::proof()).map(Some)
 }

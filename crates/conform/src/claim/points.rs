@@ -11,9 +11,9 @@ use crate::data::problem::Problem;
 use crate::data::settings::{Noise, Settings};
 use crate::error::Result;
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At, Judged, PointOutside};
 use crate::tube::plant::{Plant, Slice};
+use crate::tube::tube::Tube;
 
 /// Sets are taken when no point needs them to grow by more than this part.
 const TOLERANCE: f64 = 2e-5;
@@ -253,8 +253,8 @@ impl<'a> Points<'a> {
     }
 
     /// Adds the points that no slice showed, because the set was lost before.
-    fn lost(&self, hulls: &Hulls, judged: &mut Judged) {
-        for points in self.samples.iter().filter(|points| !hulls.reaches(points.place())) {
+    fn lost(&self, tube: &Tube, judged: &mut Judged) {
+        for points in self.samples.iter().filter(|points| !tube.reaches(points.place())) {
             for owner in &points.owners {
                 let count = self.projections.len();
                 judged.points += count;
@@ -265,8 +265,8 @@ impl<'a> Points<'a> {
 }
 
 impl Claim for Points<'_> {
-    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Hulls> {
-        let (hulls, judged) = match look {
+    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Tube> {
+        let (tube, judged) = match look {
             Look::Search { tolerance, near } => {
                 let near = self.in_lists(plant, near)?;
                 let watch = |slice: &dyn Slice| match self.index(slice.at()) {
@@ -287,12 +287,12 @@ impl Claim for Points<'_> {
                         None => judged,
                     }
                 };
-                let (hulls, mut judged) = plant.tube(sets, Some(&watch))?;
-                self.lost(&hulls, &mut judged);
-                (hulls, judged)
+                let (tube, mut judged) = plant.tube(sets, Some(&watch))?;
+                self.lost(&tube, &mut judged);
+                (tube, judged)
             }
         };
-        Ok(Hulls { judged: Some(judged), ..hulls })
+        Ok(Tube { judged: Some(judged), ..tube })
     }
 
     fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {

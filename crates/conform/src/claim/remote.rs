@@ -9,9 +9,9 @@ use crate::claim::look::{Answer, Look, Question};
 use crate::data::tree::Tree;
 use crate::error::{Error, Result};
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
+use crate::tube::tube::Tube;
 
 /// The version of questions and answers in bytes.
 const VERSION: u32 = 2;
@@ -63,10 +63,10 @@ impl Remote<'_> {
 }
 
 impl Claim for Remote<'_> {
-    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Hulls> {
+    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Tube> {
         let question = Question::Judge { sets: sets.clone(), look: look.clone() };
         let Answer::Judged(judged) = self.ask(&question)? else { return Err(other_answer()) };
-        Ok(Hulls { judged: Some(judged), ..plant.tube(sets, None)?.0 })
+        Ok(Tube { judged: Some(judged), ..plant.tube(sets, None)?.0 })
     }
 
     fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {

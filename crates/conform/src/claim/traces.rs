@@ -8,9 +8,9 @@ use crate::error::Result;
 use crate::explain::trace::{TraceFactor, trace_factors};
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
+use crate::tube::tube::Tube;
 
 /// What the radii of U are widened by first, N m, so that doubles lie in u + U.
 const LEAST_RADIUS: f64 = 1e-9;
@@ -28,7 +28,7 @@ pub(crate) struct Traces<'a> {
 }
 
 impl Claim for Traces<'_> {
-    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Hulls> {
+    fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Tube> {
         self.points.judge(plant, sets, look)
     }
 

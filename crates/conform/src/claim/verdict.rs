@@ -9,9 +9,10 @@ use crate::data::settings::{Settings, States};
 use crate::data::suite::Suite;
 use crate::error::Result;
 use crate::explain::trace::{TraceVerdict, trace_factors};
-use crate::tube::hulls::{Enclosure, Hulls, Lost};
 use crate::tube::judged::Judged;
 use crate::tube::rows::Row;
+use crate::tube::strand::Lost;
+use crate::tube::tube::{Enclosure, Tube};
 use crate::tube::witness::Witness;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
@@ -97,8 +98,7 @@ impl Violations {
 }
 
 impl Verdict {
-    /// Compares every row with its hull and hands it to `visit` as well, with the index of its
-    /// suite and, where hulls belong to cases, of its case.
+    /// Compares every row with its hull.
     ///
     /// # Guarantee
     ///
@@ -110,34 +110,47 @@ impl Verdict {
     /// # Errors
     ///
     /// As [`Problem::run`]; points of a fold that other processes have and that were not asked.
-    pub fn new(
+    pub fn new(problem: &Problem, tube: &Tube) -> Result<Self> {
+        Self::visiting(problem, tube, |_| ())
+    }
+
+    /// Does what [`new`](Self::new) does, and hands every row to `visit` as well.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`new`](Self::new).
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub(crate) fn visiting(
         problem: &Problem,
-        hulls: &Hulls,
-        mut visit: impl FnMut(usize, Option<usize>, &Row),
+        tube: &Tube,
+        mut visit: impl FnMut(&Row),
     ) -> Result<Self> {
         // Without its points, a verdict would claim less than the notion does.
-        let own = judged(problem, hulls, None)?;
-        let hulls = own.as_ref().unwrap_or(hulls);
+        let own = judged(problem, tube, None)?;
+        let tube = own.as_ref().unwrap_or(tube);
         let mut suites: Vec<SuiteVerdict> =
             problem.recordings().suites.iter().map(SuiteVerdict::start).collect();
         let mut largest_excess = f64::NEG_INFINITY;
-        hulls.for_each_row(problem, |suite, case, row| {
-            suites[suite].take(problem, suite, &row);
+        tube.for_each_row(problem, |row| {
+            suites[row.suite].take(problem, row);
             let finite = row.edges.iter().map(|edge| edge.excess).filter(|x| x.is_finite());
             largest_excess = finite.fold(largest_excess, f64::max);
-            visit(suite, case, &row);
+            visit(row);
         })?;
         let mut violations = Violations::default();
         for suite in &suites {
             violations.count += suite.violations.count;
             suite.violations.worst.iter().for_each(|worst| violations.take(worst.clone()));
         }
-        let count = |judged: &Judged| count_points(problem, hulls, judged, &mut suites);
-        let points = hulls.judged.as_ref().map(count).transpose()?;
+        let count = |judged: &Judged| count_points(problem, tube, judged, &mut suites);
+        let points = tube.judged.as_ref().map(count);
         let asks_motions = problem.settings().notion.asks_motions();
-        let traces = asks_motions.then(|| judge_traces(problem, hulls, &mut suites)).transpose()?;
+        let traces = asks_motions.then(|| judge_traces(problem, tube, &mut suites)).transpose()?;
         let rows = suites.iter().map(|suite| suite.rows).sum();
-        let (runs, enclosure) = (problem.recordings().run_count(), hulls.enclosure());
+        let (runs, enclosure) = (problem.recordings().run_count(), tube.enclosure);
         Ok(Self {
             conformant: rows > 0 && suites.iter().all(SuiteVerdict::holds),
             claim: claim(runs, problem.settings(), enclosure),
@@ -148,7 +161,7 @@ impl Verdict {
             points,
             traces,
             largest_excess: if largest_excess.is_finite() { largest_excess } else { 0.0 },
-            lost: hulls.lost(problem)?,
+            lost: tube.lost().cloned().collect(),
             suites,
         })
     }
@@ -175,11 +188,11 @@ impl SuiteVerdict {
         self.violations.count == 0 && unproved.iter().flatten().all(|count| *count == 0)
     }
 
-    fn take(&mut self, problem: &Problem, suite: usize, row: &Row) {
+    fn take(&mut self, problem: &Problem, row: &Row) {
         self.rows += 1;
         self.violations.count += usize::from(!row.holds());
         for edge in row.edges.iter().filter(|edge| edge.excess > 0.0 && edge.excess.is_finite()) {
-            let witness = Witness::new(problem, suite, row, edge);
+            let witness = Witness::new(problem, row, edge);
             if !self.violating_runs.contains(&witness.run) {
                 self.violating_runs.push(witness.run.clone());
             }
@@ -191,10 +204,10 @@ impl SuiteVerdict {
 /// Counts the recorded points that were judged for each suite.
 fn count_points(
     problem: &Problem,
-    hulls: &Hulls,
+    tube: &Tube,
     judged: &Judged,
     suites: &mut [SuiteVerdict],
-) -> Result<PointVerdict> {
+) -> PointVerdict {
     suites.iter_mut().for_each(|suite| suite.points_unproved = Some(0));
     let mut runs: Vec<_> = judged.unproved.iter().collect();
     runs.sort_by_key(|(owner, run)| (run.first, **owner));
@@ -205,16 +218,16 @@ fn count_points(
             suite.violating_runs.push(run.file.clone());
         }
     }
-    PointVerdict::new(problem, hulls, judged)
+    PointVerdict::new(problem, tube, judged)
 }
 
 /// Judges the recordings as motions of the model and counts them for each suite.
 fn judge_traces(
     problem: &Problem,
-    hulls: &Hulls,
+    tube: &Tube,
     suites: &mut [SuiteVerdict],
 ) -> Result<TraceVerdict> {
-    let factors = trace_factors(problem, &hulls.sets)?;
+    let factors = trace_factors(problem, &tube.sets)?;
     suites.iter_mut().for_each(|suite| suite.traces_unproved = Some(0));
     for trace in factors.iter().filter(|trace| !trace.holds()) {
         let (suite, run) = (&mut suites[trace.suite], &problem.entry(trace.run).file);

@@ -8,9 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::data::problem::Problem;
 use crate::data::settings::Notion;
 use crate::data::side::Side;
-use crate::error::{Error, Result};
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::{At, Judged, PointOutside};
+use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
 
 /// A state is named in a combination when its part is at least this of the largest.
@@ -79,10 +78,10 @@ pub(crate) struct SeparatedPoint<'a> {
 
 impl PointVerdict {
     /// Sums up what was found about the points of a problem.
-    pub(crate) fn new(problem: &Problem, hulls: &Hulls, judged: &Judged) -> Result<Self> {
+    pub(crate) fn new(problem: &Problem, tube: &Tube, judged: &Judged) -> Self {
         let worst = judged.furthest.iter().max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio));
         let witness = |((at, _), outside): (&(At, u32), &PointOutside)| {
-            let (time, hull) = (hulls.time(problem, *at)?, hulls.radii(*at));
+            let (time, hull) = (tube.time(*at), tube.radii(*at));
             let point = SeparatedPoint {
                 suite: outside.owner.0 as usize,
                 file: &outside.file,
@@ -93,15 +92,15 @@ impl PointVerdict {
                 direction: &outside.direction,
                 ratio: outside.ratio,
             };
-            Ok::<_, Error>(PointWitness::new(problem, &point))
+            PointWitness::new(problem, &point)
         };
-        Ok(Self {
+        Self {
             notion: problem.settings().notion,
             points: judged.points,
             unproved: judged.unproved_count(),
             outside: judged.outside,
-            worst: worst.map(witness).transpose()?,
-        })
+            worst: worst.map(witness),
+        }
     }
 }
 

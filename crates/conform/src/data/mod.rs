@@ -16,6 +16,7 @@ pub(crate) mod recordings;
 pub(crate) mod sensor_noise;
 pub mod settings;
 pub(crate) mod setup;
+pub(crate) mod shape;
 pub(crate) mod side;
 mod stored;
 mod subset;

@@ -14,6 +14,7 @@ use crate::data::recordings::Recordings;
 use crate::data::sensor_noise::SensorNoise;
 use crate::data::settings::Settings;
 use crate::data::setup::{Setup, read_options, side};
+use crate::data::shape::Shape;
 use crate::data::suite::SuiteReader;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -177,6 +178,11 @@ impl Problem {
     #[must_use]
     pub fn joints(&self) -> usize {
         self.setup.robot.joint_count()
+    }
+
+    /// Returns the number of states and inputs of the model: 2n and n.
+    pub(crate) fn shape(&self) -> Shape {
+        Shape { states: 2 * self.joints(), inputs: self.joints() }
     }
 
     /// Returns the source's entry of run `index`.

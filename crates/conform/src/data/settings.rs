@@ -54,11 +54,11 @@ pub enum States {
 }
 
 impl States {
-    /// How many of the 2n states, ordered q then q̇, are rows.
-    pub fn rows(self, joints: usize) -> usize {
+    /// Returns how many of a number of states, positions before velocities, are rows.
+    pub fn rows(self, states: usize) -> usize {
         match self {
-            Self::All => 2 * joints,
-            Self::Positions => joints,
+            Self::All => states,
+            Self::Positions => states / 2,
         }
     }
 }

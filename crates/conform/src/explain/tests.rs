@@ -21,7 +21,7 @@ use crate::data::envelope::Envelope;
 use crate::explain::chain::Chain;
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
 use crate::explain::regulate::regulate;
-use crate::linear::solver::{FINE, Triplets, solve_cone};
+use crate::program::solver::{FINE, Triplets, solve_cone};
 use crate::sets::UncertaintySets;
 
 const SAMPLES: usize = 120;

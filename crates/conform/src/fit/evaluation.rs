@@ -9,14 +9,15 @@ use crate::data::correction::InputCorrection;
 use crate::data::envelope::Envelope;
 use crate::data::settings::Settings;
 use crate::data::setup::Setup;
+use crate::data::shape::Shape;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
 use crate::fit::parameters::Parameters;
-use crate::linear::block::Block;
-use crate::linear::layout::Limits;
-use crate::linear::program::{Program, RowIndex};
 use crate::nominal::motion::Corrected;
 use crate::nominal::steps::Steps;
+use crate::program::block::Block;
+use crate::program::layout::Limits;
+use crate::program::program::{Program, RowIndex};
 use crate::sets::UncertaintySets;
 
 /// Rows within this part of the largest deviation are kept for the next program.
@@ -136,7 +137,8 @@ impl Fit<'_> {
             let samples = block.envelope.len();
             block.times.truncate(samples);
         }
-        Program::new(self.settings, &self.weights, blocks).with_limits(self.limits.clone())
+        let shape = Shape { states, inputs: self.joints() };
+        Program::new((self.settings, shape), &self.weights, blocks).with_limits(self.limits.clone())
     }
 
     /// Returns the smallest sets of `model` for the tracks named.

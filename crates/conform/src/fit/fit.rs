@@ -14,9 +14,9 @@ use crate::fit::parameters::{Parameter, Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
 use crate::fit::search::{Effort, Optimum, Search};
-use crate::linear::program::Program;
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::nominal::input_error::InputError;
+use crate::program::program::Program;
 use crate::progress::{Progress, Silent};
 use crate::weights::state_weights;
 
@@ -62,7 +62,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
             &linear
         }
     };
-    let (setup, joints) = (steering.setup(), steering.joints());
+    let setup = steering.setup();
     let by_run = settings.groups.contains(&Group::WarmUp);
     let data = Data::new(steering, by_run)?;
     if data.motions.len() < 2 {
@@ -77,7 +77,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         parameters: &parameters,
         data: &data,
         stride: data.stride(),
-        weights: state_weights(&setup.settings.weights, &envelopes, joints),
+        weights: state_weights(&setup.settings.weights, &envelopes, steering.shape().states),
         settings: &setup.settings,
         limits: steering.limits(),
     };

@@ -3,7 +3,7 @@ use crate::fit::evaluation::{Fit, Model, Smallest};
 use crate::fit::group::Group;
 use crate::fit::slopes::slopes;
 use crate::fit::step::{StepProgram, StepRow};
-use crate::linear::program::RowIndex;
+use crate::program::program::RowIndex;
 
 /// The first trust region: numbers may move by this much.
 const FIRST_TRUST: f64 = 0.5;

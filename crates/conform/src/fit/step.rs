@@ -18,9 +18,9 @@ use crate::error::Result;
 use crate::fit::evaluation::{Fit, Model, Smallest};
 use crate::fit::group::Group;
 use crate::fit::slopes::Slope;
-use crate::linear::layout::Layout;
-use crate::linear::program::{Program, dot};
-use crate::linear::solver::{Triplets, solve_cone};
+use crate::program::layout::Layout;
+use crate::program::program::{Program, dot};
+use crate::program::solver::{Triplets, solve_cone};
 
 /// A row counts as violated beyond this part of the largest row.
 const TOLERANCE: f64 = 1e-7;
@@ -139,7 +139,7 @@ impl StepProgram<'_> {
         for &t in self.tracks.iter().step_by(stride) {
             let samples = self.samples(t);
             for k in (0..samples).step_by((samples / 4).max(1)) {
-                let states = self.fit.settings.states.rows(self.fit.joints());
+                let states = self.fit.settings.states.rows(2 * self.fit.joints());
                 let of_sample = (0..states).flat_map(|i| Side::BOTH.map(|side| (t, k, i, side)));
                 rows.extend(of_sample);
             }
@@ -292,7 +292,7 @@ impl StepProgram<'_> {
     fn violated(&self, unknowns: &[f64], known: &[StepRow]) -> Vec<StepRow> {
         let (layout, moved) = (self.layout(), self.moved(unknowns));
         let known: HashSet<StepRow> = known.iter().copied().collect();
-        let states = self.fit.settings.states.rows(self.fit.joints());
+        let states = self.fit.settings.states.rows(2 * self.fit.joints());
         let limit = TOLERANCE * self.program.scale();
         type Worst = BTreeMap<(usize, usize, usize, bool), (f64, StepRow)>;
         let take = |worst: &mut Worst, key, excess: f64, row| {

@@ -42,8 +42,8 @@ impl AnyRun {
         let blind =
             problem.with_setup(Setup { condition: Some(condition.clone()), ..setup.clone() });
         let found = smallest_sets_alone(&blind, &*claim(&blind, None)?)?;
-        let verdict = Verdict::new(&blind, &found.hulls, |_, _, _| {})?;
-        let (sets, cost) = (found.hulls.sets, found.cost);
+        let verdict = Verdict::new(&blind, &found.tube)?;
+        let (sets, cost) = (found.tube.sets, found.cost);
         Ok(Some(Self { condition, sets, cost, verified: verdict.conformant }))
     }
 }

@@ -11,17 +11,17 @@ use crate::claim::notion::plant;
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
-use crate::linear::program::{Program, TIGHT};
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, STEP, outer_gauge};
+use crate::program::program::{Program, TIGHT};
 use crate::progress::Progress;
 use crate::search::found::{Deciding, Found};
 use crate::search::prove::prove;
 use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::Effort;
-use crate::tube::hulls::Hulls;
 use crate::tube::plant::Costs;
+use crate::tube::tube::Tube;
 
 /// Sets that were found on some motions and then scaled so that they enclose the others, which were
 /// held out: split conformal calibration.
@@ -66,7 +66,7 @@ pub(crate) fn calibrate(
     let held_out = held_out(problem, &motions)?;
     let fit = problem.with_suites(|suite| !held_out.contains(motions.of_suite(suite)));
     let first = smallest_sets(&fit, &Rows, progress, resume)?;
-    let Found { hulls: Hulls { sets: fitted, .. }, search, left_out, .. } = first;
+    let Found { tube: Tube { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
     let linear =
         problem.dynamics().linear_system().map(|_| Program::of_problem(problem)).transpose()?;
@@ -178,13 +178,13 @@ fn lost(motion: &str, factor: f64) -> String {
 /// smallest, so there is no lower bound.
 fn scaled(problem: &Problem, sets: &UncertaintySets, scale: Option<f64>) -> Result<Found> {
     let plant = &*plant(problem)?;
-    let hulls = match scale {
+    let tube = match scale {
         Some(scale) => prove((problem, plant), &Rows, sets, scale)?,
         None => Rows.judge(plant, sets, &Look::proof())?,
     };
-    let Costs { cost, paper, volume } = plant.costs(&hulls)?;
+    let Costs { cost, paper, volume } = plant.costs(&tube)?;
     Ok(Found {
-        hulls,
+        tube,
         cost,
         lower_bound: None,
         optimality_gap: None,

@@ -6,7 +6,7 @@ use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::data::suite::Suite;
 use crate::error::Result;
-use crate::linear::program::Program;
+use crate::program::program::Program;
 use crate::tube::deviation::Deviation;
 use crate::tube::witness::Witness;
 

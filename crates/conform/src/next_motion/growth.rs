@@ -2,7 +2,7 @@ use serde::Serialize;
 
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::program::Program;
+use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 
 /// What would have to grow, alone and by how much, so that a model encloses recordings that leave

@@ -49,7 +49,7 @@ impl Steps {
     }
 
     /// Returns the entries of E_k and R_k of a linear program at every `stride`-th sample, for
-    /// `samples` samples: as a [`Block`](crate::linear::Block) has them, but rounded to nearest,
+    /// `samples` samples: as a [`Block`](crate::program::Block) has them, but rounded to nearest,
     /// and exact for spans of one length only. A disturbance that is measurable counts as one that
     /// is constant over samples.
     #[must_use]

@@ -2,10 +2,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
 use crate::data::suite::Suite;
-use crate::error::Result;
 use crate::plausibility::nominal_fit::NominalFit;
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
+use crate::tube::tube::Tube;
 
 /// The part of a joint's range over all recordings that counts as its motion within one recording
 /// at least, so that a joint that rests there decides nothing.
@@ -85,14 +84,10 @@ impl JointWidth {
 }
 
 impl Usefulness {
-    /// Compares the sets of `hulls` with the recordings of `problem`.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
-    pub(crate) fn new(problem: &Problem, hulls: &Hulls, fit: &NominalFit) -> Result<Self> {
+    /// Compares the sets of `tube` with the recordings of `problem`.
+    pub(crate) fn new(problem: &Problem, tube: &Tube, fit: &NominalFit) -> Self {
         let n = problem.joints();
-        let (horizon, radii) = hulls.at_end(problem)?;
+        let (horizon, radii) = tube.at_end();
         let half_width = |joint: usize| radii[joint].is_finite().then_some(radii[joint]);
         let displacement = |joint: usize| displacement(problem, fit, joint);
         let width =
@@ -103,10 +98,10 @@ impl Usefulness {
         let vacuous = (0..compared)
             .flat_map(|joint| {
                 let reachable = of_reachable_set(fit, &joints[joint], joint);
-                reachable.into_iter().chain(of_sets(problem, &hulls.sets, fit, joint))
+                reachable.into_iter().chain(of_sets(problem, &tube.sets, fit, joint))
             })
             .collect();
-        Ok(Self { horizon, joints, vacuous })
+        Self { horizon, joints, vacuous }
     }
 
     /// Returns the largest ratio of half a joint's set to its displacement, and the joint, from 0.

@@ -5,8 +5,6 @@ use reachtube_scalar::number::{counted, two_digits_up};
 
 use crate::check::Check;
 use crate::claim::verdict::{SuiteVerdict, Verdict};
-use crate::data::problem::Problem;
-use crate::error::Result;
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::result::finding::Finding;
@@ -15,25 +13,16 @@ use crate::result::model_summary::{AtHorizon, brief, share, table_of_sets, wides
 use crate::result::remedy::Remedy;
 use crate::result::summary::Summary;
 use crate::result::table::Table;
-use crate::tube::hulls::Hulls;
+use crate::tube::tube::Tube;
 
 impl Check {
     /// Returns the answer on a few lines, for users of a front end: the verdict, the suites that
-    /// leave the sets or else the sets of each joint at the horizon, and what follows. `hulls` are
+    /// leave the sets or else the sets of each joint at the horizon, and what follows. `tube` has
     /// the reachable sets that were compared.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
-    pub fn summary(
-        &self,
-        model: &Model,
-        problem: &Problem,
-        hulls: &Hulls,
-        front_end: FrontEnd,
-    ) -> Result<Summary> {
+    #[must_use]
+    pub fn summary(&self, model: &Model, tube: &Tube, front_end: FrontEnd) -> Summary {
         let kinds = model.robot.kinds();
-        let sets = AtHorizon::new(hulls, problem)?;
+        let sets = AtHorizon::new(tube);
         let failing = failing(&self.verdict);
         // The cause and its remedy are part of the model's own answer.
         let warnings = model.warnings.iter().map(Finding::from);
@@ -65,7 +54,7 @@ impl Check {
         let is_wide = model.calibration.is_none() && !self.verdict.conformant;
         let helps = lost.or_else(|| is_wide.then(|| Remedy::new("calibrate", "MOTION,..")));
         summary.next = helps.map(|remedy| remedy.written_for(front_end));
-        Ok(summary)
+        summary
     }
 
     /// Returns the verdict, and what else speaks against the sets.

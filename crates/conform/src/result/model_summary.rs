@@ -5,15 +5,13 @@ use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::{two_digits_outward, two_digits_up};
 
 use crate::answer::Answer;
-use crate::data::problem::Problem;
-use crate::error::Result;
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::front_end::FrontEnd;
 use crate::result::summary::Summary;
 use crate::result::table::Table;
-use crate::tube::hulls::{Enclosure, Hulls};
+use crate::tube::tube::{Enclosure, Tube};
 
 /// Ratios from here on are factors, not percent.
 const LARGE: f64 = 100.0;
@@ -27,22 +25,19 @@ pub(crate) struct AtHorizon {
 }
 
 impl AtHorizon {
-    pub(crate) fn new(hulls: &Hulls, problem: &Problem) -> Result<Self> {
-        let (horizon, radii) = hulls.at_end(problem)?;
-        Ok(Self { horizon, radii })
+    pub(crate) fn new(tube: &Tube) -> Self {
+        let (horizon, radii) = tube.at_end();
+        Self { horizon, radii }
     }
 }
 
 impl Answer {
     /// Returns the answer on a few lines, for users of a front end: the verdict, the sets of each
     /// joint at the horizon, what follows for new motions, and what helps most.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
-    pub fn summary(&self, front_end: FrontEnd) -> Result<Summary> {
-        let Self { model, problem, found } = self;
-        let sets = AtHorizon::new(&found.hulls, problem)?;
+    #[must_use]
+    pub fn summary(&self, front_end: FrontEnd) -> Summary {
+        let Self { model, found, .. } = self;
+        let sets = AtHorizon::new(&found.tube);
         let mut summary = Summary {
             verdict: vec![verdict(model, &sets)],
             table: table_of_sets(model, &sets, None),
@@ -54,18 +49,14 @@ impl Answer {
         summary.facts.extend(model.motion_left_out());
         summary.fact("new motions", Finding::next_motion_in_brief(&model.trust, "decide"));
         summary.next = model.most_helpful().map(|finding| remedy(&finding, front_end));
-        Ok(summary)
+        summary
     }
 
     /// Returns the sets of each joint at the horizon, with the factors by which they would have to
     /// grow for other motions, n.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
-    pub fn table_at_horizon(&self, factors: &[f64]) -> Result<Table> {
-        let sets = AtHorizon::new(&self.found.hulls, &self.problem)?;
-        Ok(table_of_sets(&self.model, &sets, Some(factors)))
+    #[must_use]
+    pub fn table_at_horizon(&self, factors: &[f64]) -> Table {
+        table_of_sets(&self.model, &AtHorizon::new(&self.found.tube), Some(factors))
     }
 }
 

@@ -62,7 +62,7 @@ pub(super) fn bisect(
     progress: &dyn Progress,
 ) -> Result<Found> {
     let (trial, plant) = (Trial { problem, claim }, Polynomial::new(problem));
-    let first = plant.round(&mut SearchState::start(problem.joints()), None)?;
+    let first = plant.round(&mut SearchState::start(problem.shape()), None)?;
     let linearised = first.program.solve()?.sets;
     let mut state = journal.load()?.unwrap_or_else(|| BisectionState::start(&linearised));
     while !state.enclosed && state.factor < FACTORS.len() {
@@ -96,13 +96,13 @@ pub(super) fn bisect(
         ));
     }
     let sets = claim.widen(state.sets, progress)?;
-    let hulls = claim.judge(&plant, &sets, &Look::proof())?;
-    let Costs { cost, volume, .. } = plant.costs(&hulls)?;
+    let tube = claim.judge(&plant, &sets, &Look::proof())?;
+    let Costs { cost, volume, .. } = plant.costs(&tube)?;
     let reachable_sets = state.reachable_sets + 1;
     let search =
         SearchSummary { rounds: 1, reachable_sets, linearised_cost: None, runs_away: None };
     Ok(Found {
-        hulls,
+        tube,
         cost,
         lower_bound: None,
         optimality_gap: None,
@@ -119,9 +119,9 @@ impl Trial<'_> {
     /// Returns whether the reachable sets under `sets` hold every recording, as it is claimed.
     fn holds(&self, sets: &UncertaintySets) -> Result<bool> {
         let plant = Polynomial { problem: self.problem, effort: Effort::Quick };
-        let hulls = self.claim.judge(&plant, sets, &Look::proof())?;
-        let are_points_proved = hulls.judged.as_ref().is_none_or(|judged| judged.left.is_empty());
-        Ok(are_points_proved && encloses(self.problem, &hulls)?)
+        let tube = self.claim.judge(&plant, sets, &Look::proof())?;
+        let are_points_proved = tube.judged.as_ref().is_none_or(|judged| judged.left.is_empty());
+        Ok(are_points_proved && encloses(self.problem, &tube)?)
     }
 }
 

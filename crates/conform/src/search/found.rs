@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
 use crate::next_motion::without_motion::LeftOut;
-use crate::tube::hulls::Hulls;
 use crate::tube::rows::{Edge, Row};
+use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
 
 /// Sets that were found for a problem, before the verdict.
 pub(crate) struct Found {
     /// The sets and their reachable sets.
-    pub hulls: Hulls,
+    pub tube: Tube,
     /// The cost of the sets.
     pub cost: f64,
     /// No sets cost less, for a linear model.
@@ -39,19 +39,18 @@ pub(crate) const TOUCHING: f64 = 1e-4;
 pub(crate) enum Deciding {
     /// Rows that touch the reachable set, within a part of its radius.
     Touching(f64),
-    /// Rows named (case, sample, state, side).
+    /// Rows named (strand, sample, state, side).
     Rows(HashSet<(usize, usize, usize, Side)>),
 }
 
 impl Deciding {
-    /// Returns whether one side of a row decides the sets; `case` is the row's, where hulls belong
-    /// to cases.
-    pub(crate) fn contains(&self, case: Option<usize>, row: &Row, edge: &Edge) -> bool {
-        let named = |case| (case, row.sample, row.state, edge.side);
+    /// Returns whether one side of a row decides the sets.
+    pub(crate) fn contains(&self, row: &Row, edge: &Edge) -> bool {
+        let named = (row.strand, row.sample, row.state, edge.side);
         edge.excess.is_finite()
             && match self {
                 Self::Touching(part) => edge.excess >= -part * row.radius,
-                Self::Rows(rows) => case.is_some_and(|case| rows.contains(&named(case))),
+                Self::Rows(rows) => rows.contains(&named),
             }
     }
 }

@@ -5,9 +5,9 @@ use crate::claim::look::Look;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::At;
 use crate::tube::plant::Plant;
+use crate::tube::tube::Tube;
 
 /// Attempts until every row is proved, and until every point is.
 const ATTEMPTS: [i32; 2] = [61, 24];
@@ -24,22 +24,22 @@ pub(crate) fn prove(
     claim: &dyn Claim,
     sets: &UncertaintySets,
     scale: f64,
-) -> Result<Hulls> {
+) -> Result<Tube> {
     let (mut left, mut points): (Option<Vec<At>>, Option<usize>) = Default::default();
     let attempts = ATTEMPTS[usize::from(claim.tolerance().is_some())];
     for attempt in 0.. {
         let [factor, term] = room(claim.tolerance(), attempt);
         // Points that were proved for smaller sets lie in larger ones.
         let look = Look::Proof { at: left.take(), asked: Vec::new() };
-        let mut hulls = claim.judge(plant, &sets.inflated(1.0 + factor, term * scale), &look)?;
-        let mut is_proved = encloses(problem, &hulls)?;
-        if let Some(judged) = &mut hulls.judged {
+        let mut tube = claim.judge(plant, &sets.inflated(1.0 + factor, term * scale), &look)?;
+        let mut is_proved = encloses(problem, &tube)?;
+        if let Some(judged) = &mut tube.judged {
             judged.points = *points.get_or_insert(judged.points);
             is_proved &= judged.left.is_empty();
             left = Some(judged.left.iter().copied().collect());
         }
         if is_proved || attempt + 1 == attempts {
-            return Ok(hulls);
+            return Ok(tube);
         }
     }
     unreachable!("the last attempt returns")
@@ -56,8 +56,8 @@ fn room(tolerance: Option<f64>, attempt: i32) -> [f64; 2] {
 }
 
 /// Returns whether every row holds.
-pub(crate) fn encloses(problem: &Problem, hulls: &Hulls) -> Result<bool> {
+pub(crate) fn encloses(problem: &Problem, tube: &Tube) -> Result<bool> {
     let mut all = true;
-    hulls.for_each_row(problem, |_, _, row| all &= row.holds())?;
+    tube.for_each_row(problem, |row| all &= row.holds())?;
     Ok(all)
 }

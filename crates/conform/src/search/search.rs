@@ -14,10 +14,10 @@ use crate::error::Result;
 use crate::progress::Progress;
 use crate::search::journal::Journal;
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::{At, Judged};
 use crate::tube::plant::{Plant, Round};
 use crate::tube::state::{Margin, SearchState};
+use crate::tube::tube::Tube;
 
 /// Rounds of linearisation after which the sets are taken as they are; with margins at most twice
 /// as many.
@@ -44,14 +44,14 @@ pub(super) struct Ended<'a> {
     /// Its dual objective.
     pub lower_bound: f64,
     /// The reachable sets, which an exact plant's search does not compute.
-    pub tube: Option<Hulls>,
+    pub tube: Option<Tube>,
 }
 
 /// What lies outside the reachable sets of a round.
 #[derive(Default)]
 struct Outside {
     /// The reachable sets, where they were computed with directed rounding.
-    tube: Option<Hulls>,
+    tube: Option<Tube>,
     judged: Judged,
     rows: Vec<Margin>,
 }
@@ -69,7 +69,7 @@ pub(super) fn search<'a>(
     progress: &dyn Progress,
 ) -> Result<Ended<'a>> {
     let is_exact = plant.is_exact();
-    let mut state = journal.load()?.unwrap_or_else(|| SearchState::start(problem.joints()));
+    let mut state = journal.load()?.unwrap_or_else(|| SearchState::start(problem.shape()));
     let (mut before, mut near) = (None, Vec::new());
     loop {
         progress.go_on()?;
@@ -150,10 +150,10 @@ fn outside_enclosed(
     let look = Look::Proof { at: None, asked: state.asked() };
     let tube = claim.judge(plant, &state.sets, &look)?;
     let mut rows = Vec::new();
-    tube.for_each_row(problem, |_, case, row| {
+    tube.for_each_row(problem, |row| {
         for edge in row.edges.iter().filter(|edge| edge.excess > 0.0) {
             rows.push(Margin {
-                case: case.expect("these hulls belong to cases"),
+                case: row.strand,
                 sample: row.sample,
                 state: row.state,
                 side: edge.side,

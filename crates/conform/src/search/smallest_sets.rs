@@ -7,8 +7,8 @@ use crate::claim::touching::touching;
 use crate::data::problem::Problem;
 use crate::data::settings::Method;
 use crate::error::Result;
-use crate::linear::program::{Program, TIGHT};
 use crate::next_motion::left_out::leave_each_out;
+use crate::program::program::{Program, TIGHT};
 use crate::progress::{Progress, Silent};
 use crate::search::bisection::bisect;
 use crate::search::found::{Deciding, Found, SearchSummary, TOUCHING};
@@ -38,7 +38,7 @@ pub(crate) fn smallest_sets(
         _ => {
             let ended = search((problem, plant), claim, &journal, progress)?;
             let (found, program) = finish((problem, plant), claim, ended, progress)?;
-            let left_out = leave_each_out(problem, &program, &found.hulls.sets, progress)?;
+            let left_out = leave_each_out(problem, &program, &found.tube.sets, progress)?;
             Found { left_out, ..found }
         }
     };
@@ -71,12 +71,12 @@ fn finish<'a>(
         None if is_exact => program.repaired(&state.sets),
         _ => claim.widen(state.sets.clone(), progress)?,
     };
-    let hulls = match tube {
+    let tube = match tube {
         Some(tube) if tube.sets == sets => tube,
         Some(_) => claim.judge(plant, &sets, &Look::proof())?,
         None => prove((problem, plant), claim, &sets, program.scale())?,
     };
-    let Costs { cost, paper, volume } = plant.costs(&hulls)?;
+    let Costs { cost, paper, volume } = plant.costs(&tube)?;
     let gap = optimality_gap(cost, lower_bound, program.negligible_cost());
     let summary = SearchSummary {
         rounds: state.rounds,
@@ -93,12 +93,12 @@ fn finish<'a>(
         search: (!is_exact).then_some(summary),
         left_out: Vec::new(),
         deciding: match claim.tolerance() {
-            _ if !is_exact => Deciding::Rows(program.tight(&hulls.sets).into_iter().collect()),
+            _ if !is_exact => Deciding::Rows(program.tight(&tube.sets).into_iter().collect()),
             None => Deciding::Touching(TIGHT),
             Some(_) => Deciding::Touching(TOUCHING),
         },
-        touching: touching((problem, plant), &program, &hulls, &state.directions)?,
-        hulls,
+        touching: touching((problem, plant), &program, &tube, &state.directions),
+        tube,
     };
     Ok((found, program))
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::linear::cut::Cut;
+use crate::program::cut::Cut;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{Along, At};
 

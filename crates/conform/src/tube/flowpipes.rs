@@ -6,7 +6,8 @@ use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::sets::UncertaintySets;
-use crate::tube::rows::rows;
+use crate::tube::rows::{Recorded, Row, rows};
+use crate::tube::strand::Strand;
 
 /// Variables over whose vertices remainders are bounded, one number after the other while a set is
 /// lost: with 14 a step takes four times as long as with 8, with 18 a hundred times.
@@ -84,11 +85,11 @@ pub(crate) fn rows_outside(
 ) -> Result<Option<usize>> {
     let system = problem.dynamics().polynomial_system()?;
     let flowpipe = attempt(system, case, sets, VERTEX_VARIABLES[0], None)?;
-    let (mut outside, states) = (0, problem.settings().states);
-    rows(&case.measured, case.grid.times(), &flowpipe, sets, states, |row| {
+    let mut outside = 0;
+    let is_reached = for_each_row(problem, case, flowpipe, sets, |row| {
         outside += usize::from(!row.holds());
     });
-    Ok(flowpipe.is_reached().then_some(outside))
+    Ok(is_reached.then_some(outside))
 }
 
 /// Returns whether the flowpipe of a case under `sets` encloses its recordings.
@@ -105,11 +106,25 @@ pub(crate) fn enclosed(
     let system = problem.dynamics().polynomial_system()?;
     let of = |vertices: usize| attempt(system, case, sets, vertices, None);
     let flowpipe = furthest(effort, of, |flowpipe| flowpipe)?;
-    if !flowpipe.is_reached() {
-        return Ok(Enclosed::Lost);
-    }
     let mut all = true;
-    let states = problem.settings().states;
-    rows(&case.measured, case.grid.times(), &flowpipe, sets, states, |row| all &= row.holds());
-    Ok(if all { Enclosed::Yes } else { Enclosed::No })
+    let is_reached = for_each_row(problem, case, flowpipe, sets, |row| all &= row.holds());
+    Ok(match (is_reached, all) {
+        (false, _) => Enclosed::Lost,
+        (true, true) => Enclosed::Yes,
+        (true, false) => Enclosed::No,
+    })
+}
+
+/// Hands the rows of a case beside its flowpipe to `visit`, and returns whether the flowpipe
+/// reaches the end.
+fn for_each_row(
+    problem: &Problem,
+    case: &Case,
+    flowpipe: Flowpipe,
+    sets: &UncertaintySets,
+    visit: impl FnMut(&Row),
+) -> bool {
+    let (recorded, strand) = (Recorded::of_case((0, case)), Strand::along(case, flowpipe));
+    rows(&recorded, &strand, sets, problem.settings().states, visit);
+    strand.lost.is_none()
 }

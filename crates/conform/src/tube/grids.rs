@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use reachtube_reach::{
     Disturbance, IntervalMatrix, LinearSystem, Propagation, ReachSets, TimeGrid,
@@ -9,6 +11,8 @@ use crate::sets::UncertaintySets;
 /// A sample grid that suites share, with all that depends on the system and the grid only.
 #[derive(Debug)]
 pub struct Grid {
+    /// The sample times.
+    pub times: Arc<TimeGrid>,
     /// e^{A t_k} and Γ(t_k) at the samples.
     pub propagation: Propagation,
     /// κ(t_k), the gains of the disturbance, 2n x n for each sample.
@@ -49,7 +53,7 @@ impl Grids {
         let build = |grid: &&TimeGrid| {
             let propagation = Propagation::new(system, grid)?;
             let input_gains = disturbance.input_gains(&propagation);
-            Ok(Grid { propagation, input_gains })
+            Ok(Grid { times: Arc::new((*grid).clone()), propagation, input_gains })
         };
         let grids = distinct.par_iter().map(build).collect::<Result<_>>()?;
         Ok(Self { grids })
@@ -68,7 +72,7 @@ impl Grids {
     /// When `grid` was not given to [`new`](Self::new).
     #[must_use]
     pub fn find(&self, grid: &TimeGrid) -> usize {
-        let fits = |candidate: &Grid| grid.is_prefix_of(candidate.propagation.grid());
+        let fits = |candidate: &Grid| grid.is_prefix_of(&candidate.times);
         self.grids.iter().position(fits).expect("every grid of the recordings is in the list")
     }
 }

@@ -9,15 +9,16 @@ use reachtube_scalar::Interval;
 
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::cut::Cut;
-use crate::linear::program::Program;
+use crate::program::cut::Cut;
+use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 use crate::tube::direction::Direction;
 use crate::tube::grids::Grid;
-use crate::tube::hulls::{HullKind, Hulls};
 use crate::tube::judged::{At, Judged};
 use crate::tube::plant::{Costs, Plant, Round, Slice, Watch};
 use crate::tube::state::SearchState;
+use crate::tube::strand::Strand;
+use crate::tube::tube::{Enclosure, Tube};
 
 /// Number of disturbances, held over equally many steps, that suffice for most points.
 const HELD: usize = 24;
@@ -75,6 +76,12 @@ impl<'a> Linear<'a> {
         Ok(self.program.get_or_init(|| program))
     }
 
+    /// Computes the reachable sets on some grids, without judging points.
+    pub(crate) fn tube_without_points(grids: &[Grid], sets: UncertaintySets) -> Tube {
+        let strands = grids.iter().map(|grid| Strand::on_grid(grid, &sets)).collect();
+        Tube::of(sets, Enclosure::Inner, strands)
+    }
+
     /// Returns the reachable set at a sample.
     pub(crate) fn slice<'b>(&'b self, sets: &'b UncertaintySets, at: At) -> LinearSlice<'b> {
         let strand = at.0 as usize;
@@ -125,26 +132,25 @@ impl Plant for Linear<'_> {
         Ok(round)
     }
 
-    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)> {
-        let reach = self.grids.iter().map(|grid| grid.reach(sets)).collect();
-        let hulls = Hulls::of(sets.clone(), HullKind::Linear(reach));
-        let Some(watch) = watch else { return Ok((hulls, Judged::default())) };
+    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Tube, Judged)> {
+        let tube = Self::tube_without_points(self.grids, sets.clone());
+        let Some(watch) = watch else { return Ok((tube, Judged::default())) };
         let samples = self.grids.iter().enumerate().flat_map(|(grid, of)| {
-            (1..of.propagation.grid().len()).map(move |sample| (grid as u32, sample as u32))
+            (1..of.times.len()).map(move |sample| (grid as u32, sample as u32))
         });
         let samples: Vec<At> = samples.collect();
         let judged = samples.into_par_iter().map(|at| watch(&self.slice(sets, at)));
-        Ok((hulls, judged.reduce(Judged::default, Judged::merge)))
+        Ok((tube, judged.reduce(Judged::default, Judged::merge)))
     }
 
-    fn centre(&self, hulls: &Hulls, at: At) -> Vec<f64> {
-        self.slice(&hulls.sets, at).centre().0
+    fn centre(&self, tube: &Tube, at: At) -> Vec<f64> {
+        self.slice(&tube.sets, at).centre().0
     }
 
-    fn costs(&self, hulls: &Hulls) -> Result<Costs> {
+    fn costs(&self, tube: &Tube) -> Result<Costs> {
         let program = self.program()?;
-        let (paper, volume) = program.paper_sums(&hulls.sets);
-        Ok(Costs { cost: program.cost(&hulls.sets), paper: Some(paper), volume })
+        let (paper, volume) = program.paper_sums(&tube.sets);
+        Ok(Costs { cost: program.cost(&tube.sets), paper: Some(paper), volume })
     }
 }
 

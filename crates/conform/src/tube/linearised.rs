@@ -13,9 +13,9 @@ use crate::data::problem::Problem;
 use crate::data::settings::Weights;
 use crate::data::side::Side;
 use crate::error::Result;
-use crate::linear::block::Block;
-use crate::linear::program::Program;
 use crate::nominal::simulate::{nominal, runs_away};
+use crate::program::block::Block;
+use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 use crate::tube::direction::Direction;
 use crate::tube::plant::Round;
@@ -53,9 +53,10 @@ pub(super) fn round<'a>(problem: &'a Problem, state: &mut SearchState) -> Result
         let envelope = &mut blocks[margin.case].envelope;
         envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
     }
-    let mut program = Program::new(problem.settings(), &weights(problem)?, blocks)
-        .with_centre_bounds(state.centre_bounds())
-        .with_limits(problem.limits());
+    let mut program =
+        Program::new((problem.settings(), problem.shape()), &weights(problem)?, blocks)
+            .with_centre_bounds(state.centre_bounds())
+            .with_limits(problem.limits());
     program.cuts = cuts;
     Ok(Round { rows: program.first_rows(), program, runs_away })
 }
@@ -73,7 +74,7 @@ pub(super) fn weights(problem: &Problem) -> Result<Vec<f64>> {
         Weights::Spread => problem.cases()?.iter().map(deviation).collect::<Result<_>>()?,
         Weights::Unit | Weights::Given(_) => Vec::new(),
     };
-    Ok(state_weights(weights, &envelopes.iter().collect::<Vec<_>>(), problem.joints()))
+    Ok(state_weights(weights, &envelopes.iter().collect::<Vec<_>>(), problem.shape().states))
 }
 
 fn sensitivities(
@@ -114,11 +115,11 @@ fn block(
     correction: &Correction,
     sets: &UncertaintySets,
 ) -> Block {
-    let (n, states) = (case.joints(), 2 * case.joints());
+    let states = 2 * case.joints();
     let centre: Vec<f64> =
         sets.initial_set.centre.iter().chain(&sets.input_set.centre).copied().collect();
     let from_nominal = |k: usize, i: usize, x: f64| {
-        let (row, _) = sensitivity.row(n, k, i);
+        let (row, _) = sensitivity.row(k, i);
         let moved: f64 = row.iter().zip(&centre).map(|(e, c)| e * c).sum();
         x - sensitivity.nominal[k * states + i] + moved
     };

@@ -4,7 +4,6 @@ pub(crate) mod deviation;
 pub(crate) mod direction;
 pub(crate) mod flowpipes;
 pub(crate) mod grids;
-pub(crate) mod hulls;
 pub(crate) mod judged;
 pub(crate) mod linear;
 mod linearised;
@@ -13,11 +12,14 @@ pub(crate) mod polynomial;
 pub(crate) mod rows;
 mod sensitivity;
 pub(crate) mod state;
+pub(crate) mod strand;
+#[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
+pub(crate) mod tube;
 pub(crate) mod witness;
 mod worst_case;
 
 pub use deviation::{Deviation, Nominal};
 pub use grids::{Grid, Grids};
-pub use hulls::{Enclosure, Lost};
-pub use rows::{Edge, Row};
+pub use strand::Lost;
+pub use tube::Enclosure;
 pub use witness::Witness;

@@ -3,11 +3,11 @@
 use reachtube_reach::GeneratorRows;
 
 use crate::error::Result;
-use crate::linear::program::{Program, RowIndex};
+use crate::program::program::{Program, RowIndex};
 use crate::sets::UncertaintySets;
-use crate::tube::hulls::Hulls;
 use crate::tube::judged::{At, Judged};
 use crate::tube::state::SearchState;
+use crate::tube::tube::Tube;
 
 /// A model over recordings. It poses programs for the smallest sets, and computes the reachable
 /// sets under some sets.
@@ -30,17 +30,17 @@ pub(crate) trait Plant: Sync {
     /// # Errors
     ///
     /// As [`Problem::run`](crate::Problem::run); when a solution cannot be enclosed.
-    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)>;
+    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Tube, Judged)>;
 
     /// Returns the centre of a reachable set at a sample, in floating point.
-    fn centre(&self, hulls: &Hulls, at: At) -> Vec<f64>;
+    fn centre(&self, tube: &Tube, at: At) -> Vec<f64>;
 
     /// Returns what reachable sets cost.
     ///
     /// # Errors
     ///
     /// As [`Problem::run`](crate::Problem::run).
-    fn costs(&self, hulls: &Hulls) -> Result<Costs>;
+    fn costs(&self, tube: &Tube) -> Result<Costs>;
 }
 
 /// A program, as it is posed in one round of a search.

@@ -10,14 +10,15 @@ use reachtube_reach::{Flowpipe, GeneratorRows, Zonotope};
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::costs::shares;
+use crate::program::costs::shares;
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::{Effort, attempt, furthest};
-use crate::tube::hulls::{HullKind, Hulls};
 use crate::tube::judged::{At, Judged};
 use crate::tube::linearised::{round, weights};
 use crate::tube::plant::{Costs, Plant, Round, Slice, Watch};
 use crate::tube::state::SearchState;
+use crate::tube::strand::Strand;
+use crate::tube::tube::{Enclosure, Tube};
 
 /// Numbers of parts of the time so far, within each of which generators that a step adds have one
 /// factor in common: smaller sets, in which most points lie.
@@ -43,7 +44,7 @@ impl<'a> Polynomial<'a> {
         (index, case): (usize, &Case),
         sets: &UncertaintySets,
         watch: Option<&Watch>,
-    ) -> Result<(Flowpipe, Judged)> {
+    ) -> Result<(Strand, Judged)> {
         let system = self.problem.dynamics().polynomial_system()?;
         let of = |vertices: usize| {
             let (judged, count) = (Mutex::new(Judged::default()), AtomicUsize::new(0));
@@ -60,7 +61,8 @@ impl<'a> Polynomial<'a> {
             let flowpipe = attempt(system, case, sets, vertices, visit)?;
             Ok((flowpipe, judged.into_inner().expect("no thread panics")))
         };
-        furthest(self.effort, of, |(flowpipe, _)| flowpipe)
+        let (flowpipe, judged) = furthest(self.effort, of, |(flowpipe, _)| flowpipe)?;
+        Ok((Strand::along(case, flowpipe), judged))
     }
 }
 
@@ -79,32 +81,32 @@ impl Plant for Polynomial<'_> {
         round(self.problem, state)
     }
 
-    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Hulls, Judged)> {
+    fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Tube, Judged)> {
         let cases = self.problem.cases()?.par_iter().enumerate();
-        let found: Vec<(Flowpipe, Judged)> =
+        let found: Vec<(Strand, Judged)> =
             cases.map(|case| self.strand(case, sets, watch)).collect::<Result<_>>()?;
-        let (flowpipes, judged): (Vec<Flowpipe>, Vec<Judged>) = found.into_iter().unzip();
+        let (strands, judged): (Vec<Strand>, Vec<Judged>) = found.into_iter().unzip();
         let judged = judged.into_iter().fold(Judged::default(), Judged::merge);
-        Ok((Hulls::of(sets.clone(), HullKind::Outer(flowpipes)), judged))
+        Ok((Tube::of(sets.clone(), Enclosure::Outer, strands), judged))
     }
 
-    fn centre(&self, hulls: &Hulls, (case, sample): At) -> Vec<f64> {
-        let sides = hulls.flowpipes()[case as usize].sample(sample as usize).iter();
-        sides.map(|side| side.mid()).collect()
+    fn centre(&self, tube: &Tube, (strand, sample): At) -> Vec<f64> {
+        let flowpipe = flowpipe(&tube.strands[strand as usize]);
+        flowpipe.sample(sample as usize).iter().map(|side| side.mid()).collect()
     }
 
-    fn costs(&self, hulls: &Hulls) -> Result<Costs> {
-        let (cases, weights) = (self.problem.cases()?, weights(self.problem)?);
-        let shares = shares(cases.iter().map(|case| case.grid.times()));
+    fn costs(&self, tube: &Tube) -> Result<Costs> {
+        let weights = weights(self.problem)?;
+        let shares = shares(tube.strands.iter().map(|strand| strand.times.times()));
         let mut costs = Costs { cost: 0.0, paper: None, volume: 0.0 };
-        for ((case, flowpipe), shares) in cases.iter().zip(hulls.flowpipes()).zip(&shares) {
-            let times = case.grid.times();
+        for (strand, shares) in tube.strands.iter().zip(&shares) {
+            let (times, flowpipe) = (strand.times.times(), flowpipe(strand));
             for (k, share) in shares.iter().enumerate() {
                 if k >= flowpipe.len() {
                     return Ok(Costs { cost: f64::INFINITY, paper: None, volume: f64::INFINITY });
                 }
                 let widths = flowpipe.sample(k).iter().map(|hull| hull.width()).enumerate();
-                let widths = widths.map(|(i, width)| width + 2.0 * hulls.sets.noise_radius(i));
+                let widths = widths.map(|(i, width)| width + 2.0 * tube.sets.noise_radius(i));
                 let weighted = widths.clone().zip(&weights).map(|(width, weight)| weight * width);
                 costs.cost += share * weighted.sum::<f64>();
                 let next = times.get(k + 1).unwrap_or(&times[k]);
@@ -113,6 +115,10 @@ impl Plant for Polynomial<'_> {
         }
         Ok(costs)
     }
+}
+
+fn flowpipe(strand: &Strand) -> &Flowpipe {
+    strand.flowpipe().expect("the tubes of this plant have flowpipes")
 }
 
 /// The computed outer set of a case at one sample.

@@ -1,13 +1,17 @@
 //! The comparison of recordings with reachable sets, with directed rounding: what is reported as
 //! conformant has passed it.
 
-use reachtube_reach::{Flowpipe, ReachSets};
 use reachtube_scalar::rounding::{add_down, sub_up};
 
+use crate::data::case::Case;
 use crate::data::envelope::Envelope;
+use crate::data::problem::Problem;
 use crate::data::settings::States;
 use crate::data::side::Side;
+use crate::error::Result;
 use crate::sets::UncertaintySets;
+use crate::tube::deviation::Deviation;
+use crate::tube::strand::{HullBounds, Strand};
 
 /// A radius that is as good as none, rad or rad/s.
 pub(crate) const NEGLIGIBLE_RADIUS: f64 = 1e-9;
@@ -15,7 +19,11 @@ pub(crate) const NEGLIGIBLE_RADIUS: f64 = 1e-9;
 /// One row: the recordings of a suite (or of a run with an input of its own) at one time in one
 /// state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub(crate) struct Row {
+    /// Index of the suite.
+    pub suite: usize,
+    /// Index of the strand.
+    pub strand: usize,
     /// Sample index on its grid.
     pub sample: usize,
     /// Time since the first sample, s.
@@ -30,7 +38,7 @@ pub struct Row {
 
 /// One side of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
+pub(crate) struct Edge {
     /// The side.
     pub side: Side,
     /// The run (index in the source) that reaches furthest.
@@ -44,45 +52,46 @@ impl Row {
     /// Returns whether both sides are proved to be enclosed. An excess that is not a number proves
     /// nothing.
     #[must_use]
-    pub fn holds(&self) -> bool {
+    pub(crate) fn holds(&self) -> bool {
         self.edges.iter().all(|edge| edge.excess <= 0.0)
     }
 }
 
-/// The interval hull of a reachable set in one state at one sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct HullBounds {
-    /// The lower bound that a row may use, rad or rad/s.
-    pub lower: f64,
-    /// The upper bound that a row may use.
-    pub upper: f64,
-    /// The radius.
-    pub radius: f64,
+/// Recorded values beside the sets of a strand: deviations of a linear model, states of any other.
+pub(crate) struct Recorded<'a> {
+    /// Index of the suite.
+    pub suite: usize,
+    /// Index of the strand.
+    pub strand: usize,
+    /// The values; each bound is outer.
+    pub envelope: &'a Envelope,
 }
 
-/// The hull of a reachable set over time, as rows are compared with it.
-pub(crate) trait Hull {
-    /// Returns the bounds at sample `k` in state `i`; `None` if the set was lost.
-    fn bounds(&self, k: usize, i: usize) -> Option<HullBounds>;
-}
+impl<'a> Recorded<'a> {
+    /// Returns the recorded values of a problem, beside the strands of its tubes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub(crate) fn all(problem: &'a Problem) -> Result<Vec<Self>> {
+        let of_grid = |deviation: &'a Deviation| Self {
+            suite: deviation.suite,
+            strand: deviation.grid,
+            envelope: &deviation.envelope,
+        };
+        Ok(match problem.dynamics().linear_system() {
+            Some(_) => problem.deviations()?.iter().map(of_grid).collect(),
+            None => problem.cases()?.iter().enumerate().map(Self::of_case).collect(),
+        })
+    }
 
-impl Hull for ReachSets {
-    /// Inner bounds: every value between them is reachable in that state.
-    fn bounds(&self, k: usize, i: usize) -> Option<HullBounds> {
-        let (lower, upper) = (self.lower_inner(k, i), self.upper_inner(k, i));
-        Some(HullBounds { lower, upper, radius: self.radius(k, i).mid() })
+    /// Returns the recorded states of a case with its index.
+    pub(crate) fn of_case((strand, case): (usize, &'a Case)) -> Self {
+        Self { suite: case.suite, strand, envelope: &case.measured }
     }
 }
 
-impl Hull for Flowpipe {
-    /// Outer bounds of the computed set.
-    fn bounds(&self, k: usize, i: usize) -> Option<HullBounds> {
-        let hull = (k < self.len()).then(|| self.sample(k)[i])?;
-        Some(HullBounds { lower: hull.lo(), upper: hull.hi(), radius: hull.rad() })
-    }
-}
-
-/// Compares each row of an envelope with a hull and hands it to `visit`. A row that
+/// Compares each row of recorded values with a strand and hands it to `visit`. A row that
 /// [holds](Row::holds) is proved to be enclosed.
 ///
 /// # Guarantee
@@ -90,15 +99,15 @@ impl Hull for Flowpipe {
 /// Excesses are upper bounds for the hull as its bounds are given, widened by the noise set V
 /// rounded inward; directed rounding.
 pub(crate) fn rows(
-    envelope: &Envelope,
-    times: &[f64],
-    hull: &impl Hull,
+    recorded: &Recorded,
+    Strand { times, hull, .. }: &Strand,
     sets: &UncertaintySets,
     states: States,
-    mut visit: impl FnMut(Row),
+    mut visit: impl FnMut(&Row),
 ) {
-    let checked = states.rows(envelope.dimension() / 2);
-    for (sample, &time) in times.iter().enumerate().take(envelope.len()) {
+    let &Recorded { suite, strand, envelope } = recorded;
+    let checked = states.rows(envelope.dimension());
+    for (sample, &time) in times.times().iter().enumerate().take(envelope.len()) {
         for state in 0..checked {
             let noise = sets.noise_radius(state);
             let bounds = hull.bounds(sample, state);
@@ -116,7 +125,8 @@ pub(crate) fn rows(
                 excess: excess(-envelope.lower(sample, state), |bounds| -bounds.lower),
             };
             let radius = bounds.map_or(f64::INFINITY, |bounds| bounds.radius) + noise;
-            visit(Row { sample, time, state, radius, edges: [upper, lower] });
+            let edges = [upper, lower];
+            visit(&Row { suite, strand, sample, time, state, radius, edges });
         }
     }
 }

@@ -6,6 +6,7 @@ use reachtube_reach::Disturbance;
 use reachtube_scalar::Lanes;
 
 use crate::data::case::Case;
+use crate::data::shape::Shape;
 use crate::error::Result;
 use crate::nominal::simulate::{simulate, substeps};
 use crate::sets::UncertaintySets;
@@ -21,6 +22,7 @@ const NODES: usize = 24;
 /// it. Unrounded: no proof rests on it.
 #[derive(Debug, Clone)]
 pub(super) struct Sensitivity {
+    shape: Shape,
     /// Samples x 2n.
     pub nominal: Vec<f64>,
     /// Number of Runge-Kutta steps from one sample to the next.
@@ -70,9 +72,11 @@ impl Sensitivity {
         let mut linearisation = Linearisation::new(model);
         let substeps = substeps(&mut linearisation, case, &start);
         let nominal = simulate(model, times, substeps, &start, &inputs)?;
-        let mut grown = Sensitivities::new(n, times.len(), disturbance);
+        let shape = Shape { states: 2 * n, inputs: n };
+        let mut grown = Sensitivities::new(shape, times.len(), disturbance);
         let stride = times.len().div_ceil(NODES).max(1);
         let mut found = Self {
+            shape,
             nominal,
             substeps,
             coefficients: Vec::new(),
@@ -98,17 +102,17 @@ impl Sensitivity {
         Ok(found)
     }
 
-    /// Returns row i of E_k and of R_k, 3n entries each.
-    pub(super) fn row(&self, joints: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
-        let width = 3 * joints;
-        let start = (k * 2 * joints + i) * 2 * width;
+    /// Returns row i of E_k and of R_k.
+    pub(super) fn row(&self, k: usize, i: usize) -> (&[f64], &[f64]) {
+        let width = self.shape.radii();
+        let start = k * self.shape.entries() + i * 2 * width;
         self.coefficients[start..start + 2 * width].split_at(width)
     }
 }
 
 /// The sensitivities of the state at one sample to the start and to every earlier input.
 struct Sensitivities {
-    joints: usize,
+    shape: Shape,
     disturbance: Disturbance,
     /// Φ(t_k, 0).
     start: DMatrix<f64>,
@@ -119,16 +123,15 @@ struct Sensitivities {
 }
 
 impl Sensitivities {
-    fn new(joints: usize, samples: usize, disturbance: Disturbance) -> Self {
-        let columns = joints * samples.saturating_sub(1);
-        let inputs = DMatrix::zeros(2 * joints, columns);
-        let start = DMatrix::identity(2 * joints, 2 * joints);
-        Self { joints, disturbance, start, spare: inputs.clone(), inputs, samples: 0 }
+    fn new(shape: Shape, samples: usize, disturbance: Disturbance) -> Self {
+        let inputs = DMatrix::zeros(shape.states, shape.inputs * samples.saturating_sub(1));
+        let start = DMatrix::identity(shape.states, shape.states);
+        Self { shape, disturbance, start, spare: inputs.clone(), inputs, samples: 0 }
     }
 
     /// Advances by one step of length h (s) of δẋ = A δx + B δu.
     fn advance(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) {
-        let (n, states) = (self.joints, 2 * self.joints);
+        let Shape { states, inputs: n } = self.shape;
         let mut augmented = DMatrix::zeros(states + n, states + n);
         augmented.view_mut((0, 0), (states, states)).copy_from(&(a * h));
         augmented.view_mut((0, states), (states, n)).copy_from(&(b * h));
@@ -144,7 +147,7 @@ impl Sensitivities {
 
     /// Appends the rows of E_k and R_k.
     fn write_into(&self, coefficients: &mut Vec<f64>) {
-        let (n, states) = (self.joints, 2 * self.joints);
+        let Shape { states, inputs: n } = self.shape;
         let (mut sum, mut total) = (DMatrix::zeros(states, n), DMatrix::zeros(states, n));
         for j in 0..self.samples {
             let gamma = self.inputs.columns(j * n, n);
@@ -164,12 +167,13 @@ impl Sensitivities {
     /// The row in direction l.
     fn along(&self, l: &[f64]) -> DirectionRow {
         let l = DVector::from_column_slice(l);
+        let n = self.shape.inputs;
         let start = self.start.tr_mul(&l);
-        let inputs = self.inputs.columns(0, self.joints * self.samples).tr_mul(&l);
-        let (mut sum, mut total) = (vec![0.0; self.joints], vec![0.0; self.joints]);
+        let inputs = self.inputs.columns(0, n * self.samples).tr_mul(&l);
+        let (mut sum, mut total) = (vec![0.0; n], vec![0.0; n]);
         for (at, x) in inputs.iter().enumerate() {
-            sum[at % self.joints] += x;
-            total[at % self.joints] += x.abs();
+            sum[at % n] += x;
+            total[at % n] += x.abs();
         }
         if self.disturbance == Disturbance::Constant {
             total = sum.iter().map(|x| x.abs()).collect();
@@ -179,7 +183,7 @@ impl Sensitivities {
     }
 
     fn node(&self, sample: usize) -> Node {
-        let (n, states) = (self.joints, 2 * self.joints);
+        let Shape { states, inputs: n } = self.shape;
         let used = self.inputs.columns(0, n * self.samples);
         let input = match self.disturbance {
             Disturbance::Constant => {

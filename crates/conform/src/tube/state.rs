@@ -6,6 +6,7 @@ use std::ops::Range;
 use reachtube_reach::Hyperrectangle;
 use serde::{Deserialize, Serialize};
 
+use crate::data::shape::Shape;
 use crate::data::side::Side;
 use crate::sets::UncertaintySets;
 use crate::tube::direction::Direction;
@@ -59,9 +60,8 @@ pub(crate) struct Margin {
 
 impl SearchState {
     /// Returns the state before the first round: no uncertainty.
-    pub(crate) fn start(joints: usize) -> Self {
-        let (initial_set, input_set) =
-            (Hyperrectangle::zero(2 * joints), Hyperrectangle::zero(joints));
+    pub(crate) fn start(Shape { states, inputs }: Shape) -> Self {
+        let (initial_set, input_set) = (Hyperrectangle::zero(states), Hyperrectangle::zero(inputs));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
         Self {
             rounds: 0,

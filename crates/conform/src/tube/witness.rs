@@ -30,12 +30,11 @@ pub struct Witness {
 }
 
 impl Witness {
-    /// Names one side of a row of a suite.
-    #[must_use]
-    pub fn new(problem: &Problem, suite: usize, row: &Row, edge: &Edge) -> Self {
+    /// Names one side of a row.
+    pub(crate) fn new(problem: &Problem, row: &Row, edge: &Edge) -> Self {
         let state = State::from_index(row.state, problem.joints());
         Self {
-            suite: problem.recordings().suites[suite].entry.name.clone(),
+            suite: problem.recordings().suites[row.suite].entry.name.clone(),
             run: problem.entry(edge.run as usize).file.clone(),
             sample: row.sample,
             time: row.time,

@@ -119,7 +119,7 @@ fn at_node(
 fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usize) -> Vec<f64> {
     let radii = || sets.initial_set.radius.iter().chain(&sets.input_set.radius);
     let of_state = |i: usize| {
-        let (_, gains) = sensitivity.row(case.joints(), k, i);
+        let (_, gains) = sensitivity.row(k, i);
         gains.iter().zip(radii()).map(|(gain, r)| gain * r).sum()
     };
     (0..2 * case.joints()).map(of_state).collect()

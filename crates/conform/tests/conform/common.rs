@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::{
-    Check, Conformance, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform,
+    Check, Conformance, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
 use reachtube_reach::{LinearSystem, TimeGrid};
 use reachtube_recordings::DataSet;
@@ -51,8 +51,8 @@ pub(crate) fn conform_all(problem: &Problem) -> Conformance {
 pub(crate) fn check_against(model: &Model, folder: &Path, names: &[&str]) -> Check {
     let robot = Robot::from_description(&model.robot).unwrap();
     let problem = read(&robot, folder, names, &model.settings);
-    let hulls = Hulls::new(&problem, model.sets()).unwrap();
-    check(model, &problem, &hulls).unwrap()
+    let tube = Tube::new(&problem, model.sets()).unwrap();
+    check(model, &problem, &tube).unwrap()
 }
 
 /// One run: times, states (K x 2n), torques (K x n).

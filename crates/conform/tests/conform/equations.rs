@@ -78,12 +78,12 @@ fn the_nominal_motion_is_that_of_the_robot_and_the_sets_hold_what_is_left() {
     let (model, setup) = Model::parse(&model.to_json(), Path::new("model.json")).unwrap();
     assert_eq!(setup.settings().equations, Equations::Robot);
     let again = problem.with_setup(setup);
-    let answer = check(&model, &again, &by_robot.hulls).unwrap();
+    let answer = check(&model, &again, &by_robot.tube).unwrap();
     assert!(answer.verdict.conformant);
 
     // The nominal motion, by another way: the robot under the recorded inputs, integrated.
     let times = grid(0.004, SAMPLES);
-    for (suite, pace) in reach(&problem, &by_robot.hulls).unwrap().iter().zip([3.0f64, 4.0]) {
+    for (suite, pace) in reach(&problem, &by_robot.tube).unwrap().iter().zip([3.0f64, 4.0]) {
         let input = |&t: &f64| (0..2).map(move |j| 4.0 * (pace * t + f64::from(j)).cos());
         let inputs: Vec<f64> = times.iter().flat_map(input).collect();
         let expected = simulated(&robot, &[0.0, 1.0, 0.0, 0.0], &times, &inputs);

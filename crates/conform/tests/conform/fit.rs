@@ -8,7 +8,7 @@ use reachtube_conform::fleet::{Fold, OnDefect};
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::{Centre, NominalStart};
 use reachtube_conform::{
-    FitSettings, Group, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, fit,
+    FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, fit,
 };
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, RunSource, Torque};
@@ -175,12 +175,12 @@ fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
     assert_eq!(read, model);
     let runs = Box::new(self::record(&two_joints(), truth, 3));
     let same = Problem::read(setup, runs, &[], Keep::Needed, &Silent).unwrap();
-    let verdict = check(&read, &same, &Hulls::new(&same, read.sets()).unwrap()).unwrap();
+    let verdict = check(&read, &same, &Tube::new(&same, read.sets()).unwrap()).unwrap();
     assert!(verdict.verdict.conformant, "{:?}", verdict.verdict);
     // Without the correction the recordings leave the same sets.
     let none = same.setup().clone().without_correction();
     let other = same.with_setup(none);
-    let verdict = check(&read, &other, &Hulls::new(&other, read.sets()).unwrap()).unwrap();
+    let verdict = check(&read, &other, &Tube::new(&other, read.sets()).unwrap()).unwrap();
     assert!(!verdict.verdict.conformant);
 }
 

@@ -8,7 +8,7 @@ use reachtube_conform::fleet::{Fold, OnDefect};
 use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::{NominalStart, Tolerance};
 use reachtube_conform::{
-    Error, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform,
+    Error, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
@@ -257,8 +257,8 @@ fn recordings_are_checked_by_fold_as_by_reading() {
     // What a model was asked for besides its sets is no matter.
     let setup = setup.explain(Some(Tolerance::default()));
     let checked = |problem: &Problem| {
-        let hulls = Hulls::new(problem, model.sets()).unwrap();
-        check(&model, problem, &hulls).unwrap()
+        let tube = Tube::new(problem, model.sets()).unwrap();
+        check(&model, problem, &tube).unwrap()
     };
     for range in [12..24, 6..18] {
         let mut other = MemoryRuns::default();
@@ -300,8 +300,8 @@ fn what_cannot_be_known_to_be_new_counts_as_used() {
     assert!(!model.data.are_listed() && model.data.run_count() == 1100);
     let new = read(&setup, &other);
     assert!(model.was_fitted_to(new.recordings()));
-    let hulls = Hulls::new(&new, model.sets()).unwrap();
-    let answer = check(&model, &new, &hulls).unwrap();
+    let tube = Tube::new(&new, model.sets()).unwrap();
+    let answer = check(&model, &new, &tube).unwrap();
     assert!(answer.trust.is_none() && answer.rates.is_none());
     assert!(answer.notes.iter().any(|note| note.contains("so they count as used")));
     // The other way round: a model that lists its recordings, and a fold that has not kept all.

@@ -3,7 +3,7 @@
 
 use crate::common::{Disturbed, Random, grid, two_joints};
 use reachtube_conform::{
-    Check, Error, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform,
+    Check, Error, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
@@ -44,8 +44,8 @@ fn fitted(robot: &Robot, folder: &std::path::Path) -> std::path::PathBuf {
 fn check_of(path: &std::path::Path, runs: MemoryRuns) -> Check {
     let (model, setup) = Model::open(path).unwrap();
     let problem = read(setup, runs);
-    let hulls = Hulls::new(&problem, model.sets()).unwrap();
-    check(&model, &problem, &hulls).unwrap()
+    let tube = Tube::new(&problem, model.sets()).unwrap();
+    check(&model, &problem, &tube).unwrap()
 }
 
 #[test]
@@ -133,8 +133,8 @@ fn the_growth_that_is_named_encloses_the_recordings() {
     }
     let problem = read(setup, runs);
     let checked = |sets| {
-        let hulls = Hulls::new(&problem, sets).unwrap();
-        check(&model, &problem, &hulls).unwrap()
+        let tube = Tube::new(&problem, sets).unwrap();
+        check(&model, &problem, &tube).unwrap()
     };
     let growth = checked(model.sets()).growth.unwrap();
     let (x0, u) = (growth.initial_set.unwrap(), growth.input_set.unwrap());

@@ -10,7 +10,7 @@ use reachtube_conform::result::Code;
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::tube::Witness;
 use reachtube_conform::{
-    Check, Error, Hulls, Keep, Model, Problem, Settings, Setup, Silent, check, conform,
+    Check, Error, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use tempfile::TempDir;
@@ -37,8 +37,8 @@ fn settings(calibrate: &[&str]) -> Settings {
 /// Checks the suites `names` against the model of a problem.
 fn check_of(folder: &TempDir, model: &Model, names: &[&str]) -> Check {
     let others = read(&two_joints(), folder.path(), names, &model.settings);
-    let hulls = Hulls::new(&others, model.sets()).unwrap();
-    check(model, &others, &hulls).unwrap()
+    let tube = Tube::new(&others, model.sets()).unwrap();
+    check(model, &others, &tube).unwrap()
 }
 
 #[test]
@@ -74,9 +74,9 @@ fn calibrated_sets_are_those_of_the_other_motions_scaled_by_the_largest_gauge() 
     let mut smaller = found.sets.clone();
     let sets = [&mut smaller.initial_set, &mut smaller.input_set];
     sets.into_iter().flat_map(|set| &mut set.radius).for_each(|radius| *radius *= 1.0 - 1e-6);
-    let hulls = Hulls::new(&problem, smaller).unwrap();
+    let tube = Tube::new(&problem, smaller).unwrap();
     let model = Model::new(&problem, &found);
-    assert!(!check(&model, &problem, &hulls).unwrap().verdict.conformant);
+    assert!(!check(&model, &problem, &tube).unwrap().verdict.conformant);
     // Two motions were held out: 1 in 3 on average, 1 - 0.05^(1/2) at confidence.
     assert_eq!(found.trust.average_probability, Some(1.0 / 3.0));
     assert!((found.trust.violation_probability - (1.0 - 0.05f64.sqrt())).abs() < 1e-12);
@@ -209,8 +209,8 @@ fn the_outer_sets_of_a_model_that_is_not_linear_calibrate_it() {
     let mut smaller = found.sets.clone();
     let sets = [&mut smaller.initial_set, &mut smaller.input_set];
     sets.into_iter().flat_map(|set| &mut set.radius).for_each(|radius| *radius /= 1.02);
-    let hulls = Hulls::new(&problem, smaller).unwrap();
-    let verdict = check(&Model::new(&problem, &found), &problem, &hulls).unwrap().verdict;
+    let tube = Tube::new(&problem, smaller).unwrap();
+    let verdict = check(&Model::new(&problem, &found), &problem, &tube).unwrap().verdict;
     assert!(!verdict.conformant && verdict.suites[2].violations.count > 0);
     assert_eq!(found.left_out.len(), 2);
 }
@@ -262,9 +262,9 @@ fn a_factor_is_found_below_those_under_which_the_reachable_set_is_lost() {
     let mut larger = enclosed.sets.clone();
     let sets = [&mut larger.initial_set, &mut larger.input_set];
     sets.into_iter().flat_map(|set| &mut set.radius).for_each(|radius| *radius *= 3.5 / factor);
-    let hulls = Hulls::new(&problem, larger).unwrap();
+    let tube = Tube::new(&problem, larger).unwrap();
     let model = Model::new(&problem, &enclosed);
-    assert!(!check(&model, &problem, &hulls).unwrap().verdict.lost.is_empty());
+    assert!(!check(&model, &problem, &tube).unwrap().verdict.lost.is_empty());
     let Err(Error::Calibration(words)) = found([10.0, 24.0]) else { panic!("a factor was found") };
     assert!(words.problem.contains("sets of motion b are lost when the sets grow 1."), "{words}");
 }

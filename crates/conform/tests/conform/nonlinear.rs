@@ -13,8 +13,8 @@ use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::Method;
 use reachtube_conform::tube::Enclosure;
 use reachtube_conform::{
-    Conformance, Dynamics, Hulls, Model, Notion, Progress, Settings, Setup, Silent,
-    UncertaintySets, Verdict, check, conform,
+    Conformance, Dynamics, Model, Notion, Progress, Settings, Setup, Silent, Tube, UncertaintySets,
+    Verdict, check, conform,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle};
@@ -178,8 +178,8 @@ fn no_radius_can_be_made_smaller_alone() {
     for joint in (0..2).filter(|joint| found.sets.input_set.radius[*joint] > 0.1 * largest) {
         let mut smaller = model.clone();
         smaller.input_set.radius[joint] *= 0.95;
-        let hulls = Hulls::new(&problem, smaller.sets()).unwrap();
-        let answer = check(&smaller, &problem, &hulls).unwrap().verdict;
+        let tube = Tube::new(&problem, smaller.sets()).unwrap();
+        let answer = check(&smaller, &problem, &tube).unwrap().verdict;
         assert!(!answer.conformant && answer.violations.worst.is_some(), "joint {joint}");
     }
 }
@@ -254,8 +254,8 @@ fn points_of_motions_under_the_sets_are_proved() {
         noise_set: None,
     };
     let verdict = |input: f64| {
-        let hulls = Hulls::new(&problem, sets(input)).unwrap();
-        Verdict::new(&problem, &hulls, |_, _, _| ()).unwrap()
+        let tube = Tube::new(&problem, sets(input)).unwrap();
+        Verdict::new(&problem, &tube).unwrap()
     };
     let (known, less) = (verdict(0.3), verdict(0.05));
     assert!(known.conformant && known.points.unwrap().points == 40 * 59);
@@ -358,7 +358,7 @@ fn a_reachable_set_that_is_lost_is_an_answer() {
     let found = conform_all(&problem);
     let mut model = Model::new(&problem, &found);
     model.input_set.radius = vec![20.0; 2];
-    let answer = check(&model, &problem, &Hulls::new(&problem, model.sets()).unwrap()).unwrap();
+    let answer = check(&model, &problem, &Tube::new(&problem, model.sets()).unwrap()).unwrap();
     let verdict = &answer.verdict;
     assert!(!verdict.conformant && verdict.lost.len() == 2, "{answer:?}");
     assert!(verdict.violations.count > 0 && verdict.violations.worst.is_none());

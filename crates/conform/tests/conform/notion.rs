@@ -12,8 +12,7 @@ use reachtube_conform::claim::Certificate;
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::{Centre, InitialLimit, States};
 use reachtube_conform::{
-    Conformance, Error, Hulls, Keep, Model, Notion, Problem, Settings, Setup, Silent, check,
-    conform,
+    Conformance, Error, Keep, Model, Notion, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
 use reachtube_reach::{Disturbance, LinearSystem};
 use reachtube_recordings::{DataSet, Torque};
@@ -235,8 +234,8 @@ fn motions_inside_the_sets_are_inside_and_a_smaller_set_loses_some() {
     let setup = Setup::new(two_joints(), model.settings.clone()).unwrap();
     let setup = setup.with_nominal_start("a", start.clone());
     let others = read_with(setup, other.path(), &[]);
-    let hulls = Hulls::new(&others, model.sets()).unwrap();
-    let verdict = check(&model, &others, &hulls).unwrap().verdict;
+    let tube = Tube::new(&others, model.sets()).unwrap();
+    let verdict = check(&model, &others, &tube).unwrap().verdict;
     assert_eq!(verdict.points.as_ref().map(|points| points.outside), Some(0), "{verdict:?}");
     let mut smaller = model.clone();
     smaller.initial_set.radius.iter_mut().for_each(|r| *r *= 0.9);

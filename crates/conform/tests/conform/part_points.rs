@@ -11,8 +11,8 @@ use reachtube_conform::fleet::{
     conform_elsewhere,
 };
 use reachtube_conform::{
-    Conformance, Error, FitSettings, Group, Hulls, Keep, Model, Noise, Notion, Problem, Settings,
-    Setup, Silent, check, conform, fit,
+    Conformance, Error, FitSettings, Group, Keep, Model, Noise, Notion, Problem, Settings, Setup,
+    Silent, Tube, check, conform, fit,
 };
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunSource, Torque};
 
@@ -167,10 +167,10 @@ fn a_check_names_the_same_points() {
     let problem = Problem::read(setup.clone(), source, &[], Keep::Needed, &Silent).unwrap();
     let model: Model = Model::new(&problem, &conform(&problem, &Silent, None).unwrap());
     let answer = |problem: &Problem, server: Option<&Parts>| {
-        let hulls = Hulls::new(problem, model.sets()).unwrap();
+        let tube = Tube::new(problem, model.sets()).unwrap();
         let answer = match server {
-            Some(server) => check_elsewhere(&model, problem, &hulls, server),
-            None => check(&model, problem, &hulls),
+            Some(server) => check_elsewhere(&model, problem, &tube, server),
+            None => check(&model, problem, &tube),
         };
         answer.unwrap().verdict
     };

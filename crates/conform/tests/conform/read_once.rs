@@ -73,7 +73,7 @@ fn each_recording_is_read_once() {
                 let found = conform(&problem, &Silent, None).unwrap();
                 let model = Model::new(&problem, &found);
                 let check = Check::new(&model, &problem, found.verdict.clone());
-                let sets = reach(&problem, &found.hulls).unwrap();
+                let sets = reach(&problem, &found.tube).unwrap();
                 let traces = (0..12).map(|index| problem.run(index).unwrap().len());
                 assert!(check.verdict.conformant && !sets.is_empty() && traces.sum::<usize>() > 0);
                 let counts: Vec<usize> =

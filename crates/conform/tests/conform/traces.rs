@@ -9,7 +9,7 @@ use crate::common::{
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
 use reachtube_conform::result::FrontEnd;
 use reachtube_conform::{
-    Error, Hulls, Keep, Model, Noise, Notion, Problem, Settings, Setup, Silent, UncertaintySets,
+    Error, Keep, Model, Noise, Notion, Problem, Settings, Setup, Silent, Tube, UncertaintySets,
     Verdict,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
@@ -48,8 +48,8 @@ fn verdict_of(robot: &Robot, settings: &Settings, folder: &Path, input: f64) -> 
         input_set: Hyperrectangle { centre: vec![0.0; 2], radius: vec![input; 2] },
         noise_set: Some(Hyperrectangle { centre: vec![0.0; 4], radius: NOISE.into() }),
     };
-    let hulls = Hulls::new(&problem, sets).unwrap();
-    let verdict = Verdict::new(&problem, &hulls, |_, _, _| ()).unwrap();
+    let tube = Tube::new(&problem, sets).unwrap();
+    let verdict = Verdict::new(&problem, &tube).unwrap();
     // A verdict asks the points that its claim names, for sets of any origin.
     assert!(verdict.points.as_ref().is_some_and(|points| points.points > 0));
     verdict

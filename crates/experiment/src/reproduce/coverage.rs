@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use rayon::prelude::*;
 use reachtube_conform::next_motion::CONFIDENCE;
 use reachtube_conform::{
-    Check, Hulls, Keep, Model, Problem, Settings, Setup, Silent, Verdict, conform,
+    Check, Keep, Model, Problem, Settings, Setup, Silent, Tube, Verdict, conform,
 };
 use reachtube_recordings::{MemoryRuns, Torque};
 use reachtube_robot::Robot;
@@ -162,19 +162,19 @@ fn campaign(motions: &MemoryRuns, next: &Problem) -> Result<Stated> {
     };
     // The scenario bound, of sets for all motions.
     let all = conform(&read(0..MOTIONS, 0)?, &Silent, None)?;
-    let scenario = (all.trust.violation_probability, truth(next, &all.hulls)?);
+    let scenario = (all.trust.violation_probability, truth(next, &all.tube)?);
     // The hold-out bound, of sets for some, by the others.
     let fit = read(HELD_OUT..MOTIONS, 0)?;
     let found = conform(&fit, &Silent, None)?;
     let others = read(0..HELD_OUT, 0)?;
-    let hulls = Hulls::new(&others, found.sets.clone())?;
-    let verdict = Verdict::new(&others, &hulls, |_, _, _| ())?;
+    let tube = Tube::new(&others, found.sets.clone())?;
+    let verdict = Verdict::new(&others, &tube)?;
     let check = Check::new(&Model::new(&fit, &found), &others, verdict);
     let hold_out = check.trust.map_or(1.0, |trust| trust.violation_probability);
-    let hold_out = (hold_out, truth(next, &found.hulls)?);
+    let hold_out = (hold_out, truth(next, &found.tube)?);
     // The calibration bounds, of sets for some that are scaled to hold the others.
     let found = conform(&read(0..MOTIONS, CALIBRATING)?, &Silent, None)?;
-    let truth = truth(next, &found.hulls)?;
+    let truth = truth(next, &found.tube)?;
     let average = found.trust.average_probability.unwrap_or(1.0);
     Ok([scenario, hold_out, (found.trust.violation_probability, truth), (average, truth)])
 }
@@ -189,9 +189,9 @@ fn problem(motions: MemoryRuns, used: Range<usize>, calibrating: usize) -> Resul
 }
 
 /// Returns the part of the next motions that leave the sets.
-fn truth(next: &Problem, hulls: &Hulls) -> Result<f64> {
-    let hulls = Hulls::new(next, hulls.sets.clone())?;
-    let verdict = Verdict::new(next, &hulls, |_, _, _| ())?;
+fn truth(next: &Problem, tube: &Tube) -> Result<f64> {
+    let tube = Tube::new(next, tube.sets.clone())?;
+    let verdict = Verdict::new(next, &tube)?;
     let leaving = verdict.suites.iter().filter(|suite| !suite.holds()).count();
     Ok(leaving as f64 / verdict.suites.len() as f64)
 }

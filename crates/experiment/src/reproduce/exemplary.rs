@@ -6,7 +6,7 @@ use reachtube_conform::next_motion::Trend;
 use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::States;
 use reachtube_conform::{
-    Check, Conformance, Hulls, Keep, Model, Problem, Progress, Setup, Silent, Verdict, reach,
+    Check, Conformance, Keep, Model, Problem, Progress, Setup, Silent, Tube, Verdict, reach,
 };
 use reachtube_recordings::DataSet;
 
@@ -144,10 +144,10 @@ fn suite_under(
 ) -> Result<(SuiteFigure, Vec<f64>)> {
     let source = Box::new(DataSet::open(folder)?);
     let problem = Problem::read(setup, source, &[name.into()], Keep::All, &Silent)?;
-    let hulls = Hulls::new(&problem, found.sets.clone())?;
-    let sets = reach(&problem, &hulls)?;
+    let tube = Tube::new(&problem, found.sets.clone())?;
+    let sets = reach(&problem, &tube)?;
     let model = Model::new(&problem, found);
-    let verdict = Verdict::new(&problem, &hulls, |_, _, _| ())?;
+    let verdict = Verdict::new(&problem, &tube)?;
     let check = Check::new(&model, &problem, verdict);
     let figure = suite_figures(&Sources {
         model: &model,

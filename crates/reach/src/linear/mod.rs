@@ -10,8 +10,8 @@ pub(crate) mod sample_generators;
 pub(crate) mod solution;
 pub(crate) mod sparsity;
 pub(crate) mod step;
+pub(crate) mod step_bounds;
 pub(crate) mod system;
-pub(crate) mod tube;
 
 pub use hulls::ReachSets;
 pub use input_gains::Disturbance;
@@ -19,5 +19,5 @@ pub use propagation::Propagation;
 pub use sample_generators::SampleGenerators;
 pub use solution::Trajectory;
 pub use step::{PropagationStep, step};
+pub use step_bounds::{StepBounds, StepRadii};
 pub use system::LinearSystem;
-pub use tube::{Tube, TubeRadii};

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 use reachtube_reach::{
     Disturbance, Hyperrectangle, IntervalVector, LinearSystem, Propagation, ReachError, ReachSets,
-    TimeGrid, Tube, TubeRadii,
+    StepBounds, StepRadii, TimeGrid,
 };
 use reachtube_scalar::Interval;
 
@@ -53,8 +53,8 @@ fn run_all(system: &LinearSystem) {
             let nominal =
                 propagation.solve(&IntervalVector::from_element(n, Interval::ONE), &inputs);
             assert_eq!(nominal.len(), grid.len());
-            let radii = TubeRadii::new(&propagation, disturbance, &sets(n), &sets(m));
-            let tube = Tube::new(&propagation, &nominal, &inputs, &reach, &sets(m), &radii);
+            let radii = StepRadii::new(&propagation, disturbance, &sets(n), &sets(m));
+            let tube = StepBounds::new(&propagation, &nominal, &inputs, &reach, &sets(m), &radii);
             assert_eq!(tube.len(), grid.len().saturating_sub(1));
         }
     }

@@ -2,8 +2,8 @@
 
 use nalgebra::DVector;
 use reachtube_reach::{
-    Disturbance, Hyperrectangle, IntervalVector, LinearSystem, Propagation, ReachSets, TimeGrid,
-    Trajectory, Tube, TubeRadii, step,
+    Disturbance, Hyperrectangle, IntervalVector, LinearSystem, Propagation, ReachSets, StepBounds,
+    StepRadii, TimeGrid, Trajectory, step,
 };
 use reachtube_scalar::Interval;
 
@@ -25,7 +25,7 @@ struct Case {
     start: Vec<f64>,
     nominal: Trajectory,
     reach: ReachSets,
-    tube: Tube,
+    tube: StepBounds,
 }
 
 impl Case {
@@ -44,8 +44,8 @@ impl Case {
         );
         let reach =
             ReachSets::new(&propagation, &disturbance.input_gains(&propagation), &initial, &input);
-        let radii = TubeRadii::new(&propagation, disturbance, &initial, &input);
-        let tube = Tube::new(&propagation, &nominal, &inputs, &reach, &input, &radii);
+        let radii = StepRadii::new(&propagation, disturbance, &initial, &input);
+        let tube = StepBounds::new(&propagation, &nominal, &inputs, &reach, &input, &radii);
         Self { propagation, initial, input, inputs, start, nominal, reach, tube }
     }
 
@@ -171,8 +171,8 @@ fn a_peak_between_two_samples_is_inside() {
     let nominal = propagation.solve(&start, &[0.0, 0.0]);
     let gains = Disturbance::Sample.input_gains(&propagation);
     let reach = ReachSets::new(&propagation, &gains, &initial, &input);
-    let radii = TubeRadii::new(&propagation, Disturbance::Sample, &initial, &input);
-    let tube = Tube::new(&propagation, &nominal, &[0.0, 0.0], &reach, &input, &radii);
+    let radii = StepRadii::new(&propagation, Disturbance::Sample, &initial, &input);
+    let tube = StepBounds::new(&propagation, &nominal, &[0.0, 0.0], &reach, &input, &radii);
     assert!(
         tube.bounds(0)[0].hi() >= 1.0
             && nominal.state(0)[0].hi() < 0.55
@@ -197,8 +197,8 @@ fn a_radius_that_peaks_between_two_samples_is_inside() {
     {
         let gains = Disturbance::Constant.input_gains(&propagation);
         let reach = ReachSets::new(&propagation, &gains, &initial, &input);
-        let radii = TubeRadii::new(&propagation, Disturbance::Constant, &initial, &input);
-        let tube = Tube::new(&propagation, &nominal, &[0.0; 3], &reach, &input, &radii);
+        let radii = StepRadii::new(&propagation, Disturbance::Constant, &initial, &input);
+        let tube = StepBounds::new(&propagation, &nominal, &[0.0; 3], &reach, &input, &radii);
         let bound = tube.bounds(1)[state];
         assert!(reach.upper_outer(1, state) < 0.87 && reach.upper_outer(2, state) < 0.87);
         assert!(bound.hi() >= 1.0 && bound.lo() <= -1.0, "{bound:?}");

@@ -1,7 +1,7 @@
 //! What is exported: a model over one recorded input, with its sets and our bounds.
 
 use reachtube_conform::data::Case;
-use reachtube_conform::{Hulls, Problem, SuiteReach, UncertaintySets, reach};
+use reachtube_conform::{Problem, SuiteReach, Tube, UncertaintySets, reach};
 use reachtube_reach::{Disturbance, Hyperrectangle, TimeGrid};
 use reachtube_scalar::Interval;
 
@@ -43,20 +43,20 @@ pub struct InitialState {
 }
 
 impl ExportCase {
-    /// Takes every case of a problem, with the reachable sets under the sets of `hulls`.
+    /// Takes every case of a problem, with the reachable sets under the sets of `tube`.
     ///
     /// # Errors
     ///
     /// As [`Problem::cases`] and [`reach`](reach()); a suite of a single sample.
-    pub fn all(problem: &Problem, hulls: &Hulls) -> Result<Vec<Self>, ExportError> {
-        let reached = reach(problem, hulls)?;
+    pub fn all(problem: &Problem, tube: &Tube) -> Result<Vec<Self>, ExportError> {
+        let reached = reach(problem, tube)?;
         let cases = problem.cases()?.iter().zip(reached);
-        cases.map(|(case, reach)| Self::new(problem, hulls, case, reach)).collect()
+        cases.map(|(case, reach)| Self::new(problem, tube, case, reach)).collect()
     }
 
     fn new(
         problem: &Problem,
-        hulls: &Hulls,
+        tube: &Tube,
         case: &Case,
         reach: SuiteReach,
     ) -> Result<Self, ExportError> {
@@ -75,7 +75,7 @@ impl ExportCase {
             ),
             system: System::new(problem.dynamics()),
             start: case.start.clone(),
-            sets: hulls.sets.clone(),
+            sets: tube.sets.clone(),
             grid: case.grid.as_ref().clone(),
             inputs: case.inputs.to_vec(),
             disturbance: settings.disturbance,

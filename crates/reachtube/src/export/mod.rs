@@ -8,7 +8,7 @@
 //! # Examples
 //!
 //! ```
-//! use reachtube::conform::{Hulls, Settings, UncertaintySets};
+//! use reachtube::conform::{Tube, Settings, UncertaintySets};
 //! use reachtube::export::{ExportCase, InputForm, Tool, files};
 //! use reachtube::{
 //!     Hyperrectangle, Keep, MemoryRuns, Problem, Robot, Run, Setup, Silent, Torque,
@@ -23,8 +23,8 @@
 //! let box_of = |n, radius| Hyperrectangle { centre: vec![0.0; n], radius: vec![radius; n] };
 //! let (initial_set, input_set) = (box_of(12, 1e-3), box_of(6, 0.5));
 //! let sets = UncertaintySets { initial_set, input_set, noise_set: None };
-//! let hulls = Hulls::new(&problem, sets)?;
-//! let cases = ExportCase::all(&problem, &hulls)?;
+//! let tube = Tube::new(&problem, sets)?;
+//! let cases = ExportCase::all(&problem, &tube)?;
 //! let written = files(&cases[0], Tool::HyLaa, InputForm::Deviation)?;
 //! assert!(written.iter().any(|file| file.name == "hylaa_reach.py"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use reachtube::conform::{Hulls, Settings, UncertaintySets};
+use reachtube::conform::{Settings, Tube, UncertaintySets};
 use reachtube::export::{ExportCase, ExportFile, InputForm, Tool, files};
 use reachtube::recordings::DataSet;
 use reachtube::{
@@ -60,8 +60,8 @@ pub(crate) fn cases_of(
     };
     let (initial_set, input_set) = (some_box(2 * n, 1e-4), some_box(n, 1e-2));
     let sets = UncertaintySets { initial_set, input_set, noise_set: None };
-    let hulls = Hulls::new(&problem, sets).unwrap();
-    ExportCase::all(&problem, &hulls).unwrap()
+    let tube = Tube::new(&problem, sets).unwrap();
+    ExportCase::all(&problem, &tube).unwrap()
 }
 
 /// Returns two runs of `samples` samples at these times with the same made-up input.

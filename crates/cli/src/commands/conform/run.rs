@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Returns the answer on a few lines, with the files that were written.
 fn summary(answer: &Answer, written: &[&Path], args: &Arguments) -> Result<Summary> {
-    let mut summary = answer.summary(FrontEnd::CommandLine)?;
+    let mut summary = answer.summary(FrontEnd::CommandLine);
     if !written.is_empty() {
         let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
         summary.fact("wrote", names.join(", "));

@@ -5,7 +5,7 @@ use crate::data::settings::{Notion, States};
 use crate::next_motion::trust::Trust;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::tube::hulls::Enclosure;
+use crate::tube::tube::Enclosure;
 
 /// A bound above this probability is not useful.
 const USELESS: f64 = 0.5;

@@ -7,7 +7,7 @@ use crate::model::file::{MOST_TIGHT, Model};
 use crate::model::records::{Explained, Residual};
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::tube::hulls::Enclosure;
+use crate::tube::tube::Enclosure;
 
 impl Finding {
     /// How many recorded values touch the reachable set.

@@ -14,7 +14,8 @@ use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::notion_words;
 use crate::result::remedy::Remedy;
 use crate::search::found::SearchSummary;
-use crate::tube::hulls::{Enclosure, Lost};
+use crate::tube::strand::Lost;
+use crate::tube::tube::Enclosure;
 use crate::tube::witness::Witness;
 
 /// Returns the code and the severity of a verdict.

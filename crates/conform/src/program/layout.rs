@@ -1,14 +1,15 @@
 use reachtube_reach::Hyperrectangle;
 
 use crate::data::settings::{Centre, Noise, Settings};
+use crate::data::shape::Shape;
 use crate::data::side::Side;
-use crate::linear::cut::Cut;
-use crate::linear::solver::Triplets;
+use crate::program::cut::Cut;
+use crate::program::solver::Triplets;
 use crate::sets::UncertaintySets;
 
 /// The largest that V and X0 may be, 2n each, rad and rad/s, where that is limited.
 #[derive(Debug, Clone, Default)]
-pub struct Limits {
+pub(crate) struct Limits {
     /// The largest radii of V.
     pub noise: Option<Vec<f64>>,
     /// The largest |x| of X0; infinite for a state that is not limited.
@@ -17,12 +18,12 @@ pub struct Limits {
 
 impl Limits {
     /// Returns the limit of radius `j` of (X0, U); infinite where there is none.
-    pub fn of_start(&self, j: usize) -> f64 {
+    pub(crate) fn of_start(&self, j: usize) -> f64 {
         self.start.as_ref().and_then(|start| start.get(j)).copied().unwrap_or(f64::INFINITY)
     }
 
     /// Makes the radii of X0 so small that X0 keeps its limit.
-    pub fn shrink(&self, initial_set: &mut Hyperrectangle) {
+    pub(crate) fn shrink(&self, initial_set: &mut Hyperrectangle) {
         let Hyperrectangle { centre, radius } = initial_set;
         for ((radius, centre), limit) in
             radius.iter_mut().zip(centre).zip(self.start.iter().flatten())
@@ -35,15 +36,15 @@ impl Limits {
 /// Which column of the solver's matrix each unknown is: the centres (c_x, c_u) where they are
 /// unknown, the radii (r_x, r_u), and the radii of the noise where they are unknown.
 pub(crate) struct Layout {
-    joints: usize,
+    shape: Shape,
     has_centres: bool,
     /// Cost of each column; a centre has the cost of its radius, for scaling only.
     pub cost: Vec<f64>,
 }
 
 impl Layout {
-    /// Lays out the unknowns for radii of the cost `cost` (3n) and noise radii of `noise_cost`
-    /// (2n).
+    /// Lays out the unknowns for radii of X0 and U of the cost `cost`, and noise radii of
+    /// `noise_cost`.
     pub(crate) fn new(settings: &Settings, cost: &[f64], noise_cost: &[f64]) -> Self {
         let has_centres = settings.centre != Centre::Zero;
         let mut columns = if has_centres { cost.to_vec() } else { Vec::new() };
@@ -55,12 +56,14 @@ impl Layout {
         // cost makes it 0.
         let largest = columns.iter().copied().fold(0.0, f64::max);
         columns.iter_mut().filter(|w| **w == 0.0).for_each(|w| *w = largest);
-        Self { joints: cost.len() / 3, has_centres, cost: columns }
+        let states = noise_cost.len();
+        let shape = Shape { states, inputs: cost.len() - states };
+        Self { shape, has_centres, cost: columns }
     }
 
     /// Returns the number of centres, which is the column of the first radius.
     pub(crate) fn centres(&self) -> usize {
-        if self.has_centres { 3 * self.joints } else { 0 }
+        if self.has_centres { self.shape.radii() } else { 0 }
     }
 
     /// Returns the columns and entries of one side of a row of the program.
@@ -73,7 +76,7 @@ impl Layout {
     ) -> Vec<(usize, f64)> {
         let signed = centre.iter().map(|a| side.sign() * a).take(self.centres());
         let mut row: Vec<(usize, f64)> = signed.chain(radius.iter().copied()).enumerate().collect();
-        let noise = self.centres() + 3 * self.joints;
+        let noise = self.centres() + self.shape.radii();
         if self.cost.len() > noise {
             row.push((noise + state, 1.0));
         }
@@ -83,7 +86,7 @@ impl Layout {
     /// Returns the columns and entries of a row in any direction.
     pub(crate) fn cut_entries(&self, cut: &Cut) -> Vec<(usize, f64)> {
         let centre = cut.centre.iter().take(self.centres());
-        let has_noise = self.cost.len() > self.centres() + 3 * self.joints;
+        let has_noise = self.cost.len() > self.centres() + self.shape.radii();
         let noise = cut.noise.iter().filter(|_| has_noise);
         centre.chain(&cut.radius).chain(noise).copied().enumerate().collect()
     }
@@ -91,15 +94,16 @@ impl Layout {
     /// Returns the size of the unknown of column `j` in some sets: a radius, or the larger one of a
     /// centre's distance from 0 and its radius.
     pub(crate) fn value(&self, sets: &UncertaintySets, j: usize) -> f64 {
-        let (n, centres) = (self.joints, self.centres());
+        let (Shape { states, .. }, centres) = (self.shape, self.centres());
+        let width = self.shape.radii();
         let of = |set: &Hyperrectangle, i: usize| {
             let centre = if j < centres { set.centre[i].abs() } else { 0.0 };
             centre.max(set.radius[i])
         };
         match if j < centres { j } else { j - centres } {
-            i if i < 2 * n => of(&sets.initial_set, i),
-            i if i < 3 * n => of(&sets.input_set, i - 2 * n),
-            i => sets.noise_radius(i - 3 * n),
+            i if i < states => of(&sets.initial_set, i),
+            i if i < width => of(&sets.input_set, i - states),
+            i => sets.noise_radius(i - width),
         }
     }
 
@@ -114,7 +118,7 @@ impl Layout {
 
     /// Returns the largest that the unknown of column `j` may be; infinite where it has no limit.
     pub(crate) fn limit_of(&self, limits: &Limits, j: usize) -> f64 {
-        let (width, centres) = (3 * self.joints, self.centres());
+        let (width, centres) = (self.shape.radii(), self.centres());
         match if j < centres { j } else { j - centres } {
             i if i < width => limits.of_start(i),
             i => limits.noise.as_ref().map_or(f64::INFINITY, |noise| noise[i - width]),
@@ -153,7 +157,7 @@ impl Layout {
         bounds: &mut Vec<f64>,
         unit: &[f64],
     ) {
-        let noise = self.centres() + 3 * self.joints;
+        let noise = self.centres() + self.shape.radii();
         for (column, limit) in (noise..self.cost.len()).zip(limits.noise.iter().flatten()) {
             triplets.row([(column, 1.0)]);
             bounds.push(limit / unit[column]);
@@ -172,7 +176,8 @@ impl Layout {
 
     /// Returns the sets that values of the unknowns describe.
     pub(crate) fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
-        let (n, centres) = (self.joints, self.centres());
+        let (Shape { states, .. }, centres) = (self.shape, self.centres());
+        let width = self.shape.radii();
         let set = |from: usize, to: usize| {
             let radius: Vec<f64> =
                 unknowns[centres + from..centres + to].iter().map(|r| r.max(0.0)).collect();
@@ -183,14 +188,14 @@ impl Layout {
             }
             Hyperrectangle { centre, radius }
         };
-        let noise = |radius: Vec<f64>| Some(Hyperrectangle { centre: vec![0.0; 2 * n], radius });
+        let noise = |radius: Vec<f64>| Some(Hyperrectangle { centre: vec![0.0; states], radius });
         let noise_set = match &settings.noise {
             Noise::None => None,
             Noise::Fixed(given) => noise(given.clone()),
             Noise::Fitted => {
-                noise(unknowns[centres + 3 * n..].iter().map(|r| r.max(0.0)).collect())
+                noise(unknowns[centres + width..].iter().map(|r| r.max(0.0)).collect())
             }
         };
-        UncertaintySets { initial_set: set(0, 2 * n), input_set: set(2 * n, 3 * n), noise_set }
+        UncertaintySets { initial_set: set(0, states), input_set: set(states, width), noise_set }
     }
 }

@@ -6,7 +6,7 @@ use crate::tube::grids::Grid;
 
 /// The rows of one sample grid of one linear system, ready to be evaluated at the speed of memory.
 #[derive(Debug, Clone)]
-pub struct Block {
+pub(crate) struct Block {
     /// Sample times, s.
     pub times: Vec<f64>,
     /// Samples x states x (unknown centres, then radii): the entries of E_k, then of R_k.
@@ -18,8 +18,9 @@ pub struct Block {
 impl Block {
     /// Makes one block for each grid, with the deviations on it merged.
     #[must_use]
-    pub fn of_grids(grids: &[Grid], deviations: &[Deviation], joints: usize) -> Vec<Self> {
-        let mut merged: Vec<Envelope> = grids.iter().map(|_| Envelope::new(2 * joints)).collect();
+    pub(crate) fn of_grids(grids: &[Grid], deviations: &[Deviation]) -> Vec<Self> {
+        let none = |grid: &Grid| Envelope::new(grid.propagation.system().states());
+        let mut merged: Vec<Envelope> = grids.iter().map(none).collect();
         deviations.iter().for_each(|deviation| merged[deviation.grid].merge(&deviation.envelope));
         let block = |(grid, envelope): (&Grid, Envelope)| Self {
             times: grid.propagation.grid().times().to_vec(),

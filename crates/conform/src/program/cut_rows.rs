@@ -1,10 +1,10 @@
 //! The rows of cuts in the program.
 
 use crate::data::settings::Noise;
-use crate::linear::cut::Cut;
-use crate::linear::layout::Layout;
-use crate::linear::program::{Program, dot};
-use crate::linear::solver::Triplets;
+use crate::program::cut::Cut;
+use crate::program::layout::Layout;
+use crate::program::program::{Program, dot};
+use crate::program::solver::Triplets;
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {

@@ -10,15 +10,15 @@ use crate::linear::step::step;
 use crate::sets::hyperrectangle::Hyperrectangle;
 use crate::sets::interval_matrix::{IntervalMatrix, absolute, add_product, point, points, product};
 
-/// A continuous-time tube: one box per step [t_k, t_{k+1}] that contains every reachable state at
-/// every time of the step.
+/// The tube between the samples: one box per step [t_k, t_{k+1}] that contains every reachable
+/// state at every time of the step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tube {
+pub struct StepBounds {
     dimension: usize,
     bounds: Vec<Interval>,
 }
 
-impl Tube {
+impl StepBounds {
     /// Computes the tube around the solution `nominal` under the recorded `inputs` (row-major, one
     /// row of m entries per sample).
     ///
@@ -35,7 +35,7 @@ impl Tube {
         inputs: &[f64],
         sets: &ReachSets,
         input_set: &Hyperrectangle,
-        radii: &TubeRadii,
+        radii: &StepRadii,
     ) -> Self {
         let (n, m) = (propagation.system().states(), propagation.system().inputs());
         let centre = |k: usize, i: usize| nominal.state(k)[i] + sets.centre(k, i);
@@ -96,14 +96,14 @@ impl Tube {
 /// Radii of the tube over each step of a grid, which depend on the sets but not on the nominal
 /// motion.
 #[derive(Debug, Clone)]
-pub struct TubeRadii {
+pub struct StepRadii {
     dimension: usize,
     radius: Vec<Interval>,
     /// A e^{As} for every s up to the longest step; it maps ẏ at a sample to ÿ within the step.
     curvature: IntervalMatrix,
 }
 
-impl TubeRadii {
+impl StepRadii {
     /// Computes the radii for the initial set X0 (N) and the input set U (m).
     ///
     /// The gain of `Measurable` also covers `Sample`, since it contains that disturbance between

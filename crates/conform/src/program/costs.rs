@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::linear::block::Block;
+use crate::data::shape::Shape;
+use crate::program::block::Block;
 
 /// Returns, for each of several lists of sample times, how much each sample counts: samples at one
 /// time together count 1.
@@ -13,17 +14,22 @@ pub(crate) fn shares<'t>(lists: impl Iterator<Item = &'t [f64]> + Clone) -> Vec<
     lists.map(|times| times.iter().map(|t| 1.0 / counts[&nanoseconds(t)]).collect()).collect()
 }
 
-/// Returns the cost of each radius (r_x, r_u), 3n, and of each noise radius, 2n, for state weights
-/// `weights`, 2n.
-pub(super) fn cost(blocks: &[Block], shares: &[Vec<f64>], weights: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let (states, unknowns) = (weights.len(), weights.len() / 2 * 3);
-    let (mut cost, mut noise) = (vec![0.0; unknowns], vec![0.0; states]);
+/// Returns the cost of each radius (r_x, r_u), and of each noise radius, for the weight of each
+/// state.
+pub(super) fn cost(
+    shape: Shape,
+    blocks: &[Block],
+    shares: &[Vec<f64>],
+    weights: &[f64],
+) -> (Vec<f64>, Vec<f64>) {
+    let radii = shape.radii();
+    let (mut cost, mut noise) = (vec![0.0; radii], vec![0.0; shape.states]);
     for (block, shares) in blocks.iter().zip(shares) {
-        let samples = block.coefficients.chunks_exact(states * 2 * unknowns);
+        let samples = block.coefficients.chunks_exact(shape.entries());
         for (rows, share) in samples.zip(shares) {
-            for (i, row) in rows.chunks_exact(2 * unknowns).enumerate() {
+            for (i, row) in rows.chunks_exact(2 * radii).enumerate() {
                 let weight = 2.0 * share * weights[i];
-                row[unknowns..].iter().zip(&mut cost).for_each(|(a, w)| *w += weight * a);
+                row[radii..].iter().zip(&mut cost).for_each(|(a, w)| *w += weight * a);
                 noise[i] += weight;
             }
         }

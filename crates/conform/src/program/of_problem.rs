@@ -3,8 +3,8 @@
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::linear::block::Block;
-use crate::linear::program::Program;
+use crate::program::block::Block;
+use crate::program::program::Program;
 use crate::weights::state_weights;
 
 impl<'a> Program<'a> {
@@ -14,11 +14,11 @@ impl<'a> Program<'a> {
     ///
     /// As [`Problem::deviations`].
     pub(crate) fn of_problem(problem: &'a Problem) -> Result<Self> {
-        let (settings, joints) = (problem.settings(), problem.joints());
+        let (settings, shape) = (problem.settings(), problem.shape());
         let (grids, deviations) = (problem.grids()?, problem.deviations()?);
         let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
-        let weights = state_weights(&settings.weights, &envelopes, joints);
-        let blocks = Block::of_grids(grids.as_slice(), deviations, joints);
-        Ok(Self::new(settings, &weights, blocks).with_limits(problem.limits()))
+        let weights = state_weights(&settings.weights, &envelopes, shape.states);
+        let blocks = Block::of_grids(grids.as_slice(), deviations);
+        Ok(Self::new((settings, shape), &weights, blocks).with_limits(problem.limits()))
     }
 }

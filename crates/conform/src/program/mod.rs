@@ -9,10 +9,8 @@ mod limits;
 mod of_problem;
 mod other_recordings;
 mod paper;
+#[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod program;
 mod repair;
 pub(crate) mod solver;
 mod units;
-
-pub use block::Block;
-pub use program::{Program, Solution};

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
-use crate::linear::program::{Program, RowIndex, dot};
+use crate::program::program::{Program, RowIndex, dot};
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Deviation;
 use crate::tube::rows::NEGLIGIBLE_RADIUS;
@@ -17,7 +17,7 @@ impl Program<'_> {
     ) -> Self {
         let mut program = self.clone();
         let blocks = &mut program.blocks;
-        blocks.iter_mut().for_each(|block| block.envelope = Envelope::new(2 * self.joints));
+        blocks.iter_mut().for_each(|block| block.envelope = Envelope::new(self.shape.states));
         deviations.into_iter().for_each(|d| blocks[d.grid].envelope.merge(&d.envelope));
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
@@ -27,7 +27,7 @@ impl Program<'_> {
     #[must_use]
     pub(crate) fn with_blocks(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut program = self.clone();
-        let states = 2 * self.joints;
+        let states = self.shape.states;
         let others = program.blocks.iter_mut().enumerate().filter(|(block, _)| !keep(*block));
         others.for_each(|(_, block)| block.envelope = Envelope::new(states));
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
@@ -39,13 +39,12 @@ impl Program<'_> {
     #[must_use]
     pub(crate) fn with_every(&self, stride: usize) -> Self {
         let mut program = self.clone();
-        let row = 2 * self.joints * 6 * self.joints;
         for (block, shares) in program.blocks.iter_mut().zip(&mut program.shares) {
             block.times = block.times.iter().copied().step_by(stride).collect();
             *shares = shares.iter().copied().step_by(stride).collect();
-            let samples = block.coefficients.chunks_exact(row).step_by(stride);
+            let samples = block.coefficients.chunks_exact(self.shape.entries()).step_by(stride);
             block.coefficients = Arc::new(samples.flatten().copied().collect());
-            block.envelope = Envelope::new(2 * self.joints);
+            block.envelope = Envelope::new(self.shape.states);
         }
         program
     }
@@ -75,7 +74,7 @@ impl Program<'_> {
     /// Returns the factors of the radii of X0 alone, of U alone, and of both, with which every row
     /// holds up to rounding; `None` if no factor suffices.
     #[must_use]
-    pub fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
+    pub(crate) fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
         let unknowns = self.unknowns(sets);
         let (states, all) = (sets.initial_set.dimension(), unknowns.radius.len());
         [0..states, states..all, 0..all].map(|part| {

@@ -15,13 +15,14 @@ use std::collections::{BTreeMap, HashSet};
 use reachtube_reach::Hyperrectangle;
 
 use crate::data::settings::{Noise, Settings};
+use crate::data::shape::Shape;
 use crate::data::side::Side;
 use crate::error::{Error, Result};
-use crate::linear::block::Block;
-use crate::linear::costs::{cost, shares};
-use crate::linear::cut::Cut;
-use crate::linear::layout::{Layout, Limits};
-use crate::linear::solver::{FINE, Triplets, polished, solve_cone};
+use crate::program::block::Block;
+use crate::program::costs::{cost, shares};
+use crate::program::cut::Cut;
+use crate::program::layout::{Layout, Limits};
+use crate::program::solver::{FINE, Triplets, polished, solve_cone};
 use crate::search::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
 
@@ -48,9 +49,9 @@ const SCALINGS: usize = 4;
 
 /// The program.
 #[derive(Clone)]
-pub struct Program<'a> {
+pub(crate) struct Program<'a> {
     pub(super) settings: &'a Settings,
-    pub(super) joints: usize,
+    pub(super) shape: Shape,
     pub(super) blocks: Vec<Block>,
     /// For each block and sample, how much its widths count.
     pub(crate) shares: Vec<Vec<f64>>,
@@ -69,7 +70,7 @@ pub struct Program<'a> {
 
 /// What the solver found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
+pub(crate) struct Solution {
     /// The sets; their rows hold to the solver's tolerance only.
     pub sets: UncertaintySets,
     /// The dual objective: no sets that satisfy the rows cost less, up to the solver's tolerance.
@@ -86,15 +87,18 @@ pub struct Solution {
 pub(crate) type RowIndex = (usize, usize, usize, Side);
 
 impl<'a> Program<'a> {
-    /// Makes the program of some blocks for the state weights `weights`, s, 2n.
+    /// Makes the program of some blocks for the weight of each state, s.
     #[must_use]
-    pub fn new(settings: &'a Settings, weights: &[f64], blocks: Vec<Block>) -> Self {
-        let joints = weights.len() / 2;
+    pub(crate) fn new(
+        (settings, shape): (&'a Settings, Shape),
+        weights: &[f64],
+        blocks: Vec<Block>,
+    ) -> Self {
         let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
-        let (cost, noise_cost) = cost(&blocks, &shares, weights);
+        let (cost, noise_cost) = cost(shape, &blocks, &shares, weights);
         let mut program = Self {
             settings,
-            joints,
+            shape,
             blocks,
             shares,
             centre_bounds: Vec::new(),
@@ -110,34 +114,34 @@ impl<'a> Program<'a> {
 
     /// Keeps each centre (c_x, c_u) between two numbers.
     #[must_use]
-    pub fn with_centre_bounds(self, centre_bounds: Vec<[f64; 2]>) -> Self {
+    pub(crate) fn with_centre_bounds(self, centre_bounds: Vec<[f64; 2]>) -> Self {
         Self { centre_bounds, ..self }
     }
 
     /// Keeps V and X0 within `limits`.
     #[must_use]
-    pub fn with_limits(self, limits: Limits) -> Self {
+    pub(crate) fn with_limits(self, limits: Limits) -> Self {
         Self { limits, ..self }
     }
 
     /// Returns the cost of some sets.
     #[must_use]
-    pub fn cost(&self, sets: &UncertaintySets) -> f64 {
+    pub(crate) fn cost(&self, sets: &UncertaintySets) -> f64 {
         let radii = sets.initial_set.radius.iter().chain(&sets.input_set.radius);
-        let noise = (0..2 * self.joints).map(|i| self.noise_cost[i] * sets.noise_radius(i));
+        let noise = (0..self.shape.states).map(|i| self.noise_cost[i] * sets.noise_radius(i));
         radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
     }
 
     /// Returns the cost of widths of 1e-9 rad or rad/s throughout, which are as good as none.
     #[must_use]
-    pub fn negligible_cost(&self) -> f64 {
+    pub(crate) fn negligible_cost(&self) -> f64 {
         1e-9 * 0.5 * self.noise_cost.iter().sum::<f64>()
     }
 
     /// Returns the number of rows of the whole program, each side counted.
     #[must_use]
-    pub fn rows(&self) -> usize {
-        let states = self.settings.states.rows(self.joints);
+    pub(crate) fn rows(&self) -> usize {
+        let states = self.settings.states.rows(self.shape.states);
         self.blocks.iter().map(|block| 2 * states * block.envelope.len()).sum()
     }
 
@@ -147,7 +151,7 @@ impl<'a> Program<'a> {
     /// # Errors
     ///
     /// [`Error::Program`] when the solver does not reach an optimum.
-    pub fn solve(&self) -> Result<Solution> {
+    pub(crate) fn solve(&self) -> Result<Solution> {
         self.solve_from(&mut self.first_rows())
     }
 
@@ -199,7 +203,7 @@ impl<'a> Program<'a> {
 
     /// The rows of every `stride`-th sample.
     pub(crate) fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
-        let states = self.settings.states.rows(self.joints);
+        let states = self.settings.states.rows(self.shape.states);
         self.blocks.iter().enumerate().flat_map(move |(b, block)| {
             (0..block.envelope.len()).step_by(stride).flat_map(move |k| {
                 (0..states).flat_map(move |i| Side::BOTH.map(|side| (b, k, i, side)))
@@ -228,8 +232,8 @@ impl<'a> Program<'a> {
 
     /// The entries of E_k and of R_k in row i.
     pub(super) fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
-        let width = 3 * self.joints;
-        let start = (k * 2 * self.joints + i) * 2 * width;
+        let width = self.shape.radii();
+        let start = k * self.shape.entries() + i * 2 * width;
         self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
     }
 
@@ -278,7 +282,7 @@ impl<'a> Program<'a> {
         Unknowns {
             centre: join(|set| &set.centre),
             radius: join(|set| &set.radius),
-            free_noise: (0..2 * self.joints).map(noise).collect(),
+            free_noise: (0..self.shape.states).map(noise).collect(),
         }
     }
 
@@ -350,7 +354,7 @@ impl<'a> Program<'a> {
 
     /// Returns the rows that touch the hull of the sets' reach, within 1e-6 of its radius.
     #[must_use]
-    pub fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
+    pub(crate) fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
         let unknowns = self.unknowns(sets);
         let touches = |index: &RowIndex| {
             let (b, k, i, _) = *index;
@@ -368,7 +372,7 @@ impl<'a> Program<'a> {
 
     /// Returns the largest |d| among the rows.
     #[must_use]
-    pub fn scale(&self) -> f64 {
+    pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 }

@@ -1,6 +1,6 @@
 //! The repair of the solver's answer: sets that satisfy every row up to rounding.
 
-use crate::linear::program::{Program, ROUNDING, RowIndex, dot};
+use crate::program::program::{Program, ROUNDING, RowIndex, dot};
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {
@@ -14,7 +14,7 @@ impl Program<'_> {
     /// The solver meets a row to a part of the largest row, so a small one may miss most of its
     /// reach.
     #[must_use]
-    pub fn repaired(&self, sets: &UncertaintySets) -> UncertaintySets {
+    pub(crate) fn repaired(&self, sets: &UncertaintySets) -> UncertaintySets {
         let scaled = sets.inflated(self.worst_ratio(sets), 0.0);
         let widened = self.widened(sets);
         if self.cost(&widened) < self.cost(&scaled) { widened } else { scaled }
@@ -69,9 +69,10 @@ mod tests {
 
     use crate::data::envelope::Envelope;
     use crate::data::settings::Settings;
-    use crate::linear::block::Block;
-    use crate::linear::layout::Limits;
-    use crate::linear::program::Program;
+    use crate::data::shape::Shape;
+    use crate::program::block::Block;
+    use crate::program::layout::Limits;
+    use crate::program::program::Program;
     use crate::sets::UncertaintySets;
 
     /// A mass that is pushed for one second from rest, and comes 1 m and 1 m/s further than the
@@ -85,8 +86,9 @@ mod tests {
         envelope.include(0, &[0.0, 0.0, 1.0, 1.0]);
         let block = Block { times: vec![0.0, 1.0], coefficients: Arc::new(coefficients), envelope };
         let settings = Settings::new(Torque::Compensated, 1);
+        let shape = Shape { states: 2, inputs: 1 };
         let limits = Limits { noise: None, start: Some(vec![1e-9; 2]) };
-        let program = Program::new(&settings, &[1.0; 2], vec![block]).with_limits(limits);
+        let program = Program::new((&settings, shape), &[1.0; 2], vec![block]).with_limits(limits);
         let set = |radius: Vec<f64>| Hyperrectangle { centre: vec![0.0; radius.len()], radius };
         let sets = UncertaintySets {
             initial_set: set(vec![0.0; 2]),

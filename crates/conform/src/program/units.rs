@@ -1,7 +1,7 @@
 //! The units of the program's unknowns, in which the solver sees them.
 
-use crate::linear::layout::Layout;
-use crate::linear::program::Program;
+use crate::program::layout::Layout;
+use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 
 /// An unknown that contributes less than this part to the cost gets the unit that would.

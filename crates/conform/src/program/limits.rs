@@ -2,7 +2,7 @@
 
 use crate::data::problem::Problem;
 use crate::data::settings::{InitialLimit, Noise, NominalStart};
-use crate::linear::layout::Limits;
+use crate::program::layout::Limits;
 
 /// The least limit of a set, rad or rad/s, which is as good as 0. The program keeps room between
 /// its bounds.

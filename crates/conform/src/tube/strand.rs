@@ -1,0 +1,126 @@
+//! The reachable sets over one sequence of sample times.
+
+use std::sync::Arc;
+
+use reachtube_reach::{Flowpipe, FlowpipeOutcome, ReachSets, TimeGrid};
+use reachtube_recordings::State;
+use serde::{Deserialize, Serialize};
+
+use crate::data::case::Case;
+use crate::sets::UncertaintySets;
+use crate::tube::grids::Grid;
+
+/// A reachable set that could not be followed to the end: the model may run away under its
+/// uncertainty, or the enclosure grew too wide.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lost {
+    /// The suite, and the run where it has an input of its own.
+    pub case: String,
+    /// The last sample time that has a reachable set, s.
+    pub time: f64,
+    /// The state that grew fastest there.
+    pub state: State,
+}
+
+/// The reachable sets on one grid of a linear model, or along one case of any other.
+#[derive(Debug)]
+pub(crate) struct Strand {
+    /// The sample times.
+    pub times: Arc<TimeGrid>,
+    /// The sets at the samples.
+    pub hull: Hull,
+    /// Where the sets end early, if they do.
+    pub lost: Option<Lost>,
+}
+
+/// The interval hulls of reachable sets over time.
+#[derive(Debug)]
+pub(crate) enum Hull {
+    /// Of the deviation from the nominal motion, bounded from inside too.
+    Deviation(ReachSets),
+    /// Of the state, enclosed.
+    State(Flowpipe),
+}
+
+/// The interval hull of a reachable set in one state at one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HullBounds {
+    /// The lower bound that a row may use, rad or rad/s.
+    pub lower: f64,
+    /// The upper bound that a row may use.
+    pub upper: f64,
+    /// The radius.
+    pub radius: f64,
+}
+
+impl Strand {
+    /// Computes the sets of the deviation of a linear model on a grid.
+    pub(crate) fn on_grid(grid: &Grid, sets: &UncertaintySets) -> Self {
+        let (times, hull) = (Arc::clone(&grid.times), Hull::Deviation(grid.reach(sets)));
+        Self { times, hull, lost: None }
+    }
+
+    /// Takes the sets along a case.
+    pub(crate) fn along(case: &Case, flowpipe: Flowpipe) -> Self {
+        let lost = match flowpipe.outcome() {
+            FlowpipeOutcome::Reached => None,
+            FlowpipeOutcome::Failed { time, state, .. } => {
+                let state = State::from_index(*state, case.joints());
+                Some(Lost { case: case.name.clone(), time: *time, state })
+            }
+        };
+        Self { times: Arc::clone(&case.grid), hull: Hull::State(flowpipe), lost }
+    }
+
+    /// Returns the sets of the deviation of a linear model.
+    pub(crate) fn deviation(&self) -> Option<&ReachSets> {
+        match &self.hull {
+            Hull::Deviation(reach) => Some(reach),
+            Hull::State(_) => None,
+        }
+    }
+
+    /// Returns the flowpipe of a model that is not linear.
+    pub(crate) fn flowpipe(&self) -> Option<&Flowpipe> {
+        match &self.hull {
+            Hull::Deviation(_) => None,
+            Hull::State(flowpipe) => Some(flowpipe),
+        }
+    }
+
+    /// Returns the last sample and its time, s.
+    pub(crate) fn end(&self) -> (usize, f64) {
+        let times = self.times.times();
+        (times.len().saturating_sub(1), times.last().copied().unwrap_or(0.0))
+    }
+}
+
+impl Hull {
+    /// Returns the number of samples that have a set.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Deviation(reach) => reach.len(),
+            Self::State(flowpipe) => flowpipe.len(),
+        }
+    }
+
+    /// Returns the bounds at sample `k` in state `i`; `None` if the set was lost.
+    ///
+    /// # Guarantee
+    ///
+    /// Inner for a deviation: every value between the bounds is reachable in that state. Outer for
+    /// a state.
+    pub(crate) fn bounds(&self, k: usize, i: usize) -> Option<HullBounds> {
+        match self {
+            Self::Deviation(reach) => {
+                let (lower, upper) = (reach.lower_inner(k, i), reach.upper_inner(k, i));
+                Some(HullBounds { lower, upper, radius: reach.radius(k, i).mid() })
+            }
+            Self::State(flowpipe) => {
+                let hull = (k < flowpipe.len()).then(|| flowpipe.sample(k)[i])?;
+                Some(HullBounds { lower: hull.lo(), upper: hull.hi(), radius: hull.rad() })
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+use serde::{Deserialize, Serialize};
+
+use crate::data::problem::Problem;
+use crate::error::Result;
+use crate::sets::UncertaintySets;
+use crate::tube::judged::{At, Judged};
+use crate::tube::rows::{Recorded, Row, rows};
+use crate::tube::strand::{Lost, Strand};
+
+/// The reachable set that recordings are compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Enclosure {
+    /// The hull of the set, taken from inside: a value in it is reachable in that state.
+    #[default]
+    Inner,
+    /// A computed set around the reachable set: what a formal analysis uses, and all that can be
+    /// computed for a model that is not linear.
+    Outer,
+}
+
+impl Enclosure {
+    /// Returns the set's name for messages.
+    #[must_use]
+    pub fn set_name(self) -> &'static str {
+        match self {
+            Self::Inner => "reachable set",
+            Self::Outer => "computed outer set",
+        }
+    }
+}
+
+/// The reachable sets of a problem's model under some uncertainty sets, at the samples of its
+/// recordings.
+#[derive(Debug)]
+pub struct Tube {
+    /// The uncertainty sets.
+    pub sets: UncertaintySets,
+    /// Which bound of the reachable sets recordings are compared with.
+    pub(crate) enclosure: Enclosure,
+    /// One for each of the problem's grids where the model is linear, for each of its cases where
+    /// it is not.
+    pub(crate) strands: Vec<Strand>,
+    /// What was found about the recorded points in the sets, once they were judged.
+    pub(crate) judged: Option<Judged>,
+}
+
+impl Tube {
+    /// Takes computed sets, in which no point was judged.
+    pub(crate) fn of(sets: UncertaintySets, enclosure: Enclosure, strands: Vec<Strand>) -> Self {
+        Self { sets, enclosure, strands, judged: None }
+    }
+
+    /// Returns whether the set at a sample was computed.
+    pub(crate) fn reaches(&self, (strand, sample): At) -> bool {
+        (sample as usize) < self.strands[strand as usize].hull.len()
+    }
+
+    /// Returns the time of a sample, s.
+    pub(crate) fn time(&self, (strand, sample): At) -> f64 {
+        self.strands[strand as usize].times.times()[sample as usize]
+    }
+
+    /// Returns the radii of the interval hull at a sample with the noise set, 2n; infinite where
+    /// the set was lost.
+    pub(crate) fn radii(&self, (strand, sample): At) -> Vec<f64> {
+        let hull = &self.strands[strand as usize].hull;
+        let radius = |i: usize| {
+            let bounds = hull.bounds(sample as usize, i);
+            bounds.map_or(f64::INFINITY, |bounds| bounds.radius) + self.sets.noise_radius(i)
+        };
+        (0..self.sets.initial_set.dimension()).map(radius).collect()
+    }
+
+    /// Returns the end of the longest recording, s, and the radii of the interval hull with the
+    /// noise set at the end of each recording, the largest in each state, 2n; infinite where a
+    /// reachable set ends early.
+    pub(crate) fn at_end(&self) -> (f64, Vec<f64>) {
+        let mut all = (0.0f64, vec![0.0f64; self.sets.initial_set.dimension()]);
+        for (strand, (sample, time)) in (0..).zip(self.strands.iter().map(Strand::end)) {
+            let radii = self.radii((strand, sample as u32));
+            all.0 = all.0.max(time);
+            let pairs = all.1.iter_mut().zip(radii);
+            pairs.for_each(|(largest, radius)| *largest = largest.max(radius));
+        }
+        all
+    }
+
+    /// Returns where reachable sets could not be followed to the end.
+    pub(crate) fn lost(&self) -> impl Iterator<Item = &Lost> {
+        self.strands.iter().filter_map(|strand| strand.lost.as_ref())
+    }
+
+    /// Hands every row of every suite to `visit`.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`rows`]: deviations of a linear model are outer and its hulls inner; for any other model
+    /// measured states are compared with the outer enclosure.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub(crate) fn for_each_row(
+        &self,
+        problem: &Problem,
+        mut visit: impl FnMut(&Row),
+    ) -> Result<()> {
+        let states = problem.settings().states;
+        for recorded in Recorded::all(problem)? {
+            rows(&recorded, &self.strands[recorded.strand], &self.sets, states, &mut visit);
+        }
+        Ok(())
+    }
+}
