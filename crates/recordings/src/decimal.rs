@@ -20,9 +20,13 @@ pub fn picoseconds(text: &str) -> Option<i128> {
     };
     let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
     let (whole, fraction) = unsigned.split_once('.').unwrap_or((unsigned, ""));
-    let digits = format!("{whole}{fraction}");
-    let digits: i128 =
-        digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok())??;
+    if whole.is_empty() && fraction.is_empty() {
+        return None;
+    }
+    let digits = whole.bytes().chain(fraction.bytes()).try_fold(0i128, |all, byte| {
+        let digit = byte.is_ascii_digit().then(|| i128::from(byte - b'0'))?;
+        all.checked_mul(10)?.checked_add(digit)
+    })?;
     let shift = exponent.checked_add(12)?.checked_sub_unsigned(fraction.len() as u32)?;
     let size = match 10i128.checked_pow(shift.unsigned_abs()) {
         Some(power) if shift >= 0 => digits.checked_mul(power)?,

@@ -8,12 +8,11 @@ use sha2::{Digest, Sha256};
 use crate::decimal::picoseconds;
 use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
+use crate::lines::{is_plain, lines, number};
+use crate::other_format::{HEADER, other_format};
 use crate::run::{Run, column_names};
 use crate::source::ReadOptions;
 use crate::text::{line_of, quoted};
-
-const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m \
-                      (m, m/s and N for a prismatic joint)";
 
 const TEMPERATURES: &str = "give one temperature per joint, temp1..tempn in °C, one after another, \
                             or give the column another name";
@@ -92,6 +91,16 @@ struct CsvRow {
     time: Option<i128>,
 }
 
+/// What is read of a line.
+struct Row {
+    /// Number of fields of the header.
+    fields: usize,
+    /// The columns that are read.
+    columns: Vec<usize>,
+    /// Their values.
+    values: Vec<f64>,
+}
+
 /// The state of reading a file.
 struct Reading<'a> {
     path: &'a Path,
@@ -131,21 +140,42 @@ impl Reading<'_> {
         if !self.header(&header, joints) {
             return;
         }
-        let mut record = csv::ByteRecord::new();
         let columns: Vec<usize> = self.columns().collect();
-        let mut values = vec![0.0; columns.len()];
-        loop {
-            if self.defects.len() >= MOST_DEFECTS {
-                let problem = format!("reading stopped after {MOST_DEFECTS} defects");
-                self.defect(DefectKind::Other, None, problem, "correct the defects before");
+        let mut row = Row { fields: header.len(), values: vec![0.0; columns.len()], columns };
+        match is_plain(bytes) {
+            true => self.plain_rows(bytes, &mut row),
+            false => self.quoted_rows(bytes, &mut reader, &mut row),
+        }
+        if self.rows.is_empty() && self.defects.is_empty() {
+            let remedy = "record at least one sample, or leave the run out of runs.csv";
+            let problem = "there is no sample after the header".into();
+            self.defect(DefectKind::Empty, None, problem, remedy);
+        }
+    }
+
+    /// Reads the rows of text without quotes.
+    fn plain_rows(&mut self, bytes: &[u8], row: &mut Row) {
+        let mut fields: Vec<&[u8]> = Vec::with_capacity(row.fields);
+        for (line, text) in lines(bytes).skip(1) {
+            if self.has_too_many_defects() {
                 return;
             }
+            fields.clear();
+            fields.extend(text.split(|byte| *byte == b',').map(<[u8]>::trim_ascii));
+            self.row(line, &fields, row);
+        }
+    }
+
+    /// Reads the rows of any other text.
+    fn quoted_rows(&mut self, bytes: &[u8], reader: &mut csv::Reader<&[u8]>, row: &mut Row) {
+        let mut record = csv::ByteRecord::new();
+        while !self.has_too_many_defects() {
             match reader.read_byte_record(&mut record) {
                 Ok(true) => {
                     let line = line_of(bytes, record.position());
-                    self.row(line, &record, header.len(), &columns, &mut values)
+                    self.row(line, &record.iter().collect::<Vec<_>>(), row);
                 }
-                Ok(false) => break,
+                Ok(false) => return,
                 Err(error) => {
                     let line = line_of(bytes, error.position());
                     let problem = error.to_string();
@@ -153,11 +183,16 @@ impl Reading<'_> {
                 }
             }
         }
-        if self.rows.is_empty() {
-            let remedy = "record at least one sample, or leave the run out of runs.csv";
-            let problem = "there is no sample after the header".into();
-            self.defect(DefectKind::Empty, None, problem, remedy);
+    }
+
+    /// Returns whether reading ends here, and adds a defect that says so.
+    fn has_too_many_defects(&mut self) -> bool {
+        let is_over = self.defects.len() >= MOST_DEFECTS;
+        if is_over {
+            let problem = format!("reading stopped after {MOST_DEFECTS} defects");
+            self.defect(DefectKind::Other, None, problem, "correct the defects before");
         }
+        is_over
     }
 
     /// Returns the columns that are read: time, positions, velocities, torques, temperatures.
@@ -210,39 +245,28 @@ impl Reading<'_> {
         wrong.is_none()
     }
 
-    /// Reads these columns of one line, and keeps its sample where it has no defect.
-    fn row(
-        &mut self,
-        line: u64,
-        record: &csv::ByteRecord,
-        fields: usize,
-        columns: &[usize],
-        values: &mut [f64],
-    ) {
-        if record.len() != fields {
+    /// Reads the fields of one line, and keeps its sample where it has no defect.
+    fn row(&mut self, line: u64, fields: &[&[u8]], row: &mut Row) {
+        if fields.len() != row.fields {
             self.rows.push(CsvRow { line, time: None });
-            let problem =
-                format!("the line has {} fields, but the header has {fields}", record.len());
+            let (found, expected) = (fields.len(), row.fields);
+            let problem = format!("the line has {found} fields, but the header has {expected}");
             let remedy =
                 "the line is cut short or has a stray comma or quote: correct it or record again";
             return self.defect(DefectKind::Fields, Some(line), problem, remedy);
         }
         let mut sound = true;
-        for (at, value) in values.iter_mut().enumerate() {
-            let text = String::from_utf8_lossy(&record[columns[at]]);
-            match text.parse::<f64>() {
-                Ok(number) if number.is_finite() => *value = number,
-                _ => {
-                    sound = false;
-                    *value = f64::NAN;
-                    self.bad_number(line, at, &text);
-                }
-            }
+        for (at, (value, column)) in row.values.iter_mut().zip(&row.columns).enumerate() {
+            *value = number(fields[*column]).unwrap_or_else(|| {
+                sound = false;
+                self.bad_number(line, at, &String::from_utf8_lossy(fields[*column]));
+                f64::NAN
+            });
         }
-        let time = self.time(line, values[0], &String::from_utf8_lossy(&record[0]));
+        let time = self.time(line, row.values[0], fields[0]);
         if sound && let Some(time) = time {
-            self.impossible_temperatures(line, &values[1 + 3 * self.run.joints..]);
-            self.sample(time, values);
+            self.impossible_temperatures(line, &row.values[1 + 3 * self.run.joints..]);
+            self.sample(time, &row.values);
         }
     }
 
@@ -279,7 +303,8 @@ impl Reading<'_> {
 
     /// Returns the time of a line in picoseconds, where it is a number and later than the time of
     /// the line above.
-    fn time(&mut self, line: u64, value: f64, text: &str) -> Option<i128> {
+    fn time(&mut self, line: u64, value: f64, field: &[u8]) -> Option<i128> {
+        let text = str::from_utf8(field).unwrap_or_default();
         let time = value.is_finite().then(|| picoseconds(text).unwrap_or((value * 1e12) as i128));
         let above = self.rows.last().and_then(|row| row.time);
         self.rows.push(CsvRow { line, time });
@@ -342,41 +367,6 @@ pub(crate) fn is_strict_header(bytes: &[u8]) -> bool {
     n > 0
         && header.get(0) == Some("t")
         && (1..).zip(column_names(n)).all(|(at, name)| header.get(at) == Some(&name))
-}
-
-/// Returns problem and remedy of a file that is not text.
-pub(crate) fn not_text(bytes: &[u8]) -> Option<(String, &'static str)> {
-    if bytes.is_empty() {
-        return Some((
-            "the file is empty".into(),
-            "record it again, or leave the run out of runs.csv",
-        ));
-    }
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return Some(("the file is UTF-16 text".into(), "save it as CSV in UTF-8"));
-    }
-    if bytes.contains(&0) {
-        return Some(("the file is not text".into(), "write the recording as CSV in UTF-8"));
-    }
-    None
-}
-
-/// Returns problem and remedy of a file that is not comma-separated text with a header.
-fn other_format(bytes: &[u8]) -> Option<(String, &'static str)> {
-    if let Some(problem) = not_text(bytes) {
-        return Some(problem);
-    }
-    let first = bytes.split(|byte| *byte == b'\n').next().unwrap_or(bytes);
-    let first = String::from_utf8_lossy(first);
-    let cell = first.split(',').next().unwrap_or("").trim().trim_matches('"');
-    if let Some(separator) = [';', '\t'].into_iter().find(|separator| cell.contains(*separator)) {
-        let problem = format!("the columns are separated by {separator:?}");
-        return Some((problem, "separate them by commas, and write numbers with a decimal point"));
-    }
-    if cell.parse::<f64>().is_ok() {
-        return Some(("the first line holds numbers, so the header is missing".into(), HEADER));
-    }
-    None
 }
 
 /// Returns the name of the column with the temperature of a joint, from 1.

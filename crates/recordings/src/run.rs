@@ -173,24 +173,28 @@ impl Run {
 
     /// Returns the state (q, q̇) at sample `k` (from 0), 2n, rad and rad/s.
     #[must_use]
+    #[inline]
     pub fn state(&self, k: usize) -> &[f64] {
         &self.states[k * 2 * self.joints..(k + 1) * 2 * self.joints]
     }
 
     /// Returns the joint positions at sample `k` (from 0), n, rad.
     #[must_use]
+    #[inline]
     pub fn q(&self, k: usize) -> &[f64] {
         &self.state(k)[..self.joints]
     }
 
     /// Returns the joint velocities at sample `k` (from 0), n, rad/s.
     #[must_use]
+    #[inline]
     pub fn qd(&self, k: usize) -> &[f64] {
         &self.state(k)[self.joints..]
     }
 
     /// Returns the recorded torques at sample `k` (from 0), n, N m.
     #[must_use]
+    #[inline]
     pub fn torque(&self, k: usize) -> &[f64] {
         &self.torques[k * self.joints..(k + 1) * self.joints]
     }

@@ -51,20 +51,23 @@ pub fn noise_deviations(run: &Run) -> Option<Vec<f64>> {
     if run.len() < FEWEST {
         return None;
     }
-    let weights: Vec<[f64; 4]> = (2..run.len() - 2).map(|k| cubic_weights(&run.times, k)).collect();
+    // The weights of the neighbours of each inner sample, and the deviation of the difference by
+    // that of the noise.
+    let weights: Vec<([f64; 4], f64)> = (2..run.len() - 2)
+        .map(|k| {
+            let w = cubic_weights(&run.times, k);
+            (w, (1.0 + w.iter().map(|w| w * w).sum::<f64>()).sqrt())
+        })
+        .collect();
     let deviation = |i: usize| {
-        let value = |k: usize| run.state(k)[i];
-        let difference = |(at, w): (usize, &[f64; 4])| {
-            let predicted = w[0] * value(at)
-                + w[1] * value(at + 1)
-                + w[2] * value(at + 3)
-                + w[3] * value(at + 4);
-            let gain = (1.0 + w.iter().map(|w| w * w).sum::<f64>()).sqrt();
-            (value(at + 2) - predicted).abs() / gain
+        let values: Vec<f64> = (0..run.len()).map(|k| run.state(k)[i]).collect();
+        let difference = |(near, (w, gain)): (&[f64], &([f64; 4], f64))| {
+            let predicted = w[0] * near[0] + w[1] * near[1] + w[2] * near[3] + w[3] * near[4];
+            (near[2] - predicted).abs() / gain
         };
-        let smallest = 1e-14 * (0..run.len()).map(|k| value(k).abs()).fold(0.0, f64::max);
+        let smallest = 1e-14 * values.iter().map(|value| value.abs()).fold(0.0, f64::max);
         let mut differences: Vec<f64> =
-            weights.iter().enumerate().map(difference).filter(|x| *x > smallest).collect();
+            values.windows(5).zip(&weights).map(difference).filter(|x| *x > smallest).collect();
         if differences.is_empty() {
             return 0.0;
         }

@@ -55,4 +55,15 @@ impl Robot {
         self.coriolis(&sin, &cos, qd, &mut Workspace::new(self), c.as_mut_slice());
         c
     }
+
+    /// Returns the torque M(q) q̈ + c(q, q̇) \[N m\] that a motion takes without gravity and
+    /// friction, at q \[rad\], q̇ \[rad/s\] and q̈ \[rad/s²\].
+    pub fn motion_torque(&self, q: &[f64], qd: &[f64], qdd: &[f64]) -> DVector<f64> {
+        let (sin, cos) = self.sin_cos(q);
+        let mut torque = DVector::zeros(q.len());
+        let mut workspace = Workspace::new(self);
+        let motion = [&sin[..], &cos[..], qd, qdd];
+        self.newton_euler(motion, GravityLoad::None, &mut workspace.links, torque.as_mut_slice());
+        torque
+    }
 }

@@ -17,11 +17,8 @@ use crate::nominal::motion::Corrected;
 use crate::nominal::steps::LinearSteps;
 use crate::program::block::Block;
 use crate::program::layout::Limits;
-use crate::program::program::{Program, RowIndex};
+use crate::program::program::{CLOSE, Program, RowIndex};
 use crate::sets::UncertaintySets;
-
-/// Rows within this part of the largest deviation are kept for the next program.
-const CLOSE: f64 = 0.02;
 
 /// What does not change during a fit.
 #[derive(Clone)]

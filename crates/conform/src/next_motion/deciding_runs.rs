@@ -6,7 +6,7 @@ use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::data::suite::Suite;
 use crate::error::Result;
-use crate::program::program::Program;
+use crate::program::program::{CLOSE, Program};
 use crate::tube::deviation::Deviation;
 use crate::tube::witness::Witness;
 
@@ -78,14 +78,19 @@ fn cost_without(problem: &Problem, dropped: &BTreeSet<usize>) -> Result<Option<f
     let stride = runs.map(|run| run.marks.stride).max().unwrap_or(1);
     let program = Program::of_problem(problem)?.with_every(stride);
     let deviations = problem.deviations()?;
-    let cost = |dropped: &BTreeSet<usize>| {
+    let program_without = |dropped: &BTreeSet<usize>| -> Program {
         let kept: Vec<Deviation> =
             deviations.iter().map(|d| at_marks(problem, d, stride, dropped)).collect();
-        let program: Program = program.with_deviations(&kept);
-        program.solve().map(|solution| program.cost(&program.repaired(&solution.sets)))
+        program.with_deviations(&kept)
     };
+    let (all, without) = (program_without(&BTreeSet::new()), program_without(dropped));
     // A program that the solver gives up on leaves nothing to report.
-    let (Ok(all), Ok(without)) = (cost(&BTreeSet::new()), cost(dropped)) else { return Ok(None) };
+    let mut rows = all.first_rows();
+    let Ok(solution) = all.solve_from(&mut rows) else { return Ok(None) };
+    all.keep_close(&mut rows, &solution.sets, CLOSE);
+    let all = all.repaired_cost(&solution.sets);
+    let Ok(solution) = without.solve_near(&rows) else { return Ok(None) };
+    let without = without.repaired_cost(&solution.sets);
     Ok((all > 0.0).then(|| without / all))
 }
 

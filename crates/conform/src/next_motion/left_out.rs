@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, outer_gauge};
 use crate::next_motion::without_motion::LeftOut;
-use crate::program::program::Program;
+use crate::program::program::{CLOSE, Program, RowIndex};
 use crate::progress::Progress;
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::{Effort, rows_outside};
@@ -25,7 +25,9 @@ struct Without<'a> {
 /// compares the motion with the sets of the others: with their rows for a linear model, and with
 /// the computed outer sets for any other. Nothing with fewer than two motions, and for other
 /// notions than the hull. `sets` are the smallest for all motions: a motion that does not touch
-/// their reachable set decides nothing, and without it they are the smallest still.
+/// their reachable set decides nothing, and without it they are the smallest still. `rows` are the
+/// rows of the program that were generated for these sets; each of the other programs begins with
+/// those that nearly decide them.
 ///
 /// # Errors
 ///
@@ -34,6 +36,7 @@ pub(crate) fn leave_each_out(
     problem: &Problem,
     program: &Program,
     sets: &UncertaintySets,
+    mut rows: Vec<RowIndex>,
     progress: &dyn Progress,
 ) -> Result<Vec<LeftOut>> {
     let motions = Motions::new(problem.recordings());
@@ -45,6 +48,7 @@ pub(crate) fn leave_each_out(
         let suites = suites.clone().map(|suite| motions.of_suite(suite) == motion).collect();
         (motion, Without { problem, suites })
     });
+    program.keep_close(&mut rows, sets, CLOSE);
     // Which motions need a program, in their order, so that the answer does not depend on cores.
     let mut programs = 0;
     let numbered = all.map(|(motion, without)| {
@@ -56,9 +60,14 @@ pub(crate) fn leave_each_out(
     let leave_out = |(motion, without, number): &(&str, Without, Option<usize>)| {
         progress.go_on()?;
         let own = without.own(program)?;
-        let rows = own.iter().map(|own| own.rows() / 2).sum();
-        let unknown =
-            LeftOut { motion: (*motion).into(), cost: None, rows, outside: None, gauge: None };
+        let count = own.iter().map(|own| own.rows() / 2).sum();
+        let unknown = LeftOut {
+            motion: (*motion).into(),
+            cost: None,
+            rows: count,
+            outside: None,
+            gauge: None,
+        };
         match *number {
             None => {
                 let cost = Some(program.cost(sets));
@@ -67,7 +76,7 @@ pub(crate) fn leave_each_out(
             Some(number) if number > MOST_PROGRAMS => Ok(unknown),
             Some(_) => {
                 let others = without.rows(program, |suite| !without.suites[suite])?;
-                without.compare(&others, &own, unknown)
+                without.compare(&others, &rows, &own, unknown)
             }
         }
     };
@@ -96,8 +105,14 @@ impl Without<'_> {
 
     /// Solves the program of the other motions and compares the motion with its sets. A program
     /// that the solver gives up on leaves nothing to compare with.
-    fn compare(&self, others: &Program, own: &[Program], unknown: LeftOut) -> Result<LeftOut> {
-        let Ok(solution) = others.solve() else { return Ok(unknown) };
+    fn compare(
+        &self,
+        others: &Program,
+        rows: &[RowIndex],
+        own: &[Program],
+        unknown: LeftOut,
+    ) -> Result<LeftOut> {
+        let Ok(solution) = others.solve_near(rows) else { return Ok(unknown) };
         let sets = others.repaired(&solution.sets);
         let input_only = self.problem.settings().nominal == NominalStart::Own;
         let growth = |own: &Program| {

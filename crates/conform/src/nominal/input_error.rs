@@ -1,7 +1,5 @@
 //! How well a model predicts the input along the recordings.
 
-use nalgebra::DVector;
-
 use crate::data::case::Case;
 use crate::data::correction::InputCorrection;
 use crate::data::problem::Problem;
@@ -77,13 +75,9 @@ impl InputError {
             let span = times[k + reach] - times[k - reach];
             let mut u = case.inputs[k * n..(k + 1) * n].to_vec();
             corrector.take_off(&q, &qd, &mut u);
-            let qdd = DVector::from_iterator(
-                n,
-                (n..2 * n).map(|i| (middle(k + reach, i) - middle(k - reach, i)) / span),
-            );
-            let needed = robot.mass_matrix(&q) * qdd
-                + robot.coriolis_torque(&q, &qd)
-                + robot.viscous_torque(&qd);
+            let qdd: Vec<f64> =
+                (n..2 * n).map(|i| (middle(k + reach, i) - middle(k - reach, i)) / span).collect();
+            let needed = robot.motion_torque(&q, &qd, &qdd) + robot.viscous_torque(&qd);
             for ((sum, u), needed) in sums.squares.iter_mut().zip(&u).zip(&needed) {
                 *sum += (u - needed).powi(2);
             }

@@ -1,3 +1,4 @@
+use nalgebra::DVector;
 use reachtube_recordings::{Run, Torque};
 use reachtube_robot::Robot;
 
@@ -26,6 +27,16 @@ const SPREAD_SAMPLES: usize = 9;
 pub(super) struct Evidence<'a> {
     robot: &'a Robot,
     runs: Vec<Run>,
+    /// What the motions need that most hypotheses share.
+    needed: Needed,
+}
+
+/// The torques that the recorded motions need under some factors of time and angle.
+struct Needed {
+    time: f64,
+    angle: f64,
+    /// The inputs and the viscous friction in them at the samples that are looked at, for each run.
+    runs: Vec<Vec<[Vec<f64>; 2]>>,
 }
 
 /// What recordings may mean instead of what was stated: each number as it is read.
@@ -63,8 +74,12 @@ impl<'a> Evidence<'a> {
         let suites = &problem.recordings().suites;
         let stride = suites.len().div_ceil(RUNS).max(1);
         let firsts = suites.iter().step_by(stride).map(|suite| suite.totals.first);
-        let runs = firsts.map(|run| Ok(problem.run(run)?.into_owned()));
-        Ok(Self { robot: problem.robot(), runs: runs.collect::<Result<_>>()? })
+        let runs: Result<Vec<Run>> = firsts.map(|run| Ok(problem.run(run)?.into_owned())).collect();
+        let mut runs = runs?;
+        runs.retain(|run| run.len() >= FEWEST);
+        let robot = problem.robot();
+        let needed = Needed::new(robot, &runs, (1.0, 1.0), None);
+        Ok(Self { robot, runs, needed })
     }
 
     /// Returns the mean of the recorded positions, n, and their largest distance from `origin` in
@@ -84,24 +99,29 @@ impl<'a> Evidence<'a> {
     /// unrelated ones and 2 for opposite ones. `None` where the runs are too short for it, or too
     /// short for the lag.
     pub(super) fn unexplained(&self, hypothesis: &Hypothesis) -> Option<f64> {
-        let n = self.robot.joint_count();
-        let mut sums = vec![[0.0; 2]; n];
-        for run in self.runs.iter().filter(|run| run.len() >= FEWEST) {
-            let step = hypothesis.time * run.times.last().unwrap_or(&0.0) / run.len() as f64;
-            let half = ((HALF_WINDOW / step).round() as usize).clamp(1, run.len() / 8 + 1);
-            let lag = (hypothesis.lag / step).round() as usize;
+        let Hypothesis { time, angle, inertia_at, torque, .. } = hypothesis;
+        let is_shared =
+            *time == self.needed.time && *angle == self.needed.angle && inertia_at.is_none();
+        let own = (!is_shared)
+            .then(|| Needed::new(self.robot, &self.runs, (*time, *angle), inertia_at.as_deref()));
+        let needed = own.as_ref().unwrap_or(&self.needed);
+        let mut sums = vec![[0.0; 2]; self.robot.joint_count()];
+        for (run, needed) in self.runs.iter().zip(&needed.runs) {
+            let samples = Samples::new(run, *time);
+            let lag = (hypothesis.lag / samples.step).round() as usize;
             // A lag that leaves little of a run would be judged by other samples than no lag.
             if lag > run.len() / 4 {
                 continue;
             }
-            let last = run.len().saturating_sub(half + lag);
-            let stride = (last.saturating_sub(half) / SAMPLES).max(1);
-            for k in (half..last).step_by(stride) {
-                let (needed, recorded) = self.inputs(run, hypothesis, k, half, lag);
-                for joint in 0..n {
-                    let (a, b) = (needed[joint], recorded[joint]);
-                    sums[joint][0] += (a - b) * (a - b);
-                    sums[joint][1] += a * a + b * b;
+            let in_time = samples.places(run).take_while(|k| k + samples.half + lag < run.len());
+            for (k, [needed, viscous]) in in_time.zip(needed) {
+                let recorded = self.recorded(run, hypothesis, k, samples.half, lag);
+                for (joint, sum) in sums.iter_mut().enumerate() {
+                    // Friction that is added to both sides distinguishes neither.
+                    let friction = if *torque == Torque::Link { viscous[joint] } else { 0.0 };
+                    let (a, b) = (needed[joint] - friction, recorded[joint] - friction);
+                    sum[0] += (a - b) * (a - b);
+                    sum[1] += a * a + b * b;
                 }
             }
         }
@@ -127,46 +147,87 @@ impl<'a> Evidence<'a> {
         input
     }
 
-    /// Returns the input that the motion needs around sample `k`, and the recorded one, n each.
-    fn inputs(
+    /// Returns the recorded input around sample `k`, n.
+    fn recorded(
         &self,
         run: &Run,
         hypothesis: &Hypothesis,
         k: usize,
         half: usize,
         lag: usize,
-    ) -> (Vec<f64>, Vec<f64>) {
-        let Hypothesis { torque, time, angle, torque_factors, columns, .. } = hypothesis;
-        let Hypothesis { inertia_at, softened, .. } = hypothesis;
-        let scaled = |values: &[f64]| values.iter().map(|x| angle * x).collect::<Vec<f64>>();
-        let (q, qd) = (scaled(run.q(k)), scaled(run.qd(k)));
-        let duration = time * (run.times[k + half] - run.times[k - half]);
-        let changes = run.qd(k + half).iter().zip(run.qd(k - half));
-        let acceleration: Vec<f64> =
-            changes.map(|(after, before)| angle * (after - before) / duration).collect();
+    ) -> Vec<f64> {
+        let Hypothesis { torque, angle, torque_factors, columns, softened, .. } = hypothesis;
         let mean = |joint: usize| {
             let window = k + lag - half..k + lag + half;
             let sum: f64 = window.map(|at| run.torque(at)[columns[joint]]).sum();
             torque_factors[joint] * sum / (2 * half) as f64
         };
-        let torques: Vec<f64> = (0..q.len()).map(mean).collect();
-        let acceleration = nalgebra::DVector::from_column_slice(&acceleration);
-        let moving = match inertia_at {
-            Some(at) => self.robot.mass_matrix(at) * acceleration,
-            None => self.robot.mass_matrix(&q) * acceleration + self.robot.coriolis_torque(&q, &qd),
-        };
-        let viscous = self.robot.viscous_torque(&qd);
-        let input = match softened {
+        let torques: Vec<f64> = (0..run.joints).map(mean).collect();
+        match softened {
             true => self.softened_input(run, k, half, &torques),
-            false => torque.input(self.robot, &q, &qd, &torques),
-        };
-        // Friction that is added to both sides distinguishes neither.
-        match torque {
-            Torque::Link => {
-                let recorded = input.iter().zip(&viscous).map(|(u, v)| u - v).collect();
-                (moving.data.into(), recorded)
+            false => {
+                let scaled =
+                    |values: &[f64]| -> Vec<f64> { values.iter().map(|x| angle * x).collect() };
+                torque.input(self.robot, &scaled(run.q(k)), &scaled(run.qd(k)), &torques)
             }
-            Torque::Motor | Torque::Compensated => ((moving + viscous).data.into(), input),
         }
+    }
+}
+
+/// The samples of a run that are looked at.
+struct Samples {
+    /// Time between samples, s.
+    step: f64,
+    /// Half the number of samples over which accelerations and torques are averaged.
+    half: usize,
+    /// Distance of two samples that are looked at.
+    stride: usize,
+}
+
+impl Samples {
+    /// Chooses samples of a run whose times are multiplied by `time`.
+    fn new(run: &Run, time: f64) -> Self {
+        let step = time * run.times.last().unwrap_or(&0.0) / run.len() as f64;
+        let half = ((HALF_WINDOW / step).round() as usize).clamp(1, run.len() / 8 + 1);
+        let stride = (run.len().saturating_sub(2 * half) / SAMPLES).max(1);
+        Self { step, half, stride }
+    }
+
+    fn places(&self, run: &Run) -> impl Iterator<Item = usize> + use<> {
+        (self.half..run.len().saturating_sub(self.half)).step_by(self.stride)
+    }
+}
+
+impl Needed {
+    /// Finds what the motions of `runs` need if times and angles are multiplied by these factors.
+    /// The mass matrix at `inertia_at`, without Coriolis terms, replaces the robot's where given.
+    fn new(
+        robot: &Robot,
+        runs: &[Run],
+        (time, angle): (f64, f64),
+        inertia_at: Option<&[f64]>,
+    ) -> Self {
+        let inertia = inertia_at.map(|q| robot.mass_matrix(q));
+        let of_run = |run: &Run| {
+            let samples = Samples::new(run, time);
+            let at = |k: usize| {
+                let scaled =
+                    |values: &[f64]| -> Vec<f64> { values.iter().map(|x| angle * x).collect() };
+                let (q, qd) = (scaled(run.q(k)), scaled(run.qd(k)));
+                let (before, after) = (k - samples.half, k + samples.half);
+                let duration = time * (run.times[after] - run.times[before]);
+                let changes = run.qd(after).iter().zip(run.qd(before));
+                let qdd: Vec<f64> =
+                    changes.map(|(after, before)| angle * (after - before) / duration).collect();
+                let moving = match &inertia {
+                    Some(inertia) => inertia * DVector::from_vec(qdd),
+                    None => robot.motion_torque(&q, &qd, &qdd),
+                };
+                let viscous = robot.viscous_torque(&qd);
+                [(moving + &viscous).data.into(), viscous.data.into()]
+            };
+            samples.places(run).map(at).collect()
+        };
+        Self { time, angle, runs: runs.iter().map(of_run).collect() }
     }
 }

@@ -1,9 +1,11 @@
 //! Recordings that a linear program was not made of, beside its sets.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
-use crate::program::program::{Program, RowIndex, dot};
+use crate::error::Result;
+use crate::program::program::{Program, RowIndex, Solution, dot};
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Deviation;
 use crate::tube::rows::NEGLIGIBLE_RADIUS;
@@ -21,6 +23,23 @@ impl Program<'_> {
         deviations.into_iter().for_each(|d| blocks[d.grid].envelope.merge(&d.envelope));
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
+    }
+
+    /// Solves the program as [`solve`](Self::solve) does, and begins with the rows `near`, which
+    /// nearly decide the sets of other deviations, and with the last samples. That is faster where
+    /// the answer is near those sets.
+    ///
+    /// # Errors
+    ///
+    /// As [`solve`](Self::solve).
+    pub(crate) fn solve_near(&self, near: &[RowIndex]) -> Result<Solution> {
+        let samples = |block: usize| self.blocks[block].envelope.len();
+        let is_own = |(block, k, ..): &&RowIndex| *k < samples(*block);
+        let mut rows: Vec<RowIndex> = near.iter().filter(is_own).copied().collect();
+        let known: HashSet<RowIndex> = rows.iter().copied().collect();
+        let last = self.indices(1).filter(|(block, k, ..)| k + 1 == samples(*block));
+        rows.extend(last.filter(|row| !known.contains(row)));
+        self.solve_from(&mut rows).or_else(|_| self.solve())
     }
 
     /// Returns the program with the rows of some of its blocks alone: the cost is the same.

@@ -32,6 +32,9 @@ const TOLERANCE: f64 = 1e-10;
 /// A row within this part of the radius of the reachable set is called tight.
 pub(crate) const TIGHT: f64 = 1e-6;
 
+/// Rows within this part of the largest deviation nearly decide the sets.
+pub(crate) const CLOSE: f64 = 0.02;
+
 /// What is below this part of the largest deviation is rounding.
 pub(super) const ROUNDING: f64 = 1e-14;
 

@@ -5,7 +5,7 @@ use crate::sets::UncertaintySets;
 
 impl Program<'_> {
     /// Returns the cost of the sets once they satisfy every row.
-    pub(super) fn repaired_cost(&self, sets: &UncertaintySets) -> f64 {
+    pub(crate) fn repaired_cost(&self, sets: &UncertaintySets) -> f64 {
         self.cost(&self.repaired(sets))
     }
 

@@ -8,7 +8,7 @@ use crate::data::problem::Problem;
 use crate::data::settings::Method;
 use crate::error::Result;
 use crate::next_motion::left_out::leave_each_out;
-use crate::program::program::{Program, TIGHT};
+use crate::program::program::{Program, RowIndex, TIGHT};
 use crate::progress::{Progress, Silent};
 use crate::search::bisection::bisect;
 use crate::search::found::{Deciding, Found, SearchSummary, TOUCHING};
@@ -37,8 +37,8 @@ pub(crate) fn smallest_sets(
         Method::Bisection if !plant.is_exact() => bisect(problem, claim, &journal, progress)?,
         _ => {
             let ended = search((problem, plant), claim, &journal, progress)?;
-            let (found, program) = finish((problem, plant), claim, ended, progress)?;
-            let left_out = leave_each_out(problem, &program, &found.tube.sets, progress)?;
+            let (found, program, rows) = finish((problem, plant), claim, ended, progress)?;
+            let left_out = leave_each_out(problem, &program, &found.tube.sets, rows, progress)?;
             Found { left_out, ..found }
         }
     };
@@ -58,13 +58,13 @@ pub(crate) fn smallest_sets_alone(problem: &Problem, claim: &dyn Claim) -> Resul
 }
 
 /// Widens the sets that a search found for what programs do not ask, and proves them. Returns the
-/// last program too.
+/// last program and its rows too.
 fn finish<'a>(
     (problem, plant): (&Problem, &dyn Plant),
     claim: &dyn Claim,
     ended: Ended<'a>,
     progress: &dyn Progress,
-) -> Result<(Found, Program<'a>)> {
+) -> Result<(Found, Program<'a>, Vec<RowIndex>)> {
     let Ended { state, round, lower_bound, tube } = ended;
     let (program, is_exact) = (round.program, plant.is_exact());
     let sets = match claim.tolerance() {
@@ -100,5 +100,5 @@ fn finish<'a>(
         touching: touching((problem, plant), &program, &tube, &state.directions),
         tube,
     };
-    Ok((found, program))
+    Ok((found, program, round.rows))
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::defect::{Defect, DefectKind};
-use crate::reading::not_text;
+use crate::other_format::not_text;
 use crate::text::{line_of, quoted};
 
 /// A text file with columns, up to its header.

@@ -37,9 +37,9 @@ proptest! {
     #[test]
     fn rnea_is_the_sum_of_its_parts((robot, q, qd, qdd) in robots_and_states()) {
         let acceleration = nalgebra::DVector::from_column_slice(&qdd);
-        let sum = robot.mass_matrix(&q) * acceleration
-            + robot.coriolis_torque(&q, &qd)
-            + robot.gravity_torque(&q);
+        let moving = robot.mass_matrix(&q) * acceleration + robot.coriolis_torque(&q, &qd);
+        close(robot.motion_torque(&q, &qd, &qdd).as_slice(), moving.as_slice())?;
+        let sum = moving + robot.gravity_torque(&q);
         close(robot.inverse_dynamics(&q, &qd, &qdd).as_slice(), sum.as_slice())?;
     }
 
