@@ -64,3 +64,8 @@ def up(x):
     from math import inf, nextafter
 
     return nextafter(float(x.upper()), inf)
+
+
+def down(x):
+    """Returns a double that is at most every number of the ball, for reports."""
+    return -up(-x)

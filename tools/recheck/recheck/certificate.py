@@ -60,6 +60,7 @@ class Certificate:
         if (header["format"], header["version"]) != ("reachtube-certificate", 1):
             raise BadInput(f"{self.path}:1: it is no certificate of version 1")
         n, notion = self.model.joints, header["notion"]
+        self.notion = notion
         if notion == "exact":
             self.projections = [tuple(range(self.model.states))]
         elif notion == "phase-plane":

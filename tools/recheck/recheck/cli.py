@@ -7,13 +7,15 @@ import time
 
 from . import outer, report
 from .certificate import Certificate
+from .claim import Claim
+from .cost import Costs
 from .errors import BadInput
 from .grid import distinct
 from .hulls import HullRows
 from .inputs import Inputs, read_inputs
 from .manifest import root
 from .model import read_model
-from .reach_files import ReachFiles
+from .reach_files import ReachFiles, check_record
 from .reachable import samples
 from .recordings import read_index, read_places, read_run
 from .system import System
@@ -33,8 +35,8 @@ def parser():
     """Returns the parser of the command line."""
     found = _Parser(
         prog="recheck",
-        description="Checks a linear model of reachtube against recordings a second time, with "
-        "ball arithmetic.",
+        description="Checks a model of reachtube against recordings a second time, with ball "
+        "arithmetic.",
         epilog=EXIT_CODES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -59,27 +61,35 @@ def parser():
 
 
 def run(arguments):
-    """Judges what the arguments name. Returns the tallies, by what they are about, and notes."""
+    """Judges what the arguments name. Returns the claim of the model, the tallies by what they are
+    about, and notes."""
     model = read_model(arguments.model, arguments.any_run)
-    notes = list(model.notes)
+    claim, notes = Claim.of_model(model), list(model.notes)
     given = read_inputs(arguments.inputs, model.joints) if arguments.inputs else None
-    if model.polynomials is not None:
-        return run_of_outer_sets(arguments, model, given, notes)
+    judge = run_of_linear if model.polynomials is None else run_of_outer_sets
+    return claim, judge(arguments, model, claim, given, notes), notes
+
+
+def run_of_linear(arguments, model, claim, given, notes):
+    """Judges a linear model. Returns the tallies."""
     system = System(model)
     inputs = Inputs(model, system, arguments.input_error, given)
-    cases = read_cases(model, inputs, arguments, notes)
+    cases = read_cases(model, inputs, arguments, claim, notes)
     if not inputs.is_exact and given is None:
-        notes.append(
-            f"the inputs u of this model were computed here, and count as known to "
-            f"{arguments.input_error:g} N m only"
-        )
-    visitors = {"rows": HullRows(model, cases)}
+        claim.rests_on_inputs(arguments.input_error)
+    visitors, certificate = {"rows": HullRows(model, cases)}, None
     if arguments.reach:
+        check_record(model, arguments.reach, cases)
         visitors["bounds"] = ReachFiles(model, arguments.reach, cases)
     if arguments.certificate:
         certificate = Certificate(model, system, arguments.certificate, arguments.every, cases)
         visitors["points"] = certificate
         notes += certificate.notes
+    claim.needs_points(model, certificate, arguments.every)
+    if {case.suite for case in cases} == {suite["name"] for suite in model.suites} and (
+        not arguments.any_run
+    ):
+        visitors["costs"] = Costs(model, cases)
     for grid in distinct([case.grid for case in cases]):
         here = [case for case in cases if case.grid.is_prefix_of(grid)]
         cases = [case for case in cases if not case.grid.is_prefix_of(grid)]
@@ -88,29 +98,33 @@ def run(arguments):
         for sample in samples(model, system, grid, here):
             for visitor in visitors.values():
                 visitor.visit(sample, here)
-    return {kind: list(visitor.results()) for kind, visitor in visitors.items()}, notes
+    found = {kind: list(visitor.results()) for kind, visitor in visitors.items()}
+    if "costs" in visitors:
+        claim.facts += visitors["costs"].facts
+    return {kind: tallies for kind, tallies in found.items() if tallies}
 
 
-def run_of_outer_sets(arguments, model, given, notes):
-    """Judges a model that is not linear, as `run` does, by the bounds that `reach` printed."""
-    if not arguments.reach:
-        raise BadInput(
-            f"{arguments.model}: the model is not linear, and its outer sets are not computed "
-            f"here: give the folder that `reachtube reach` wrote with --reach"
-        )
+def run_of_outer_sets(arguments, model, claim, given, notes):
+    """Judges a model that is not linear, as `run_of_linear` does, by sets computed here."""
     if arguments.certificate or arguments.any_run or model.correction is not None:
         raise BadInput(
             f"{arguments.model}: the model is not linear: certificates, any_run and corrections "
             f"of inputs are judged for linear models only"
         )
     inputs = Inputs(model, None, arguments.input_error, given)
-    cases = read_cases(model, inputs, arguments, notes)
-    notes.append("motions of a model that is not linear are sampled, which proves nothing")
-    return outer.judge(model, arguments.reach, cases), notes
+    cases = read_cases(model, inputs, arguments, claim, notes)
+    if not inputs.is_exact and given is None:
+        claim.rests_on_inputs(arguments.input_error)
+    claim.needs_points(model, None, 1)
+    if arguments.reach:
+        check_record(model, arguments.reach, cases)
+    found, more = outer.judge(model, cases, arguments.reach)
+    notes += more
+    return found
 
 
-def read_cases(model, inputs, arguments, notes):
-    """Reads the suites and returns their cases; notes what differs from the model file."""
+def read_cases(model, inputs, arguments, claim, notes):
+    """Reads the suites and returns their cases; notes which recordings of the claim are missing."""
     index = read_index(arguments.data)
     listed = {suite["name"]: suite.get("runs", []) for suite in model.suites}
     names = arguments.suites.split(",") if arguments.suites else list(listed)
@@ -129,9 +143,9 @@ def read_cases(model, inputs, arguments, notes):
         hashes = {run.file: run.sha256 for run in runs}
         changed = [r["file"] for r in listed.get(name, []) if hashes.get(r["file"]) != r["sha256"]]
         if changed:
-            notes.append(
-                f"suite {name}: {len(changed)} recordings differ from the ones that the model file "
-                f"lists; the first is {changed[0]}"
+            claim.missing.append(
+                f"suite {name}: {len(changed)} recordings that the model file lists are missing or "
+                f"differ; the first is {changed[0]}"
             )
         if name not in listed and model.settings["nominal"] == "mean":
             notes.append(
@@ -143,7 +157,7 @@ def read_cases(model, inputs, arguments, notes):
         places = read_places(arguments.data)
         here = [(places[file], file, *rest) for file, *rest in entries if rest[0] in listed]
         if root(here) != model.root:
-            notes.append(
+            claim.missing.append(
                 "the recordings differ from the model file's, which does not list them: the "
                 "root over their entries is another one"
             )
@@ -157,15 +171,15 @@ def main(arguments=None):
         parsed = parser().parse_args(arguments)
         if parsed.every < 1 or parsed.list < 0 or not parsed.input_error >= 0.0:
             raise BadInput("--every, --list or --input-error is too small; see --help")
-        found, notes = run(parsed)
+        claim, found, notes = run(parsed)
     except BadInput as error:
         print(f"error: {error}", file=sys.stderr)
         return 3
     for note in notes:
         print(f"note: {note}", file=sys.stderr)
-    code = exit_code([tally for tallies in found.values() for tally in tallies])
+    code = claim.code(exit_code([tally for tallies in found.values() for tally in tallies]))
     if parsed.json:
-        print(json.dumps(report.as_json(found, notes, code), indent=2))
+        print(json.dumps(report.as_json(claim, found, notes, code), indent=2))
     else:
-        print(report.as_text(found, code, parsed.list, time.process_time() - started))
+        print(report.as_text(claim, found, code, parsed.list, time.process_time() - started))
     return code

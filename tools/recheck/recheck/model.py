@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from .errors import BadInput
 from .polynomials import Polynomials
 
+CHANGED = "the SHA-256 in the model file differs from its content's: the file was changed"
+
 
 @dataclass(frozen=True)
 class Box:
@@ -38,7 +40,11 @@ class Model:
     # The root over the recordings' entries, where the file does not list them.
     root: str | None
     sha256: str
+    # The SHA-256 that the file's content has, which a change makes another one.
+    digest: str
     notes: tuple
+    # What the file says of its sets: cost, lower bound and gap, where it has them.
+    stated: dict
     # The one condition for friction, whatever a run's own condition is: its place in the order
     # of a suite, and temperatures. None where each run has its own.
     condition: dict | None = None
@@ -81,7 +87,7 @@ def _model(content, text):
         raise BadInput("it is no model file of version 3")
     is_linear = "a" in content and not content.get("acceleration")
     n = len(content["robot"]["joint"])
-    noise = content.get("noise_set")
+    noise, digest = content.get("noise_set"), _digest(content, text)
     model = Model(
         joints=n,
         a=_rows(content["a"], 2 * n, 2 * n, "a") if is_linear else None,
@@ -97,7 +103,10 @@ def _model(content, text):
         suites=content["data"]["suites"],
         root=content["data"].get("root"),
         sha256=content["sha256"],
-        notes=_seal_notes(content, text),
+        digest=digest,
+        notes=() if digest == content["sha256"] else (CHANGED,),
+        stated={key: content.get(key) for key in
+                ("cost", "cost_lower_bound", "optimality_gap", "calibration", "sensor_noise")},
     )
     _check_settings(model.settings)
     return model
@@ -158,12 +167,10 @@ def _noise(value, joints):
     return box.radius
 
 
-def _seal_notes(content, text):
-    """Returns a note if the SHA-256 in the file differs from its content's: the digest is over
-    the JSON without spaces and with an empty last entry."""
+def _digest(content, text):
+    """Returns the SHA-256 of the content: of the JSON without spaces and with an empty last
+    entry."""
     compact = re.sub(r'("(?:[^"\\]|\\.)*")|\s+', lambda match: match.group(1) or "", text)
     ending = f'"sha256":"{content["sha256"]}"}}'
     unsealed = compact.removesuffix(ending) + '"sha256":""}'
-    if hashlib.sha256(unsealed.encode()).hexdigest() == content["sha256"]:
-        return ()
-    return ("the SHA-256 in the model file differs from its content's: the file was changed",)
+    return hashlib.sha256(unsealed.encode()).hexdigest()

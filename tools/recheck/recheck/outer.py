@@ -1,105 +1,78 @@
-"""Models that are not linear, with the CSV files of `reachtube reach`.
+"""Rows of a model that is not linear, by sets that are computed here (flowpipe.py).
 
-Their outer sets are not computed again. Two things are checked: that every recorded value lies
-within the printed bounds and V, exactly, and that no motion of the model leaves the bounds. Motions
-are simulated in doubles from random starts in X0 under random disturbances in U; one that is
-outside by more than its error of integration fails. Motions that stay inside prove nothing.
+A row is a suite at one sample in one state. It holds if all its recorded values are proved to be
+reachable: motions of the model get at least as far on both sides, and everything in between is
+reached too, since starts and disturbances can be changed from one motion to the other without a
+jump. It fails if a value is outside the enclosure of all motions. In between it is undecided.
+
+Disturbances that are held over each step are enough for the motions; the enclosure is for all
+measurable ones.
 """
 
-import numpy
-
 from .balls import arb
+from .expansion import Expansion
+from .flowpipe import Flowpipe, Lost
 from .hulls import extremes, state_name
-from .reach_files import read_bounds
+from .reach_files import PrintedBounds
 from .verdict import Tally, Verdict, of_margin
 
-# Motions of each case.
-MOTIONS = 48
-# A step of integration is at most this long, s.
-LONGEST_STEP = 0.002
-# Two integrations whose steps differ by a factor of 2 differ by 15 times the error of the finer
-# one where the method is of order 4. This factor on their difference leaves room.
-SAFETY = 2.0
-# Rounding of a motion, rad and rad/s.
-ROUNDING = 1e-10
 
-
-def judge(model, folder, cases):
-    """Judges the files of a folder, one for each case. Returns tallies of rows and of motions."""
-    rows, motions = {}, []
-    for number, case in enumerate(cases):
-        name, at_samples, tube = read_bounds(model, folder, case)
+def judge(model, cases, folder=None):
+    """Judges the rows of cases, and the files of `reach` in a folder. Returns tallies and notes."""
+    rows, printed, notes = {}, [], []
+    expansion = Expansion(model.polynomials)
+    for case in cases:
         tally = rows.setdefault(case.suite, Tally(f"suite {case.suite}"))
-        _judge_rows(model, case, at_samples, tally)
-        motions.append(Tally(f"{name}.csv"))
-        _judge_motions(model, case, at_samples, tube, motions[-1], seed=number)
-    return {"rows": list(rows.values()), "motions": motions}
-
-
-def _judge_rows(model, case, at_samples, tally):
-    """Judges every recorded value of a case, both sides."""
-    for k, of_states in enumerate(extremes(case)):
-        for i, ((low, low_run), (high, high_run)) in enumerate(of_states[: model.states]):
-            noise = arb(model.noise_radius[i])
-            lower, upper = arb(at_samples[k][3 * i + 1]), arb(at_samples[k][3 * i + 3])
-            sides = (
-                (upper + noise - arb(high), "above", high_run),
-                (arb(low) - (lower - noise), "below", low_run),
+        bounds = PrintedBounds(model, folder, case) if folder else None
+        reached = _judge_case(model, case, Flowpipe(model, case, expansion), tally, bounds)
+        if reached < len(case.grid):
+            notes.append(
+                f"suite {case.suite}: the reachable set was enclosed up to "
+                f"{case.grid.times[reached - 1]:.6g} s only; the rows after that are undecided"
             )
-            judged = [(of_margin(margin), margin, side, run) for margin, side, run in sides]
-            verdict, margin, side, run = max(judged, key=lambda found: found[0])
-            name = state_name(i, model.joints)
-            place = f"{run}, sample {k} at {case.grid.times[k]:.6g} s, {name} {side}"
-            tally.add(verdict, margin, place)
+        if bounds:
+            printed += bounds.tallies
+    found = {"rows": list(rows.values())}
+    return (found | {"bounds": printed} if printed else found), notes
 
 
-def _draws(random, box, shape):
-    """Numbers of a box: a third of the motions anywhere in it, two thirds at its corners."""
-    centre, radius = (numpy.array(part)[:, None] for part in (box.centre, box.radius))
-    parts = random.uniform(-1.0, 1.0, shape)
-    corners = shape[1] // 3
-    parts[:, corners:] = numpy.sign(parts[:, corners:])
-    return centre + radius * parts
+def _judge_case(model, case, flowpipe, tally, bounds):
+    """Judges the rows of a case, and returns the number of samples that were reached."""
+    reached, is_lost = 0, False
+    for k, of_states in enumerate(extremes(case)):
+        hull = None if is_lost else flowpipe.hull()
+        for i, sides in enumerate(of_states[: model.states]):
+            _judge_row(model, case, k, i, sides, hull, tally)
+        if bounds:
+            bounds.visit(k, hull)
+        if hull is None:
+            continue
+        reached = k + 1
+        if k + 1 < len(case.grid):
+            try:
+                flowpipe.advance(k, case.grid.span(k))
+            except Lost:
+                is_lost = True
+    return reached
 
 
-def _judge_motions(model, case, at_samples, tube, tally, seed):
-    """Simulates motions of a case and counts each as one claim."""
-    n, random = model.joints, numpy.random.default_rng(seed)
-    start = numpy.array(case.start)[:, None] + _draws(random, model.initial_set, (2 * n, MOTIONS))
-    coarse, fine = start, start
-    outside, places = numpy.full(MOTIONS, -numpy.inf), [""] * MOTIONS
-
-    def compare(lower, upper, place):
-        error = SAFETY * numpy.abs(fine - coarse) + ROUNDING
-        excess = numpy.maximum(lower[:, None] - fine, fine - upper[:, None]) - error
-        excess = numpy.where(numpy.isnan(excess), numpy.inf, excess)
-        worst = excess.argmax(axis=0)
-        for motion in numpy.flatnonzero(excess.max(axis=0) > outside):
-            state = state_name(int(worst[motion]), n)
-            places[motion] = f"motion {motion}, {place}, {state}"
-        numpy.maximum(outside, excess.max(axis=0), out=outside)
-
-    held = None
-    for k, bounds in enumerate(numpy.array(at_samples)):
-        compare(bounds[1::3], bounds[3::3], f"row {k}")
-        for step in (k - 1, k):
-            if 0 <= step < len(tube):
-                row = numpy.array(tube[step])
-                compare(row[2::2], row[3::2], f"step {step} at sample {k}")
-        if k + 1 == len(at_samples):
-            break
-        fresh = _draws(random, model.input_set, (n, MOTIONS))
-        # In the last third of the motions a disturbance changes seldom.
-        change = random.uniform(size=(n, MOTIONS)) < 0.02
-        change[:, : 2 * MOTIONS // 3] = True
-        held = fresh if held is None else numpy.where(change, fresh, held)
-        u = numpy.array(case.inputs[k])[:, None] + held
-        span = float(case.grid.times[k + 1] - case.grid.times[k])
-        steps = max(1, int(numpy.ceil(span / LONGEST_STEP)))
-        coarse = model.polynomials.advance(coarse, u, span, steps)
-        fine = model.polynomials.advance(fine, u, span, 2 * steps)
-    for excess, place in zip(outside, places, strict=True):
-        if excess <= 0.0:
-            tally.add(Verdict.HOLDS)
+def _judge_row(model, case, k, i, sides, hull, tally):
+    (low, low_run), (high, high_run) = sides
+    place = f"sample {k} at {case.grid.times[k]:.6g} s, {state_name(i, model.joints)}"
+    if hull is None:
+        tally.add(Verdict.UNDECIDED, None, f"{high_run}, {place}")
+        return
+    noise, centre = arb(model.noise_radius[i]), hull.centre[i]
+    found = []
+    for value, side, run in (
+        (arb(high) - centre, "above", high_run), (centre - arb(low), "below", low_run)
+    ):
+        inside, outside = hull.inner[i] + noise - value, hull.outer[i] + noise - value
+        if outside < 0:
+            found.append((Verdict.FAILS, outside, side, run))
+        elif inside >= 0 and hull.inner[i] >= 0:
+            found.append((Verdict.HOLDS, None, side, run))
         else:
-            tally.add(Verdict.FAILS, arb(-float(excess)), place)
+            found.append((Verdict.UNDECIDED, inside, side, run))
+    verdict, margin, side, run = max(found, key=lambda one: one[0])
+    tally.add(verdict, margin, f"{run}, {place} {side}")

@@ -1,53 +1,87 @@
-"""The CSV files of `reachtube reach`: each printed bound must be outside the exact one.
+"""The files of `reachtube reach`: each printed bound must be outside the exact one.
+
+`reach.json` names the model, the settings, the recordings and the CSV files by digest. Files of
+another model, of other recordings or with a changed byte are refused.
 
 Bounds at samples are compared there. Bounds of the tube hold over a whole step and are compared
 at both ends of the step; between them nothing is checked.
 """
 
 import csv
+import hashlib
+import json
+import math
 from pathlib import Path, PurePosixPath
 
 from .balls import arb, symmetric
 from .errors import BadInput
 from .hulls import state_name
-from .verdict import Tally, of_margin
+from .verdict import Tally, Verdict, of_margin
+
+
+class PrintedBounds:
+    """The bounds that were printed for a case, with their tallies: at samples, and of the tube."""
+
+    def __init__(self, model, folder, case):
+        self.model = model
+        name, self.at_samples, self.tube = read_bounds(model, folder, case)
+        self.tallies = [Tally(f"{name}.csv"), Tally(f"{name}_tube.csv")]
+
+    def rows(self, k):
+        """Yields what was printed for the states at sample k: tally, place, and all bounds."""
+        yield self.tallies[0], f"row {k}", list(
+            zip(self.at_samples[k][1::3], self.at_samples[k][3::3], strict=True))
+        for step in (k - 1, k):
+            if 0 <= step < len(self.tube):
+                row = self.tube[step]
+                yield self.tallies[1], f"step {step} at sample {k}", list(
+                    zip(row[2::2], row[3::2], strict=True))
+
+    def visit(self, k, hull):
+        """Judges the bounds at one sample by a hull from outside and inside (flowpipe.py): a bound
+        fails if a motion is beyond it, and holds if no motion is."""
+        for tally, place, bounds in self.rows(k):
+            for i, (lower, upper) in enumerate(bounds):
+                for side, value, sign in (("lower", lower, -1), ("upper", upper, 1)):
+                    where = f"{place}, {state_name(i, self.model.joints)}_{side}"
+                    if hull is None:
+                        tally.add(Verdict.UNDECIDED, None, where)
+                        continue
+                    room = sign * (arb(value) - hull.centre[i])
+                    margin, inside = room - hull.outer[i], room - hull.inner[i]
+                    if margin >= 0:
+                        tally.add(Verdict.HOLDS)
+                    elif inside < 0:
+                        tally.add(Verdict.FAILS, inside, where)
+                    else:
+                        tally.add(Verdict.UNDECIDED, margin, where)
 
 
 class ReachFiles:
-    """Judges the files of a folder, one for each case."""
+    """Judges the files of a folder, one for each case of a linear model."""
 
     def __init__(self, model, folder, cases):
         self.model = model
-        self.files, self.tallies = {}, {}
-        for case in cases:
-            name, at_samples, tube = read_bounds(model, folder, case)
-            self.files[id(case)] = at_samples, tube
-            self.tallies[id(case)] = [Tally(f"{name}.csv"), Tally(f"{name}_tube.csv")]
+        self.printed = {id(case): PrintedBounds(model, folder, case) for case in cases}
 
     def start(self, grid):
         """Starts with the samples of a grid."""
 
     def results(self):
         """Returns the tallies, one for each file."""
-        return [tally for pair in self.tallies.values() for tally in pair]
+        return [tally for printed in self.printed.values() for tally in printed.tallies]
 
     def visit(self, sample, cases):
         """Judges the bounds at one sample."""
-        k = sample.k
         for c, case in enumerate(cases):
-            if k >= len(case.grid):
+            if sample.k >= len(case.grid):
                 continue
-            at_samples, tube = self.files[id(case)]
-            of_samples, of_tube = self.tallies[id(case)]
-            for i in range(2 * self.model.joints):
-                exact = self._exact(sample, c, i)
-                row = at_samples[k]
-                self._judge(of_samples, exact, row[3 * i + 1], row[3 * i + 3], f"row {k}", i)
-                for step in (k - 1, k):
-                    if 0 <= step < len(tube):
-                        row = tube[step]
-                        place = f"step {step} at sample {k}"
-                        self._judge(of_tube, exact, row[2 * i + 2], row[2 * i + 3], place, i)
+            exact = [self._exact(sample, c, i) for i in range(2 * self.model.joints)]
+            for tally, place, bounds in self.printed[id(case)].rows(sample.k):
+                for i, ((lower, upper), (low, high)) in enumerate(zip(bounds, exact, strict=True)):
+                    name = state_name(i, self.model.joints)
+                    for side, margin in (("lower", low - arb(lower)), ("upper", arb(upper) - high)):
+                        tally.add(of_margin(margin), margin, f"{place}, {name}_{side}")
 
     def _exact(self, sample, c, i):
         middle = sample.nominal[i, c] + sample.centre[i, 0]
@@ -55,10 +89,33 @@ class ReachFiles:
             middle = middle + symmetric(sample.doubt[i, c])
         return middle - sample.radius[i, 0], middle + sample.radius[i, 0]
 
-    def _judge(self, tally, exact, lower, upper, place, i):
-        name = state_name(i, self.model.joints)
-        for side, margin in (("lower", exact[0] - arb(lower)), ("upper", arb(upper) - exact[1])):
-            tally.add(of_margin(margin), margin, f"{place}, {name}_{side}")
+
+def check_record(model, folder, cases):
+    """Refuses a folder whose `reach.json` names another model or other recordings."""
+    path = Path(folder) / "reach.json"
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+        if (record["format"], record["version"]) != ("reachtube-reach", 1):
+            raise BadInput(f"{path}: it is no record of version 1; run `reachtube reach` again")
+        suites = record["data"]["suites"]
+        listed = {(suite["name"], run["file"]): run["sha256"]
+                  for suite in suites for run in suite.get("runs", [])}
+        counted = {suite["name"] for suite in suites if "run_count" in suite}
+        is_own = record["model_sha256"] == model.digest
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise BadInput(
+            f"{path}: {error!r}; run `reachtube reach` again, which writes this record"
+        ) from error
+    if not is_own:
+        raise BadInput(f"{path}: the files are of another model; run `reachtube reach` again")
+    for case in cases:
+        for run in case.runs:
+            known = listed.get((case.suite, run.file))
+            if known != run.sha256 and case.suite not in counted:
+                raise BadInput(
+                    f"{path}: the files are of other recordings: {run.file} of suite {case.suite} "
+                    f"differs or is missing; run `reachtube reach` again"
+                )
 
 
 def read_bounds(model, folder, case):
@@ -86,15 +143,26 @@ def _name(case):
     return "_" + safe[1:] if safe.startswith(".") else safe
 
 
+def _check_digest(path, content):
+    """Refuses a file whose digest differs from that in the record beside it."""
+    record = json.loads((path.parent / "reach.json").read_text(encoding="utf-8"))
+    known = {entry["file"]: entry["sha256"] for entry in record["files"]}
+    if known.get(path.name) != hashlib.sha256(content).hexdigest():
+        raise BadInput(f"{path}: the file differs from the one that reach.json names")
+
+
 def _read(path, header, count):
     try:
-        with open(path, encoding="utf-8", newline="") as file:
-            rows = list(csv.reader(file))
+        content = path.read_bytes()
+        _check_digest(path, content)
+        rows = list(csv.reader(content.decode("utf-8").splitlines()))
         if rows[0] != header or any(len(row) != len(header) for row in rows):
             raise BadInput(f"{path}: `reachtube reach` writes other columns")
         values = [[float(x) for x in row] for row in rows[1:]]
-    except (OSError, ValueError, IndexError) as error:
+    except (OSError, ValueError, IndexError, KeyError, TypeError) as error:
         raise BadInput(f"{path}: {error}") from error
     if len(values) != count:
         raise BadInput(f"{path}: it has {len(values)} rows, not {count}")
+    if not all(math.isfinite(x) for row in values for x in row):
+        raise BadInput(f"{path}: it has a number that is not finite")
     return values

@@ -19,6 +19,8 @@ class Sample:
     gamma: arb_mat
     nominal: arb_mat
     centre: arb_mat
+    # The gains kappa of the disturbance.
+    gain: arb_mat
     radius: arb_mat
     doubt: arb_mat | None
 
@@ -45,6 +47,7 @@ def samples(model, system, grid, cases):
         yield Sample(
             k, e, gamma, nominal,
             centre=e * c_x + gamma * c_u,
+            gain=gain,
             radius=magnitudes(e) * r_x + gain * r_u,
             doubt=held.value(gamma) * doubts if is_doubtful else None,
         )

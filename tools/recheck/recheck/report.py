@@ -2,6 +2,7 @@
 
 from math import isfinite
 
+from .claim import NOTIONS
 from .verdict import Verdict
 
 ANSWERS = {
@@ -11,7 +12,7 @@ ANSWERS = {
 }
 
 
-def as_text(found, code, count, seconds):
+def as_text(claim, found, code, count, seconds):
     """Returns the answer for people."""
     lines = []
     for kind, tallies in found.items():
@@ -26,14 +27,20 @@ def as_text(found, code, count, seconds):
                 lines.append(
                     f"  {finding.verdict.name.lower()}: {tally.name}: {finding.place}{by}"
                 )
-    lines.append(f"{ANSWERS[code]} ({seconds:.1f} s of processor time)")
+    lines += claim.facts
+    lines += [f"missing: {missing}" for missing in claim.missing]
+    answer = ", provided that ".join([ANSWERS[code], *claim.conditions])
+    lines.append(f"notion {claim.notion} ({NOTIONS[claim.notion]}): {answer} "
+                 f"({seconds:.1f} s of processor time)")
     return "\n".join(lines)
 
 
-def as_json(found, notes, code):
+def as_json(claim, found, notes, code):
     """Returns the answer for programs."""
     parts = {kind: [_part(tally) for tally in tallies] for kind, tallies in found.items()}
-    return {"exit_code": code, "notes": notes, **parts}
+    judged = {"notion": claim.notion, "missing": claim.missing, "conditions": claim.conditions,
+              "facts": claim.facts}
+    return {"exit_code": code, "claim": judged, "notes": notes, **parts}
 
 
 def _part(tally):

@@ -60,7 +60,7 @@ def test_the_last_bit_of_a_radius_decides(tmp_path, capsys):
     (tmp_path / "data" / "r0.csv").write_text(text)
     for radius, expected in ((0.125, 0), (0.12499999999999999, 1)):
         model["initial_set"]["radius"][0] = radius
-        (tmp_path / "model.json").write_text(json.dumps(model))
+        toy.relist(tmp_path, model)
         assert judged(tmp_path, capsys)[0] == expected
 
 
@@ -71,7 +71,7 @@ def test_inputs_known_to_a_tolerance_leave_tight_rows_open(tmp_path, capsys):
     model["robot"] = gravity_free
     (tmp_path / "model.json").write_text(json.dumps(model))
     code, found = judged(tmp_path, capsys)
-    assert code == 0 and "computed here" in "".join(found["notes"])
+    assert code == 0 and "computed here" in "".join(found["claim"]["conditions"])
     code, found = judged(tmp_path, capsys, "--input-error", "10")
     assert code == 2 and found["rows"][0]["fails"] == 0
 
@@ -176,10 +176,11 @@ def test_what_cannot_be_judged_is_no_verdict(tmp_path, capsys, monkeypatch, argu
 
 def test_bounds_of_reach_must_be_outside(tmp_path, capsys):
     """Bounds that are 1e-6 wider than the exact ones hold; one moved inside fails."""
-    toy.write(tmp_path, toy.content(), samples=2, h=0.5)
+    model = toy.content()
+    toy.write(tmp_path, model, samples=2, h=0.5)
     (tmp_path / "reach").mkdir()
     phi, gamma = toy.exact_step(0.5)
-    x0, u, model = [0.3, -0.2, 0.1, 0.0], None, toy.CONTENT
+    x0, u = [0.3, -0.2, 0.1, 0.0], None
     with open(tmp_path / "data" / "r0.csv") as file:
         u = [float(x) for x in list(csv.reader(file))[1][5:]]
     c_x, r_x = model["initial_set"]["centre"], model["initial_set"]["radius"]
@@ -199,12 +200,20 @@ def test_bounds_of_reach_must_be_outside(tmp_path, capsys):
     hull = [(min(a[0], b[0]), max(a[1], b[1])) for a, b in zip(*ends, strict=True)]
     row = "0,0.5," + ",".join(f"{float(low)!r},{float(high)!r}" for low, high in hull)
     (tmp_path / "reach" / "S_tube.csv").write_text(f"t_from,t_to,{header}\n{row}\n")
+    toy.write_record(tmp_path, model)
     options = ["--reach", str(tmp_path / "reach")]
     code, found = judged(tmp_path, capsys, *options)
     assert code == 0 and [part["holds"] for part in found["bounds"]] == [16, 16]
     (tmp_path / "reach" / "S.csv").write_text(text.replace(f"{ends[1][0][1]:.9f}"[:8], "0.000000"))
+    code, message = judged(tmp_path, capsys, *options)
+    assert code == 3 and "differs from the one that reach.json names" in message
+    toy.write_record(tmp_path, model)
     code, found = judged(tmp_path, capsys, *options)
     assert code == 1 and found["bounds"][0]["fails"] == 1
+    model["input_set"]["radius"][0] *= 1.01
+    (tmp_path / "model.json").write_text(json.dumps(model))
+    code, message = judged(tmp_path, capsys, *options)
+    assert code == 3 and "another model" in message
 
 
 def test_the_root_of_three_leaves_is_that_of_the_library():
@@ -224,8 +233,9 @@ def test_recordings_that_are_counted_are_compared_by_their_root(tmp_path, capsys
     }
     suite["run_count"] = len(suite.pop("runs"))
     leaves = [(place, file, "S", digest[file]) for place, file in zip(places, digest, strict=True)]
-    for last, is_noted in ((digest["r3.csv"], False), ("0" * 64, True)):
+    for last, is_missing in ((digest["r3.csv"], False), ("0" * 64, True)):
         model["data"]["root"] = root([*leaves[:-1], (3, "r3.csv", "S", last)])
         (tmp_path / "model.json").write_text(json.dumps(model))
-        assert main([str(tmp_path / "model.json"), "--data", str(tmp_path / "data")]) == 0
-        assert ("differ from the model file's" in capsys.readouterr().err) == is_noted
+        code, found = judged(tmp_path, capsys)
+        assert code == (2 if is_missing else 0)
+        assert ("differ from the model file's" in "".join(found["claim"]["missing"])) == is_missing

@@ -1,10 +1,13 @@
 """A model of two joints and recordings that it can have made, with closed forms where possible."""
 
 import copy
+import hashlib
 import json
 import math
 
 import numpy
+
+from recheck.model import read_model
 
 V1 = (3.0, 0.5)
 TORQUE = ((2.0, -0.4), (-0.4, 1.5))
@@ -27,7 +30,7 @@ CONTENT = {
     "initial_set": {"centre": [0.01, 0.0, 0.0, -0.02], "radius": [0.02, 0.01, 0.05, 0.04]},
     "input_set": {"centre": [0.1, 0.0], "radius": [0.5, 0.3]},
     "settings": {
-        "torque": "compensated", "disturbance": "sample", "states": "all", "nominal": "mean",
+        "torque": "compensated", "disturbance": "sample", "states": "all", "nominal": "mean", "centre": "free",
         "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]},
     },
     "robot": ROBOT,
@@ -79,8 +82,11 @@ def write(folder, model, runs=4, samples=20, h=0.01, part=0.9, seed=1, jitter=0.
                 phi, gamma = exact_step(times[k + 1] - times[k])
                 disturbance = c_u + part * r_u * random.uniform(-1.0, 1.0, 2)
                 x = phi @ x + gamma @ (inputs[k] + disturbance)
-        (folder / "data" / f"r{run}.csv").write_text("\n".join(lines) + "\n")
-        listed.append({"file": f"r{run}.csv", "sha256": "", "samples": samples, "duration": 0.0})
+        text = "\n".join(lines) + "\n"
+        (folder / "data" / f"r{run}.csv").write_text(text)
+        digest = hashlib.sha256(text.encode()).hexdigest()
+        listed.append({"file": f"r{run}.csv", "sha256": digest, "samples": samples,
+                       "duration": 0.0})
         index.append(f"r{run}.csv,S")
     (folder / "data" / "runs.csv").write_text("\n".join(index) + "\n")
     suite = {"name": "S", "nominal_start": list(start), "runs": listed}
@@ -88,3 +94,22 @@ def write(folder, model, runs=4, samples=20, h=0.01, part=0.9, seed=1, jitter=0.
     path = folder / "model.json"
     path.write_text(json.dumps(model))
     return path
+
+
+def relist(folder, model):
+    """Writes the model file with the digests of the recordings as they are now."""
+    for suite in model["data"]["suites"]:
+        for run in suite["runs"]:
+            content = (folder / "data" / run["file"]).read_bytes()
+            run["sha256"] = hashlib.sha256(content).hexdigest()
+    (folder / "model.json").write_text(json.dumps(model))
+
+
+def write_record(folder, model):
+    """Writes the record of `reachtube reach` for the CSV files of a folder beside the model."""
+    files = [{"file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+             for path in sorted((folder / "reach").glob("*.csv"))]
+    digest = read_model(folder / "model.json").digest
+    record = {"format": "reachtube-reach", "version": 1, "model_sha256": digest,
+              "data": model["data"], "files": files}
+    (folder / "reach" / "reach.json").write_text(json.dumps(record))

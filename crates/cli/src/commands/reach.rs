@@ -1,6 +1,6 @@
 //! `reachtube reach`: a model's reachable sets along recorded suites.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::conform::result::FrontEnd;
@@ -24,8 +24,8 @@ const HELP: &str = "\
 Example:
   reachtube reach --model model.json --data recordings --suites A --out reach
 
-Writes A.csv (reachable set at samples), A_tube.csv (over each step, an outer enclosure) and the
-figures A_*.svg to the folder.
+Writes A.csv (reachable set at samples), A_tube.csv (over each step, an outer enclosure), the
+figures A_*.svg, and reach.json, which names model, settings, recordings and CSV files by digest.
 
 Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
 
@@ -60,11 +60,15 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     };
     let names = file_names::of_reach(&reach);
     let written: Vec<_> = reach.iter().zip(names).map(|(reach, name)| file(reach, name)).collect();
-    output::claim_all(written.iter().flat_map(|file| [&file.samples, &file.tube]))?;
-    for Written { reach, samples, tube } in &written {
-        write::atomically(samples, |out| reach.write_samples(out))?;
-        write::atomically(tube, |out| reach.write_tube(out))?;
+    let record = args.out.join("reach.json");
+    let tables = written.iter().flat_map(|file| [&file.samples, &file.tube]);
+    output::claim_all(tables.chain([&record]))?;
+    let contents = written.iter().flat_map(Written::contents).collect::<Vec<_>>();
+    for (name, content) in &contents {
+        write::atomically(&args.out.join(name), |out| out.write_all(content))?;
     }
+    let text = model.reach_record(problem, &contents);
+    write::atomically(&record, |out| out.write_all(text.as_bytes()))?;
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     report_files::write_figures(&page(&sources)?, &args.out)?;
@@ -90,6 +94,18 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 }
 
 impl Written<'_> {
+    /// Returns the names of the two CSV files with their contents.
+    fn contents(&self) -> [(String, Vec<u8>); 2] {
+        let name = |path: &Path| {
+            path.file_name().expect("it was joined").to_string_lossy().into_owned()
+        };
+        let (mut samples, mut tube) = (Vec::new(), Vec::new());
+        let in_memory = "memory takes all that is written";
+        self.reach.write_samples(&mut samples).expect(in_memory);
+        self.reach.write_tube(&mut tube).expect(in_memory);
+        [(name(&self.samples), samples), (name(&self.tube), tube)]
+    }
+
     /// Returns the widths of the set at the last sample, 2n, in rad and rad/s.
     fn final_width(&self) -> Vec<f64> {
         let SuiteReach { lower, upper, dimension, .. } = self.reach;

@@ -1,5 +1,8 @@
 //! Reachable sets as files.
 
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
 use crate::fixture::{Lab, Run, SAMPLES, STEP, cell};
 
 const COLUMNS: [&str; 4] = ["q1", "q2", "qd1", "qd2"];
@@ -41,6 +44,26 @@ fn the_columns_are_named_and_enclose_what_they_should() {
             assert!((cell(row, 0) - k as f64 * STEP).abs() < 1e-12);
             (0..4).for_each(|i| encloses(&lab, suite, k, i, row, &tube));
         }
+    }
+}
+
+#[test]
+fn the_record_names_model_settings_recordings_and_files_by_digest() {
+    let lab = Lab::new();
+    reach(&lab, "").exits(0);
+    let json = |path: &str| serde_json::from_str::<Value>(&lab.read(path)).unwrap();
+    let (record, model) = (json("reach/reach.json"), json("model.json"));
+    assert_eq!(record["format"], "reachtube-reach");
+    assert_eq!(record["model_sha256"], model["sha256"]);
+    assert_eq!(record["settings"], model["settings"]);
+    assert_eq!(record["data"], model["data"]);
+    let files = record["files"].as_array().unwrap();
+    let names: Vec<&str> = files.iter().map(|file| file["file"].as_str().unwrap()).collect();
+    assert_eq!(names, ["A.csv", "A_tube.csv", "B.csv", "B_tube.csv"]);
+    for file in files {
+        let content = lab.read(&format!("reach/{}", file["file"].as_str().unwrap()));
+        let digest = Sha256::digest(content).iter().map(|b| format!("{b:02x}")).collect::<String>();
+        assert_eq!(file["sha256"], digest);
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod compared;
 pub(crate) mod file;
+mod reach_record;
 pub(crate) mod records;
 mod usefulness;
 mod validity;
