@@ -64,7 +64,7 @@ impl Inputs {
     pub(crate) fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {
         let IdentifySettings { rest, friction, dynamic, validate, prepare, model, .. } = settings;
         let groups = [rest, friction, dynamic, validate];
-        let sources = groups.map(|entries| sources(entries, folder)).into_iter();
+        let sources = groups.map(|entries| sources(entries, folder, robot, prepare)).into_iter();
         let mut sources: Vec<Vec<Source>> = sources.collect::<Result<_>>()?;
         let survey = |source: &Source| Ok(Survey::of(&source.read(robot, prepare)?));
         let surveys = sources.iter().map(|group| group.par_iter().map(survey).collect());

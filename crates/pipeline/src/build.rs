@@ -80,11 +80,11 @@ pub fn build(
     progress: &dyn Progress,
 ) -> Result<Built> {
     let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
-    let settings = PrepareSettings { gains: given.gains.clone(), ..PrepareSettings::default() };
+    let settings = given.prepare_settings();
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     chooser.choose_held_out(&split);
-    let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &recording.log).collect();
+    let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &*recording.log).collect();
     let (mut trial, cut_off) = first_choices(&mut chooser, robot, torque, &raw, &settings)?;
 
     // The robot.
@@ -109,7 +109,7 @@ pub fn build(
     let recordings = Prepared { logs: &logs, motions: &motions, from_start, simulated };
     let found = sets(&mut chooser, &mut trial, &recordings);
     let (mut answer, horizons) = found.map_err(|error| error.because(&warnings))?;
-    let raw: Vec<RawLog> = split.held_out.iter().map(|recording| recording.log.clone()).collect();
+    let raw: Vec<RawLog> = split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
     let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
     let held_back = Prepared { logs: &held_back, ..recordings };
     let horizon = chooser.choices.horizon.unwrap_or_default();
@@ -290,7 +290,14 @@ fn choose_equations(
 /// Returns what was done to logs, to do it to others.
 fn preparation(choices: &Choices, torque: Torque) -> Preparation {
     let window = choices.horizon.filter(|_| torque != Torque::Compensated);
-    Preparation { torque, gains: choices.gains.clone(), cut_off: choices.cut_off, window }
+    Preparation {
+        torque,
+        gains: choices.gains.clone(),
+        cut_off: choices.cut_off,
+        window,
+        columns: choices.columns.clone(),
+        log: choices.log.clone(),
+    }
 }
 
 fn motion_names(split: &Split) -> BTreeMap<String, String> {

@@ -102,6 +102,7 @@ mod tests {
         let raw = reachtube_identify::prepare::RawLog {
             name: "log".into(),
             file: "log.csv".into(),
+            motion: None,
             order: None,
             notes: vec![],
             run,

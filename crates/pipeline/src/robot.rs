@@ -139,7 +139,7 @@ impl Evidence<'_> {
         if self.torque == Torque::Compensated {
             return Ok(Vec::new());
         }
-        let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
+        let raw: Vec<RawLog> = self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         let logs = prepare(&raw, self.settings, self.cut_off, None)?.logs;
         Ok(contradictions(described, &logs))
     }
@@ -149,7 +149,7 @@ impl Evidence<'_> {
         let settings = IdentifySettings {
             rest: self.rest.clone(),
             friction: self.one_joint.clone(),
-            dynamic: self.motions.iter().map(|recording| recording.entry.clone()).collect(),
+            dynamic: self.motions.iter().map(Recording::entry).collect(),
             prepare: PrepareSettings { cut_off: Some(self.cut_off), ..self.settings.clone() },
             model: ModelSettings {
                 motor_inertia: self.torque != Torque::Link,
@@ -166,7 +166,7 @@ impl Evidence<'_> {
 
     /// Prepares the motions for a robot.
     fn prepared(&self, robot: &Robot) -> Result<Nominal> {
-        let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
+        let raw: Vec<RawLog> = self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         let logs = prepare_for(&raw, robot, self.torque, self.settings, self.cut_off)?;
         let (reason, warnings) = (String::new(), Vec::new());
         Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason, warnings })
