@@ -84,7 +84,7 @@ fn kept(built: &Built) -> Result<String> {
     let front_end = FrontEnd::Python;
     let mut answer = built.to_json();
     answer["findings"] =
-        serde_json::from_str(&list(&built.answer.findings())).map_err(Failure::setting)?;
+        serde_json::from_str(&list(&built.all_findings())).map_err(Failure::setting)?;
     let mut files: Vec<(String, String)> =
         built.files().map(|(name, text)| (name.to_string(), text)).into();
     for (folder, page) in built_pages(built, front_end)? {

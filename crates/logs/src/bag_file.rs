@@ -7,9 +7,7 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Connection, OpenFlags, limits::Limit};
 
 use crate::bag_state::{BagJournal, BagState};
-use crate::container::{
-    Contents, Damage, LogFile, RawMessage, Receive, Role, Topic, WantedTopics,
-};
+use crate::container::{Contents, Damage, LogFile, RawMessage, Receive, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::loss::Loss;
 

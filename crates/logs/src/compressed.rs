@@ -19,11 +19,8 @@ const LARGEST: u64 = 1 << 36;
 /// [`Error::Damaged`] if the file ends early or is damaged, unless `recover`; then the result ends
 /// there. [`Error::Format`] if its content has more than 64 GiB.
 pub(crate) fn decompressed(path: &Path, recover: bool) -> Result<NamedTempFile> {
-    let unreadable = |source, remedy| reachtube_files::Error::Read {
-        path: path.into(),
-        source,
-        remedy,
-    };
+    let unreadable =
+        |source, remedy| reachtube_files::Error::Read { path: path.into(), source, remedy };
     let open = || zstd::Decoder::new(File::open(path)?);
     let decoder = open().map_err(|e| unreadable(e, "check the path and its permissions"))?;
     let room = "make room for what is decompressed of it in the folder for temporary files";

@@ -109,9 +109,10 @@ impl<'a> LoggedRuns<'a> {
         settings: &LogSettings,
         all: &mut Vec<Option<Found>>,
     ) -> Result<()> {
-        let joints = self.options.robot.map_or_else(Vec::new, |robot| {
-            robot.joints().iter().map(|joint| joint.name.clone()).collect()
-        });
+        let joints = self.options.robot.map_or_else(
+            || settings.joints.clone(),
+            |robot| robot.joints().iter().map(|joint| joint.name.clone()).collect(),
+        );
         let logs = [Log::read(path, &LogOptions::new(settings, &joints)?)?];
         let cuts: Vec<Cut> = match settings.marker {
             Some(_) => marked_runs(&logs)?,

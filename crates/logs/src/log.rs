@@ -120,7 +120,8 @@ impl Log {
         let (joints, topics) = (options.joints.clone(), collected.topics);
         let labels = Labels { log: path, topics: &topics, joints: &joints };
         let Merged { samples, values, unmatched, shifts } = merge(collected.series, &labels)?;
-        notes.extend(shifts.into_iter().map(|(topic, largest)| shift_note(&labels, topic, largest)));
+        notes
+            .extend(shifts.into_iter().map(|(topic, largest)| shift_note(&labels, topic, largest)));
         if unmatched > 0 {
             notes.push(format!(
                 "{}: {unmatched} samples at the start and the end are not in all topics and are \
@@ -255,11 +256,8 @@ fn check_options(options: &LogOptions) -> Result<()> {
 /// Reads all files of a log.
 fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
     let found = RefCell::new(vec![]);
-    let wanted = WantedTopics {
-        joints: &options.topics,
-        found: &found,
-        marker: options.marker.as_deref(),
-    };
+    let wanted =
+        WantedTopics { joints: &options.topics, found: &found, marker: options.marker.as_deref() };
     let mut all = Collected {
         series: (0..options.topics.len()).map(TopicStates::new).collect(),
         topics: options.topics.clone(),

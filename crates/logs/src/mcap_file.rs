@@ -9,9 +9,7 @@ use mcap::records::{ChunkHeader, MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{McapError, parse_record};
 
-use crate::container::{
-    Contents, Damage, LogFile, RawMessage, Receive, Role, Topic, WantedTopics,
-};
+use crate::container::{Contents, Damage, LogFile, RawMessage, Receive, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::loss::Loss;
 use crate::mcap_records::{HEAD, LARGEST, McapRecords, Piece, records_of};

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use reachtube_conform::settings::{Equations, NominalStart};
-use reachtube_conform::{Answer, FitSettings, Progress};
+use reachtube_conform::{Answer, Finding, FitSettings, Progress};
 use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
@@ -10,6 +10,7 @@ use crate::choices::{Choice, Choices};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
+use crate::findings::accepted;
 use crate::held_out::Split;
 use crate::horizon::{HorizonWidths, longest, try_horizons};
 use crate::noise::noise;
@@ -34,9 +35,9 @@ pub struct Built {
     pub made: Vec<Choice>,
     /// What a user should know about the reading of the logs.
     pub notes: Vec<String>,
-    /// What contradicts the robot's description in the recorded torques, and whether the sets
-    /// carry over to what was held out, in sentences.
-    pub warnings: Vec<String>,
+    /// What contradicts other recordings or the robot's description, and whether the sets carry
+    /// over to what was held out. A failure makes the model unacceptable.
+    pub findings: Vec<Finding>,
     /// How wide the sets are at each horizon that was tried.
     pub horizons: Vec<HorizonWidths>,
     /// What the motions that were held out say.
@@ -49,12 +50,15 @@ pub struct Built {
 
 impl Built {
     /// Returns whether the sets were proved to enclose every window, limit every joint, and
-    /// are narrow enough at the horizon.
+    /// are narrow enough at the horizon, and nothing contradicts the recordings.
     #[must_use]
     pub fn is_useful(&self) -> bool {
         let model = &self.answer.model;
         let worst = model.usefulness.as_ref().and_then(|said| said.worst());
-        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
+        let is_sound = self.contradiction().is_none();
+        is_sound
+            && model.is_useful()
+            && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
     }
 
     /// Returns half a joint's set by the joint's displacement that is accepted at most.
@@ -98,7 +102,10 @@ pub fn build(
         trial: &trial,
     };
     let chosen = evidence.choose(robot, given.identify)?;
-    let Nominal { robot, logs, is_identified, reason, mut warnings } = chosen;
+    let Nominal { robot, logs, is_identified, reason, mut findings } = chosen;
+    if !given.gains.is_empty() {
+        accepted(&mut findings);
+    }
     chooser.choose("identify", is_identified.to_string(), reason);
     chooser.choices.identify = Some(is_identified);
     trial.robot = robot.clone();
@@ -108,22 +115,24 @@ pub fn build(
     let (from_start, simulated) = (torque == Torque::Compensated, sorted.simulated);
     let recordings = Prepared { logs: &logs, motions: &motions, from_start, simulated };
     let found = sets(&mut chooser, &mut trial, &recordings);
-    let (mut answer, horizons) = found.map_err(|error| error.because(&warnings))?;
-    let raw: Vec<RawLog> = split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
+    let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
+    let raw: Vec<RawLog> =
+        split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
     let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
     let held_back = Prepared { logs: &held_back, ..recordings };
     let horizon = chooser.choices.horizon.unwrap_or_default();
     answer.model = answer.model.with_preparation(preparation(&chooser.choices, torque));
     let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
     let Compared { held_out, shown, shown_held_out } = compared;
-    warnings.extend(held_out.warning());
+    findings.extend(sorted.findings);
+    findings.extend(held_out.finding());
     Ok(Built {
         answer,
         robot,
         choices: chooser.choices,
         made: chooser.made,
         notes: sorted.notes,
-        warnings,
+        findings,
         horizons,
         held_out,
         shown,

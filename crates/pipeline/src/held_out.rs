@@ -161,7 +161,15 @@ mod tests {
             let run = Run::new(1, times, states, vec![0.0; 101]).unwrap();
             let name = motion.to_string();
             let file = (&name).into();
-            let log = RawLog { name: name.clone(), file, motion: None, order: None, notes: vec![], run };
+            let log = RawLog {
+                name: name.clone(),
+                file,
+                motion: None,
+                order: None,
+                run,
+                notes: vec![],
+                moved: vec![],
+            };
             Recording { log: Arc::new(log), motion: name }
         };
         motions.iter().map(of).collect()

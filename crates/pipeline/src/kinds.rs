@@ -109,6 +109,7 @@ mod tests {
             motion: None,
             order: None,
             notes: vec![],
+            moved: vec![],
             run,
         }
     }

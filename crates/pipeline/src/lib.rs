@@ -6,6 +6,7 @@ mod chooser;
 mod compared;
 mod error;
 mod files;
+mod findings;
 mod held_out;
 mod horizon;
 mod joint_row;

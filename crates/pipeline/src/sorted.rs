@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use reachtube_conform::Finding;
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
 use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated};
 use reachtube_robot::Robot;
@@ -11,6 +12,7 @@ use reachtube_robot::Robot;
 use crate::choices::Choices;
 use crate::chooser::Chooser;
 use crate::error::{Error, Result};
+use crate::findings::moved;
 use crate::held_out::Recording;
 use crate::kinds::{Kind, motions};
 
@@ -21,6 +23,8 @@ pub(crate) struct Sorted {
     pub motions: Vec<Recording>,
     /// What a user should know about the reading of the recordings.
     pub notes: Vec<String>,
+    /// What contradicts other recordings, and was mended.
+    pub findings: Vec<Finding>,
     /// Whether a recording is marked as simulated.
     pub simulated: bool,
 }
@@ -69,14 +73,15 @@ impl Sorted {
             ),
         );
         let recordings = moving.iter().zip(names);
-        let recordings =
-            recordings.map(|(log, motion)| Recording { log: Arc::clone(log), motion });
+        let recordings = recordings.map(|(log, motion)| Recording { log: Arc::clone(log), motion });
         let motions = recordings.collect();
         let [rest, one_joint] =
             [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
+        let findings = raw.iter().flat_map(|log| log.moved.iter().map(|text| moved(text)));
+        let findings = findings.collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        Ok(Self { rest, one_joint, motions, notes, simulated })
+        Ok(Self { rest, one_joint, motions, notes, findings, simulated })
     }
 }
 

@@ -16,6 +16,7 @@ impl Built {
         let model = &self.answer.model;
         let horizon = self.choices.horizon.unwrap_or_default();
         let verdict = match (self.answer.holds(), self.is_useful(), model.is_vacuous()) {
+            _ if self.contradiction().is_some() => "the recordings contradict the robot".into(),
             (false, ..) => "NOT PROVED conformant".to_string(),
             (true, true, _) => format!("conformant and useful up to {horizon} s"),
             (true, false, true) => format!("conformant, but vacuous at {horizon} s"),
@@ -36,13 +37,20 @@ impl Built {
     pub fn summary(&self, front_end: FrontEnd) -> Result<Summary> {
         let mut summary = self.answer.summary(front_end)?;
         summary.verdict[0] = self.verdict();
+        if let Some(finding) = self.contradiction() {
+            // The cause comes first: a proof about wrong columns is worth nothing.
+            summary
+                .verdict
+                .insert(0, format!("not acceptable: {}", finding.written_for(front_end)));
+        }
         if !self.is_useful() {
             let findings = self.answer.model.findings().into_iter();
             let causes = findings.filter(|finding| finding.code == Code::Cause);
             summary.verdict.extend(causes.map(|finding| finding.written_for(front_end)));
         }
         summary.table = self.answer.table_at_horizon(&self.held_out.growth)?;
-        summary.warnings.clone_from(&self.warnings);
+        let warnings = self.findings.iter().filter(|other| Some(*other) != self.contradiction());
+        summary.warnings = warnings.map(|finding| finding.written_for(front_end)).collect();
         summary.facts.insert(0, ("held out".into(), self.held_out_words()));
         summary.fact("widest set by horizon, of the motion", self.growth());
         summary.next = None;

@@ -6,8 +6,8 @@ use clap::Args;
 use reachtube::number::four_decimals;
 use reachtube::recordings::LogSettings;
 use reachtube_logs::{
-    Cut, Intervals, Log, LogOptions, RecordedRun, Repeats, convert, find_repeats,
-    marked_runs, motions, whole_logs,
+    Cut, Intervals, Log, LogOptions, RecordedRun, Repeats, convert, find_repeats, marked_runs,
+    motions, whole_logs,
 };
 use serde_json::json;
 

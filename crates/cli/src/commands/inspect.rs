@@ -3,9 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::recordings::{
-    DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, inspect,
-};
+use reachtube::recordings::{DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, inspect};
 use reachtube_logs::{LogFiles, inspect_logs};
 use reachtube_robot::Robot;
 

@@ -292,6 +292,7 @@ mod tests {
             order: None,
             run,
             notes: vec![],
+            moved: vec![],
         }
     }
 

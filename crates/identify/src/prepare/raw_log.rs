@@ -16,6 +16,9 @@ pub struct RawLog {
     pub run: Run,
     /// What was changed or is worth a look, one sentence each.
     pub notes: Vec<String>,
+    /// What contradicts other recordings, one sentence each: positions that are whole turns away,
+    /// and were moved.
+    pub moved: Vec<String>,
 }
 
 impl RawLog {

@@ -42,7 +42,7 @@ pub fn read(
     let (turns, notes) = missing_turns(robot, &names, &found);
     logs.iter_mut().zip(turns).for_each(|(log, turns)| add_turns(&mut log.run, &turns));
     if let Some(first) = logs.first_mut() {
-        first.notes.extend(notes);
+        first.moved.extend(notes);
     }
     Ok(logs)
 }
@@ -134,7 +134,8 @@ impl Source {
         check(&file, &run, robot)?;
         add_turns(&mut run, &self.turns);
         let run = if self.compensated { with_compensation(run, robot) } else { run };
-        Ok(RawLog { name: self.name(), file, motion: None, order: self.order, run, notes })
+        let (name, order) = (self.name(), self.order);
+        Ok(RawLog { name, file, motion: None, order, run, notes, moved: vec![] })
     }
 
     /// Returns the name of the file, or of the folder of the files.
@@ -337,7 +338,11 @@ mod tests {
         assert!(refused.contains("motor currents: actual_current_0"), "{refused}");
         let gains = PrepareSettings { gains: vec![3.0; 6], ..PrepareSettings::default() };
         let logs = read(&entries, folder.path(), &robot, &gains).unwrap();
-        let said = logs.iter().flat_map(|log| log.notes.clone()).collect::<Vec<_>>().join("\n");
+        let said = logs
+            .iter()
+            .flat_map(|log| [log.notes.clone(), log.moved.clone()].concat())
+            .collect::<Vec<_>>()
+            .join("\n");
         assert!(said.contains("b.csv: joint1 is a turn away from other recordings"), "{said}");
         assert!(said.contains("the times are in ms") && said.contains("in degrees"), "{said}");
         for log in &logs {
