@@ -50,6 +50,9 @@ pub(crate) fn model(
             // The folder is gone when the choices are read.
             built.choices.data.clear();
         }
+        for finding in &mut built.findings {
+            finding.text = logs.renamed(&finding.text);
+        }
         let notes = built.notes.iter().map(|note| logs.renamed(note)).collect();
         Ok((kept(&built)?, notes))
     })

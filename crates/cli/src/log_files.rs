@@ -19,7 +19,7 @@ pub(crate) const TIMES: Choices = &[
 // Options about logs whose names and topics do not tell.
 #[derive(Debug, Args)]
 pub(crate) struct LogArguments {
-    /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
+    /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
     /// also first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,

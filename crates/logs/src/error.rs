@@ -23,7 +23,10 @@ pub enum Error {
         problem: String,
     },
     /// A part of the file cannot be read.
-    #[error("{}; reachtube convert --recover keeps what is whole and prints what is lost", .0.place())]
+    #[error(
+        "{}; reachtube convert --recover keeps what is whole and prints what is lost",
+        .0.place()
+    )]
     Damaged(Loss),
     /// The log has no topic of this name.
     #[error("{}: there is no topic {topic}; {}", path.display(), match &available[..] {

@@ -26,6 +26,7 @@ mod found;
 mod inspect;
 mod intervals;
 mod log;
+mod log_notes;
 mod loss;
 #[cfg(feature = "mcap")]
 mod mcap_file;

@@ -10,7 +10,7 @@ use crate::choices::{Choice, Choices};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
-use crate::findings::accepted;
+use crate::findings::unless_accepted;
 use crate::held_out::Split;
 use crate::horizon::{HorizonWidths, longest, try_horizons};
 use crate::noise::noise;
@@ -102,10 +102,8 @@ pub fn build(
         trial: &trial,
     };
     let chosen = evidence.choose(robot, given.identify)?;
-    let Nominal { robot, logs, is_identified, reason, mut findings } = chosen;
-    if !given.gains.is_empty() {
-        accepted(&mut findings);
-    }
+    let Nominal { robot, logs, is_identified, reason, findings } = chosen;
+    let mut findings = unless_accepted(findings, given);
     chooser.choose("identify", is_identified.to_string(), reason);
     chooser.choices.identify = Some(is_identified);
     trial.robot = robot.clone();
@@ -124,8 +122,7 @@ pub fn build(
     answer.model = answer.model.with_preparation(preparation(&chooser.choices, torque));
     let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
     let Compared { held_out, shown, shown_held_out } = compared;
-    findings.extend(sorted.findings);
-    findings.extend(held_out.finding());
+    findings.extend(sorted.findings.into_iter().chain(held_out.finding()));
     Ok(Built {
         answer,
         robot,
@@ -157,7 +154,7 @@ fn first_choices<'a>(
         chooser.choose(
             "cut-off",
             format!("{cut_off} Hz"),
-            "1.5 times the bandwidth of the motions",
+            "1.5 times the bandwidth of the motions beyond their noise",
         );
         chooser.choices.cut_off = Some(cut_off);
     }

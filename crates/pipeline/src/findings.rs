@@ -4,7 +4,7 @@ use reachtube_conform::Finding;
 use reachtube_conform::result::{Code, Severity};
 use reachtube_identify::Implausible;
 
-use crate::build::Built;
+use crate::choices::Choices;
 
 /// Makes the finding that the recordings contradict the robot, so that no model of them is
 /// acceptable.
@@ -24,23 +24,12 @@ pub(crate) fn moved(text: &str) -> Finding {
     Finding::new(Severity::Warning, Code::TurnsMoved, text)
 }
 
-/// Makes contradictions warnings: a user who gives the factors of the torques states that the
-/// torques are right.
-pub(crate) fn accepted(findings: &mut [Finding]) {
-    findings.iter_mut().for_each(|finding| finding.severity = Severity::Warning);
-}
-
-impl Built {
-    /// Returns everything that is to be said: about the recordings first, then the findings of the
-    /// model.
-    #[must_use]
-    pub fn all_findings(&self) -> Vec<Finding> {
-        self.findings.iter().cloned().chain(self.answer.findings()).collect()
+/// Makes contradictions warnings if factors of the torques are given: they state that the torques
+/// are right.
+pub(crate) fn unless_accepted(findings: Vec<Finding>, given: &Choices) -> Vec<Finding> {
+    if given.gains.is_empty() {
+        return findings;
     }
-
-    /// Returns the contradiction for which the model is not acceptable, if there is one.
-    #[must_use]
-    pub fn contradiction(&self) -> Option<&Finding> {
-        self.findings.iter().find(|finding| finding.severity == Severity::Failure)
-    }
+    let accepted = |finding| Finding { severity: Severity::Warning, ..finding };
+    findings.into_iter().map(accepted).collect()
 }

@@ -4,6 +4,7 @@ mod build;
 mod choices;
 mod chooser;
 mod compared;
+mod contradicted;
 mod error;
 mod files;
 mod findings;

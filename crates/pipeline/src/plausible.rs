@@ -17,8 +17,9 @@ const OPPOSITE: f64 = 0.5;
 /// Samples of a recording that are looked at, at most.
 const SAMPLES: usize = 2000;
 
-/// Returns what contradicts the robot's description in the torques of filtered recordings. The torques must still contain gravity. A description that is no body has no torques
-/// to compare with.
+/// Returns what contradicts the robot's description in the torques of filtered recordings. The
+/// torques must still contain gravity. A description that is no body has no torques to compare
+/// with.
 pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<Finding> {
     let n = robot.joint_count();
     if robot.check_physical().is_err() || logs.is_empty() {

@@ -38,8 +38,8 @@ pub(crate) struct Arguments {
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Folder with runs.csv and the recordings, or a log or folder of logs: CSV files of any header,
-    /// MCAP and rosbag2
+    /// Folder with runs.csv and the recordings, or a log or folder of logs: CSV files of any
+    /// header, MCAP and rosbag2
     #[arg(long, value_name = "PATH")]
     pub data: PathBuf,
     #[command(flatten)]

@@ -16,8 +16,9 @@ use std::sync::Arc;
 /// Reads recordings of a robot and puts their columns into the order of the robot's joints.
 ///
 /// Logs in MCAP and rosbag2 are read by the names of the joints; each is one recording, or one for
-/// each run that a topic marks. A CSV file with the header `t,q1..qn,qd1..qdn,tau1..taun` is read as it is. In others, columns
-/// and units are recognised ([`read_logged`]), and [`RawLog::notes`] says how.
+/// each run that a topic marks. A CSV file with the header `t,q1..qn,qd1..qdn,tau1..taun` is read
+/// as it is. In others, columns and units are recognised ([`read_logged`]), and [`RawLog::notes`]
+/// says how.
 ///
 /// Relative paths start at `folder`.
 ///
