@@ -10,7 +10,7 @@ const NOISE_BANDS: usize = 4;
 
 /// Number of neighbours on each side over which a spectrum is smoothed before it is compared with
 /// its noise.
-const NEIGHBOURS: usize = 8;
+const NEIGHBOURS: usize = 32;
 
 /// Returns the bandwidth of one joint's motion \[Hz\]: 99.9 % of the power of its velocity lies
 /// below it, where only frequencies count at which the motion is stronger than the noise.
