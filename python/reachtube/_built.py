@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import logging
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy.typing as npt
 
@@ -152,13 +152,11 @@ class BuiltModel(Record):
         return [Choice(**row) for row in self._answer["choices"]]
 
     @property
-    def warnings(self) -> list[str]:
-        """Contradictions between logs and description, and sets that do not carry over."""
-        return [str(warning) for warning in self._answer["warnings"]]
-
-    @property
     def findings(self) -> list[Finding]:
-        """What the answer says, statement by statement: the verdict first."""
+        """What the answer says, statement by statement.
+
+        What contradicts the logs or the robot comes first, then the verdict.
+        """
         return [Finding._of(dict(finding)) for finding in self._answer["findings"]]
 
     def to_dict(self) -> dict[str, Any]:
@@ -215,6 +213,11 @@ def model(
     horizon: float | None = None,
     held_out: str | Sequence[str] | None = None,
     gains: npt.ArrayLike | None = None,
+    columns: Mapping[str, str | int] | None = None,
+    topic: str | Sequence[str] | None = None,
+    joints: Sequence[str] | None = None,
+    marker: str | None = None,
+    time: Literal["header", "log"] | None = None,
     progress: Progress = None,
 ) -> BuiltModel:
     """Make a model of a robot from logs as they are: sets, horizon, verdict and page.
@@ -229,8 +232,8 @@ def model(
     robot
         The robot that was recorded.
     data
-        Logs: paths of CSV files or folders, runs, or a data set. The logs of ``settings`` if it is
-        not given.
+        Logs: paths of CSV files, MCAP, rosbag2 or folders of them, runs, or a data set. The logs of
+        ``settings`` if it is not given.
     torque
         What the recorded torques are: ``"motor"``, ``"link"`` or ``"compensated"``, as for
         `conform`. It is never guessed; ``settings`` may name it.
@@ -242,7 +245,20 @@ def model(
     held_out
         Motions that are held out from every choice; by default every fourth.
     gains
-        Factors of the recorded torques, n; for motor currents in N m/A.
+        Factors of the recorded torques, n; for motor currents in N m/A. They also state that the
+        torques are right where they contradict the robot's description.
+    columns
+        Columns of CSV files whose names do not tell, as ``{"q": "pos_{}", "first": 0}``; the keys
+        are ``q``, ``qd``, ``tau``, ``current``, ``time``, ``first``, ``time_unit`` and ``angle``.
+    topic
+        Topics with joint states in MCAP and rosbag2; by default the only one that names joints of
+        the robot.
+    joints
+        Names of the joints in MCAP and rosbag2, in the robot's order; by default the robot's names.
+    marker
+        Topic in MCAP and rosbag2 that marks runs; by default each log is one recording.
+    time
+        The stamps in the messages' headers, or the times at which the log received them.
     progress
         As for `conform`; a function gets each choice as a sentence.
 
@@ -280,6 +296,11 @@ def model(
         given["held-out"] = names(held_out)
     if gains is not None:
         given["gains"] = numbers("gains", gains).ravel().tolist()
+    if columns is not None:
+        given["columns"] = dict(columns)
+    log_table = {"topic": names(topic), "joints": names(joints), "marker": marker, "time": time}
+    if any(log_table.values()):
+        given["log"] = {key: value for key, value in log_table.items() if value}
     given |= robot._source if isinstance(robot, Robot) else {}
     paths, runs = ([], None) if data is None else native_of_logs(data)
     file = None if settings is None else fspath(settings)
@@ -290,7 +311,7 @@ def model(
     found = BuiltModel(text)
     for note in [*notes, *(f"{own.key}: {own.value} ({own.reason})" for own in found.choices)]:
         log.info(note)
-    said = [str(finding) for finding in found.findings if finding.severity != "info"]
-    for warning in [*found.warnings, *said]:
-        warnings.warn(warning, ReachtubeWarning, 2)
+    for finding in found.findings:
+        if finding.severity != "info":
+            warnings.warn(str(finding), ReachtubeWarning, 2)
     return found

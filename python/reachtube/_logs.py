@@ -14,7 +14,7 @@ from .errors import SettingError
 if TYPE_CHECKING:
     from ._model import Model
 
-#: Logs: CSV files and folders of them by their paths, runs, or a data set.
+#: Logs: CSV files, MCAP, rosbag2 and folders of them by their paths, runs, or a data set.
 Logs: TypeAlias = (
     "Recordings | Run | str | PathLike[str] | Iterable[Run | str | PathLike[str]]"
 )

@@ -45,7 +45,7 @@ def _opened(path: Path_) -> Iterator[None]:
 def bag(
     paths: Path_ | Sequence[Path_],
     *,
-    topic: str | Sequence[str],
+    topic: str | Sequence[str] | None = None,
     joints: Sequence[str],
     marker: str | None = None,
     repeats: bool = False,
@@ -63,7 +63,8 @@ def bag(
     paths
         One log or several.
     topic
-        Topics with ``sensor_msgs/msg/JointState``; several complement each other.
+        Topics with ``sensor_msgs/msg/JointState``; several complement each other. By default the
+        only one that names one of ``joints``.
     joints
         Names of the robot's joints in the log, in the order of the robot, as
         ``robot.joint_names``. Joints are matched by name, whatever their order in a message.

@@ -50,6 +50,9 @@ pub(crate) fn model(
             // The folder is gone when the choices are read.
             built.choices.data.clear();
         }
+        for finding in &mut built.findings {
+            finding.text = logs.renamed(&finding.text);
+        }
         let notes = built.notes.iter().map(|note| logs.renamed(note)).collect();
         Ok((kept(&built)?, notes))
     })
@@ -84,7 +87,7 @@ fn kept(built: &Built) -> Result<String> {
     let front_end = FrontEnd::Python;
     let mut answer = built.to_json();
     answer["findings"] =
-        serde_json::from_str(&list(&built.answer.findings())).map_err(Failure::setting)?;
+        serde_json::from_str(&list(&built.all_findings())).map_err(Failure::setting)?;
     let mut files: Vec<(String, String)> =
         built.files().map(|(name, text)| (name.to_string(), text)).into();
     for (folder, page) in built_pages(built, front_end)? {

@@ -77,6 +77,7 @@ fn cut(
         };
         return Err(Failure::Other(what));
     }
-    let notes: Vec<String> = raw.iter().flat_map(|log| log.notes.clone()).collect();
+    let notes: Vec<String> =
+        raw.iter().flat_map(|log| [&log.notes[..], &log.moved].concat()).collect();
     Ok((runs, cut_off, [notes, prepared.changes, cut.changes].concat()))
 }

@@ -232,7 +232,11 @@ fn log_kind(error: &reachtube_logs::Error) -> &'static str {
     use reachtube_logs::Error as E;
     match error {
         E::File(_) | E::Format { .. } | E::Damaged(_) => "file",
-        E::NoTopic { .. } | E::TopicType { .. } | E::Setting(_) | E::Intervals { .. } => "setting",
+        E::NoTopic { .. }
+        | E::SeveralTopics { .. }
+        | E::TopicType { .. }
+        | E::Setting(_)
+        | E::Intervals { .. } => "setting",
         _ => "recordings",
     }
 }
@@ -255,6 +259,7 @@ fn kind(error: &reachtube::Error) -> &'static str {
         | E::Identify(Identify::Robot(_))
         | E::Abstraction(Abstraction::Robot(_))
         | E::Conform(Conform::Robot(_)) => "robot",
+        E::Identify(Identify::Log(error)) => log_kind(error),
         E::Identify(_) => "identify",
         E::Abstraction(_) | E::Conform(Conform::Abstraction(_)) => "abstraction",
         E::Conform(_) => "conform",

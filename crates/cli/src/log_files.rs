@@ -1,14 +1,60 @@
-//! Logs that commands read.
+//! Logs that commands read, and the options about them.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use reachtube::identify::prepare::LogEntry;
-use reachtube::recordings::GapLimit;
-use reachtube_logs::{Log, LogOptions, convert, whole_logs};
-use tempfile::TempDir;
+use clap::Args;
+use reachtube::recordings::{ColumnSettings, LogSettings, LogTime};
+use reachtube_logs::{Log, LogOptions};
 
 use crate::error::Result;
+use crate::option_values::{Choices, explained};
 use crate::output;
+
+/// Which times samples of logs have.
+pub(crate) const TIMES: Choices = &[
+    ("header", "the stamps in the headers of the messages"),
+    ("log", "the times at which the log received the messages"),
+];
+
+// Options about logs whose names and topics do not tell.
+#[derive(Debug, Args)]
+pub(crate) struct LogArguments {
+    /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
+    /// also first=0, time_unit=ms and angle=deg
+    #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
+    pub columns: Option<ColumnSettings>,
+    /// Topics with joint states in MCAP and rosbag2; several complement each other [default: the
+    /// only one that names joints of the robot]
+    #[arg(long, hide_short_help = true, value_name = "NAME", num_args = 1..)]
+    pub topic: Vec<String>,
+    /// Names of the joints in MCAP and rosbag2, in the robot's order [default: the robot's names]
+    #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
+    pub joints: Vec<String>,
+    /// Topic in MCAP and rosbag2 that marks runs while it is not empty, true or not 0 [default:
+    /// each log is one recording]
+    #[arg(long, hide_short_help = true, value_name = "NAME")]
+    pub marker: Option<String>,
+    /// Times of the samples in MCAP and rosbag2 [default: header]
+    #[arg(long, hide_short_help = true, value_name = "TIMES", value_parser = explained(TIMES))]
+    pub time: Option<String>,
+}
+
+impl LogArguments {
+    /// Returns the settings of logs in MCAP and rosbag2.
+    pub(crate) fn settings(&self) -> LogSettings {
+        LogSettings {
+            topic: self.topic.clone(),
+            joints: self.joints.clone(),
+            marker: self.marker.clone(),
+            time: log_time(self.time.as_deref()),
+        }
+    }
+}
+
+/// Returns the times that an option names.
+pub(crate) fn log_time(name: Option<&str>) -> LogTime {
+    if name == Some("log") { LogTime::Receipt } else { LogTime::Header }
+}
 
 /// Reads a log, prints its notes, and warns of what is lost.
 pub(crate) fn read_log(path: &Path, options: &LogOptions) -> Result<Log> {
@@ -19,53 +65,4 @@ pub(crate) fn read_log(path: &Path, options: &LogOptions) -> Result<Log> {
         output::warn(&format!("{}: {} samples are kept", path.display(), log.len()));
     }
     Ok(log)
-}
-
-/// A folder with the logs among some paths as CSV files, which is deleted with this value.
-pub(crate) struct LogFiles {
-    options: LogOptions,
-    folder: TempDir,
-    count: usize,
-}
-
-impl LogFiles {
-    /// Makes an empty folder for logs.
-    pub(crate) fn new(options: LogOptions) -> Result<Self> {
-        let folder = tempfile::tempdir().map_err(|source| reachtube_files::Error::Write {
-            path: std::env::temp_dir(),
-            source,
-        })?;
-        Ok(Self { options, folder, count: 0 })
-    }
-
-    /// Replaces the path of a log, whole or an interval of it, by the path of the recording as
-    /// CSV. Paths are relative to `folder`, and other paths stay as they are.
-    pub(crate) fn convert(&mut self, entry: &mut LogEntry, folder: &Path) -> Result<()> {
-        let (LogEntry::Path(path) | LogEntry::Stretch { path, .. }) = entry;
-        if is_log(path) {
-            *path = self.csv_of(&folder.join(&path))?;
-        }
-        Ok(())
-    }
-
-    fn csv_of(&mut self, path: &Path) -> Result<PathBuf> {
-        let logs = [read_log(path, &self.options)?];
-        let cuts = whole_logs(&logs);
-        // What reads the CSV file has its own limit.
-        let recorded = convert(&logs, &cuts, GapLimit::Seconds(f64::INFINITY))?;
-        self.count += 1;
-        let folder = self.folder.path().join(self.count.to_string());
-        let written = recorded.write(&folder)?;
-        let mut name = path.file_stem().unwrap_or(path.as_os_str()).to_os_string();
-        name.push(".csv");
-        let named = folder.join(name);
-        let rename = std::fs::rename(folder.join(&written[0].file), &named);
-        rename.map_err(|source| reachtube_files::Error::Write { path: named.clone(), source })?;
-        Ok(named)
-    }
-}
-
-/// Returns whether a path names a log, by its ending.
-fn is_log(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension == "mcap" || extension == "db3")
 }

@@ -14,11 +14,14 @@ pub(crate) fn understood(logs: &[Understood]) -> String {
     for log in logs {
         let columns = columns(log);
         text += &format!(
-            "{}: {} samples, {:.3} s, separated by {}",
+            "{}: {} samples, {:.3} s, {}",
             files(log),
             log.samples,
             log.duration,
-            log.separator
+            match log.separator {
+                "messages" => "in messages".into(),
+                separator => format!("separated by {separator}"),
+            }
         );
         if before.as_ref() == Some(&columns) {
             text += ", columns as above\n";

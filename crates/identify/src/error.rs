@@ -73,7 +73,11 @@ pub enum Error {
         joints: Vec<String>,
     },
     /// A folder has no recordings.
-    #[error("{}: the folder has no CSV file; name a folder with recordings", folder.display())]
+    #[error(
+        "{}: the folder has no CSV file and no log in MCAP or rosbag2; name a folder with \
+         recordings",
+        folder.display()
+    )]
     NoCsvFile {
         /// The folder.
         folder: PathBuf,
@@ -213,12 +217,25 @@ pub enum Error {
     /// The recordings have defects or could not be read.
     #[error(transparent)]
     Recordings(#[from] reachtube_recordings::Error),
+    /// A log in MCAP or rosbag2 could not be read.
+    #[error(transparent)]
+    Log(reachtube_logs::Error),
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
     /// The robot's description is wrong.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+}
+
+impl From<reachtube_logs::Error> for Error {
+    fn from(error: reachtube_logs::Error) -> Self {
+        match error {
+            reachtube_logs::Error::Recordings(error) => Self::Recordings(error),
+            reachtube_logs::Error::File(error) => Self::File(error),
+            error => Self::Log(error),
+        }
+    }
 }
 
 /// Names the recording of a fit that has the content of a validation recording.

@@ -10,7 +10,7 @@ use crate::inputs::Inputs;
 use crate::plausibility::compensated::input_unit_warning;
 use crate::plausibility::gain::{Gain, GainLikelihood, gains};
 use crate::plausibility::offset::{OffsetSearch, PositionOffset};
-use crate::plausibility::warnings::Checked;
+use crate::plausibility::warnings::{Checked, Implausible};
 use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, Samples};
 use crate::settings::ModelSettings;
@@ -40,8 +40,8 @@ pub(crate) struct Plausibility {
     pub gains: Vec<Gain>,
     /// Offsets of the joints' positions.
     pub offsets: Vec<PositionOffset>,
-    /// Warnings about implausible results.
-    pub warnings: Vec<String>,
+    /// Implausible results.
+    pub warnings: Vec<Implausible>,
 }
 
 impl Fitted {
@@ -75,10 +75,11 @@ impl Fitted {
 }
 
 /// Returns the error for values of least squares that no robot has, with the probable cause.
-fn impossible(error: Error, implausible: &[String]) -> Error {
+fn impossible(error: Error, implausible: &[Implausible]) -> Error {
     match error {
         Error::Robot(error) => {
-            Error::ImpossibleRobot { problem: error.to_string(), causes: implausible.to_vec() }
+            let causes = implausible.iter().map(|result| result.text.clone()).collect();
+            Error::ImpossibleRobot { problem: error.to_string(), causes }
         }
         other => other,
     }

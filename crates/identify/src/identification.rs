@@ -6,6 +6,7 @@ use crate::inertia::description::friction_errors;
 use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
 use crate::law_gain::{LawGain, held_out_residuals};
+use crate::plausibility::Implausible;
 use crate::plausibility::gain::Gain;
 use crate::plausibility::offset::PositionOffset;
 use crate::plausibility::validation::{
@@ -63,7 +64,7 @@ pub struct Identification {
     /// The warnings by which the recordings contradict the dynamics of rigid bodies: columns that
     /// are exchanged or have the wrong sign, units, gains, friction that drives, and torque that
     /// stays unexplained.
-    pub implausible: Vec<String>,
+    pub implausible: Vec<Implausible>,
 }
 
 /// Identifies a robot from recordings.
@@ -112,7 +113,7 @@ pub fn identify(
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
     let windows = simulate(&warming_robot, tried, &model.windows);
     let mut warnings = [inputs.warnings, first.warnings, law_warnings, gain_warnings].concat();
-    warnings.extend_from_slice(&implausible);
+    warnings.extend(implausible.iter().map(|result| result.text.clone()));
     warnings.extend(inertia.undetermined_warning());
     warnings.extend(inertia.body_warnings(robot));
     let links = inertia.physical.is_some() && !model.separate_gravity;

@@ -64,7 +64,7 @@ impl Inputs {
     pub(crate) fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {
         let IdentifySettings { rest, friction, dynamic, validate, prepare, model, .. } = settings;
         let groups = [rest, friction, dynamic, validate];
-        let sources = groups.map(|entries| sources(entries, folder)).into_iter();
+        let sources = groups.map(|entries| sources(entries, folder, robot, prepare)).into_iter();
         let mut sources: Vec<Vec<Source>> = sources.collect::<Result<_>>()?;
         let survey = |source: &Source| Ok(Survey::of(&source.read(robot, prepare)?));
         let surveys = sources.iter().map(|group| group.par_iter().map(survey).collect());
@@ -110,7 +110,9 @@ impl Inputs {
                  {cut_off:.2} Hz"
             ));
         }
-        changes.push(described(&sampling, robot));
+        let is_thinned = |log: &PreparedLog| sampling.stride(log) > 1;
+        let is_thinned = friction.iter().chain(&dynamic).any(is_thinned);
+        changes.push(described(&sampling, is_thinned, robot));
         changes.extend(thinning(&dynamic, strides[2], &sampling));
         let warnings = velocity_warnings(robot, &all);
         let compensated = settings.dynamic.iter().any(LogEntry::is_compensated);
@@ -173,13 +175,16 @@ fn thinning(dynamic: &[PreparedLog], stride: usize, sampling: &Sampling) -> Opti
     })
 }
 
-/// Describes the sampling in a sentence.
-fn described(sampling: &Sampling, robot: &Robot) -> String {
+/// Describes the sampling in a sentence. A rate above half the recordings' own takes all samples.
+fn described(sampling: &Sampling, is_thinned: bool, robot: &Robot) -> String {
     let slow: Vec<String> = sampling.slow.iter().map(|slow| format!("{slow:.3}")).collect();
     format!(
-        "recordings were downsampled to {:.1} Hz; the torque of a joint is not used within {:.0} \
-         ms of a sample in which the joint is slower than {} {} (one limit per joint)",
-        sampling.rate,
+        "{}; the torque of a joint is not used within {:.0} ms of a sample in which the joint is \
+         slower than {} {} (one limit per joint)",
+        match is_thinned {
+            true => format!("recordings were downsampled to {:.1} Hz", sampling.rate),
+            false => "all samples of the recordings are used".into(),
+        },
         1e3 * sampling.margin,
         slow.join(", "),
         JointKind::units(&robot.kinds(), JointKind::velocity_unit)

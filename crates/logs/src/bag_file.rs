@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Connection, OpenFlags, limits::Limit};
 
 use crate::bag_state::{BagJournal, BagState};
-use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, WantedTopics};
+use crate::container::{Contents, Damage, LogFile, RawMessage, Receive, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::loss::Loss;
 
@@ -21,17 +21,17 @@ const LARGEST: i32 = 1 << 26;
 /// [`Error::Damaged`] for the first part that cannot be read, unless `recover`; then such parts
 /// are listed in the result.
 pub(crate) fn scan(
-    path: &Path,
+    LogFile { path, content }: LogFile<'_>,
     wanted: WantedTopics<'_>,
     recover: bool,
     receive: &mut Receive<'_>,
 ) -> Result<Contents> {
-    let state = BagState::of(path)?;
+    let state = BagState::of(content)?;
     let mut damage = Damage::new(recover);
     state.losses(path).into_iter().try_for_each(|loss| damage.add(loss))?;
     // SQLite works on a copy where it has to undo or to apply a journal, or to end earlier.
-    let copy = state.needs_copy().then(|| Copy::of(path, state)).transpose()?;
-    let file = copy.as_ref().map_or(path, |copy| copy.file.as_path());
+    let copy = state.needs_copy().then(|| Copy::of(content, state)).transpose()?;
+    let file = copy.as_ref().map_or(content, |copy| copy.file.as_path());
     let mut scan = Scan { path, page: state.page, recover, damage, contents: Contents::default() };
     let opened = open(file, copy.is_some(), recover).and_then(|connection| {
         let topics = topics(&connection)?;

@@ -1,10 +1,20 @@
 //! What the readers of both file formats share: topics, messages, and damage.
 
+use std::cell::RefCell;
 use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::loss::Loss;
 use crate::message::{JOINT_STATE, MarkerKind};
+
+/// A file of a log.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LogFile<'a> {
+    /// Its path, for messages.
+    pub(crate) path: &'a Path,
+    /// The file to open: the same one, or what was decompressed of it.
+    pub(crate) content: &'a Path,
+}
 
 /// A topic of a log.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,8 +30,10 @@ pub(crate) struct Topic {
 /// The topics that are read, by the role of their messages.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WantedTopics<'a> {
-    /// Topics of joint states.
+    /// Topics of joint states; empty for every topic of joint states.
     pub(crate) joints: &'a [String],
+    /// The topics of joint states that were met where none is named.
+    pub(crate) found: &'a RefCell<Vec<String>>,
     /// Topic of the markers of runs.
     pub(crate) marker: Option<&'a str>,
 }
@@ -29,7 +41,8 @@ pub(crate) struct WantedTopics<'a> {
 /// What the messages of a topic are for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// Joint states; the number of the topic in [`WantedTopics::joints`].
+    /// Joint states; the number of the topic in [`WantedTopics::joints`], or else in
+    /// [`WantedTopics::found`].
     Joints(usize),
     /// Markers of runs.
     Marker(MarkerKind),
@@ -42,8 +55,11 @@ impl WantedTopics<'_> {
     ///
     /// [`Error::TopicType`] where the topic is read but has messages of another type.
     pub(crate) fn role(&self, path: &Path, topic: &Topic) -> Result<Option<Role>> {
+        let is_any = self.joints.is_empty() && topic.kind == JOINT_STATE;
         let (role, expected) = if self.marker == Some(topic.name.as_str()) {
             (MarkerKind::of(&topic.kind).map(Role::Marker), MarkerKind::NAMES)
+        } else if is_any && topic.encoding == "cdr" {
+            (Some(Role::Joints(self.number_of(&topic.name))), JOINT_STATE)
         } else if let Some(index) = self.joints.iter().position(|name| *name == topic.name) {
             ((topic.kind == JOINT_STATE).then_some(Role::Joints(index)), JOINT_STATE)
         } else {
@@ -60,7 +76,16 @@ impl WantedTopics<'_> {
         }
     }
 
-    /// Returns the names of all topics that are read.
+    /// Returns the number of a topic among the topics that were met.
+    fn number_of(&self, name: &str) -> usize {
+        let mut found = self.found.borrow_mut();
+        found.iter().position(|known| known == name).unwrap_or_else(|| {
+            found.push(name.into());
+            found.len() - 1
+        })
+    }
+
+    /// Returns the names of all topics that have to be there.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.joints.iter().map(String::as_str).chain(self.marker)
     }

@@ -23,7 +23,10 @@ pub enum Error {
         problem: String,
     },
     /// A part of the file cannot be read.
-    #[error("{}; --recover keeps what is whole and prints what is lost", .0.place())]
+    #[error(
+        "{}; reachtube convert --recover keeps what is whole and prints what is lost",
+        .0.place()
+    )]
     Damaged(Loss),
     /// The log has no topic of this name.
     #[error("{}: there is no topic {topic}; {}", path.display(), match &available[..] {
@@ -53,6 +56,35 @@ pub enum Error {
         found: String,
         /// The types that are read.
         expected: &'static str,
+    },
+    /// The log has no topic of joint states.
+    #[error(
+        "{}: no topic has sensor_msgs/msg/JointState in the encoding cdr; {}",
+        path.display(),
+        match &available[..] {
+            [] => "the log has no topics".into(),
+            some => format!("the topics are {}", some.join(", ")),
+        }
+    )]
+    NoJointStates {
+        /// The file or folder.
+        path: PathBuf,
+        /// Topics of the log, with their types.
+        available: Vec<String>,
+    },
+    /// Several topics name joints of the robot, and none was chosen.
+    #[error(
+        "{}: {} topics name joints of the robot: {}; choose one with --topic, or several that \
+         complement each other",
+        path.display(),
+        topics.len(),
+        topics.join(", ")
+    )]
+    SeveralTopics {
+        /// The file or folder.
+        path: PathBuf,
+        /// The topics.
+        topics: Vec<String>,
     },
     /// A topic of joint states has no message.
     #[error("{}: topic {topic} has no message; record it, or name another topic", path.display())]

@@ -10,17 +10,23 @@
 //! The feature `mcap` reads MCAP files and `rosbag` reads .db3 files. Without a feature, files of
 //! its format are refused. `docs/logs.md` describes what is read and what is refused.
 
+mod align;
 #[cfg(feature = "rosbag")]
 mod bag_file;
 #[cfg(feature = "rosbag")]
 mod bag_state;
 mod cdr;
+#[cfg(any(feature = "mcap", feature = "rosbag"))]
+mod compressed;
 mod container;
 mod cut;
 mod error;
 mod files;
+mod found;
+mod inspect;
 mod intervals;
 mod log;
+mod log_notes;
 mod loss;
 #[cfg(feature = "mcap")]
 mod mcap_file;
@@ -37,9 +43,12 @@ mod series;
 
 pub use cut::{Cut, marked_runs, whole_logs};
 pub use error::{Error, Result};
+pub use found::LogFiles;
+pub use inspect::{LogInspection, inspect_logs};
 pub use intervals::Intervals;
-pub use log::{Log, LogOptions, LogTime};
+pub use log::{Log, LogOptions};
 pub use loss::Loss;
+pub use reachtube_recordings::LogTime;
 pub use recorded::{Recorded, RecordedRun, convert};
 pub use repeats::{Repeats, find_repeats};
 pub use segments::motions;

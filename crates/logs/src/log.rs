@@ -1,34 +1,27 @@
 //! A log as a source of joint states.
 
+use std::cell::RefCell;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use reachtube_recordings::{Defect, Run};
+use reachtube_recordings::{Defect, LogTime, Run};
 
 use crate::container::{Contents, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::files::{files_of, scan};
+use crate::log_notes::{order_note, series_notes, shift_note, time_note};
 use crate::loss::Loss;
 use crate::merge::{Merged, merge};
 use crate::sample::{Labels, Sample, defects};
 use crate::seconds::decimal;
 use crate::series::TopicStates;
 
-/// Which times the samples have.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum LogTime {
-    /// The stamps in the headers of the messages.
-    #[default]
-    Header,
-    /// The times at which the log received the messages.
-    Receipt,
-}
-
 /// What to read from a log.
 #[derive(Debug, Clone, Default)]
 pub struct LogOptions {
     /// Topics with `sensor_msgs/msg/JointState`. Several complement each other: values with the
-    /// same stamp become one sample.
+    /// same stamp become one sample. Without a topic, the only one that names joints of the robot
+    /// is taken.
     pub topics: Vec<String>,
     /// Names of the robot's joints in the log, in the order of the robot.
     pub joints: Vec<String>,
@@ -79,14 +72,20 @@ pub struct Log {
     pub(crate) markers: Vec<Marker>,
     notes: Vec<String>,
     losses: Vec<Loss>,
+    time: LogTime,
+    /// Names in the messages that are no joints of the robot.
+    pub(crate) unused: Vec<String>,
 }
 
 /// What is collected while the files of a log are read.
 #[derive(Debug)]
 struct Collected {
+    /// Joint states, one series per topic of `topics`.
     series: Vec<TopicStates>,
+    /// The topics of joint states.
+    topics: Vec<String>,
     markers: Vec<Marker>,
-    topics: Vec<Topic>,
+    available: Vec<Topic>,
     notes: Vec<String>,
     losses: Vec<Loss>,
 }
@@ -107,17 +106,23 @@ impl Log {
     pub fn read(path: &Path, options: &LogOptions) -> Result<Self> {
         check_options(options)?;
         let mut collected = collect(path, options)?;
-        for (topic, series) in options.topics.iter().zip(&collected.series) {
+        for (topic, series) in collected.topics.iter().zip(&collected.series) {
             check_series(path, topic, series, options)?;
         }
         let mut notes = std::mem::take(&mut collected.notes);
         notes.push(time_note(path, &collected.series[0], options.time));
-        for (topic, series) in options.topics.iter().zip(&collected.series) {
-            notes.extend(series_notes(path, topic, series, options));
+        for (topic, series) in collected.topics.iter().zip(&mut collected.series) {
+            let late = series.sort();
+            notes.extend(series_notes(path, topic, series, &options.joints));
+            notes.extend((late > 0).then(|| order_note(path, topic, late)));
         }
-        let (joints, topics) = (options.joints.clone(), options.topics.clone());
+        let unused = collected.series.iter().flat_map(|series| series.unused.iter().cloned());
+        let unused = unused.collect();
+        let (joints, topics) = (options.joints.clone(), collected.topics);
         let labels = Labels { log: path, topics: &topics, joints: &joints };
-        let Merged { samples, values, unmatched } = merge(collected.series, &labels)?;
+        let Merged { samples, values, unmatched, shifts } = merge(collected.series, &labels)?;
+        notes
+            .extend(shifts.into_iter().map(|(topic, largest)| shift_note(&labels, topic, largest)));
         if unmatched > 0 {
             notes.push(format!(
                 "{}: {unmatched} samples at the start and the end are not in all topics and are \
@@ -126,13 +131,20 @@ impl Log {
             ));
         }
         let (markers, losses) = (collected.markers, collected.losses);
-        Ok(Self { path: path.into(), joints, topics, samples, values, markers, notes, losses })
+        let (path, time) = (path.into(), options.time);
+        Ok(Self { path, joints, topics, samples, values, markers, notes, losses, time, unused })
     }
 
     /// Returns the path of the log.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Returns the topics of joint states that were read.
+    #[must_use]
+    pub fn topics(&self) -> &[String] {
+        &self.topics
     }
 
     /// Returns the number of samples.
@@ -157,6 +169,14 @@ impl Log {
     #[must_use]
     pub fn losses(&self) -> &[Loss] {
         &self.losses
+    }
+
+    /// Returns what the times of the samples are called.
+    pub(crate) fn time_name(&self) -> &'static str {
+        match self.time {
+            LogTime::Header => "header.stamp",
+            LogTime::Receipt => "time of receipt",
+        }
     }
 
     /// Returns the time of a sample, s, with all digits, as a recording has it.
@@ -212,9 +232,6 @@ fn check_options(options: &LogOptions) -> Result<()> {
         names.iter().find(|name| !before.insert(*name)).cloned()
     };
     let setting = |text: String| Err(Error::Setting(text));
-    if options.topics.is_empty() {
-        return setting("no topic is given; name one with joint states".into());
-    }
     if let Some(topic) = repeated(&options.topics) {
         return setting(format!("topic {topic} is given twice; give each once"));
     }
@@ -222,15 +239,15 @@ fn check_options(options: &LogOptions) -> Result<()> {
         return setting("the marker's topic is one of joint states; give another".into());
     }
     if options.joints.is_empty() {
-        return setting("no joint is given; name the robot's joints".into());
+        return setting("no joint is given; name the robot with --robot, or its joints".into());
     }
     if let Some(joint) = repeated(&options.joints) {
         return setting(format!("joint {joint} is given twice; give each once"));
     }
     if options.topics.len() > 1 && options.time == LogTime::Receipt {
         return setting(
-            "several topics are joined at equal stamps of their headers, which the times of \
-             receipt do not have; give one topic, or take the stamps"
+            "several topics are joined by the stamps of their headers, which the times of receipt \
+             are not; give one topic, or take the stamps"
                 .into(),
         );
     }
@@ -239,11 +256,14 @@ fn check_options(options: &LogOptions) -> Result<()> {
 
 /// Reads all files of a log.
 fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
-    let wanted = WantedTopics { joints: &options.topics, marker: options.marker.as_deref() };
+    let found = RefCell::new(vec![]);
+    let wanted =
+        WantedTopics { joints: &options.topics, found: &found, marker: options.marker.as_deref() };
     let mut all = Collected {
         series: (0..options.topics.len()).map(TopicStates::new).collect(),
+        topics: options.topics.clone(),
         markers: vec![],
-        topics: vec![],
+        available: vec![],
         notes: vec![],
         losses: vec![],
     };
@@ -252,27 +272,73 @@ fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
         let (series, markers) = (&mut all.series, &mut all.markers);
         let Contents { topics, notes, losses } =
             scan(&file, wanted, options.recover, &mut |message| match message.role {
-                Role::Joints(topic) => series[topic].add(message, &options.joints, receipt),
+                Role::Joints(topic) => {
+                    // Without topics that are named, they are met one after another.
+                    series.extend((series.len()..=topic).map(TopicStates::new));
+                    series[topic].add(message, &options.joints, receipt)
+                }
                 Role::Marker(kind) => {
                     let suite = kind.decode(message.data)?;
                     markers.push(Marker { received: message.log_time, suite });
                     Ok(())
                 }
             })?;
-        all.topics.extend(topics);
+        all.available.extend(topics);
         all.notes.extend(notes);
         all.losses.extend(losses);
     }
     for name in wanted.names() {
-        if !all.topics.iter().any(|topic| topic.name == name) {
-            let mut available: Vec<String> =
-                all.topics.iter().map(|topic| format!("{} ({})", topic.name, topic.kind)).collect();
-            available.sort();
-            available.dedup();
+        if !all.available.iter().any(|topic| topic.name == name) {
+            let available = all.available();
             return Err(Error::NoTopic { path: path.into(), topic: name.into(), available });
         }
     }
+    if options.topics.is_empty() {
+        all.choose_topic(path, found.into_inner())?;
+    }
     Ok(all)
+}
+
+impl Collected {
+    /// Returns the names of all topics, with their types.
+    fn available(&self) -> Vec<String> {
+        let named = |topic: &Topic| format!("{} ({})", topic.name, topic.kind);
+        let mut available: Vec<String> = self.available.iter().map(named).collect();
+        available.sort();
+        available.dedup();
+        available
+    }
+
+    /// Keeps the only topic of joint states that names joints of the robot, or the first of all.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoJointStates`] without a topic, [`Error::SeveralTopics`] for several.
+    fn choose_topic(&mut self, path: &Path, found: Vec<String>) -> Result<()> {
+        self.series.extend((self.series.len()..found.len()).map(TopicStates::new));
+        let mut named: Vec<(String, TopicStates)> =
+            found.into_iter().zip(std::mem::take(&mut self.series)).collect();
+        if named.iter().any(|(_, series)| !series.samples.is_empty()) {
+            named.retain(|(_, series)| !series.samples.is_empty());
+        } else {
+            named.truncate(1);
+        }
+        let (topic, mut series) = match <[_; 1]>::try_from(named) {
+            Ok([one]) => one,
+            Err(none) if none.is_empty() => {
+                let available = self.available();
+                return Err(Error::NoJointStates { path: path.into(), available });
+            }
+            Err(several) => {
+                let topics = several.into_iter().map(|(name, _)| name).collect();
+                return Err(Error::SeveralTopics { path: path.into(), topics });
+            }
+        };
+        series.topic = 0;
+        series.samples.iter_mut().for_each(|sample| sample.topic = 0);
+        (self.topics, self.series) = (vec![topic], vec![series]);
+        Ok(())
+    }
 }
 
 /// Checks that a topic has joint states of the robot with stamps.
@@ -298,56 +364,4 @@ fn check_series(
         return Err(Error::ZeroStamps { path: path.into(), topic: topic.into() });
     }
     Ok(())
-}
-
-/// Says which times were taken.
-fn time_note(path: &Path, series: &TopicStates, time: LogTime) -> String {
-    let path = path.display();
-    match time {
-        LogTime::Receipt => {
-            format!("{path}: times are the times at which the log received the messages")
-        }
-        LogTime::Header => {
-            let delay = |sample: &Sample| sample.received.saturating_sub(sample.time);
-            let delays = series.samples.iter().map(delay);
-            let (least, most) = (delays.clone().min(), delays.max());
-            format!(
-                "{path}: times are the stamps in the headers; the log received the messages {} s \
-                 to {} s later",
-                decimal(least.unwrap_or(0)),
-                decimal(most.unwrap_or(0))
-            )
-        }
-    }
-}
-
-/// Says where the joints were found.
-fn series_notes(
-    path: &Path,
-    topic: &str,
-    series: &TopicStates,
-    options: &LogOptions,
-) -> Vec<String> {
-    let path = path.display();
-    let place = |(joint, place): (usize, &Option<usize>)| {
-        let name = &options.joints[joint];
-        place.map(|place| format!("q{} = {name} (place {place})", joint + 1))
-    };
-    let places: Vec<String> = series.first_places.iter().enumerate().filter_map(place).collect();
-    let mut mapping =
-        format!("{path}: joints of {topic} are matched by name: {}", places.join(", "));
-    if series.changes > 0 {
-        mapping += &format!("; the order of the names changes {} times", series.changes);
-    }
-    if !series.unused.is_empty() {
-        let unused: Vec<&str> = series.unused.iter().map(String::as_str).collect();
-        mapping += &format!("; not used: {}", unused.join(", "));
-    }
-    let foreign = (series.foreign > 0).then(|| {
-        format!(
-            "{path}: {} of {} messages of {topic} name no joint of the robot and are not used",
-            series.foreign, series.messages
-        )
-    });
-    std::iter::once(mapping).chain(foreign).collect()
 }

@@ -9,7 +9,7 @@ use mcap::records::{ChunkHeader, MessageHeader, Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{McapError, parse_record};
 
-use crate::container::{Contents, Damage, RawMessage, Receive, Role, Topic, WantedTopics};
+use crate::container::{Contents, Damage, LogFile, RawMessage, Receive, Role, Topic, WantedTopics};
 use crate::error::{Error, Result};
 use crate::loss::Loss;
 use crate::mcap_records::{HEAD, LARGEST, McapRecords, Piece, records_of};
@@ -21,7 +21,7 @@ use crate::mcap_records::{HEAD, LARGEST, McapRecords, Piece, records_of};
 /// [`Error::Damaged`] for the first part that cannot be read, unless `recover`; then such parts
 /// are listed in the result.
 pub(crate) fn scan(
-    path: &Path,
+    LogFile { path, content }: LogFile<'_>,
     wanted: WantedTopics<'_>,
     recover: bool,
     receive: &mut Receive<'_>,
@@ -41,7 +41,7 @@ pub(crate) fn scan(
         topics: vec![],
         numbers: BTreeMap::new(),
     };
-    let mut records = McapRecords::open(path).map_err(unreadable)?;
+    let mut records = McapRecords::open(content).map_err(unreadable)?;
     while let Some(piece) = records.next().map_err(unreadable)? {
         scan.piece(piece)?;
     }

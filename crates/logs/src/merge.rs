@@ -1,4 +1,5 @@
-//! Several topics of joint states as one: samples with the same stamp complement each other.
+//! Several topics of joint states as one: samples with the same stamp complement each other, and
+//! samples with stamps that differ by at most half a sample after an interpolation.
 
 use reachtube_recordings::{Defect, DefectKind, Error as RecordingsError};
 
@@ -15,6 +16,9 @@ pub(crate) struct Merged {
     /// Number of samples at both ends that are left out because a topic has not begun yet or has
     /// ended.
     pub(crate) unmatched: usize,
+    /// Numbers of the topics whose values were interpolated at the stamps of the first topic, and
+    /// the largest difference of their stamps, ns.
+    pub(crate) shifts: Vec<(usize, i64)>,
 }
 
 /// Joins the topics at equal stamps. A single topic stays as it is.
@@ -25,7 +29,7 @@ pub(crate) struct Merged {
 pub(crate) fn merge(mut series: Vec<TopicStates>, labels: &Labels<'_>) -> Result<Merged> {
     if series.len() == 1 {
         let TopicStates { samples, values, .. } = series.remove(0);
-        return Ok(Merged { samples, values, unmatched: 0 });
+        return Ok(Merged { samples, values, ..Merged::default() });
     }
     let unsorted: Vec<Defect> = series
         .iter()
@@ -36,8 +40,14 @@ pub(crate) fn merge(mut series: Vec<TopicStates>, labels: &Labels<'_>) -> Result
         return Err(RecordingsError::Defects(unsorted).into());
     }
     let width = 3 * labels.joints.len();
-    let mut next = vec![0; series.len()];
     let mut merged = Merged::default();
+    for topic in 1..series.len() {
+        if let Some((samples, values, largest)) = series[topic].at_stamps_of(&series[0].samples) {
+            (series[topic].samples, series[topic].values) = (samples, values);
+            merged.shifts.push((topic, largest));
+        }
+    }
+    let mut next = vec![0; series.len()];
     let time = |next: &[usize], topic: usize| series[topic].samples.get(next[topic]);
     while let Some(now) = (0..series.len()).filter_map(|t| Some(time(&next, t)?.time)).min() {
         let mut parts = vec![];

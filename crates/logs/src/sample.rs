@@ -107,7 +107,8 @@ impl MessageFault {
             ),
             Self::Alone { topic } => (
                 format!("{} has no message with its stamp", labels.topics[topic]),
-                "record the topics with the same stamps, or use one topic",
+                "record the topics with stamps that differ by at most half a sample, or use one \
+                 topic",
             ),
         }
     }

@@ -18,7 +18,7 @@ enum JointPlace {
 #[derive(Debug, Default)]
 pub(crate) struct TopicStates {
     /// Number of the topic among the topics of joint states.
-    topic: usize,
+    pub(crate) topic: usize,
     /// The samples, in the order of the log.
     pub(crate) samples: Vec<Sample>,
     /// Positions, velocities and efforts of all joints, row-major K x 3n; NaN where a message has

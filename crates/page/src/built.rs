@@ -32,6 +32,8 @@ pub fn built_pages(built: &Built, front_end: FrontEnd) -> Result<Vec<(&'static s
     of_built(built, &mut own.lead);
     own.verdict.words = as_sentence(&built.verdict());
     own.verdict.useful = Some(built.is_useful());
+    let findings = built.findings.iter().map(|finding| finding.written_for(front_end));
+    own.verdict.warnings.splice(0..0, findings);
     if built.held_out.failure.is_some() {
         return Ok(vec![("page", own)]);
     }

@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use reachtube_conform::settings::{Equations, NominalStart};
-use reachtube_conform::{Answer, FitSettings, Progress};
+use reachtube_conform::{Answer, Finding, FitSettings, Progress};
 use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
@@ -10,6 +10,7 @@ use crate::choices::{Choice, Choices};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
+use crate::findings::unless_accepted;
 use crate::held_out::Split;
 use crate::horizon::{HorizonWidths, longest, try_horizons};
 use crate::noise::noise;
@@ -34,9 +35,9 @@ pub struct Built {
     pub made: Vec<Choice>,
     /// What a user should know about the reading of the logs.
     pub notes: Vec<String>,
-    /// What contradicts the robot's description in the recorded torques, and whether the sets
-    /// carry over to what was held out, in sentences.
-    pub warnings: Vec<String>,
+    /// What contradicts other recordings or the robot's description, and whether the sets carry
+    /// over to what was held out. A failure makes the model unacceptable.
+    pub findings: Vec<Finding>,
     /// How wide the sets are at each horizon that was tried.
     pub horizons: Vec<HorizonWidths>,
     /// What the motions that were held out say.
@@ -49,12 +50,15 @@ pub struct Built {
 
 impl Built {
     /// Returns whether the sets were proved to enclose every window, limit every joint, and
-    /// are narrow enough at the horizon.
+    /// are narrow enough at the horizon, and nothing contradicts the recordings.
     #[must_use]
     pub fn is_useful(&self) -> bool {
         let model = &self.answer.model;
         let worst = model.usefulness.as_ref().and_then(|said| said.worst());
-        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
+        let is_sound = self.contradiction().is_none();
+        is_sound
+            && model.is_useful()
+            && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
     }
 
     /// Returns half a joint's set by the joint's displacement that is accepted at most.
@@ -80,11 +84,11 @@ pub fn build(
     progress: &dyn Progress,
 ) -> Result<Built> {
     let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
-    let settings = PrepareSettings { gains: given.gains.clone(), ..PrepareSettings::default() };
+    let settings = given.prepare_settings();
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     chooser.choose_held_out(&split);
-    let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &recording.log).collect();
+    let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &*recording.log).collect();
     let (mut trial, cut_off) = first_choices(&mut chooser, robot, torque, &raw, &settings)?;
 
     // The robot.
@@ -98,7 +102,8 @@ pub fn build(
         trial: &trial,
     };
     let chosen = evidence.choose(robot, given.identify)?;
-    let Nominal { robot, logs, is_identified, reason, mut warnings } = chosen;
+    let Nominal { robot, logs, is_identified, reason, findings } = chosen;
+    let mut findings = unless_accepted(findings, given);
     chooser.choose("identify", is_identified.to_string(), reason);
     chooser.choices.identify = Some(is_identified);
     trial.robot = robot.clone();
@@ -108,22 +113,23 @@ pub fn build(
     let (from_start, simulated) = (torque == Torque::Compensated, sorted.simulated);
     let recordings = Prepared { logs: &logs, motions: &motions, from_start, simulated };
     let found = sets(&mut chooser, &mut trial, &recordings);
-    let (mut answer, horizons) = found.map_err(|error| error.because(&warnings))?;
-    let raw: Vec<RawLog> = split.held_out.iter().map(|recording| recording.log.clone()).collect();
+    let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
+    let raw: Vec<RawLog> =
+        split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
     let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
     let held_back = Prepared { logs: &held_back, ..recordings };
     let horizon = chooser.choices.horizon.unwrap_or_default();
     answer.model = answer.model.with_preparation(preparation(&chooser.choices, torque));
     let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
     let Compared { held_out, shown, shown_held_out } = compared;
-    warnings.extend(held_out.warning());
+    findings.extend(sorted.findings.into_iter().chain(held_out.finding()));
     Ok(Built {
         answer,
         robot,
         choices: chooser.choices,
         made: chooser.made,
         notes: sorted.notes,
-        warnings,
+        findings,
         horizons,
         held_out,
         shown,
@@ -148,7 +154,7 @@ fn first_choices<'a>(
         chooser.choose(
             "cut-off",
             format!("{cut_off} Hz"),
-            "1.5 times the bandwidth of the motions",
+            "1.5 times the bandwidth of the motions beyond their noise",
         );
         chooser.choices.cut_off = Some(cut_off);
     }
@@ -290,7 +296,14 @@ fn choose_equations(
 /// Returns what was done to logs, to do it to others.
 fn preparation(choices: &Choices, torque: Torque) -> Preparation {
     let window = choices.horizon.filter(|_| torque != Torque::Compensated);
-    Preparation { torque, gains: choices.gains.clone(), cut_off: choices.cut_off, window }
+    Preparation {
+        torque,
+        gains: choices.gains.clone(),
+        cut_off: choices.cut_off,
+        window,
+        columns: choices.columns.clone(),
+        log: choices.log.clone(),
+    }
 }
 
 fn motion_names(split: &Split) -> BTreeMap<String, String> {

@@ -3,7 +3,8 @@ use std::path::{Path, PathBuf};
 
 use reachtube_conform::Group;
 use reachtube_conform::settings::Equations;
-use reachtube_recordings::Torque;
+use reachtube_identify::prepare::PrepareSettings;
+use reachtube_recordings::{ColumnSettings, LogSettings, Torque};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -63,9 +64,19 @@ pub struct Choices {
     /// Joints that are held at positions, as `JOINT=VALUE`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lock: Vec<String>,
+    /// Columns of CSV files, where their names do not tell.
+    #[serde(skip_serializing_if = "is_default")]
+    pub columns: ColumnSettings,
+    /// What to read from logs in MCAP and rosbag2, where they do not tell.
+    #[serde(skip_serializing_if = "is_default")]
+    pub log: LogSettings,
     /// The reasons that a file gives for its choices, by their keys.
     #[serde(skip)]
     pub reasons: BTreeMap<String, String>,
+}
+
+fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
+    *settings == T::default()
 }
 
 /// A choice that was made, and why.
@@ -135,6 +146,9 @@ impl Choices {
         fn filled<T>(given: Vec<T>, own: Vec<T>) -> Vec<T> {
             if given.is_empty() { own } else { given }
         }
+        fn other<T: Default + PartialEq>(given: T, own: T) -> T {
+            if is_default(&given) { own } else { given }
+        }
         let before = self.clone();
         let mut choices = Self {
             robot: given.robot.or(self.robot),
@@ -152,12 +166,24 @@ impl Choices {
             fit: given.fit.or(self.fit),
             pull: given.pull.or(self.pull),
             lock: filled(given.lock, self.lock),
+            columns: other(given.columns, self.columns),
+            log: other(given.log, self.log),
             reasons: self.reasons,
         };
         if choices != before {
             choices.reasons.clear();
         }
         choices
+    }
+
+    /// Returns how recordings are read and prepared, but for the cut-off.
+    pub(crate) fn prepare_settings(&self) -> PrepareSettings {
+        PrepareSettings {
+            gains: self.gains.clone(),
+            columns: self.columns.clone(),
+            log: self.log.clone(),
+            ..PrepareSettings::default()
+        }
     }
 
     /// Returns the choices as TOML, with the reasons of `made` as comments, and a digest of the
@@ -216,6 +242,8 @@ mod tests {
             fit: Some(vec![Group::Inertia]),
             expansion: Some(vec![0.1, -1.2]),
             equations: Some(Equations::Robot),
+            columns: "q=p{},first=0".parse().unwrap(),
+            log: LogSettings { topic: vec!["/joints".into()], ..LogSettings::default() },
             ..Choices::default()
         };
         let reason = "every fourth motion is held out before anything is looked at ".repeat(3);

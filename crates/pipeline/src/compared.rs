@@ -1,6 +1,7 @@
 use std::collections::BTreeSet;
 
-use reachtube_conform::{Answer, Check, Silent};
+use reachtube_conform::result::{Code, Severity};
+use reachtube_conform::{Answer, Check, Finding, Silent};
 use reachtube_recordings::{MemoryRuns, RunSource};
 use serde::Serialize;
 
@@ -56,19 +57,21 @@ impl Compared {
 }
 
 impl HeldOut {
-    /// Returns a warning where the sets do not carry over to what was held out.
-    pub(crate) fn warning(&self) -> Option<String> {
+    /// Returns a finding where the sets do not carry over to what was held out.
+    pub(crate) fn finding(&self) -> Option<Finding> {
         let part = self.outside as f64 / self.rows.max(1) as f64;
-        match &self.failure {
-            Some(failure) => Some(format!("what was held out could not be compared: {failure}")),
-            None => (part > LARGEST_PART).then(|| {
-                format!(
-                    "{:.1} % of the rows that were held out lie outside the sets: the other \
-                     recordings do not cover them; record more motions, and faster ones",
-                    100.0 * part
-                )
-            }),
-        }
+        let text = match &self.failure {
+            Some(failure) => format!("what was held out could not be compared: {failure}"),
+            None if part > LARGEST_PART => format!(
+                "{:.1} % of the rows that were held out lie outside the sets: the other \
+                 recordings do not cover them; record more motions, and faster ones",
+                100.0 * part
+            ),
+            None => return None,
+        };
+        let numbers = [("part".to_string(), part)].into();
+        let finding = Finding::new(Severity::Warning, Code::HeldOutRates, text);
+        Some(Finding { numbers, ..finding })
     }
 
     /// Compares a model with prepared recordings. Returns the windows that leave its sets, too.

@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use reachtube_conform::Finding;
 use thiserror::Error;
 
 /// Why no model could be made of the recordings.
@@ -87,10 +88,11 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
     /// Names the most likely cause of an error, if one is known.
-    pub(crate) fn because(self, causes: &[String]) -> Self {
-        match causes {
+    pub(crate) fn because(self, causes: &[Finding]) -> Self {
+        let texts: Vec<&str> = causes.iter().map(|cause| cause.text.as_str()).collect();
+        match &texts[..] {
             [] => self,
-            causes => Self::Because { cause: causes.join("; "), error: Box::new(self) },
+            texts => Self::Because { cause: texts.join("; "), error: Box::new(self) },
         }
     }
 }

@@ -27,8 +27,7 @@ impl Built {
                 "horizon": widths.horizon, "ratios": widths.ratios, "reason": widths.reason,
             })).collect::<Vec<Value>>(),
             "choices": self.made,
-            "warnings": self.warnings,
-            "findings": self.answer.findings(),
+            "findings": self.all_findings(),
         })
     }
 

@@ -1,5 +1,7 @@
 //! Which motions are held out, before anything is looked at.
 
+use std::sync::Arc;
+
 use reachtube_identify::prepare::{LogEntry, RawLog};
 use reachtube_recordings::matching;
 
@@ -20,9 +22,7 @@ const PART_OF_ONE: f64 = 0.75;
 #[derive(Debug, Clone)]
 pub(crate) struct Recording {
     /// The samples.
-    pub log: RawLog,
-    /// Where they come from.
-    pub entry: LogEntry,
+    pub log: Arc<RawLog>,
     /// The motion that it shows.
     pub motion: String,
 }
@@ -125,6 +125,11 @@ fn fourths(recordings: &[Recording], motions: &[String]) -> Vec<String> {
 }
 
 impl Recording {
+    /// Returns the recording as an identification takes it.
+    pub(crate) fn entry(&self) -> LogEntry {
+        LogEntry::Recording(Arc::clone(&self.log))
+    }
+
     /// Returns the part between two times since the first sample, s.
     fn between(&self, from: f64, until: Option<f64>) -> Self {
         let run = &self.log.run;
@@ -139,14 +144,8 @@ impl Recording {
         if !run.temperatures.is_empty() {
             part.temperatures = run.temperatures[n * first..n * last].to_vec();
         }
-        let entry = LogEntry::Stretch {
-            path: self.log.file.clone(),
-            from,
-            until,
-            order: self.log.order,
-            compensated: false,
-        };
-        Self { log: RawLog { run: part, ..self.log.clone() }, entry, motion: self.motion.clone() }
+        let log = RawLog { run: part, ..RawLog::clone(&self.log) };
+        Self { log: Arc::new(log), motion: self.motion.clone() }
     }
 }
 
@@ -162,9 +161,16 @@ mod tests {
             let run = Run::new(1, times, states, vec![0.0; 101]).unwrap();
             let name = motion.to_string();
             let file = (&name).into();
-            let log = RawLog { name: name.clone(), file, order: None, notes: vec![], run };
-            let entry = LogEntry::Path((&name).into());
-            Recording { log, entry, motion: name }
+            let log = RawLog {
+                name: name.clone(),
+                file,
+                motion: None,
+                order: None,
+                run,
+                notes: vec![],
+                moved: vec![],
+            };
+            Recording { log: Arc::new(log), motion: name }
         };
         motions.iter().map(of).collect()
     }
@@ -186,7 +192,8 @@ mod tests {
     fn recordings_of_few_repeated_motions_are_held_out() {
         let mut all = recordings(&["a", "a", "a", "a", "b", "b", "b", "b"]);
         for (number, recording) in all.iter_mut().enumerate() {
-            recording.log.name = format!("{}{number}", recording.motion);
+            let name = format!("{}{number}", recording.motion);
+            Arc::make_mut(&mut recording.log).name = name;
         }
         let split = Split::new(all.clone(), None).unwrap();
         assert_eq!((&split.names[..], split.kept.len()), (&["a3".into(), "b7".into()][..], 6));

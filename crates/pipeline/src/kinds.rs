@@ -103,7 +103,15 @@ mod tests {
     }
 
     fn log(name: &str, run: Run) -> RawLog {
-        RawLog { name: name.into(), file: name.into(), order: None, notes: vec![], run }
+        RawLog {
+            name: name.into(),
+            file: name.into(),
+            motion: None,
+            order: None,
+            notes: vec![],
+            moved: vec![],
+            run,
+        }
     }
 
     #[test]

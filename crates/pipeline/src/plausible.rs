@@ -1,7 +1,11 @@
 //! Whether recorded torques are what the robot's description needs, up to sign and size.
 
+use reachtube_conform::Finding;
+use reachtube_conform::result::Remedy;
 use reachtube_identify::prepare::PreparedLog;
 use reachtube_robot::Robot;
+
+use crate::findings::contradiction;
 
 /// Torques whose median size differs from what the description needs by more than this factor are
 /// remarked. Published descriptions are off by a factor of 3 at times.
@@ -13,10 +17,10 @@ const OPPOSITE: f64 = 0.5;
 /// Samples of a recording that are looked at, at most.
 const SAMPLES: usize = 2000;
 
-/// Returns what contradicts the robot's description in the torques of filtered recordings, in
-/// sentences. The torques must still contain gravity. A description that is no body has no torques
-/// to compare with.
-pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<String> {
+/// Returns what contradicts the robot's description in the torques of filtered recordings. The
+/// torques must still contain gravity. A description that is no body has no torques to compare
+/// with.
+pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<Finding> {
     let n = robot.joint_count();
     if robot.check_physical().is_err() || logs.is_empty() {
         return Vec::new();
@@ -35,20 +39,31 @@ pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<String>
     let fit = |joint: usize| Correlation::new(&needed[joint], &recorded[joint]);
     let mut found = Vec::new();
     for joint in (0..n).filter(|joint| fit(*joint).value < -OPPOSITE) {
-        found.push(format!(
-            "the torque of {} is opposite to what the description needs: its sign may be wrong",
-            robot.joints()[joint].name
-        ));
+        let name = &robot.joints()[joint].name;
+        let text = format!(
+            "the torque of {name} is opposite to what the description needs: its sign may be wrong"
+        );
+        found.push(Finding { place: Some(name.clone()), ..contradiction(text) });
     }
     let own = (0..n).map(fit).filter(|own| own.value > OPPOSITE);
     let mut gains: Vec<f64> = own.map(|own| own.gain).collect();
     gains.sort_by(f64::total_cmp);
     let median = gains.get(gains.len() / 2).copied().unwrap_or(1.0);
     if !(1.0 / FACTOR..=FACTOR).contains(&median) {
-        found.push(format!(
+        let text = format!(
             "the recorded torques are {median:.2} times what the description needs: they may be \
-             currents, or of another unit; gains in N m/A turn currents into torques"
-        ));
+             currents, or of another unit, or the description is of another robot"
+        );
+        let remedy = Remedy {
+            setting: "gains".into(),
+            value: String::new(),
+            effect:
+                "turns currents in A into torques by factors in N m/A; factors of 1 state that \
+                     they are torques already."
+                    .into(),
+        };
+        let numbers = [("factor".to_string(), median)].into();
+        found.push(Finding { numbers, remedy: Some(remedy), ..contradiction(text) });
     }
     found
 }
@@ -102,8 +117,10 @@ mod tests {
         let raw = reachtube_identify::prepare::RawLog {
             name: "log".into(),
             file: "log.csv".into(),
+            motion: None,
             order: None,
             notes: vec![],
+            moved: vec![],
             run,
         };
         let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
@@ -112,9 +129,9 @@ mod tests {
 
     #[test]
     fn torques_of_another_sign_or_size_are_named() {
-        let found = |factor: f64| {
+        let found = |factor: f64| -> Vec<String> {
             let (robot, log) = pendulum(factor);
-            contradictions(&robot, &[log])
+            contradictions(&robot, &[log]).iter().map(ToString::to_string).collect()
         };
         assert_eq!(found(1.0), Vec::<String>::new());
         assert!(found(-1.0)[0].contains("hinge is opposite"), "{:?}", found(-1.0));

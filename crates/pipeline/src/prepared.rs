@@ -17,9 +17,14 @@ use crate::windows::Prepared;
 /// Logs that cannot be read or prepared, and [`Error::NoWindow`](crate::Error::NoWindow) if none is
 /// as long as a window.
 pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> Result<MemoryRuns> {
-    let Preparation { torque, gains, cut_off, window } = preparation;
+    let Preparation { torque, gains, cut_off, window, columns, log } = preparation;
     let robot = Robot::from_description(&model.robot)?;
-    let settings = PrepareSettings { gains: gains.clone(), ..PrepareSettings::default() };
+    let settings = PrepareSettings {
+        gains: gains.clone(),
+        columns: columns.clone(),
+        log: log.clone(),
+        ..PrepareSettings::default()
+    };
     let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, Path::new(""), &robot, &settings)?;
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use reachtube_conform::Finding;
 use reachtube_identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered,
 };
@@ -11,6 +12,7 @@ use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
 use crate::error::Result;
+use crate::findings::implausible;
 use crate::held_out::Recording;
 use crate::plausible::contradictions;
 use crate::trial::Trial;
@@ -35,8 +37,8 @@ pub(crate) struct Nominal {
     pub is_identified: bool,
     /// Why.
     pub reason: String,
-    /// What contradicts the robot or rigid-body dynamics in the recordings, in sentences.
-    pub warnings: Vec<String>,
+    /// What contradicts the robot or rigid-body dynamics in the recordings.
+    pub findings: Vec<Finding>,
 }
 
 /// What the choice of the robot needs.
@@ -69,13 +71,13 @@ impl Evidence<'_> {
         let chosen = self.chosen(described, given);
         let mut chosen = chosen.map_err(|error| error.because(&contradictions))?;
         // An identification tells columns that are wrong from a description that is.
-        if chosen.warnings.is_empty() {
-            chosen.warnings = contradictions;
+        if chosen.findings.is_empty() {
+            chosen.findings = contradictions;
         }
         Ok(chosen)
     }
 
-    /// Chooses the robot, with the warnings of an identification.
+    /// Chooses the robot, with the findings of an identification.
     fn chosen(&self, described: &Robot, given: Option<bool>) -> Result<Nominal> {
         let is_physical = described.check_physical().map(|_| ());
         let own = match (given, &is_physical) {
@@ -129,17 +131,18 @@ impl Evidence<'_> {
             percent(error),
             percent(after)
         );
-        let warnings = identified.warnings.clone();
+        let findings = identified.findings.clone();
         let best = if after < BETTER * error { identified } else { nominal };
-        Ok(Nominal { reason, warnings, ..best })
+        Ok(Nominal { reason, findings, ..best })
     }
 
-    /// Returns what contradicts the description in the recorded torques, in sentences.
-    fn contradictions(&self, described: &Robot) -> Result<Vec<String>> {
+    /// Returns what contradicts the description in the recorded torques.
+    fn contradictions(&self, described: &Robot) -> Result<Vec<Finding>> {
         if self.torque == Torque::Compensated {
             return Ok(Vec::new());
         }
-        let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
+        let raw: Vec<RawLog> =
+            self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         let logs = prepare(&raw, self.settings, self.cut_off, None)?.logs;
         Ok(contradictions(described, &logs))
     }
@@ -149,7 +152,7 @@ impl Evidence<'_> {
         let settings = IdentifySettings {
             rest: self.rest.clone(),
             friction: self.one_joint.clone(),
-            dynamic: self.motions.iter().map(|recording| recording.entry.clone()).collect(),
+            dynamic: self.motions.iter().map(Recording::entry).collect(),
             prepare: PrepareSettings { cut_off: Some(self.cut_off), ..self.settings.clone() },
             model: ModelSettings {
                 motor_inertia: self.torque != Torque::Link,
@@ -161,15 +164,17 @@ impl Evidence<'_> {
         };
         let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
         let nominal = self.prepared(&Robot::from_description(&found.description)?)?;
-        Ok(Nominal { is_identified: true, warnings: found.implausible, ..nominal })
+        let findings = found.implausible.iter().map(implausible).collect();
+        Ok(Nominal { is_identified: true, findings, ..nominal })
     }
 
     /// Prepares the motions for a robot.
     fn prepared(&self, robot: &Robot) -> Result<Nominal> {
-        let raw: Vec<RawLog> = self.motions.iter().map(|motion| motion.log.clone()).collect();
+        let raw: Vec<RawLog> =
+            self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         let logs = prepare_for(&raw, robot, self.torque, self.settings, self.cut_off)?;
-        let (reason, warnings) = (String::new(), Vec::new());
-        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason, warnings })
+        let (reason, findings) = (String::new(), Vec::new());
+        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason, findings })
     }
 
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of

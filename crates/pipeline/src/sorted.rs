@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use reachtube_conform::Finding;
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
 use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated};
 use reachtube_robot::Robot;
@@ -10,6 +12,7 @@ use reachtube_robot::Robot;
 use crate::choices::Choices;
 use crate::chooser::Chooser;
 use crate::error::{Error, Result};
+use crate::findings::moved;
 use crate::held_out::Recording;
 use crate::kinds::{Kind, motions};
 
@@ -20,6 +23,8 @@ pub(crate) struct Sorted {
     pub motions: Vec<Recording>,
     /// What a user should know about the reading of the recordings.
     pub notes: Vec<String>,
+    /// What contradicts other recordings, and was mended.
+    pub findings: Vec<Finding>,
     /// Whether a recording is marked as simulated.
     pub simulated: bool,
 }
@@ -38,22 +43,23 @@ impl Sorted {
     ) -> Result<Self> {
         let entries: Vec<LogEntry> = given.data.iter().cloned().map(LogEntry::from).collect();
         let raw = read(&entries, Path::new(""), robot, settings)?;
+        let raw: Vec<Arc<RawLog>> = raw.into_iter().map(Arc::new).collect();
         let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
         let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
-        let of = |kind: Kind| -> Vec<&RawLog> {
+        let of = |kind: Kind| -> Vec<&Arc<RawLog>> {
             let pairs = raw.iter().zip(&kinds).filter(|(_, other)| **other == kind);
             pairs.map(|(log, _)| log).collect()
         };
-        let entry = |log: &RawLog| LogEntry::Path(log.file.clone());
+        let entry = |log: &Arc<RawLog>| LogEntry::Recording(Arc::clone(log));
         let moving = of(Kind::Motion);
         if moving.is_empty() {
             let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
         let known = indexed(given.data.iter().cloned());
-        let known: Vec<Option<String>> =
-            moving.iter().map(|log| known.get(&log.file).cloned()).collect();
-        let names = motions(&moving, &known);
+        let known: Vec<Option<String>> = moving.iter().map(|log| named(log, &known)).collect();
+        let shown: Vec<&RawLog> = moving.iter().map(|log| &***log).collect();
+        let names = motions(&shown, &known);
         let distinct = names.iter().collect::<BTreeSet<_>>().len();
         chooser.choose(
             "data",
@@ -66,25 +72,28 @@ impl Sorted {
                 distinct
             ),
         );
-        let recordings = moving.iter().zip(names).map(|(log, motion)| Recording {
-            log: (*log).clone(),
-            entry: entry(log),
-            motion,
-        });
+        let recordings = moving.iter().zip(names);
+        let recordings = recordings.map(|(log, motion)| Recording { log: Arc::clone(log), motion });
         let motions = recordings.collect();
         let [rest, one_joint] =
             [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
+        let findings = raw.iter().flat_map(|log| log.moved.iter().map(|text| moved(text)));
+        let findings = findings.collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        Ok(Self { rest, one_joint, motions, notes, simulated })
+        Ok(Self { rest, one_joint, motions, notes, findings, simulated })
     }
 }
 
 /// Returns the motion, or else the suite, of each recording by its name, where an index names it.
 pub(crate) fn index_names(paths: &[PathBuf], raw: &[RawLog]) -> BTreeMap<String, String> {
     let known = indexed(paths.iter().cloned());
-    let named = |log: &RawLog| Some((log.name.clone(), known.get(&log.file)?.clone()));
-    raw.iter().filter_map(named).collect()
+    raw.iter().filter_map(|log| Some((log.name.clone(), named(log, &known)?))).collect()
+}
+
+/// Returns the motion that a marker in the log names, or the index of its folder.
+fn named(log: &RawLog, known: &BTreeMap<PathBuf, String>) -> Option<String> {
+    log.motion.clone().or_else(|| known.get(&log.file).cloned())
 }
 
 /// Returns the motion, or else the suite, of each file that the index of a folder names.

@@ -1,5 +1,6 @@
 //! The answer on a few lines.
 
+use reachtube_conform::Finding;
 use reachtube_conform::result::{Code, FrontEnd, Summary};
 
 use crate::build::Built;
@@ -15,6 +16,7 @@ impl Built {
         let model = &self.answer.model;
         let horizon = self.choices.horizon.unwrap_or_default();
         let verdict = match (self.answer.holds(), self.is_useful(), model.is_vacuous()) {
+            _ if self.contradiction().is_some() => "the recordings contradict the robot".into(),
             (false, ..) => "NOT PROVED conformant".to_string(),
             (true, true, _) => format!("conformant and useful up to {horizon} s"),
             (true, false, true) => format!("conformant, but vacuous at {horizon} s"),
@@ -32,17 +34,40 @@ impl Built {
     pub fn summary(&self, front_end: FrontEnd) -> Summary {
         let mut summary = self.answer.summary(front_end);
         summary.verdict[0] = self.verdict();
+        if let Some(finding) = self.contradiction() {
+            // The cause comes first: a proof about wrong columns is worth nothing.
+            summary
+                .verdict
+                .insert(0, format!("not acceptable: {}", finding.written_for(front_end)));
+        }
+        summary.verdict.extend(self.moved());
         if !self.is_useful() {
             let findings = self.answer.model.findings().into_iter();
             let causes = findings.filter(|finding| finding.code == Code::Cause);
             summary.verdict.extend(causes.map(|finding| finding.written_for(front_end)));
         }
         summary.table = self.answer.table_at_horizon(&self.held_out.growth);
-        summary.warnings.clone_from(&self.warnings);
+        let is_said = |other: &&Finding| {
+            Some(*other) == self.contradiction() || other.code == Code::TurnsMoved
+        };
+        let warnings = self.findings.iter().filter(|other| !is_said(other));
+        summary.warnings = warnings.map(|finding| finding.written_for(front_end)).collect();
         summary.facts.insert(0, ("held out".into(), self.held_out_words()));
         summary.fact("widest set by horizon, of the motion", self.growth());
         summary.next = None;
         summary
+    }
+
+    /// Returns which recordings were moved by whole turns: the first of them, with the number of
+    /// the others.
+    fn moved(&self) -> Option<String> {
+        let mut moved = self.findings.iter().filter(|other| other.code == Code::TurnsMoved);
+        let first = moved.next()?;
+        let more = match moved.count() {
+            0 => String::new(),
+            count => format!(" ({count} more likewise)"),
+        };
+        Some(format!("warning: {}{more}", first.text))
     }
 
     /// Returns how many rows that were held out lie outside the sets, in a few words.

@@ -88,12 +88,9 @@ pub fn inspect(data: &DataSet, gap_limit: GapLimit) -> Inspection {
     inspect_source(data, data.root().display().to_string(), gap_limit)
 }
 
-/// Reads every recording of a source and summarises it.
-pub(crate) fn inspect_source(
-    data: &dyn RunSource,
-    folder: String,
-    gap_limit: GapLimit,
-) -> Inspection {
+/// Reads every recording of a source and summarises it; `folder` is the path of the source.
+#[must_use]
+pub fn inspect_source(data: &dyn RunSource, folder: String, gap_limit: GapLimit) -> Inspection {
     let options = ReadOptions { gap_limit, ..ReadOptions::default() };
     let groups = groups(data);
     let read = |(_, _, members): &(String, bool, Vec<usize>)| read_group(data, members, &options);

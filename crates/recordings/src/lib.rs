@@ -43,7 +43,6 @@ mod inspect;
 mod inspect_run;
 mod lines;
 mod logged;
-mod logged_runs;
 mod memory;
 mod notes;
 mod order;
@@ -66,12 +65,11 @@ pub use defect::{Defect, DefectKind};
 pub use error::{Error, Result};
 pub use gap_limit::GapLimit;
 pub use index::RunEntry;
-pub use inspect::{Inspection, JointSummary, RunGroup, inspect};
+pub use inspect::{Inspection, JointSummary, RunGroup, inspect, inspect_source};
 pub use logged::{
-    AngleUnit, ColumnSettings, Logged, LoggedOptions, TimeUnit, Understood, csv_files, group_files,
-    is_recording, read_logged,
+    AngleUnit, ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, TimeUnit, Understood,
+    csv_files, group_files, is_recording, read_logged,
 };
-pub use logged_runs::{LogInspection, inspect_logs};
 pub use memory::MemoryRuns;
 pub use notes::{copies_note, run_notes};
 pub use pattern::matching;

@@ -1,5 +1,6 @@
 use serde::{Deserialize, Serialize};
 
+use crate::logged::{ColumnSettings, LogSettings};
 use crate::torque::Torque;
 
 /// How logs become the recordings of a model: what was done to them before its sets were found, and
@@ -20,4 +21,14 @@ pub struct Preparation {
     /// their start, and all recordings of one motion are a suite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
+    /// Columns of CSV files, where their names do not tell.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub columns: ColumnSettings,
+    /// What to read from logs in MCAP and rosbag2, where they do not tell.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub log: LogSettings,
+}
+
+fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
+    *settings == T::default()
 }

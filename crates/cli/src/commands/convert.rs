@@ -4,17 +4,18 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::number::four_decimals;
+use reachtube::recordings::LogSettings;
 use reachtube_logs::{
-    Cut, Intervals, Log, LogOptions, LogTime, RecordedRun, Repeats, convert, find_repeats,
-    marked_runs, motions, whole_logs,
+    Cut, Intervals, Log, LogOptions, RecordedRun, Repeats, convert, find_repeats, marked_runs,
+    motions, whole_logs,
 };
 use serde_json::json;
 
 use crate::data_arguments::gap_limit;
 use crate::error::Result;
 use crate::lock_arguments::LockArguments;
-use crate::log_files::read_log;
-use crate::option_values::{Choices, explained, seconds, speed};
+use crate::log_files::{TIMES, log_time, read_log};
+use crate::option_values::{explained, seconds, speed};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::table;
@@ -36,12 +37,6 @@ Then: reachtube inspect --data recordings
 
 docs/logs.md describes what is read and what is refused.";
 
-/// Which times samples have.
-const TIMES: Choices = &[
-    ("header", "the stamps in the headers of the messages"),
-    ("log", "the times at which the log received the messages"),
-];
-
 /// Cut robot logs (MCAP, rosbag2) into runs, and write them as a data set
 ///
 /// Reads sensor_msgs/msg/JointState: position, velocity and effort. Joints are matched by name.
@@ -57,8 +52,9 @@ pub(crate) struct Arguments {
     /// Logs: MCAP files, .db3 files, or folders of rosbag2
     #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
     pub data: Vec<PathBuf>,
-    /// Topics with joint states; several complement each other at equal stamps
-    #[arg(long, value_name = "NAME", num_args = 1.., default_value = "/joint_states")]
+    /// Topics with joint states; several complement each other at stamps that differ by less than
+    /// half a sample [default: the only one that names joints of the robot]
+    #[arg(long, value_name = "NAME", num_args = 1..)]
     pub topic: Vec<String>,
     /// Names of the joints in the log, in the robot's order [default: the robot's names]
     #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
@@ -125,23 +121,13 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 fn options(args: &Arguments) -> Result<LogOptions> {
     let robot = args.lock.load(&args.robot)?;
     let names: Vec<String> = robot.joints().iter().map(|joint| joint.name.clone()).collect();
-    if !args.joints.is_empty() && args.joints.len() != names.len() {
-        return Err(reachtube_logs::Error::Setting(format!(
-            "--joints gives {} names, but robot {} has {} joints: {}; give one name for each",
-            args.joints.len(),
-            args.robot,
-            names.len(),
-            names.join(", ")
-        ))
-        .into());
-    }
-    Ok(LogOptions {
-        topics: args.topic.clone(),
-        joints: if args.joints.is_empty() { names } else { args.joints.clone() },
+    let settings = LogSettings {
+        topic: args.topic.clone(),
+        joints: args.joints.clone(),
         marker: args.marker.clone(),
-        time: if args.time == "log" { LogTime::Receipt } else { LogTime::Header },
-        recover: args.recover,
-    })
+        time: log_time(Some(&args.time)),
+    };
+    Ok(LogOptions { recover: args.recover, ..LogOptions::new(&settings, &names)? })
 }
 
 /// Groups runs that repeat a motion, where this was asked for.

@@ -3,15 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::recordings::{
-    ColumnSettings, DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, csv_files, inspect,
-    inspect_logs,
-};
+use reachtube::recordings::{DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, inspect};
+use reachtube_logs::{LogFiles, inspect_logs};
 use reachtube_robot::Robot;
 
 use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
+use crate::log_files::LogArguments;
 use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
@@ -39,13 +38,12 @@ pub(crate) struct Arguments {
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Folder with runs.csv and the recordings, or a log or folder of logs: CSV files of any header
+    /// Folder with runs.csv and the recordings, or a log or folder of logs: CSV files of any
+    /// header, MCAP and rosbag2
     #[arg(long, value_name = "PATH")]
     pub data: PathBuf,
-    /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
-    /// also first=0, time_unit=ms and angle=deg
-    #[arg(long, value_name = "KEY=VALUE,..")]
-    pub columns: Option<ColumnSettings>,
+    #[command(flatten)]
+    pub log: LogArguments,
     /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, 10
     /// times where sample times jitter]
     #[arg(long, hide_short_help = true)]
@@ -66,9 +64,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     outcome(inspection)
 }
 
-/// Returns whether a path is a CSV file, or a folder of them without an index.
+/// Returns whether a path is a log, or a folder of logs without an index.
 fn is_logs(path: &Path) -> bool {
-    let has_files = || csv_files(path).is_ok_and(|files| !files.is_empty());
+    let has_files = || LogFiles::find(path).is_ok_and(|files| !files.is_empty());
     path.is_file() || (path.is_dir() && !path.join("runs.csv").exists() && has_files())
 }
 
@@ -76,7 +74,7 @@ fn is_logs(path: &Path) -> bool {
 fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.robot.as_ref().map(|name| args.lock.load(name)).transpose()?;
     let robot = robot.as_ref();
-    let columns = args.columns.clone().unwrap_or_default();
+    let columns = args.log.columns.clone().unwrap_or_default();
     let options = LoggedOptions {
         robot,
         joints: &[],
@@ -87,7 +85,7 @@ fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
         until: None,
     };
     let bar = Progress::of("reading logs");
-    let found = inspect_logs(&args.data, &options)?;
+    let found = inspect_logs(&args.data, &options, &args.log.settings())?;
     drop(bar);
     let joints = found.inspection.joints;
     let kinds = robot.map_or(vec![JointKind::Revolute; joints], Robot::kinds);

@@ -14,6 +14,7 @@ use crate::data_arguments::TORQUES;
 use crate::error::{Error, Result};
 use crate::global::global;
 use crate::lock_arguments::LockArguments;
+use crate::log_files::LogArguments;
 use crate::option_values::{choice, seconds};
 use crate::outcome::Outcome;
 use crate::progress::Progress;
@@ -38,7 +39,7 @@ pub(crate) struct Arguments {
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Logs: CSV files or folders
+    /// Logs: CSV files, MCAP, rosbag2, or folders of them
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub data: Vec<PathBuf>,
     /// Meaning of the recorded torques
@@ -59,6 +60,8 @@ pub(crate) struct Arguments {
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
     #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub gains: Vec<f64>,
+    #[command(flatten)]
+    pub log: LogArguments,
     /// Folder for model.json, robot.toml, choices.toml and the page
     #[arg(long, value_name = "FOLDER")]
     pub out: PathBuf,
@@ -121,6 +124,8 @@ fn choices(args: &Arguments) -> Result<Choices> {
         held_out: (!args.held_out.is_empty()).then(|| args.held_out.clone()),
         gains: args.gains.clone(),
         lock: args.lock.lock.iter().map(ToString::to_string).collect(),
+        columns: args.log.columns.clone().unwrap_or_default(),
+        log: args.log.settings(),
         ..Choices::default()
     }))
 }

@@ -92,7 +92,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let files: Vec<PathBuf> = cut.file_names().map(|name| args.out.join(name)).collect();
     output::claim_all(&files)?;
     cut.write(&args.out)?;
-    let notes: Vec<String> = raw.iter().flat_map(|log| log.notes.clone()).collect();
+    let notes: Vec<String> =
+        raw.iter().flat_map(|log| [&log.notes[..], &log.moved].concat()).collect();
     output::notes(&[notes, prepared.changes, cut.changes].concat());
     output::note(&format!(
         "wrote {} recordings and runs.csv to {}",

@@ -31,3 +31,4 @@ mod settings;
 mod short;
 mod terminal;
 mod verdicts;
+mod wrong_inputs;

@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::fixture::Lab;
 use crate::identify::lab as pendulum_lab;
 use crate::output_schema::fits;
+use crate::robot_logs::{JOINT_STATE, Message, SECOND, State, bag, mcap_bytes};
 use crate::short::is_short;
 
 /// A lab with `pendulum.toml`, whose mass is wrong, and four logs in `logs`.
@@ -83,6 +84,88 @@ fn the_same_choices_give_the_same_bytes() {
     for file in ["model.json", "robot.toml", "choices.toml"] {
         assert_eq!(read(&format!("arm/{file}")), read(&format!("again/{file}")), "{file}");
     }
+}
+
+/// Returns a log of the pendulum as messages of a topic; `rename` names the joint.
+fn messages(csv: &str, topic: &str, rename: &str) -> Vec<Message> {
+    let message = |line: &str| {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let stamp = SECOND + (1e3 * cells[0]).round() as i64 * 1_000_000;
+        let values = [&cells[1..2], &cells[2..3], &cells[3..4]];
+        let data = State::new(stamp, &[rename], values).encode(false);
+        Message::new(topic, JOINT_STATE, stamp + 1000, data)
+    };
+    csv.lines().skip(1).map(message).collect()
+}
+
+#[test]
+fn logs_of_messages_give_the_model_of_their_csv_files() {
+    let lab = lab();
+    let csv = |name: &str| lab.read(&format!("logs/{name}.csv"));
+    std::fs::create_dir_all(lab.path("mixed/c")).unwrap();
+    lab.write("mixed/a.csv", csv("a"));
+    lab.write("mixed/b.mcap", mcap_bytes("zstd", &messages(&csv("b"), "/states", "hinge")));
+    lab.write("mixed/c/metadata.yaml", "");
+    bag(&lab.path("mixed/c"), &messages(&csv("c"), "/states", "hinge"));
+    let model = "model --robot pendulum.toml --torque motor --json --force";
+    let of_csv = json(&lab.run(&format!("{model} --data logs --out arm")).exits(0).stdout);
+    let mixed = lab.run(&format!("{model} --data mixed --out mix")).exits(0);
+    let of_logs = json(&mixed.stdout);
+    fits("model", &of_logs);
+    for key in ["joints", "horizon", "horizons", "held_out", "useful"] {
+        assert_eq!(of_logs[key], of_csv[key], "{key}");
+    }
+    mixed.notes("joints of /states are matched by name: q1 = hinge (place 1)");
+    lab.run("check --model mix/model.json --data mixed/b.mcap").exits(0);
+    let found = lab.run("inspect --robot pendulum.toml --data mixed --json").exits(0).json();
+    fits("inspect", &found);
+    assert_eq!((&found["runs"], &found["logs"][0]["joints"][0]), (&3.into(), &"hinge".into()));
+    let found = lab.run("inspect --robot pendulum.toml --data mixed/b.mcap").exits(0);
+    assert!(found.stdout.contains("in messages\n  time    header.stamp"), "{}", found.stdout);
+}
+
+#[test]
+fn a_topic_and_names_are_choices_that_other_logs_are_read_with() {
+    let lab = lab();
+    for name in ["a", "b", "c"] {
+        let csv = lab.read(&format!("logs/{name}.csv"));
+        let mut all = messages(&csv, "/arm", "axis_7");
+        all.extend(messages(&csv, "/copy", "axis_7"));
+        std::fs::remove_file(lab.path(&format!("logs/{name}.csv"))).unwrap();
+        lab.write(&format!("logs/{name}.mcap"), mcap_bytes("lz4", &all));
+    }
+    let model = "model --robot pendulum.toml --data logs --torque motor --out arm";
+    let names = lab.run(model).exits(2);
+    assert!(
+        names.stderr.contains("but these are named: axis_7; give the log's names"),
+        "{names:?}"
+    );
+    let several = lab.run(&format!("{model} --joints axis_7")).exits(2);
+    let words = "a.mcap: 2 topics name joints of the robot: /arm, /copy; choose one with --topic";
+    assert!(several.stderr.contains(words), "{several:?}");
+    lab.run(&format!("{model} --joints axis_7 --topic /arm")).exits(0);
+    let choices = lab.read("arm/choices.toml");
+    assert!(choices.contains("[log]\ntopic = [\"/arm\"]\njoints = [\"axis_7\"]"), "{choices}");
+    lab.run("check --model arm/model.json --data logs/a.mcap").exits(0);
+    lab.run("model --settings arm/choices.toml --out again").exits(0);
+    assert_eq!(lab.read("arm/model.json"), lab.read("again/model.json"));
+    assert_eq!(choices, lab.read("again/choices.toml"));
+}
+
+#[test]
+fn columns_whose_names_do_not_tell_are_choices() {
+    let lab = lab();
+    for name in ["a", "b", "c"] {
+        lab.edit(&format!("logs/{name}.csv"), |lines| lines[0] = "clock,alpha1,omega1,m1".into());
+    }
+    let model = "model --robot pendulum.toml --data logs --torque motor --out arm";
+    lab.run(model).exits(2);
+    lab.run(&format!("{model} --columns q=alpha{{}},qd=omega{{}},tau=m{{}},time=clock")).exits(0);
+    let choices = lab.read("arm/choices.toml");
+    assert!(choices.contains("[columns]\nq = \"alpha{}\""), "{choices}");
+    lab.run("check --model arm/model.json --data logs/a.csv").exits(0);
+    lab.run("model --settings arm/choices.toml --out again").exits(0);
+    assert_eq!(lab.read("arm/model.json"), lab.read("again/model.json"));
 }
 
 #[test]

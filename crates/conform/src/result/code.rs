@@ -119,6 +119,10 @@ codes! {
     OtherStart = "other-start",
     /// A note on the recordings.
     Recordings = "recordings",
+    /// The recordings contradict the robot's description, or the dynamics of rigid bodies.
+    Contradiction = "contradiction",
+    /// Positions that were whole turns away from other recordings were moved.
+    TurnsMoved = "turns-moved",
 }
 
 #[cfg(test)]

@@ -93,6 +93,11 @@ impl Fault {
         }
     }
 
+    /// Returns whether only the columns can be wrong: zeros and clocks of robots are off a little.
+    pub(super) fn is_certain(&self) -> bool {
+        matches!(self, Self::Sign { .. } | Self::Swap { .. } | Self::Degrees)
+    }
+
     /// Returns the size of an offset \[rad\] or a lag \[s\].
     pub(super) fn size(&self) -> Option<f64> {
         match *self {

@@ -12,3 +12,4 @@ pub(crate) mod warnings;
 
 pub use gain::Gain;
 pub use offset::PositionOffset;
+pub use warnings::Implausible;

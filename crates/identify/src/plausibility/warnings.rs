@@ -15,6 +15,16 @@ const SIGNIFICANT: f64 = 4.0;
 /// Share of the torque that may stay unexplained without a warning.
 const MAX_UNEXPLAINED: f64 = 0.3;
 
+/// A result that is implausible.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Implausible {
+    /// What is implausible, in a sentence.
+    pub text: String,
+    /// Whether columns that are exchanged, of the wrong sign or of a wrong unit explain it, so that
+    /// the identified values are worth nothing.
+    pub is_fault: bool,
+}
+
 /// The results of a fit to exciting motions whose plausibility is checked.
 pub(crate) struct Checked<'a> {
     /// The given robot.
@@ -48,7 +58,7 @@ impl Checked<'_> {
         likelihood: &GainLikelihood,
         gains: &[Gain],
         offset: impl FnOnce() -> Option<(Vec<PreparedLog>, String)>,
-    ) -> Vec<String> {
+    ) -> Vec<Implausible> {
         let driving: Vec<String> = self.driving_friction().collect();
         let gains: Vec<String> = gains.iter().filter_map(wrong_gain).collect();
         let unexplained: Vec<String> = self.unexplained_torque().collect();
@@ -68,20 +78,24 @@ impl Checked<'_> {
             torque_unit_warning(self.robot, self.fit, self.logs)
         };
         let has_no_unit = self.compensated && torque_unit.is_some();
+        let implausible = |is_fault: bool| move |text: String| Implausible { text, is_fault };
         let fault = found
-            .map(|found| found.fault.warning(self.robot, found.clearest))
-            .or_else(|| if has_no_unit { None } else { inverted() })
+            .map(|found| {
+                let text = found.fault.warning(self.robot, found.clearest);
+                Implausible { text, is_fault: found.fault.is_certain() }
+            })
+            .or_else(|| if has_no_unit { None } else { inverted() }.map(implausible(true)))
             .or_else(|| {
                 let (logs, warning) = if has_no_unit { None } else { offset() }?;
-                (gains.is_empty() || self.gains_agree(&logs)).then_some(warning)
+                let is_one = gains.is_empty() || self.gains_agree(&logs);
+                is_one.then(|| implausible(false)(warning))
             });
         let gains = if fault.is_some() || has_no_unit { Vec::new() } else { gains };
+        let others = driving.into_iter().chain(gains).chain(unexplained);
         fault
             .into_iter()
-            .chain(torque_unit)
-            .chain(driving)
-            .chain(gains)
-            .chain(unexplained)
+            .chain(torque_unit.map(implausible(true)))
+            .chain(others.map(implausible(false)))
             .collect()
     }
 

@@ -67,7 +67,8 @@ fn filtering([logs, samples]: [usize; 2], given: bool, cut_off: f64) -> String {
     let origin = if given {
         "as set"
     } else {
-        "chosen as 1.5 times the bandwidth of the velocity (99.9 % of its power), at least 3 Hz"
+        "chosen as 1.5 times the bandwidth of the velocity (99.9 % of its power beyond the noise), \
+         at least 3 Hz"
     };
     format!(
         "q, qd and tau of {logs} recordings ({samples} samples) were filtered forward and backward \

@@ -18,9 +18,10 @@ const HIGHEST_SHARE: f64 = 0.2;
 /// recordings with motion.
 ///
 /// The choice is 1.5 times the weighted median of the joints' bandwidths. A bandwidth is the
-/// frequency below which 99.9 % of the power of the velocity lies, and its weight is the variance
-/// of the position times the duration. The choice is at least 3 Hz, so that the filtered torque
-/// still shows the step of Coulomb friction, and at most a fifth of the lowest sample rate.
+/// frequency below which 99.9 % of the power of the velocity lies, without noise and frequencies at
+/// which noise is stronger. Its weight is the variance of the position times the duration. The
+/// choice is at least 3 Hz, so that the filtered torque still shows the step of Coulomb friction,
+/// and at most a fifth of the lowest sample rate.
 ///
 /// # Errors
 ///

@@ -1,12 +1,15 @@
+use crate::prepare::raw_log::RawLog;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// Recordings named in settings: a CSV file or a folder of them, whole or an interval of time.
+/// Recordings named in settings: a log or a folder of logs, whole or an interval of time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum LogEntry {
-    /// A CSV file, or a folder with all its CSV files except runs.csv, in the order of their names;
-    /// where it has none, the recordings of its subfolders.
+    /// A log, or a folder with all its logs except runs.csv, in the order of their names; where it
+    /// has none, the recordings of its subfolders. A log is a CSV file, an MCAP file, a .db3 file,
+    /// or the folder of a bag.
     Path(PathBuf),
     /// An interval of time of each of these files.
     Stretch {
@@ -27,6 +30,9 @@ pub enum LogEntry {
         #[serde(default)]
         compensated: bool,
     },
+    /// A recording that was read already.
+    #[serde(skip)]
+    Recording(Arc<RawLog>),
 }
 
 impl LogEntry {
@@ -34,6 +40,7 @@ impl LogEntry {
     pub(super) fn parts(&self) -> (&Path, f64, Option<f64>) {
         match self {
             Self::Path(path) => (path, 0.0, None),
+            Self::Recording(log) => (&log.file, 0.0, None),
             Self::Stretch { path, from, until, .. } => (path, *from, *until),
         }
     }
@@ -47,6 +54,7 @@ impl LogEntry {
     pub(super) fn order(&self) -> Option<u64> {
         match self {
             Self::Path(_) => None,
+            Self::Recording(log) => log.order,
             Self::Stretch { order, .. } => *order,
         }
     }

@@ -7,6 +7,7 @@
 
 mod align;
 pub(crate) mod changes;
+mod container;
 pub(crate) mod cut_off;
 mod derivative;
 pub(crate) mod entry;

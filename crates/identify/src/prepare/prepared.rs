@@ -285,7 +285,15 @@ mod tests {
             temperatures: vec![],
             sha256: String::new(),
         };
-        RawLog { name: "wave".into(), file: "wave.csv".into(), order: None, run, notes: vec![] }
+        RawLog {
+            name: "wave".into(),
+            file: "wave.csv".into(),
+            motion: None,
+            order: None,
+            run,
+            notes: vec![],
+            moved: vec![],
+        }
     }
 
     #[test]

@@ -1,20 +1,24 @@
 use crate::error::{Error, Result};
+use crate::prepare::container::{marked, name_of, whole};
 use crate::prepare::entry::LogEntry;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
 use crate::prepare::time_unit::check_time_unit;
 use crate::prepare::turns::{add_turns, extents, missing_turns};
+use reachtube_logs::LogFiles;
 use reachtube_recordings::{
-    Defect, GapLimit, LoggedOptions, ReadOptions, Run, check_limits, csv_files, group_files,
-    is_recording, read_csv, read_logged,
+    Defect, LoggedOptions, ReadOptions, Run, check_limits, is_recording, read_csv, read_logged,
 };
 use reachtube_robot::Robot;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Reads recordings of a robot and puts their columns into the order of the robot's joints.
 ///
-/// A CSV file with the header `t,q1..qn,qd1..qdn,tau1..taun` is read as it is. In others, columns
-/// and units are recognised ([`read_logged`]), and [`RawLog::notes`] says how.
+/// Logs in MCAP and rosbag2 are read by the names of the joints; each is one recording, or one for
+/// each run that a topic marks. A CSV file with the header `t,q1..qn,qd1..qdn,tau1..taun` is read
+/// as it is. In others, columns and units are recognised ([`read_logged`]), and [`RawLog::notes`]
+/// says how.
 ///
 /// Relative paths start at `folder`.
 ///
@@ -22,6 +26,7 @@ use std::path::{Path, PathBuf};
 ///
 /// - [`Error::Recordings`] lists defects of the files, such as units that do not fit the robot.
 /// - [`Error::File`] reports a path that cannot be read, [`Error::NoCsvFile`] an empty folder.
+/// - [`Error::Log`] reports a log in MCAP or rosbag2 that cannot be read.
 /// - [`Error::JointNames`] reports names that are not the robot's joints.
 /// - [`Error::TimeUnit`] reports times that are not in seconds.
 pub fn read(
@@ -30,7 +35,7 @@ pub fn read(
     robot: &Robot,
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
-    let sources = sources(entries, folder)?;
+    let sources = sources(entries, folder, robot, settings)?;
     let read = sources.iter().map(|source| source.read(robot, settings));
     let mut logs = read.collect::<Result<Vec<RawLog>>>()?;
     let names: Vec<String> = logs.iter().map(|log| log.file.display().to_string()).collect();
@@ -38,7 +43,7 @@ pub fn read(
     let (turns, notes) = missing_turns(robot, &names, &found);
     logs.iter_mut().zip(turns).for_each(|(log, turns)| add_turns(&mut log.run, &turns));
     if let Some(first) = logs.first_mut() {
-        first.notes.extend(notes);
+        first.moved.extend(notes);
     }
     Ok(logs)
 }
@@ -46,8 +51,7 @@ pub fn read(
 /// A recording to read.
 #[derive(Debug, Clone)]
 pub(crate) struct Source {
-    /// Its files: more than one if each quantity has a file.
-    files: Vec<PathBuf>,
+    content: Content,
     /// Times between which samples are used \[s\].
     from: f64,
     until: Option<f64>,
@@ -58,20 +62,52 @@ pub(crate) struct Source {
     pub turns: Vec<f64>,
 }
 
-/// Returns the recordings of a list, without reading them.
-pub(crate) fn sources(entries: &[LogEntry], folder: &Path) -> Result<Vec<Source>> {
+/// Where a recording is.
+#[derive(Debug, Clone)]
+enum Content {
+    /// CSV files: more than one if each quantity has a file.
+    Csv(Vec<PathBuf>),
+    /// A log in MCAP or rosbag2.
+    Container(PathBuf),
+    /// A recording that was read.
+    Memory(Arc<RawLog>),
+}
+
+/// Returns the recordings of a list. They are not read, except where a topic marks the runs of a
+/// log.
+pub(crate) fn sources(
+    entries: &[LogEntry],
+    folder: &Path,
+    robot: &Robot,
+    settings: &PrepareSettings,
+) -> Result<Vec<Source>> {
     let mut found = Vec::new();
     for entry in entries {
+        let mut contents = Vec::new();
         let (path, from, until) = entry.parts();
         let path = folder.join(path);
-        let files = csv_files(&path)?;
-        if files.is_empty() {
+        let is_marked = settings.log.marker.is_some() && matches!(entry, LogEntry::Path(_));
+        if let LogEntry::Recording(log) = entry {
+            contents.push(Content::Memory(Arc::clone(log)));
+        } else {
+            for files in LogFiles::find(&path)? {
+                match files {
+                    LogFiles::Csv(files) => contents.push(Content::Csv(files)),
+                    LogFiles::Container(path) if is_marked => {
+                        let logs = marked(&path, robot, settings)?.into_iter().map(Arc::new);
+                        contents.extend(logs.map(Content::Memory));
+                    }
+                    LogFiles::Container(path) => contents.push(Content::Container(path)),
+                }
+            }
+        }
+        if contents.is_empty() {
             return Err(Error::NoCsvFile { folder: path });
         }
-        for (index, files) in (0..).zip(group_files(files)) {
+        for (index, content) in (0..).zip(contents) {
             let order = entry.order().map(|first| first + index);
             let compensated = entry.is_compensated();
-            found.push(Source { files, from, until, order, compensated, turns: vec![] });
+            found.push(Source { content, from, until, order, compensated, turns: vec![] });
         }
     }
     Ok(found)
@@ -80,65 +116,104 @@ pub(crate) fn sources(entries: &[LogEntry], folder: &Path) -> Result<Vec<Source>
 impl Source {
     /// Reads the recording, with its columns in the order of the robot's joints.
     pub(crate) fn read(&self, robot: &Robot, settings: &PrepareSettings) -> Result<RawLog> {
-        let order = column_order(robot, &settings.joints)?;
-        let file = self.files[0].clone();
-        let (run, notes) = match self.files[..] {
-            [_] if is_recording(&file) => (self.read_recording(robot, settings, &order)?, vec![]),
-            _ => self.read_logged(robot, settings)?,
+        let (file, run, notes) = match &self.content {
+            Content::Memory(log) => {
+                let mut log = RawLog::clone(log);
+                add_turns(&mut log.run, &self.turns);
+                return Ok(log);
+            }
+            Content::Csv(files) => {
+                let (run, notes) = self.read_csv_files(files, robot, settings)?;
+                (files[0].clone(), run, notes)
+            }
+            Content::Container(path) => {
+                let (run, notes) = whole(path, self.until, robot, settings)?;
+                (path.clone(), run, notes)
+            }
         };
         let mut run = starting_at(run, self.from);
-        match check_limits(&file, &run, robot) {
-            defects if defects.is_empty() => {
-                check_time_unit(&file, &run)?;
-                add_turns(&mut run, &self.turns);
-                let run = if self.compensated { with_compensation(run, robot) } else { run };
-                Ok(RawLog { name: self.name(), file, order: self.order, run, notes })
-            }
-            defects => Err(reachtube_recordings::Error::Defects(defects).into()),
-        }
+        check(&file, &run, robot)?;
+        add_turns(&mut run, &self.turns);
+        let run = if self.compensated { with_compensation(run, robot) } else { run };
+        let (name, order) = (self.name(), self.order);
+        Ok(RawLog { name, file, motion: None, order, run, notes, moved: vec![] })
     }
 
     /// Returns the name of the file, or of the folder of the files.
     fn name(&self) -> String {
-        let file = &self.files[0];
-        let folder = file.parent().and_then(Path::file_name).filter(|_| self.files.len() > 1);
-        let name = folder.or_else(|| file.file_stem()).unwrap_or_default();
-        name.to_string_lossy().into_owned()
+        match &self.content {
+            Content::Csv(files) => {
+                let file = &files[0];
+                let folder = file.parent().and_then(Path::file_name).filter(|_| files.len() > 1);
+                let name = folder.or_else(|| file.file_stem()).unwrap_or_default();
+                name.to_string_lossy().into_owned()
+            }
+            Content::Container(path) => name_of(path),
+            Content::Memory(log) => log.name.clone(),
+        }
+    }
+
+    fn read_csv_files(
+        &self,
+        files: &[PathBuf],
+        robot: &Robot,
+        settings: &PrepareSettings,
+    ) -> Result<(Run, Vec<String>)> {
+        match files {
+            [file] if is_recording(file) => {
+                let order = column_order(robot, &settings.joints)?;
+                Ok((self.read_recording(file, robot, settings, &order)?, vec![]))
+            }
+            files => {
+                column_order(robot, &settings.joints)?;
+                self.read_logged(files, robot, settings)
+            }
+        }
     }
 
     fn read_recording(
         &self,
+        file: &Path,
         robot: &Robot,
         settings: &PrepareSettings,
         order: &[usize],
     ) -> Result<Run> {
         let options = ReadOptions {
             joints: Some(robot.joint_count()),
-            gap_limit: gap_limit(settings),
+            gap_limit: settings.gap_limit(),
             until: self.until,
         };
-        let run = read_csv(&self.files[0], &options).map_err(refused)?;
+        let run = read_csv(file, &options).map_err(refused)?;
         Ok(reordered(run, order))
     }
 
     /// Reads columns of any name, which come in the order of the robot's joints.
-    fn read_logged(&self, robot: &Robot, settings: &PrepareSettings) -> Result<(Run, Vec<String>)> {
+    fn read_logged(
+        &self,
+        files: &[PathBuf],
+        robot: &Robot,
+        settings: &PrepareSettings,
+    ) -> Result<(Run, Vec<String>)> {
         let options = LoggedOptions {
             robot: Some(robot),
             joints: &settings.joints,
             columns: &settings.columns,
             gains: !settings.gains.is_empty(),
             torque: true,
-            gap_limit: gap_limit(settings),
+            gap_limit: settings.gap_limit(),
             until: self.until,
         };
-        let logged = read_logged(&self.files, &options).map_err(refused)?;
+        let logged = read_logged(files, &options).map_err(refused)?;
         Ok((logged.run, logged.notes))
     }
 }
 
-fn gap_limit(settings: &PrepareSettings) -> GapLimit {
-    settings.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+/// Checks limits and times of a recording.
+fn check(file: &Path, run: &Run, robot: &Robot) -> Result<()> {
+    match check_limits(file, run, robot) {
+        defects if defects.is_empty() => check_time_unit(file, run),
+        defects => Err(refused(defects)),
+    }
 }
 
 fn refused(defects: Vec<Defect>) -> Error {
@@ -264,7 +339,11 @@ mod tests {
         assert!(refused.contains("motor currents: actual_current_0"), "{refused}");
         let gains = PrepareSettings { gains: vec![3.0; 6], ..PrepareSettings::default() };
         let logs = read(&entries, folder.path(), &robot, &gains).unwrap();
-        let said = logs.iter().flat_map(|log| log.notes.clone()).collect::<Vec<_>>().join("\n");
+        let said = logs
+            .iter()
+            .flat_map(|log| [log.notes.clone(), log.moved.clone()].concat())
+            .collect::<Vec<_>>()
+            .join("\n");
         assert!(said.contains("b.csv: joint1 is a turn away from other recordings"), "{said}");
         assert!(said.contains("the times are in ms") && said.contains("in degrees"), "{said}");
         for log in &logs {

@@ -1,4 +1,4 @@
-use reachtube_recordings::ColumnSettings;
+use reachtube_recordings::{ColumnSettings, GapLimit, LogSettings};
 use serde::{Deserialize, Serialize};
 
 /// Settings of how recordings are prepared.
@@ -25,10 +25,20 @@ pub struct PrepareSettings {
     /// Columns of recordings as robots and drivers log them, where their names do not tell.
     #[serde(skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,
+    /// What to read from logs in MCAP and rosbag2, where they do not tell.
+    #[serde(skip_serializing_if = "is_default")]
+    pub log: LogSettings,
 }
 
-fn is_default(columns: &ColumnSettings) -> bool {
-    *columns == ColumnSettings::default()
+impl PrepareSettings {
+    /// Returns the limit of the times between samples.
+    pub(crate) fn gap_limit(&self) -> GapLimit {
+        self.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+    }
+}
+
+fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
+    *settings == T::default()
 }
 
 /// The source of a log's velocity.

@@ -2,6 +2,8 @@
 
 mod cutting;
 mod damage;
+mod inspect;
+mod order;
 mod refused;
 mod routes;
 mod support;

@@ -7,6 +7,7 @@ mod assignment;
 mod dialect;
 mod files;
 mod joints;
+mod log_settings;
 mod name;
 mod numbers;
 mod options;
@@ -20,6 +21,7 @@ mod unit;
 mod wraps;
 
 pub use files::{csv_files, group_files, is_recording};
+pub use log_settings::{LogSettings, LogTime};
 pub use options::LoggedOptions;
 pub use recording::{Logged, read_logged};
 pub use settings::ColumnSettings;

@@ -24,20 +24,28 @@ use super::unit::{AngleUnit, TimeUnit};
 #[serde(deny_unknown_fields, default)]
 pub struct ColumnSettings {
     /// Positions.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub q: Option<String>,
     /// Velocities.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub qd: Option<String>,
     /// Torques.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub tau: Option<String>,
     /// Motor currents, which the gains turn into torques.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub current: Option<String>,
     /// Name of the column with the time.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
     /// Number of the first joint in the names, usually 0 or 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub first: Option<usize>,
     /// Unit of the time.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub time_unit: Option<TimeUnit>,
     /// Unit of positions and velocities of revolute joints.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<AngleUnit>,
 }
 

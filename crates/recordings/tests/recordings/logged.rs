@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use reachtube_recordings::{
-    ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, inspect_logs,
-    is_recording, read_logged,
+    ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, is_recording,
+    read_logged,
 };
 use reachtube_robot::Robot;
 use tempfile::TempDir;
@@ -287,24 +287,4 @@ fn the_format_of_recordings_is_no_log() {
     assert!(is_recording(&path));
     let (_folder, path) = written("t,q1,dq1,tau1\n0,0,0,0\n");
     assert!(!is_recording(&path));
-}
-
-#[test]
-#[ignore = "needs the recordings in ../shared"]
-fn logs_of_robots_are_understood() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/raw_logs");
-    let columns = ColumnSettings::default();
-    let options = LoggedOptions { torque: false, ..options(None, &columns) };
-    let found = inspect_logs(&root.join("tiago"), &options).unwrap();
-    let [log] = &found.logs[..] else { panic!("{:?}", found.inspection.refused) };
-    assert_eq!((log.samples, log.files.len(), log.q.len(), log.tau.len()), (8022, 3, 8, 8));
-    assert_eq!(log.joints[0], "torso_lift_joint");
-    // One of them has lost single samples.
-    let options = LoggedOptions { gap_limit: GapLimit::Seconds(0.1), ..options };
-    let found = inspect_logs(&root.join("ur3e_rtde"), &options).unwrap();
-    assert_eq!((found.inspection.refused.len(), found.logs.len()), (1, 4));
-    assert!(found.inspection.refused[0].first.problem.contains("targets only"));
-    let torques: Vec<&str> = found.logs.iter().map(|log| log.torque).collect();
-    assert_eq!(torques, ["demanded", "demanded", "current", "demanded"]);
-    assert!(found.logs.iter().all(|log| log.ratio.is_some_and(|r| (r - 1.0).abs() < 0.05)));
 }

@@ -51,9 +51,9 @@ pub(crate) struct Arguments {
     /// Recordings held out of every fit, for validation [default: the exciting motions]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub validate: Vec<PathBuf>,
-    /// Topics with joint states in recordings that are logs
-    #[arg(long, hide_short_help = true)]
-    #[arg(value_name = "NAME", num_args = 1.., default_value = "/joint_states")]
+    /// Topics with joint states in MCAP and rosbag2; several complement each other [default: the
+    /// only one that names joints of the robot]
+    #[arg(long, hide_short_help = true, value_name = "NAME", num_args = 1..)]
     pub topic: Vec<String>,
     /// Cut-off frequency of the low-pass filter, above 0 and below half the sample rate, Hz
     /// [default: chosen from the recordings]

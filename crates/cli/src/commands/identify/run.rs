@@ -6,19 +6,17 @@ use reachtube::page::write_identified_html;
 use reachtube::recordings::Torque;
 use reachtube::write;
 use reachtube_files::MARK;
-use reachtube_logs::LogOptions;
 use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use super::arguments::Arguments;
 use super::summary::summary;
 use crate::error::{Error, Result};
-use crate::log_files::LogFiles;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let (mut settings, folder) = settings(args)?;
+    let (settings, folder) = settings(args)?;
     let name = settings.robot.clone().ok_or(Error::NoRobot)?;
     let name = from_folder(&name, args, &folder);
     let robot = args.lock.load_to_identify(&name)?;
@@ -27,7 +25,6 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         UrdfOptions { locks: args.lock.lock.clone(), any_inertia: true, ..UrdfOptions::default() };
     let urdf = args.urdf.is_some().then(|| Urdf::load(&name, &options)).transpose()?;
     output::claim_all(&outputs(args))?;
-    let _files = logs_as_csv(&mut settings, &folder, args, &robot)?;
     let bar = Progress::of("identifying");
     let found = identify(&robot, &settings, &folder, &|done, total| bar.show(done, total))?;
     drop(bar);
@@ -36,23 +33,6 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::show(json, &found.summary(), || summary(&found))?;
     output::warnings(&found.warnings);
     Ok(Outcome::Done)
-}
-
-/// Replaces the logs among the recordings by CSV files, which exist as long as the result does.
-fn logs_as_csv(
-    settings: &mut IdentifySettings,
-    folder: &Path,
-    args: &Arguments,
-    robot: &Robot,
-) -> Result<LogFiles> {
-    let joints = robot.joints().iter().map(|joint| joint.name.clone()).collect();
-    let topics = args.topic.clone();
-    let mut files = LogFiles::new(LogOptions { topics, joints, ..LogOptions::default() })?;
-    let IdentifySettings { rest, friction, dynamic, validate, .. } = settings;
-    for entry in [rest, friction, dynamic, validate].into_iter().flatten() {
-        files.convert(entry, folder)?;
-    }
-    Ok(files)
 }
 
 /// Returns the files that the arguments ask for.
@@ -136,6 +116,9 @@ fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     settings.prepare.cut_off = args.cut_off.or(settings.prepare.cut_off);
     if let Some(columns) = &args.columns {
         settings.prepare.columns.clone_from(columns);
+    }
+    if !args.topic.is_empty() {
+        settings.prepare.log.topic.clone_from(&args.topic);
     }
     settings.prepare.max_gap = args.max_gap.or(settings.prepare.max_gap);
     if !args.gains.is_empty() {

@@ -1,0 +1,160 @@
+//! Ten logs that are wrong: `model` refuses each, or names the cause in the first line.
+
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+use reachtube_robot::Robot;
+
+use crate::fixture::Lab;
+use crate::output_schema::fits;
+
+/// Two links in a vertical plane. The factor is of their masses.
+fn arm(factor: f64) -> String {
+    let joint = |name: &str, height: f64, mass: f64, inertia: f64| {
+        let (mass, inertia) = (factor * mass, factor * inertia);
+        format!(
+            "[[joint]]\nname = \"{name}\"\nplacement = {{ translation = [0.0, 0.0, {height}] }}\n\
+             axis = [0.0, 1.0, 0.0]\nmass = {mass}\ncom = [0.0, 0.0, -0.2]\n\
+             inertia = [{inertia}, 0.0, 0.0, {inertia}, 0.0, {inertia}]\n\
+             friction = {{ viscous = [0.3, 0.0, 0.0] }}\n"
+        )
+    };
+    let joints = [joint("shoulder", 1.0, 3.0, 0.05), joint("elbow", -0.4, 2.0, 0.02)].concat();
+    format!("schema_version = 1\nname = \"arm\"\n{joints}")
+}
+
+/// Columns of a log: the time, and positions, velocities and torques of both joints.
+type Row = [f64; 7];
+
+/// Returns a log of 10 s at 100 Hz. The links are a little heavier than described, and torques have
+/// noise.
+fn log(robot: &Robot, number: usize) -> Vec<Row> {
+    let seed = 0.3 * number as f64;
+    let mut state = 1 + number as u64;
+    let mut noise = |size: f64| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        size * ((state >> 40) as f64 / f64::from(1 << 24) - 0.5)
+    };
+    let waves = |joint: usize| {
+        let shift = seed + 1.7 * joint as f64;
+        [(0.5, 1.3 + 0.2 * seed, 0.0), (0.25, 2.9, shift), (0.1, 5.3 - 0.4 * seed, shift)]
+    };
+    let row = |k: usize| {
+        let t = 0.01 * k as f64;
+        let part = |joint: usize, order: i32| -> f64 {
+            let phase = TAU / 4.0 * f64::from(order);
+            let sum = waves(joint).map(|(a, w, p)| a * w.powi(order) * (w * t + p + phase).sin());
+            sum.iter().sum()
+        };
+        let [q, qd, qdd] = [0, 1, 2].map(|order| [part(0, order), part(1, order)]);
+        let torque = robot.inverse_dynamics(&q, &qd, &qdd);
+        let tau = [0, 1].map(|joint| 1.05 * torque[joint] + 0.3 * qd[joint] + noise(0.2));
+        [t, q[0], q[1], qd[0] + noise(1e-3), qd[1] + noise(1e-3), tau[0], tau[1]]
+    };
+    (0..1000).map(row).collect()
+}
+
+/// Writes four logs into the folder `logs`, each row changed by `change` with its number and the
+/// number of its log.
+fn write(lab: &Lab, change: &dyn Fn(&mut Row, usize, usize)) {
+    let robot = Robot::from_toml(&arm(1.0), "arm").unwrap();
+    std::fs::create_dir_all(lab.path("logs")).unwrap();
+    for number in 0..4 {
+        let mut text = String::from("t,q1,q2,qd1,qd2,tau1,tau2\n");
+        for (k, mut row) in log(&robot, number).into_iter().enumerate() {
+            change(&mut row, k, number);
+            let cells =
+                row.map(|cell| if cell.is_nan() { String::new() } else { cell.to_string() });
+            writeln!(text, "{}", cells.join(",")).unwrap();
+        }
+        lab.write(&format!("logs/log_{number}.csv"), text);
+    }
+}
+
+const MODEL: &str = "model --robot arm.toml --data logs --torque motor --out made --quiet --force";
+
+fn lab() -> Lab {
+    let lab = Lab::new();
+    lab.write("arm.toml", arm(1.0));
+    lab
+}
+
+#[test]
+fn logs_that_cannot_be_read_are_refused_with_the_cause() {
+    let lab = lab();
+    type Case<'a> = (&'a str, &'a dyn Fn(&mut Row, usize, usize));
+    let cases: [Case; 6] = [
+        ("the times look like milliseconds", &|row, _, _| row[0] *= 1e3),
+        ("degrees", &|row, _, _| row[1..5].iter_mut().for_each(|cell| *cell *= 360.0 / TAU)),
+        ("log_1.csv:102: joint 2: tau2 is 1e300", &|row, k, number| {
+            if (k, number) == (100, 1) {
+                row[6] = 1e300;
+            }
+        }),
+        ("log_1.csv:102: joint 1: q1 is 1e300", &|row, k, number| {
+            if (k, number) == (100, 1) {
+                row[1] = 1e300;
+            }
+        }),
+        ("qd1 is empty", &|row, _, _| row[3..5].fill(f64::NAN)),
+        ("none of the 4 recordings shows a motion of several joints: 4 at rest", &|row, _, _| {
+            row[1..5].iter_mut().for_each(|cell| *cell *= 1e-3);
+        }),
+    ];
+    for (cause, change) in cases {
+        write(&lab, change);
+        let run = lab.run(MODEL);
+        let first = run.stderr.lines().next().unwrap_or_default();
+        assert!(run.code == 2 && first.contains(cause), "{cause}: {run:#?}");
+    }
+}
+
+#[test]
+fn logs_that_contradict_the_robot_give_no_acceptable_model() {
+    let lab = lab();
+    type Case<'a> = (&'a str, f64, &'a dyn Fn(&mut Row, usize, usize));
+    let cases: [Case; 5] = [
+        ("the torque of elbow is opposite to what the description needs", 1.0, &|row, _, _| {
+            row[6] *= -1.0;
+        }),
+        ("shoulder and elbow are probably swapped", 1.0, &|row, _, _| row.swap(5, 6)),
+        ("the recorded torques are 0.07 times", 1.0, &|row, _, _| {
+            row[5..].iter_mut().for_each(|cell| *cell /= 15.0);
+        }),
+        ("or the description is of another robot", 9.0, &|_, _, _| ()),
+        ("swapped", 1.0, &|row, _, _| [1, 3, 5].iter().for_each(|at| row.swap(*at, at + 1))),
+    ];
+    for (cause, masses, change) in cases {
+        lab.write("arm.toml", arm(masses));
+        write(&lab, change);
+        let run = lab.run(MODEL);
+        let first = run.stdout.lines().take(2).collect::<String>();
+        assert!(run.code == 3 && first.starts_with("not acceptable: "), "{cause}: {run:#?}");
+        assert!(first.contains(cause), "{cause}: {run:#?}");
+    }
+    // The user knows better: the factors say that the torques are in N m.
+    lab.write("arm.toml", arm(9.0));
+    write(&lab, &|_, _, _| ());
+    let run = lab.run(&format!("{MODEL} --gains 1,1 --json")).exits(0);
+    let answer = run.json();
+    fits("model", &answer);
+    assert_eq!(answer["findings"][0]["code"], "contradiction");
+    assert_eq!(answer["findings"][0]["severity"], "warning");
+}
+
+#[test]
+fn a_log_that_is_a_turn_away_is_moved_and_named() {
+    let lab = lab();
+    // The logs start at the same position.
+    write(&lab, &|row, _, number| {
+        if number == 2 {
+            row[1] += TAU;
+        }
+    });
+    let run = lab.run(MODEL);
+    let text = run.stdout.lines().skip(1).take(2).collect::<String>();
+    assert!(run.code == 0 && text.contains("log_2.csv: shoulder is a turn away"), "{run:#?}");
+    let answer = lab.run(&format!("{MODEL} --json")).exits(0).json();
+    fits("model", &answer);
+    assert_eq!(answer["findings"][0]["code"], "turns-moved", "{answer}");
+}
