@@ -51,6 +51,10 @@ pub struct Choices {
     /// The largest accepted ratio of half a joint's set at the horizon to the joint's displacement.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_ratio: Option<f64>,
+    /// The largest accepted factor by which the set of a joint would have to grow for motions that
+    /// are held out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_growth: Option<f64>,
     /// Time up to which the model predicts, s: the length of the windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horizon: Option<f64>,
@@ -148,6 +152,7 @@ impl Choices {
             expansion: given.expansion.or(self.expansion),
             sensor_noise: given.sensor_noise.or(self.sensor_noise),
             largest_ratio: given.largest_ratio.or(self.largest_ratio),
+            largest_growth: given.largest_growth.or(self.largest_growth),
             horizon: given.horizon.or(self.horizon),
             fit: given.fit.or(self.fit),
             pull: given.pull.or(self.pull),

@@ -19,7 +19,8 @@ use crate::windows::Prepared;
 pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> Result<MemoryRuns> {
     let Preparation { torque, gains, cut_off, window } = preparation;
     let robot = Robot::from_description(&model.robot)?;
-    let settings = PrepareSettings { gains: gains.clone(), ..PrepareSettings::default() };
+    let (gains, kind) = (gains.clone(), Some(*torque));
+    let settings = PrepareSettings { gains, torque: kind, ..PrepareSettings::default() };
     let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, Path::new(""), &robot, &settings)?;
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;

@@ -67,6 +67,7 @@ impl<'a> LoggedRuns<'a> {
                 temperature: None,
                 sha256: None,
                 simulated: false,
+                noise: None,
                 order: line,
                 line,
             }

@@ -150,10 +150,10 @@ impl<'a> Evidence<'a> {
             torque_factors[joint] * sum / (2 * half) as f64
         };
         let torques: Vec<f64> = (0..q.len()).map(mean).collect();
-        let acceleration = nalgebra::DVector::from_column_slice(&acceleration);
+        let qdd = nalgebra::DVector::from_column_slice(&acceleration);
         let moving = match inertia_at {
-            Some(at) => self.robot.mass_matrix(at) * acceleration,
-            None => self.robot.mass_matrix(&q) * acceleration + self.robot.coriolis_torque(&q, &qd),
+            Some(at) => self.robot.mass_matrix(at) * qdd,
+            None => self.robot.mass_matrix(&q) * qdd + self.robot.coriolis_torque(&q, &qd),
         };
         let viscous = self.robot.viscous_torque(&qd);
         let input = match softened {
@@ -162,9 +162,13 @@ impl<'a> Evidence<'a> {
         };
         // Friction that is added to both sides distinguishes neither.
         match torque {
+            // The motors' inertia takes part in neither.
             Torque::Link => {
                 let recorded = input.iter().zip(&viscous).map(|(u, v)| u - v).collect();
-                (moving.data.into(), recorded)
+                let joints = self.robot.joints().iter().zip(&acceleration);
+                let links = moving.iter().zip(joints);
+                let links = links.map(|(torque, (joint, qdd))| torque - joint.armature * qdd);
+                (links.collect(), recorded)
             }
             Torque::Motor | Torque::Compensated => ((moving + viscous).data.into(), input),
         }

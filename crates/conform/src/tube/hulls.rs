@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
+use crate::data::runaway::Runaway;
 use crate::error::Result;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{At, Judged};
@@ -33,7 +34,7 @@ impl Enclosure {
 }
 
 /// A reachable set that could not be followed to the end: the model may run away under its
-/// uncertainty, or the enclosure grew too wide.
+/// uncertainty or without any, or the enclosure grew too wide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lost {
@@ -43,6 +44,9 @@ pub struct Lost {
     pub time: f64,
     /// The state that grew fastest there.
     pub state: State,
+    /// Whether the nominal motion itself runs away there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub nominal: bool,
 }
 
 /// The interval hulls of the reachable sets of a problem's model under some uncertainty sets.
@@ -171,7 +175,7 @@ impl Hulls {
         match &self.kind {
             HullKind::Linear(reach) => {
                 let grids = problem.grids()?.as_slice();
-                for deviation in problem.deviations()? {
+                for deviation in &problem.deviations_until()?.all {
                     let times = grids[deviation.grid].propagation.grid().times();
                     let (suite, hull) = (deviation.suite, &reach[deviation.grid]);
                     rows(&deviation.envelope, times, hull, &self.sets, states, |row| {
@@ -191,14 +195,18 @@ impl Hulls {
         Ok(())
     }
 
-    /// Returns the cases whose reachable set could not be followed to the end.
+    /// Returns the cases whose reachable set, or whose nominal motion, could not be followed to the
+    /// end.
     ///
     /// # Errors
     ///
     /// As [`Problem::run`].
     pub(crate) fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
         match &self.kind {
-            HullKind::Linear(_) => Ok(Vec::new()),
+            HullKind::Linear(_) => {
+                let runaways = &problem.deviations_until()?.runaways;
+                Ok(runaways.iter().map(Lost::from).collect())
+            }
             HullKind::Outer(outer) => {
                 let pairs = problem.cases()?.iter().zip(outer);
                 Ok(pairs.filter_map(|(case, flowpipe)| Lost::new(case, flowpipe)).collect())
@@ -212,6 +220,12 @@ fn end(grid: &TimeGrid) -> (usize, f64) {
     (grid.times().len().saturating_sub(1), grid.times().last().copied().unwrap_or(0.0))
 }
 
+impl From<&Runaway> for Lost {
+    fn from(Runaway { case, time, state, .. }: &Runaway) -> Self {
+        Self { case: case.clone(), time: *time, state: *state, nominal: true }
+    }
+}
+
 impl Lost {
     /// Returns where the reachable set of a case ends, if it ends too early.
     #[must_use]
@@ -220,7 +234,7 @@ impl Lost {
             FlowpipeOutcome::Reached => None,
             FlowpipeOutcome::Failed { time, state, .. } => {
                 let state = State::from_index(*state, case.joints());
-                Some(Self { case: case.name.clone(), time: *time, state })
+                Some(Self { case: case.name.clone(), time: *time, state, nominal: false })
             }
         }
     }
