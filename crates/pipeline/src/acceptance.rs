@@ -1,12 +1,7 @@
 //! Whether a model is of use, and carries over to motions that it has not seen.
 
 use crate::build::Built;
-
-/// Half a joint's set by the joint's displacement that is accepted by default.
-pub(crate) const LARGEST_RATIO: f64 = 0.5;
-
-/// The factor by which a joint's set may have to grow for motions that were held out, by default.
-pub(crate) const LARGEST_GROWTH: f64 = 2.0;
+use crate::choices::{LARGEST_GROWTH, LARGEST_RATIO};
 
 impl Built {
     /// Returns whether the sets were proved to enclose every window, limit every joint, are narrow

@@ -6,13 +6,13 @@ use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
-use crate::acceptance::{LARGEST_GROWTH, LARGEST_RATIO};
-use crate::choices::{Choice, Choices};
+use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_RATIO};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
 use crate::held_out::Split;
 use crate::horizon::{HorizonWidths, longest, try_horizons};
+use crate::motors::unknown_motors;
 use crate::noise::noise;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::Sorted;
@@ -84,6 +84,7 @@ pub fn build(
     chooser.choose("identify", is_identified.to_string(), reason);
     chooser.choices.identify = Some(is_identified);
     trial.robot = robot.clone();
+    warnings.extend(unknown_motors(&robot, torque));
 
     // The horizon and the sets.
     let motions = motion_names(&split);

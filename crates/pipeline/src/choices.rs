@@ -12,6 +12,12 @@ use crate::error::{Error, Result};
 /// What the comment with the digest of the values begins with.
 const DIGEST: &str = "the reasons belong to the values with the digest ";
 
+/// Half a joint's set by the joint's displacement that is accepted by default.
+pub(crate) const LARGEST_RATIO: f64 = 0.5;
+
+/// The factor by which a joint's set may have to grow for motions that were held out, by default.
+pub(crate) const LARGEST_GROWTH: f64 = 2.0;
+
 /// Largest number of columns of a comment.
 const COLUMNS: usize = 96;
 

@@ -11,6 +11,7 @@ mod held_out;
 mod horizon;
 mod joint_row;
 mod kinds;
+mod motors;
 mod noise;
 mod plausible;
 mod prepared;

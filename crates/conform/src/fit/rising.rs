@@ -1,9 +1,10 @@
 //! Viscous friction must rise with speed up to a velocity that its joint may reach.
 //!
-//! The slope v1 e^x + (1 + y) (2 v2 s + 3 v3 s²), with x the number of v1 and y that of v2 and v3,
-//! is at least 0 at all |s| <= L if and only if e^x >= c (1 + y), where c is the largest fall of
-//! the second part by v1. Then x >= ln(c (1 + y)), and the tangent of the concave right side lies
-//! above it: each step of a fit keeps to a tangent, and so to the condition itself.
+//! With the number x of v1, and the number y of v2 and v3, the slope is
+//! v1 e^x + (1 + y) (2 v2 s + 3 v3 s²). It is at least 0 at all |s| <= L if and only if
+//! e^x >= c (1 + y), where c is the largest fall of the second part by v1. Then x >= ln(c (1 + y)),
+//! and the tangent of the concave right side lies above it: each step of a fit keeps to a tangent,
+//! and so to the condition itself.
 
 /// Speed up to which friction must rise without a velocity limit, in parts of the highest speed
 /// that it was fitted on.

@@ -3,9 +3,9 @@ use nalgebra::{DMatrix, DVector, Matrix2};
 /// The condition that the viscous friction of a joint rises with speed up to a limit L, in both
 /// directions. It then never drives.
 ///
-/// The slope v1 + 2 v2 s + 3 v3 s² is at least 0 for all |s| <= L if and only if some λ >= 0 makes the
-/// matrix [[v1 - λ L², v2], [v2, 3 v3 + λ]] positive semidefinite: the slope minus λ (L² - s²) is
-/// then a square form in (1, s). The S-procedure loses nothing for one quadratic condition.
+/// The slope v1 + 2 v2 s + 3 v3 s² is at least 0 for all |s| <= L if and only if some λ >= 0 makes
+/// the matrix [[v1 - λ L², v2], [v2, 3 v3 + λ]] positive semidefinite: the slope minus λ (L² - s²)
+/// is then a square form in (1, s). The S-procedure is exact for one quadratic condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RisingFriction {
     /// The columns of v1, v2 and v3; `None` for a coefficient that is not fitted.

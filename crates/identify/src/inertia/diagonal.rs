@@ -16,7 +16,7 @@ const RANK_TOLERANCE: f64 = 1e-7;
 /// Part of a combination in directions that are not determined which is rounding.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// A standard error above this part of the inertia is warned of.
+/// A standard error above this part of the inertia produces a warning.
 const LARGEST_ERROR: f64 = 0.5;
 
 /// The inertia that a joint feels: its entry of the diagonal of the mass matrix, as mean over

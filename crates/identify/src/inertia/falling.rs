@@ -5,7 +5,7 @@ use crate::friction::falling::{FallingFriction, rising};
 use nalgebra::DVector;
 use reachtube_robot::{Parameter, ParameterKind, Robot};
 
-/// The friction columns of a fit whose friction is added to that of a known robot.
+/// The friction columns of a fit that corrects the friction of a known robot.
 pub(super) struct ViscousColumns<'a> {
     pub known: &'a Robot,
     pub columns: &'a [Parameter],
